@@ -1,0 +1,113 @@
+//! One trilinear hexahedron: its volume and its quality.
+
+use crate::Vec3;
+
+/// Corner neighbours of each corner, ordered so that the triple product of the
+/// three edges is positive in a hexahedron of VTK's numbering.
+const CORNER_EDGES: [[usize; 3]; 8] = [
+    [1, 3, 4],
+    [2, 0, 5],
+    [3, 1, 6],
+    [0, 2, 7],
+    [7, 5, 0],
+    [4, 6, 1],
+    [5, 7, 2],
+    [6, 4, 3],
+];
+
+/// Exact volume enclosed by a hexahedron with bilinear faces.
+///
+/// `corners` are in VTK order (bottom quad anticlockwise seen from the top, then the top quad).
+/// The volume integral becomes one over the six faces, V = 1/3 sum of int x . n dA, and on a
+/// bilinear face that integral is (a + b + c + d)/4 . A plus a twist term; summing the four
+/// tetrahedral splits of a face, weighted one half, gives it exactly.
+pub fn trilinear_volume(corners: &[Vec3; 8]) -> f64 {
+    let origin = corners[0];
+    crate::HEX_FACES
+        .iter()
+        .map(|face| {
+            let [a, b, c, d] = face.map(|i| corners[i] - origin);
+            // Mean of the two ways to cut the quad into triangles.
+            let triple = |p: &Vec3, q: &Vec3, r: &Vec3| p.dot(&q.cross(r));
+            (triple(&a, &b, &c) + triple(&a, &c, &d) + triple(&a, &b, &d) + triple(&b, &c, &d))
+                / 12.0
+        })
+        .sum()
+}
+
+/// Smallest scaled Jacobian over the eight corners: 1 for a brick, 0 or less where the element
+/// is flat or inverted at a corner.
+///
+/// At each corner it is the triple product of the three edges over the product of their lengths.
+pub fn scaled_jacobian(corners: &[Vec3; 8]) -> f64 {
+    CORNER_EDGES
+        .iter()
+        .enumerate()
+        .map(|(corner, ends)| {
+            let [u, v, w] = ends.map(|end| corners[end] - corners[corner]);
+            let lengths = u.norm() * v.norm() * w.norm();
+            if lengths > 0.0 {
+                u.cross(&v).dot(&w) / lengths
+            } else {
+                0.0
+            }
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn brick(size: [f64; 3]) -> [Vec3; 8] {
+        [
+            [0., 0., 0.],
+            [1., 0., 0.],
+            [1., 1., 0.],
+            [0., 1., 0.],
+            [0., 0., 1.],
+            [1., 0., 1.],
+            [1., 1., 1.],
+            [0., 1., 1.],
+        ]
+        .map(|c| Vec3::new(c[0] * size[0], c[1] * size[1], c[2] * size[2]))
+    }
+
+    #[test]
+    fn verify_brick_volume_and_quality() {
+        let corners = brick([2.0, 3.0, 0.5]);
+        assert!((trilinear_volume(&corners) - 3.0).abs() < 1e-14);
+        assert!((scaled_jacobian(&corners) - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn verify_twisted_volume_against_gauss_quadrature() {
+        let mut corners = brick([1.0, 1.0, 1.0]);
+        corners[6] += Vec3::new(0.3, 0.2, 0.4);
+        corners[1] += Vec3::new(-0.1, 0.15, 0.2);
+        let volume = trilinear_volume(&corners);
+        // det J of a trilinear map is at most quadratic in each coordinate: 2-point Gauss is exact.
+        let g = 0.5 / 3f64.sqrt();
+        let signs = brick([1.0, 1.0, 1.0]).map(|c| c.map(|v| 2.0 * v - 1.0));
+        let mut exact = 0.0;
+        for p in signs {
+            let at = p * g + Vec3::repeat(0.5);
+            let mut jacobian = nalgebra::Matrix3::zeros();
+            for (corner, s) in corners.iter().zip(&signs) {
+                let n = |i: usize| if s[i] > 0.0 { at[i] } else { 1.0 - at[i] };
+                let gradient =
+                    Vec3::new(s[0] * n(1) * n(2), s[1] * n(0) * n(2), s[2] * n(0) * n(1));
+                jacobian += corner * gradient.transpose();
+            }
+            exact += jacobian.determinant() / 8.0;
+        }
+        assert!((volume - exact).abs() < 1e-13, "{volume} {exact}");
+    }
+
+    #[test]
+    fn inverted_element_has_negative_quality() {
+        let mut corners = brick([1.0, 1.0, 1.0]);
+        corners[4] = Vec3::new(0.0, 0.0, -0.2);
+        assert!(scaled_jacobian(&corners) < 0.0);
+    }
+}

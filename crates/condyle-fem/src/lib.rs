@@ -1,0 +1,14 @@
+//! Hexahedral meshes and elements; knows nothing of knees.
+//!
+//! Lengths are in whatever unit the mesh is in; condyle uses millimetres.
+
+mod follow;
+mod hex;
+mod mesh;
+
+pub use follow::InteriorFollower;
+pub use hex::{scaled_jacobian, trilinear_volume};
+pub use mesh::{HEX_FACES, HexMesh};
+
+/// A point or a vector in space.
+pub type Vec3 = nalgebra::Vector3<f64>;

@@ -1,0 +1,122 @@
+//! A mesh of hexahedra: nodes, elements, boundary.
+
+use std::collections::BTreeMap;
+
+use crate::{Vec3, scaled_jacobian, trilinear_volume};
+
+/// The six faces of a hexahedron as corners in VTK order, each anticlockwise seen from outside.
+pub const HEX_FACES: [[usize; 4]; 6] = [
+    [0, 3, 2, 1],
+    [4, 5, 6, 7],
+    [0, 1, 5, 4],
+    [1, 2, 6, 5],
+    [2, 3, 7, 6],
+    [3, 0, 4, 7],
+];
+
+/// A mesh of 8-node hexahedra.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HexMesh {
+    /// Node positions.
+    pub nodes: Vec<Vec3>,
+    /// Node numbers of each hexahedron, from 0, in VTK order.
+    pub hexes: Vec<[u32; 8]>,
+}
+
+impl HexMesh {
+    /// Positions of the eight corners of hexahedron `hex`.
+    pub fn corners(&self, hex: usize) -> [Vec3; 8] {
+        self.hexes[hex].map(|node| self.nodes[node as usize])
+    }
+
+    /// Volume of the whole mesh, each element with bilinear faces.
+    pub fn volume(&self) -> f64 {
+        (0..self.hexes.len())
+            .map(|hex| trilinear_volume(&self.corners(hex)))
+            .sum()
+    }
+
+    /// Smallest scaled Jacobian of all elements; 0 or less means that one is flat or inverted.
+    pub fn worst_quality(&self) -> f64 {
+        (0..self.hexes.len())
+            .map(|hex| scaled_jacobian(&self.corners(hex)))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The quads that belong to one hexahedron only, anticlockwise seen from outside,
+    /// in the order of the elements.
+    pub fn boundary_quads(&self) -> Vec<[u32; 4]> {
+        let mut uses: BTreeMap<[u32; 4], u32> = BTreeMap::new();
+        for quad in self.quads() {
+            *uses.entry(sorted(quad)).or_default() += 1;
+        }
+        self.quads()
+            .filter(|&quad| uses[&sorted(quad)] == 1)
+            .collect()
+    }
+
+    fn quads(&self) -> impl Iterator<Item = [u32; 4]> + '_ {
+        self.hexes
+            .iter()
+            .flat_map(|hex| HEX_FACES.map(|face| face.map(|corner| hex[corner])))
+    }
+}
+
+fn sorted(mut quad: [u32; 4]) -> [u32; 4] {
+    quad.sort_unstable();
+    quad
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A block of `n` unit cubes along each axis, nodes numbered x fastest, then y, then z.
+    pub(crate) fn block(n: [usize; 3]) -> HexMesh {
+        let id = |i: usize, j: usize, k: usize| (i + (n[0] + 1) * (j + (n[1] + 1) * k)) as u32;
+        let mut nodes = Vec::new();
+        for k in 0..=n[2] {
+            for j in 0..=n[1] {
+                for i in 0..=n[0] {
+                    nodes.push(Vec3::new(i as f64, j as f64, k as f64));
+                }
+            }
+        }
+        let mut hexes = Vec::new();
+        for k in 0..n[2] {
+            for j in 0..n[1] {
+                for i in 0..n[0] {
+                    let quad = |k| {
+                        [
+                            id(i, j, k),
+                            id(i + 1, j, k),
+                            id(i + 1, j + 1, k),
+                            id(i, j + 1, k),
+                        ]
+                    };
+                    let ([a, b, c, d], [e, f, g, h]) = (quad(k), quad(k + 1));
+                    hexes.push([a, b, c, d, e, f, g, h]);
+                }
+            }
+        }
+        HexMesh { nodes, hexes }
+    }
+
+    #[test]
+    fn verify_block_volume_boundary_and_quality() {
+        let mesh = block([3, 2, 4]);
+        assert!((mesh.volume() - 24.0).abs() < 1e-12);
+        assert!((mesh.worst_quality() - 1.0).abs() < 1e-12);
+        assert_eq!(mesh.boundary_quads().len(), 2 * (6 + 8 + 12));
+    }
+
+    #[test]
+    fn boundary_quads_face_outwards() {
+        let mesh = block([2, 2, 2]);
+        let centre = Vec3::repeat(1.0);
+        for quad in mesh.boundary_quads() {
+            let [a, b, c, _] = quad.map(|n| mesh.nodes[n as usize]);
+            assert!((b - a).cross(&(c - b)).dot(&(a - centre)) > 0.0);
+        }
+    }
+}

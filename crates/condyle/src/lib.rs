@@ -1,0 +1,11 @@
+//! The physics of a virtual wear test of a joint replacement.
+//!
+//! No terminal, no files, no global state. Millimetre, newton, second, MPa, tonne and radian
+//! everywhere inside; frames and signs are in `NOTATION.md`.
+
+pub mod geometry;
+
+/// A point or a vector in space, mm unless said otherwise.
+pub type Vec3 = nalgebra::Vector3<f64>;
+/// A 3 by 3 matrix.
+pub type Mat3 = nalgebra::Matrix3<f64>;
