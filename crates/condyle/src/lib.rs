@@ -3,7 +3,10 @@
 //! No terminal, no files, no global state. Millimetre, newton, second, MPa, tonne and radian
 //! everywhere inside; frames and signs are in `NOTATION.md`.
 
+pub mod contact;
 pub mod geometry;
+pub mod machine;
+pub mod wear;
 
 /// A point or a vector in space, mm unless said otherwise.
 pub type Vec3 = nalgebra::Vector3<f64>;

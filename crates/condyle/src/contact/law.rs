@@ -1,0 +1,196 @@
+//! Pressure from overclosure.
+
+use thiserror::Error;
+
+/// How an elastic layer on a rigid base answers overclosure with pressure.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PressureLaw {
+    /// p = K d / h.
+    Linear {
+        /// Modulus K of the confined layer, MPa: see [`confined_modulus`].
+        modulus_mpa: f64,
+    },
+    /// p = -K ln(1 - d / h): stiffens as the layer is used up.
+    Logarithmic {
+        /// Modulus K of the confined layer, MPa: see [`confined_modulus`].
+        modulus_mpa: f64,
+    },
+    /// Pressure against overclosure whatever the thickness, as Abaqus tabulates it.
+    Tabulated(PressureTable),
+}
+
+/// Share of the layer's thickness at which the logarithmic law goes on as a straight line, so
+/// that an iterate of Newton's method beyond the layer still finds its way back.
+const LOGARITHM_ENDS_AT: f64 = 0.9;
+
+/// Modulus of an elastic layer that cannot spread sideways, K = (1 - v) E / ((1 + v)(1 - 2v)), MPa.
+///
+/// Source: the elastic foundation of Bei & Fregly 2004; `youngs_modulus_mpa` > 0,
+/// `poissons_ratio` in \[0, 0.5).
+pub fn confined_modulus(youngs_modulus_mpa: f64, poissons_ratio: f64) -> f64 {
+    let v = poissons_ratio;
+    (1.0 - v) * youngs_modulus_mpa / ((1.0 + v) * (1.0 - 2.0 * v))
+}
+
+impl PressureLaw {
+    /// Pressure, MPa, and its derivative by the overclosure, MPa/mm, for an `overclosure_mm` >= 0
+    /// of a layer `thickness_mm` thick.
+    #[inline]
+    pub fn pressure(&self, overclosure_mm: f64, thickness_mm: f64) -> (f64, f64) {
+        match self {
+            Self::Linear { modulus_mpa } => {
+                let stiffness = modulus_mpa / thickness_mm;
+                (stiffness * overclosure_mm, stiffness)
+            }
+            Self::Logarithmic { modulus_mpa } => {
+                let strain = overclosure_mm / thickness_mm;
+                let (value, slope) = minus_log_one_minus(strain);
+                (modulus_mpa * value, modulus_mpa * slope / thickness_mm)
+            }
+            Self::Tabulated(table) => table.pressure(overclosure_mm),
+        }
+    }
+}
+
+/// -ln(1 - x) and its derivative, continued as a straight line beyond [`LOGARITHM_ENDS_AT`].
+fn minus_log_one_minus(x: f64) -> (f64, f64) {
+    let end = x.min(LOGARITHM_ENDS_AT);
+    let slope = 1.0 / (1.0 - end);
+    (-(-end).ln_1p() + (x - end) * slope, slope)
+}
+
+/// Why points make no pressure table.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PressureTableError {
+    /// Fewer than two points.
+    #[error("a pressure table needs two points or more, it has {count}")]
+    TooShort {
+        /// How many there are.
+        count: usize,
+    },
+    /// The first point is not the origin.
+    #[error(
+        "a pressure table starts at overclosure 0 mm and pressure 0 MPa, this one at {overclosure_mm} mm and {pressure_mpa} MPa"
+    )]
+    NotFromZero {
+        /// First overclosure.
+        overclosure_mm: f64,
+        /// First pressure.
+        pressure_mpa: f64,
+    },
+    /// A point that does not rise above the one before, or is not finite.
+    #[error(
+        "point {index} of the pressure table does not rise: overclosure and pressure must both grow from point to point"
+    )]
+    NotRising {
+        /// Which point, from 0.
+        index: usize,
+    },
+}
+
+/// Pressure against overclosure, linear between points and beyond the last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressureTable {
+    /// (overclosure mm, pressure MPa), from (0, 0), both rising.
+    points: Vec<(f64, f64)>,
+}
+
+impl PressureTable {
+    /// A table through (overclosure mm, pressure MPa) `points`.
+    ///
+    /// # Errors
+    /// Fewer than two points, a first that is not (0, 0), or one that does not rise.
+    pub fn new(points: Vec<(f64, f64)>) -> Result<Self, PressureTableError> {
+        if points.len() < 2 {
+            return Err(PressureTableError::TooShort {
+                count: points.len(),
+            });
+        }
+        let (overclosure_mm, pressure_mpa) = points[0];
+        if (overclosure_mm, pressure_mpa) != (0.0, 0.0) {
+            return Err(PressureTableError::NotFromZero {
+                overclosure_mm,
+                pressure_mpa,
+            });
+        }
+        let rises = |pair: &[(f64, f64)]| {
+            pair[1].0 > pair[0].0
+                && pair[1].1 > pair[0].1
+                && pair[1].0.is_finite()
+                && pair[1].1.is_finite()
+        };
+        match points.windows(2).position(|pair| !rises(pair)) {
+            Some(before) => Err(PressureTableError::NotRising { index: before + 1 }),
+            None => Ok(Self { points }),
+        }
+    }
+
+    /// The points, (overclosure mm, pressure MPa).
+    pub fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+
+    fn pressure(&self, overclosure_mm: f64) -> (f64, f64) {
+        let after = self
+            .points
+            .partition_point(|point| point.0 <= overclosure_mm);
+        let piece = after.clamp(1, self.points.len() - 1);
+        let ((xa, ya), (xb, yb)) = (self.points[piece - 1], self.points[piece]);
+        let slope = (yb - ya) / (xb - xa);
+        (ya + slope * (overclosure_mm - xa), slope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_stiffness_of_facts_at_six_eight_and_ten_mm() {
+        let law = PressureLaw::Linear {
+            modulus_mpa: confined_modulus(463.0, 0.46),
+        };
+        for (thickness, stiffness) in [(6.0, 357.0), (8.0, 268.0), (10.0, 214.0)] {
+            assert!((law.pressure(1.0, thickness).0 - stiffness).abs() < 1.0);
+        }
+    }
+
+    #[test]
+    fn slopes_are_derivatives() {
+        let table = PressureTable::new(vec![(0.0, 0.0), (0.1, 5.0), (0.4, 60.0)]).unwrap();
+        let laws = [
+            PressureLaw::Linear {
+                modulus_mpa: 2000.0,
+            },
+            PressureLaw::Logarithmic {
+                modulus_mpa: 2000.0,
+            },
+            PressureLaw::Tabulated(table),
+        ];
+        for law in laws {
+            for overclosure in [0.02, 0.25, 0.5, 3.0, 9.5] {
+                let step = 1e-6;
+                let rise = law.pressure(overclosure + step, 9.0).0
+                    - law.pressure(overclosure - step, 9.0).0;
+                let slope = law.pressure(overclosure, 9.0).1;
+                assert!((rise / (2.0 * step) / slope - 1.0).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn verify_logarithmic_law_starts_as_the_linear_one() {
+        let (value, slope) = minus_log_one_minus(1e-9);
+        assert!((value / 1e-9 - 1.0).abs() < 1e-8 && (slope - 1.0).abs() < 1e-8);
+        assert!((minus_log_one_minus(0.5).0 - 2f64.ln()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn every_table_error_says_what_is_wrong() {
+        let fail =
+            |points: &[(f64, f64)]| PressureTable::new(points.to_vec()).unwrap_err().to_string();
+        assert!(fail(&[(0.0, 0.0)]).contains("it has 1"));
+        assert!(fail(&[(0.1, 0.0), (0.2, 1.0)]).contains("0.1 mm"));
+        assert!(fail(&[(0.0, 0.0), (0.2, 1.0), (0.3, 1.0)]).contains("point 2"));
+    }
+}

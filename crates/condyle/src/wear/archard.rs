@@ -1,0 +1,48 @@
+//! Archard's law.
+
+use super::{NodeHistory, WearLaw};
+
+/// Archard's law: depth per cycle = Kw sum of p |ds|.
+///
+/// Source: Archard 1953; for knees Knight 2007 with Kw = 2.64e-7 mm3/(N m).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Archard {
+    /// Wear factor Kw, mm3 of wear for each newton and metre of sliding.
+    pub wear_factor_mm3_per_nm: f64,
+}
+
+/// A metre in millimetres.
+const MM_PER_M: f64 = 1000.0;
+
+impl WearLaw for Archard {
+    fn depth_per_cycle_mm(&self, history: &NodeHistory<'_>) -> f64 {
+        let work: f64 = history
+            .moments
+            .iter()
+            .map(|moment| moment.pressure_mpa * moment.slip_mm[0].hypot(moment.slip_mm[1]))
+            .sum();
+        self.wear_factor_mm3_per_nm / MM_PER_M * work
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wear::Moment;
+
+    #[test]
+    fn verify_flat_pin_depth_is_kw_p_s() {
+        let law = Archard {
+            wear_factor_mm3_per_nm: 2.64e-7,
+        };
+        let moment = |slip_mm| Moment {
+            percent: 0.0,
+            pressure_mpa: 10.0,
+            slip_mm,
+        };
+        let moments = [moment([3.0, 4.0]), moment([-5.0, 0.0])];
+        // 10 MPa over 10 mm is 0.1 N m on each square millimetre.
+        let depth = law.depth_per_cycle_mm(&NodeHistory { moments: &moments });
+        assert!((depth - 2.64e-7 * 0.1).abs() < 1e-20);
+    }
+}
