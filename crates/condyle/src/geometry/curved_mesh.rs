@@ -1,0 +1,136 @@
+//! The curved surface that a triangle mesh samples.
+
+use super::TriangleMesh;
+use crate::Vec3;
+
+/// A triangle mesh with vertex normals, read as samples of a smooth surface.
+///
+/// Over a triangle with corners v_i and vertex normals n_i, the point c with barycentric
+/// coordinates b_i is lifted along the normals by (1/2) sum b_i ((v_i - c) . n_i) n_i. Half of the
+/// blended tangent planes (Boubekeur & Alexa 2008, alpha = 1/2) is exact for a quadratic surface.
+pub(super) struct CurvedMesh<'a> {
+    mesh: &'a TriangleMesh,
+    vertex_normals: Vec<Vec3>,
+    planes: Vec<(Vec3, f64)>,
+}
+
+impl<'a> CurvedMesh<'a> {
+    pub fn new(mesh: &'a TriangleMesh) -> Self {
+        let plane = |triangle| {
+            let [a, b, c] = mesh.corners(triangle);
+            let normal = (b - a)
+                .cross(&(c - a))
+                .try_normalize(0.0)
+                .unwrap_or_default();
+            (normal, normal.dot(&a))
+        };
+        Self {
+            mesh,
+            vertex_normals: mesh.vertex_normals(),
+            planes: (0..mesh.triangles.len()).map(plane).collect(),
+        }
+    }
+
+    pub fn triangle_count(&self) -> usize {
+        self.mesh.triangles.len()
+    }
+
+    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.mesh.corners(triangle)
+    }
+
+    /// Squared distance from a point to the triangle's plane: a cheap lower bound.
+    pub fn plane_distance2(&self, triangle: usize, point: &Vec3) -> f64 {
+        let (normal, offset) = self.planes[triangle];
+        (normal.dot(point) - offset).powi(2)
+    }
+
+    /// Squared distance from a point to the flat triangle.
+    pub fn distance2(&self, triangle: usize, point: &Vec3) -> f64 {
+        let corners = self.corners(triangle);
+        (weighted(&corners, closest_on_triangle(&corners, point)) - point).norm_squared()
+    }
+
+    /// Signed distance from a point to the curved surface over the triangle, mm; > 0 outside.
+    pub fn curved_gap_mm(&self, triangle: usize, point: &Vec3) -> f64 {
+        let corners = self.corners(triangle);
+        let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
+        let weights = closest_on_triangle(&corners, point);
+        let flat = weighted(&corners, weights);
+        let lift =
+            |i: usize| normals[i] * (weights[i] / 2.0 * (corners[i] - flat).dot(&normals[i]));
+        let foot = flat + lift(0) + lift(1) + lift(2);
+        let normal = weighted(&normals, weights);
+        (point - foot).dot(&normal) / normal.norm()
+    }
+}
+
+fn weighted(vectors: &[Vec3; 3], weights: [f64; 3]) -> Vec3 {
+    vectors[0] * weights[0] + vectors[1] * weights[1] + vectors[2] * weights[2]
+}
+
+/// Barycentric coordinates of the point of a triangle closest to `point`.
+///
+/// By the regions of the triangle, as in Ericson, Real-Time Collision Detection, 5.1.5.
+fn closest_on_triangle(corners: &[Vec3; 3], point: &Vec3) -> [f64; 3] {
+    let [a, b, c] = corners;
+    let (ab, ac) = (b - a, c - a);
+    let from_a = point - a;
+    let (d1, d2) = (ab.dot(&from_a), ac.dot(&from_a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let from_b = point - b;
+    let (d3, d4) = (ab.dot(&from_b), ac.dot(&from_b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let along = d1 / (d1 - d3);
+        return [1.0 - along, along, 0.0];
+    }
+    let from_c = point - c;
+    let (d5, d6) = (ab.dot(&from_c), ac.dot(&from_c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let along = d2 / (d2 - d6);
+        return [1.0 - along, 0.0, along];
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        let along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return [0.0, 1.0 - along, along];
+    }
+    let all = va + vb + vc;
+    [va / all, vb / all, vc / all]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closest_point_is_no_further_than_any_sample_of_the_triangle() {
+        let corners = [[0., 0., 0.], [2., 0.1, 0.], [0.4, 1.5, 0.3]].map(Vec3::from);
+        for i in 0..200 {
+            let angle = f64::from(i);
+            let point = Vec3::new(
+                3.0 * angle.sin(),
+                3.0 * (1.7 * angle).cos(),
+                (0.3 * angle).sin(),
+            );
+            let best = (weighted(&corners, closest_on_triangle(&corners, &point)) - point).norm();
+            for a in 0..=20 {
+                for b in 0..=(20 - a) {
+                    let (u, v) = (f64::from(a) / 20.0, f64::from(b) / 20.0);
+                    let there = weighted(&corners, [1.0 - u - v, u, v]);
+                    assert!(best <= (there - point).norm() + 1e-12);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The generic femoral component: two condyles, each of two pieces of torus.
+
+use super::{SurfaceSample, Torus, TriangleMesh};
+use crate::Vec3;
+
+/// Measures of the generic femoral component, mm and degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GenericFemurShape {
+    /// Sagittal radius of the distal arc.
+    pub distal_radius_mm: f64,
+    /// Sagittal radius of the posterior arc.
+    pub posterior_radius_mm: f64,
+    /// How far behind straight down the distal arc passes into the posterior one.
+    pub transition_deg: f64,
+    /// Radius of the condyles across, in the frontal plane.
+    pub coronal_radius_mm: f64,
+    /// Distance between the two condyles' lowest points.
+    pub spacing_mm: f64,
+}
+
+impl Default for GenericFemurShape {
+    fn default() -> Self {
+        Self {
+            distal_radius_mm: 38.0,
+            posterior_radius_mm: 22.0,
+            transition_deg: 20.0,
+            coronal_radius_mm: 24.0,
+            spacing_mm: 46.0,
+        }
+    }
+}
+
+/// The generic femoral component in its own frame: origin on the axis of the posterior arc,
+/// half-way between the condyles, about which it flexes.
+///
+/// In the sagittal plane the distal arc and the posterior arc share a tangent where they meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GenericFemur {
+    shape: GenericFemurShape,
+    /// The lateral condyle's pieces, with the condyle's middle plane at z = 0.
+    distal: Torus,
+    posterior: Torus,
+    /// Direction from either arc's centre to where they meet.
+    transition: Vec3,
+    half_spacing_mm: f64,
+}
+
+impl GenericFemur {
+    /// The component of the given measures, all > 0.
+    pub fn new(shape: GenericFemurShape) -> Self {
+        let (sine, cosine) = shape.transition_deg.to_radians().sin_cos();
+        let transition = Vec3::new(-sine, -cosine, 0.0);
+        let torus = |centre, sagittal_radius_mm: f64| Torus {
+            centre,
+            ring_radius_mm: sagittal_radius_mm - shape.coronal_radius_mm,
+            tube_radius_mm: shape.coronal_radius_mm,
+        };
+        let distal_centre = -transition * (shape.distal_radius_mm - shape.posterior_radius_mm);
+        Self {
+            shape,
+            distal: torus(distal_centre, shape.distal_radius_mm),
+            posterior: torus(Vec3::zeros(), shape.posterior_radius_mm),
+            transition,
+            half_spacing_mm: shape.spacing_mm / 2.0,
+        }
+    }
+
+    /// Its measures.
+    pub fn shape(&self) -> &GenericFemurShape {
+        &self.shape
+    }
+
+    /// Gap at a point, mm.
+    #[inline]
+    pub fn gap_mm(&self, point: &Vec3) -> f64 {
+        let (folded, _) = self.folded(point);
+        self.piece(&folded).gap_mm(&folded)
+    }
+
+    /// Gap, normal and curvature at a point, the gap averaged as
+    /// [`FemoralSurface::sample`](super::FemoralSurface::sample) says.
+    #[inline]
+    pub fn sample(&self, point: &Vec3, spread_mm2: f64) -> SurfaceSample {
+        let (folded, side) = self.folded(point);
+        let mut sample = self.piece(&folded).sample(&folded, spread_mm2);
+        sample.gap_gradient.z *= side;
+        sample.normal.z *= side;
+        for axis in 0..2 {
+            sample.curvature[(axis, 2)] *= side;
+            sample.curvature[(2, axis)] *= side;
+        }
+        sample
+    }
+
+    /// The point moved to the lateral condyle's middle plane, and the side it came from.
+    #[inline]
+    fn folded(&self, point: &Vec3) -> (Vec3, f64) {
+        let side = 1f64.copysign(point.z);
+        (
+            Vec3::new(point.x, point.y, point.z.abs() - self.half_spacing_mm),
+            side,
+        )
+    }
+
+    /// The piece on whose side of the line through both centres a point lies.
+    #[inline]
+    fn piece(&self, point: &Vec3) -> &Torus {
+        let behind = self.transition.x * point.y - self.transition.y * point.x < 0.0;
+        if behind {
+            &self.posterior
+        } else {
+            &self.distal
+        }
+    }
+
+    /// The articulating surface as triangles of about `edge_mm`, for pictures and other codes.
+    ///
+    /// Both condyles from 50 degrees in front of straight down to 120 behind, 16 mm to each side.
+    pub fn surface_mesh(&self, edge_mm: f64) -> TriangleMesh {
+        let mut mesh = TriangleMesh::default();
+        for side in [-1.0, 1.0] {
+            self.add_condyle(&mut mesh, side, edge_mm);
+        }
+        mesh
+    }
+
+    fn add_condyle(&self, mesh: &mut TriangleMesh, side: f64, edge_mm: f64) {
+        const FRONT_DEG: f64 = -50.0;
+        const BACK_DEG: f64 = 120.0;
+        const HALF_WIDTH_MM: f64 = 16.0;
+        let tube = self.shape.coronal_radius_mm;
+        let half_angle = (HALF_WIDTH_MM / tube).min(1.0).asin();
+        let longest = (BACK_DEG - FRONT_DEG).to_radians() * self.shape.distal_radius_mm;
+        let rows = (longest / edge_mm).ceil() as u32;
+        let columns = (2.0 * half_angle * tube / edge_mm).ceil() as u32;
+        let first = mesh.vertices.len() as u32;
+        for row in 0..=rows {
+            let angle = FRONT_DEG + (BACK_DEG - FRONT_DEG) * f64::from(row) / f64::from(rows);
+            for column in 0..=columns {
+                let across = half_angle * (2.0 * f64::from(column) / f64::from(columns) - 1.0);
+                mesh.vertices.push(self.surface_point(angle, across, side));
+            }
+        }
+        for row in 0..rows {
+            for column in 0..columns {
+                let corner = first + row * (columns + 1) + column;
+                let (a, b) = (corner, corner + 1);
+                let (c, d) = (b + columns + 1, a + columns + 1);
+                mesh.triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+
+    /// The point of the surface `behind_deg` behind straight down, `across` rad round the tube.
+    fn surface_point(&self, behind_deg: f64, across: f64, side: f64) -> Vec3 {
+        let torus = if behind_deg > self.shape.transition_deg {
+            &self.posterior
+        } else {
+            &self.distal
+        };
+        let (sine, cosine) = behind_deg.to_radians().sin_cos();
+        let reach = torus.ring_radius_mm + torus.tube_radius_mm * across.cos();
+        let z = torus.tube_radius_mm * across.sin() + side * self.half_spacing_mm;
+        torus.centre + Vec3::new(-sine * reach, -cosine * reach, z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::torus::tests::check_derivatives;
+
+    fn femur() -> GenericFemur {
+        GenericFemur::new(GenericFemurShape::default())
+    }
+
+    #[test]
+    fn verify_lowest_points_of_both_arcs() {
+        // The distal centre lies 16 mm from the origin, opposite to the transition.
+        let (sine, cosine) = 20f64.to_radians().sin_cos();
+        let distal = Vec3::new(16.0 * sine, 16.0 * cosine - 38.0, 23.0);
+        assert!(femur().gap_mm(&distal).abs() < 1e-12);
+        let posterior = Vec3::new(-22.0, 0.0, -23.0);
+        assert!(femur().gap_mm(&posterior).abs() < 1e-12);
+    }
+
+    #[test]
+    fn arcs_meet_with_one_tangent() {
+        let along = Vec3::new(-0.342_020_143_325_668_7, -0.939_692_620_785_908_4, 0.0);
+        let across = Vec3::new(along.y, -along.x, 0.0) * 1e-9;
+        for z in [20.0, 23.0, 30.0] {
+            let at = |shift: Vec3| femur().sample(&(along * 22.0 + shift + Vec3::z() * z), 0.0);
+            let (one, other) = (at(across), at(-across));
+            assert!((one.gap_mm - other.gap_mm).abs() < 1e-8);
+            assert!((one.normal - other.normal).norm() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn derivatives_hold_on_both_condyles_and_arcs() {
+        let points = [
+            [9.0, -22.0, 25.0],
+            [9.0, -22.0, -21.0],
+            [-15.0, -16.0, -26.0],
+            [-15.0, -16.0, 20.0],
+        ];
+        for point in points.map(Vec3::from) {
+            check_derivatives(|p| femur().sample(p, 0.04), point, 1e-8);
+        }
+    }
+
+    #[test]
+    fn surface_mesh_lies_on_the_surface_and_faces_outwards() {
+        let mesh = femur().surface_mesh(2.0);
+        for vertex in &mesh.vertices {
+            assert!(femur().gap_mm(vertex).abs() < 1e-9, "{vertex}");
+        }
+        for triangle in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(triangle);
+            let normal = femur().sample(&((a + b + c) / 3.0), 0.0).normal;
+            assert!((b - a).cross(&(c - a)).dot(&normal) > 0.0);
+        }
+    }
+}

@@ -1,0 +1,368 @@
+//! The smooth distance field of a triangle mesh: facets are not felt.
+//!
+//! A mesh is a sample of a smooth surface, and its facets are not part of the implant. The field
+//! is built in two steps. First the gap is found at the nodes of a regular grid near the surface,
+//! not to the flat facets but to the curved surface that the vertex normals imply (exact for any
+//! quadratic surface). Then a quadratic B-spline through those gaps gives a value, a gradient and
+//! a Hessian anywhere between the nodes, the first two continuous, from 27 numbers.
+
+use super::{SurfaceSample, TriangleMesh, curved_mesh::CurvedMesh};
+use crate::{Mat3, Vec3};
+
+/// Distance between grid nodes, mm: the spline's error on a ball of radius 20 mm is then below
+/// 0.1 micrometre.
+const SPACING_MM: f64 = 1.25;
+
+/// Grid nodes this close to the surface get a true gap, mm: the deepest overclosure that a run
+/// may reach, and the spline's footprint around it.
+const BAND_MM: f64 = 3.5;
+
+/// Gap of the grid nodes beyond the band, mm.
+const FAR_MM: f64 = 1e3;
+
+/// A smooth signed distance to a triangle mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SmoothField {
+    /// Position of grid node (0, 0, 0).
+    origin: Vec3,
+    /// Grid nodes along x, y, z; x runs fastest.
+    dims: [usize; 3],
+    /// Coefficients of the spline, mm.
+    coefficients: Vec<f64>,
+}
+
+/// Values, first and second derivatives of the three B-splines that reach a point.
+struct Basis {
+    value: [f64; 3],
+    slope: [f64; 3],
+}
+
+/// Second derivatives of the three B-splines, the same everywhere.
+const BEND: [f64; 3] = [1.0, -2.0, 1.0];
+
+impl Basis {
+    /// `t` in \[-1/2, 1/2\]: distance from the middle node, in spacings.
+    #[inline]
+    fn at(t: f64) -> Self {
+        let (left, right) = (0.5 - t, 0.5 + t);
+        Self {
+            value: [0.5 * left * left, 0.75 - t * t, 0.5 * right * right],
+            slope: [-left, -2.0 * t, right],
+        }
+    }
+}
+
+fn dot3(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+impl SmoothField {
+    /// The field of a surface whose triangles face outwards, made on `threads` threads.
+    ///
+    /// The bytes of the result do not depend on `threads`.
+    pub fn new(mesh: &TriangleMesh, threads: usize) -> Self {
+        let margin = Vec3::repeat(BAND_MM + 2.0 * SPACING_MM);
+        let (low, high) = mesh.bounds();
+        let origin = low - margin;
+        let dims =
+            [0, 1, 2].map(|axis| ((high + margin - origin)[axis] / SPACING_MM).ceil() as usize + 1);
+        let mut field = Self {
+            origin,
+            dims,
+            coefficients: Vec::new(),
+        };
+        field.coefficients = field.gaps_at_nodes(&CurvedMesh::new(mesh), threads.max(1));
+        for stride in field.strides() {
+            field.add_second_differences(stride, -1.0 / 8.0);
+        }
+        field
+    }
+
+    /// The field averaged over flat shares of surface: g + `spread_mm2` div n.
+    pub fn averaged_over(mut self, spread_mm2: f64) -> Self {
+        let factor = spread_mm2 / (SPACING_MM * SPACING_MM);
+        let unaveraged = self.coefficients.clone();
+        for stride in self.strides() {
+            add_second_differences(&unaveraged, &mut self.coefficients, stride, factor);
+        }
+        self
+    }
+
+    /// Gap at a point, mm.
+    #[inline]
+    pub fn gap_mm(&self, point: &Vec3) -> f64 {
+        let Some((corner, [x, y, z])) = self.locate(point) else {
+            return FAR_MM;
+        };
+        let mut gap = 0.0;
+        for k in 0..3 {
+            for j in 0..3 {
+                gap += z.value[k] * y.value[j] * dot3(&x.value, self.row(corner, j, k));
+            }
+        }
+        gap
+    }
+
+    /// Gap, normal and curvature at a point.
+    ///
+    /// The tensor product is contracted an axis at a time: 165 multiplications instead of 810.
+    #[inline]
+    pub fn sample(&self, point: &Vec3) -> SurfaceSample {
+        let Some((corner, [x, y, z])) = self.locate(point) else {
+            return far();
+        };
+        let (mut gap, mut gradient, mut bend) = (0.0, [0.0; 3], [0.0; 6]);
+        for k in 0..3 {
+            let rows = [0, 1, 2].map(|j| self.row(corner, j, k));
+            let f = rows.map(|row| dot3(&x.value, row));
+            let fx = rows.map(|row| dot3(&x.slope, row));
+            let fxx = rows.map(|row| dot3(&BEND, row));
+            let (v, s, b) = (z.value[k], z.slope[k], BEND[k]);
+            let (g, gx, gy) = (dot3(&y.value, &f), dot3(&y.value, &fx), dot3(&y.slope, &f));
+            gap += v * g;
+            gradient[0] += v * gx;
+            gradient[1] += v * gy;
+            gradient[2] += s * g;
+            bend[0] += v * dot3(&y.value, &fxx);
+            bend[1] += v * dot3(&BEND, &f);
+            bend[2] += b * g;
+            bend[3] += v * dot3(&y.slope, &fx);
+            bend[4] += s * gx;
+            bend[5] += s * gy;
+        }
+        sample_from(gap, gradient, bend)
+    }
+
+    /// The number of the first of the 27 coefficients that reach a point, and the bases there;
+    /// none outside the grid.
+    #[inline]
+    fn locate(&self, point: &Vec3) -> Option<(usize, [Basis; 3])> {
+        let place = (point - self.origin) / SPACING_MM;
+        let node = place.map(f64::round);
+        let inside = |axis: usize| node[axis] >= 1.0 && node[axis] <= (self.dims[axis] - 2) as f64;
+        if !(inside(0) && inside(1) && inside(2)) {
+            return None;
+        }
+        let [sx, sy, sz] = self.strides();
+        let corner =
+            (node.x as usize - 1) * sx + (node.y as usize - 1) * sy + (node.z as usize - 1) * sz;
+        let offset = place - node;
+        Some((
+            corner,
+            [
+                Basis::at(offset.x),
+                Basis::at(offset.y),
+                Basis::at(offset.z),
+            ],
+        ))
+    }
+
+    #[inline]
+    fn row(&self, corner: usize, j: usize, k: usize) -> &[f64; 3] {
+        let [_, sy, sz] = self.strides();
+        let start = corner + j * sy + k * sz;
+        self.coefficients[start..]
+            .first_chunk()
+            .expect("locate keeps one node of margin on every side")
+    }
+
+    #[inline]
+    fn strides(&self) -> [usize; 3] {
+        [1, self.dims[0], self.dims[0] * self.dims[1]]
+    }
+
+    /// The gap at every grid node, each thread filling its own slab of nodes.
+    fn gaps_at_nodes(&self, mesh: &CurvedMesh<'_>, threads: usize) -> Vec<f64> {
+        let slab = self.dims[0] * self.dims[1];
+        let mut gaps = vec![FAR_MM; slab * self.dims[2]];
+        let layers = self.dims[2].div_ceil(threads);
+        std::thread::scope(|scope| {
+            for (index, part) in gaps.chunks_mut(slab * layers).enumerate() {
+                scope.spawn(move || self.fill_layers(mesh, index * layers, part));
+            }
+        });
+        gaps
+    }
+
+    /// Fills the layers of nodes from `first_layer` with their gaps to the nearest triangle.
+    fn fill_layers(&self, mesh: &CurvedMesh<'_>, first_layer: usize, gaps: &mut [f64]) {
+        let slab = self.dims[0] * self.dims[1];
+        let last_layer = first_layer + gaps.len() / slab;
+        let mut nearest2 = vec![BAND_MM * BAND_MM; gaps.len()];
+        let mut owner = vec![u32::MAX; gaps.len()];
+        for triangle in 0..mesh.triangle_count() {
+            let [low, high] = self.nodes_around(mesh.corners(triangle));
+            for k in low[2].max(first_layer)..high[2].min(last_layer) {
+                for j in low[1]..high[1] {
+                    for i in low[0]..high[0] {
+                        let here = i + self.dims[0] * (j + self.dims[1] * (k - first_layer));
+                        let node = self.node_position(i, j, k);
+                        if mesh.plane_distance2(triangle, &node) >= nearest2[here] {
+                            continue;
+                        }
+                        let distance2 = mesh.distance2(triangle, &node);
+                        if distance2 < nearest2[here] {
+                            (nearest2[here], owner[here]) = (distance2, triangle as u32);
+                        }
+                    }
+                }
+            }
+        }
+        for (here, (gap, owner)) in gaps.iter_mut().zip(owner).enumerate() {
+            if owner != u32::MAX {
+                let (i, j, k) = (
+                    here % self.dims[0],
+                    here / self.dims[0] % self.dims[1],
+                    here / slab,
+                );
+                *gap =
+                    mesh.curved_gap_mm(owner as usize, &self.node_position(i, j, k + first_layer));
+            }
+        }
+    }
+
+    fn node_position(&self, i: usize, j: usize, k: usize) -> Vec3 {
+        self.origin + Vec3::new(i as f64, j as f64, k as f64) * SPACING_MM
+    }
+
+    /// First and one past the last grid node along each axis within the band of a triangle.
+    fn nodes_around(&self, corners: [Vec3; 3]) -> [[usize; 3]; 2] {
+        let [a, b, c] = corners.map(|corner| (corner - self.origin) / SPACING_MM);
+        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+        let band = BAND_MM / SPACING_MM;
+        let first = [0, 1, 2].map(|axis| (low[axis] - band).ceil().max(0.0) as usize);
+        let end =
+            [0, 1, 2].map(|axis| ((high[axis] + band).floor() as usize + 1).min(self.dims[axis]));
+        [first, end]
+    }
+
+    fn add_second_differences(&mut self, stride: usize, factor: f64) {
+        let before = self.coefficients.clone();
+        add_second_differences(&before, &mut self.coefficients, stride, factor);
+    }
+}
+
+/// Adds `factor` times the second difference along one axis, where no node of it is far.
+fn add_second_differences(from: &[f64], to: &mut [f64], stride: usize, factor: f64) {
+    for i in stride..from.len() - stride {
+        let (left, middle, right) = (from[i - stride], from[i], from[i + stride]);
+        if left < FAR_MM / 2.0 && middle < FAR_MM / 2.0 && right < FAR_MM / 2.0 {
+            to[i] += factor * (left - 2.0 * middle + right);
+        }
+    }
+}
+
+/// Gap, unit normal and its derivative from the derivatives of the spline by the grid's places;
+/// `bend` holds xx, yy, zz, xy, xz, yz.
+#[inline]
+fn sample_from(gap_mm: f64, gradient: [f64; 3], bend: [f64; 6]) -> SurfaceSample {
+    let gap_gradient = Vec3::from(gradient) / SPACING_MM;
+    let [xx, yy, zz, xy, xz, yz] = bend;
+    let hessian = Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) / (SPACING_MM * SPACING_MM);
+    let per_length = 1.0 / gap_gradient.norm();
+    let normal = gap_gradient * per_length;
+    let curvature = (hessian - normal * (hessian * normal).transpose()) * per_length;
+    SurfaceSample {
+        gap_mm,
+        gap_gradient,
+        normal,
+        curvature,
+    }
+}
+
+fn far() -> SurfaceSample {
+    SurfaceSample {
+        gap_mm: FAR_MM,
+        gap_gradient: Vec3::zeros(),
+        normal: -Vec3::y(),
+        curvature: Mat3::zeros(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::torus::tests::check_derivatives;
+
+    /// A ball of radius 24 mm with edges of about `edge_mm`, by latitude and longitude, turned so
+    /// that its poles lie where nobody looks.
+    fn ball(edge_mm: f64) -> TriangleMesh {
+        let rows = (std::f64::consts::PI * 24.0 / edge_mm) as u32;
+        let columns = 2 * rows;
+        let mut mesh = TriangleMesh::default();
+        for row in 0..=rows {
+            for column in 0..columns {
+                let (theta, phi) = (
+                    std::f64::consts::PI * f64::from(row) / f64::from(rows),
+                    std::f64::consts::TAU * f64::from(column) / f64::from(columns),
+                );
+                let around = Vec3::new(
+                    theta.cos(),
+                    theta.sin() * phi.cos(),
+                    theta.sin() * phi.sin(),
+                );
+                mesh.vertices.push(around * 24.0);
+            }
+        }
+        for row in 0..rows {
+            for column in 0..columns {
+                let (a, b) = (
+                    row * columns + column,
+                    row * columns + (column + 1) % columns,
+                );
+                mesh.triangles
+                    .extend([[a, a + columns, b + columns], [a, b + columns, b]]);
+            }
+        }
+        mesh
+    }
+
+    #[test]
+    fn verify_ball_of_one_millimetre_edges_is_smooth_to_a_tenth_of_a_micrometre() {
+        let field = SmoothField::new(&ball(1.0), 1);
+        for i in 0..400 {
+            let (along, across) = (0.01 * f64::from(i % 20), 0.013 * f64::from(i / 20));
+            let direction = Vec3::new(along, -1.0, across).normalize();
+            let sample = field.sample(&(direction * 23.8));
+            assert!((sample.gap_mm + 0.2).abs() < 1e-4, "{}", sample.gap_mm);
+            assert!((sample.normal - direction).norm() < 5e-4);
+            let exact = (Mat3::identity() - direction * direction.transpose()) / 23.8;
+            assert!(
+                (sample.curvature - exact).norm() < 4e-3,
+                "{}",
+                sample.curvature
+            );
+        }
+    }
+
+    #[test]
+    fn derivatives_hold_and_gap_agrees_with_sample() {
+        let field = SmoothField::new(&ball(1.5), 1).averaged_over(0.05);
+        for point in [Vec3::new(3.1, -23.9, 2.2), Vec3::new(-7.3, -22.6, 1.4)] {
+            check_derivatives(|p| field.sample(p), point, 1e-7);
+            assert!((field.gap_mm(&point) - field.sample(&point).gap_mm).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn averaging_adds_the_spread_times_the_divergence() {
+        let plain = SmoothField::new(&ball(1.0), 1);
+        let point = Vec3::new(1.0, -23.9, 0.5);
+        let raised = plain.clone().averaged_over(0.05).gap_mm(&point) - plain.gap_mm(&point);
+        assert!((raised - 0.05 * 2.0 / 24.0).abs() < 1e-4, "{raised}");
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bytes() {
+        let mesh = ball(2.0);
+        let [one, two, three] = [1, 2, 3].map(|threads| SmoothField::new(&mesh, threads));
+        assert!(one == two && two == three);
+    }
+
+    #[test]
+    fn far_points_are_apart() {
+        let field = SmoothField::new(&ball(2.0), 1);
+        assert!(field.gap_mm(&Vec3::new(0.0, -200.0, 0.0)) > 100.0);
+        assert!(field.sample(&Vec3::new(0.0, -29.0, 0.0)).gap_mm > 2.0);
+    }
+}
