@@ -1,14 +1,23 @@
 //! Shapes, meshes, and the distance to a surface.
 
+mod articulating_surface;
+mod columns;
 mod curved_mesh;
 mod femoral_surface;
 mod generic_femur;
+mod generic_insert;
+mod insert;
 mod smooth_field;
+mod thickness;
 mod torus;
 mod triangle_mesh;
 
+pub use articulating_surface::{ArticulatingSurface, Share};
+pub use columns::{Column, ColumnGrid, ColumnMesh};
 pub use femoral_surface::{FemoralSurface, SurfaceSample};
 pub use generic_femur::{GenericFemur, GenericFemurShape};
+pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};
+pub use insert::{Insert, InsertError};
 pub use smooth_field::SmoothField;
 pub use torus::Torus;
 pub use triangle_mesh::TriangleMesh;

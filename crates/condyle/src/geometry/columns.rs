@@ -1,0 +1,158 @@
+//! Hexahedra in columns below a surface over a rectangular grid.
+
+use condyle_fem::HexMesh;
+
+use crate::Vec3;
+
+/// A rectangular grid over the transverse plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColumnGrid {
+    /// Place (x, z) of grid point (0, 0), mm.
+    pub origin_mm: (f64, f64),
+    /// Distance between grid points along x and z, mm.
+    pub step_mm: (f64, f64),
+    /// Cells along x and z.
+    pub cells: (usize, usize),
+}
+
+/// What stands over a grid point: the heights of the backside and of the articulating surface, mm.
+pub type Column = Option<(f64, f64)>;
+
+/// A column mesh with its two faces.
+pub struct ColumnMesh {
+    /// The hexahedra.
+    pub mesh: HexMesh,
+    /// The articulating surface, quads facing up.
+    pub articulating: Vec<[u32; 4]>,
+    /// The backside, quads facing down.
+    pub backside: Vec<[u32; 4]>,
+}
+
+impl ColumnGrid {
+    /// A grid of cells of about `edge_mm` that fills the rectangle from `low` to `high`, (x, z).
+    pub fn filling(low: (f64, f64), high: (f64, f64), edge_mm: f64) -> Self {
+        let cells = |length: f64| (length / edge_mm).round().max(1.0);
+        let (width, depth) = (high.0 - low.0, high.1 - low.1);
+        let (nx, nz) = (cells(width), cells(depth));
+        Self {
+            origin_mm: low,
+            step_mm: (width / nx, depth / nz),
+            cells: (nx as usize, nz as usize),
+        }
+    }
+
+    /// Place (x, z) of grid point (i, k), mm.
+    pub fn place_mm(&self, i: usize, k: usize) -> (f64, f64) {
+        (
+            self.origin_mm.0 + self.step_mm.0 * i as f64,
+            self.origin_mm.1 + self.step_mm.1 * k as f64,
+        )
+    }
+
+    /// Number of grid point (i, k); z runs fastest.
+    pub fn number(&self, i: usize, k: usize) -> usize {
+        i * (self.cells.1 + 1) + k
+    }
+
+    /// How many grid points there are.
+    pub fn point_count(&self) -> usize {
+        (self.cells.0 + 1) * (self.cells.1 + 1)
+    }
+
+    /// Hexahedra in `layers` layers over every cell with a column at all four corners.
+    ///
+    /// `columns`: one a grid point, in the order of [`ColumnGrid::number`].
+    pub fn hexahedra(&self, columns: &[Column], layers: usize) -> ColumnMesh {
+        let cells = self.filled_cells(columns);
+        let mut first_node = vec![u32::MAX; columns.len()];
+        let mut nodes = Vec::new();
+        for &point in cells.iter().flatten() {
+            if let (u32::MAX, Some(column)) = (first_node[point], columns[point]) {
+                first_node[point] = nodes.len() as u32;
+                nodes.extend(self.stack(point, column, layers));
+            }
+        }
+        let quad =
+            |cell: &[usize; 4], layer: usize| cell.map(|point| first_node[point] + layer as u32);
+        let hex = |cell: &[usize; 4], layer: usize| {
+            let ([a, b, c, d], [e, f, g, h]) = (quad(cell, layer), quad(cell, layer + 1));
+            [a, b, c, d, e, f, g, h]
+        };
+        let hexes = cells
+            .iter()
+            .flat_map(|cell| (0..layers).map(move |layer| hex(cell, layer)));
+        ColumnMesh {
+            articulating: cells.iter().map(|cell| quad(cell, layers)).collect(),
+            backside: cells.iter().map(|cell| reversed(quad(cell, 0))).collect(),
+            mesh: HexMesh {
+                hexes: hexes.collect(),
+                nodes,
+            },
+        }
+    }
+
+    /// Grid points of each cell that has a column at all corners, anticlockwise seen from above.
+    fn filled_cells(&self, columns: &[Column]) -> Vec<[usize; 4]> {
+        let (nx, nz) = self.cells;
+        let cell = |i, k| {
+            [
+                self.number(i, k),
+                self.number(i, k + 1),
+                self.number(i + 1, k + 1),
+                self.number(i + 1, k),
+            ]
+        };
+        (0..nx)
+            .flat_map(|i| (0..nz).map(move |k| cell(i, k)))
+            .filter(|points| points.iter().all(|&point| columns[point].is_some()))
+            .collect()
+    }
+
+    /// The nodes of one column, from the backside up.
+    fn stack(
+        &self,
+        point: usize,
+        (low, high): (f64, f64),
+        layers: usize,
+    ) -> impl Iterator<Item = Vec3> {
+        let per_row = self.cells.1 + 1;
+        let (x, z) = self.place_mm(point / per_row, point % per_row);
+        (0..=layers)
+            .map(move |layer| Vec3::new(x, low + (high - low) * layer as f64 / layers as f64, z))
+    }
+}
+
+fn reversed([a, b, c, d]: [u32; 4]) -> [u32; 4] {
+    [d, c, b, a]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_block_of_columns() {
+        let grid = ColumnGrid::filling((-2.0, 0.0), (2.0, 3.0), 0.9);
+        assert_eq!(grid.cells, (4, 3));
+        let block = grid.hexahedra(&vec![Some((-5.0, 1.0)); grid.point_count()], 2);
+        assert_eq!(block.mesh.hexes.len(), 4 * 3 * 2);
+        assert!((block.mesh.volume() - 4.0 * 3.0 * 6.0).abs() < 1e-9);
+        assert!((block.mesh.worst_quality() - 1.0).abs() < 1e-12);
+        let up = |quad: &[u32; 4]| {
+            let [a, b, c, _] = quad.map(|n| block.mesh.nodes[n as usize]);
+            (b - a).cross(&(c - b)).y
+        };
+        assert!(block.articulating.iter().all(|quad| up(quad) > 0.0));
+        assert!(block.backside.iter().all(|quad| up(quad) < 0.0));
+    }
+
+    #[test]
+    fn cells_without_a_column_are_left_out() {
+        let grid = ColumnGrid::filling((0.0, 0.0), (3.0, 1.0), 1.0);
+        let mut columns = vec![Some((0.0, 1.0)); grid.point_count()];
+        columns[grid.number(3, 0)] = None;
+        let part = grid.hexahedra(&columns, 1);
+        assert_eq!(part.mesh.hexes.len(), 2);
+        assert_eq!(part.mesh.nodes.len(), 12);
+    }
+}

@@ -1,0 +1,137 @@
+//! The generic tibial insert: two dishes beside an eminence.
+
+use super::{ColumnGrid, Insert, InsertError};
+
+/// Measures of the generic insert, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GenericInsertShape {
+    /// Sagittal radius of the dishes.
+    pub sagittal_radius_mm: f64,
+    /// Radius of the dishes across, in the frontal plane.
+    pub coronal_radius_mm: f64,
+    /// Distance between the two dishes' lowest points.
+    pub spacing_mm: f64,
+    /// Thickness below the lowest points.
+    pub thickness_mm: f64,
+}
+
+impl Default for GenericInsertShape {
+    fn default() -> Self {
+        Self {
+            sagittal_radius_mm: 55.0,
+            coronal_radius_mm: 30.0,
+            spacing_mm: 46.0,
+            thickness_mm: 9.0,
+        }
+    }
+}
+
+/// How finely an insert is meshed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Meshing {
+    /// Length of an edge along the surface, mm.
+    pub edge_mm: f64,
+    /// Hexahedra through the thickness.
+    pub layers: usize,
+}
+
+impl Default for Meshing {
+    fn default() -> Self {
+        Self {
+            edge_mm: 1.05,
+            layers: 3,
+        }
+    }
+}
+
+/// The insert reaches from here, (x, z), mm ...
+const LOW_MM: (f64, f64) = (-24.0, -36.0);
+/// ... to here.
+const HIGH_MM: (f64, f64) = (22.0, 36.0);
+/// The eminence between the dishes is cut off at this height, mm.
+const EMINENCE_MM: f64 = 8.0;
+
+impl GenericInsertShape {
+    /// Height of the articulating surface above its lowest points, mm.
+    ///
+    /// D(z) = (Rs - Rc) + sqrt(Rc^2 - (|z| - spacing/2)^2) is the distance from the medio-lateral
+    /// axis at height Rs, and y = Rs - sqrt(D^2 - x^2), at most 8 mm.
+    pub fn height_mm(&self, x_mm: f64, z_mm: f64) -> f64 {
+        let (rs, rc) = (self.sagittal_radius_mm, self.coronal_radius_mm);
+        let across = z_mm.abs() - self.spacing_mm / 2.0;
+        let distance = (rs - rc) + (rc * rc - across * across).max(0.0).sqrt();
+        let height = rs - (distance * distance - x_mm * x_mm).max(0.0).sqrt();
+        height.min(EMINENCE_MM)
+    }
+
+    /// The insert in hexahedra, its lowest points at y = 0.
+    ///
+    /// # Errors
+    /// As [`Insert::new`]; none for measures that make a dish.
+    pub fn insert(&self, meshing: Meshing) -> Result<Insert, InsertError> {
+        let grid = ColumnGrid::filling(LOW_MM, HIGH_MM, meshing.edge_mm);
+        let mut columns = vec![None; grid.point_count()];
+        for i in 0..=grid.cells.0 {
+            for k in 0..=grid.cells.1 {
+                let (x, z) = grid.place_mm(i, k);
+                columns[grid.number(i, k)] = Some((-self.thickness_mm, self.height_mm(x, z)));
+            }
+        }
+        let built = grid.hexahedra(&columns, meshing.layers);
+        Insert::new(built.mesh, built.articulating, &built.backside)
+    }
+}
+
+/// A flat block with its articulating surface at y = 0, for verification.
+///
+/// `size_mm`: length along x and z, centred; `thickness_mm`: down to the backside.
+///
+/// # Errors
+/// As [`Insert::new`]; none for positive sizes.
+pub fn flat_insert(
+    size_mm: (f64, f64),
+    thickness_mm: f64,
+    meshing: Meshing,
+) -> Result<Insert, InsertError> {
+    let (x, z) = (size_mm.0 / 2.0, size_mm.1 / 2.0);
+    let grid = ColumnGrid::filling((-x, -z), (x, z), meshing.edge_mm);
+    let columns = vec![Some((-thickness_mm, 0.0)); grid.point_count()];
+    let built = grid.hexahedra(&columns, meshing.layers);
+    Insert::new(built.mesh, built.articulating, &built.backside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_heights_of_the_dish() {
+        let shape = GenericInsertShape::default();
+        assert_eq!(shape.height_mm(0.0, 23.0), 0.0);
+        assert_eq!(shape.height_mm(0.0, 0.0), 8.0);
+        let edge = 55.0 - (55f64.powi(2) - 24f64.powi(2)).sqrt();
+        assert!((shape.height_mm(-24.0, -23.0) - edge).abs() < 1e-12);
+    }
+
+    #[test]
+    fn default_mesh_has_about_nine_thousand_good_hexahedra() {
+        let insert = GenericInsertShape::default()
+            .insert(Meshing::default())
+            .unwrap();
+        let mesh = insert.mesh();
+        assert!(
+            (8_900..9_300).contains(&mesh.hexes.len()),
+            "{}",
+            mesh.hexes.len()
+        );
+        assert!(mesh.worst_quality() > 0.4, "{}", mesh.worst_quality());
+        assert_eq!(
+            insert
+                .thickness_mm()
+                .iter()
+                .copied()
+                .fold(f64::INFINITY, f64::min),
+            9.0
+        );
+    }
+}
