@@ -125,13 +125,8 @@ mod tests {
             mesh.hexes.len()
         );
         assert!(mesh.worst_quality() > 0.4, "{}", mesh.worst_quality());
-        assert_eq!(
-            insert
-                .thickness_mm()
-                .iter()
-                .copied()
-                .fold(f64::INFINITY, f64::min),
-            9.0
-        );
+        let thickness = insert.thickness_mm().iter().copied();
+        let thinnest = thickness.fold(f64::INFINITY, f64::min);
+        assert!((9.0..9.01).contains(&thinnest), "{thinnest}");
     }
 }
