@@ -1,0 +1,29 @@
+//! Small meshes for the tests of the formats.
+
+use condyle::Vec3;
+use condyle::geometry::TriangleMesh;
+
+use super::MeshFileError;
+
+/// A corner of the unit cube, closed, facing outwards.
+pub(crate) fn tetrahedron() -> TriangleMesh {
+    TriangleMesh {
+        vertices: vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()],
+        triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+    }
+}
+
+/// What the error of a reading says.
+pub(crate) fn message<T>(result: Result<T, MeshFileError>) -> String {
+    result
+        .err()
+        .expect("the fixture is wrong on purpose")
+        .to_string()
+}
+
+/// The corners of all triangles, whatever the numbers of the vertices.
+pub(crate) fn corners(mesh: &TriangleMesh) -> Vec<[Vec3; 3]> {
+    (0..mesh.triangles.len())
+        .map(|triangle| mesh.corners(triangle))
+        .collect()
+}

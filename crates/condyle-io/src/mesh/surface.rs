@@ -1,0 +1,135 @@
+//! A triangle surface from any of the formats, by the ending of its name.
+
+use std::io::ErrorKind;
+use std::path::Path;
+
+use condyle::geometry::TriangleMesh;
+
+use super::{MeshFileError, obj, ply, stl, vtp};
+
+/// Reads a triangle surface from `.stl`, `.obj`, `.ply` or `.vtp`.
+///
+/// Polygons of more than three corners become a fan of triangles, points of exactly equal
+/// coordinates become one vertex, and points that no triangle uses are left out. Lengths and
+/// axes are the file's own. The shell is not judged here: see `condyle::geometry::checked_shell`.
+///
+/// # Errors
+/// Names the file, and the line where the format is text: missing or unreadable file, unknown
+/// ending, content that does not follow the format, no triangles, a coordinate that is not
+/// finite, a polygon that names a vertex that is not there.
+pub fn read_surface(path: impl AsRef<Path>) -> Result<TriangleMesh, MeshFileError> {
+    let path = path.as_ref();
+    let parse = match ending(path).as_str() {
+        "stl" => stl::parse,
+        "obj" => obj::parse,
+        "ply" => ply::parse,
+        "vtp" => vtp::parse,
+        _ => return Err(unknown_ending(path, ".stl, .obj, .ply, .vtp")),
+    };
+    parse(path, &read_bytes(path)?)
+}
+
+/// The ending of a file's name in small letters, without the dot.
+pub(super) fn ending(path: &Path) -> String {
+    path.extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase()
+}
+
+pub(super) fn unknown_ending(path: &Path, known: &'static str) -> MeshFileError {
+    MeshFileError::UnknownExtension {
+        path: path.to_path_buf(),
+        ending: ending(path),
+        known,
+    }
+}
+
+pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, MeshFileError> {
+    std::fs::read(path).map_err(|source| {
+        let path = path.to_path_buf();
+        if source.kind() == ErrorKind::NotFound {
+            MeshFileError::Missing { path }
+        } else {
+            MeshFileError::Unreadable { path, source }
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::fixtures::{corners, message, tetrahedron};
+    use crate::mesh::write_stl;
+
+    #[test]
+    fn the_ending_chooses_the_format_whatever_its_case() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("Femur.STL");
+        write_stl(std::fs::File::create(&path).unwrap(), &tetrahedron()).unwrap();
+        let mesh = read_surface(&path).unwrap();
+        assert_eq!(corners(&mesh), corners(&tetrahedron()));
+        assert_eq!(mesh.vertices.len(), 4);
+    }
+
+    #[test]
+    fn a_missing_file_and_an_unknown_ending_say_so() {
+        let said = message(read_surface("nowhere/femur.stl"));
+        assert_eq!(
+            said,
+            "nowhere/femur.stl: there is no such file; check the path"
+        );
+        let said = message(read_surface("femur.step"));
+        let expected = "femur.step: the ending \"step\" is not a known format; use one of .stl, .obj, .ply, .vtp";
+        assert_eq!(said, expected);
+    }
+
+    #[test]
+    fn a_folder_is_not_readable_as_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("femur.stl");
+        std::fs::create_dir(&path).unwrap();
+        assert!(message(read_surface(&path)).contains("cannot be read"));
+    }
+
+    /// The real implant is data beside the repository, not in it.
+    fn dm_knee(file: &str) -> Option<TriangleMesh> {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/dm-knee");
+        let path = Path::new(folder).join(file);
+        if !path.exists() {
+            assert!(
+                std::env::var("CI").as_deref() != Ok("true"),
+                "dm-knee is not there"
+            );
+            eprintln!("skipped: dm_knee: shared/data/dm-knee/{file} is not there");
+            return None;
+        }
+        Some(read_surface(path).unwrap())
+    }
+
+    #[test]
+    fn the_dm_femur_is_welded_to_a_closed_shell() {
+        let Some(femur) = dm_knee("femoral-component.stl") else {
+            return;
+        };
+        assert_eq!(
+            (femur.triangles.len(), femur.vertices.len()),
+            (24_442, 12_223)
+        );
+        let volume_mm3 = femur.signed_volume() * 1e9;
+        assert!((volume_mm3 - 38_087.331).abs() < 0.001, "{volume_mm3}");
+    }
+
+    #[test]
+    fn the_dm_insert_is_welded_to_a_closed_shell() {
+        let Some(insert) = dm_knee("tibial-insert.stl") else {
+            return;
+        };
+        assert_eq!(
+            (insert.triangles.len(), insert.vertices.len()),
+            (52_918, 26_459)
+        );
+        let volume_mm3 = insert.signed_volume() * 1e9;
+        assert!((volume_mm3 - 24_796.159).abs() < 0.001, "{volume_mm3}");
+    }
+}
