@@ -1,0 +1,116 @@
+//! What can go wrong between a results folder and its report.
+
+use std::path::PathBuf;
+
+/// A report could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The path is not a folder.
+    #[error("There is no folder {folder}. Give the folder that `condyle run --out` wrote.")]
+    NoFolder {
+        /// The path asked for.
+        folder: PathBuf,
+    },
+    /// The folder holds none of the files that a run writes.
+    #[error(
+        "The folder {folder} holds no results: no summary.json, wear.csv, kinematics.csv or insert_*.vtu. Give the folder that `condyle run --out` wrote."
+    )]
+    NoResults {
+        /// The path asked for.
+        folder: PathBuf,
+    },
+    /// A file that one picture needs is not in the folder.
+    #[error(
+        "The file {path} is missing, and {picture} cannot be drawn without it. Run the case again."
+    )]
+    MissingFile {
+        /// The file.
+        path: PathBuf,
+        /// The picture that needs it.
+        picture: &'static str,
+    },
+    /// A file is there and cannot be read.
+    #[error("The file {path} cannot be read: {source}.")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A file cannot be written.
+    #[error("The file {path} cannot be written: {source}.")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A summary is not JSON, or not an object.
+    #[error("The file {path} is not a summary in JSON: {source}. Run the case again.")]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with line and column.
+        source: serde_json::Error,
+    },
+    /// A table holds something that is not a number.
+    #[error("Line {line} of {path}: column `{column}` holds `{text}`, which is not a number.")]
+    NotANumber {
+        /// The file.
+        path: PathBuf,
+        /// Line in the file, from 1.
+        line: usize,
+        /// Name of the column.
+        column: String,
+        /// What stands there.
+        text: String,
+    },
+    /// A row of a table is longer or shorter than its header.
+    #[error("Line {line} of {path} has {found} values; its header names {expected} columns.")]
+    RaggedRow {
+        /// The file.
+        path: PathBuf,
+        /// Line in the file, from 1.
+        line: usize,
+        /// Values in the row.
+        found: usize,
+        /// Columns in the header.
+        expected: usize,
+    },
+    /// A table lacks the columns of a picture, or has no row.
+    #[error("{picture} needs rows with the columns {columns} in {path}.")]
+    MissingColumns {
+        /// The file.
+        path: PathBuf,
+        /// The columns, separated by commas.
+        columns: &'static str,
+        /// The picture that needs them.
+        picture: &'static str,
+    },
+    /// A mesh lacks a field of a picture.
+    #[error("The mesh {path} has no point data `{field}`.")]
+    MissingField {
+        /// The file.
+        path: PathBuf,
+        /// Name of the point data.
+        field: &'static str,
+    },
+    /// A field of a mesh has the wrong length.
+    #[error("The mesh {path} has {nodes} nodes, but {found} values of `{field}`.")]
+    FieldLength {
+        /// The file.
+        path: PathBuf,
+        /// Name of the point data.
+        field: String,
+        /// Values found.
+        found: usize,
+        /// Nodes of the mesh.
+        nodes: usize,
+    },
+    /// No face of a mesh is marked as articulating.
+    #[error("The mesh {path} has no face whose nodes all have `articulating` = 1.")]
+    NoSurface {
+        /// The file.
+        path: PathBuf,
+    },
+}

@@ -1,0 +1,114 @@
+//! An axis with round ticks.
+
+use crate::number::fixed;
+
+/// A range with ticks at multiples of a round step; both ends are ticks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Axis {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) step: f64,
+}
+
+impl Axis {
+    /// The tightest axis over `low..high` with at most `intervals` steps of 1, 2 or 5 times a power of ten.
+    ///
+    /// `span` is the least that it shows, so that noise does not fill the picture.
+    pub(crate) fn covering(low: f64, high: f64, span: f64, intervals: usize) -> Self {
+        let (low, high) = widened(low, high, span);
+        let mut step = round_step((high - low) / intervals as f64);
+        loop {
+            let axis = Self::on_multiples(low, high, step);
+            if axis.intervals() <= intervals {
+                return axis;
+            }
+            step = round_step(step * 1.01);
+        }
+    }
+
+    /// The ticks, smallest first.
+    pub(crate) fn ticks(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..=self.intervals()).map(|tick| self.low + tick as f64 * self.step)
+    }
+
+    /// A tick's text, with as many decimals as the step has.
+    pub(crate) fn label(&self, tick: f64) -> String {
+        fixed(tick, decimals(self.step))
+    }
+
+    /// Where `value` lies from the low end, 0, to the high end, 1.
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
+        (value - self.low) / (self.high - self.low)
+    }
+
+    pub(crate) fn intervals(&self) -> usize {
+        ((self.high - self.low) / self.step).round() as usize
+    }
+
+    fn on_multiples(low: f64, high: f64, step: f64) -> Self {
+        const SLACK: f64 = 1e-9;
+        let low = (low / step + SLACK).floor() * step;
+        let high = (high / step - SLACK).ceil() * step;
+        Self { low, high, step }
+    }
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is at least `least`.
+pub(crate) fn round_step(least: f64) -> f64 {
+    let power = 10f64.powf(least.log10().floor());
+    [1.0, 2.0, 5.0, 10.0]
+        .map(|factor| factor * power)
+        .into_iter()
+        .find(|step| *step >= least * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
+}
+
+fn widened(low: f64, high: f64, span: f64) -> (f64, f64) {
+    let missing = (span - (high - low)).max(0.0);
+    (low - missing / 2.0, high + missing / 2.0)
+}
+
+fn decimals(step: f64) -> usize {
+    (-(step.log10() + 1e-9).floor()).max(0.0) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_cover_the_data() {
+        let axis = Axis::covering(-4.3, 0.4, 0.0, 6);
+        assert_eq!((axis.low, axis.high, axis.step), (-5.0, 1.0, 1.0));
+        assert_eq!(axis.label(-5.0), "\u{2212}5");
+        assert_eq!(axis.ticks().count(), 7);
+    }
+
+    #[test]
+    fn a_flat_line_gets_the_least_span() {
+        let axis = Axis::covering(0.0, 0.0, 0.2, 5);
+        assert!(axis.low < 0.0 && axis.high > 0.0 && axis.high - axis.low < 0.3);
+    }
+
+    #[test]
+    fn labels_have_the_decimals_of_the_step() {
+        assert_eq!(
+            Axis {
+                low: 0.0,
+                high: 0.3,
+                step: 0.05
+            }
+            .label(0.1),
+            "0.10"
+        );
+        assert_eq!(
+            Axis {
+                low: 0.0,
+                high: 3e4,
+                step: 1e4
+            }
+            .label(2e4),
+            "20\u{202f}000"
+        );
+    }
+}

@@ -1,0 +1,302 @@
+//! A field on the articulating surface, seen as a surgeon looks down on the tibia:
+//! anterior up, +z to the right.
+
+use super::axis::{Axis, round_step};
+use super::contour::Contours;
+use super::escape;
+use super::path::Path;
+use crate::number::{fixed, significant};
+use crate::results::{Extreme, Region, Side, SurfaceFields};
+
+/// Bands between 0 and the largest value, at most.
+const MOST_BANDS: usize = 12;
+/// Distance between the height lines of the bare surface, mm.
+const HEIGHT_STEP: f64 = 1.0;
+/// A largest value below this counts as nothing to show.
+const NOTHING: f64 = 1e-12;
+/// Colour of the surface below the first band: polyethylene.
+const BARE: &str = "#f2f0ea";
+
+const LEFT: f64 = 30.0;
+const TOP: f64 = 30.0;
+const BOTTOM: f64 = 86.0;
+const BAR_GAP: f64 = 48.0;
+const BAR_WIDTH: f64 = 15.0;
+const BAR_LABELS: f64 = 62.0;
+
+/// The colours of a map, from light for little to dark for much, perceptually uniform.
+#[derive(Clone, Copy)]
+pub(crate) enum Shades {
+    /// Yellow, red, black.
+    Magma,
+    /// Yellow, green, violet.
+    Viridis,
+    /// Yellow, grey, blue.
+    Cividis,
+}
+
+/// A map of one field.
+pub(crate) struct Map<'a> {
+    /// Distinguishes the picture on a page.
+    pub(crate) id: &'static str,
+    /// What is shown.
+    pub(crate) title: &'static str,
+    /// Its unit.
+    pub(crate) unit: &'static str,
+    /// What the largest value of a side is called.
+    pub(crate) largest: &'static str,
+    /// The surface.
+    pub(crate) surface: &'a SurfaceFields,
+    /// A value a node.
+    pub(crate) values: &'a [f64],
+    /// Which knee it is.
+    pub(crate) side: Side,
+    /// The colours.
+    pub(crate) shades: Shades,
+    /// Scale of the picture, px per mm.
+    pub(crate) px_per_mm: f64,
+}
+
+impl Map<'_> {
+    /// The map as an element of a page.
+    pub(crate) fn svg(&self) -> String {
+        let ((width, height), id) = (self.size(), self.id);
+        let (title, desc) = (escape(self.title), escape(&self.desc()));
+        format!(
+            r#"<svg class="fig" role="img" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width:.1} {height:.1}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}</svg>"#,
+            self.body()
+        )
+    }
+
+    /// The map as content of a larger picture.
+    pub(crate) fn body(&self) -> String {
+        let bands = self.bands();
+        [
+            self.surface_picture(&bands),
+            self.directions(),
+            self.colour_bar(&bands),
+            self.scale_bar(),
+            self.markers(),
+        ]
+        .concat()
+    }
+
+    /// Width and height, px.
+    pub(crate) fn size(&self) -> (f64, f64) {
+        let (width, height) = self.surface_size();
+        (
+            LEFT + width + BAR_GAP + BAR_WIDTH + BAR_LABELS,
+            TOP + height + BOTTOM,
+        )
+    }
+
+    /// A sentence for those who cannot see it.
+    pub(crate) fn desc(&self) -> String {
+        let [left, right] = self.side.regions();
+        let found: Vec<_> = self
+            .extremes()
+            .into_iter()
+            .map(|(name, extreme)| {
+                let (value, place) = (self.value_text(extreme.value), place_text(&extreme));
+                format!(
+                    "{} {} {value} at {place}",
+                    self.largest,
+                    name.to_lowercase()
+                )
+            })
+            .collect();
+        format!(
+            "{} on the articulating surface from above, anterior up, {} on the left, {} on the right. {}.",
+            self.title,
+            left.to_lowercase(),
+            right.to_lowercase(),
+            found.join("; ")
+        )
+    }
+
+    fn largest_value(&self) -> f64 {
+        self.surface
+            .largest(self.values, Region::Whole)
+            .map_or(0.0, |extreme| extreme.value)
+    }
+
+    fn bands(&self) -> Axis {
+        let largest = self.largest_value();
+        let step = round_step(largest.max(NOTHING) / MOST_BANDS as f64);
+        let count = (largest / step - 1e-9).ceil().max(1.0);
+        Axis {
+            low: 0.0,
+            high: count * step,
+            step,
+        }
+    }
+
+    fn surface_size(&self) -> (f64, f64) {
+        let [(x_low, x_high), (z_low, z_high)] = self.surface.bounds();
+        (
+            (z_high - z_low) * self.px_per_mm,
+            (x_high - x_low) * self.px_per_mm,
+        )
+    }
+
+    fn place(&self) -> impl Fn(f64, f64) -> (f64, f64) {
+        let [(_, x_high), (z_low, _)] = self.surface.bounds();
+        let scale = self.px_per_mm;
+        move |x, z| (LEFT + (z - z_low) * scale, TOP + (x_high - x) * scale)
+    }
+
+    fn surface_picture(&self, bands: &Axis) -> String {
+        let contours = Contours::new(self.surface, self.values, self.place());
+        let outline = path(&contours.region(f64::NEG_INFINITY));
+        let mut out = format!(r#"<path fill="{BARE}" d="{outline}"/>"#);
+        if self.largest_value() > NOTHING {
+            out += &self.filled(&contours, bands);
+        }
+        out += &self.height_lines();
+        out += &self.middle_line();
+        out + &format!(r#"<path class="rim" d="{outline}"/>"#)
+    }
+
+    /// Each band is painted over the one below; the first starts at a tenth of a step.
+    fn filled(&self, contours: &Contours, bands: &Axis) -> String {
+        (0..bands.intervals())
+            .map(|band| {
+                let level = bands.step * if band == 0 { 0.1 } else { band as f64 };
+                let (fill, shape) = (self.colour(band, bands), path(&contours.region(level)));
+                format!(r#"<path class="iso" fill="{fill}" d="{shape}"/>"#)
+            })
+            .collect()
+    }
+
+    fn colour(&self, band: usize, bands: &Axis) -> String {
+        let share = (band as f64 + 0.5) / bands.intervals() as f64;
+        let gradient = match self.shades {
+            Shades::Magma => colorous::MAGMA,
+            Shades::Viridis => colorous::VIRIDIS,
+            Shades::Cividis => colorous::CIVIDIS,
+        };
+        format!("#{:x}", gradient.eval_continuous(1.0 - 0.95 * share))
+    }
+
+    fn height_lines(&self) -> String {
+        let heights: Vec<_> = self.surface.nodes.iter().map(|node| node.y).collect();
+        let (low, high) = heights
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(low, high), &y| {
+                (low.min(y), high.max(y))
+            });
+        let contours = Contours::new(self.surface, &heights, self.place());
+        let steps = ((high - low) / HEIGHT_STEP).ceil() as usize;
+        let lines: String = (1..steps)
+            .map(|step| path(&contours.region(low + step as f64 * HEIGHT_STEP)))
+            .collect();
+        format!(r#"<path class="height" d="{lines}"/>"#)
+    }
+
+    fn middle_line(&self) -> String {
+        let [(x_low, x_high), _] = self.surface.bounds();
+        let mut line = Path::default();
+        line.open([(x_high, 0.0), (x_low, 0.0)].map(|(x, z)| self.place()(x, z)));
+        format!(r#"<path class="middle" d="{}"/>"#, line.data())
+    }
+
+    fn directions(&self) -> String {
+        let ((width, height), [left, right]) = (self.surface_size(), self.side.regions());
+        let (across, down) = (LEFT + width / 2.0, TOP + height / 2.0);
+        let (low, far) = (TOP + height + 17.0, LEFT + width + 16.0);
+        format!(
+            r#"<g class="side" text-anchor="middle"><text class="side" x="{across:.1}" y="{:.1}">Anterior</text><text class="side" x="{across:.1}" y="{low:.1}">Posterior</text><text class="side" transform="translate({:.1} {down:.1}) rotate(-90)">{left}</text><text class="side" transform="translate({far:.1} {down:.1}) rotate(-90)">{right}</text></g>"#,
+            TOP - 10.0,
+            LEFT - 11.0,
+        )
+    }
+
+    fn colour_bar(&self, bands: &Axis) -> String {
+        let (width, height) = self.surface_size();
+        let x = LEFT + width + BAR_GAP;
+        let band_height = height / bands.intervals() as f64;
+        let mut out = String::new();
+        for band in 0..bands.intervals() {
+            let y = TOP + height - (band + 1) as f64 * band_height;
+            let fill = self.colour(band, bands);
+            out += &format!(
+                r#"<rect x="{x:.1}" y="{y:.2}" width="{BAR_WIDTH}" height="{:.2}" fill="{fill}"/>"#,
+                band_height + 0.3
+            );
+        }
+        for tick in bands.ticks() {
+            let y = TOP + height * (1.0 - bands.fraction(tick)) + 3.8;
+            let (x, label) = (x + BAR_WIDTH + 6.0, bands.label(tick));
+            out += &format!(r#"<text x="{x:.1}" y="{y:.1}">{label}</text>"#);
+        }
+        out + &self.bar_title(x)
+    }
+
+    fn bar_title(&self, x: f64) -> String {
+        let (x, y) = (x + BAR_WIDTH + BAR_LABELS, TOP - 14.0);
+        let (title, unit) = (escape(self.title), escape(self.unit));
+        format!(
+            r#"<text class="strong" x="{x:.1}" y="{y}" text-anchor="end">{title}<tspan class="unit">, {unit}</tspan></text>"#
+        )
+    }
+
+    fn scale_bar(&self) -> String {
+        const LENGTH_MM: f64 = 10.0;
+        let (width, height) = self.surface_size();
+        let (length, y) = (LENGTH_MM * self.px_per_mm, TOP + height + 14.0);
+        let end = LEFT + width;
+        let (start, middle) = (end - length, end - length / 2.0);
+        format!(
+            r#"<path class="leader" d="M{start:.1} {:.1}v7M{start:.1} {y:.1}H{end:.1}M{end:.1} {:.1}v7"/><text x="{middle:.1}" y="{:.1}" text-anchor="middle">{LENGTH_MM} mm</text>"#,
+            y - 3.5,
+            y - 3.5,
+            y + 14.0,
+        )
+    }
+
+    fn extremes(&self) -> Vec<(&'static str, Extreme)> {
+        [Region::Left, Region::Right]
+            .into_iter()
+            .zip(self.side.regions())
+            .filter_map(|(region, name)| Some((name, self.surface.largest(self.values, region)?)))
+            .filter(|(_, extreme)| extreme.value > NOTHING)
+            .collect()
+    }
+
+    fn markers(&self) -> String {
+        self.extremes()
+            .iter()
+            .map(|(name, extreme)| self.marker(name, extreme))
+            .collect()
+    }
+
+    /// A ring at the place, a leader down to its text below the surface.
+    fn marker(&self, name: &str, extreme: &Extreme) -> String {
+        let (x, y) = self.place()(extreme.position.x, extreme.position.z);
+        let text_y = TOP + self.surface_size().1 + 50.0;
+        let lines = format!("M{x:.1} {:.1}V{:.1}", y + 4.5, text_y - 13.0);
+        let (value, place) = (self.value_text(extreme.value), place_text(extreme));
+        let (largest, second) = (self.largest, text_y + 15.0);
+        format!(
+            r#"<circle class="halo" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="halo" d="{lines}"/><circle class="mark" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="leader" d="{lines}"/><text x="{x:.1}" y="{text_y:.1}" text-anchor="middle">{largest} {}: <tspan class="strong">{value}</tspan></text><text x="{x:.1}" y="{second:.1}" text-anchor="middle">{place}</text>"#,
+            name.to_lowercase()
+        )
+    }
+
+    fn value_text(&self, value: f64) -> String {
+        format!("{}\u{a0}{}", significant(value, 3), self.unit)
+    }
+}
+
+fn place_text(extreme: &Extreme) -> String {
+    let (x, z) = (fixed(extreme.position.x, 1), fixed(extreme.position.z, 1));
+    format!("x\u{a0}{x}, z\u{a0}{z}\u{a0}mm")
+}
+
+fn path(loops: &[Vec<(f64, f64)>]) -> String {
+    let mut path = Path::default();
+    for points in loops {
+        path.closed(points);
+    }
+    path.data()
+}

@@ -1,0 +1,77 @@
+//! The fields of the last mesh as maps.
+
+use serde::Serialize;
+
+use crate::figure::{Map, Shades};
+use crate::results::{Results, SurfaceFields};
+
+/// A small map with its caption.
+#[derive(Serialize)]
+pub(super) struct Small {
+    svg: String,
+    caption: &'static str,
+}
+
+/// The map of wear depth; `None` without a mesh that carries it.
+pub(crate) fn wear_map(results: &Results, px_per_mm: f64) -> Option<Map<'_>> {
+    let surface = results.surface.as_ref()?;
+    Some(Map {
+        id: "map-wear",
+        title: "Wear depth",
+        unit: "mm",
+        largest: "Deepest",
+        ..plain(results, surface, "wear_depth_mm", px_per_mm)?
+    })
+}
+
+/// The maps of peak pressure and of sliding distance.
+pub(super) fn small(results: &Results, px_per_mm: f64) -> Vec<Small> {
+    let Some(surface) = &results.surface else {
+        return Vec::new();
+    };
+    let pressure = plain(results, surface, "peak_pressure_mpa", px_per_mm).map(|map| Map {
+        id: "map-pressure",
+        title: "Peak pressure",
+        unit: "MPa",
+        shades: Shades::Viridis,
+        ..map
+    });
+    let sliding = plain(results, surface, "sliding_distance_mm", px_per_mm).map(|map| Map {
+        id: "map-sliding",
+        title: "Sliding distance",
+        unit: "mm",
+        shades: Shades::Cividis,
+        ..map
+    });
+    let captions = [
+        "Largest contact pressure that each place sees in one gait cycle, last update.",
+        "Distance that the femur slides over each place while it presses on it, in one gait cycle, last update.",
+    ];
+    let maps = [pressure, sliding].into_iter().zip(captions);
+    maps.filter_map(|(map, caption)| {
+        Some(Small {
+            svg: map?.svg(),
+            caption,
+        })
+    })
+    .collect()
+}
+
+fn plain<'a>(
+    results: &Results,
+    surface: &'a SurfaceFields,
+    field: &str,
+    px_per_mm: f64,
+) -> Option<Map<'a>> {
+    Some(Map {
+        id: "",
+        title: "",
+        unit: "",
+        largest: "Highest",
+        surface,
+        values: surface.field(field)?,
+        side: results.side,
+        shades: Shades::Magma,
+        px_per_mm,
+    })
+}

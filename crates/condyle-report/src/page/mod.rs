@@ -1,0 +1,108 @@
+//! The page: what stands on it, and in which order.
+
+mod channels;
+mod compartments;
+mod curves;
+mod maps;
+mod numbers;
+mod ranges;
+mod story;
+
+pub(crate) use channels::panels as kinematics_panels;
+pub(crate) use curves::panels as wear_panels;
+pub(crate) use maps::wear_map;
+
+use minijinja::Environment;
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::Serde;
+use serde::Serialize;
+
+use crate::figure::{css, variables};
+use crate::number::cycles;
+use crate::results::{Results, title};
+
+const PAGE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+
+/// Scale of the large map, px per mm.
+const LARGE: f64 = 8.0;
+/// Scale of the small maps, px per mm.
+const SMALL: f64 = 5.4;
+
+/// What the template is filled with.
+#[derive(Serialize)]
+struct Page<'a> {
+    style: &'static str,
+    figure_style: &'static str,
+    light: String,
+    dark: String,
+    title: Option<String>,
+    lede: Option<String>,
+    tiles: Vec<numbers::Tile>,
+    missing: Vec<&'static str>,
+    wear_map: Option<String>,
+    compartments: Vec<compartments::Row>,
+    wear_curves: Vec<String>,
+    channels: Vec<String>,
+    cycles: Option<(String, String)>,
+    ranges: Vec<ranges::Row>,
+    small_maps: Vec<maps::Small>,
+    numbers: Vec<numbers::Group>,
+    checks: Option<String>,
+    provenance: Vec<story::Fact>,
+    case: Option<&'a str>,
+}
+
+impl<'a> Page<'a> {
+    fn of(results: &'a Results) -> Self {
+        let (light, dark) = variables();
+        Self {
+            style: STYLE,
+            figure_style: css(),
+            light,
+            dark,
+            title: results.case.as_deref().and_then(title),
+            lede: story::lede(results),
+            tiles: numbers::tiles(results),
+            missing: story::missing(results),
+            wear_map: wear_map(results, LARGE).map(|map| map.svg()),
+            compartments: compartments::rows(results),
+            wear_curves: svgs(&wear_panels(results)),
+            channels: svgs(&kinematics_panels(results)),
+            cycles: channels::cycle_names(results),
+            ranges: ranges::rows(results),
+            small_maps: maps::small(results, SMALL),
+            numbers: numbers::groups(results),
+            checks: story::volume_check(results),
+            provenance: story::provenance(results),
+            case: results.case.as_deref(),
+        }
+    }
+}
+
+/// The report of a results folder as one HTML page.
+///
+/// It asks for nothing outside itself and needs no JavaScript; what `results` lacks is left out.
+pub fn report_html(results: &Results) -> String {
+    render(Page::of(results)).expect("the template is part of the program, and its tests render it")
+}
+
+fn svgs(panels: &[crate::figure::Panel]) -> Vec<String> {
+    panels.iter().map(crate::figure::Panel::svg).collect()
+}
+
+fn render(page: Page) -> Result<String, minijinja::Error> {
+    let mut syntax = SyntaxConfig::builder();
+    let mut environment = Environment::new();
+    environment.set_syntax(syntax.trim_blocks(true).lstrip_blocks(true).build()?);
+    environment.render_named_str("report.html", PAGE, Serde(page))
+}
+
+/// Names of the first and last cycle for captions.
+fn cycle_caption(first: f64, last: f64) -> (String, String) {
+    let named = |count: f64| match count {
+        0.0 => String::from("unworn"),
+        count => format!("after {} cycles", cycles(count)),
+    };
+    (named(first), named(last))
+}

@@ -1,0 +1,48 @@
+//! What the report takes from the case file: its title and the side of the knee.
+
+use toml::{Table, Value};
+
+use crate::results::Side;
+
+/// The text of `title` or `name` at the top of a case.
+pub(crate) fn title(case: &str) -> Option<String> {
+    let case: Table = case.parse().ok()?;
+    let named = ["title", "name"]
+        .iter()
+        .find_map(|key| case.get(*key)?.as_str())?;
+    Some(named.to_owned())
+}
+
+/// The side of the knee: left where any table of the case says `side = "left"`, else right.
+pub(super) fn side(case: &str) -> Side {
+    match case.parse::<Table>() {
+        Ok(case) if says_left(&case) => Side::Left,
+        _ => Side::Right,
+    }
+}
+
+fn says_left(table: &Table) -> bool {
+    table.iter().any(|(key, value)| match value {
+        Value::String(text) => key == "side" && text == "left",
+        Value::Table(inner) => says_left(inner),
+        _ => false,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_side_is_found_in_any_table() {
+        assert_eq!(side("[implant]\nside = \"left\"\n"), Side::Left);
+        assert_eq!(side("side = \"right\"\n"), Side::Right);
+        assert_eq!(side("no toml at all"), Side::Right);
+    }
+
+    #[test]
+    fn the_title_is_the_case_s_own() {
+        assert_eq!(title("title = \"A knee\"").as_deref(), Some("A knee"));
+        assert_eq!(title("[machine]\npreset = \"x\""), None);
+    }
+}

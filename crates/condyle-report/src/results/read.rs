@@ -1,0 +1,93 @@
+//! Reading a results folder.
+
+use std::path::{Path, PathBuf};
+
+use super::case::side;
+use super::{Results, Side, Summary, Table};
+use crate::ReportError;
+
+impl Results {
+    /// Reads what a results folder holds; parts that are not there become `None`.
+    ///
+    /// # Errors
+    /// The folder is missing or holds no result at all, or a file in it is damaged.
+    pub fn read(folder: &Path) -> Result<Self, ReportError> {
+        if !folder.is_dir() {
+            return Err(ReportError::NoFolder {
+                folder: folder.to_owned(),
+            });
+        }
+        let case = text(&folder.join("case.toml"))?;
+        let results = Self {
+            summary: summary(folder.join("summary.json"))?,
+            wear: table(folder.join("wear.csv"))?,
+            kinematics: table(folder.join("kinematics.csv"))?,
+            surface: None,
+            side: case.as_deref().map_or_else(Side::default, side),
+            case,
+        };
+        results.or_none_at_all(folder)
+    }
+
+    fn or_none_at_all(self, folder: &Path) -> Result<Self, ReportError> {
+        let any = self.summary.is_some()
+            || self.wear.is_some()
+            || self.kinematics.is_some()
+            || self.surface.is_some();
+        if any {
+            return Ok(self);
+        }
+        Err(ReportError::NoResults {
+            folder: folder.to_owned(),
+        })
+    }
+}
+
+/// The last mesh that a run wrote: `insert_NNNN.vtu` with the largest number.
+pub(crate) fn last_mesh(folder: &Path) -> Result<Option<PathBuf>, ReportError> {
+    let failed = |source| ReportError::Read {
+        path: folder.to_owned(),
+        source,
+    };
+    let mut last = None;
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        last = last.max(update_of(&path).map(|update| (update, path)));
+    }
+    Ok(last.map(|(_, path)| path))
+}
+
+fn update_of(path: &Path) -> Option<u32> {
+    let name = path.file_name()?.to_str()?;
+    name.strip_prefix("insert_")?
+        .strip_suffix(".vtu")?
+        .parse()
+        .ok()
+}
+
+fn summary(path: PathBuf) -> Result<Option<Summary>, ReportError> {
+    let Some(text) = text(&path)? else {
+        return Ok(None);
+    };
+    match Summary::parse(&text) {
+        Ok(summary) => Ok(Some(summary)),
+        Err(source) => Err(ReportError::Json { path, source }),
+    }
+}
+
+fn table(path: PathBuf) -> Result<Option<Table>, ReportError> {
+    text(&path)?
+        .map(|text| Table::parse(&text, &path))
+        .transpose()
+}
+
+fn text(path: &Path) -> Result<Option<String>, ReportError> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(Some(text)),
+        Err(source) if source.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(source) => Err(ReportError::Read {
+            path: path.to_owned(),
+            source,
+        }),
+    }
+}

@@ -1,0 +1,34 @@
+//! `summary.json`.
+
+use serde_json::{Map, Value};
+
+/// The numbers of a run by name; names carry their units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Summary {
+    values: Map<String, Value>,
+}
+
+impl Summary {
+    /// Reads the text of a `summary.json`.
+    ///
+    /// # Errors
+    /// The text is not JSON, or not an object.
+    pub fn parse(text: &str) -> Result<Self, serde_json::Error> {
+        serde_json::from_str(text).map(|values| Self { values })
+    }
+
+    /// The number called `key`, in the unit of its name.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        self.values.get(key)?.as_f64()
+    }
+
+    /// The text called `key`.
+    pub fn text(&self, key: &str) -> Option<&str> {
+        self.values.get(key)?.as_str()
+    }
+
+    /// All entries, sorted by name.
+    pub fn entries(&self) -> impl Iterator<Item = (&str, &Value)> {
+        self.values.iter().map(|(key, value)| (key.as_str(), value))
+    }
+}
