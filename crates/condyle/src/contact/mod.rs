@@ -1,5 +1,62 @@
 //! Contact between femur and insert: one interface, several models.
 
+mod candidates;
+mod foundation;
 mod law;
+mod motion;
+mod partial;
 
+pub use foundation::{Foundation, FoundationSettings};
 pub use law::{PressureLaw, PressureTable, PressureTableError, confined_modulus};
+pub use motion::{Mat6, Pose, RelativeMotion, Vec6, cross_matrix};
+
+use crate::Vec3;
+
+/// What the contact answers to a relative motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactResponse {
+    /// Wrench on the insert about its origin: moment, N mm, then force, N; in the insert frame.
+    pub wrench: Vec6,
+    /// Derivative of the wrench by a small motion of the femur (turn, rad, then translation of
+    /// its material at the insert's origin, mm).
+    pub by_pose: Mat6,
+    /// Derivative of the wrench by the twist.
+    pub by_twist: Mat6,
+}
+
+impl ContactResponse {
+    /// No contact.
+    pub fn none() -> Self {
+        Self {
+            wrench: Vec6::zeros(),
+            by_pose: Mat6::zeros(),
+            by_twist: Mat6::zeros(),
+        }
+    }
+}
+
+/// A surface node in contact; vectors in the insert frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchedNode {
+    /// Number of the surface node.
+    pub node: u32,
+    /// Mean pressure on the node's share of the surface, MPa.
+    pub pressure_mpa: f64,
+    /// Area of the part of the share that presses, mm2.
+    pub covered_mm2: f64,
+    /// Force on the insert there, N.
+    pub force_n: Vec3,
+    /// Velocity of the femur's surface past the insert's, along the surface, mm/s.
+    pub sliding_mm_per_s: Vec3,
+}
+
+/// A model of contact: the machine sees this, never a mesh.
+pub trait ContactModel {
+    /// Wrench and exact tangent at a relative motion.
+    ///
+    /// The answer depends on the motion alone, not on the calls before.
+    fn respond(&mut self, motion: &RelativeMotion) -> ContactResponse;
+
+    /// The nodes in contact at the last [`ContactModel::respond`], ascending.
+    fn touched(&self) -> &[TouchedNode];
+}

@@ -1,0 +1,66 @@
+//! The femur's motion relative to the insert.
+
+use crate::{Mat3, Vec3};
+
+/// A wrench as (moment, force) or a twist as (angular, linear); N mm and N, rad and mm.
+pub type Vec6 = nalgebra::Vector6<f64>;
+/// A derivative of one six-vector by another.
+pub type Mat6 = nalgebra::Matrix6<f64>;
+
+/// Where the femur is in the insert frame: a point p of the femoral frame is at R p + t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// R, from the femoral frame's directions to the insert's.
+    pub rotation: Mat3,
+    /// t, the femoral frame's origin in the insert frame, mm.
+    pub translation: Vec3,
+}
+
+impl Pose {
+    /// The femoral frame on the insert frame.
+    pub fn identity() -> Self {
+        Self {
+            rotation: Mat3::identity(),
+            translation: Vec3::zeros(),
+        }
+    }
+
+    /// A point of the insert frame seen from the femoral frame.
+    #[inline]
+    pub fn to_femur(&self, point: &Vec3) -> Vec3 {
+        self.rotation.tr_mul(&(point - self.translation))
+    }
+
+    /// A point of the femoral frame seen from the insert frame.
+    pub fn to_insert(&self, point: &Vec3) -> Vec3 {
+        self.rotation * point + self.translation
+    }
+}
+
+/// Pose and velocity of the femur relative to the insert.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelativeMotion {
+    /// Where the femur is.
+    pub pose: Pose,
+    /// Angular velocity, rad/s, then the velocity of the femur's material at the insert's origin,
+    /// mm/s; in the insert frame.
+    pub twist: Vec6,
+}
+
+/// The matrix \[v\] with \[v\] w = v x w.
+#[inline]
+pub fn cross_matrix(v: &Vec3) -> Mat3 {
+    Mat3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+}
+
+/// The 6 by 6 matrix that turns a twist in the insert frame, taken at the insert's origin, into
+/// one in the femoral frame, taken at the femur's origin. Its transpose turns wrenches back.
+pub(super) fn twist_to_femur(pose: &Pose) -> Mat6 {
+    let turn = pose.rotation.transpose();
+    let mut matrix = Mat6::zeros();
+    matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
+    matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&turn);
+    let lever = -turn * cross_matrix(&pose.translation);
+    matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&lever);
+    matrix
+}

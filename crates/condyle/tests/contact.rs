@@ -1,0 +1,354 @@
+//! The foundation against closed forms, finite differences and itself.
+
+use condyle::{
+    Mat3, Vec3,
+    contact::{
+        ContactModel, Foundation, FoundationSettings, Mat6, Pose, PressureLaw, PressureTable,
+        RelativeMotion, Vec6, confined_modulus, cross_matrix,
+    },
+    geometry::{
+        FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
+        SmoothField, flat_insert,
+    },
+};
+
+const MODULUS_MPA: f64 = 2142.0;
+
+fn settings(law: PressureLaw) -> FoundationSettings {
+    FoundationSettings {
+        law,
+        friction: 0.07,
+        slip_tolerance_mm_per_s: 1.0,
+    }
+}
+
+fn linear() -> FoundationSettings {
+    settings(PressureLaw::Linear {
+        modulus_mpa: MODULUS_MPA,
+    })
+}
+
+fn at(translation: Vec3) -> RelativeMotion {
+    RelativeMotion {
+        pose: Pose {
+            rotation: Mat3::identity(),
+            translation,
+        },
+        twist: Vec6::zeros(),
+    }
+}
+
+fn default_insert() -> Insert {
+    GenericInsertShape::default()
+        .insert(Meshing::default())
+        .unwrap()
+}
+
+fn one_millimetre() -> Meshing {
+    Meshing {
+        edge_mm: 1.0,
+        layers: 1,
+    }
+}
+
+/// A small generator of repeatable numbers in -1..1.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self, size: f64) -> Vec3 {
+        Vec3::new(self.next(), self.next(), self.next()) * size
+    }
+}
+
+fn rotation(turn: &Vec3) -> Mat3 {
+    nalgebra::Rotation3::new(*turn).into_inner()
+}
+
+/// The pose after a small turn and translation of the femur, in the insert frame.
+fn moved(pose: &Pose, small: &Vec6) -> Pose {
+    let turn = rotation(&small.fixed_rows::<3>(0).into());
+    let shift: Vec3 = small.fixed_rows::<3>(3).into();
+    Pose {
+        rotation: turn * pose.rotation,
+        translation: turn * pose.translation + shift,
+    }
+}
+
+fn by_differences(step: f64, mut wrench: impl FnMut(&Vec6) -> Vec6) -> Mat6 {
+    let mut matrix = Mat6::zeros();
+    for column in 0..6 {
+        let small = Vec6::ith(column, step);
+        matrix.set_column(column, &((wrench(&small) - wrench(&-small)) / (2.0 * step)));
+    }
+    matrix
+}
+
+fn check_tangent(contact: &mut Foundation<'_>, motion: &RelativeMotion, tolerance: f64) {
+    let response = contact.respond(motion);
+    assert!(contact.touched().len() > 20);
+    let by_pose = by_differences(1e-6, |small| {
+        contact
+            .respond(&RelativeMotion {
+                pose: moved(&motion.pose, small),
+                ..*motion
+            })
+            .wrench
+    });
+    let by_twist = by_differences(1e-4, |small| {
+        contact
+            .respond(&RelativeMotion {
+                twist: motion.twist + small,
+                ..*motion
+            })
+            .wrench
+    });
+    let error = (response.by_pose - by_pose).norm() / by_pose.norm();
+    assert!(error < tolerance, "by pose: {error:e}");
+    let error = (response.by_twist - by_twist).norm() / by_twist.norm();
+    assert!(error < tolerance, "by twist: {error:e}");
+}
+
+fn random_motion(numbers: &mut Numbers, translation: Vec3) -> RelativeMotion {
+    let turn = numbers.vector(0.05);
+    let pose = Pose {
+        rotation: rotation(&turn),
+        translation: translation + numbers.vector(0.05),
+    };
+    let (turning, moving) = (numbers.vector(1.0), numbers.vector(20.0));
+    let twist = Vec6::new(
+        turning.x, turning.y, turning.z, moving.x, moving.y, moving.z,
+    );
+    RelativeMotion { pose, twist }
+}
+
+#[test]
+fn tangent_is_the_derivative_over_random_poses_of_the_generic_pair() {
+    let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    let insert = default_insert();
+    let table =
+        PressureTable::new(vec![(0.0, 0.0), (0.1, 20.0), (0.5, 150.0), (2.0, 900.0)]).unwrap();
+    let mut numbers = Numbers(7);
+    for law in [
+        PressureLaw::Linear {
+            modulus_mpa: MODULUS_MPA,
+        },
+        PressureLaw::Logarithmic {
+            modulus_mpa: MODULUS_MPA,
+        },
+        PressureLaw::Tabulated(table),
+    ] {
+        let settings = settings(law);
+        let mut contact = Foundation::new(&settings, &femur, &insert);
+        for _ in 0..10 {
+            // The distal arc's lowest point is 22.96 mm below the femur's origin.
+            let motion = random_motion(&mut numbers, Vec3::new(-5.5, 22.4, 0.0));
+            check_tangent(&mut contact, &motion, 1e-5);
+        }
+    }
+}
+
+fn ball_mesh(edge_mm: f64) -> condyle::geometry::TriangleMesh {
+    let rows = (std::f64::consts::PI * 24.0 / edge_mm) as u32;
+    let columns = 2 * rows;
+    let mut mesh = condyle::geometry::TriangleMesh::default();
+    for row in 0..=rows {
+        let theta = std::f64::consts::PI * f64::from(row) / f64::from(rows);
+        for column in 0..columns {
+            let phi = std::f64::consts::TAU * f64::from(column) / f64::from(columns);
+            let (x, ring) = (theta.cos(), theta.sin());
+            mesh.vertices
+                .push(Vec3::new(x, ring * phi.cos(), ring * phi.sin()) * 24.0);
+        }
+    }
+    for row in 0..rows {
+        for column in 0..columns {
+            let (a, b) = (
+                row * columns + column,
+                row * columns + (column + 1) % columns,
+            );
+            mesh.triangles
+                .extend([[a, a + columns, b + columns], [a, b + columns, b]]);
+        }
+    }
+    mesh
+}
+
+fn mesh_femur(insert: &Insert) -> FemoralSurface {
+    let field = SmoothField::new(&ball_mesh(1.0), 1);
+    FemoralSurface::Mesh(field).prepared_for(insert.surface().mean_spread_mm2())
+}
+
+#[test]
+fn tangent_is_the_derivative_for_a_mesh() {
+    let insert = default_insert();
+    let femur = mesh_femur(&insert);
+    let settings = linear();
+    let mut contact = Foundation::new(&settings, &femur, &insert);
+    let mut numbers = Numbers(11);
+    for _ in 0..10 {
+        let motion = random_motion(&mut numbers, Vec3::new(0.3, 23.7, 23.0));
+        check_tangent(&mut contact, &motion, 1e-4);
+    }
+}
+
+/// Overclosure of a ball of radius 24 mm on a linear foundation 9 mm thick under 2000 N.
+fn overclosure_at_2000_n() -> f64 {
+    let stiffness = MODULUS_MPA / 9.0;
+    (2000.0 / (std::f64::consts::PI * stiffness * 24.0)).sqrt()
+}
+
+/// Exact force of a ball on a foundation of stiffness k, overclosure measured straight down: the
+/// vertical component of pressure along the normal of a paraboloid is k d over its footprint,
+/// but the foundation measures overclosure along the ball's normal, so it is integrated.
+fn exact_ball_force(overclosure: f64) -> f64 {
+    // On a plane at depth 24 - d below the centre: gap = sqrt(r^2 + h^2) - 24.
+    let (radius, stiffness) = (24.0, MODULUS_MPA / 9.0);
+    let h: f64 = radius - overclosure;
+    // int 2 pi r k (R - s) h/s dr with s ds = r dr: 2 pi k h int (R - s) ds = pi k h d^2.
+    std::f64::consts::PI * stiffness * h * overclosure * overclosure
+}
+
+#[test]
+fn verify_ball_on_a_flat_foundation() {
+    let insert = flat_insert((24.0, 24.0), 9.0, one_millimetre()).unwrap();
+    let overclosure = overclosure_at_2000_n();
+    let settings = FoundationSettings {
+        friction: 0.0,
+        ..linear()
+    };
+    let radius_exact = 2.0 * 24.0 * overclosure - overclosure * overclosure;
+    let shapes = [FemoralSurface::sphere(24.0), mesh_femur(&insert)];
+    for (femur, tolerance) in shapes.iter().zip([1e-3, 3e-3]) {
+        let mut contact = Foundation::new(&settings, femur, &insert);
+        for (x, z) in [(0.0, 0.0), (0.5, 0.5), (0.23, 0.41)] {
+            let response = contact.respond(&at(Vec3::new(x, 24.0 - overclosure, z)));
+            let force = -response.wrench[4];
+            let exact = exact_ball_force(overclosure);
+            assert!((force / exact - 1.0).abs() < tolerance, "{force} {exact}");
+            let area: f64 = contact.touched().iter().map(|node| node.covered_mm2).sum();
+            let exact_area = std::f64::consts::PI * radius_exact;
+            assert!(
+                (area / exact_area - 1.0).abs() < 0.01,
+                "{area} {exact_area}"
+            );
+        }
+    }
+}
+
+#[test]
+fn verify_peak_pressure_under_a_ball_on_a_node() {
+    let insert = flat_insert((24.0, 24.0), 9.0, one_millimetre()).unwrap();
+    let (femur, settings) = (FemoralSurface::sphere(24.0), linear());
+    let overclosure = overclosure_at_2000_n();
+    let mut contact = Foundation::new(&settings, &femur, &insert);
+    contact.respond(&at(Vec3::new(0.0, 24.0 - overclosure, 0.0)));
+    let peak = contact
+        .touched()
+        .iter()
+        .map(|node| node.pressure_mpa)
+        .fold(0.0, f64::max);
+    // The share's mean overclosure is h^2/(12 R) less than that of its middle.
+    let exact = MODULUS_MPA / 9.0 * (overclosure - 1.0 / (12.0 * 24.0));
+    assert!((peak / exact - 1.0).abs() < 1e-4, "{peak} {exact}");
+}
+
+/// Largest and smallest force of a ball slid across the dish at constant approach.
+fn ripple(femur: &FemoralSurface, insert: &Insert) -> f64 {
+    let settings = FoundationSettings {
+        friction: 0.0,
+        ..linear()
+    };
+    let mut contact = Foundation::new(&settings, femur, insert);
+    let shape = GenericInsertShape::default();
+    // The force changes as the dish does; what is left beside a smooth curve is ripple.
+    let forces: Vec<f64> = (0..400)
+        .map(|i| {
+            let x = -4.0 + 0.02 * f64::from(i);
+            let rs = shape.sagittal_radius_mm;
+            let centre = rs - ((rs - 24.0 + 0.3).powi(2) - x * x).sqrt();
+            let response = contact.respond(&at(Vec3::new(x, centre, 23.0)));
+            response.wrench.fixed_rows::<3>(3).norm()
+        })
+        .collect();
+    let mean = forces.iter().sum::<f64>() / forces.len() as f64;
+    let smooth = |i: usize| forces[i - 50..=i + 50].iter().sum::<f64>() / 101.0;
+    let worst = (50..350)
+        .map(|i| (forces[i] - smooth(i)).abs())
+        .fold(0.0, f64::max);
+    println!("ripple {:e} of {mean} N", worst / mean);
+    2.0 * worst / mean
+}
+
+#[test]
+fn verify_force_ripple_of_a_sliding_ball_is_below_half_a_percent() {
+    let insert = default_insert();
+    assert!(ripple(&FemoralSurface::sphere(24.0), &insert) < 5e-3);
+    assert!(ripple(&mesh_femur(&insert), &insert) < 5e-3);
+}
+
+#[test]
+fn verify_a_rolling_ball_does_not_slide() {
+    let insert = flat_insert((24.0, 24.0), 9.0, one_millimetre()).unwrap();
+    let femur = FemoralSurface::sphere(24.0);
+    let settings = linear();
+    let mut contact = Foundation::new(&settings, &femur, &insert);
+    // Rolls along x without slip: the material at the insert's plane stands still.
+    let (speed, overclosure) = (3.0, 0.2);
+    let mut motion = at(Vec3::new(0.0, 24.0 - overclosure, 0.0));
+    motion.twist = Vec6::new(0.0, 0.0, -speed, 0.0, 0.0, 0.0);
+    contact.respond(&motion);
+    let fastest = contact
+        .touched()
+        .iter()
+        .map(|node| node.sliding_mm_per_s.norm())
+        .fold(0.0, f64::max);
+    // At radius r the turn lifts the material by w r, of which r/R runs along the surface: w r^2/R,
+    // at most 2 w d. A ball that slid instead of rolling would move at 72 mm/s.
+    assert!(fastest <= 2.0 * speed * overclosure * 1.2, "{fastest}");
+}
+
+#[test]
+fn force_does_not_depend_on_the_calls_before() {
+    let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    let insert = default_insert();
+    let settings = linear();
+    let mut walked = Foundation::new(&settings, &femur, &insert);
+    let mut numbers = Numbers(3);
+    for _ in 0..50 {
+        let motion = random_motion(&mut numbers, Vec3::new(-5.5, 22.4, 0.0));
+        let fresh = Foundation::new(&settings, &femur, &insert).respond(&motion);
+        assert_eq!(walked.respond(&motion), fresh);
+    }
+}
+
+#[test]
+fn verify_wrench_is_the_sum_of_the_nodes_forces() {
+    let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    let insert = default_insert();
+    let settings = linear();
+    let mut contact = Foundation::new(&settings, &femur, &insert);
+    let response = contact.respond(&random_motion(&mut Numbers(5), Vec3::new(-5.5, 22.4, 0.0)));
+    let mut sum = Vec6::zeros();
+    for touched in contact.touched() {
+        let place = contact.surface().shares[touched.node as usize].centre;
+        let moment = cross_matrix(&place) * touched.force_n;
+        sum += Vec6::new(
+            moment.x,
+            moment.y,
+            moment.z,
+            touched.force_n.x,
+            touched.force_n.y,
+            touched.force_n.z,
+        );
+    }
+    assert!((sum - response.wrench).norm() < 1e-9 * sum.norm());
+    assert!((confined_modulus(463.0, 0.46) - MODULUS_MPA).abs() < 2.0);
+}
