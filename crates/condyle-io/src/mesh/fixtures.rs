@@ -2,6 +2,7 @@
 
 use condyle::Vec3;
 use condyle::geometry::TriangleMesh;
+use condyle_fem::HexMesh;
 
 use super::MeshFileError;
 
@@ -26,4 +27,16 @@ pub(crate) fn corners(mesh: &TriangleMesh) -> Vec<[Vec3; 3]> {
     (0..mesh.triangles.len())
         .map(|triangle| mesh.corners(triangle))
         .collect()
+}
+
+/// Two unit cubes in a row along x, nodes numbered x fastest, then y, then z.
+pub(crate) fn two_cubes() -> HexMesh {
+    let place = |node: u32| {
+        let (x, y, z) = (node % 3, node / 3 % 2, node / 6);
+        Vec3::new(f64::from(x), f64::from(y), f64::from(z))
+    };
+    HexMesh {
+        nodes: (0..12).map(place).collect(),
+        hexes: vec![[0, 1, 4, 3, 6, 7, 10, 9], [1, 2, 5, 4, 7, 8, 11, 10]],
+    }
 }

@@ -6,15 +6,27 @@
 mod error;
 #[cfg(test)]
 mod fixtures;
+mod hex_draft;
+mod hex_file;
+mod inp;
+mod inp_keyword;
+mod msh;
 mod obj;
 mod ply;
+mod pvd;
 mod stl;
 mod surface;
 mod surface_draft;
 mod text;
 mod vtk_xml;
 mod vtp;
+mod vtu;
+mod vtu_write;
 
 pub use error::{MeshFileError, Place};
+pub use hex_file::{HexFile, NamedNodes, NamedSurface, read_hexahedra};
+pub use pvd::{pvd_text, read_pvd, write_pvd};
 pub use stl::write_stl;
 pub use surface::read_surface;
+pub use vtu::{VtuFile, read_vtu_points};
+pub use vtu_write::{PointArray, PointValues, vtu_bytes, write_vtu};
