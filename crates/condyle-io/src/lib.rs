@@ -3,4 +3,5 @@
 //! Numbers cross this border with their unit in the name, and every error says which file, which
 //! line where the format is text, and what to do.
 
+pub mod case;
 pub mod mesh;

@@ -1,0 +1,161 @@
+//! Where the axes of a file point.
+
+use condyle::{Mat3, Vec3};
+use thiserror::Error;
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::Side;
+use super::keys::Key;
+use super::parse::Log;
+use super::problems::Reason;
+use super::setting::{Setting, quoted_list, read_word, wrong_type};
+
+/// Where x, y and z of a file point, in words of the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axes {
+    words: [&'static str; 3],
+}
+
+/// Why three words make no frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum AxesError {
+    /// Two words on one line.
+    #[error("two of the axes lie along the same line, so one direction of space has none")]
+    SameLine,
+    /// A mirrored frame.
+    #[error("these axes are left-handed, which would mirror the shape")]
+    LeftHanded,
+}
+
+impl AxesError {
+    pub(super) const ADVICE: &'static str = "name where x, y and z of the file point; the third \
+        is the cross product of the first two, such as [\"anterior\", \"superior\", \"right\"]";
+}
+
+/// Words that say a direction.
+const WORDS: &[&str] = &[
+    "anterior",
+    "posterior",
+    "superior",
+    "inferior",
+    "right",
+    "left",
+    "medial",
+    "lateral",
+];
+
+impl Axes {
+    /// x anterior, y superior, z right: the frame of the insert.
+    pub const ISB: Self = Self {
+        words: ["anterior", "superior", "right"],
+    };
+
+    /// The words for x, y and z.
+    pub fn words(&self) -> [&'static str; 3] {
+        self.words
+    }
+
+    /// The rotation from the file's frame to x anterior, y superior, z right of a `side` knee,
+    /// before a left knee is mirrored.
+    ///
+    /// # Errors
+    /// Two axes along one line, or a left-handed frame.
+    pub fn rotation(&self, side: Side) -> Result<Mat3, AxesError> {
+        let columns = self.words.map(|word| direction(word, side));
+        let rotation = Mat3::from_columns(&columns);
+        let determinant = rotation.determinant();
+        if determinant.abs() < 0.5 {
+            Err(AxesError::SameLine)
+        } else if determinant < 0.0 {
+            Err(AxesError::LeftHanded)
+        } else {
+            Ok(rotation)
+        }
+    }
+}
+
+/// Where a word points, in x anterior, y superior, z right.
+fn direction(word: &str, side: Side) -> Vec3 {
+    let right = match side {
+        Side::Right => Vec3::z(),
+        Side::Left => -Vec3::z(),
+    };
+    match word {
+        "anterior" => Vec3::x(),
+        "posterior" => -Vec3::x(),
+        "superior" => Vec3::y(),
+        "inferior" => -Vec3::y(),
+        "right" => Vec3::z(),
+        "left" => -Vec3::z(),
+        "lateral" => right,
+        _ => -right,
+    }
+}
+
+impl Setting for Axes {
+    fn kind() -> String {
+        format!("three words of {}", quoted_list(WORDS))
+    }
+
+    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
+        let Some([x, y, z]) = value.get_ref().as_array().and_then(three) else {
+            wrong_type(value, key, log);
+            return None;
+        };
+        let words = [x, y, z].map(|word| known_word(word, key, log));
+        let [Some(x), Some(y), Some(z)] = words else {
+            return None;
+        };
+        Some(Self { words: [x, y, z] })
+    }
+
+    fn text(&self) -> Option<String> {
+        Some(format!("{:?}", self.words))
+    }
+}
+
+fn three<'a, 'i>(array: &'a toml::de::DeArray<'i>) -> Option<[&'a Spanned<DeValue<'i>>; 3]> {
+    let all: Vec<_> = array.iter().collect();
+    all.try_into().ok()
+}
+
+fn known_word(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<&'static str> {
+    let written = read_word(value, key, WORDS, log)?;
+    WORDS.iter().copied().find(|word| *word == written)
+}
+
+/// Reports axes that are no right-handed frame on a `side` knee.
+pub(super) fn check(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
+    if let Err(error) = axes.rotation(side) {
+        let key = "axes".to_owned();
+        log.problem(span, Reason::Axes { key, error });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_axes_of_the_dm_meshes_turn_half_round_about_superior() {
+        let axes = Axes {
+            words: ["posterior", "superior", "left"],
+        };
+        let turned = axes.rotation(Side::Right).unwrap() * Vec3::new(1.0, 2.0, 3.0);
+        assert_eq!(turned, Vec3::new(-1.0, 2.0, -3.0));
+    }
+
+    #[test]
+    fn lateral_depends_on_the_side() {
+        let axes = Axes {
+            words: ["anterior", "superior", "lateral"],
+        };
+        assert!(axes.rotation(Side::Right).is_ok());
+        assert_eq!(axes.rotation(Side::Left), Err(AxesError::LeftHanded));
+        let axes = Axes {
+            words: ["left", "right", "superior"],
+        };
+        assert_eq!(axes.rotation(Side::Right), Err(AxesError::SameLine));
+    }
+}

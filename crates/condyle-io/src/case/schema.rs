@@ -1,0 +1,119 @@
+//! The page of the book that lists every key.
+
+use std::fmt::Write;
+
+use super::channel::Channel;
+use super::contact;
+use super::declared::{
+    Friction, Heading, MachineSettings, March, Material, Rotation, Springs, Time, Translation, Wear,
+};
+use super::keys::{Key, Settings};
+use super::machine::PRESET;
+use super::shapes::{FEMUR_SHAPE, INSERT_SHAPE};
+use super::waveforms::{WaveformSource, knots_doc};
+use super::{Femur, Insert, unit_of};
+
+/// Every key of a case file with its unit, range, default and meaning, as Markdown.
+pub fn schema_markdown() -> String {
+    let mut page = String::from(OPENING);
+    section(&mut page, "Top of the file", &[Heading::KEYS]);
+    body(&mut page, "[femur]", FEMUR_SHAPE, Femur::SHAPES);
+    body(&mut page, "[insert]", INSERT_SHAPE, Insert::SHAPES);
+    section(&mut page, "[material]", &[Material::KEYS]);
+    let law = [contact::LAW];
+    section(
+        &mut page,
+        "[contact]",
+        &[&law, contact::TABULATED, Friction::KEYS],
+    );
+    section(&mut page, "[machine]", &[&[PRESET], MachineSettings::KEYS]);
+    section(&mut page, "[machine.springs]", &[Springs::KEYS]);
+    section(
+        &mut page,
+        "[machine.freedoms.ap], .ml and .is",
+        &[Translation::KEYS],
+    );
+    section(
+        &mut page,
+        "[machine.freedoms.ie], .vv and .flexion",
+        &[Rotation::KEYS],
+    );
+    waveforms(&mut page);
+    section(&mut page, "[wear]", &[Wear::KEYS]);
+    section(&mut page, "[march]", &[March::KEYS]);
+    section(&mut page, "[time]", &[Time::KEYS]);
+    page
+}
+
+const OPENING: &str = "\
+# The case file
+
+A case is a TOML file. Every key that has a default may be left out; every number has its unit in
+its name; paths count from the folder of the case file. This page is made from the declarations
+that the program reads a case with.
+";
+
+fn section(page: &mut String, title: &str, keys: &[&[Key]]) {
+    page.push_str(&format!("\n## `{title}`\n\n").replace("`Top of the file`", "Top of the file"));
+    table(page, keys);
+}
+
+fn table(page: &mut String, keys: &[&[Key]]) {
+    page.push_str("| key | unit | may be | default | meaning |\n| --- | --- | --- | --- | --- |\n");
+    keys.iter()
+        .copied()
+        .flatten()
+        .for_each(|key| row(page, key));
+}
+
+fn row(page: &mut String, key: &Key) {
+    let unit = unit_of(key.name).unwrap_or("");
+    let range = match &key.limits {
+        Some(limits) => format!("{}, {limits}", (key.kind)()),
+        None => (key.kind)(),
+    };
+    let default = match key.default.map(|default| default()) {
+        Some(Some(text)) => format!("`{text}`"),
+        Some(None) => "none".to_owned(),
+        None => "must be given".to_owned(),
+    };
+    let doc = key.doc.trim();
+    let written = writeln!(
+        page,
+        "| `{}` | {unit} | {range} | {default} | {doc} |",
+        key.name
+    );
+    debug_assert!(written.is_ok(), "writing to a String does not fail");
+}
+
+fn body(page: &mut String, title: &str, shape: Key, shapes: &[(&str, &[Key])]) {
+    section(page, title, &[&[shape]]);
+    for (word, keys) in shapes {
+        page.push_str(&format!("\nWith `shape = \"{word}\"`:\n\n"));
+        table(page, &[keys]);
+    }
+}
+
+fn waveforms(page: &mut String) {
+    let named = |channel: &Channel| format!("`[machine.{}]`", channel.name());
+    let tables: Vec<String> = Channel::ALL.iter().map(named).collect();
+    page.push_str(&format!("\n## Waveforms: {}\n\n", tables.join(", ")));
+    page.push_str(
+        "One of `waveform`, `file` or the points themselves. A freedom takes the one its drive \
+         needs; one for another drive is an error.\n\n",
+    );
+    table(page, &[WaveformSource::KEYS]);
+    page.push_str("\n| table | points | unit | values may be | named | what |\n| --- | --- | --- | --- | --- | --- |\n");
+    for channel in Channel::ALL {
+        let (key, unit) = knots_doc(channel);
+        let words: Vec<&str> = channel.named().iter().map(|named| named.word).collect();
+        page.push_str(&format!(
+            "| `{}` | `{}` | {unit} | {} | {} | {} |\n",
+            channel.name(),
+            key.name,
+            channel.limits(),
+            words.join(", "),
+            channel.about(),
+        ));
+    }
+}
