@@ -35,6 +35,8 @@ pub struct Foundation<'a> {
     settings: &'a FoundationSettings,
     femur: &'a FemoralSurface,
     surface: ArticulatingSurface,
+    /// The surface's own directions at every node.
+    directions: Vec<[Vec3; 2]>,
     thickness_mm: Vec<f64>,
     candidates: Candidates,
     touched: Vec<TouchedNode>,
@@ -73,6 +75,9 @@ impl<'a> Foundation<'a> {
     ) -> Self {
         let surface = insert.surface();
         Self {
+            directions: (0..surface.positions.len())
+                .map(|node| surface.directions(node))
+                .collect(),
             settings,
             femur,
             candidates: Candidates::new(&surface),
@@ -164,13 +169,15 @@ impl<'a> Foundation<'a> {
         velocity: &Vec3,
         pose: &Pose,
     ) -> TouchedNode {
-        let sliding = velocity - pressed.normal * pressed.normal.dot(velocity);
+        let sliding = pose.rotation * (velocity - pressed.normal * pressed.normal.dot(velocity));
         TouchedNode {
             node,
+            is_medial: self.surface.positions[node as usize].z < 0.0,
             pressure_mpa: pressed.pressure_mpa,
             covered_mm2: pressed.coverage * pressed.area_mm2,
             force_n: pose.rotation * traction.force,
-            sliding_mm_per_s: pose.rotation * sliding,
+            sliding_mm_per_s: self.directions[node as usize]
+                .map(|direction| sliding.dot(&direction)),
         }
     }
 }
@@ -205,6 +212,10 @@ impl ContactModel for Foundation<'_> {
             by_pose: to_femur.tr_mul(&total.by_pose) * to_femur,
             by_twist: to_femur.tr_mul(&total.by_twist) * to_femur,
         }
+    }
+
+    fn node_count(&self) -> usize {
+        self.surface.positions.len()
     }
 
     fn touched(&self) -> &[TouchedNode] {

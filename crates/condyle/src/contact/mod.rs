@@ -2,11 +2,13 @@
 
 mod candidates;
 mod foundation;
+mod history;
 mod law;
 mod motion;
 mod partial;
 
 pub use foundation::{Foundation, FoundationSettings};
+pub use history::{CycleHistory, Moment, NodeHistory};
 pub use law::{PressureLaw, PressureTable, PressureTableError, confined_modulus};
 pub use motion::{Mat6, Pose, RelativeMotion, Vec6, cross_matrix};
 
@@ -40,14 +42,17 @@ impl ContactResponse {
 pub struct TouchedNode {
     /// Number of the surface node.
     pub node: u32,
+    /// Whether it is on the medial side.
+    pub is_medial: bool,
     /// Mean pressure on the node's share of the surface, MPa.
     pub pressure_mpa: f64,
     /// Area of the part of the share that presses, mm2.
     pub covered_mm2: f64,
     /// Force on the insert there, N.
     pub force_n: Vec3,
-    /// Velocity of the femur's surface past the insert's, along the surface, mm/s.
-    pub sliding_mm_per_s: Vec3,
+    /// Velocity of the femur's surface past the insert's in the surface's own directions, anterior
+    /// along the surface, then lateral, mm/s.
+    pub sliding_mm_per_s: [f64; 2],
 }
 
 /// A model of contact: the machine sees this, never a mesh.
@@ -56,6 +61,9 @@ pub trait ContactModel {
     ///
     /// The answer depends on the motion alone, not on the calls before.
     fn respond(&mut self, motion: &RelativeMotion) -> ContactResponse;
+
+    /// How many surface nodes there are.
+    fn node_count(&self) -> usize;
 
     /// The nodes in contact at the last [`ContactModel::respond`], ascending.
     fn touched(&self) -> &[TouchedNode];

@@ -1,6 +1,7 @@
 //! Archard's law.
 
-use super::{NodeHistory, WearLaw};
+use super::WearLaw;
+use crate::contact::NodeHistory;
 
 /// Archard's law: depth per cycle = Kw sum of p |ds|.
 ///
@@ -28,7 +29,7 @@ impl WearLaw for Archard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wear::Moment;
+    use crate::contact::Moment;
 
     #[test]
     fn verify_flat_pin_depth_is_kw_p_s() {

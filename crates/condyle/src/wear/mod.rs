@@ -1,10 +1,10 @@
 //! Wear laws: one cycle's contact history in, depth per cycle out.
 
 mod archard;
-mod history;
 
 pub use archard::Archard;
-pub use history::{CycleHistory, Moment, NodeHistory};
+
+use crate::contact::NodeHistory;
 
 /// A law of wear. It sees what happened at one node through a whole cycle, and never a solver.
 pub trait WearLaw: Sync {

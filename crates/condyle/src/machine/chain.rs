@@ -1,0 +1,273 @@
+//! The machine as a chain of six screw joints from the insert to the femur.
+
+use super::{FREEDOMS, Freedom, Machine};
+use crate::{
+    Vec3,
+    contact::{Pose, Vec6},
+};
+
+/// The kinematics of the machine.
+///
+/// With the joints' axes e_j in the insert frame at zero, the femur's pose in the insert is the
+/// product of exponentials exp(e_1 q_1) ... exp(e_6 q_6) T_0 (Brockett 1984). The insert's own
+/// motions come first and with a minus sign, since they move the insert and not the femur.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    axes: [Vec6; 6],
+    /// Where the femoral frame's origin is in the insert frame with all freedoms at zero, mm.
+    zero_mm: Vec3,
+    flexion_axis_mm: (f64, f64),
+}
+
+/// The chain at given positions.
+#[derive(Clone, Debug)]
+pub struct Configuration {
+    /// The femur in the insert frame.
+    pub pose: Pose,
+    /// How each freedom moves the femur relative to the insert: twist a unit of rate.
+    pub screws: [Vec6; 6],
+}
+
+impl Chain {
+    /// The chain of a machine whose femur, with all freedoms at zero, has its frame's origin at
+    /// `zero_mm` in the insert frame and flexes about the axis (x, y) of its own frame.
+    pub fn new(machine: &Machine, zero_mm: Vec3, flexion_axis_mm: (f64, f64)) -> Self {
+        let flexion_centre = zero_mm + Vec3::new(flexion_axis_mm.0, flexion_axis_mm.1, 0.0);
+        let vv_centre = Vec3::new(0.0, machine.vv_axis_mm.0, machine.vv_axis_mm.1);
+        let ie_centre = Vec3::new(machine.ie_axis_mm.0, 0.0, machine.ie_axis_mm.1);
+        let axis = |freedom| match freedom {
+            Freedom::VarusValgus => turning(-Vec3::x(), vv_centre),
+            Freedom::InternalExternal => turning(-Vec3::y(), ie_centre),
+            Freedom::MedioLateral => sliding(-Vec3::z()),
+            Freedom::AnteroPosterior => sliding(-Vec3::x()),
+            Freedom::InferoSuperior => sliding(Vec3::y()),
+            Freedom::Flexion => turning(Vec3::z(), flexion_centre),
+        };
+        Self {
+            axes: FREEDOMS.map(axis),
+            zero_mm,
+            flexion_axis_mm,
+        }
+    }
+
+    /// The chain that reads AP, ML and IS as zero where it now stands at `positions`.
+    pub fn zeroed_at(&self, machine: &Machine, positions: &[f64; 6]) -> Self {
+        let [_, _, ml, ap, is, _] = *positions;
+        let zero_mm = self.zero_mm + Vec3::new(-ap, is, -ml);
+        Self::new(machine, zero_mm, self.flexion_axis_mm)
+    }
+
+    /// Where the femoral frame's origin is in the insert frame with all freedoms at zero, mm.
+    pub fn zero_mm(&self) -> Vec3 {
+        self.zero_mm
+    }
+
+    /// Pose and screws at positions, mm and rad, in the order of [`FREEDOMS`].
+    pub fn at(&self, positions: &[f64; 6]) -> Configuration {
+        let mut pose = Pose::identity();
+        let mut screws = [Vec6::zeros(); 6];
+        for ((screw, axis), &position) in screws.iter_mut().zip(&self.axes).zip(positions) {
+            *screw = carried(&pose, axis);
+            pose = compose(&pose, &exponential(axis, position));
+        }
+        pose.translation += pose.rotation * self.zero_mm;
+        Configuration { pose, screws }
+    }
+}
+
+impl Configuration {
+    /// Twist of the femur relative to the insert at given rates, in the insert frame.
+    pub fn twist(&self, rates: &[f64; 6]) -> Vec6 {
+        self.screws
+            .iter()
+            .zip(rates)
+            .map(|(screw, &rate)| screw * rate)
+            .sum()
+    }
+
+    /// Derivative of screw `of` by the position of freedom `by`: their Lie bracket where `by`
+    /// carries `of`, that is where it is nearer to the insert, and nothing elsewhere.
+    pub fn screw_derivative(&self, of: usize, by: usize) -> Vec6 {
+        if by < of {
+            bracket(&self.screws[by], &self.screws[of])
+        } else {
+            Vec6::zeros()
+        }
+    }
+}
+
+/// Unit twist about an axis through `centre`.
+fn turning(direction: Vec3, centre: Vec3) -> Vec6 {
+    joined(&direction, &centre.cross(&direction))
+}
+
+/// Unit twist along a direction.
+fn sliding(direction: Vec3) -> Vec6 {
+    joined(&Vec3::zeros(), &direction)
+}
+
+fn joined(angular: &Vec3, linear: &Vec3) -> Vec6 {
+    Vec6::new(
+        angular.x, angular.y, angular.z, linear.x, linear.y, linear.z,
+    )
+}
+
+fn split(twist: &Vec6) -> (Vec3, Vec3) {
+    (
+        twist.fixed_rows::<3>(0).into(),
+        twist.fixed_rows::<3>(3).into(),
+    )
+}
+
+/// The motion of a joint by `position` about or along its axis.
+fn exponential(axis: &Vec6, position: f64) -> Pose {
+    let (angular, linear) = split(axis);
+    if angular == Vec3::zeros() {
+        return Pose {
+            translation: linear * position,
+            ..Pose::identity()
+        };
+    }
+    let rotation = nalgebra::Rotation3::new(angular * position).into_inner();
+    let centre = angular.cross(&linear);
+    Pose {
+        rotation,
+        translation: centre - rotation * centre,
+    }
+}
+
+fn compose(outer: &Pose, inner: &Pose) -> Pose {
+    Pose {
+        rotation: outer.rotation * inner.rotation,
+        translation: outer.to_insert(&inner.translation),
+    }
+}
+
+/// A twist carried along by a pose.
+fn carried(pose: &Pose, twist: &Vec6) -> Vec6 {
+    let (angular, linear) = split(twist);
+    let turned = pose.rotation * angular;
+    joined(
+        &turned,
+        &(pose.rotation * linear + pose.translation.cross(&turned)),
+    )
+}
+
+/// Lie bracket of two twists.
+fn bracket(a: &Vec6, b: &Vec6) -> Vec6 {
+    let ((wa, va), (wb, vb)) = (split(a), split(b));
+    joined(&wa.cross(&wb), &(wa.cross(&vb) - wb.cross(&va)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::{Drive, FreedomSettings};
+
+    fn chain() -> Chain {
+        let row = FreedomSettings {
+            drive: Drive::Locked(0.0),
+            inertia: 0.0,
+            damping: 0.0,
+        };
+        let machine = Machine {
+            freedoms: [(); 6].map(|()| row.clone()),
+            ap_springs: Vec::new(),
+            frequency_hz: 1.1,
+            vv_axis_mm: (-20.0, -5.0),
+            ie_axis_mm: (1.0, 0.5),
+        };
+        Chain::new(&machine, Vec3::new(-5.0, 22.0, 0.0), (0.5, -0.3))
+    }
+
+    const SOMEWHERE: [f64; 6] = [0.03, -0.1, 1.2, -3.0, 0.4, 0.7];
+
+    #[test]
+    fn verify_signs_of_every_freedom() {
+        let femur_origin = |freedom: Freedom, position: f64| {
+            let mut positions = [0.0; 6];
+            positions[freedom as usize] = position;
+            chain().at(&positions).pose
+        };
+        let zero = Vec3::new(-5.0, 22.0, 0.0);
+        // The insert moves anterior, lateral: the femur falls behind, medial of it.
+        assert!(
+            (femur_origin(Freedom::AnteroPosterior, 2.0).translation - zero + Vec3::x() * 2.0)
+                .norm()
+                < 1e-12
+        );
+        assert!(
+            (femur_origin(Freedom::MedioLateral, 2.0).translation - zero + Vec3::z() * 2.0).norm()
+                < 1e-12
+        );
+        assert!(
+            (femur_origin(Freedom::InferoSuperior, 2.0).translation - zero - Vec3::y() * 2.0)
+                .norm()
+                < 1e-12
+        );
+        // Flexion brings the back of the femur down.
+        assert!((femur_origin(Freedom::Flexion, 0.5).rotation * -Vec3::x()).y < 0.0);
+        // Internal rotation turns the insert's front medially: the femur's front looks lateral.
+        assert!((femur_origin(Freedom::InternalExternal, 0.5).rotation * Vec3::x()).z > 0.0);
+        // Varus lowers the insert's lateral side: the femur rises over it.
+        assert!((femur_origin(Freedom::VarusValgus, 0.1).rotation * Vec3::z()).y > 0.0);
+    }
+
+    #[test]
+    fn twist_is_the_derivative_of_the_pose() {
+        let (step, rates) = (1e-6, [0.2, -0.4, 3.0, 5.0, -2.0, 1.1]);
+        let at = |time: f64| {
+            let mut positions = SOMEWHERE;
+            positions
+                .iter_mut()
+                .zip(rates)
+                .for_each(|(q, rate)| *q += rate * time);
+            chain().at(&positions)
+        };
+        let (angular, linear) = split(&at(0.0).twist(&rates));
+        for point in [Vec3::new(1.0, -20.0, 23.0), Vec3::zeros()] {
+            let place = |time| at(time).pose.to_insert(&point);
+            let velocity = (place(step) - place(-step)) / (2.0 * step);
+            assert!((velocity - linear - angular.cross(&place(0.0))).norm() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn screw_derivatives_are_those_of_the_screws() {
+        let step = 1e-6;
+        for by in 0..6 {
+            let moved = |sign: f64| {
+                let mut positions = SOMEWHERE;
+                positions[by] += sign * step;
+                chain().at(&positions).screws
+            };
+            let (fore, back, here) = (moved(1.0), moved(-1.0), chain().at(&SOMEWHERE));
+            for of in 0..6 {
+                let difference = (fore[of] - back[of]) / (2.0 * step);
+                assert!((difference - here.screw_derivative(of, by)).norm() < 1e-7);
+            }
+        }
+    }
+
+    #[test]
+    fn zeroing_keeps_the_pose() {
+        let row = FreedomSettings {
+            drive: Drive::Locked(0.0),
+            inertia: 0.0,
+            damping: 0.0,
+        };
+        let machine = Machine {
+            freedoms: [(); 6].map(|()| row.clone()),
+            ap_springs: Vec::new(),
+            frequency_hz: 1.1,
+            vv_axis_mm: (-20.0, -5.0),
+            ie_axis_mm: (1.0, 0.5),
+        };
+        let zeroed = chain().zeroed_at(&machine, &SOMEWHERE);
+        let [vv, ie, _, _, _, flexion] = SOMEWHERE;
+        let before = chain().at(&SOMEWHERE).pose;
+        let after = zeroed.at(&[vv, ie, 0.0, 0.0, 0.0, flexion]).pose;
+        assert!((before.translation - after.translation).norm() < 1e-12);
+        assert!((before.rotation - after.rotation).norm() < 1e-12);
+    }
+}

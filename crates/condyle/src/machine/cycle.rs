@@ -1,0 +1,226 @@
+//! One gait cycle: motions, loads and contact at every increment.
+
+use std::ops::ControlFlow;
+
+use thiserror::Error;
+
+use super::{
+    Chain, FREEDOMS, Machine, TimeSettings,
+    balance::Kinematics,
+    integrator::{Effort, Integrator, MachineState, NotConverged, drive, out_of_balance_n},
+};
+use crate::contact::{ContactModel, CycleHistory, Moment, TouchedNode};
+
+/// How often a step may be halved before it is given up.
+const MOST_HALVINGS: u32 = 8;
+
+/// The machine at the end of an increment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CycleRow {
+    /// Place in the cycle, %.
+    pub percent: f64,
+    /// Positions, mm or rad, in the order of [`FREEDOMS`].
+    pub positions: [f64; 6],
+    /// Load pressing the bodies together along y, as the contact carries it, N.
+    pub axial_force_n: f64,
+    /// Area in contact, mm2.
+    pub contact_area_mm2: f64,
+    /// Highest pressure at a node, MPa.
+    pub peak_pressure_mpa: f64,
+    /// Part of the axial force on the medial side, N.
+    pub medial_force_n: f64,
+    /// Part of the axial force on the lateral side, N.
+    pub lateral_force_n: f64,
+}
+
+/// A solved cycle.
+pub struct Cycle {
+    /// One row an increment.
+    pub rows: Vec<CycleRow>,
+    /// What every node of the articulating surface went through.
+    pub history: CycleHistory,
+    /// The machine at its end.
+    pub end: MachineState,
+}
+
+/// Why a cycle was not solved.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum CycleError {
+    /// An increment that does not converge even in the smallest steps.
+    #[error(
+        "the machine finds no balance at {percent:.2} % of the cycle: {residual_n:.3e} N are left over at {}; \
+         check loads and springs there, or use more increments",
+        places(positions)
+    )]
+    NotConverged {
+        /// Place in the cycle, %.
+        percent: f64,
+        /// Positions at the last iteration, mm and rad, in the order of [`FREEDOMS`].
+        positions: [f64; 6],
+        /// Force left out of balance, N.
+        residual_n: f64,
+    },
+    /// Somebody asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+fn places(positions: &[f64; 6]) -> String {
+    let [vv, ie, ml, ap, is, flexion] = *positions;
+    let [vv, ie, flexion] = [vv, ie, flexion].map(f64::to_degrees);
+    format!(
+        "AP {ap:.3} mm, ML {ml:.3} mm, IS {is:.3} mm, IE {ie:.3} deg, VV {vv:.3} deg, flexion {flexion:.2} deg"
+    )
+}
+
+/// A machine ready to run cycles on a contact.
+pub struct Simulator<'a, C> {
+    /// The machine.
+    pub machine: &'a Machine,
+    /// Its kinematics, zeroed at the neutral position.
+    pub chain: &'a Chain,
+    /// The contact between its parts.
+    pub contact: C,
+    /// How finely and exactly it is solved.
+    pub time: &'a TimeSettings,
+}
+
+impl MachineState {
+    /// A machine at rest at the start of a cycle, at the given positions where it is free.
+    pub fn at_rest(machine: &Machine, positions: [f64; 6]) -> Self {
+        let mut now = Kinematics {
+            positions,
+            rates: [0.0; 6],
+            accelerations: [0.0; 6],
+        };
+        drive(machine, 0.0, &mut now.positions, &mut now.rates);
+        Self {
+            phase: 0.0,
+            now,
+            before: None,
+        }
+    }
+
+    /// Whether the machine is where it was at `earlier`, within the tolerances.
+    pub fn repeats(&self, earlier: &Self, time: &TimeSettings) -> bool {
+        FREEDOMS.iter().all(|&freedom| {
+            let j = freedom as usize;
+            let apart = (self.now.positions[j] - earlier.now.positions[j]).abs();
+            let tolerance = if freedom.is_rotation() {
+                time.repeat_tolerance_rad
+            } else {
+                time.repeat_tolerance_mm
+            };
+            apart <= tolerance
+        })
+    }
+}
+
+impl<C: ContactModel> Simulator<'_, C> {
+    /// Solves one cycle from `start`, whose phase is a whole number.
+    ///
+    /// `watch` is told the share of the cycle done after every increment, and may stop it.
+    ///
+    /// # Errors
+    /// An increment that does not converge, or a stop asked for.
+    pub fn cycle(
+        &mut self,
+        start: &MachineState,
+        effort: &mut Effort,
+        watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Cycle, CycleError> {
+        let count = self.time.increments;
+        let mut state = MachineState {
+            phase: 0.0,
+            ..*start
+        };
+        let mut rows = Vec::with_capacity(count);
+        let mut records = Vec::new();
+        for increment in 1..=count {
+            let done = increment as f64 / count as f64;
+            state = self.advance(&state, done, MOST_HALVINGS, effort)?;
+            let touched = self.contact.touched();
+            rows.push(row(100.0 * done, &state, touched));
+            self.record(100.0 * done, &mut records);
+            if watch(done).is_break() {
+                return Err(CycleError::Interrupted);
+            }
+        }
+        let history = CycleHistory::from_records(self.contact.node_count(), &records);
+        Ok(Cycle {
+            rows,
+            history,
+            end: state,
+        })
+    }
+
+    /// Steps to a phase, in halves where a step does not converge.
+    fn advance(
+        &mut self,
+        state: &MachineState,
+        to: f64,
+        halvings: u32,
+        effort: &mut Effort,
+    ) -> Result<MachineState, CycleError> {
+        let mut integrator = Integrator {
+            machine: self.machine,
+            chain: self.chain,
+            contact: &mut self.contact,
+            force_tolerance_n: self.time.force_tolerance_n,
+            effort,
+        };
+        match integrator.step(state, to - state.phase) {
+            Ok(next) => Ok(MachineState { phase: to, ..next }),
+            Err(failed) if halvings == 0 => Err(failed.into()),
+            Err(_) => {
+                effort.halvings += 1;
+                let middle = self.advance(state, (state.phase + to) / 2.0, halvings - 1, effort)?;
+                self.advance(&middle, to, halvings - 1, effort)
+            }
+        }
+    }
+
+    /// Notes what every touched node goes through now, for the increment that this instant stands
+    /// for: the trapezoidal rule of a cycle that repeats, second order in the increment.
+    fn record(&self, percent: f64, records: &mut Vec<(u32, Moment)>) {
+        let duration_s = 1.0 / (self.machine.frequency_hz * self.time.increments as f64);
+        for touched in self.contact.touched() {
+            let moment = Moment {
+                percent,
+                pressure_mpa: touched.pressure_mpa,
+                slip_mm: touched.sliding_mm_per_s.map(|speed| speed * duration_s),
+            };
+            records.push((touched.node, moment));
+        }
+    }
+}
+
+impl From<NotConverged> for CycleError {
+    fn from(failed: NotConverged) -> Self {
+        Self::NotConverged {
+            percent: 100.0 * failed.phase,
+            positions: failed.positions,
+            residual_n: out_of_balance_n(&failed.residual),
+        }
+    }
+}
+
+fn row(percent: f64, state: &MachineState, touched: &[TouchedNode]) -> CycleRow {
+    let side_n = |is_medial: bool| {
+        let on_side = touched.iter().filter(|node| node.is_medial == is_medial);
+        on_side.map(|node| -node.force_n.y).sum::<f64>()
+    };
+    let (medial_force_n, lateral_force_n) = (side_n(true), side_n(false));
+    CycleRow {
+        percent,
+        positions: state.now.positions,
+        axial_force_n: medial_force_n + lateral_force_n,
+        contact_area_mm2: touched.iter().map(|node| node.covered_mm2).sum(),
+        peak_pressure_mpa: touched
+            .iter()
+            .map(|node| node.pressure_mpa)
+            .fold(0.0, f64::max),
+        medial_force_n,
+        lateral_force_n,
+    }
+}

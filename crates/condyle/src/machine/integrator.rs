@@ -1,0 +1,220 @@
+//! One step of time: the second-order backward differences, solved by Newton's method.
+
+use super::{
+    Chain, Drive, FREEDOMS, Machine,
+    balance::{Imbalance, Kinematics, StepSlopes, imbalance},
+};
+use crate::contact::{ContactModel, Vec6};
+
+/// Lever on which a moment out of balance counts as a force, mm.
+const MOMENT_LEVER_MM: f64 = 10.0;
+/// Iterations after which a step is given up, and tried in halves.
+const MOST_ITERATIONS: usize = 15;
+/// Farthest that one iteration may move, mm; on the lever, rad.
+const LONGEST_CORRECTION_MM: f64 = 1.0;
+
+/// The machine at an instant, with what a two-step method remembers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MachineState {
+    /// Instant, in cycles.
+    pub phase: f64,
+    /// Positions and rates now.
+    pub now: Kinematics,
+    /// Positions and rates one step ago, and how long that step was in s; none after a start.
+    pub before: Option<(Kinematics, f64)>,
+}
+
+/// Work done so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Newton iterations: corrections of the positions.
+    pub newton_iterations: u64,
+    /// Contact evaluations, each with its tangent.
+    pub contact_evaluations: u64,
+    /// Steps given up and tried in halves.
+    pub halvings: u64,
+}
+
+/// Why a step was given up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NotConverged {
+    pub phase: f64,
+    pub positions: [f64; 6],
+    pub residual: Vec6,
+}
+
+/// The weights of the backward differences: rate = slope q + sum of the past.
+struct Differences {
+    slope: f64,
+    now: f64,
+    before: f64,
+}
+
+impl Differences {
+    /// Second order with a step `ratio` times as long as the last; first order with ratio 0.
+    fn new(step_s: f64, ratio: f64) -> Self {
+        Self {
+            slope: (1.0 + 2.0 * ratio) / (1.0 + ratio) / step_s,
+            now: -(1.0 + ratio) / step_s,
+            before: ratio * ratio / (1.0 + ratio) / step_s,
+        }
+    }
+}
+
+/// Everything one step needs beside the state.
+pub(super) struct Integrator<'a, C> {
+    pub machine: &'a Machine,
+    pub chain: &'a Chain,
+    pub contact: &'a mut C,
+    pub force_tolerance_n: f64,
+    pub effort: &'a mut Effort,
+}
+
+impl<C: ContactModel> Integrator<'_, C> {
+    /// The state a `step` of the cycle later.
+    ///
+    /// BDF2 is stable however stiff the contact, damps what a step cannot resolve, and its error
+    /// falls with the square of the step.
+    pub fn step(&mut self, state: &MachineState, step: f64) -> Result<MachineState, NotConverged> {
+        let phase = state.phase + step;
+        let step_s = step / self.machine.frequency_hz;
+        let ratio = state.before.map_or(0.0, |(_, last_s)| step_s / last_s);
+        let differences = Differences::new(step_s, ratio);
+        let slopes = StepSlopes {
+            rate: differences.slope,
+            acceleration: differences.slope.powi(2),
+        };
+        let loads = loads_at(self.machine, phase);
+        let mut positions = self.predicted(state, phase, step_s, ratio);
+        let mut left = MOST_ITERATIONS;
+        loop {
+            let kinematics = self.kinematics(state, &differences, positions, phase);
+            let Imbalance { residual, tangent } = imbalance(
+                self.machine,
+                self.chain,
+                self.contact,
+                &kinematics,
+                &loads,
+                slopes,
+            );
+            self.effort.contact_evaluations += 1;
+            if out_of_balance_n(&residual) <= self.force_tolerance_n {
+                return Ok(MachineState {
+                    phase,
+                    now: kinematics,
+                    before: Some((state.now, step_s)),
+                });
+            }
+            let correction = tangent
+                .lu()
+                .solve(&residual)
+                .filter(|c| c.iter().all(|x| x.is_finite()));
+            let (Some(correction), 1..) = (correction, left) else {
+                return Err(NotConverged {
+                    phase,
+                    positions,
+                    residual,
+                });
+            };
+            left -= 1;
+            self.effort.newton_iterations += 1;
+            let limit = (LONGEST_CORRECTION_MM / longest_mm(&correction)).min(1.0);
+            positions
+                .iter_mut()
+                .zip(&correction)
+                .for_each(|(q, c)| *q -= c * limit);
+        }
+    }
+
+    /// Where the freedoms go if accelerations last; driven ones, where they are driven.
+    fn predicted(&self, state: &MachineState, phase: f64, step_s: f64, ratio: f64) -> [f64; 6] {
+        let lasting = if ratio > 0.0 {
+            0.5 * step_s * step_s
+        } else {
+            0.0
+        };
+        let mut positions = state.now.positions;
+        for (j, q) in positions.iter_mut().enumerate() {
+            *q += step_s * state.now.rates[j] + lasting * state.now.accelerations[j];
+        }
+        drive(self.machine, phase, &mut positions, &mut [0.0; 6]);
+        positions
+    }
+
+    fn kinematics(
+        &self,
+        state: &MachineState,
+        differences: &Differences,
+        positions: [f64; 6],
+        phase: f64,
+    ) -> Kinematics {
+        let past = |now: &[f64; 6], before: Option<&[f64; 6]>, j: usize| {
+            differences.now * now[j] + before.map_or(0.0, |before| differences.before * before[j])
+        };
+        let before = state.before.as_ref().map(|(kinematics, _)| kinematics);
+        let (mut rates, mut accelerations) = ([0.0; 6], [0.0; 6]);
+        for j in 0..6 {
+            rates[j] = differences.slope * positions[j]
+                + past(&state.now.positions, before.map(|b| &b.positions), j);
+        }
+        drive(self.machine, phase, &mut positions.clone(), &mut rates);
+        for j in 0..6 {
+            accelerations[j] =
+                differences.slope * rates[j] + past(&state.now.rates, before.map(|b| &b.rates), j);
+        }
+        Kinematics {
+            positions,
+            rates,
+            accelerations,
+        }
+    }
+}
+
+/// Sets positions and rates of the freedoms that are locked or prescribed.
+pub(super) fn drive(machine: &Machine, phase: f64, positions: &mut [f64; 6], rates: &mut [f64; 6]) {
+    for freedom in FREEDOMS {
+        let j = freedom as usize;
+        match &machine.row(freedom).drive {
+            Drive::Locked(at) => (positions[j], rates[j]) = (*at, 0.0),
+            Drive::Prescribed(waveform) => {
+                let (value, slope) = waveform.at(phase);
+                (positions[j], rates[j]) = (value, slope * machine.frequency_hz);
+            }
+            Drive::Loaded(_) => {}
+        }
+    }
+}
+
+/// Load on every freedom, N or N mm.
+pub(super) fn loads_at(machine: &Machine, phase: f64) -> [f64; 6] {
+    FREEDOMS.map(|freedom| match &machine.row(freedom).drive {
+        Drive::Loaded(waveform) => waveform.at(phase).0,
+        Drive::Locked(_) | Drive::Prescribed(_) => 0.0,
+    })
+}
+
+/// Largest force out of balance, N, moments on their lever.
+pub(super) fn out_of_balance_n(residual: &Vec6) -> f64 {
+    let force = |j: usize| {
+        residual[j].abs()
+            / if FREEDOMS[j].is_rotation() {
+                MOMENT_LEVER_MM
+            } else {
+                1.0
+            }
+    };
+    (0..6).map(force).fold(0.0, f64::max)
+}
+
+/// Longest motion of a correction, mm, rotations on their lever.
+pub(super) fn longest_mm(correction: &Vec6) -> f64 {
+    let motion = |j: usize| {
+        correction[j].abs()
+            * if FREEDOMS[j].is_rotation() {
+                MOMENT_LEVER_MM
+            } else {
+                1.0
+            }
+    };
+    (0..6).map(motion).fold(0.0, f64::max)
+}
