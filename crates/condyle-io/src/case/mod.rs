@@ -17,6 +17,8 @@ mod schema;
 mod setting;
 mod shapes;
 mod table;
+#[cfg(test)]
+mod tests;
 mod to_toml;
 mod unknown;
 mod waveforms;

@@ -36,7 +36,7 @@ pub enum Reason {
         keys: Vec<String>,
     },
     /// A key that exists with another unit.
-    #[error("`{key}` has another unit than condyle takes: the key is `{meant}`, in {unit}")]
+    #[error("`{key}` is in another unit: the key is `{meant}`, in {unit}")]
     WrongUnit {
         /// As written.
         key: String,
@@ -305,8 +305,8 @@ impl Reason {
                 Some(format!("add `column = `, one of {}", columns.join(", ")))
             }
             Self::NotNumber { .. } => Some("write a number there, or remove the row".to_owned()),
-            Self::Syntax { .. }
-            | Self::WrongType { .. }
+            Self::Syntax { .. } => Some(SYNTAX_ADVICE.to_owned()),
+            Self::WrongType { .. }
             | Self::UnreadableFile { .. }
             | Self::Waveform { .. }
             | Self::PressureTable { .. }
@@ -314,6 +314,10 @@ impl Reason {
         }
     }
 }
+
+/// What most often ails a line that is not TOML.
+const SYNTAX_ADVICE: &str = "a line is `key = value`: text in quotes, a number without its unit, \
+    a list in square brackets; a key stands once in its table";
 
 /// Where a file that is not there comes from.
 fn how_to_get(path: &std::path::Path) -> String {

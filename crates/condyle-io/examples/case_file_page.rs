@@ -1,0 +1,7 @@
+//! Prints the page of the book that lists every key of a case file.
+//!
+//! `cargo run -q -p condyle-io --example case_file_page > docs/src/case-file.md`
+
+fn main() {
+    print!("{}", condyle_io::case::schema_markdown());
+}

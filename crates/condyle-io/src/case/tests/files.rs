@@ -1,0 +1,228 @@
+//! Problems in and with the files that a case names.
+
+use std::path::Path;
+
+use super::assert_shows;
+use crate::case::{Case, Channel};
+
+/// A folder with `wave.csv` of this text, and a case that takes its flexion from it.
+fn with_csv(csv: &str, extra: &str) -> Result<Case, String> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("wave.csv"), csv).unwrap();
+    let text = format!("[machine.flexion]\nfile = \"wave.csv\"\n{extra}");
+    let path = folder.path().join("case.toml");
+    std::fs::write(&path, text).unwrap();
+    Case::read(&path).map_err(|error| error.to_string())
+}
+
+fn refused(csv: &str, extra: &str) -> String {
+    with_csv(csv, extra).expect_err("something is wrong with it")
+}
+
+/// Samples of a column every 10 %.
+fn samples(value: impl Fn(f64) -> f64) -> String {
+    let row = |i: i32| {
+        let percent = f64::from(i) * 10.0;
+        format!("{percent},{}\n", value(percent))
+    };
+    (0..=10).map(row).collect()
+}
+
+#[test]
+fn case_file_that_is_not_there_is_named() {
+    let error = Case::read(Path::new("nowhere/case.toml")).unwrap_err();
+    assert_shows(
+        &error.to_string(),
+        &["the file nowhere/case.toml cannot be read: "],
+    );
+    assert_eq!(error.problems()[0].line_and_column(), None);
+}
+
+#[test]
+fn missing_file_says_where_it_was_looked_for() {
+    let text = "[femur]\nshape = \"mesh\"\nfile = \"shapes/femur.stl\"\n";
+    let error = Case::parse(text, "case.toml", Path::new("cases")).unwrap_err();
+    assert_shows(
+        &error.to_string(),
+        &[
+            "`file`: there is no file cases/shapes/femur.stl",
+            " 3 | file = \"shapes/femur.stl\"",
+            "   :        ^^^^^^^^^^^^^^^^^^",
+            "help: correct the path; it counts from the folder of the case file",
+        ],
+    );
+}
+
+#[test]
+fn missing_data_say_what_to_fetch() {
+    let fetch = |file: &str| {
+        let text = format!("[femur]\nshape = \"mesh\"\nfile = \"{file}\"\n");
+        Case::parse(&text, "case.toml", Path::new(""))
+            .unwrap_err()
+            .to_string()
+    };
+    let advice = "fetch the Grand Challenge subject DM meshes";
+    assert_shows(
+        &fetch("data/dm-knee/none.stl"),
+        &["there is no file", "help: ", advice],
+    );
+    assert_shows(
+        &fetch("data/mine/none.stl"),
+        &["the comment at the top of the case says where"],
+    );
+}
+
+#[test]
+fn file_that_is_no_text_cannot_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("wave.csv"), [0xff, 0xfe, 0x00]).unwrap();
+    let text = "[machine.flexion]\nfile = \"wave.csv\"\n";
+    let error = Case::parse(text, "case.toml", folder.path()).unwrap_err();
+    assert_shows(&error.to_string(), &["cannot be read: ", "[case.toml:2:8]"]);
+}
+
+#[test]
+fn csv_in_another_unit_is_refused_at_its_header() {
+    let shown = refused(&format!("percent,knee_rad\n{}", samples(|_| 0.0)), "");
+    assert_shows(
+        &shown,
+        &[
+            "column `knee_rad` is in another unit than degrees, which is needed here",
+            "wave.csv:1:9]",
+            " 1 | percent,knee_rad",
+            "   :         ^^^^^^^^",
+            "help: let its name end in `_deg`, with values in degrees",
+        ],
+    );
+}
+
+#[test]
+fn csv_without_header_percent_or_second_column_is_refused() {
+    let shown = refused("0,1\n100,1\n", "");
+    assert_shows(
+        &shown,
+        &["wave.csv has no header", "such as `percent,flexion_deg`"],
+    );
+    let shown = refused("time_s,a_deg\n0,1\n100,1\n", "");
+    assert_shows(
+        &shown,
+        &["the first column must be the percent", "`time_s`", "^^^^^^"],
+    );
+    assert_shows(
+        &refused("percent\n0\n50\n", ""),
+        &["wave.csv has one column"],
+    );
+    assert_shows(
+        &refused("percent,a_deg\n", ""),
+        &["the waveform has no points"],
+    );
+}
+
+#[test]
+fn csv_column_must_be_there_and_be_chosen() {
+    let csv = "percent,a_deg,b_deg\n0,1,2\n";
+    let shown = refused(csv, "");
+    assert_shows(
+        &shown,
+        &[
+            "the case does not say which",
+            "`column = `, one of a_deg, b_deg",
+        ],
+    );
+    let shown = refused(csv, "column = \"c_deg\"\n");
+    assert_shows(
+        &shown,
+        &[
+            "there is no column `c_deg` in wave.csv",
+            "case.toml:3:10]",
+            "it has a_deg, b_deg",
+        ],
+    );
+}
+
+#[test]
+fn csv_with_a_nan_a_word_or_a_short_row_is_refused_at_each() {
+    let shown = refused("percent,a_deg\n0,1\n10,nan\n20,-\n30\n", "");
+    assert_shows(
+        &shown,
+        &[
+            "`nan` in column `a_deg` is not a finite number",
+            " 3 | 10,nan",
+            "   :    ^^^",
+            "`-` in column `a_deg`",
+            "wave.csv:4:4]",
+            "`` in column `a_deg`",
+            "wave.csv:5:3]",
+        ],
+    );
+}
+
+#[test]
+fn csv_with_a_gap_or_a_step_is_refused_at_its_row() {
+    let shown = refused(
+        "percent,a_deg\n0,1\n10,2\n60,2\n70,1\n80,1\n90,1\n100,1\n",
+        "",
+    );
+    assert_shows(
+        &shown,
+        &[
+            "[machine.flexion]: the waveform has a gap from 10 % to 60 %",
+            " 3 | 10,2",
+            "   : ^^^^",
+        ],
+    );
+    let drifting = format!("percent,a_deg\n{}", samples(|percent| percent / 50.0));
+    let shown = refused(&drifting, "");
+    assert_shows(
+        &shown,
+        &["steps at the seam", "12 | 100,2", "`remove_drift = true`"],
+    );
+    assert!(with_csv(&drifting, "remove_drift = true\n").is_ok());
+}
+
+#[test]
+fn verify_scale_offset_and_low_pass_of_samples() {
+    let wave = |percent: f64| (percent / 100.0 * std::f64::consts::TAU).sin();
+    let csv = format!("# percent,a_deg  remark\n{}", samples(wave));
+    let extra = "scale = -10.0\noffset = 3.0\nlow_pass_harmonics = 2\ninterpolation = \"spline\"\n";
+    let csv = csv.replace("100,-0.00000000000000024492935982947064", "100,0");
+    let case = with_csv(&csv, extra).unwrap();
+    let flexion = case.machine.waveforms.get(Channel::Flexion).unwrap();
+    for percent in [0.0, 15.0, 40.0, 77.0] {
+        let error = flexion.at(percent / 100.0).0 - (3.0 - 10.0 * wave(percent));
+        assert!(error.abs() < 0.02, "{percent} %: {error}");
+    }
+}
+
+#[test]
+fn pressure_table_may_come_from_a_file() {
+    let read = |csv: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("curve.csv"), csv).unwrap();
+        let text = "[contact]\nlaw = \"tabulated\"\ntable_file = \"curve.csv\"\n";
+        let case = Case::parse(text, "case.toml", folder.path());
+        case.map_err(|error| error.to_string())
+    };
+    let case = read("overclosure_mm,pressure_mpa\n0,0\n0.05,5\n").unwrap();
+    let inline = "[contact]\nlaw = \"tabulated\"\ntable = [[0.0, 0.0], [0.05, 5.0]]\n";
+    let same = Case::parse(inline, "case.toml", Path::new("")).unwrap();
+    assert_eq!(case, same);
+    let shown = read("overclosure_m,pressure_mpa\n0,0\n1,1\n").unwrap_err();
+    assert_shows(
+        &shown,
+        &[
+            "column `overclosure_m` is in another unit than mm",
+            "^^^^^^",
+        ],
+    );
+    let shown = read("overclosure_mm,pressure_mpa\n0,0\n1,x\n").unwrap_err();
+    assert_shows(&shown, &["`x` in column `pressure_mpa`", "curve.csv:3:3]"]);
+    let shown = read("overclosure_mm,pressure_mpa\n0,0\n1,1\n2,1\n").unwrap_err();
+    assert_shows(
+        &shown,
+        &[
+            "`table_file`: point 2 of the pressure table",
+            "curve.csv:4:1]",
+        ],
+    );
+}

@@ -1,0 +1,56 @@
+//! Whole cases: what is read, what is refused and how that looks.
+
+mod errors;
+mod files;
+mod round_trip;
+
+use std::path::{Path, PathBuf};
+
+use super::{Case, CaseError};
+
+/// The folder of the cases that come with condyle.
+fn cases() -> PathBuf {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases")).to_owned()
+}
+
+/// The data of subject DM; says so and gives nothing where they are not there.
+fn has_dm_data(test: &str) -> bool {
+    let folder = Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../../shared/data/dm-knee"
+    ));
+    let there = folder.join("fluoroscopy-gait.csv").is_file();
+    let in_ci = std::env::var("CI").is_ok_and(|value| value == "true");
+    assert!(
+        there || !in_ci,
+        "{test}: the data of subject DM are needed under CI=true"
+    );
+    if !there {
+        eprintln!("skipped: {test}: the data of subject DM are not there");
+    }
+    there
+}
+
+fn parsed(text: &str) -> Result<Case, CaseError> {
+    Case::parse(text, "case.toml", Path::new(""))
+}
+
+/// What a case file of this text is refused with, as plain text.
+fn refusal(text: &str) -> String {
+    match parsed(text) {
+        Ok(_) => panic!("this is a good case:\n{text}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// Asserts that `shown` has every line of `expected`, in this order.
+#[track_caller]
+fn assert_shows(shown: &str, expected: &[&str]) {
+    let mut rest = shown;
+    for line in expected {
+        let Some(at) = rest.find(line) else {
+            panic!("no {line:?} in\n{rest}\nof\n{shown}");
+        };
+        rest = &rest[at + line.len()..];
+    }
+}
