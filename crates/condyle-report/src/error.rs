@@ -78,7 +78,7 @@ pub enum ReportError {
         expected: usize,
     },
     /// A table lacks the columns of a picture, or has no row.
-    #[error("{picture} needs rows with the columns {columns} in {path}.")]
+    #[error("{path} has no rows with the columns {columns}, which {picture} needs.")]
     MissingColumns {
         /// The file.
         path: PathBuf,
@@ -87,6 +87,9 @@ pub enum ReportError {
         /// The picture that needs them.
         picture: &'static str,
     },
+    /// A mesh is damaged.
+    #[error(transparent)]
+    Mesh(#[from] condyle_io::mesh::MeshFileError),
     /// A mesh lacks a field of a picture.
     #[error("The mesh {path} has no point data `{field}`.")]
     MissingField {

@@ -53,7 +53,7 @@ pub fn wear_curve_svg(results_dir: &Path) -> Result<String, ReportError> {
         desc,
         &panels,
         2,
-        &[("last", "a dot an update of the shape")],
+        &[("last", "each dot is an update of the shape")],
     ))
 }
 

@@ -4,25 +4,27 @@
 //! level is bounded by iso-lines through triangles and by pieces of the mesh's own border. Only
 //! those are collected and joined into loops, so a region is one path without inner seams.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use crate::results::SurfaceFields;
 
 /// A mesh prepared for contours, seen from above: (x, y) of the picture.
 pub(crate) struct Contours<'a> {
+    /// The nodes, then the centre of each quad.
     points: Vec<(f64, f64)>,
+    /// A value a point.
     values: Vec<f64>,
     quads: &'a [[u32; 4]],
-    border: BTreeSet<(u32, u32)>,
+    /// Of each quad, which of its sides are on the border.
+    borders: &'a [[bool; 4]],
 }
 
 /// A corner of a loop: on the edge between two vertices, or at one when they are equal.
 type Corner = (u32, u32);
 
 impl<'a> Contours<'a> {
-    /// A field on a surface, its nodes placed in the picture by `place`.
+    /// A field on a surface, its nodes placed in the picture by `place`; `borders` as from [`borders`].
     pub(crate) fn new(
         surface: &'a SurfaceFields,
+        borders: &'a [[bool; 4]],
         field: &[f64],
         place: impl Fn(f64, f64) -> (f64, f64),
     ) -> Self {
@@ -33,63 +35,61 @@ impl<'a> Contours<'a> {
             .collect();
         let mut values = field.to_vec();
         for quad in &surface.quads {
-            let quad = quad.map(|node| node as usize);
-            let [x, y] = [|p: (f64, f64)| p.0, |p: (f64, f64)| p.1]
-                .map(|axis| quad.iter().map(|&n| axis(points[n])).sum::<f64>() / 4.0);
-            points.push((x, y));
-            values.push(quad.iter().map(|&n| field[n]).sum::<f64>() / 4.0);
+            let corners = quad.map(|node| points[node as usize]);
+            let (x, y) = corners.iter().fold((0.0, 0.0), |sum, corner| {
+                (sum.0 + corner.0, sum.1 + corner.1)
+            });
+            points.push((x / 4.0, y / 4.0));
+            values.push(quad.map(|node| field[node as usize]).iter().sum::<f64>() / 4.0);
         }
+        let quads = &surface.quads;
         Self {
             points,
             values,
-            quads: &surface.quads,
-            border: border(&surface.quads),
+            quads,
+            borders,
         }
     }
 
     /// Closed loops around the region where the field is at least `level`; holes run the other way.
     pub(crate) fn region(&self, level: f64) -> Vec<Vec<(f64, f64)>> {
-        let mut next: BTreeMap<Corner, Vec<Corner>> = BTreeMap::new();
-        for triangle in self.triangles() {
-            self.outline(triangle, level, &mut |from, to| {
-                next.entry(from).or_default().push(to);
-            });
+        let mut pieces = Vec::new();
+        let mut add = |from, to| pieces.push((from, to));
+        for quad in (0..self.quads.len()).filter(|&quad| self.touches_outline(quad, level)) {
+            for side in 0..4 {
+                self.outline(quad, side, level, &mut add);
+            }
         }
-        self.loops(next, level)
+        pieces.sort_unstable();
+        self.loops(&pieces, level)
     }
 
-    fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        let first_centre = self.points.len() - self.quads.len();
-        self.quads
-            .iter()
-            .enumerate()
-            .flat_map(move |(place, &[a, b, c, d])| {
-                let centre = (first_centre + place) as u32;
-                [
-                    [a, b, centre],
-                    [b, c, centre],
-                    [c, d, centre],
-                    [d, a, centre],
-                ]
-            })
+    /// False where all of a quad is outside, or all of it inside and away from the border.
+    fn touches_outline(&self, quad: usize, level: f64) -> bool {
+        let inside = self.quads[quad].map(|node| self.values[node as usize] >= level);
+        let all_inside = inside == [true; 4];
+        inside != [false; 4] && !(all_inside && self.borders[quad] == [false; 4])
     }
 
-    /// Reports the pieces of the region's outline that a triangle holds.
-    fn outline(&self, triangle: [u32; 3], level: f64, add: &mut impl FnMut(Corner, Corner)) {
+    /// Reports the pieces of the region's outline in the triangle on one side of a quad.
+    fn outline(&self, quad: usize, side: usize, level: f64, add: &mut impl FnMut(Corner, Corner)) {
+        let corners = self.quads[quad];
+        let centre = self.points.len() - self.quads.len() + quad;
+        let triangle = [corners[side], corners[(side + 1) % 4], centre as u32];
         let inside = triangle.map(|vertex| self.values[vertex as usize] >= level);
         if !inside.contains(&true) {
             return;
         }
         let (mut leaves, mut enters) = (None, None);
-        for side in 0..3 {
-            let (a, b) = (triangle[side], triangle[(side + 1) % 3]);
-            let (from, to) = match (inside[side], inside[(side + 1) % 3]) {
+        for edge in 0..3 {
+            let (a, b) = (triangle[edge], triangle[(edge + 1) % 3]);
+            let (from, to) = match (inside[edge], inside[(edge + 1) % 3]) {
                 (true, true) => ((a, a), (b, b)),
                 (true, false) => ((a, a), *leaves.insert(crossing(a, b))),
                 (false, true) => (*enters.insert(crossing(a, b)), (b, b)),
                 (false, false) => continue,
             };
-            if side == 0 && self.border.contains(&(a, b)) {
+            if edge == 0 && self.borders[quad][side] {
                 add(from, to);
             }
         }
@@ -98,16 +98,21 @@ impl<'a> Contours<'a> {
         }
     }
 
-    fn loops(&self, mut next: BTreeMap<Corner, Vec<Corner>>, level: f64) -> Vec<Vec<(f64, f64)>> {
+    /// Joins sorted pieces, each from a corner to a corner, into loops.
+    fn loops(&self, pieces: &[(Corner, Corner)], level: f64) -> Vec<Vec<(f64, f64)>> {
+        let mut used = vec![false; pieces.len()];
         let mut loops = Vec::new();
-        while let Some(&start) = next.keys().next() {
+        for start in 0..pieces.len() {
             let mut points = Vec::new();
-            let mut corner = start;
-            while let Some(to) = take(&mut next, corner) {
-                points.push(self.place(corner, level));
-                corner = to;
+            let mut piece = (!used[start]).then_some(start);
+            while let Some(current) = piece {
+                used[current] = true;
+                points.push(self.place(pieces[current].0, level));
+                piece = unused_from(pieces, &used, pieces[current].1);
             }
-            loops.push(points);
+            if !points.is_empty() {
+                loops.push(points);
+            }
         }
         loops
     }
@@ -128,26 +133,32 @@ fn crossing(a: u32, b: u32) -> Corner {
     (a.min(b), a.max(b))
 }
 
-fn take(next: &mut BTreeMap<Corner, Vec<Corner>>, from: Corner) -> Option<Corner> {
-    let ways = next.get_mut(&from)?;
-    let to = ways.pop();
-    if ways.is_empty() {
-        next.remove(&from);
-    }
-    to
+/// The first piece from a corner that is not used yet; there are two where loops touch.
+fn unused_from(pieces: &[(Corner, Corner)], used: &[bool], from: Corner) -> Option<usize> {
+    let first = pieces.partition_point(|piece| piece.0 < from);
+    let same = pieces[first..]
+        .iter()
+        .take_while(|piece| piece.0 == from)
+        .count();
+    (first..first + same).find(|&piece| !used[piece])
 }
 
-/// Directed edges that belong to one quad only.
-fn border(quads: &[[u32; 4]]) -> BTreeSet<(u32, u32)> {
-    let mut edges: Vec<_> = quads
-        .iter()
-        .flat_map(|&[a, b, c, d]| [(a, b), (b, c), (c, d), (d, a)])
+/// Of each quad, which of its sides belong to no other quad.
+pub(crate) fn borders(quads: &[[u32; 4]]) -> Vec<[bool; 4]> {
+    let mut edges: Vec<_> = (0usize..)
+        .zip(quads)
+        .flat_map(|(quad, &nodes)| {
+            (0..4).map(move |side| (crossing(nodes[side], nodes[(side + 1) % 4]), quad, side))
+        })
         .collect();
-    edges.sort_unstable_by_key(|&(a, b)| crossing(a, b));
-    edges
-        .chunk_by(|&(a, b), &(c, d)| crossing(a, b) == crossing(c, d))
-        .filter_map(|same| (same.len() == 1).then_some(same[0]))
-        .collect()
+    edges.sort_unstable();
+    let mut borders = vec![[false; 4]; quads.len()];
+    for same in edges.chunk_by(|one, other| one.0 == other.0) {
+        if let &[(_, quad, side)] = same {
+            borders[quad][side] = true;
+        }
+    }
+    borders
 }
 
 #[cfg(test)]
@@ -186,6 +197,11 @@ mod tests {
         loops.iter().map(twice).sum::<f64>() / 2.0
     }
 
+    fn region(surface: &SurfaceFields, field: &[f64], level: f64) -> Vec<Vec<(f64, f64)>> {
+        let borders = borders(&surface.quads);
+        Contours::new(surface, &borders, field, |x, z| (x, z)).region(level)
+    }
+
     fn cone(surface: &SurfaceFields) -> Vec<f64> {
         surface.nodes.iter().map(|node| 1.0 - node.norm()).collect()
     }
@@ -193,7 +209,7 @@ mod tests {
     #[test]
     fn verify_whole_surface_is_one_square_loop() {
         let surface = square(8);
-        let loops = Contours::new(&surface, &cone(&surface), |x, z| (x, z)).region(-10.0);
+        let loops = region(&surface, &cone(&surface), -10.0);
         assert_eq!(loops.len(), 1);
         assert!((area(&loops).abs() - 4.0).abs() < 1e-12);
     }
@@ -201,7 +217,7 @@ mod tests {
     #[test]
     fn verify_level_of_a_cone_is_a_circle() {
         let surface = square(80);
-        let loops = Contours::new(&surface, &cone(&surface), |x, z| (x, z)).region(0.5);
+        let loops = region(&surface, &cone(&surface), 0.5);
         assert_eq!(loops.len(), 1);
         assert!((area(&loops).abs() - std::f64::consts::PI / 4.0).abs() < 1e-3);
     }
@@ -210,7 +226,7 @@ mod tests {
     fn verify_a_hole_runs_the_other_way() {
         let surface = square(80);
         let bowl: Vec<_> = cone(&surface).iter().map(|value| -value).collect();
-        let loops = Contours::new(&surface, &bowl, |x, z| (x, z)).region(-0.5);
+        let loops = region(&surface, &bowl, -0.5);
         assert_eq!(loops.len(), 2);
         assert!((area(&loops).abs() - (4.0 - std::f64::consts::PI / 4.0)).abs() < 1e-3);
     }
@@ -218,10 +234,6 @@ mod tests {
     #[test]
     fn nothing_lies_above_the_largest_value() {
         let surface = square(4);
-        assert!(
-            Contours::new(&surface, &cone(&surface), |x, z| (x, z))
-                .region(2.0)
-                .is_empty()
-        );
+        assert!(region(&surface, &cone(&surface), 2.0).is_empty());
     }
 }

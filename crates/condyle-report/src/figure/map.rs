@@ -2,7 +2,7 @@
 //! anterior up, +z to the right.
 
 use super::axis::{Axis, round_step};
-use super::contour::Contours;
+use super::contour::{Contours, borders};
 use super::escape;
 use super::path::Path;
 use crate::number::{fixed, significant};
@@ -14,6 +14,8 @@ const MOST_BANDS: usize = 12;
 const HEIGHT_STEP: f64 = 1.0;
 /// A largest value below this counts as nothing to show.
 const NOTHING: f64 = 1e-12;
+/// Share of the first band that stays bare.
+const NEXT_TO_NOTHING: f64 = 0.2;
 /// Colour of the surface below the first band: polyethylene.
 const BARE: &str = "#f2f0ea";
 
@@ -105,12 +107,16 @@ impl Map<'_> {
                 )
             })
             .collect();
+        let found = match found.as_slice() {
+            [] => String::from("There is nothing to show yet"),
+            found => found.join("; "),
+        };
         format!(
             "{} on the articulating surface from above, anterior up, {} on the left, {} on the right. {}.",
             self.title,
             left.to_lowercase(),
             right.to_lowercase(),
-            found.join("; ")
+            found
         )
     }
 
@@ -146,22 +152,28 @@ impl Map<'_> {
     }
 
     fn surface_picture(&self, bands: &Axis) -> String {
-        let contours = Contours::new(self.surface, self.values, self.place());
+        let borders = borders(&self.surface.quads);
+        let contours = Contours::new(self.surface, &borders, self.values, self.place());
         let outline = path(&contours.region(f64::NEG_INFINITY));
         let mut out = format!(r#"<path fill="{BARE}" d="{outline}"/>"#);
         if self.largest_value() > NOTHING {
             out += &self.filled(&contours, bands);
         }
-        out += &self.height_lines();
+        out += &self.height_lines(&borders);
         out += &self.middle_line();
         out + &format!(r#"<path class="rim" d="{outline}"/>"#)
     }
 
-    /// Each band is painted over the one below; the first starts at a tenth of a step.
+    /// Each band is painted over the one below; the first leaves out what is next to nothing.
     fn filled(&self, contours: &Contours, bands: &Axis) -> String {
         (0..bands.intervals())
             .map(|band| {
-                let level = bands.step * if band == 0 { 0.1 } else { band as f64 };
+                let level = bands.step
+                    * if band == 0 {
+                        NEXT_TO_NOTHING
+                    } else {
+                        band as f64
+                    };
                 let (fill, shape) = (self.colour(band, bands), path(&contours.region(level)));
                 format!(r#"<path class="iso" fill="{fill}" d="{shape}"/>"#)
             })
@@ -178,18 +190,19 @@ impl Map<'_> {
         format!("#{:x}", gradient.eval_continuous(1.0 - 0.95 * share))
     }
 
-    fn height_lines(&self) -> String {
+    fn height_lines(&self, borders: &[[bool; 4]]) -> String {
         let heights: Vec<_> = self.surface.nodes.iter().map(|node| node.y).collect();
         let (low, high) = heights
             .iter()
             .fold((f64::MAX, f64::MIN), |(low, high), &y| {
                 (low.min(y), high.max(y))
             });
-        let contours = Contours::new(self.surface, &heights, self.place());
+        let contours = Contours::new(self.surface, borders, &heights, self.place());
         let steps = ((high - low) / HEIGHT_STEP).ceil() as usize;
-        let lines: String = (1..steps)
-            .map(|step| path(&contours.region(low + step as f64 * HEIGHT_STEP)))
+        let loops: Vec<_> = (1..steps)
+            .flat_map(|step| contours.region(low + step as f64 * HEIGHT_STEP))
             .collect();
+        let lines = path(&loops);
         format!(r#"<path class="height" d="{lines}"/>"#)
     }
 
@@ -214,6 +227,9 @@ impl Map<'_> {
     fn colour_bar(&self, bands: &Axis) -> String {
         let (width, height) = self.surface_size();
         let x = LEFT + width + BAR_GAP;
+        if self.largest_value() <= NOTHING {
+            return self.bar_title(x);
+        }
         let band_height = height / bands.intervals() as f64;
         let mut out = String::new();
         for band in 0..bands.intervals() {

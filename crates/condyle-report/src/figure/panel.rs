@@ -6,14 +6,12 @@ use super::axis::Axis;
 use super::escape;
 use super::path::Path;
 
-/// Width of a panel, px.
-pub(crate) const WIDTH: f64 = 340.0;
-/// Height of a panel, px.
-pub(crate) const HEIGHT: f64 = 206.0;
+/// Space above a plot's grid for its heading, and around it for the labels, px.
 const LEFT: f64 = 46.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 38.0;
 const BOTTOM: f64 = 30.0;
+const X_TITLE: f64 = 15.0;
 const MOST_INTERVALS: usize = 5;
 
 /// A line of a plot.
@@ -40,8 +38,12 @@ pub(crate) struct Panel {
     pub(crate) positive: String,
     /// The horizontal axis.
     pub(crate) x: Axis,
-    /// Unit of the horizontal axis, after its last tick.
-    pub(crate) x_unit: String,
+    /// Unit of the horizontal axis, after its last tick; may be empty.
+    pub(crate) x_unit: &'static str,
+    /// What the horizontal axis shows, on a line below it; may be empty.
+    pub(crate) x_title: &'static str,
+    /// Width and height, px.
+    pub(crate) size: (f64, f64),
     /// Whether the vertical axis starts at 0.
     pub(crate) from_zero: bool,
     /// The least that the vertical axis spans.
@@ -55,9 +57,10 @@ pub(crate) struct Panel {
 impl Panel {
     /// The panel as an element of a page.
     pub(crate) fn svg(&self) -> String {
-        let (id, title, desc) = (&self.id, escape(&self.title), escape(&self.desc));
+        let ((width, height), id) = (self.size, &self.id);
+        let (title, desc) = (escape(&self.title), escape(&self.desc));
         format!(
-            r#"<svg class="fig" role="img" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {WIDTH} {HEIGHT}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}</svg>"#,
+            r#"<svg class="fig" role="img" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width} {height}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}</svg>"#,
             self.body()
         )
     }
@@ -93,7 +96,7 @@ impl Panel {
             r#"<text x="{LEFT}" y="16" class="title">{title}<tspan class="unit">, {unit}</tspan></text>"#
         );
         if !self.positive.is_empty() {
-            let x = WIDTH - RIGHT;
+            let x = self.right();
             let positive = escape(&self.positive);
             write!(
                 out,
@@ -108,28 +111,42 @@ impl Panel {
         let mut out = String::new();
         let (mut lines, mut zero) = (Path::default(), Path::default());
         for tick in y.ticks() {
-            let height = to_y(y, tick);
+            let height = self.to_y(y, tick);
             let is_zero = tick.abs() < y.step / 2.0;
             let line = if is_zero { &mut zero } else { &mut lines };
-            line.open([(LEFT, height), (WIDTH - RIGHT, height)]);
+            line.open([(LEFT, height), (self.right(), height)]);
             let (x, base, label) = (LEFT - 7.0, height + 3.8, y.label(tick));
             out += &format!(r#"<text x="{x}" y="{base:.1}" text-anchor="end">{label}</text>"#);
         }
         for tick in self.x.ticks() {
             out += &self.x_label(tick);
         }
+        out += &self.x_title();
         let (lines, zero) = (lines.data(), zero.data());
         format!(r#"<path class="grid" d="{lines}"/><path class="axis" d="{zero}"/>{out}"#)
     }
 
     fn x_label(&self, tick: f64) -> String {
-        let (x, y) = (self.to_x(tick), HEIGHT - BOTTOM + 17.0);
+        let (x, y) = (self.to_x(tick), self.bottom() + 17.0);
         let label = self.x.label(tick);
-        if tick < self.x.high - self.x.step / 2.0 {
+        let last = tick > self.x.high - self.x.step / 2.0;
+        if !last || self.x_unit.is_empty() {
             return format!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{label}</text>"#);
         }
-        let (unit, end) = (escape(&self.x_unit), WIDTH - RIGHT + 8.0);
+        let (unit, end) = (escape(self.x_unit), self.right() + 8.0);
         format!(r#"<text x="{end:.1}" y="{y}" text-anchor="end">{label}&#160;{unit}</text>"#)
+    }
+
+    fn x_title(&self) -> String {
+        if self.x_title.is_empty() {
+            return String::new();
+        }
+        let (x, y, title) = (
+            (LEFT + self.right()) / 2.0,
+            self.bottom() + 33.0,
+            escape(self.x_title),
+        );
+        format!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{title}</text>"#)
     }
 
     fn line(&self, curve: &Curve, y: &Axis) -> String {
@@ -137,7 +154,7 @@ impl Panel {
             curve
                 .points
                 .iter()
-                .map(|&(u, v)| (self.to_x(u), to_y(y, v)))
+                .map(|&(u, v)| (self.to_x(u), self.to_y(y, v)))
         };
         let mut path = Path::default();
         path.open(points());
@@ -145,7 +162,7 @@ impl Panel {
         if curve.dots {
             out.extend(points().filter(|point| point.1.is_finite()).map(dot));
         }
-        if let (Some(label), Some((x, y))) = (&curve.end, points().last()) {
+        if let (Some(label), Some((x, y))) = (&curve.end, points().next_back()) {
             let (x, y) = (x + 4.0, y - 9.0);
             out += &format!(
                 r#"<text class="end" x="{x:.1}" y="{y:.1}" text-anchor="end">{label}</text>"#
@@ -154,15 +171,28 @@ impl Panel {
         out
     }
 
+    fn right(&self) -> f64 {
+        self.size.0 - RIGHT
+    }
+
+    fn bottom(&self) -> f64 {
+        let title = if self.x_title.is_empty() {
+            0.0
+        } else {
+            X_TITLE
+        };
+        self.size.1 - BOTTOM - title
+    }
+
+    fn to_y(&self, axis: &Axis, value: f64) -> f64 {
+        self.bottom() - axis.fraction(value) * (self.bottom() - TOP)
+    }
+
     fn to_x(&self, value: f64) -> f64 {
-        LEFT + self.x.fraction(value) * (WIDTH - LEFT - RIGHT)
+        LEFT + self.x.fraction(value) * (self.right() - LEFT)
     }
 }
 
 fn dot((x, y): (f64, f64)) -> String {
     format!(r#"<circle class="dot" cx="{x:.1}" cy="{y:.1}" r="2.6"/>"#)
-}
-
-fn to_y(axis: &Axis, value: f64) -> f64 {
-    HEIGHT - BOTTOM - axis.fraction(value) * (HEIGHT - TOP - BOTTOM)
 }

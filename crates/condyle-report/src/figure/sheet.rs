@@ -1,7 +1,7 @@
 //! A picture as a file of its own: on white, its style inside.
 
 use super::escape;
-use super::panel::{HEIGHT, Panel, WIDTH};
+use super::panel::Panel;
 use super::style::css_on_white;
 
 /// Margin around a picture that stands alone, px.
@@ -28,11 +28,12 @@ pub(crate) fn sheet(
     key: &[(&str, &str)],
 ) -> String {
     let rows = panels.len().div_ceil(columns);
-    let (width, height) = (columns as f64 * WIDTH, rows as f64 * HEIGHT);
+    let cell = panels.first().map_or((0.0, 0.0), |panel| panel.size);
+    let (width, height) = (columns as f64 * cell.0, rows as f64 * cell.1);
     let mut body = String::new();
     for (place, panel) in panels.iter().enumerate() {
-        let x = (place % columns) as f64 * WIDTH;
-        let y = (place / columns) as f64 * HEIGHT;
+        let x = (place % columns) as f64 * cell.0;
+        let y = (place / columns) as f64 * cell.1;
         body += &format!(r#"<g transform="translate({x} {y})">{}</g>"#, panel.body());
     }
     body += &key_line(key, height + CAPTION / 2.0);

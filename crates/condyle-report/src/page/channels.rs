@@ -4,6 +4,9 @@ use super::cycle_caption;
 use crate::figure::{Axis, Curve, Panel};
 use crate::results::{Results, Table};
 
+/// Width and height of a panel, px.
+const SIZE: (f64, f64) = (340.0, 206.0);
+
 /// A column of kinematics.csv as people call it.
 pub(super) struct Channel {
     pub(super) column: &'static str,
@@ -42,8 +45,8 @@ pub(super) const CHANNELS: [Channel; 11] = [
     motion("is_mm", "Superior\u{2013}inferior", "mm", "superior", 0.1),
     load("contact_area_mm2", "Contact area", "mm\u{b2}", "", 1.0),
     load("peak_pressure_mpa", "Peak pressure", "MPa", "", 1.0),
-    load("medial_force_n", "Medial force", "N", "compression", 10.0),
-    load("lateral_force_n", "Lateral force", "N", "compression", 10.0),
+    load("medial_force_n", "Medial force", "N", "", 10.0),
+    load("lateral_force_n", "Lateral force", "N", "", 10.0),
 ];
 
 const fn motion(
@@ -171,7 +174,9 @@ fn panel(channel: &Channel, values: &[f64], percent: &[f64], ends: &[Cycle]) -> 
             high: 100.0,
             step: 20.0,
         },
-        x_unit: String::from("%"),
+        x_unit: "%",
+        x_title: "",
+        size: SIZE,
         from_zero: channel.from_zero,
         least_span: channel.least_span,
         curves,

@@ -4,6 +4,9 @@ use crate::figure::{Axis, Curve, Panel};
 use crate::number::significant;
 use crate::results::{Results, Table};
 
+/// Width and height of a panel, px.
+const SIZE: (f64, f64) = (480.0, 232.0);
+
 /// A column of wear.csv as people call it.
 struct Quantity {
     column: &'static str,
@@ -69,7 +72,9 @@ fn panel(quantity: &Quantity, table: &Table) -> Option<Panel> {
         unit: quantity.unit.to_owned(),
         positive: String::new(),
         x: Axis::covering(0.0, points.last()?.0, 1e-6, 5),
-        x_unit: unit.name.to_owned(),
+        x_unit: "",
+        x_title: unit.name,
+        size: SIZE,
         from_zero: true,
         least_span: f64::MIN_POSITIVE,
         curves: vec![Curve {

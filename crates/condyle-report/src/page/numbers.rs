@@ -182,7 +182,7 @@ pub(super) fn tiles(results: &Results) -> Vec<Tile> {
     ];
     let tile = |(key, label)| {
         let number = known_by(key)?;
-        let value = shown(number, summary.number(key)?);
+        let value = shown(number, summary.number(key)?, 3);
         Some(Tile {
             label,
             value,
@@ -214,7 +214,7 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
 }
 
 fn row(number: &Known, summary: &Summary) -> Option<Row> {
-    let value = shown(number, summary.number(number.key)?);
+    let value = shown(number, summary.number(number.key)?, 4);
     let label = number.label.to_owned();
     Some(Row {
         label,
@@ -247,12 +247,12 @@ fn known_by(key: &str) -> Option<&'static Known> {
         .find(|number| number.key == key)
 }
 
-fn shown(number: &Known, value: f64) -> String {
+fn shown(number: &Known, value: f64, digits: i32) -> String {
     match (number.key, number.unit) {
         ("medial_load_share", _) => fixed(100.0 * value, 1),
         ("worst_quality", _) => fixed(value, 3),
         (_, "") => fixed(value, 0),
-        _ => significant(value, 4),
+        _ => significant(value, digits),
     }
 }
 

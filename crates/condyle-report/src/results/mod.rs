@@ -5,6 +5,7 @@ mod measure;
 mod read;
 mod summary;
 mod surface;
+mod surface_of_mesh;
 mod table;
 
 pub(crate) use case::title;

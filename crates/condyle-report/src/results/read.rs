@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::case::side;
-use super::{Results, Side, Summary, Table};
+use condyle_io::mesh::read_vtu_points;
+
+use super::{Results, Side, Summary, SurfaceFields, Table};
 use crate::ReportError;
 
 impl Results {
@@ -20,9 +22,9 @@ impl Results {
         let case = text(&folder.join("case.toml"))?;
         let results = Self {
             summary: summary(folder.join("summary.json"))?,
-            wear: table(folder.join("wear.csv"))?,
-            kinematics: table(folder.join("kinematics.csv"))?,
-            surface: None,
+            wear: table(&folder.join("wear.csv"))?,
+            kinematics: table(&folder.join("kinematics.csv"))?,
+            surface: surface(folder)?,
             side: case.as_deref().map_or_else(Side::default, side),
             case,
         };
@@ -43,8 +45,16 @@ impl Results {
     }
 }
 
+fn surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
+    let Some(path) = last_mesh(folder)? else {
+        return Ok(None);
+    };
+    let file = read_vtu_points(&path)?;
+    SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path).map(Some)
+}
+
 /// The last mesh that a run wrote: `insert_NNNN.vtu` with the largest number.
-pub(crate) fn last_mesh(folder: &Path) -> Result<Option<PathBuf>, ReportError> {
+fn last_mesh(folder: &Path) -> Result<Option<PathBuf>, ReportError> {
     let failed = |source| ReportError::Read {
         path: folder.to_owned(),
         source,
@@ -75,9 +85,9 @@ fn summary(path: PathBuf) -> Result<Option<Summary>, ReportError> {
     }
 }
 
-fn table(path: PathBuf) -> Result<Option<Table>, ReportError> {
-    text(&path)?
-        .map(|text| Table::parse(&text, &path))
+fn table(path: &Path) -> Result<Option<Table>, ReportError> {
+    text(path)?
+        .map(|text| Table::parse(&text, path))
         .transpose()
 }
 

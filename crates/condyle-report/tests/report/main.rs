@@ -1,0 +1,6 @@
+//! From a made-up results folder to its page and pictures.
+
+mod bad_input;
+mod fixture;
+mod page;
+mod pictures;

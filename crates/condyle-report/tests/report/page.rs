@@ -1,0 +1,108 @@
+//! The page as a whole, from a made-up folder.
+
+use crate::fixture;
+
+use condyle_report::{Results, Side, Summary, report_html, write_report};
+
+#[test]
+fn the_page_stands_alone_and_is_small() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    fixture::write(folder);
+    let page = write_report(folder).expect("the folder is whole");
+    let html = std::fs::read_to_string(page).expect("the page is there");
+    assert!(html.len() < 1_500_000, "{} bytes", html.len());
+    for asks in ["<script", "<link", "src=", "url(", "@import"] {
+        assert!(!html.contains(asks), "the page holds {asks}");
+    }
+}
+
+#[test]
+fn the_same_folder_gives_the_same_page_wherever_it_is() {
+    let [one, two] = [(); 2].map(|()| {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        fixture::write(folder.path());
+        let page = write_report(folder.path()).expect("the folder is whole");
+        std::fs::read(page).expect("the page is there")
+    });
+    assert_eq!(one, two);
+}
+
+#[test]
+fn wall_time_does_not_reach_the_page() {
+    let mut results = fixture::results();
+    let page = report_html(&results);
+    let slower = fixture::SUMMARY.replace("\"wall_s\": 0.83", "\"wall_s\": 7.5");
+    results.summary = Some(Summary::parse(&slower).expect("is JSON"));
+    assert_eq!(page, report_html(&results));
+}
+
+#[test]
+fn the_folder_gives_what_it_was_written_from() {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    fixture::write(folder.path());
+    let read = Results::read(folder.path()).expect("the folder is whole");
+    let (read, made) = (read.surface.expect("has a mesh"), fixture::surface());
+    assert_eq!(read.field("wear_depth_mm"), made.field("wear_depth_mm"));
+    assert_eq!(
+        (read.nodes, read.quads.len()),
+        (made.nodes, made.quads.len())
+    );
+}
+
+#[test]
+fn every_number_of_the_summary_is_on_the_page() {
+    let html = report_html(&fixture::results());
+    for shown in [
+        "24.06", "25.87", "25.86", "0.2041", "21.38", "312.7", "4.831", "7.214", "58.7",
+    ] {
+        assert!(html.contains(shown), "{shown} is missing");
+    }
+    assert!(
+        html.contains("peak_memory_mb"),
+        "a number the report does not know is shown by its name"
+    );
+    assert!(html.contains("differ by 0.05\u{a0}%"));
+}
+
+#[test]
+fn the_case_is_shown_as_text() {
+    let case = Some(String::from("title = \"a <b> & c\""));
+    let html = report_html(&Results {
+        case,
+        ..Results::default()
+    });
+    assert!(html.contains("a &lt;b&gt; &amp; c") && !html.contains("a <b>"));
+}
+
+#[test]
+fn an_empty_run_still_makes_a_page_that_says_what_is_missing() {
+    let html = report_html(&Results::default());
+    assert!(html.contains("summary.json, wear.csv, kinematics.csv, insert_*.vtu, case.toml"));
+    assert!(!html.contains("<svg"));
+}
+
+#[test]
+fn an_unworn_insert_is_drawn_bare() {
+    let mut results = fixture::results();
+    let surface = results.surface.as_mut().expect("has a mesh");
+    for (_, values) in &mut surface.fields {
+        values.fill(0.0);
+    }
+    let html = report_html(&results);
+    assert!(html.contains("nothing to show") && !html.contains("NaN") && !html.contains(">inf"));
+}
+
+#[test]
+fn medial_is_left_in_a_right_knee_and_right_in_a_left_one() {
+    let mut results = fixture::results();
+    let deepest = |results: &Results| {
+        let html = report_html(results);
+        html.contains("The deepest point is medial")
+    };
+    assert!(
+        deepest(&results),
+        "the deep scar of the made-up insert is at -z"
+    );
+    results.side = Side::Left;
+    assert!(!deepest(&results));
+}
