@@ -4,6 +4,7 @@
 //! everywhere inside; frames and signs are in `NOTATION.md`.
 
 pub mod contact;
+pub mod evolve;
 pub mod geometry;
 pub mod machine;
 pub mod wear;

@@ -92,6 +92,11 @@ impl<'a> Foundation<'a> {
         &self.surface
     }
 
+    /// The articulating surface, when the contact is no longer needed.
+    pub fn into_surface(self) -> ArticulatingSurface {
+        self.surface
+    }
+
     /// Pressure on one share, if any of it presses.
     ///
     /// With n the femur's normal, K its curvature, e_k the share's edges and W the mean

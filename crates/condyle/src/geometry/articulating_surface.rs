@@ -89,6 +89,15 @@ impl ArticulatingSurface {
         self.shares.iter().map(|share| share.area_mm2).sum()
     }
 
+    /// Lowest and highest node, mm.
+    pub fn height_range_mm(&self) -> (f64, f64) {
+        let heights = || self.positions.iter().map(|position| position.y);
+        (
+            heights().fold(f64::INFINITY, f64::min),
+            heights().fold(f64::NEG_INFINITY, f64::max),
+        )
+    }
+
     /// Mean spread of the shares, weighted by their areas, mm2.
     pub fn mean_spread_mm2(&self) -> f64 {
         let weighted = |share: &Share| share.spread_mm2 * share.area_mm2;

@@ -58,6 +58,15 @@ impl FemoralSurface {
         }
     }
 
+    /// How far from the femoral frame's origin any of the femur reaches at most, mm.
+    pub fn reach_mm(&self) -> f64 {
+        match self {
+            Self::Generic(femur) => femur.reach_mm(),
+            Self::Sphere(ball) => ball.centre.norm() + ball.tube_radius_mm,
+            Self::Mesh(field) => field.reach_mm(),
+        }
+    }
+
     /// The same surface, made ready for shares of `spread_mm2`.
     pub fn prepared_for(self, spread_mm2: f64) -> Self {
         match self {

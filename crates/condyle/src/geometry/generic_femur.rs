@@ -70,6 +70,11 @@ impl GenericFemur {
         &self.shape
     }
 
+    /// How far from the origin the component reaches at most, mm.
+    pub fn reach_mm(&self) -> f64 {
+        self.distal.centre.norm() + self.shape.distal_radius_mm + self.half_spacing_mm
+    }
+
     /// Gap at a point, mm.
     #[inline]
     pub fn gap_mm(&self, point: &Vec3) -> f64 {

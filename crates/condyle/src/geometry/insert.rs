@@ -73,10 +73,8 @@ impl Insert {
         }
         check_elements(&mesh)?;
         let (nodes, faces) = numbered(&articulating);
-        let follower = InteriorFollower::new(
-            &mesh,
-            nodes.iter().chain(backside.iter().flatten()).copied(),
-        );
+        // Sides and backside stay where they are: wear takes away the articulating surface alone.
+        let follower = InteriorFollower::new(&mesh, mesh.boundary_quads().into_iter().flatten());
         let positions: Vec<Vec3> = nodes
             .iter()
             .map(|&node| mesh.nodes[node as usize])

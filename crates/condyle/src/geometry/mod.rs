@@ -7,6 +7,7 @@ mod femoral_surface;
 mod generic_femur;
 mod generic_insert;
 mod insert;
+mod shell;
 mod smooth_field;
 mod thickness;
 mod torus;
@@ -18,6 +19,9 @@ pub use femoral_surface::{FemoralSurface, SurfaceSample};
 pub use generic_femur::{GenericFemur, GenericFemurShape};
 pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};
 pub use insert::{Insert, InsertError};
+pub use shell::{
+    CheckedShell, Crossing, ShellError, ShellReport, checked_shell, first_crossing, shell_report,
+};
 pub use smooth_field::SmoothField;
 pub use torus::Torus;
 pub use triangle_mesh::TriangleMesh;

@@ -38,7 +38,8 @@ pub enum ShellError {
     #[error(
         "{triangles} triangles share the edge from {} to {} mm; a shell has at most two, \
          so take out inner walls and doubled faces",
-        point(from_mm), point(to_mm)
+        point(from_mm),
+        point(to_mm)
     )]
     NonManifoldEdge {
         /// One end of the edge.
@@ -100,7 +101,9 @@ pub fn checked_shell(mesh: TriangleMesh) -> Result<CheckedShell, ShellError> {
     edges::check_manifold(&mesh, &uses)?;
     let oriented = orientation::orient(&mut mesh, &uses)?;
     if let Some(crossing) = first_crossing(&mesh) {
-        let [first, second] = crossing.triangles.map(|triangle| cleaned.came_from[triangle]);
+        let [first, second] = crossing
+            .triangles
+            .map(|triangle| cleaned.came_from[triangle]);
         return Err(ShellError::CrossesItself {
             first: first.min(second),
             second: first.max(second),
@@ -134,9 +137,15 @@ pub(crate) mod tests {
             [0, 4, 6, 2],
             [1, 3, 7, 5],
         ];
-        let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        let triangles = quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect();
         let vertices = (0..8).map(corner).collect();
-        TriangleMesh { vertices, triangles }
+        TriangleMesh {
+            vertices,
+            triangles,
+        }
     }
 
     pub(crate) fn unit_block() -> TriangleMesh {
@@ -146,12 +155,15 @@ pub(crate) mod tests {
     pub(crate) fn joined(mut a: TriangleMesh, b: TriangleMesh) -> TriangleMesh {
         let shift = a.vertices.len() as u32;
         a.vertices.extend(b.vertices);
-        a.triangles.extend(b.triangles.iter().map(|t| t.map(|vertex| vertex + shift)));
+        a.triangles
+            .extend(b.triangles.iter().map(|t| t.map(|vertex| vertex + shift)));
         a
     }
 
     fn inside_out(mut mesh: TriangleMesh) -> TriangleMesh {
-        mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        mesh.triangles
+            .iter_mut()
+            .for_each(|triangle| triangle.swap(1, 2));
         mesh
     }
 
@@ -208,8 +220,13 @@ pub(crate) mod tests {
 
     #[test]
     fn nothing_and_points_only_are_empty() {
-        let said = checked_shell(TriangleMesh::default()).unwrap_err().to_string();
-        assert_eq!(said, "the mesh has no triangle with an area; check the export");
+        let said = checked_shell(TriangleMesh::default())
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            said,
+            "the mesh has no triangle with an area; check the export"
+        );
         let mut mesh = unit_block();
         mesh.triangles = vec![[0, 0, 1], [2, 3, 2]];
         assert_eq!(checked_shell(mesh), Err(ShellError::Empty));
@@ -236,7 +253,8 @@ pub(crate) mod tests {
             for side in [-1.0, 1.0] {
                 let radius = 1.0 + side * radial;
                 let (sine, cosine) = around.sin_cos();
-                mesh.vertices.push(Vec3::new(radius * cosine, radius * sine, side * height));
+                mesh.vertices
+                    .push(Vec3::new(radius * cosine, radius * sine, side * height));
             }
         }
         for step in 0..6 {
@@ -253,12 +271,21 @@ pub(crate) mod tests {
     fn two_blocks_through_one_another_are_an_error() {
         let other = block(Vec3::new(0.2, 0.3, 0.5), Vec3::new(0.6, 0.7, 1.5));
         let error = checked_shell(joined(unit_block(), other)).unwrap_err();
-        let ShellError::CrossesItself { first, second, at_mm } = &error else {
+        let ShellError::CrossesItself {
+            first,
+            second,
+            at_mm,
+        } = &error
+        else {
             panic!("{error}");
         };
         assert!(*first < 4 && *second >= 12, "{first} {second}");
         assert!((at_mm.z - 1.0).abs() < 1e-12, "{at_mm}");
-        assert!(error.to_string().starts_with("the surface crosses itself: triangles "));
+        assert!(
+            error
+                .to_string()
+                .starts_with("the surface crosses itself: triangles ")
+        );
     }
 
     #[test]
@@ -267,6 +294,13 @@ pub(crate) mod tests {
         mesh.triangles.insert(0, [0, 0, 1]);
         let other = block(Vec3::new(0.2, 0.3, 0.5), Vec3::new(0.6, 0.7, 1.5));
         let error = checked_shell(joined(mesh, other)).unwrap_err();
-        assert!(matches!(error, ShellError::CrossesItself { first: 3 | 4, second: 13.., .. }));
+        assert!(matches!(
+            error,
+            ShellError::CrossesItself {
+                first: 3 | 4,
+                second: 13..,
+                ..
+            }
+        ));
     }
 }

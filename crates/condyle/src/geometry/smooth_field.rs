@@ -88,6 +88,12 @@ impl SmoothField {
         self
     }
 
+    /// How far from the femoral frame's origin the grid reaches, mm.
+    pub fn reach_mm(&self) -> f64 {
+        let size = Vec3::from(self.dims.map(|count| count as f64)) * SPACING_MM;
+        self.origin.abs().sup(&(self.origin + size).abs()).norm()
+    }
+
     /// Gap at a point, mm.
     #[inline]
     pub fn gap_mm(&self, point: &Vec3) -> f64 {

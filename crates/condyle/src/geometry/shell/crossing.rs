@@ -1,0 +1,312 @@
+//! Pairs of triangles that pass through one another, found with a tree of boxes.
+
+use super::separation::{Corners, depth_above, meeting_point};
+use crate::Vec3;
+use crate::geometry::TriangleMesh;
+
+/// Triangles in a leaf: fewer make the tree deep, more make the leaves slow.
+const LEAF: usize = 4;
+
+/// Two triangles that cut one another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossing {
+    /// Numbers of the triangles, the lower first.
+    pub triangles: [usize; 2],
+    /// A point of the cut, in the unit of the mesh.
+    pub at_mm: Vec3,
+}
+
+impl Crossing {
+    /// Shift that parts two triangles, over the shorter of their longest edges, below which they
+    /// only touch.
+    ///
+    /// Single-precision coordinates of 100 mm are rounded to 8e-6 mm, which is 2e-4 of an edge of
+    /// 0.04 mm, the shortest of the real meshes at hand.
+    pub const LEAST_DEPTH: f64 = 1e-3;
+
+    /// Part of a triangle left out at the corner that it shares with another: there they touch
+    /// as they should.
+    const LEFT_OUT: f64 = 0.05;
+}
+
+/// The crossing with the lowest triangle numbers, if any.
+///
+/// Triangles that share an edge do not cross; those that share a corner are compared without the
+/// surroundings of that corner.
+pub fn first_crossing(mesh: &TriangleMesh) -> Option<Crossing> {
+    let tree = BoxTree::new(mesh);
+    let mut first: Option<[usize; 2]> = None;
+    tree.for_close_pairs(|one, other| {
+        let pair = [one.min(other), one.max(other)];
+        if first.is_none_or(|found| pair < found) && crosses(mesh, pair) {
+            first = Some(pair);
+        }
+    });
+    first.map(|triangles| {
+        let [one, other] = triangles.map(|triangle| mesh.corners(triangle));
+        let at_mm = meeting_point(&one, &other);
+        Crossing { triangles, at_mm }
+    })
+}
+
+fn crosses(mesh: &TriangleMesh, pair: [usize; 2]) -> bool {
+    let [one, other] = pair.map(|triangle| mesh.triangles[triangle]);
+    let shared = one.map(|vertex| other.contains(&vertex));
+    let corners = pair.map(|triangle| mesh.corners(triangle));
+    let least = Crossing::LEAST_DEPTH * longest_edge(&corners[0]).min(longest_edge(&corners[1]));
+    let [first, second] = match shared.iter().filter(|&&is_shared| is_shared).count() {
+        0 => corners,
+        1 => {
+            let places = [
+                shared.iter().position(|&is_shared| is_shared),
+                other.iter().position(|vertex| one.contains(vertex)),
+            ];
+            [0, 1].map(|i| without_corner(corners[i], places[i].unwrap_or_default()))
+        }
+        _ => return false,
+    };
+    depth_above(least, &first, &second).is_some()
+}
+
+fn longest_edge([a, b, c]: &Corners) -> f64 {
+    (b - a).norm().max((c - b).norm()).max((a - c).norm())
+}
+
+fn without_corner(mut corners: Corners, corner: usize) -> Corners {
+    let opposite = (corners[(corner + 1) % 3] + corners[(corner + 2) % 3]) / 2.0;
+    corners[corner] += Crossing::LEFT_OUT * (opposite - corners[corner]);
+    corners
+}
+
+#[derive(Clone, Copy)]
+struct Bounds {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Bounds {
+    fn of(corners: &Corners) -> Self {
+        let [a, b, c] = corners;
+        Self {
+            low: a.inf(b).inf(c),
+            high: a.sup(b).sup(c),
+        }
+    }
+
+    fn joined(&self, other: &Self) -> Self {
+        Self {
+            low: self.low.inf(&other.low),
+            high: self.high.sup(&other.high),
+        }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
+    }
+}
+
+struct BoxNode {
+    bounds: Bounds,
+    /// Range of the leaf's or branch's triangles in the tree's order.
+    start: u32,
+    end: u32,
+    /// The two nodes below; none for a leaf.
+    below: Option<[u32; 2]>,
+}
+
+struct BoxTree {
+    bounds: Vec<Bounds>,
+    order: Vec<u32>,
+    nodes: Vec<BoxNode>,
+}
+
+impl BoxTree {
+    fn new(mesh: &TriangleMesh) -> Self {
+        let count = mesh.triangles.len();
+        let bounds: Vec<Bounds> = (0..count).map(|t| Bounds::of(&mesh.corners(t))).collect();
+        let order = (0..count as u32).collect();
+        let mut tree = Self {
+            bounds,
+            order,
+            nodes: Vec::with_capacity(count),
+        };
+        if count > 0 {
+            tree.build(0, count);
+        }
+        tree
+    }
+
+    /// Splits at the median along the longest side, down to the leaves; gives the node's number.
+    fn build(&mut self, start: usize, end: usize) -> u32 {
+        let within = self.order[start..end]
+            .iter()
+            .map(|&t| self.bounds[t as usize]);
+        let bounds = within
+            .reduce(|one, other| one.joined(&other))
+            .unwrap_or(self.bounds[0]);
+        let number = self.nodes.len();
+        self.nodes.push(BoxNode {
+            bounds,
+            start: start as u32,
+            end: end as u32,
+            below: None,
+        });
+        if end - start > LEAF {
+            let axis = (bounds.high - bounds.low).imax();
+            let middle = usize::midpoint(start, end);
+            let place = |t: u32| {
+                let own = &self.bounds[t as usize];
+                own.low[axis] + own.high[axis]
+            };
+            let by_place = |a: &u32, b: &u32| place(*a).total_cmp(&place(*b)).then(a.cmp(b));
+            self.order[start..end].select_nth_unstable_by(middle - start, by_place);
+            let below = [self.build(start, middle), self.build(middle, end)];
+            self.nodes[number].below = Some(below);
+        }
+        number as u32
+    }
+
+    /// Calls `visit` with each pair of different triangles whose boxes meet, once.
+    fn for_close_pairs(&self, mut visit: impl FnMut(usize, usize)) {
+        let mut open = vec![[0, 0]];
+        while let Some([one, other]) = open.pop().filter(|_| !self.nodes.is_empty()) {
+            let (a, b) = (&self.nodes[one as usize], &self.nodes[other as usize]);
+            if one != other && !a.bounds.meets(&b.bounds) {
+                continue;
+            }
+            match (a.below, b.below) {
+                (Some([left, right]), _) if one == other => {
+                    open.extend([[left, left], [right, right], [left, right]]);
+                }
+                (Some([left, right]), _) if b.below.is_none() || size(a) >= size(b) => {
+                    open.extend([[left, other], [right, other]]);
+                }
+                (_, Some([left, right])) => open.extend([[one, left], [one, right]]),
+                _ => self.visit_leaves(a, b, one == other, &mut visit),
+            }
+        }
+    }
+
+    fn visit_leaves(
+        &self,
+        a: &BoxNode,
+        b: &BoxNode,
+        same: bool,
+        visit: &mut impl FnMut(usize, usize),
+    ) {
+        for i in a.start..a.end {
+            let from = if same { i + 1 } else { b.start };
+            for j in from..b.end {
+                let [one, other] = [i, j].map(|at| self.order[at as usize] as usize);
+                if self.bounds[one].meets(&self.bounds[other]) {
+                    visit(one, other);
+                }
+            }
+        }
+    }
+}
+
+fn size(node: &BoxNode) -> u32 {
+    node.end - node.start
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::shell::tests::{block, joined, unit_block};
+
+    /// A rolling strip of squares from `from` along x, at a height that falls by `fall` a step.
+    fn strip(steps: u32, fall: f64) -> TriangleMesh {
+        let place = |i: u32| {
+            let (x, y) = (f64::from(i / 2), f64::from(i % 2));
+            Vec3::new(x, y, -fall * x)
+        };
+        let pair = |i: u32| {
+            [
+                [2 * i, 2 * i + 2, 2 * i + 1],
+                [2 * i + 1, 2 * i + 2, 2 * i + 3],
+            ]
+        };
+        TriangleMesh {
+            vertices: (0..2 * steps + 2).map(place).collect(),
+            triangles: (0..steps).flat_map(pair).collect(),
+        }
+    }
+
+    #[test]
+    fn every_close_pair_is_visited_once() {
+        let mesh = strip(40, 0.1);
+        let tree = BoxTree::new(&mesh);
+        let mut pairs = Vec::new();
+        tree.for_close_pairs(|a, b| pairs.push((a.min(b), a.max(b))));
+        pairs.sort_unstable();
+        let mut expected = Vec::new();
+        for a in 0..mesh.triangles.len() {
+            for b in a + 1..mesh.triangles.len() {
+                if tree.bounds[a].meets(&tree.bounds[b]) {
+                    expected.push((a, b));
+                }
+            }
+        }
+        assert_eq!(pairs, expected);
+    }
+
+    #[test]
+    fn sound_shells_do_not_cross() {
+        assert_eq!(first_crossing(&unit_block()), None);
+        assert_eq!(first_crossing(&strip(40, 0.1)), None);
+        assert_eq!(first_crossing(&TriangleMesh::default()), None);
+    }
+
+    #[test]
+    fn blocks_that_only_touch_do_not_cross() {
+        let beside = block(Vec3::new(1.0, 0.25, 0.25), Vec3::new(2.0, 0.75, 1.75));
+        assert_eq!(first_crossing(&joined(unit_block(), beside)), None);
+        let sunk = block(Vec3::new(0.999_9, 0.25, 0.25), Vec3::new(2.0, 0.75, 1.75));
+        assert_eq!(
+            first_crossing(&joined(unit_block(), sunk)),
+            None,
+            "below the least depth"
+        );
+    }
+
+    #[test]
+    fn a_cut_through_the_diagonals_of_faces_is_found() {
+        // The edges of the bar meet the top only on its diagonal.
+        let bar = block(Vec3::new(0.25, 0.25, 0.5), Vec3::new(0.75, 0.75, 1.5));
+        assert!(first_crossing(&joined(unit_block(), bar)).is_some());
+    }
+
+    #[test]
+    fn triangles_that_share_a_corner_and_cross_are_found() {
+        let vertices = [
+            [0., 0., 0.],
+            [2., -1., 0.],
+            [2., 1., 0.],
+            [2., 0., -1.],
+            [2., 0., 1.],
+        ];
+        let mesh = TriangleMesh {
+            vertices: vertices.map(Vec3::from).to_vec(),
+            triangles: vec![[0, 1, 2], [0, 3, 4]],
+        };
+        let crossing = first_crossing(&mesh).unwrap();
+        assert_eq!(crossing.triangles, [0, 1]);
+        assert!(crossing.at_mm.z.abs() < 1e-14 && crossing.at_mm.y.abs() < 1e-14);
+        let apart = mesh.clone().mapped(|v| {
+            if v.z < 0.0 {
+                Vec3::new(2.0, 0.0, 0.5)
+            } else {
+                *v
+            }
+        });
+        assert_eq!(first_crossing(&apart), None);
+    }
+
+    #[test]
+    fn the_first_of_many_crossings_is_given() {
+        let wall = block(Vec3::new(-1.0, 0.4, -50.0), Vec3::new(30.5, 0.6, 50.0));
+        let crossing = first_crossing(&joined(strip(40, 0.1), wall)).unwrap();
+        assert_eq!(crossing.triangles[0], 0);
+    }
+}
