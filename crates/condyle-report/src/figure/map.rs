@@ -292,9 +292,9 @@ impl Map<'_> {
         let text_y = TOP + self.surface_size().1 + 50.0;
         let lines = format!("M{x:.1} {:.1}V{:.1}", y + 4.5, text_y - 13.0);
         let (value, place) = (self.value_text(extreme.value), place_text(extreme));
-        let (largest, second) = (self.largest, text_y + 15.0);
+        let largest = self.largest;
         format!(
-            r#"<circle class="halo" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="halo" d="{lines}"/><circle class="mark" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="leader" d="{lines}"/><text x="{x:.1}" y="{text_y:.1}" text-anchor="middle">{largest} {}: <tspan class="strong">{value}</tspan></text><text x="{x:.1}" y="{second:.1}" text-anchor="middle">{place}</text>"#,
+            r#"<circle class="halo" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="halo" d="{lines}"/><circle class="mark" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="leader" d="{lines}"/><text x="{x:.1}" y="{text_y:.1}" text-anchor="middle">{largest} {}: <tspan class="strong">{value}</tspan><tspan x="{x:.1}" dy="1.35em">{place}</tspan></text>"#,
             name.to_lowercase()
         )
     }

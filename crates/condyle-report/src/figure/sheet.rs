@@ -6,6 +6,8 @@ use super::style::css_on_white;
 
 /// Margin around a picture that stands alone, px.
 const MARGIN: f64 = 16.0;
+/// Space between rows of panels, px.
+const GAP: f64 = 14.0;
 /// Height of the line under the panels that says what the curves are, px.
 const CAPTION: f64 = 26.0;
 
@@ -28,7 +30,9 @@ pub(crate) fn sheet(
     key: &[(&str, &str)],
 ) -> String {
     let rows = panels.len().div_ceil(columns);
-    let cell = panels.first().map_or((0.0, 0.0), |panel| panel.size);
+    let cell = panels
+        .first()
+        .map_or((0.0, 0.0), |panel| (panel.size.0, panel.size.1 + GAP));
     let (width, height) = (columns as f64 * cell.0, rows as f64 * cell.1);
     let mut body = String::new();
     for (place, panel) in panels.iter().enumerate() {

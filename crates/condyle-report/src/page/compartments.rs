@@ -66,7 +66,16 @@ pub(super) fn rows(results: &Results) -> Vec<Row> {
             }));
         }
     }
+    if let Some(values) = surface.field("thickness_mm") {
+        let thinnest = |region| thinnest(surface, values, region);
+        rows.push(measure("Thinnest polyethylene left", "mm", &thinnest));
+    }
     rows
+}
+
+fn thinnest(surface: &SurfaceFields, values: &[f64], region: Region) -> String {
+    let found = surface.smallest_positive(values, region);
+    found.map_or_else(String::new, |value| significant(value, 3))
 }
 
 fn medial_lateral_both(results: &Results) -> [Region; 3] {

@@ -65,12 +65,12 @@ pub(super) struct Fact {
     value: String,
 }
 
-/// Version and hashes, whatever they are called.
+/// Versions, then hashes, whatever they are called.
 pub(super) fn provenance(results: &Results) -> Vec<Fact> {
     let Some(summary) = &results.summary else {
         return Vec::new();
     };
-    summary
+    let mut facts: Vec<_> = summary
         .entries()
         .filter(|(key, _)| key.contains("version") || key.contains("hash"))
         .filter_map(|(key, value)| {
@@ -80,7 +80,9 @@ pub(super) fn provenance(results: &Results) -> Vec<Fact> {
                 value: value.as_str()?.to_owned(),
             })
         })
-        .collect()
+        .collect();
+    facts.sort_by_key(|fact| fact.name.to_lowercase().contains("hash"));
+    facts
 }
 
 fn sentence_case(text: &str) -> String {

@@ -44,6 +44,19 @@ impl SurfaceFields {
             .reduce(|best, next| if next.value > best.value { next } else { best })
     }
 
+    /// The smallest value above 0 of a field in a region; `None` where there is none.
+    pub(crate) fn smallest_positive(&self, values: &[f64], region: Region) -> Option<f64> {
+        let in_region = self
+            .nodes
+            .iter()
+            .zip(values)
+            .filter(|(node, _)| region.holds(node.z));
+        in_region
+            .map(|(_, &value)| value)
+            .filter(|value| *value > 0.0)
+            .reduce(f64::min)
+    }
+
     /// Integral of a field over a region's faces: sum of face area times mean of the corners.
     pub(crate) fn integral(&self, values: &[f64], region: Region) -> f64 {
         self.faces(region)
@@ -109,5 +122,7 @@ mod tests {
         let whole = surface.largest(&values, Region::Whole).expect("has nodes");
         assert_eq!((left.value, whole.value), (0.0, 2.0));
         assert_eq!(whole.position.z, 1.0);
+        assert_eq!(surface.smallest_positive(&values, Region::Whole), Some(1.0));
+        assert_eq!(surface.smallest_positive(&values, Region::Left), None);
     }
 }
