@@ -58,6 +58,8 @@ pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, MeshFileError> {
 
 #[cfg(test)]
 mod tests {
+    use condyle::geometry::checked_shell;
+
     use super::*;
     use crate::mesh::fixtures::{corners, message, tetrahedron};
     use crate::mesh::write_stl;
@@ -131,5 +133,21 @@ mod tests {
         );
         let volume_mm3 = insert.signed_volume() * 1e9;
         assert!((volume_mm3 - 24_796.159).abs() < 0.001, "{volume_mm3}");
+    }
+
+    #[test]
+    fn both_dm_shells_pass_every_check_unchanged() {
+        for (file, wrinkles) in [("femoral-component.stl", 0), ("tibial-insert.stl", 43)] {
+            let Some(mesh) = dm_knee(file) else { return };
+            let shell = checked_shell(mesh.clone()).unwrap();
+            assert!(shell.closed && !shell.turned_round, "{file}");
+            assert_eq!(
+                (shell.made_consistent, shell.removed_degenerate),
+                (0, 0),
+                "{file}"
+            );
+            assert_eq!(shell.wrinkles, wrinkles, "{file}");
+            assert_eq!(shell.mesh, mesh, "{file}");
+        }
     }
 }

@@ -159,10 +159,14 @@ fn coordinates(mesh: &HexMesh) -> Vec<f64> {
 }
 
 fn data_array(xml: &mut String, kind: &str, name: &str, components: usize, offset: usize) {
+    // Readers take an array without a count for a plain list, one with a count of 1 for a column.
+    let count = match components {
+        1 => String::new(),
+        _ => format!(" NumberOfComponents=\"{components}\""),
+    };
     let _ = writeln!(
         xml,
-        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
-         format=\"appended\" offset=\"{offset}\"/>"
+        "<DataArray type=\"{kind}\" Name=\"{name}\"{count} format=\"appended\" offset=\"{offset}\"/>"
     );
 }
 

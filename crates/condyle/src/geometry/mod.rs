@@ -20,7 +20,8 @@ pub use generic_femur::{GenericFemur, GenericFemurShape};
 pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};
 pub use insert::{Insert, InsertError};
 pub use shell::{
-    CheckedShell, Crossing, ShellError, ShellReport, checked_shell, first_crossing, shell_report,
+    CheckedShell, Crossing, Crossings, ShellError, ShellReport, checked_shell, crossings,
+    shell_report,
 };
 pub use smooth_field::SmoothField;
 pub use torus::Torus;

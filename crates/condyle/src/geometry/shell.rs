@@ -9,7 +9,7 @@ mod separation;
 use crate::Vec3;
 use crate::geometry::TriangleMesh;
 
-pub use crossing::{Crossing, first_crossing};
+pub use crossing::{Crossing, Crossings, crossings};
 pub use edges::{ShellReport, shell_report};
 
 /// A triangle mesh that has passed every check of [`checked_shell`].
@@ -26,6 +26,8 @@ pub struct CheckedShell {
     pub made_consistent: usize,
     /// Triangles without area that were taken out.
     pub removed_degenerate: usize,
+    /// Pairs of neighbouring triangles that cross a little: a flaw to warn of, left as it is.
+    pub wrinkles: usize,
 }
 
 /// Why a triangle mesh is not a shell. Triangles are numbered from 0 as they came in.
@@ -85,9 +87,7 @@ fn point(at: &Vec3) -> String {
 /// turns a closed shell that is inside-out. Equal points must be one vertex already. Lengths in
 /// mm; only positions in messages depend on it.
 ///
-/// Two triangles cross if it takes a shift of more than [`Crossing::LEAST_DEPTH`] times the
-/// shorter of their longest edges to part them: less than that is the rounding of a
-/// single-precision file. Triangles that overlap in one plane do not count as crossing.
+/// What counts as a crossing, and what as a wrinkle that is let pass, is said at [`crossings`].
 ///
 /// # Errors
 /// [`ShellError`]: no triangles, an edge of three or more, a one-sided surface, a crossing.
@@ -100,14 +100,16 @@ pub fn checked_shell(mesh: TriangleMesh) -> Result<CheckedShell, ShellError> {
     let uses = edges::edge_uses(&mesh);
     edges::check_manifold(&mesh, &uses)?;
     let oriented = orientation::orient(&mut mesh, &uses)?;
-    if let Some(crossing) = first_crossing(&mesh) {
+    let Crossings { first, wrinkles } = crossings(&mesh);
+    if let Some(crossing) = first {
         let [first, second] = crossing
             .triangles
             .map(|triangle| cleaned.came_from[triangle]);
+        let at_mm = crossing.at_mm;
         return Err(ShellError::CrossesItself {
             first: first.min(second),
             second: first.max(second),
-            at_mm: crossing.at_mm,
+            at_mm,
         });
     }
     Ok(CheckedShell {
@@ -116,6 +118,7 @@ pub fn checked_shell(mesh: TriangleMesh) -> Result<CheckedShell, ShellError> {
         turned_round: oriented.turned_round,
         made_consistent: oriented.made_consistent,
         removed_degenerate: cleaned.removed,
+        wrinkles,
     })
 }
 
