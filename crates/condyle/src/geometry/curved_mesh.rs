@@ -3,6 +3,9 @@
 use super::TriangleMesh;
 use crate::Vec3;
 
+/// Vertex normals that lean further from their triangle's than 30 degrees mark a sharp edge.
+const LEAST_COSINE: f64 = 0.866;
+
 /// A triangle mesh with vertex normals, read as samples of a smooth surface.
 ///
 /// Over a triangle with corners v_i and vertex normals n_i, the point c with barycentric
@@ -51,18 +54,54 @@ impl<'a> CurvedMesh<'a> {
         (weighted(&corners, closest_on_triangle(&corners, point)) - point).norm_squared()
     }
 
+    /// Height of the curved surface over the triangle at a place (x, z), if the triangle covers it.
+    ///
+    /// At a sharp edge, where the vertex normals lean away from the triangle's, it stays flat.
+    pub fn height_over(&self, triangle: usize, (x, z): (f64, f64)) -> Option<f64> {
+        const COVERED: f64 = -1e-9;
+        let corners = self.corners(triangle);
+        let [a, b, c] = corners;
+        let twice_area = |p: (f64, f64), q: &Vec3, r: &Vec3| {
+            (q.x - p.0) * (r.z - p.1) - (q.z - p.1) * (r.x - p.0)
+        };
+        let all = twice_area((a.x, a.z), &b, &c);
+        let weights = [
+            twice_area((x, z), &b, &c),
+            twice_area((x, z), &c, &a),
+            twice_area((x, z), &a, &b),
+        ]
+        .map(|part| part / all);
+        if all == 0.0 || weights.iter().any(|&weight| weight < COVERED) {
+            return None;
+        }
+        let flat = weighted(&corners, weights);
+        let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
+        let is_smooth = normals
+            .iter()
+            .all(|normal| normal.dot(&self.planes[triangle].0) > LEAST_COSINE);
+        if !is_smooth {
+            return Some(flat.y);
+        }
+        let normal = weighted(&normals, weights);
+        Some(flat.y + lift(&corners, &normals, weights, &flat).dot(&normal) / normal.y)
+    }
+
     /// Signed distance from a point to the curved surface over the triangle, mm; > 0 outside.
     pub fn curved_gap_mm(&self, triangle: usize, point: &Vec3) -> f64 {
         let corners = self.corners(triangle);
         let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
         let weights = closest_on_triangle(&corners, point);
         let flat = weighted(&corners, weights);
-        let lift =
-            |i: usize| normals[i] * (weights[i] / 2.0 * (corners[i] - flat).dot(&normals[i]));
-        let foot = flat + lift(0) + lift(1) + lift(2);
+        let foot = flat + lift(&corners, &normals, weights, &flat);
         let normal = weighted(&normals, weights);
         (point - foot).dot(&normal) / normal.norm()
     }
+}
+
+/// From the flat triangle to the curved surface.
+fn lift(corners: &[Vec3; 3], normals: &[Vec3; 3], weights: [f64; 3], flat: &Vec3) -> Vec3 {
+    let half = |i: usize| normals[i] * (weights[i] / 2.0 * (corners[i] - flat).dot(&normals[i]));
+    half(0) + half(1) + half(2)
 }
 
 fn weighted(vectors: &[Vec3; 3], weights: [f64; 3]) -> Vec3 {

@@ -8,6 +8,7 @@ mod generic_femur;
 mod generic_insert;
 mod insert;
 mod shell;
+mod shell_insert;
 mod smooth_field;
 mod thickness;
 mod torus;
@@ -23,6 +24,7 @@ pub use shell::{
     CheckedShell, Crossing, Crossings, ShellError, ShellReport, checked_shell, crossings,
     shell_report,
 };
+pub use shell_insert::{ShellInsertError, insert_from_shell};
 pub use smooth_field::SmoothField;
 pub use torus::Torus;
 pub use triangle_mesh::TriangleMesh;
