@@ -242,7 +242,7 @@ settings! {
         /// Mass that moves with it.
         inertia_kg: f64 = 5.0, in within(0.0, 1000.0);
         /// Viscous damping.
-        damping_n_s_per_mm: f64 = 0.1, in within(0.0, 1000.0);
+        damping_n_s_per_mm: f64 = 0.3, in within(0.0, 1000.0);
     }
 
     /// A freedom that rotates. Inertia and damping are choices of ours: no source gives them.

@@ -4,6 +4,7 @@
 //! last step, where a case is built.
 
 mod axes;
+mod build;
 mod channel;
 mod contact;
 mod declared;
@@ -30,6 +31,7 @@ use miette::NamedSource;
 use toml::de::DeTable;
 
 pub use axes::{Axes, AxesError};
+pub use build::{BuildError, BuildWarning, Built};
 pub use channel::Channel;
 pub use contact::{Contact, PressureLawChoice};
 pub use declared::{

@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 use super::{Case, CaseError};
 
 /// The folder of the cases that come with condyle.
-fn cases() -> PathBuf {
+pub(super) fn cases() -> PathBuf {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases")).to_owned()
 }
 
 /// The data of subject DM; says so and gives nothing where they are not there.
-fn has_dm_data(test: &str) -> bool {
+pub(super) fn has_dm_data(test: &str) -> bool {
     let folder = Path::new(concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../../../shared/data/dm-knee"

@@ -1,0 +1,131 @@
+//! The insert in hexahedra.
+
+use condyle::Vec3;
+use condyle::geometry::{GenericInsertShape, Insert, Meshing, flat_insert, insert_from_shell};
+use condyle_fem::HexMesh;
+
+use super::super::{HexahedralInsert, MeshInsert, Side};
+use super::error::{BuildError, BuildWarning};
+use super::meshes::{Faces, Placing, shell};
+use crate::case;
+use crate::mesh::{HexFile, read_hexahedra};
+
+/// Length and width of the flat block, mm, about those of the generic insert.
+const FLAT_SIZE_MM: (f64, f64) = (46.0, 72.0);
+
+impl case::Insert {
+    pub(super) fn build(
+        &self,
+        side: Side,
+        warnings: &mut Vec<BuildWarning>,
+    ) -> Result<Insert, BuildError> {
+        Ok(match self {
+            Self::Generic(insert) => GenericInsertShape {
+                sagittal_radius_mm: insert.sagittal_radius_mm,
+                coronal_radius_mm: insert.coronal_radius_mm,
+                spacing_mm: insert.spacing_mm,
+                thickness_mm: insert.thickness_mm,
+            }
+            .insert(meshing(insert.edge_mm, insert.layers))?,
+            Self::Flat(insert) => flat_insert(
+                FLAT_SIZE_MM,
+                insert.thickness_mm,
+                meshing(insert.edge_mm, insert.layers),
+            )?,
+            Self::Mesh(insert) => from_mesh(insert, side, warnings)?,
+            Self::Hexahedra(insert) => from_hexahedra(insert, side)?,
+        })
+    }
+}
+
+fn meshing(edge_mm: f64, layers: u64) -> Meshing {
+    let layers = layers as usize;
+    Meshing { edge_mm, layers }
+}
+
+fn from_mesh(
+    insert: &MeshInsert,
+    side: Side,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<Insert, BuildError> {
+    let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
+    let path = insert.file.path();
+    let shell = shell(path, &placing, Faces::Up, warnings)?;
+    let file = || path.to_path_buf();
+    if shell.closed && insert.thickness_mm.is_some() {
+        return Err(BuildError::ThicknessOfClosed { file: file() });
+    }
+    let meshing = meshing(insert.edge_mm, insert.layers);
+    insert_from_shell(&shell.mesh, shell.closed, insert.thickness_mm, meshing).map_err(|source| {
+        BuildError::ShellInsert {
+            file: file(),
+            source,
+        }
+    })
+}
+
+fn from_hexahedra(insert: &HexahedralInsert, side: Side) -> Result<Insert, BuildError> {
+    let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
+    let path = insert.file.path();
+    let mut file = read_hexahedra(path)?;
+    place(&mut file, &placing);
+    let surface = |name: &Option<String>, up: f64| match name {
+        Some(name) => named(&file, name, insert),
+        None => Ok(facing(&file.mesh, up)),
+    };
+    let articulating = surface(&insert.articulating_surface, 1.0)?;
+    let backside = surface(&insert.backside, -1.0)?;
+    Ok(Insert::new(file.mesh, articulating, &backside)?)
+}
+
+/// Moves nodes into the frame; where that mirrors, turns hexahedra and faces the right way again.
+fn place(file: &mut HexFile, placing: &Placing) {
+    let nodes = &mut file.mesh.nodes;
+    nodes
+        .iter_mut()
+        .for_each(|node| *node = placing.point(node));
+    if placing.mirrors {
+        let swapped = |[a, b, c, d, e, f, g, h]: [u32; 8]| [e, f, g, h, a, b, c, d];
+        file.mesh
+            .hexes
+            .iter_mut()
+            .for_each(|hex| *hex = swapped(*hex));
+        let quads = file
+            .surfaces
+            .iter_mut()
+            .flat_map(|surface| &mut surface.quads);
+        quads.for_each(|quad| quad.reverse());
+    }
+}
+
+fn named(
+    file: &HexFile,
+    name: &str,
+    insert: &HexahedralInsert,
+) -> Result<Vec<[u32; 4]>, BuildError> {
+    match file.surface(name) {
+        Some(surface) => Ok(surface.quads.clone()),
+        None => Err(BuildError::NoSurface {
+            file: insert.file.path().to_path_buf(),
+            name: name.to_owned(),
+            names: file
+                .surfaces
+                .iter()
+                .map(|surface| surface.name.clone())
+                .collect(),
+        }),
+    }
+}
+
+/// A face counts as seen from above or below if it leans by less than 60 degrees.
+const LEAST_COSINE: f64 = 0.5;
+
+/// The faces of the boundary that look up (`up` 1) or down (-1).
+fn facing(mesh: &HexMesh, up: f64) -> Vec<[u32; 4]> {
+    let upward = |quad: &[u32; 4]| {
+        let [a, b, c, d]: [Vec3; 4] = quad.map(|node| mesh.nodes[node as usize]);
+        let normal = (c - a).cross(&(d - b));
+        up * normal.y > LEAST_COSINE * normal.norm()
+    };
+    mesh.boundary_quads().into_iter().filter(upward).collect()
+}

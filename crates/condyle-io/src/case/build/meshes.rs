@@ -1,0 +1,123 @@
+//! Triangles of a file as a shell in the frame of a right knee, mm.
+
+use std::path::Path;
+
+use condyle::geometry::{CheckedShell, TriangleMesh, checked_shell};
+use condyle::{Mat3, Vec3};
+
+use super::super::{Axes, LengthUnit, Side};
+use super::error::{BuildError, BuildWarning};
+use crate::mesh::read_surface;
+
+/// From the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.
+pub(super) struct Placing {
+    linear: Mat3,
+    /// A left knee is mirrored, so that faces must be turned round.
+    pub mirrors: bool,
+}
+
+impl Placing {
+    pub(super) fn new(unit: LengthUnit, axes: &Axes, side: Side) -> Result<Self, BuildError> {
+        let turned = axes.rotation(side)? * unit.in_mm();
+        let mirrors = side == Side::Left;
+        let mirror = Mat3::from_diagonal(&Vec3::new(1.0, 1.0, if mirrors { -1.0 } else { 1.0 }));
+        let linear = mirror * turned;
+        Ok(Self { linear, mirrors })
+    }
+
+    pub(super) fn point(&self, point: &Vec3) -> Vec3 {
+        self.linear * point
+    }
+
+    fn mesh(&self, mesh: TriangleMesh) -> TriangleMesh {
+        let mut placed = mesh.mapped(|vertex| self.point(vertex));
+        if self.mirrors {
+            turn_round(&mut placed);
+        }
+        placed
+    }
+}
+
+/// Lets every triangle face the other way.
+fn turn_round(mesh: &mut TriangleMesh) {
+    mesh.triangles
+        .iter_mut()
+        .for_each(|triangle| triangle.swap(1, 2));
+}
+
+/// Which way an open surface must face on the whole.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Faces {
+    /// Up, as an insert's.
+    Up,
+    /// Down, as a femur's.
+    Down,
+}
+
+/// Reads a surface, checks it and turns it to face out; says what it put right.
+pub(super) fn shell(
+    file: &Path,
+    placing: &Placing,
+    open_faces: Faces,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<CheckedShell, BuildError> {
+    let mesh = placing.mesh(read_surface(file)?);
+    let mut shell = checked_shell(mesh).map_err(|source| BuildError::Shell {
+        file: file.to_path_buf(),
+        source,
+    })?;
+    if !shell.closed && faces(&shell.mesh) != open_faces {
+        turn_round(&mut shell.mesh);
+        shell.turned_round = true;
+    }
+    warn(file, &shell, warnings);
+    Ok(shell)
+}
+
+fn warn(path: &Path, shell: &CheckedShell, warnings: &mut Vec<BuildWarning>) {
+    let file = || path.to_path_buf();
+    if shell.turned_round {
+        warnings.push(BuildWarning::TurnedRound { file: file() });
+    }
+    if shell.made_consistent > 0 {
+        let count = shell.made_consistent;
+        warnings.push(BuildWarning::MadeConsistent {
+            file: file(),
+            count,
+        });
+    }
+    if shell.removed_degenerate > 0 {
+        let count = shell.removed_degenerate;
+        warnings.push(BuildWarning::RemovedDegenerate {
+            file: file(),
+            count,
+        });
+    }
+}
+
+/// Which way most of the surface's shadow from above faces.
+fn faces(mesh: &TriangleMesh) -> Faces {
+    let upward = |triangle: usize| {
+        let [a, b, c] = mesh.corners(triangle);
+        (b - a).cross(&(c - a)).y
+    };
+    let sum: f64 = (0..mesh.triangles.len()).map(upward).sum();
+    if sum > 0.0 { Faces::Up } else { Faces::Down }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_a_left_knee_becomes_its_mirror_image() {
+        let placing = Placing::new(LengthUnit::Metre, &Axes::ISB, Side::Left).unwrap();
+        let placed = placing.point(&Vec3::new(0.001, 0.002, 0.003));
+        assert!((placed - Vec3::new(1.0, 2.0, -3.0)).norm() < 1e-12);
+        let mesh = TriangleMesh {
+            vertices: vec![Vec3::zeros(), Vec3::x(), Vec3::z()],
+            triangles: vec![[0, 2, 1]],
+        };
+        assert!(faces(&mesh) == Faces::Up && faces(&placing.mesh(mesh)) == Faces::Up);
+    }
+}

@@ -1,0 +1,211 @@
+//! Cases built, and what keeps them from it.
+
+use std::fs::File;
+use std::path::Path;
+
+use condyle::Vec3;
+use condyle::geometry::{GenericFemur, GenericFemurShape, TriangleMesh};
+use tempfile::TempDir;
+
+use super::meshes::{Faces, Placing, shell};
+use super::{BuildError, Built};
+use crate::case::tests::{cases, has_dm_data};
+use crate::case::{Case, Femur, Side};
+use crate::mesh::write_stl;
+
+fn built(text: &str, folder: &Path) -> Result<Built, BuildError> {
+    let case = Case::parse(text, "case.toml", folder).unwrap_or_else(|error| panic!("{error}"));
+    case.build(1)
+}
+
+fn refusal(text: &str, folder: &Path) -> String {
+    match built(text, folder) {
+        Ok(_) => panic!("this builds:\n{text}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+fn with_stl(name: &str, mesh: &TriangleMesh) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    write_stl(File::create(folder.path().join(name)).unwrap(), mesh).unwrap();
+    folder
+}
+
+/// A closed block of 20 by 8 by 30 mm on y = 0.
+fn block() -> TriangleMesh {
+    let corner = |i: usize| {
+        let at = |axis: usize, low: f64, high: f64| if i >> axis & 1 == 0 { low } else { high };
+        Vec3::new(at(0, -10.0, 10.0), at(1, 0.0, 8.0), at(2, -15.0, 15.0))
+    };
+    let quads = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    TriangleMesh {
+        vertices: (0..8).map(corner).collect(),
+        triangles: quads.into_iter().flat_map(halves).collect(),
+    }
+}
+
+const MESH_INSERT: &str = "[insert]\nshape = \"mesh\"\nfile = \"a.stl\"\nedge_mm = 1.0\n";
+
+#[test]
+fn shipped_generic_cases_build() {
+    for name in ["stanmore-force.toml", "stanmore-displacement.toml"] {
+        let built = Case::read(&cases().join(name)).unwrap().build(1).unwrap();
+        assert!(built.warnings.is_empty());
+        assert!((8_900..9_300).contains(&built.test.insert.mesh().hexes.len()));
+        assert_eq!(built.test.schedule.interval(), 500_000.0);
+    }
+}
+
+#[test]
+fn dm_cases_build_and_lie_the_right_way_round() {
+    if !has_dm_data("dm_cases_build_and_lie_the_right_way_round") {
+        return;
+    }
+    let case = Case::read(&cases().join("dm-knee-displacement.toml")).unwrap();
+    let test = case.build(2).unwrap().test;
+    assert_eq!(
+        (test.flexion_axis_mm, test.start_mm),
+        ((0.0, 0.0), (7.4, 1.0))
+    );
+    let thickness = test.insert.thickness_mm().iter().copied();
+    let thinnest = thickness.fold(f64::INFINITY, f64::min);
+    assert!((2.0..8.0).contains(&thinnest), "{thinnest}");
+    let Femur::Mesh(femur) = &case.femur else {
+        panic!("it is a mesh");
+    };
+    let placing = Placing::new(femur.length_unit, &femur.axes, Side::Right).unwrap();
+    let shell = shell(femur.file.path(), &placing, Faces::Down, &mut Vec::new()).unwrap();
+    let (low, high) = shell.mesh.bounds();
+    let (x, y) = shell.mesh.posterior_arc_centre_mm();
+    // The posterior condyles lie behind, and the flexion axis inside them.
+    assert!(
+        low.x < x && x < 0.0 && low.y < y && y < high.y,
+        "{x} {y} {low} {high}"
+    );
+}
+
+#[test]
+fn closed_mesh_in_another_unit_becomes_an_insert() {
+    let small = block().mapped(|vertex| vertex / 1000.0);
+    let folder = with_stl("a.stl", &small);
+    let text = format!("{MESH_INSERT}length_unit = \"m\"\n");
+    let insert = built(&text, folder.path()).unwrap().test.insert;
+    // Rounding to single precision may cost the outermost row of columns.
+    assert!((4200.0..4801.0).contains(&insert.mesh().volume()));
+}
+
+#[test]
+fn inside_out_mesh_is_turned_round_with_a_warning() {
+    let mut inside_out = block();
+    inside_out
+        .triangles
+        .iter_mut()
+        .for_each(|triangle| triangle.swap(0, 1));
+    let folder = with_stl("a.stl", &inside_out);
+    let built = built(MESH_INSERT, folder.path()).unwrap();
+    let warning = built.warnings[0].to_string();
+    assert!(warning.ends_with("a.stl: the triangles faced inwards and were turned round"));
+    assert!((built.test.insert.mesh().volume() - 4800.0).abs() < 1.0);
+}
+
+#[test]
+fn one_turned_triangle_is_put_right_with_a_warning() {
+    let mut odd = block();
+    odd.triangles[3].swap(0, 1);
+    let folder = with_stl("a.stl", &odd);
+    let built = built(MESH_INSERT, folder.path()).unwrap();
+    let warning = built.warnings[0].to_string();
+    assert!(warning.ends_with("1 triangles were turned to face as their neighbours do"));
+}
+
+#[test]
+fn open_insert_needs_a_thickness_and_a_closed_one_has_its_own() {
+    let mut top = block();
+    top.triangles
+        .retain(|triangle| triangle.iter().all(|&vertex| vertex & 2 != 0));
+    let folder = with_stl("a.stl", &top);
+    let shown = refusal(MESH_INSERT, folder.path());
+    assert!(
+        shown.contains("a.stl: ") && shown.contains("give thickness_mm"),
+        "{shown}"
+    );
+    let given = format!("{MESH_INSERT}thickness_mm = 9.0\n");
+    let insert = built(&given, folder.path()).unwrap().test.insert;
+    assert!((insert.mesh().volume() - 20.0 * 30.0 * 9.0).abs() < 1.0);
+    let shown = refusal(&given, with_stl("a.stl", &block()).path());
+    assert!(shown.contains("remove [insert] `thickness_mm`"), "{shown}");
+}
+
+#[test]
+fn mesh_that_is_no_shell_or_no_mesh_names_its_file() {
+    let mut doubled = block();
+    doubled.triangles.push([0, 1, 7]);
+    let shown = refusal(MESH_INSERT, with_stl("a.stl", &doubled).path());
+    assert!(
+        shown.contains("a.stl: 3 triangles share the edge"),
+        "{shown}"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.stl"), "no mesh").unwrap();
+    assert!(refusal(MESH_INSERT, folder.path()).contains("a.stl"));
+}
+
+/// One hexahedron of 10 mm with its top surface named.
+const HEX: &str = "*NODE\n1, 0, 0, 0\n2, 10, 0, 0\n3, 10, 0, -10\n4, 0, 0, -10\n5, 0, 10, 0\n\
+    6, 10, 10, 0\n7, 10, 10, -10\n8, 0, 10, -10\n*ELEMENT, TYPE=C3D8, ELSET=ALL\n\
+    1, 1, 2, 3, 4, 5, 6, 7, 8\n*SURFACE, NAME=TOP, TYPE=ELEMENT\nALL, S2\n";
+
+#[test]
+fn hexahedra_give_the_named_surface_or_the_one_above() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.inp"), HEX).unwrap();
+    let text = |rest: &str| format!("{rest}\n[insert]\nshape = \"hexahedra\"\nfile = \"a.inp\"\n");
+    let named = |name: &str| format!("{}articulating_surface = \"{name}\"\n", text(""));
+    let found = built(&text(""), folder.path()).unwrap().test.insert;
+    let given = built(&named("top"), folder.path()).unwrap().test.insert;
+    assert_eq!(found.surface_nodes(), given.surface_nodes());
+    assert_eq!(found.thickness_mm(), [10.0; 4]);
+    let shown = refusal(&named("SIDE"), folder.path());
+    assert!(shown.contains("no surface \"SIDE\"; it has TOP"), "{shown}");
+    let left = built(&text("side = \"left\""), folder.path())
+        .unwrap()
+        .test
+        .insert;
+    assert!((left.mesh().volume() - 1000.0).abs() < 1e-9);
+    assert!(left.mesh().nodes.iter().all(|node| node.z >= 0.0));
+}
+
+#[test]
+fn hexahedra_upside_down_make_no_insert() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.inp"), HEX).unwrap();
+    let text = "[insert]\nshape = \"hexahedra\"\nfile = \"a.inp\"\nbackside = \"TOP\"\n";
+    assert!(refusal(text, folder.path()).contains("the insert cannot be used: "));
+}
+
+#[test]
+fn open_femur_that_faces_up_is_turned_to_face_down() {
+    let mut condyles = GenericFemur::new(GenericFemurShape::default()).surface_mesh(3.0);
+    condyles
+        .triangles
+        .iter_mut()
+        .for_each(|triangle| triangle.swap(0, 1));
+    let folder = with_stl("a.stl", &condyles);
+    let built = built(
+        "[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\n",
+        folder.path(),
+    )
+    .unwrap();
+    assert_eq!(built.warnings.len(), 1);
+    assert!(built.test.femur.gap_mm(&Vec3::new(5.4, -23.5, 23.0)) > 0.0);
+    let (x, y) = built.test.flexion_axis_mm;
+    assert!(x.abs() < 0.5 && y.abs() < 0.5, "{x} {y}");
+}
