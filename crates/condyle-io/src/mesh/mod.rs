@@ -10,6 +10,7 @@ mod hex_draft;
 mod hex_file;
 mod inp;
 mod inp_keyword;
+mod inp_writer;
 mod msh;
 mod obj;
 mod ply;
@@ -25,6 +26,9 @@ mod vtu_write;
 
 pub use error::{MeshFileError, Place};
 pub use hex_file::{HexFile, NamedNodes, NamedSurface, read_hexahedra};
+pub use inp_writer::{
+    InpWriter, PressureOverclosure, Procedure, RigidTriangle, Step, element_faces,
+};
 pub use pvd::{pvd_text, read_pvd, write_pvd};
 pub use stl::write_stl;
 pub use surface::read_surface;
