@@ -80,7 +80,7 @@ pub struct UpdateRecord {
 }
 
 /// The motions and loads of one solved cycle, and how many cycles of wear it came after.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CycleRecord {
     /// Cycles done before it.
     pub cycles: f64,
@@ -104,7 +104,7 @@ pub struct NodeFields {
 }
 
 /// All that a march must remember to go on from an update, to the same bytes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MarchState {
     /// Results of the updates done.
     pub updates: Vec<UpdateRecord>,

@@ -2,9 +2,10 @@
 
 use super::{ApSpring, Chain, Drive, FREEDOMS, Freedom, Machine};
 use crate::contact::{ContactModel, Mat6, RelativeMotion, Vec6};
+use serde::{Deserialize, Serialize};
 
 /// Positions, rates and accelerations of the six freedoms, mm and rad and s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kinematics {
     /// Positions, mm or rad.
     pub positions: [f64; 6],

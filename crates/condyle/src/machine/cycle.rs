@@ -1,5 +1,6 @@
 //! One gait cycle: motions, loads and contact at every increment.
 
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
 use thiserror::Error;
@@ -15,7 +16,7 @@ use crate::contact::{ContactModel, CycleHistory, Moment, TouchedNode};
 const MOST_HALVINGS: u32 = 8;
 
 /// The machine at the end of an increment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CycleRow {
     /// Place in the cycle, %.
     pub percent: f64,

@@ -5,6 +5,7 @@ use super::{
     balance::{Imbalance, Kinematics, StepSlopes, imbalance},
 };
 use crate::contact::{ContactModel, Vec6};
+use serde::{Deserialize, Serialize};
 
 /// Lever on which a moment out of balance counts as a force, mm.
 const MOMENT_LEVER_MM: f64 = 10.0;
@@ -14,7 +15,7 @@ const MOST_ITERATIONS: usize = 15;
 const LONGEST_CORRECTION_MM: f64 = 1.0;
 
 /// The machine at an instant, with what a two-step method remembers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MachineState {
     /// Instant, in cycles.
     pub phase: f64,
@@ -25,7 +26,7 @@ pub struct MachineState {
 }
 
 /// Work done so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effort {
     /// Newton iterations: corrections of the positions.
     pub newton_iterations: u64,

@@ -1,0 +1,54 @@
+//! The checkpoint: enough to go on after a crash, to the same bytes.
+
+use condyle::evolve::MarchState;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// First bytes of a checkpoint; the last is the version of what follows.
+const MAGIC: &[u8; 20] = b"condyle checkpoint \x01";
+/// Length of the hash that guards the content.
+const HASH_LENGTH: usize = 32;
+
+/// A march on its way, with the inputs it belongs to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    /// Hash of case and meshes, in hexadecimal.
+    pub inputs_blake3: String,
+    /// The march.
+    pub state: MarchState,
+}
+
+/// Why bytes are no checkpoint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum CheckpointError {
+    /// Not a checkpoint, or one of another version.
+    #[error("it was not written by this version of condyle; run the case anew into another folder")]
+    Foreign,
+    /// Its bytes are damaged.
+    #[error("its bytes are damaged; run the case anew into another folder")]
+    Damaged,
+}
+
+impl Checkpoint {
+    /// The checkpoint as bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let content = postcard::to_stdvec(self).expect("numbers and text always serialise");
+        let hash = blake3::hash(&content);
+        [MAGIC.as_slice(), hash.as_bytes(), &content].concat()
+    }
+
+    /// The checkpoint from its bytes.
+    ///
+    /// # Errors
+    /// Bytes of another program or version, or damaged ones.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
+        let guarded = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
+        let (hash, content) = guarded
+            .split_at_checked(HASH_LENGTH)
+            .ok_or(CheckpointError::Damaged)?;
+        if blake3::hash(content).as_bytes().as_slice() != hash {
+            return Err(CheckpointError::Damaged);
+        }
+        postcard::from_bytes(content).map_err(|_| CheckpointError::Damaged)
+    }
+}

@@ -1,0 +1,13 @@
+//! The results folder: what a run writes, one file a table, all readable without condyle.
+
+mod checkpoint;
+mod folder;
+mod insert_series;
+mod replace;
+mod summary;
+mod tables;
+
+pub use checkpoint::{Checkpoint, CheckpointError};
+pub use folder::{ResultsError, ResultsFolder};
+pub use insert_series::insert_file_name;
+pub use summary::{Summary, SummaryInput};

@@ -1,0 +1,130 @@
+//! `summary.json`: the answer in one table.
+
+use condyle::{
+    evolve::{MarchState, UpdateRecord},
+    machine::{CycleRow, Freedom},
+};
+use serde::{Deserialize, Serialize};
+
+/// What a summary is made from.
+pub struct SummaryInput<'a> {
+    /// The march, done.
+    pub state: &'a MarchState,
+    /// Increments a cycle.
+    pub increments: usize,
+    /// Hexahedra of the insert.
+    pub hexahedra: usize,
+    /// Nodes of the articulating surface.
+    pub articulating_nodes: usize,
+    /// Seconds from the parsed case to the last update, files and report apart.
+    pub wall_s: f64,
+    /// Hash of case and meshes, in hexadecimal.
+    pub inputs_blake3: String,
+    /// What was put right or looks doubtful.
+    pub warnings: Vec<String>,
+}
+
+/// The numbers of a finished run; units are in the names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Gait cycles.
+    pub cycles: f64,
+    /// Mass worn, mg.
+    pub mass_loss_mg: f64,
+    /// Volume worn, from depth times area, mm3.
+    pub volume_loss_mm3: f64,
+    /// Volume worn, from the change of the mesh, mm3.
+    pub volume_loss_mesh_mm3: f64,
+    /// Deepest wear, mm.
+    pub max_depth_mm: f64,
+    /// Highest pressure at a node in any cycle, MPa.
+    pub peak_pressure_mpa: f64,
+    /// Largest contact area in any cycle, mm2.
+    pub peak_contact_area_mm2: f64,
+    /// Range of AP in the first cycle, mm.
+    pub ap_range_mm: f64,
+    /// Range of IE in the first cycle, degrees.
+    pub ie_range_deg: f64,
+    /// Medial part of the axial force, averaged over the first cycle, weighted by force.
+    pub medial_load_share: f64,
+    /// Updates of the geometry.
+    pub updates: usize,
+    /// Increments a cycle.
+    pub increments: usize,
+    /// Cycles solved in all.
+    pub cycles_solved: usize,
+    /// Updates whose cycle did not repeat itself within the tolerance.
+    pub cycles_not_repeating: usize,
+    /// Newton iterations in all.
+    pub newton_iterations: u64,
+    /// Contact evaluations in all.
+    pub contact_evaluations: u64,
+    /// Steps that were halved.
+    pub step_halvings: u64,
+    /// Hexahedra of the insert.
+    pub hexahedra: usize,
+    /// Nodes of its articulating surface.
+    pub articulating_nodes: usize,
+    /// Smallest scaled Jacobian of any update's mesh.
+    pub worst_quality: f64,
+    /// What was put right or looks doubtful.
+    pub warnings: Vec<String>,
+    /// Seconds from the parsed case to the last update, files and report apart.
+    pub wall_s: f64,
+    /// Version of condyle.
+    pub version: String,
+    /// Hash of case and meshes, in hexadecimal.
+    pub inputs_blake3: String,
+}
+
+impl Summary {
+    /// The summary of a march; none before its first update.
+    pub fn new(input: SummaryInput<'_>) -> Option<Self> {
+        let state = input.state;
+        let updates = &state.updates;
+        let last = updates.last()?;
+        let first_cycle = &state.first_and_last.as_ref()?.0.rows;
+        let largest =
+            |value: fn(&UpdateRecord) -> f64| updates.iter().map(value).fold(0.0, f64::max);
+        Some(Self {
+            cycles: last.cycles,
+            mass_loss_mg: last.mass_loss_mg,
+            volume_loss_mm3: last.volume_loss_mm3,
+            volume_loss_mesh_mm3: last.volume_loss_mesh_mm3,
+            max_depth_mm: last.max_depth_mm,
+            peak_pressure_mpa: largest(|update| update.peak_pressure_mpa),
+            peak_contact_area_mm2: largest(|update| update.peak_contact_area_mm2),
+            ap_range_mm: range(first_cycle, Freedom::AnteroPosterior),
+            ie_range_deg: range(first_cycle, Freedom::InternalExternal).to_degrees(),
+            medial_load_share: medial_load_share(first_cycle),
+            updates: updates.len(),
+            increments: input.increments,
+            cycles_solved: updates.iter().map(|update| update.cycles_solved).sum(),
+            cycles_not_repeating: updates.iter().filter(|update| !update.repeats).count(),
+            newton_iterations: state.effort.newton_iterations,
+            contact_evaluations: state.effort.contact_evaluations,
+            step_halvings: state.effort.halvings,
+            hexahedra: input.hexahedra,
+            articulating_nodes: input.articulating_nodes,
+            worst_quality: updates
+                .iter()
+                .map(|update| update.worst_quality)
+                .fold(f64::INFINITY, f64::min),
+            warnings: input.warnings,
+            wall_s: input.wall_s,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            inputs_blake3: input.inputs_blake3,
+        })
+    }
+}
+
+fn range(rows: &[CycleRow], freedom: Freedom) -> f64 {
+    let values = || rows.iter().map(|row| row.positions[freedom as usize]);
+    values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+}
+
+fn medial_load_share(rows: &[CycleRow]) -> f64 {
+    let medial: f64 = rows.iter().map(|row| row.medial_force_n).sum();
+    let whole: f64 = rows.iter().map(|row| row.axial_force_n).sum();
+    medial / whole
+}
