@@ -1,2 +1,24 @@
-//! placeholder
-fn main() {}
+//! The condyle command: words to calls, nothing else.
+
+mod arguments;
+mod check;
+mod exit;
+mod new;
+mod progress;
+mod report;
+mod run;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+
+fn main() -> ExitCode {
+    match Arguments::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::New(arguments) => new::new(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
+    }
+}

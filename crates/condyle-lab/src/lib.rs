@@ -1,1 +1,5 @@
-//! placeholder
+//! Runs of cases, and studies over them.
+
+mod run;
+
+pub use run::{Happening, Outcome, RunError, RunOptions, run};

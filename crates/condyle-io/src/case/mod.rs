@@ -9,6 +9,7 @@ mod channel;
 mod contact;
 mod declared;
 mod files;
+mod fingerprint;
 mod keys;
 mod machine;
 mod parse;

@@ -5,6 +5,7 @@ use super::declared::{
     FlatInsert, GenericFemur, GenericInsert, HexahedralInsert, MeshFemur, MeshInsert, Side,
     SphereFemur,
 };
+use super::files::DataFile;
 use super::keys::{Key, Settings, choice};
 use super::parse::{Log, Others, Section, names};
 
@@ -96,6 +97,14 @@ impl Femur {
         Some(femur)
     }
 
+    /// The mesh file it comes from, if any.
+    pub fn file(&self) -> Option<&DataFile> {
+        match self {
+            Self::Mesh(mesh) => Some(&mesh.file),
+            Self::Generic(_) | Self::Sphere(_) => None,
+        }
+    }
+
     /// The word for its shape.
     pub fn shape(&self) -> &'static str {
         match self {
@@ -133,6 +142,15 @@ impl Insert {
             axes::check(axes, side, section.value_span("axes"), log);
         }
         Some(insert)
+    }
+
+    /// The mesh file it comes from, if any.
+    pub fn file(&self) -> Option<&DataFile> {
+        match self {
+            Self::Mesh(mesh) => Some(&mesh.file),
+            Self::Hexahedra(mesh) => Some(&mesh.file),
+            Self::Generic(_) | Self::Flat(_) => None,
+        }
     }
 
     /// The word for its shape.

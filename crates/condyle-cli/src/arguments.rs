@@ -1,0 +1,82 @@
+//! What the command line says.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// A virtual wear test of a joint replacement: from an implant to its wear.
+#[derive(Parser)]
+#[command(
+    name = "condyle",
+    version,
+    after_help = "Exit codes: 0 done, 2 bad input, 3 the physics could not be solved, 130 interrupted and resumable."
+)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Run a case into a results folder.
+    Run(Run),
+    /// Check a case without running it.
+    Check(Check),
+    /// Write a new case file to start from.
+    New(New),
+    /// Write the report page of a results folder again.
+    Report(Report),
+}
+
+#[derive(Args)]
+pub struct Run {
+    /// The case file.
+    pub case: PathBuf,
+    /// Folder for the results [default: results/ and the case's name].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Go on with the run that was stopped in that folder.
+    #[arg(long)]
+    pub resume: bool,
+    /// Threads for the one-time work on a mesh; the results are the same on any number.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: u16,
+    /// Print the summary as JSON, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct Check {
+    /// The case file.
+    pub case: PathBuf,
+    /// Print the case as it would run, every default written out.
+    #[arg(long)]
+    pub print: bool,
+}
+
+#[derive(Args)]
+pub struct New {
+    /// The case file to write; it must not be there yet.
+    pub case: PathBuf,
+    /// Which simulator.
+    #[arg(long, value_enum, default_value_t = Preset::StanmoreForce)]
+    pub preset: Preset,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Preset {
+    /// Stanmore, force control.
+    StanmoreForce,
+    /// Stanmore, displacement control.
+    StanmoreDisplacement,
+}
+
+#[derive(Args)]
+pub struct Report {
+    /// The results folder.
+    pub results: PathBuf,
+    /// Also write wear_map.svg, wear.svg and kinematics.svg.
+    #[arg(long)]
+    pub pictures: bool,
+}

@@ -1,0 +1,146 @@
+//! `condyle run`.
+
+use std::{
+    ops::ControlFlow,
+    path::PathBuf,
+    process::ExitCode,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+use condyle_io::results::Summary;
+use condyle_lab::{Outcome, RunError, RunOptions};
+
+use crate::{arguments::Run, exit, progress::Progress};
+
+pub fn run(arguments: &Run) -> ExitCode {
+    let options = RunOptions {
+        out: arguments
+            .out
+            .clone()
+            .unwrap_or_else(|| default_folder(arguments)),
+        resume: arguments.resume,
+        threads: usize::from(arguments.threads),
+    };
+    let stop = stop_on_interrupt();
+    let mut progress = Progress::new();
+    let outcome = condyle_lab::run(&arguments.case, &options, &mut |happening| {
+        progress.show(&happening);
+        match stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    progress.finish();
+    match outcome {
+        Ok(Outcome::Done(summary)) => {
+            print_summary(&summary, &options, arguments.json);
+            ExitCode::SUCCESS
+        }
+        Ok(Outcome::Interrupted { done, of }) => {
+            let (case, out) = (arguments.case.display(), options.out.display());
+            eprintln!(
+                "interrupted: {done} of {of} updates are kept; go on with: condyle run {case} --out {out} --resume"
+            );
+            ExitCode::from(exit::INTERRUPTED)
+        }
+        Err(RunError::Case(error)) => exit::fail_case(&error),
+        Err(error) if error.is_physics() => exit::fail(error, exit::PHYSICS),
+        Err(error) => exit::fail(error, exit::BAD_INPUT),
+    }
+}
+
+/// `results/` and the case's name, beside where the command runs.
+fn default_folder(arguments: &Run) -> PathBuf {
+    PathBuf::from("results").join(arguments.case.file_stem().unwrap_or_default())
+}
+
+/// A flag that the first Ctrl-C (or SIGTERM) raises; a second ends the program at once.
+fn stop_on_interrupt() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let set = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(exit::INTERRUPTED));
+        }
+    });
+    if let Err(error) = set {
+        eprintln!("warning: Ctrl-C will end the run at once: {error}");
+    }
+    stop
+}
+
+fn print_summary(summary: &Summary, options: &RunOptions, json: bool) {
+    if json {
+        println!(
+            "{}",
+            serde_json::to_string_pretty(summary).expect("numbers and text always serialise")
+        );
+        return;
+    }
+    for (what, value) in rows(summary) {
+        println!("{what:<28}{value}");
+    }
+    let doubtful = summary.cycles_not_repeating;
+    if doubtful > 0 {
+        println!("warning: in {doubtful} updates no cycle repeated itself within the tolerance");
+    }
+    println!(
+        "results in {}; open {}",
+        options.out.display(),
+        options.out.join("report.html").display()
+    );
+}
+
+fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
+    let Summary {
+        volume_loss_mm3,
+        volume_loss_mesh_mm3,
+        medial_load_share,
+        ..
+    } = summary;
+    vec![
+        ("gait cycles", format!("{:.0}", summary.cycles)),
+        ("mass loss", format!("{:.2} mg", summary.mass_loss_mg)),
+        (
+            "volume loss",
+            format!("{volume_loss_mm3:.2} mm3 ({volume_loss_mesh_mm3:.2} from the mesh)"),
+        ),
+        ("deepest wear", format!("{:.4} mm", summary.max_depth_mm)),
+        (
+            "peak pressure",
+            format!("{:.1} MPa", summary.peak_pressure_mpa),
+        ),
+        (
+            "largest contact area",
+            format!("{:.0} mm2", summary.peak_contact_area_mm2),
+        ),
+        (
+            "AP range, first cycle",
+            format!("{:.2} mm", summary.ap_range_mm),
+        ),
+        (
+            "IE range, first cycle",
+            format!("{:.2} deg", summary.ie_range_deg),
+        ),
+        (
+            "medial share of the load",
+            format!("{:.1} %", 100.0 * medial_load_share),
+        ),
+        (
+            "updates, cycles solved",
+            format!("{}, {}", summary.updates, summary.cycles_solved),
+        ),
+        (
+            "Newton iterations",
+            format!("{}", summary.newton_iterations),
+        ),
+        (
+            "hexahedra, worst quality",
+            format!("{}, {:.3}", summary.hexahedra, summary.worst_quality),
+        ),
+        ("time, solver only", format!("{:.3} s", summary.wall_s)),
+    ]
+}

@@ -1,0 +1,90 @@
+//! Crates know only those below them.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use crate::repository::cargo_metadata;
+
+/// Each crate, and the crates of this workspace that it may use. A new crate needs a line here.
+const MAY_USE: &[(&str, &[&str])] = &[
+    ("condyle-fem", &[]),
+    ("condyle", &["condyle-fem"]),
+    ("condyle-io", &["condyle", "condyle-fem"]),
+    ("condyle-lab", &["condyle", "condyle-fem", "condyle-io"]),
+    ("condyle-report", &["condyle-fem", "condyle-io"]),
+    (
+        "condyle-cli",
+        &[
+            "condyle",
+            "condyle-fem",
+            "condyle-io",
+            "condyle-lab",
+            "condyle-report",
+        ],
+    ),
+];
+
+/// Crates that reach a terminal, which only the command may.
+const TERMINAL: &[&str] = &["clap", "indicatif", "ctrlc"];
+
+/// Every crate with its dependencies, those of tests and builds left out.
+fn dependencies() -> BTreeMap<String, Vec<String>> {
+    let metadata = cargo_metadata();
+    let packages = metadata["packages"]
+        .as_array()
+        .expect("packages are listed");
+    let name = |value: &Value| value["name"].as_str().expect("has a name").to_owned();
+    let used = |package: &Value| {
+        let all = package["dependencies"].as_array().expect("are listed");
+        let normal = all.iter().filter(|dependency| dependency["kind"].is_null());
+        normal.map(name).collect()
+    };
+    packages
+        .iter()
+        .map(|package| (name(package), used(package)))
+        .collect()
+}
+
+#[test]
+fn crates_use_only_what_lies_below_them() {
+    let dependencies = dependencies();
+    for (package, used) in &dependencies {
+        let allowed = MAY_USE.iter().find(|(name, _)| name == package);
+        let (_, allowed) = allowed.unwrap_or_else(|| panic!("{package} has no line in MAY_USE"));
+        for other in used
+            .iter()
+            .filter(|other| dependencies.contains_key(*other))
+        {
+            assert!(
+                allowed.contains(&other.as_str()),
+                "{package} may not use {other}"
+            );
+        }
+    }
+    assert_eq!(
+        dependencies.len(),
+        MAY_USE.len(),
+        "{:?}",
+        dependencies.keys()
+    );
+}
+
+#[test]
+fn only_the_command_reaches_the_terminal() {
+    for (package, used) in dependencies() {
+        let reaches = used.iter().find(|other| TERMINAL.contains(&other.as_str()));
+        assert!(
+            package == "condyle-cli" || reaches.is_none(),
+            "{package} uses {reaches:?}; leave that to condyle-cli"
+        );
+    }
+}
+
+#[test]
+fn every_crate_takes_the_lints_of_the_workspace() {
+    for (package, _) in MAY_USE {
+        let manifest = crate::repository::read(&format!("crates/{package}/Cargo.toml"));
+        assert!(manifest.contains("[lints]\nworkspace = true"), "{package}");
+    }
+}

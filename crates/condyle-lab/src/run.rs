@@ -1,0 +1,203 @@
+//! A case run into a results folder, from the start or from where it was stopped.
+
+use std::{
+    io,
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use condyle::{
+    evolve::{March, MarchError, PlacementError, Progress, UpdateRecord},
+    machine::CycleError,
+};
+use condyle_io::{
+    case::{BuildError, Case, CaseError},
+    results::{ResultsError, ResultsFolder, Summary, SummaryInput},
+};
+use thiserror::Error;
+
+/// How a case is run.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Go on with the run that is in the folder.
+    pub resume: bool,
+    /// Threads for the one-time work on a mesh; results do not depend on it.
+    pub threads: usize,
+}
+
+/// What happens while a case runs.
+#[derive(Clone, Debug)]
+pub enum Happening<'a> {
+    /// Something was put right or looks doubtful.
+    Warning(String),
+    /// The bodies are placed, or the checkpoint is read: so many updates of how many are done.
+    Started {
+        /// Updates done.
+        done: usize,
+        /// Updates in all.
+        of: usize,
+    },
+    /// An increment is solved.
+    Solved(Progress),
+    /// An update is done and on the disk.
+    Updated(&'a UpdateRecord),
+}
+
+/// How a run ended.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// All cycles are done.
+    Done(Box<Summary>),
+    /// Somebody asked to stop; what was computed is kept, and can be gone on with.
+    Interrupted {
+        /// Updates done.
+        done: usize,
+        /// Updates in all.
+        of: usize,
+    },
+}
+
+/// Why a run failed.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The case file.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The bodies that the case describes.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A mesh that went away.
+    #[error("a mesh of the case cannot be read: {0}; check the paths in the case")]
+    Inputs(#[source] io::Error),
+    /// The results folder.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    /// The report.
+    #[error(transparent)]
+    Report(#[from] condyle_report::ReportError),
+    /// Two bodies that make no knee.
+    #[error(transparent)]
+    Placement(#[from] PlacementError),
+    /// The physics.
+    #[error("{source}; what was computed is kept in {}", out.display())]
+    March {
+        /// Why.
+        source: MarchError,
+        /// Where the results so far are.
+        out: PathBuf,
+    },
+}
+
+impl RunError {
+    /// Whether the physics could not be solved, rather than the input being wrong.
+    pub fn is_physics(&self) -> bool {
+        matches!(
+            self,
+            Self::March { .. } | Self::Placement(PlacementError::NotSettled { .. })
+        )
+    }
+}
+
+/// Runs the case at `case_path`.
+///
+/// `happening` hears of everything and may stop the run by breaking; the updates done are then on
+/// the disk, and a run with `resume` goes on to the same bytes as one never stopped.
+///
+/// # Errors
+/// A bad case, a folder that cannot be used, or physics that cannot be solved.
+pub fn run(
+    case_path: &Path,
+    options: &RunOptions,
+    happening: &mut dyn FnMut(Happening<'_>) -> ControlFlow<()>,
+) -> Result<Outcome, RunError> {
+    let case = Case::read(case_path)?;
+    let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
+    let mut clock = Clock::default();
+    let built = clock.time(|| case.build(options.threads))?;
+    let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
+    for warning in &warnings {
+        let _ = happening(Happening::Warning(warning.clone()));
+    }
+    let side = case.heading.side;
+    let (folder, mut march) = if options.resume {
+        let (folder, checkpoint) = ResultsFolder::reopen(&options.out, &inputs_blake3)?;
+        (folder, March::resume(built.test, checkpoint.state))
+    } else {
+        let march = clock.time(|| March::start(built.test))?;
+        let folder = ResultsFolder::create(&options.out)?;
+        folder.write_case(&case.to_toml())?;
+        folder.write_update(&march, side, &inputs_blake3)?;
+        (folder, march)
+    };
+    let of = march.test().schedule.updates;
+    let mut stop = happening(Happening::Started {
+        done: march.state().updates.len(),
+        of,
+    });
+    while !march.is_done() {
+        if stop.is_break() {
+            return Ok(Outcome::Interrupted {
+                done: march.state().updates.len(),
+                of,
+            });
+        }
+        let mut watch = |progress| happening(Happening::Solved(progress));
+        match clock.time(|| march.update(&mut watch).cloned()) {
+            Ok(update) => {
+                folder.write_update(&march, side, &inputs_blake3)?;
+                stop = happening(Happening::Updated(&update));
+            }
+            Err(MarchError::Cycle {
+                source: CycleError::Interrupted,
+                ..
+            }) => stop = ControlFlow::Break(()),
+            Err(source) => {
+                return Err(RunError::March {
+                    source,
+                    out: options.out.clone(),
+                });
+            }
+        }
+    }
+    let summary = summary(&march, clock.spent, inputs_blake3, warnings);
+    folder.write_summary(&summary)?;
+    condyle_report::write_report(folder.path())?;
+    Ok(Outcome::Done(Box::new(summary)))
+}
+
+fn summary(
+    march: &March,
+    spent: Duration,
+    inputs_blake3: String,
+    warnings: Vec<String>,
+) -> Summary {
+    let test = march.test();
+    Summary::new(SummaryInput {
+        state: march.state(),
+        increments: test.time.increments,
+        hexahedra: test.insert.mesh().hexes.len(),
+        articulating_nodes: test.insert.surface_nodes().len(),
+        wall_s: spent.as_secs_f64(),
+        inputs_blake3,
+        warnings,
+    })
+    .expect("a march that is done has an update")
+}
+
+/// Time spent on the solver alone.
+#[derive(Default)]
+struct Clock {
+    spent: Duration,
+}
+
+impl Clock {
+    fn time<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = work();
+        self.spent += start.elapsed();
+        result
+    }
+}
