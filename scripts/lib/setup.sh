@@ -1,0 +1,65 @@
+# What the parts of the tests share. Sourced by them, from the root of the repository.
+# shellcheck shell=bash
+
+# Ends a part that this machine cannot run, and says why.
+skip() {
+    printf 'skipped: %s: %s\n' "$(basename "$0")" "$1" >&2
+    exit 77
+}
+
+# Installs a Debian package unless its command is there.
+need_command() {
+    local command=$1 package=$2
+    command -v "$command" >/dev/null && return 0
+    if command -v apt-get >/dev/null && [[ $(id -u) == 0 ]]; then
+        apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq "$package" >/dev/null || true
+    fi
+    command -v "$command" >/dev/null || skip "there is no $command, and the package $package cannot be installed"
+}
+
+# A Python environment in .venv with the packages of scripts/requirements.txt; sets $python.
+need_python() {
+    need_command python3 python3
+    python=$PWD/.venv/bin/python
+    if ! "$python" -c '' 2>/dev/null; then
+        rm -rf .venv
+        python3 -m venv .venv || skip "python3 makes no virtual environment; install python3-venv"
+    fi
+    local installed=.venv/installed-requirements.txt
+    if ! cmp -s scripts/requirements.txt "$installed"; then
+        "$python" -m pip install --quiet -r scripts/requirements.txt ||
+            skip "the Python packages of scripts/requirements.txt cannot be installed"
+        cp scripts/requirements.txt "$installed"
+    fi
+}
+
+# A headless browser and the library that drives it; sets $chromium.
+need_browser() {
+    local version=1.64.1
+    need_command node nodejs
+    need_command npm npm
+    need_command chromium chromium
+    chromium=$(command -v chromium)
+    if ! grep -qs "\"version\": \"$version\"" node_modules/playwright-core/package.json; then
+        npm install --prefix . --no-save --no-package-lock --no-audit --no-fund --loglevel=error \
+            "playwright-core@$version" >/dev/null ||
+            skip "playwright-core $version cannot be installed from npm"
+    fi
+}
+
+# Builds the command; sets $condyle to its path.
+need_condyle() {
+    cargo build --release --locked --quiet -p condyle-cli
+    local target=${CARGO_TARGET_DIR:-$PWD/target}
+    condyle=$(cd "$target" && pwd)/release/condyle
+    [[ -x $condyle ]] || { echo "cargo built no $condyle" >&2; return 1; }
+}
+
+# A results folder of the default case, made once for the parts that read it; sets $results.
+need_results() {
+    need_condyle
+    results=${CARGO_TARGET_DIR:-$PWD/target}/test-results/stanmore-force
+    rm -rf "$results"
+    mkdir -p "$(dirname "$results")"
+    "$condyle" run cases/stanmore-force.toml --out "$results"
+}
