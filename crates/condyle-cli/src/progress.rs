@@ -25,12 +25,9 @@ impl Progress {
             Happening::Started { done, of } => self.start(*done, *of),
             Happening::Solved(progress) => {
                 if let Some(bar) = &self.bar {
-                    let done = (progress.update - 1) as u64 * TICKS;
-                    bar.set_position(done + (progress.cycle_done * TICKS as f64) as u64);
-                    bar.set_message(format!(
-                        "update {} of {}, cycle {}",
-                        progress.update, self.of, progress.attempt
-                    ));
+                    let part = progress.cycles_solved.min(1.0);
+                    bar.set_position((((progress.update - 1) as f64 + part) * TICKS as f64) as u64);
+                    bar.set_message(format!("update {} of {}", progress.update, self.of));
                 }
             }
             Happening::Updated(update) => {

@@ -131,7 +131,7 @@ fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
         ),
         (
             "updates, cycles solved",
-            format!("{}, {}", summary.updates, summary.cycles_solved),
+            format!("{}, {:.1}", summary.updates, summary.cycles_solved),
         ),
         (
             "Newton iterations",

@@ -52,7 +52,7 @@ pub struct Summary {
     /// Increments a cycle.
     pub increments: usize,
     /// Cycles solved in all.
-    pub cycles_solved: usize,
+    pub cycles_solved: f64,
     /// Updates whose cycle did not repeat itself within the tolerance.
     pub cycles_not_repeating: usize,
     /// Newton iterations in all.

@@ -48,10 +48,8 @@ pub enum MarchError {
 pub struct Progress {
     /// Which update, from 1.
     pub update: usize,
-    /// Which cycle is being solved for it, from 1; only one that repeats itself counts.
-    pub attempt: usize,
-    /// Share of that cycle done.
-    pub cycle_done: f64,
+    /// Cycles solved for it; the last of them counts once it repeats itself.
+    pub cycles_solved: f64,
 }
 
 /// What one update found.
@@ -72,8 +70,8 @@ pub struct UpdateRecord {
     /// Largest area of its cycle, mm2.
     pub peak_contact_area_mm2: f64,
     /// Cycles solved until one repeated itself.
-    pub cycles_solved: usize,
-    /// Whether the last of them did repeat itself.
+    pub cycles_solved: f64,
+    /// Whether one did.
     pub repeats: bool,
     /// Smallest scaled Jacobian of the worn mesh.
     pub worst_quality: f64,
@@ -207,13 +205,13 @@ impl March {
         let update = self.state.updates.len() + 1;
         let cycles_before = self.cycles();
         let mut effort = self.state.effort;
-        let solved = self.repeating_cycle(update, &mut effort, watch);
-        let (surface, cycle, cycles_solved, repeats) =
-            solved.map_err(|source| MarchError::Cycle {
-                update,
-                cycles: cycles_before,
-                source,
-            })?;
+        let (surface, cycle) =
+            self.repeating_cycle(update, &mut effort, watch)
+                .map_err(|source| MarchError::Cycle {
+                    update,
+                    cycles: cycles_before,
+                    source,
+                })?;
         self.state.effort = effort;
         let area_mm2: Vec<f64> = surface.shares.iter().map(|share| share.area_mm2).collect();
         let step_mm = self.wear_down(&surface, &cycle, update)?;
@@ -244,8 +242,8 @@ impl March {
                 .iter()
                 .map(|row| row.contact_area_mm2)
                 .fold(0.0, f64::max),
-            cycles_solved,
-            repeats,
+            cycles_solved: cycle.increments_solved as f64 / self.test.time.increments as f64,
+            repeats: cycle.repeats,
             worst_quality: self.test.insert.mesh().worst_quality(),
         });
         self.keep(cycle, cycles_before);
@@ -257,37 +255,28 @@ impl March {
         self.state.updates.last().map_or(0.0, |last| last.cycles)
     }
 
-    /// The first cycle that ends where it began, the geometry held still.
+    /// A cycle that repeats itself, the geometry held still, and the surface it pressed on.
     fn repeating_cycle(
         &self,
         update: usize,
         effort: &mut Effort,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(ArticulatingSurface, Cycle, usize, bool), CycleError> {
-        let contact = Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert);
+    ) -> Result<(ArticulatingSurface, Cycle), CycleError> {
         let mut simulator = Simulator {
             machine: &self.test.machine,
             chain: &self.chain,
-            contact,
+            contact: Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert),
             time: &self.test.time,
         };
-        let mut start = self.state.machine;
-        for attempt in 1.. {
-            let mut watch_cycle = |cycle_done| {
-                watch(Progress {
-                    update,
-                    attempt,
-                    cycle_done,
-                })
-            };
-            let cycle = simulator.cycle(&start, effort, &mut watch_cycle)?;
-            let repeats = cycle.end.repeats(&start, &self.test.time);
-            if repeats || attempt >= self.test.time.most_cycles_to_repeat {
-                return Ok((simulator.contact.into_surface(), cycle, attempt, repeats));
-            }
-            start = cycle.end;
-        }
-        unreachable!("the loop ends by returning")
+        let increments = self.test.time.increments as f64;
+        let mut watch_cycle = |solved| {
+            watch(Progress {
+                update,
+                cycles_solved: solved as f64 / increments,
+            })
+        };
+        let cycle = simulator.cycle(&self.state.machine, effort, &mut watch_cycle)?;
+        Ok((simulator.contact.into_surface(), cycle))
     }
 
     /// Wears the insert by one interval of a cycle; returns the depth at every surface node.

@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::{
     Chain, FREEDOMS, Machine, TimeSettings,
     balance::Kinematics,
-    integrator::{Effort, Integrator, MachineState, NotConverged, drive, out_of_balance_n},
+    integrator::{Effort, Integrator, MachineState, NotConverged, drive},
 };
 use crate::contact::{ContactModel, CycleHistory, Moment, TouchedNode};
 
@@ -40,8 +40,20 @@ pub struct Cycle {
     pub rows: Vec<CycleRow>,
     /// What every node of the articulating surface went through.
     pub history: CycleHistory,
-    /// The machine at its end.
+    /// The machine when it was found to repeat itself.
     pub end: MachineState,
+    /// Increments solved until then.
+    pub increments_solved: usize,
+    /// Whether it did repeat itself, within the cycles that it was given.
+    pub repeats: bool,
+}
+
+/// An increment as it was left.
+#[derive(Clone)]
+struct Landed {
+    state: MachineState,
+    row: CycleRow,
+    moments: Vec<(u32, Moment)>,
 }
 
 /// Why a cycle was not solved.
@@ -102,25 +114,30 @@ impl MachineState {
         }
     }
 
-    /// Whether the machine is where it was at `earlier`, within the tolerances.
-    pub fn repeats(&self, earlier: &Self, time: &TimeSettings) -> bool {
+    /// Whether the machine is where it was at `earlier` and moves as it did, within the
+    /// tolerances; rates count by how far they lead in `lead_s`.
+    fn repeats(&self, earlier: &Self, time: &TimeSettings, lead_s: f64) -> bool {
         FREEDOMS.iter().all(|&freedom| {
             let j = freedom as usize;
             let apart = (self.now.positions[j] - earlier.now.positions[j]).abs();
+            let parting = (self.now.rates[j] - earlier.now.rates[j]).abs() * lead_s;
             let tolerance = if freedom.is_rotation() {
                 time.repeat_tolerance_rad
             } else {
                 time.repeat_tolerance_mm
             };
-            apart <= tolerance
+            apart.max(parting) <= tolerance
         })
     }
 }
 
 impl<C: ContactModel> Simulator<'_, C> {
-    /// Solves one cycle from `start`, whose phase is a whole number.
+    /// Solves increments from `start` until one lands where the machine was a cycle before: the
+    /// increments since then are one cycle that repeats itself.
     ///
-    /// `watch` is told the share of the cycle done after every increment, and may stop it.
+    /// A motion that starts or that follows a change of the geometry needs a little more than a
+    /// cycle for that, and seldom two. `watch` is told how many increments are solved, and may
+    /// stop it.
     ///
     /// # Errors
     /// An increment that does not converge, or a stop asked for.
@@ -128,31 +145,82 @@ impl<C: ContactModel> Simulator<'_, C> {
         &mut self,
         start: &MachineState,
         effort: &mut Effort,
-        watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+        watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
     ) -> Result<Cycle, CycleError> {
         let count = self.time.increments;
-        let mut state = MachineState {
-            phase: 0.0,
-            ..*start
-        };
-        let mut rows = Vec::with_capacity(count);
-        let mut records = Vec::new();
-        for increment in 1..=count {
-            let done = increment as f64 / count as f64;
-            state = self.advance(&state, done, MOST_HALVINGS, effort)?;
-            let touched = self.contact.touched();
-            rows.push(row(100.0 * done, &state, touched));
-            self.record(100.0 * done, &mut records);
-            if watch(done).is_break() {
+        let first = (start.phase * count as f64).round() as usize;
+        let mut state = *start;
+        let mut landed: Vec<Option<Landed>> = vec![None; count];
+        let mut repeats = false;
+        let mut solved = 0;
+        while !repeats && solved < count * self.time.most_cycles_to_repeat {
+            let place = (first + solved) % count;
+            state = self.advance(
+                &state,
+                (place + 1) as f64 / count as f64,
+                MOST_HALVINGS,
+                effort,
+            )?;
+            let here = self.land(place, &state);
+            repeats = landed[place]
+                .replace(here)
+                .is_some_and(|before| state.repeats(&before.state, self.time, self.increment_s()));
+            state.phase %= 1.0;
+            solved += 1;
+            if watch(solved).is_break() {
                 return Err(CycleError::Interrupted);
             }
         }
-        let history = CycleHistory::from_records(self.contact.node_count(), &records);
-        Ok(Cycle {
-            rows,
-            history,
-            end: state,
-        })
+        Ok(self.gather(landed, state, solved, repeats))
+    }
+
+    /// What is to be kept of the increment that has just been solved.
+    ///
+    /// Every touched node's pressure and slip stand for the whole increment: the trapezoidal rule
+    /// of a cycle that repeats, second order in the increment.
+    fn land(&self, place: usize, state: &MachineState) -> Landed {
+        let percent = 100.0 * (place + 1) as f64 / self.time.increments as f64;
+        let touched = self.contact.touched();
+        let moment = |node: &TouchedNode| Moment {
+            percent,
+            pressure_mpa: node.pressure_mpa,
+            slip_mm: node
+                .sliding_mm_per_s
+                .map(|speed| speed * self.increment_s()),
+        };
+        Landed {
+            state: *state,
+            row: row(percent, state, touched),
+            moments: touched
+                .iter()
+                .map(|node| (node.node, moment(node)))
+                .collect(),
+        }
+    }
+
+    fn gather(
+        &self,
+        landed: Vec<Option<Landed>>,
+        end: MachineState,
+        solved: usize,
+        repeats: bool,
+    ) -> Cycle {
+        let landed: Vec<Landed> = landed.into_iter().flatten().collect();
+        let records: Vec<(u32, Moment)> = landed
+            .iter()
+            .flat_map(|here| here.moments.iter().copied())
+            .collect();
+        Cycle {
+            rows: landed.iter().map(|here| here.row).collect(),
+            history: CycleHistory::from_records(self.contact.node_count(), &records),
+            end,
+            increments_solved: solved,
+            repeats,
+        }
+    }
+
+    fn increment_s(&self) -> f64 {
+        1.0 / (self.machine.frequency_hz * self.time.increments as f64)
     }
 
     /// Steps to a phase, in halves where a step does not converge.
@@ -180,20 +248,6 @@ impl<C: ContactModel> Simulator<'_, C> {
             }
         }
     }
-
-    /// Notes what every touched node goes through now, for the increment that this instant stands
-    /// for: the trapezoidal rule of a cycle that repeats, second order in the increment.
-    fn record(&self, percent: f64, records: &mut Vec<(u32, Moment)>) {
-        let duration_s = 1.0 / (self.machine.frequency_hz * self.time.increments as f64);
-        for touched in self.contact.touched() {
-            let moment = Moment {
-                percent,
-                pressure_mpa: touched.pressure_mpa,
-                slip_mm: touched.sliding_mm_per_s.map(|speed| speed * duration_s),
-            };
-            records.push((touched.node, moment));
-        }
-    }
 }
 
 impl From<NotConverged> for CycleError {
@@ -201,7 +255,7 @@ impl From<NotConverged> for CycleError {
         Self::NotConverged {
             percent: 100.0 * failed.phase,
             positions: failed.positions,
-            residual_n: out_of_balance_n(&failed.residual),
+            residual_n: failed.residual_n,
         }
     }
 }

@@ -4,13 +4,17 @@ use super::{
     Chain, Drive, FREEDOMS, Machine,
     balance::{Imbalance, Kinematics, StepSlopes, imbalance},
 };
-use crate::contact::{ContactModel, Vec6};
+use crate::contact::{ContactModel, Mat6, Vec6};
 use serde::{Deserialize, Serialize};
 
 /// Lever on which a moment out of balance counts as a force, mm.
 const MOMENT_LEVER_MM: f64 = 10.0;
 /// Iterations after which a step is given up, and tried in halves.
-const MOST_ITERATIONS: usize = 15;
+const MOST_ITERATIONS: usize = 25;
+/// A correction taken back keeps at least this part.
+const LEAST_PART_OF_CORRECTION: f64 = 0.1;
+/// A correction taken back to less than this has found no better place, mm.
+const SHORTEST_CORRECTION_MM: f64 = 1e-9;
 /// Farthest that one iteration may move, mm; on the lever, rad.
 const LONGEST_CORRECTION_MM: f64 = 1.0;
 
@@ -41,7 +45,57 @@ pub struct Effort {
 pub(super) struct NotConverged {
     pub phase: f64,
     pub positions: [f64; 6],
-    pub residual: Vec6,
+    pub residual_n: f64,
+}
+
+/// Newton's method with a line search, on its way.
+struct Attempt {
+    positions: [f64; 6],
+    /// Length of the residual where the last full correction was computed, N.
+    residual_n: f64,
+    /// The part of the last correction that was taken.
+    taken: Vec6,
+}
+
+impl Attempt {
+    fn new(positions: [f64; 6]) -> Self {
+        Self {
+            positions,
+            residual_n: f64::INFINITY,
+            taken: Vec6::zeros(),
+        }
+    }
+
+    /// Moves to better positions; false where there are none.
+    ///
+    /// A correction that has made the residual longer, as friction does when it turns round, is
+    /// taken back in part: to the minimum of the parabola through both lengths and the slope
+    /// that Newton's method implies.
+    fn improve(&mut self, residual: &Vec6, tangent: &Mat6) -> bool {
+        let residual_n = length_n(residual);
+        if residual_n > self.residual_n {
+            let (before, after) = (self.residual_n.powi(2), residual_n.powi(2));
+            let keep = (before / (before + after)).max(LEAST_PART_OF_CORRECTION);
+            self.step(self.taken * (keep - 1.0));
+            self.taken *= keep;
+            return longest_mm(&self.taken) > SHORTEST_CORRECTION_MM;
+        }
+        self.residual_n = residual_n;
+        let solved = tangent.lu().solve(&-residual);
+        let Some(correction) = solved.filter(|c| c.iter().all(|x| x.is_finite())) else {
+            return false;
+        };
+        self.taken = correction * (LONGEST_CORRECTION_MM / longest_mm(&correction)).min(1.0);
+        self.step(self.taken);
+        true
+    }
+
+    fn step(&mut self, motion: Vec6) {
+        self.positions
+            .iter_mut()
+            .zip(&motion)
+            .for_each(|(q, c)| *q += c);
+    }
 }
 
 /// The weights of the backward differences: rate = slope q + sum of the past.
@@ -86,10 +140,9 @@ impl<C: ContactModel> Integrator<'_, C> {
             acceleration: differences.slope.powi(2),
         };
         let loads = loads_at(self.machine, phase);
-        let mut positions = self.predicted(state, phase, step_s, ratio);
-        let mut left = MOST_ITERATIONS;
-        loop {
-            let kinematics = self.kinematics(state, &differences, positions, phase);
+        let mut attempt = Attempt::new(self.predicted(state, phase, step_s, ratio));
+        for _ in 0..MOST_ITERATIONS {
+            let kinematics = self.kinematics(state, &differences, attempt.positions, phase);
             let Imbalance { residual, tangent } = imbalance(
                 self.machine,
                 self.chain,
@@ -106,25 +159,16 @@ impl<C: ContactModel> Integrator<'_, C> {
                     before: Some((state.now, step_s)),
                 });
             }
-            let correction = tangent
-                .lu()
-                .solve(&residual)
-                .filter(|c| c.iter().all(|x| x.is_finite()));
-            let (Some(correction), 1..) = (correction, left) else {
-                return Err(NotConverged {
-                    phase,
-                    positions,
-                    residual,
-                });
-            };
-            left -= 1;
+            if !attempt.improve(&residual, &tangent) {
+                break;
+            }
             self.effort.newton_iterations += 1;
-            let limit = (LONGEST_CORRECTION_MM / longest_mm(&correction)).min(1.0);
-            positions
-                .iter_mut()
-                .zip(&correction)
-                .for_each(|(q, c)| *q -= c * limit);
         }
+        Err(NotConverged {
+            phase,
+            positions: attempt.positions,
+            residual_n: attempt.residual_n,
+        })
     }
 
     /// Where the freedoms go if accelerations last; driven ones, where they are driven.
@@ -205,6 +249,19 @@ pub(super) fn out_of_balance_n(residual: &Vec6) -> f64 {
             }
     };
     (0..6).map(force).fold(0.0, f64::max)
+}
+
+/// Length of a residual, N, moments on their lever.
+fn length_n(residual: &Vec6) -> f64 {
+    let force = |j: usize| {
+        residual[j]
+            / if FREEDOMS[j].is_rotation() {
+                MOMENT_LEVER_MM
+            } else {
+                1.0
+            }
+    };
+    (0..6).map(|j| force(j).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Longest motion of a correction, mm, rotations on their lever.
