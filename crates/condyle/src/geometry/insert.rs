@@ -47,6 +47,9 @@ pub struct Insert {
     /// Faces of the articulating surface, in numbers of surface nodes.
     faces: Vec<[u32; 4]>,
     unworn_thickness_mm: Vec<f64>,
+    /// Depth worn so far: the thickness is computed from it anew, so that an insert worn step by
+    /// step and one restored have the same to the last bit.
+    worn_mm: Vec<f64>,
     thickness_mm: Vec<f64>,
     follower: InteriorFollower,
 }
@@ -86,6 +89,7 @@ impl Insert {
             nodes,
             faces,
             unworn_thickness_mm: thickness_mm.clone(),
+            worn_mm: vec![0.0; thickness_mm.len()],
             thickness_mm,
             follower,
         })
@@ -128,7 +132,8 @@ impl Insert {
         let mut displacement = vec![Vec3::zeros(); self.mesh.nodes.len()];
         for (i, &node) in self.nodes.iter().enumerate() {
             displacement[node as usize] = -surface.normals[i] * depth_mm[i];
-            self.thickness_mm[i] -= depth_mm[i];
+            self.worn_mm[i] += depth_mm[i];
+            self.thickness_mm[i] = self.unworn_thickness_mm[i] - self.worn_mm[i];
         }
         self.follower.follow(&mut displacement);
         for (node, step) in self.mesh.nodes.iter_mut().zip(&displacement) {
@@ -140,6 +145,7 @@ impl Insert {
     /// each surface node.
     pub fn restore(&mut self, mesh_nodes: Vec<Vec3>, worn_mm: &[f64]) {
         self.mesh.nodes = mesh_nodes;
+        self.worn_mm.copy_from_slice(worn_mm);
         for (i, worn) in worn_mm.iter().enumerate() {
             self.thickness_mm[i] = self.unworn_thickness_mm[i] - worn;
         }
