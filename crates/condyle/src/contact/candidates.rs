@@ -2,7 +2,7 @@
 
 use super::Pose;
 use crate::{
-    Mat3, Vec3,
+    Vec3,
     geometry::{ArticulatingSurface, FemoralSurface, Share},
 };
 
@@ -10,80 +10,117 @@ use crate::{
 /// Wider lists last longer and hold more nodes that do not touch.
 const MARGIN_MM: f64 = 0.25;
 
-/// How much faster than the motion itself the gap may shrink, on top of the share's own turning:
-/// the gap's slope is 1, and a share half as wide as the femur's radius adds at most a fifth.
-const GAP_PER_MOTION: f64 = 1.2;
+/// Curvature that no articulating surface exceeds, 1/mm: how fast a share's reach may grow.
+const SHARPEST_PER_MM: f64 = 0.2;
+
+/// What the mean gap of a share may differ from the gap at its centre, and the widening of its
+/// reach that keeps the mean overclosure's closed form away from 0/0, mm.
+const SPREAD_MM: f64 = 0.02;
+
+/// A node that may touch.
+#[derive(Clone, Copy)]
+pub(super) struct Candidate {
+    pub node: u32,
+    /// The share touches only where its gap is below this, mm: half its rise over both edges.
+    pub reach_mm: f64,
+}
 
 /// The nodes that may touch, exactly those a search over all nodes would find.
 ///
 /// A gap changes no faster than the point moves in the femoral frame. So a node that is further
 /// from contact than the femur has moved since the list was made cannot touch.
 pub(super) struct Candidates {
-    nodes: Vec<u32>,
+    list: Vec<Candidate>,
     made_at: Option<Pose>,
     /// Corners of the box around all shares.
     box_corners: [Vec3; 8],
     longest_half_mm: f64,
+    /// How much further shares may reach now than when the list was made, mm.
+    reach_growth_mm: f64,
+}
+
+/// How far the femur has moved and turned between two poses.
+struct Motion {
+    farthest_mm: f64,
+    turn_rad: f64,
 }
 
 impl Candidates {
     pub fn new(surface: &ArticulatingSurface) -> Self {
         Self {
-            nodes: Vec::new(),
+            list: Vec::new(),
             made_at: None,
             box_corners: box_corners(&surface.shares),
             longest_half_mm: surface.shares.iter().map(half_mm).fold(0.0, f64::max),
+            reach_growth_mm: 0.0,
         }
     }
 
-    /// The candidates at a pose, ascending.
-    pub fn at(&mut self, pose: &Pose, femur: &FemoralSurface, shares: &[Share]) -> &[u32] {
-        let stale = self
-            .made_at
-            .is_none_or(|made_at| self.motion_mm(&made_at, pose) > MARGIN_MM);
-        if stale {
-            let near = |share: &Share| {
-                distance_to_contact_at_least(share, pose, femur, self.longest_half_mm) <= MARGIN_MM
-            };
-            self.nodes.clear();
-            self.nodes
-                .extend((0..shares.len() as u32).filter(|&node| near(&shares[node as usize])));
-            self.made_at = Some(*pose);
+    /// Makes the list good for a pose.
+    pub fn update(&mut self, pose: &Pose, femur: &FemoralSurface, shares: &[Share]) {
+        if let Some(made_at) = &self.made_at {
+            let Motion {
+                farthest_mm,
+                turn_rad,
+            } = self.motion(made_at, pose);
+            self.reach_growth_mm =
+                self.longest_half_mm * (turn_rad + farthest_mm * SHARPEST_PER_MM);
+            if farthest_mm + self.reach_growth_mm <= MARGIN_MM {
+                return;
+            }
         }
-        &self.nodes
+        let candidate = |(node, share)| {
+            let (to_contact_mm, reach_mm) =
+                distance_to_contact(share, pose, femur, self.longest_half_mm);
+            (to_contact_mm <= MARGIN_MM).then_some(Candidate { node, reach_mm })
+        };
+        let list = (0..).zip(shares).filter_map(candidate).collect();
+        self.list = list;
+        self.made_at = Some(*pose);
+        self.reach_growth_mm = 0.0;
     }
 
-    /// The most by which any share can have come nearer to contact between two poses, mm.
-    ///
-    /// The motion of a point is affine in its place, so its length is largest at a corner of the box.
-    fn motion_mm(&self, from: &Pose, to: &Pose) -> f64 {
-        let moved = |corner: &Vec3| (to.to_femur(corner) - from.to_femur(corner)).norm_squared();
-        let farthest = self
-            .box_corners
+    /// The candidates that a look at their gap does not rule out, ascending.
+    pub fn near(&self, gap_mm: impl Fn(u32) -> f64) -> impl Iterator<Item = u32> {
+        let may_touch = move |candidate: &&Candidate| {
+            gap_mm(candidate.node) <= candidate.reach_mm + self.reach_growth_mm + SPREAD_MM
+        };
+        self.list
             .iter()
-            .map(moved)
-            .fold(0.0, f64::max)
-            .sqrt();
-        let turned: Mat3 = to.rotation - from.rotation;
-        GAP_PER_MOTION * farthest + turned.norm() * self.longest_half_mm
+            .filter(may_touch)
+            .map(|candidate| candidate.node)
+    }
+
+    /// The motion of a point is affine in its place, so its length is largest at a corner of the box.
+    fn motion(&self, from: &Pose, to: &Pose) -> Motion {
+        let moved = |corner: &Vec3| (to.to_femur(corner) - from.to_femur(corner)).norm_squared();
+        Motion {
+            farthest_mm: self
+                .box_corners
+                .iter()
+                .map(moved)
+                .fold(0.0, f64::max)
+                .sqrt(),
+            turn_rad: (to.rotation - from.rotation).norm(),
+        }
     }
 }
 
-/// A lower bound of how far a share is from touching, mm.
-fn distance_to_contact_at_least(
+/// A lower bound of how far a share is from touching, and how far it reaches below its middle, mm.
+fn distance_to_contact(
     share: &Share,
     pose: &Pose,
     femur: &FemoralSurface,
     longest_half_mm: f64,
-) -> f64 {
+) -> (f64, f64) {
     let place = pose.to_femur(&share.centre);
-    let coarse = femur.gap_mm(&place) - longest_half_mm;
-    if coarse > MARGIN_MM {
-        return coarse;
+    let gap_mm = femur.gap_mm(&place) - SPREAD_MM;
+    if gap_mm - longest_half_mm > MARGIN_MM {
+        return (gap_mm - longest_half_mm, longest_half_mm);
     }
-    let sample = femur.sample(&place, share.spread_mm2);
-    let normal = pose.rotation * sample.normal;
-    sample.gap_mm - (normal.dot(&share.edge_a).abs() + normal.dot(&share.edge_b).abs()) / 2.0
+    let normal = pose.rotation * femur.sample(&place, share.spread_mm2).normal;
+    let reach_mm = (normal.dot(&share.edge_a).abs() + normal.dot(&share.edge_b).abs()) / 2.0;
+    (gap_mm - reach_mm, reach_mm)
 }
 
 /// Half of both edges of a share: how far its corners can lie from its centre.

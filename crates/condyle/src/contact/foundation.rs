@@ -1,13 +1,14 @@
 //! The elastic foundation: rigid bodies, and pressure from local overclosure.
 
 use super::{
-    ContactModel, ContactResponse, Mat6, Pose, PressureLaw, RelativeMotion, TouchedNode, Vec6,
+    ContactModel, Mat6, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
     candidates::Candidates,
-    motion::{cross_matrix, twist_to_femur},
+    motion::twist_to_femur,
     partial::mean_overclosure,
+    traction::{Rubbing, Traction, split_velocity, wrench},
 };
 use crate::{
-    Mat3, Vec3,
+    Vec3,
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
 };
 
@@ -39,31 +40,10 @@ pub struct Foundation<'a> {
     directions: Vec<[Vec3; 2]>,
     thickness_mm: Vec<f64>,
     candidates: Candidates,
-    touched: Vec<TouchedNode>,
-}
-
-/// A share under pressure; all vectors in the femoral frame.
-struct Pressed {
-    /// Place of the share's centre.
-    place: Vec3,
-    area_mm2: f64,
-    normal: Vec3,
-    curvature: Mat3,
-    pressure_mpa: f64,
-    /// Derivative of the pressure by the motion of the femur's material there.
-    by_motion: Vec3,
-    /// Derivative of the pressure by a turn of the femur about the share.
-    by_turn: Vec3,
-    /// Part of the share that presses.
-    coverage: f64,
-}
-
-/// Force on the insert at a share and its derivatives; all in the femoral frame.
-struct Traction {
-    force: Vec3,
-    by_motion: Mat3,
-    by_turn: Mat3,
-    by_velocity: Mat3,
+    /// What presses at the last response.
+    tractions: Vec<Traction>,
+    /// Where the femur was then.
+    pose: Pose,
 }
 
 impl<'a> Foundation<'a> {
@@ -83,7 +63,8 @@ impl<'a> Foundation<'a> {
             candidates: Candidates::new(&surface),
             thickness_mm: insert.thickness_mm().to_vec(),
             surface,
-            touched: Vec::new(),
+            tractions: Vec::new(),
+            pose: Pose::identity(),
         }
     }
 
@@ -97,14 +78,14 @@ impl<'a> Foundation<'a> {
         self.surface
     }
 
-    /// Pressure on one share, if any of it presses.
+    /// Pressure and rubbing on one share, if any of it presses.
     ///
     /// With n the femur's normal, K its curvature, e_k the share's edges and W the mean
     /// overclosure of the share, a motion a and a turn w of the femur change the middle's
     /// overclosure by G . a, the normal by w x n - K a, and each rise n . e_k with the normal.
     #[inline]
-    fn press(&self, node: usize, pose: &Pose) -> Option<Pressed> {
-        let share = &self.surface.shares[node];
+    fn press(&self, node: u32, pose: &Pose, angular: &Vec3, linear: &Vec3) -> Option<Traction> {
+        let share = &self.surface.shares[node as usize];
         let place = pose.to_femur(&share.centre);
         let sample = self.femur.sample(&place, share.spread_mm2);
         let normal_in_insert = pose.rotation * sample.normal;
@@ -113,109 +94,88 @@ impl<'a> Foundation<'a> {
             normal_in_insert.dot(&share.edge_b),
         ];
         let mean = mean_overclosure(-sample.gap_mm, rise)?;
-        let (pressure_mpa, stiffness) =
-            self.settings.law.pressure(mean.mm, self.thickness_mm[node]);
-        let rise_change = pose
-            .rotation
-            .tr_mul(&(share.edge_a * mean.by_rise[0] + share.edge_b * mean.by_rise[1]));
-        Some(Pressed {
+        let (pressure_mpa, slope) = self
+            .settings
+            .law
+            .pressure(mean.mm, self.thickness_mm[node as usize]);
+        let stiffness = slope * share.area_mm2;
+        let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
+        let mut load_by_turn = Vec3::zeros();
+        if mean.by_middle < 1.0 {
+            let by_normal =
+                (share.edge_a * mean.by_rise[0] + share.edge_b * mean.by_rise[1]) * stiffness;
+            let by_normal = pose.rotation.tr_mul(&by_normal);
+            let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
+            load_by_motion -= sample.curvature * along_surface;
+            load_by_turn = sample.normal.cross(&by_normal);
+        }
+        let velocity = linear + angular.cross(&place);
+        let (along, sliding_mm_per_s, closing_mm_per_s) = split_velocity(&velocity, &sample.normal);
+        Some(Traction {
+            node,
             place,
-            area_mm2: share.area_mm2,
             normal: sample.normal,
             curvature: sample.curvature,
             pressure_mpa,
-            by_motion: (sample.gap_gradient * mean.by_middle
-                - sample.curvature.tr_mul(&rise_change))
-                * stiffness,
-            by_turn: sample.normal.cross(&rise_change) * stiffness,
-            coverage: mean.by_middle,
+            load_n: pressure_mpa * share.area_mm2,
+            covered_mm2: mean.by_middle * share.area_mm2,
+            load_by_motion,
+            load_by_turn,
+            along,
+            sliding_mm_per_s,
+            closing_mm_per_s,
         })
     }
 
-    /// Force of a pressed share under a velocity of the femur's material past it.
-    ///
-    /// f = A p (n + mu u), u = v_t/w, w = sqrt(v_t^2 + v0^2), v_t the velocity along the surface.
-    /// With U = (1 - u u')/w, a turn dn of the normal changes u by -((n . v) U + n v'/w) dn and a
-    /// change dv of the velocity changes it by U dv_t.
-    #[inline]
-    fn rub(&self, pressed: &Pressed, velocity: &Vec3) -> Traction {
-        let Pressed {
-            area_mm2,
-            normal,
-            curvature,
-            pressure_mpa,
-            ..
-        } = pressed;
-        let friction = self.settings.friction;
-        let closing = normal.dot(velocity);
-        let sliding = velocity - normal * closing;
-        let w = (sliding.norm_squared() + self.settings.slip_tolerance_mm_per_s.powi(2)).sqrt();
-        let u = sliding / w;
-        let load = area_mm2 * pressure_mpa;
-        let direction = normal + u * friction;
-        let turning = (Mat3::identity() - u * u.transpose()) * (friction / w);
-        let by_normal =
-            Mat3::identity() - turning * closing - normal * velocity.transpose() * (friction / w);
-        Traction {
-            force: direction * load,
-            by_motion: direction * (pressed.by_motion * *area_mm2).transpose()
-                - by_normal * curvature * load,
-            by_turn: direction * (pressed.by_turn * *area_mm2).transpose()
-                - by_normal * cross_matrix(normal) * load,
-            by_velocity: (turning - normal * normal.transpose() * (friction / w)) * load,
-        }
-    }
-
-    fn touch(
-        &self,
-        node: u32,
-        pressed: &Pressed,
-        traction: &Traction,
-        velocity: &Vec3,
-        pose: &Pose,
-    ) -> TouchedNode {
-        let sliding = pose.rotation * (velocity - pressed.normal * pressed.normal.dot(velocity));
-        TouchedNode {
-            node,
-            is_medial: self.surface.positions[node as usize].z < 0.0,
-            pressure_mpa: pressed.pressure_mpa,
-            covered_mm2: pressed.coverage * pressed.area_mm2,
-            force_n: pose.rotation * traction.force,
-            sliding_mm_per_s: self.directions[node as usize]
-                .map(|direction| sliding.dot(&direction)),
+    fn rubbing(&self) -> Rubbing {
+        Rubbing {
+            friction: self.settings.friction,
+            slip_tolerance_mm_per_s: self.settings.slip_tolerance_mm_per_s,
         }
     }
 }
 
 impl ContactModel for Foundation<'_> {
-    fn respond(&mut self, motion: &RelativeMotion) -> ContactResponse {
-        let pose = &motion.pose;
-        let to_femur = twist_to_femur(pose);
+    fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
+        self.pose = motion.pose;
+        let to_femur = twist_to_femur(&self.pose);
         let twist = to_femur * motion.twist;
-        let (angular, linear): (Vec3, Vec3) = (
+        let (angular, linear) = (
             twist.fixed_rows::<3>(0).into(),
             twist.fixed_rows::<3>(3).into(),
         );
-        let mut total = ContactResponse::none();
-        let candidates = self
-            .candidates
-            .at(pose, self.femur, &self.surface.shares)
-            .to_vec();
-        self.touched.clear();
-        for node in candidates {
-            let Some(pressed) = self.press(node as usize, pose) else {
-                continue;
-            };
-            let velocity = linear + angular.cross(&pressed.place);
-            let traction = self.rub(&pressed, &velocity);
-            add(&mut total, &traction, &pressed.place);
-            let touched = self.touch(node, &pressed, &traction, &velocity, pose);
-            self.touched.push(touched);
+        self.candidates
+            .update(&self.pose, self.femur, &self.surface.shares);
+        let mut tractions = std::mem::take(&mut self.tractions);
+        tractions.clear();
+        let gap_mm = |node: u32| {
+            self.femur.gap_mm(
+                &self
+                    .pose
+                    .to_femur(&self.surface.shares[node as usize].centre),
+            )
+        };
+        let press = |node| self.press(node, &self.pose, &angular, &linear);
+        tractions.extend(self.candidates.near(gap_mm).filter_map(press));
+        self.tractions = tractions;
+        let rubbing = self.rubbing();
+        let mut total = Vec6::zeros();
+        for traction in &self.tractions {
+            total += wrench(&traction.place, &traction.force_n(&rubbing));
         }
-        ContactResponse {
-            wrench: to_femur.tr_mul(&total.wrench),
-            by_pose: to_femur.tr_mul(&total.by_pose) * to_femur,
-            by_twist: to_femur.tr_mul(&total.by_twist) * to_femur,
+        to_femur.tr_mul(&total)
+    }
+
+    fn tangent(&self) -> Tangent {
+        let rubbing = self.rubbing();
+        let (mut by_pose, mut by_twist) = (Mat6::zeros(), Mat6::zeros());
+        for traction in &self.tractions {
+            traction.add_tangent(&rubbing, &mut by_pose, &mut by_twist);
+        }
+        let to_femur = twist_to_femur(&self.pose);
+        Tangent {
+            by_pose: to_femur.tr_mul(&by_pose) * to_femur,
+            by_twist: to_femur.tr_mul(&by_twist) * to_femur,
         }
     }
 
@@ -223,51 +183,20 @@ impl ContactModel for Foundation<'_> {
         self.surface.positions.len()
     }
 
-    fn touched(&self) -> &[TouchedNode] {
-        &self.touched
-    }
-}
-
-/// Adds a traction at `place` to the response at the origin: a = v + w x place, m = place x f.
-#[inline]
-fn add(total: &mut ContactResponse, traction: &Traction, place: &Vec3) {
-    let lever = cross_matrix(place);
-    let moment = place.cross(&traction.force);
-    total.wrench += Vec6::new(
-        moment.x,
-        moment.y,
-        moment.z,
-        traction.force.x,
-        traction.force.y,
-        traction.force.z,
-    );
-    let by_motion = traction.by_motion;
-    add_blocks(
-        &mut total.by_pose,
-        &lever,
-        &(traction.by_turn - by_motion * lever),
-        &by_motion,
-    );
-    let by_velocity = traction.by_velocity;
-    add_blocks(
-        &mut total.by_twist,
-        &lever,
-        &(-by_velocity * lever),
-        &by_velocity,
-    );
-}
-
-/// Adds the force's derivatives by (angular, linear), and the moment's with the lever.
-#[inline]
-fn add_blocks(total: &mut Mat6, lever: &Mat3, by_angular: &Mat3, by_linear: &Mat3) {
-    let blocks = [
-        (0, 0, lever * by_angular),
-        (0, 3, lever * by_linear),
-        (3, 0, *by_angular),
-        (3, 3, *by_linear),
-    ];
-    for (row, column, block) in blocks {
-        let mut place = total.fixed_view_mut::<3, 3>(row, column);
-        place += block;
+    fn touched(&self) -> Vec<TouchedNode> {
+        let rubbing = self.rubbing();
+        let touched = |traction: &Traction| {
+            let node = traction.node as usize;
+            let sliding = self.pose.rotation * traction.along * traction.sliding_mm_per_s;
+            TouchedNode {
+                node: traction.node,
+                is_medial: self.surface.positions[node].z < 0.0,
+                pressure_mpa: traction.pressure_mpa,
+                covered_mm2: traction.covered_mm2,
+                force_n: self.pose.rotation * traction.force_n(&rubbing),
+                sliding_mm_per_s: self.directions[node].map(|direction| sliding.dot(&direction)),
+            }
+        };
+        self.tractions.iter().map(touched).collect()
     }
 }

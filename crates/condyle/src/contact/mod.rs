@@ -6,6 +6,7 @@ mod history;
 mod law;
 mod motion;
 mod partial;
+mod traction;
 
 pub use foundation::{Foundation, FoundationSettings};
 pub use history::{CycleHistory, Moment, NodeHistory};
@@ -14,27 +15,14 @@ pub use motion::{Mat6, Pose, RelativeMotion, Vec6, cross_matrix};
 
 use crate::Vec3;
 
-/// What the contact answers to a relative motion.
+/// How the wrench of the contact changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactResponse {
-    /// Wrench on the insert about its origin: moment, N mm, then force, N; in the insert frame.
-    pub wrench: Vec6,
+pub struct Tangent {
     /// Derivative of the wrench by a small motion of the femur (turn, rad, then translation of
     /// its material at the insert's origin, mm).
     pub by_pose: Mat6,
     /// Derivative of the wrench by the twist.
     pub by_twist: Mat6,
-}
-
-impl ContactResponse {
-    /// No contact.
-    pub fn none() -> Self {
-        Self {
-            wrench: Vec6::zeros(),
-            by_pose: Mat6::zeros(),
-            by_twist: Mat6::zeros(),
-        }
-    }
 }
 
 /// A surface node in contact; vectors in the insert frame.
@@ -57,14 +45,18 @@ pub struct TouchedNode {
 
 /// A model of contact: the machine sees this, never a mesh.
 pub trait ContactModel {
-    /// Wrench and exact tangent at a relative motion.
+    /// Wrench on the insert about its origin at a relative motion: moment, N mm, then force, N; in
+    /// the insert frame.
     ///
     /// The answer depends on the motion alone, not on the calls before.
-    fn respond(&mut self, motion: &RelativeMotion) -> ContactResponse;
+    fn respond(&mut self, motion: &RelativeMotion) -> Vec6;
+
+    /// The exact derivatives of the wrench at the last [`ContactModel::respond`].
+    fn tangent(&self) -> Tangent;
 
     /// How many surface nodes there are.
     fn node_count(&self) -> usize;
 
     /// The nodes in contact at the last [`ContactModel::respond`], ascending.
-    fn touched(&self) -> &[TouchedNode];
+    fn touched(&self) -> Vec<TouchedNode>;
 }

@@ -12,7 +12,8 @@ pub struct SurfaceSample {
     pub gap_gradient: Vec3,
     /// Unit normal of the femur, outwards.
     pub normal: Vec3,
-    /// Derivative of `normal` by the point, 1/mm: the curvature of the level surface, > 0 convex.
+    /// Symmetric; its part along the surface is the derivative of `normal` by the point, 1/mm: the
+    /// curvature of the level surface, > 0 convex.
     pub curvature: Mat3,
 }
 

@@ -11,6 +11,7 @@ const BIN_MM: f64 = 2.0;
 /// The triangles of the backside, sorted into square bins over the transverse plane.
 struct Backside {
     triangles: Vec<[Vec3; 3]>,
+    lowest: f64,
     low: (f64, f64),
     counts: (usize, usize),
     bins: Vec<Vec<u32>>,
@@ -59,6 +60,11 @@ impl Backside {
         let counts = (count(high.0 - low.0), count(high.1 - low.1));
         let mut sorted = Self {
             bins: vec![Vec::new(); counts.0 * counts.1],
+            lowest: triangles
+                .iter()
+                .flatten()
+                .map(|p| p.y)
+                .fold(f64::INFINITY, f64::min),
             triangles,
             low,
             counts,
@@ -74,16 +80,10 @@ impl Backside {
 
     /// Distance from a point along a unit direction to the first triangle hit.
     fn distance_along(&self, from: &Vec3, direction: &Vec3) -> Option<f64> {
-        let lowest = self
-            .triangles
-            .iter()
-            .flatten()
-            .map(|p| p.y)
-            .fold(f64::INFINITY, f64::min);
         if direction.y >= 0.0 {
             return None;
         }
-        let end = from + direction * ((lowest - from.y) / direction.y).max(0.0);
+        let end = from + direction * ((self.lowest - from.y) / direction.y).max(0.0);
         self.bins_between(&from.inf(&end), &from.sup(&end))
             .flat_map(|bin| &self.bins[bin])
             .filter_map(|&index| hit(&self.triangles[index as usize], from, direction))

@@ -1,6 +1,6 @@
 //! The balance of forces on every freedom, and its tangent.
 
-use super::{ApSpring, Chain, Drive, FREEDOMS, Freedom, Machine};
+use super::{ApSpring, Chain, Configuration, Drive, Freedom, Machine};
 use crate::contact::{ContactModel, Mat6, RelativeMotion, Vec6};
 use serde::{Deserialize, Serialize};
 
@@ -15,14 +15,6 @@ pub struct Kinematics {
     pub accelerations: [f64; 6],
 }
 
-/// What is out of balance, and how it changes with the positions.
-pub(super) struct Imbalance {
-    /// Inertia, damping, springs and contact against load, N or N mm; 0 on rows that are not loaded.
-    pub residual: Vec6,
-    /// Derivative of the residual by the positions; the identity on rows that are not loaded.
-    pub tangent: Mat6,
-}
-
 /// How rates and accelerations follow the positions within a step: 1/s and 1/s2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepSlopes {
@@ -30,82 +22,138 @@ pub(super) struct StepSlopes {
     pub acceleration: f64,
 }
 
-/// The residual r = M a + C v + springs - contact - load of every loaded freedom.
-///
-/// A contact wrench W on the insert does work on freedom j through its screw s_j, the motion of
-/// the femur relative to the insert, so the contact's force on that freedom is -W . s_j. Its
-/// derivative by q_k has four parts: the wrench changes with the pose, with the twist that q_k's
-/// rate adds, with the turning of the other screws' twist, and the screw s_j itself turns.
-pub(super) fn imbalance(
-    machine: &Machine,
-    chain: &Chain,
-    contact: &mut impl ContactModel,
-    kinematics: &Kinematics,
-    loads: &[f64; 6],
-    slopes: StepSlopes,
-) -> Imbalance {
-    let configuration = chain.at(&kinematics.positions);
-    let twist = configuration.twist(&kinematics.rates);
-    let response = contact.respond(&RelativeMotion {
-        pose: configuration.pose,
-        twist,
-    });
-    let (mut residual, mut tangent) = (Vec6::zeros(), Mat6::zeros());
-    for k in 0..6 {
-        let twist_change: Vec6 = (k + 1..6)
-            .map(|i| configuration.screw_derivative(i, k) * kinematics.rates[i])
-            .sum::<Vec6>()
-            + configuration.screws[k] * slopes.rate;
-        let wrench_change =
-            response.by_pose * configuration.screws[k] + response.by_twist * twist_change;
-        for j in 0..6 {
-            tangent[(j, k)] = configuration.screws[j].dot(&wrench_change)
-                + configuration.screw_derivative(j, k).dot(&response.wrench);
+/// A machine and its contact at one instant.
+pub(super) struct Balance<'a, C> {
+    machine: &'a Machine,
+    contact: &'a C,
+    configuration: Configuration,
+    kinematics: Kinematics,
+    wrench: Vec6,
+}
+
+impl<'a, C: ContactModel> Balance<'a, C> {
+    /// Lets the contact respond to the motion.
+    pub fn new(
+        machine: &'a Machine,
+        chain: &Chain,
+        contact: &'a mut C,
+        kinematics: Kinematics,
+    ) -> Self {
+        let configuration = chain.at(&kinematics.positions);
+        let twist = configuration.twist(&kinematics.rates);
+        let wrench = contact.respond(&RelativeMotion {
+            pose: configuration.pose,
+            twist,
+        });
+        Self {
+            machine,
+            contact,
+            configuration,
+            kinematics,
+            wrench,
         }
     }
-    for (j, row) in machine.freedoms.iter().enumerate() {
-        residual[j] = row.inertia * kinematics.accelerations[j]
-            + row.damping * kinematics.rates[j]
-            + configuration.screws[j].dot(&response.wrench)
-            - loads[j];
-        tangent[(j, j)] += row.inertia * slopes.acceleration + row.damping * slopes.rate;
-    }
-    for spring in &machine.ap_springs {
-        add_spring(spring, &kinematics.positions, &mut residual, &mut tangent);
-    }
-    hold_rows(machine, &mut residual, &mut tangent);
-    Imbalance { residual, tangent }
-}
 
-/// Adds a spring: its point moves u = AP + L sin(IE) along the AP axis.
-fn add_spring(spring: &ApSpring, positions: &[f64; 6], residual: &mut Vec6, tangent: &mut Mat6) {
-    let (ap, ie) = (
-        Freedom::AnteroPosterior as usize,
-        Freedom::InternalExternal as usize,
-    );
-    let (sine, cosine) = positions[ie].sin_cos();
-    let (along, across) = (
-        spring.lateral_offset_mm * cosine,
-        -spring.lateral_offset_mm * sine,
-    );
-    let (force, slope) = spring.force(positions[ap] + spring.lateral_offset_mm * sine);
-    residual[ap] -= force;
-    residual[ie] -= force * along;
-    tangent[(ap, ap)] -= slope;
-    tangent[(ap, ie)] -= slope * along;
-    tangent[(ie, ap)] -= slope * along;
-    tangent[(ie, ie)] -= slope * along * along + force * across;
-}
-
-/// Takes the rows that are not loaded out of the system: their positions are given.
-fn hold_rows(machine: &Machine, residual: &mut Vec6, tangent: &mut Mat6) {
-    for freedom in FREEDOMS {
-        if !matches!(machine.row(freedom).drive, Drive::Loaded(_)) {
-            let j = freedom as usize;
+    /// The residual r = M a + C v + springs - contact - load of every loaded freedom, N or N mm;
+    /// 0 on the others.
+    ///
+    /// A contact wrench W on the insert does work on freedom j through its screw s_j, the motion of
+    /// the femur relative to the insert, so the contact's force on that freedom is -W . s_j.
+    pub fn residual(&self, loads: &[f64; 6]) -> Vec6 {
+        let mut residual = Vec6::zeros();
+        for (j, row) in self.machine.freedoms.iter().enumerate() {
+            residual[j] = row.inertia * self.kinematics.accelerations[j]
+                + row.damping * self.kinematics.rates[j]
+                + self.configuration.screws[j].dot(&self.wrench)
+                - loads[j];
+        }
+        for spring in &self.machine.ap_springs {
+            spring_forces(spring, &self.kinematics.positions, &mut residual);
+        }
+        for j in held(self.machine) {
             residual[j] = 0.0;
+        }
+        residual
+    }
+
+    /// Derivative of the residual by the positions; the identity on rows that are not loaded.
+    ///
+    /// That of -W . s_j by q_k has four parts: the wrench changes with the pose, with the twist
+    /// that q_k's rate adds, with the turning of the other screws' twist, and s_j itself turns.
+    pub fn tangent(&self, slopes: StepSlopes) -> Mat6 {
+        let contact = self.contact.tangent();
+        let screws = &self.configuration.screws;
+        let mut tangent = Mat6::zeros();
+        for k in 0..6 {
+            let mut twist_change = screws[k] * slopes.rate;
+            for i in k + 1..6 {
+                twist_change +=
+                    self.configuration.screw_derivative(i, k) * self.kinematics.rates[i];
+            }
+            let wrench_change = contact.by_pose * screws[k] + contact.by_twist * twist_change;
+            for j in 0..6 {
+                tangent[(j, k)] = screws[j].dot(&wrench_change)
+                    + self.configuration.screw_derivative(j, k).dot(&self.wrench);
+            }
+        }
+        for (j, row) in self.machine.freedoms.iter().enumerate() {
+            tangent[(j, j)] += row.inertia * slopes.acceleration + row.damping * slopes.rate;
+        }
+        for spring in &self.machine.ap_springs {
+            spring_stiffness(spring, &self.kinematics.positions, &mut tangent);
+        }
+        for j in held(self.machine) {
             tangent.row_mut(j).fill(0.0);
             tangent.column_mut(j).fill(0.0);
             tangent[(j, j)] = 1.0;
         }
+        tangent
     }
+}
+
+/// Rows that are not loaded: their positions are given.
+fn held(machine: &Machine) -> impl Iterator<Item = usize> + '_ {
+    (0..6).filter(|&j| !matches!(machine.freedoms[j].drive, Drive::Loaded(_)))
+}
+
+/// Where a spring holds the insert: its point moves u = AP + L sin(IE) along the AP axis.
+struct SpringPlace {
+    force: f64,
+    slope: f64,
+    along: f64,
+    across: f64,
+}
+
+const AP: usize = Freedom::AnteroPosterior as usize;
+const IE: usize = Freedom::InternalExternal as usize;
+
+fn spring_place(spring: &ApSpring, positions: &[f64; 6]) -> SpringPlace {
+    let (sine, cosine) = positions[IE].sin_cos();
+    let offset = spring.lateral_offset_mm;
+    let (force, slope) = spring.force(positions[AP] + offset * sine);
+    SpringPlace {
+        force,
+        slope,
+        along: offset * cosine,
+        across: -offset * sine,
+    }
+}
+
+fn spring_forces(spring: &ApSpring, positions: &[f64; 6], residual: &mut Vec6) {
+    let place = spring_place(spring, positions);
+    residual[AP] -= place.force;
+    residual[IE] -= place.force * place.along;
+}
+
+fn spring_stiffness(spring: &ApSpring, positions: &[f64; 6], tangent: &mut Mat6) {
+    let SpringPlace {
+        force,
+        slope,
+        along,
+        across,
+    } = spring_place(spring, positions);
+    tangent[(AP, AP)] -= slope;
+    tangent[(AP, IE)] -= slope * along;
+    tangent[(IE, AP)] -= slope * along;
+    tangent[(IE, IE)] -= slope * along * along + force * across;
 }

@@ -190,7 +190,7 @@ impl<C: ContactModel> Simulator<'_, C> {
         };
         Landed {
             state: *state,
-            row: row(percent, state, touched),
+            row: row(percent, state, &touched),
             moments: touched
                 .iter()
                 .map(|node| (node.node, moment(node)))

@@ -2,7 +2,7 @@
 
 use super::{
     Chain, Drive, FREEDOMS, Machine,
-    balance::{Imbalance, Kinematics, StepSlopes, imbalance},
+    balance::{Balance, Kinematics, StepSlopes},
 };
 use crate::contact::{ContactModel, Mat6, Vec6};
 use serde::{Deserialize, Serialize};
@@ -71,7 +71,7 @@ impl Attempt {
     /// A correction that has made the residual longer, as friction does when it turns round, is
     /// taken back in part: to the minimum of the parabola through both lengths and the slope
     /// that Newton's method implies.
-    fn improve(&mut self, residual: &Vec6, tangent: &Mat6) -> bool {
+    fn improve(&mut self, residual: &Vec6, tangent: impl FnOnce() -> Mat6) -> bool {
         let residual_n = length_n(residual);
         if residual_n > self.residual_n {
             let (before, after) = (self.residual_n.powi(2), residual_n.powi(2));
@@ -81,7 +81,7 @@ impl Attempt {
             return longest_mm(&self.taken) > SHORTEST_CORRECTION_MM;
         }
         self.residual_n = residual_n;
-        let solved = tangent.lu().solve(&-residual);
+        let solved = tangent().lu().solve(&-residual);
         let Some(correction) = solved.filter(|c| c.iter().all(|x| x.is_finite())) else {
             return false;
         };
@@ -143,15 +143,9 @@ impl<C: ContactModel> Integrator<'_, C> {
         let mut attempt = Attempt::new(self.predicted(state, phase, step_s, ratio));
         for _ in 0..MOST_ITERATIONS {
             let kinematics = self.kinematics(state, &differences, attempt.positions, phase);
-            let Imbalance { residual, tangent } = imbalance(
-                self.machine,
-                self.chain,
-                self.contact,
-                &kinematics,
-                &loads,
-                slopes,
-            );
+            let balance = Balance::new(self.machine, self.chain, self.contact, kinematics);
             self.effort.contact_evaluations += 1;
+            let residual = balance.residual(&loads);
             if out_of_balance_n(&residual) <= self.force_tolerance_n {
                 return Ok(MachineState {
                     phase,
@@ -159,7 +153,7 @@ impl<C: ContactModel> Integrator<'_, C> {
                     before: Some((state.now, step_s)),
                 });
             }
-            if !attempt.improve(&residual, &tangent) {
+            if !attempt.improve(&residual, || balance.tangent(slopes)) {
                 break;
             }
             self.effort.newton_iterations += 1;

@@ -2,7 +2,7 @@
 
 use super::{
     Chain, Drive, Freedom, Machine, Waveform,
-    balance::{Kinematics, StepSlopes, imbalance},
+    balance::{Balance, Kinematics, StepSlopes},
     integrator::{Effort, drive, loads_at, longest_mm, out_of_balance_n},
 };
 use crate::contact::{ContactModel, Mat6};
@@ -56,9 +56,10 @@ pub fn settle(
             rate: 0.0,
             acceleration: 0.0,
         };
-        let balance = imbalance(&machine, chain, contact, &kinematics, &loads, still);
+        let balance = Balance::new(&machine, chain, contact, kinematics);
+        let residual = balance.residual(&loads);
         effort.contact_evaluations += 1;
-        let residual_n = out_of_balance_n(&balance.residual);
+        let residual_n = out_of_balance_n(&residual);
         if residual_n <= force_tolerance_n {
             return Ok(positions);
         }
@@ -66,8 +67,8 @@ pub fn settle(
             damping *= (residual_n / last_residual_n).clamp(0.3, 2.0);
         }
         last_residual_n = residual_n;
-        let damped = balance.tangent + damping_matrix(damping);
-        let Some(correction) = damped.lu().solve(&balance.residual) else {
+        let damped = balance.tangent(still) + damping_matrix(damping);
+        let Some(correction) = damped.lu().solve(&residual) else {
             break;
         };
         effort.newton_iterations += 1;
