@@ -11,8 +11,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle-fem", &[]),
     ("condyle", &["condyle-fem"]),
     ("condyle-io", &["condyle", "condyle-fem"]),
-    ("condyle-lab", &["condyle", "condyle-fem", "condyle-io"]),
+    // No solver: it reads a results folder.
     ("condyle-report", &["condyle-fem", "condyle-io"]),
+    (
+        "condyle-lab",
+        &["condyle", "condyle-fem", "condyle-io", "condyle-report"],
+    ),
     (
         "condyle-cli",
         &[
