@@ -6,6 +6,9 @@ use crate::Vec3;
 /// Vertex normals that lean further from their triangle's than 30 degrees mark a sharp edge.
 const LEAST_COSINE: f64 = 0.866;
 
+/// Surfaces steeper than 60 degrees are walls.
+const LEAST_SLOPE_COSINE: f64 = 0.5;
+
 /// A triangle mesh with vertex normals, read as samples of a smooth surface.
 ///
 /// Over a triangle with corners v_i and vertex normals n_i, the point c with barycentric
@@ -56,7 +59,8 @@ impl<'a> CurvedMesh<'a> {
 
     /// Height of the curved surface over the triangle at a place (x, z), if the triangle covers it.
     ///
-    /// At a sharp edge, where the vertex normals lean away from the triangle's, it stays flat.
+    /// At a sharp edge, where the vertex normals lean away from the triangle's, and on steep walls,
+    /// where a lift sideways has no height, it stays flat.
     pub fn height_over(&self, triangle: usize, (x, z): (f64, f64)) -> Option<f64> {
         const COVERED: f64 = -1e-9;
         let corners = self.corners(triangle);
@@ -79,10 +83,10 @@ impl<'a> CurvedMesh<'a> {
         let is_smooth = normals
             .iter()
             .all(|normal| normal.dot(&self.planes[triangle].0) > LEAST_COSINE);
-        if !is_smooth {
+        let normal = weighted(&normals, weights);
+        if !is_smooth || normal.y.abs() < LEAST_SLOPE_COSINE * normal.norm() {
             return Some(flat.y);
         }
-        let normal = weighted(&normals, weights);
         Some(flat.y + lift(&corners, &normals, weights, &flat).dot(&normal) / normal.y)
     }
 

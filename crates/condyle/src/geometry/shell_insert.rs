@@ -100,6 +100,9 @@ fn crossings(shell: &TriangleMesh, grid: &ColumnGrid) -> Vec<Column> {
     columns
 }
 
+/// Part of a cell within which a grid point lies on an edge.
+const ON_EDGE: f64 = 1e-9;
+
 /// Grid points between two places along one axis.
 fn grid_points(
     low: f64,
@@ -108,8 +111,10 @@ fn grid_points(
     step: f64,
     cells: usize,
 ) -> std::ops::RangeInclusive<usize> {
-    let first = ((low - origin) / step).ceil().max(0.0) as usize;
-    let last = (((high - origin) / step).floor() as usize).min(cells);
+    // A grid point on the very edge of the shell counts as inside, whatever way it is rounded.
+    let place = |value: f64| (value - origin) / step;
+    let first = (place(low) - ON_EDGE).ceil().max(0.0) as usize;
+    let last = ((place(high) + ON_EDGE).floor().max(0.0) as usize).min(cells);
     first..=last
 }
 
