@@ -2,22 +2,16 @@
 
 use std::process::ExitCode;
 
-use condyle_io::case::Case;
-
 use crate::{arguments::Check, exit};
 
 pub fn check(arguments: &Check) -> ExitCode {
-    let case = match Case::read(&arguments.case) {
-        Ok(case) => case,
-        Err(error) => return exit::fail_case(&error),
+    let (case, warnings) = match condyle_lab::check(&arguments.case, 1) {
+        Ok(checked) => checked,
+        Err(error) => return exit::fail_run(&error),
     };
-    match case.build(1) {
-        Ok(built) => built
-            .warnings
-            .iter()
-            .for_each(|warning| eprintln!("warning: {warning}")),
-        Err(error) => return exit::fail(error, exit::BAD_INPUT),
-    }
+    warnings
+        .iter()
+        .for_each(|warning| eprintln!("warning: {warning}"));
     if arguments.print {
         print!("{}", case.to_toml());
     } else {

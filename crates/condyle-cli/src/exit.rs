@@ -6,7 +6,8 @@ use std::{
     process::ExitCode,
 };
 
-use condyle_io::case::{CaseError, Look};
+use condyle_io::case::Look;
+use condyle_lab::RunError;
 
 /// Bad input.
 pub const BAD_INPUT: u8 = 2;
@@ -21,12 +22,23 @@ pub fn fail(error: impl Display, code: u8) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Prints all problems of a case file, each with a caret under its place.
-pub fn fail_case(error: &CaseError) -> ExitCode {
-    let look = match stderr().is_terminal() {
+/// Prints why a run failed, with a caret under its place in the case file where it has one, and
+/// gives the exit code.
+pub fn fail_run(error: &RunError) -> ExitCode {
+    let code = match error.is_physics() {
+        true => PHYSICS,
+        false => BAD_INPUT,
+    };
+    let Some(in_case) = error.in_case() else {
+        return fail(error, code);
+    };
+    eprint!("{}", in_case.render(look()));
+    ExitCode::from(code)
+}
+
+fn look() -> Look {
+    match stderr().is_terminal() {
         true => Look::Terminal { width: 100 },
         false => Look::Plain,
-    };
-    eprint!("{}", error.render(look));
-    ExitCode::from(BAD_INPUT)
+    }
 }

@@ -11,7 +11,7 @@ use std::{
 };
 
 use condyle_io::results::Summary;
-use condyle_lab::{Outcome, RunError, RunOptions};
+use condyle_lab::{Outcome, RunOptions};
 
 use crate::{arguments::Run, exit, progress::Progress};
 
@@ -39,6 +39,11 @@ pub fn run(arguments: &Run) -> ExitCode {
             print_summary(&summary, &options, arguments.json);
             ExitCode::SUCCESS
         }
+        Ok(Outcome::DoneBefore(summary)) => {
+            eprintln!("this run is done already: nothing was computed");
+            print_summary(&summary, &options, arguments.json);
+            ExitCode::SUCCESS
+        }
         Ok(Outcome::Interrupted { done, of }) => {
             let (case, out) = (arguments.case.display(), options.out.display());
             eprintln!(
@@ -46,9 +51,7 @@ pub fn run(arguments: &Run) -> ExitCode {
             );
             ExitCode::from(exit::INTERRUPTED)
         }
-        Err(RunError::Case(error)) => exit::fail_case(&error),
-        Err(error) if error.is_physics() => exit::fail(error, exit::PHYSICS),
-        Err(error) => exit::fail(error, exit::BAD_INPUT),
+        Err(error) => exit::fail_run(&error),
     }
 }
 

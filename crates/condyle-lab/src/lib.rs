@@ -2,4 +2,4 @@
 
 mod run;
 
-pub use run::{Happening, Outcome, RunError, RunOptions, run};
+pub use run::{Happening, Outcome, RunError, RunOptions, check, run};

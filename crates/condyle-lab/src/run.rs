@@ -8,12 +8,12 @@ use std::{
 };
 
 use condyle::{
-    evolve::{March, MarchError, PlacementError, Progress, UpdateRecord},
+    evolve::{March, MarchError, PlacementError, Progress, UpdateRecord, WearTest},
     machine::CycleError,
 };
 use condyle_io::{
-    case::{BuildError, Case, CaseError},
-    results::{ResultsError, ResultsFolder, Summary, SummaryInput},
+    case::{BuildError, BuildWarning, Built, Case, CaseError},
+    results::{Found, ResultsError, ResultsFolder, Summary, SummaryInput},
 };
 use thiserror::Error;
 
@@ -51,6 +51,8 @@ pub enum Happening<'a> {
 pub enum Outcome {
     /// All cycles are done.
     Done(Box<Summary>),
+    /// The folder holds the whole run already; nothing was computed.
+    DoneBefore(Box<Summary>),
     /// Somebody asked to stop; what was computed is kept, and can be gone on with.
     Interrupted {
         /// Updates done.
@@ -67,8 +69,13 @@ pub enum RunError {
     #[error(transparent)]
     Case(#[from] CaseError),
     /// The bodies that the case describes.
-    #[error(transparent)]
-    Build(#[from] BuildError),
+    #[error("{shown}")]
+    Build {
+        /// Why.
+        source: BuildError,
+        /// The same at the key of the case that is behind it.
+        shown: CaseError,
+    },
     /// A mesh that went away.
     #[error("a mesh of the case cannot be read: {0}; check the paths in the case")]
     Inputs(#[source] io::Error),
@@ -79,8 +86,13 @@ pub enum RunError {
     #[error(transparent)]
     Report(#[from] condyle_report::ReportError),
     /// Two bodies that make no knee.
-    #[error(transparent)]
-    Placement(#[from] PlacementError),
+    #[error("{shown}")]
+    Placement {
+        /// Why.
+        source: PlacementError,
+        /// The same at the key of the case that is behind it.
+        shown: CaseError,
+    },
     /// The physics.
     #[error("{source}; what was computed is kept in {}", out.display())]
     March {
@@ -96,15 +108,30 @@ impl RunError {
     pub fn is_physics(&self) -> bool {
         matches!(
             self,
-            Self::March { .. } | Self::Placement(PlacementError::NotSettled { .. })
+            Self::March { .. }
+                | Self::Placement {
+                    source: PlacementError::NotSettled { .. },
+                    ..
+                }
         )
+    }
+
+    /// The error with its place in the case file, where it has one.
+    pub fn in_case(&self) -> Option<&CaseError> {
+        match self {
+            Self::Case(shown) | Self::Build { shown, .. } | Self::Placement { shown, .. } => {
+                Some(shown)
+            }
+            Self::Inputs(_) | Self::Results(_) | Self::Report(_) | Self::March { .. } => None,
+        }
     }
 }
 
 /// Runs the case at `case_path`.
 ///
 /// `happening` hears of everything and may stop the run by breaking; the updates done are then on
-/// the disk, and a run with `resume` goes on to the same bytes as one never stopped.
+/// the disk, and a run with `resume` goes on to the same bytes as one never stopped. A run that
+/// cannot start makes no folder, and one that is done is left as it is.
 ///
 /// # Errors
 /// A bad case, a folder that cannot be used, or physics that cannot be solved.
@@ -115,22 +142,33 @@ pub fn run(
 ) -> Result<Outcome, RunError> {
     let case = Case::read(case_path)?;
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
+    let found = found(&case, options, &inputs_blake3)?;
+    if let Found::Done(summary) = found {
+        // It may have been stopped before it wrote the page; the same folder gives the same one.
+        condyle_report::write_report(&options.out)?;
+        return Ok(Outcome::DoneBefore(summary));
+    }
     let mut clock = Clock::default();
-    let built = clock.time(|| case.build(options.threads))?;
+    let built = clock.time(|| build(&case, options.threads))?;
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
     for warning in &warnings {
         let _ = happening(Happening::Warning(warning.clone()));
     }
     let side = case.heading.side;
-    let (folder, mut march) = if options.resume {
-        let (folder, checkpoint) = ResultsFolder::reopen(&options.out, &inputs_blake3)?;
-        (folder, March::resume(built.test, checkpoint.state))
-    } else {
-        let march = clock.time(|| March::start(built.test))?;
-        let folder = ResultsFolder::create(&options.out)?;
-        folder.write_case(&case.to_toml())?;
-        folder.write_update(&march, side, &inputs_blake3)?;
-        (folder, march)
+    let (folder, mut march) = match found {
+        Found::Checkpoint(checkpoint, spent_s) => {
+            clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
+            let march = clock.time(|| March::resume(built.test, checkpoint.state));
+            (ResultsFolder::existing(&options.out), march)
+        }
+        Found::Case | Found::Nothing | Found::Done(_) => {
+            let march = clock.time(|| start(&case, built.test))?;
+            let folder = ResultsFolder::create(&options.out)?;
+            folder.write_case(&case.to_toml())?;
+            folder.write_update(&march, side, &inputs_blake3)?;
+            folder.write_time_spent(clock.spent.as_secs_f64())?;
+            (folder, march)
+        }
     };
     let of = march.test().schedule.updates;
     let mut stop = happening(Happening::Started {
@@ -148,6 +186,7 @@ pub fn run(
         match clock.time(|| march.update(&mut watch).cloned()) {
             Ok(update) => {
                 folder.write_update(&march, side, &inputs_blake3)?;
+                folder.write_time_spent(clock.spent.as_secs_f64())?;
                 stop = happening(Happening::Updated(&update));
             }
             Err(MarchError::Cycle {
@@ -165,7 +204,44 @@ pub fn run(
     let summary = summary(&march, clock.spent, inputs_blake3, warnings);
     folder.write_summary(&summary)?;
     condyle_report::write_report(folder.path())?;
+    folder.finish()?;
     Ok(Outcome::Done(Box::new(summary)))
+}
+
+/// What the folder holds; an error if it is not free, or with `resume` if there is no run in it.
+fn found(case: &Case, options: &RunOptions, inputs_blake3: &str) -> Result<Found, ResultsError> {
+    if options.resume {
+        let updates = case.march.updates as usize;
+        ResultsFolder::reopen(&options.out, &case.to_toml(), inputs_blake3, updates)
+    } else {
+        ResultsFolder::free(&options.out).map(|()| Found::Nothing)
+    }
+}
+
+/// Checks the case at `case_path` as far as a run would go before its first cycle: the file, the
+/// meshes, and that the femur settles on the insert. Gives the case and what was put right.
+///
+/// # Errors
+/// Those of a run that cannot start.
+pub fn check(case_path: &Path, threads: usize) -> Result<(Case, Vec<BuildWarning>), RunError> {
+    let case = Case::read(case_path)?;
+    let built = build(&case, threads)?;
+    start(&case, built.test)?;
+    Ok((case, built.warnings))
+}
+
+fn build(case: &Case, threads: usize) -> Result<Built, RunError> {
+    case.build(threads).map_err(|source| RunError::Build {
+        shown: case.at_its_key(&source),
+        source,
+    })
+}
+
+fn start(case: &Case, test: WearTest) -> Result<March, RunError> {
+    March::start(test).map_err(|source| RunError::Placement {
+        shown: case.placement_at_its_key(&source),
+        source,
+    })
 }
 
 fn summary(

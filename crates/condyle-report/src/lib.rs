@@ -37,7 +37,10 @@ pub fn write_report(results_dir: &Path) -> Result<PathBuf, ReportError> {
 }
 
 fn write(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
-    match std::fs::write(&path, text) {
+    // Beside it and then in its place in one step: a stop leaves the old page or the new one.
+    let mut beside = path.clone().into_os_string();
+    beside.push(".part");
+    match std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, &path)) {
         Ok(()) => Ok(path),
         Err(source) => Err(ReportError::Write { path, source }),
     }

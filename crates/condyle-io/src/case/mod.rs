@@ -12,6 +12,7 @@ mod files;
 mod fingerprint;
 mod keys;
 mod machine;
+mod origin;
 mod parse;
 mod problems;
 mod samples;
@@ -48,6 +49,7 @@ pub use schema::schema_markdown;
 pub use shapes::{Femur, Insert};
 pub use to_toml::template;
 
+use origin::Origin;
 use parse::{Log, Others, Section, names};
 use problems::Source;
 
@@ -72,6 +74,7 @@ pub struct Case {
     pub march: March,
     /// Steps and tolerances in time.
     pub time: Time,
+    origin: Origin,
 }
 
 /// Every table of a case, in the order they are written.
@@ -142,6 +145,7 @@ fn read_case(root: &Section<'_>, log: &mut Log<'_>) -> Option<Case> {
         wear: wear?,
         march: march?,
         time: time?,
+        origin: Origin::of(log.source()),
     })
 }
 

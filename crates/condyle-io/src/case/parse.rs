@@ -28,6 +28,11 @@ impl<'a> Log<'a> {
         }
     }
 
+    /// The case file.
+    pub(super) fn source(&self) -> &Source {
+        &self.source
+    }
+
     /// Folder that paths in the case count from.
     pub(super) fn folder(&self) -> &'a Path {
         self.folder

@@ -187,6 +187,12 @@ pub enum Reason {
         /// Drives it can have.
         drives: &'static str,
     },
+    /// Values that are good one by one and make no wear test together.
+    #[error("{message}")]
+    Unfit {
+        /// Why, and what to do.
+        message: String,
+    },
     /// A CSV file without a header.
     #[error("{file} has no header that names its columns")]
     NoHeader {
@@ -307,6 +313,7 @@ impl Reason {
             Self::NotNumber { .. } => Some("write a number there, or remove the row".to_owned()),
             Self::Syntax { .. } => Some(SYNTAX_ADVICE.to_owned()),
             Self::WrongType { .. }
+            | Self::Unfit { .. }
             | Self::UnreadableFile { .. }
             | Self::Waveform { .. }
             | Self::PressureTable { .. }

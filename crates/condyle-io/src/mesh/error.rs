@@ -173,3 +173,25 @@ pub enum MeshFileError {
         nodes: usize,
     },
 }
+
+impl MeshFileError {
+    /// The file that is at fault; none for values given by a caller.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Missing { path }
+            | Self::Unreadable { path, .. }
+            | Self::Unwritable { path, .. }
+            | Self::UnknownExtension { path, .. }
+            | Self::NoTriangles { path }
+            | Self::NoHexahedra { path } => Some(path),
+            Self::Parse { at, .. }
+            | Self::NonFinite { at, .. }
+            | Self::IndexOutOfRange { at, .. }
+            | Self::NotHexahedron { at, .. }
+            | Self::Inverted { at, .. }
+            | Self::NotOnBoundary { at, .. }
+            | Self::SeveralBodies { at, .. } => Some(&at.path),
+            Self::ArrayLength { .. } => None,
+        }
+    }
+}

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// First bytes of a checkpoint; the last is the version of what follows.
-const MAGIC: &[u8; 20] = b"condyle checkpoint \x01";
+const MAGIC: &[u8; 20] = b"condyle checkpoint \x02";
 /// Length of the hash that guards the content.
 const HASH_LENGTH: usize = 32;
 
@@ -14,6 +14,8 @@ const HASH_LENGTH: usize = 32;
 pub struct Checkpoint {
     /// Hash of case and meshes, in hexadecimal.
     pub inputs_blake3: String,
+    /// Version of condyle that wrote it.
+    pub version: String,
     /// The march.
     pub state: MarchState,
 }

@@ -20,16 +20,41 @@ use crate::{case::Side, mesh::MeshFileError};
 #[derive(Debug, Error)]
 pub enum ResultsError {
     /// A run is already in it.
-    #[error("{}: the folder already holds a run; give another folder with --out, or go on with --resume", folder.display())]
+    #[error(
+        "{}: the folder already holds a run ({file} is there); \
+         give another folder with --out, or go on with --resume",
+        folder.display()
+    )]
     HoldsRun {
         /// The folder.
         folder: PathBuf,
+        /// A file of the run.
+        file: &'static str,
+    },
+    /// A file stands where the folder should be.
+    #[error("{}: this is a file and no folder; give another folder with --out", path.display())]
+    NoFolder {
+        /// The file.
+        path: PathBuf,
     },
     /// No run is in it to go on with.
     #[error("{}: the folder holds no run to go on with; leave out --resume", folder.display())]
     HoldsNone {
         /// The folder.
         folder: PathBuf,
+    },
+    /// The run in it was begun by another version.
+    #[error(
+        "{}: the run in this folder was begun by condyle {version}, and this is {}; \
+         go on with that version, or run the case anew into another folder",
+        folder.display(),
+        env!("CARGO_PKG_VERSION")
+    )]
+    OtherVersion {
+        /// The folder.
+        folder: PathBuf,
+        /// The version that began it.
+        version: String,
     },
     /// The run in it is one of another case.
     #[error("{}: the run in this folder is one of another case or other meshes; give another folder with --out", folder.display())]
@@ -64,56 +89,158 @@ pub struct ResultsFolder {
     path: PathBuf,
 }
 
-/// Files that show that a folder holds a run.
-const SIGNS_OF_A_RUN: [&str; 3] = ["checkpoint", "summary.json", "wear.csv"];
+/// Files of a run that are never written over by another; the one written first comes first.
+const SIGNS_OF_A_RUN: [&str; 8] = [
+    "case.toml",
+    "checkpoint",
+    "summary.json",
+    "wear.csv",
+    "kinematics.csv",
+    "insert.pvd",
+    "insert_0000.vtu",
+    "report.html",
+];
+
+/// Seconds spent by the parts of a run that is not done; gone once it is, so that what is left
+/// is the same bytes whether it was stopped or not.
+const TIME_SPENT: &str = "time_spent_s";
+
+/// What a folder holds of a run to go on with.
+#[derive(Debug)]
+pub enum Found {
+    /// Nothing yet: a new run starts.
+    Nothing,
+    /// Nothing but the case: the run was stopped before its first checkpoint.
+    Case,
+    /// A checkpoint, and the seconds that the run has taken so far.
+    Checkpoint(Box<Checkpoint>, f64),
+    /// The whole run, with its summary.
+    Done(Box<Summary>),
+}
 
 impl ResultsFolder {
-    /// A folder for a new run, made if it is not there.
+    /// The folder at `path`, as it is.
+    pub fn existing(path: &Path) -> Self {
+        let path = path.to_owned();
+        Self { path }
+    }
+
+    /// Whether a new run can be written to `path`; nothing is made.
     ///
     /// # Errors
-    /// A folder that holds a run, or that cannot be made.
-    pub fn create(path: &Path) -> Result<Self, ResultsError> {
-        let folder = Self {
-            path: path.to_owned(),
-        };
-        if SIGNS_OF_A_RUN.iter().any(|name| folder.file(name).exists()) {
-            return Err(ResultsError::HoldsRun {
-                folder: path.to_owned(),
-            });
+    /// A folder that holds a run, or a file in its place.
+    pub fn free(path: &Path) -> Result<(), ResultsError> {
+        let folder = Self::existing(path);
+        if path.exists() && !path.is_dir() {
+            return Err(ResultsError::NoFolder { path: folder.path });
         }
+        let is_there = |name: &&&str| folder.file(name).exists();
+        match SIGNS_OF_A_RUN.iter().find(is_there) {
+            Some(&file) => Err(ResultsError::HoldsRun {
+                folder: folder.path,
+                file,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// A folder for a run, made if it is not there.
+    ///
+    /// # Errors
+    /// A folder that cannot be made.
+    pub fn create(path: &Path) -> Result<Self, ResultsError> {
         fs::create_dir_all(path).map_err(|source| ResultsError::Refused {
             file: path.to_owned(),
             source,
         })?;
-        Ok(folder)
+        Ok(Self::existing(path))
     }
 
-    /// The folder of a run to go on with, and its checkpoint.
+    /// What the folder holds of a run of `updates` updates to go on with.
+    ///
+    /// `case_toml` is the case as [`Self::write_case`] would write it.
     ///
     /// # Errors
     /// A folder without a run, with one of other inputs, or with a damaged checkpoint.
-    pub fn reopen(path: &Path, inputs_blake3: &str) -> Result<(Self, Checkpoint), ResultsError> {
-        let folder = Self {
-            path: path.to_owned(),
-        };
-        let file = folder.file("checkpoint");
-        if !file.exists() {
-            return Err(ResultsError::HoldsNone {
-                folder: path.to_owned(),
+    pub fn reopen(
+        path: &Path,
+        case_toml: &str,
+        inputs_blake3: &str,
+        updates: usize,
+    ) -> Result<Found, ResultsError> {
+        let folder = Self::existing(path);
+        if !folder.file("checkpoint").exists() {
+            return match fs::read_to_string(folder.file("case.toml")) {
+                Ok(text) if text == case_toml => Ok(Found::Case),
+                Ok(_) | Err(_) => Err(ResultsError::HoldsNone {
+                    folder: folder.path,
+                }),
+            };
+        }
+        let checkpoint = folder.checkpoint()?;
+        if checkpoint.inputs_blake3 != inputs_blake3 {
+            return Err(ResultsError::OtherCase {
+                folder: folder.path,
             });
         }
+        if checkpoint.version != env!("CARGO_PKG_VERSION") {
+            return Err(ResultsError::OtherVersion {
+                folder: folder.path,
+                version: checkpoint.version,
+            });
+        }
+        Ok(match folder.summary() {
+            Some(summary) if checkpoint.state.updates.len() >= updates => Found::Done(summary),
+            Some(_) | None => Found::Checkpoint(Box::new(checkpoint), folder.time_spent_s()),
+        })
+    }
+
+    fn checkpoint(&self) -> Result<Checkpoint, ResultsError> {
+        let file = self.file("checkpoint");
         let bytes = fs::read(&file).map_err(|source| ResultsError::Refused {
             file: file.clone(),
             source,
         })?;
-        let checkpoint = Checkpoint::from_bytes(&bytes)
-            .map_err(|source| ResultsError::Checkpoint { file, source })?;
-        if checkpoint.inputs_blake3 != inputs_blake3 {
-            return Err(ResultsError::OtherCase {
-                folder: path.to_owned(),
-            });
+        Checkpoint::from_bytes(&bytes).map_err(|source| ResultsError::Checkpoint { file, source })
+    }
+
+    /// The summary, which is the last file of a run.
+    fn summary(&self) -> Option<Box<Summary>> {
+        let text = fs::read_to_string(self.file("summary.json")).ok()?;
+        serde_json::from_str(&text).ok()
+    }
+
+    /// What [`Self::write_time_spent`] wrote; 0 if that is gone.
+    fn time_spent_s(&self) -> f64 {
+        let text = fs::read_to_string(self.file(TIME_SPENT)).unwrap_or_default();
+        let seconds = text.trim().parse().unwrap_or(0.0);
+        if f64::is_finite(seconds) {
+            seconds
+        } else {
+            0.0
         }
-        Ok((folder, checkpoint))
+    }
+
+    /// Writes how many seconds the run has taken so far.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_time_spent(&self, seconds: f64) -> Result<(), ResultsError> {
+        self.replace(TIME_SPENT, format!("{seconds}\n").as_bytes())
+    }
+
+    /// Takes away what only a run that is not done needs.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn finish(&self) -> Result<(), ResultsError> {
+        let file = self.file(TIME_SPENT);
+        match fs::remove_file(&file) {
+            Err(source) if source.kind() != io::ErrorKind::NotFound => {
+                Err(ResultsError::Refused { file, source })
+            }
+            Ok(()) | Err(_) => Ok(()),
+        }
     }
 
     /// Where it is.
@@ -153,6 +280,7 @@ impl ResultsFolder {
         )?;
         let checkpoint = Checkpoint {
             inputs_blake3: inputs_blake3.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
             state: state.clone(),
         };
         let file = self.file("checkpoint");

@@ -8,6 +8,6 @@ mod summary;
 mod tables;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
-pub use folder::{ResultsError, ResultsFolder};
+pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_series::insert_file_name;
 pub use summary::{Summary, SummaryInput};

@@ -16,7 +16,8 @@ pub struct SummaryInput<'a> {
     pub hexahedra: usize,
     /// Nodes of the articulating surface.
     pub articulating_nodes: usize,
-    /// Seconds from the parsed case to the last update, files and report apart.
+    /// Seconds from the parsed case to the last update, files and report apart; of a run that was
+    /// stopped, those of all its parts but for updates begun and lost.
     pub wall_s: f64,
     /// Hash of case and meshes, in hexadecimal.
     pub inputs_blake3: String,
@@ -69,7 +70,8 @@ pub struct Summary {
     pub worst_quality: f64,
     /// What was put right or looks doubtful.
     pub warnings: Vec<String>,
-    /// Seconds from the parsed case to the last update, files and report apart.
+    /// Seconds from the parsed case to the last update, files and report apart; of a run that was
+    /// stopped, those of all its parts but for updates begun and lost.
     pub wall_s: f64,
     /// Version of condyle.
     pub version: String,

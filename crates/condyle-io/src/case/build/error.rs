@@ -1,6 +1,6 @@
 //! Why a good case makes no wear test.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use condyle::geometry::{InsertError, ShellError, ShellInsertError};
 use thiserror::Error;
@@ -44,6 +44,8 @@ pub enum BuildError {
     NoSurface {
         /// The file.
         file: PathBuf,
+        /// The key that names it.
+        key: &'static str,
         /// The name that the case gives.
         name: String,
         /// Names there are.
@@ -55,6 +57,20 @@ pub enum BuildError {
     /// Axes that are no right-handed frame.
     #[error("`axes`: {0}")]
     Axes(#[from] AxesError),
+}
+
+impl BuildError {
+    /// The mesh file that is at fault.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::MeshFile(error) => error.path(),
+            Self::Shell { file, .. }
+            | Self::ShellInsert { file, .. }
+            | Self::ThicknessOfClosed { file }
+            | Self::NoSurface { file, .. } => Some(file),
+            Self::Insert(_) | Self::Axes(_) => None,
+        }
+    }
 }
 
 fn listed(names: &[String]) -> String {
@@ -80,6 +96,17 @@ pub enum BuildWarning {
         /// The file.
         file: PathBuf,
         /// How many.
+        count: usize,
+    },
+    /// Some neighbouring triangles cross a little.
+    #[error(
+        "{}: {count} pairs of neighbouring triangles cross a little; they are left as they are",
+        file.display()
+    )]
+    Wrinkles {
+        /// The file.
+        file: PathBuf,
+        /// How many pairs.
         count: usize,
     },
     /// Some triangles had no area.

@@ -69,12 +69,12 @@ fn from_hexahedra(insert: &HexahedralInsert, side: Side) -> Result<Insert, Build
     let path = insert.file.path();
     let mut file = read_hexahedra(path)?;
     place(&mut file, &placing);
-    let surface = |name: &Option<String>, up: f64| match name {
-        Some(name) => named(&file, name, insert),
+    let surface = |key, name: &Option<String>, up: f64| match name {
+        Some(name) => named(&file, key, name, insert),
         None => Ok(facing(&file.mesh, up)),
     };
-    let articulating = surface(&insert.articulating_surface, 1.0)?;
-    let backside = surface(&insert.backside, -1.0)?;
+    let articulating = surface("articulating_surface", &insert.articulating_surface, 1.0)?;
+    let backside = surface("backside", &insert.backside, -1.0)?;
     Ok(Insert::new(file.mesh, articulating, &backside)?)
 }
 
@@ -100,6 +100,7 @@ fn place(file: &mut HexFile, placing: &Placing) {
 
 fn named(
     file: &HexFile,
+    key: &'static str,
     name: &str,
     insert: &HexahedralInsert,
 ) -> Result<Vec<[u32; 4]>, BuildError> {
@@ -107,6 +108,7 @@ fn named(
         Some(surface) => Ok(surface.quads.clone()),
         None => Err(BuildError::NoSurface {
             file: insert.file.path().to_path_buf(),
+            key,
             name: name.to_owned(),
             names: file
                 .surfaces

@@ -86,6 +86,13 @@ fn warn(path: &Path, shell: &CheckedShell, warnings: &mut Vec<BuildWarning>) {
             count,
         });
     }
+    if shell.wrinkles > 0 {
+        let count = shell.wrinkles;
+        warnings.push(BuildWarning::Wrinkles {
+            file: file(),
+            count,
+        });
+    }
     if shell.removed_degenerate > 0 {
         let count = shell.removed_degenerate;
         warnings.push(BuildWarning::RemovedDegenerate {
