@@ -7,9 +7,12 @@ pub mod contact;
 pub mod evolve;
 pub mod geometry;
 pub mod machine;
+pub mod number;
 pub mod wear;
 
 /// A point or a vector in space, mm unless said otherwise.
 pub type Vec3 = nalgebra::Vector3<f64>;
+/// A vector of numbers, or of several side by side.
+pub type Vector<T> = nalgebra::Vector3<T>;
 /// A 3 by 3 matrix.
 pub type Mat3 = nalgebra::Matrix3<f64>;

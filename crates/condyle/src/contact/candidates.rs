@@ -1,9 +1,10 @@
 //! Which nodes may touch: a short list, kept while the femur moves little.
 
-use super::Pose;
+use super::{Pose, motion::Pose4};
 use crate::{
-    Vec3,
+    Vec3, Vector,
     geometry::{ArticulatingSurface, FemoralSurface, Share},
+    number::{LANES, Lanes, Number},
 };
 
 /// Nodes are listed while their share could come into contact within this much motion, mm.
@@ -17,12 +18,17 @@ const SHARPEST_PER_MM: f64 = 0.2;
 /// reach that keeps the mean overclosure's closed form away from 0/0, mm.
 const SPREAD_MM: f64 = 0.02;
 
-/// A node that may touch.
-#[derive(Clone, Copy)]
-pub(super) struct Candidate {
-    pub node: u32,
-    /// The share touches only where its gap is below this, mm: half its rise over both edges.
-    pub reach_mm: f64,
+/// Four nodes that may touch, side by side; a lane too many repeats the last node without area.
+pub(super) struct Candidates4 {
+    pub nodes: [u32; LANES],
+    pub centre: Vector<Lanes>,
+    pub edge_a: Vector<Lanes>,
+    pub edge_b: Vector<Lanes>,
+    pub area_mm2: Lanes,
+    pub spread_mm2: Lanes,
+    pub thickness_mm: Lanes,
+    /// A share touches only where its gap is below this, mm: half its rise over both edges.
+    reach_mm: Lanes,
 }
 
 /// The nodes that may touch, exactly those a search over all nodes would find.
@@ -30,7 +36,7 @@ pub(super) struct Candidate {
 /// A gap changes no faster than the point moves in the femoral frame. So a node that is further
 /// from contact than the femur has moved since the list was made cannot touch.
 pub(super) struct Candidates {
-    list: Vec<Candidate>,
+    list: Vec<Candidates4>,
     made_at: Option<Pose>,
     /// Corners of the box around all shares.
     box_corners: [Vec3; 8],
@@ -57,7 +63,13 @@ impl Candidates {
     }
 
     /// Makes the list good for a pose.
-    pub fn update(&mut self, pose: &Pose, femur: &FemoralSurface, shares: &[Share]) {
+    pub fn update(
+        &mut self,
+        pose: &Pose,
+        femur: &FemoralSurface,
+        shares: &[Share],
+        thickness_mm: &[f64],
+    ) {
         if let Some(made_at) = &self.made_at {
             let Motion {
                 farthest_mm,
@@ -69,26 +81,26 @@ impl Candidates {
                 return;
             }
         }
-        let candidate = |(node, share)| {
+        let candidate = |(node, share): (u32, &Share)| {
             let (to_contact_mm, reach_mm) =
                 distance_to_contact(share, pose, femur, self.longest_half_mm);
-            (to_contact_mm <= MARGIN_MM).then_some(Candidate { node, reach_mm })
+            (to_contact_mm <= MARGIN_MM).then_some((node, reach_mm))
         };
-        let list = (0..).zip(shares).filter_map(candidate).collect();
-        self.list = list;
+        let found: Vec<(u32, f64)> = (0..).zip(shares).filter_map(candidate).collect();
+        let four = |some: &[(u32, f64)]| Candidates4::new(some, shares, thickness_mm);
+        self.list = found.chunks(LANES).map(four).collect();
         self.made_at = Some(*pose);
         self.reach_growth_mm = 0.0;
     }
 
     /// The candidates that a look at their gap does not rule out, ascending.
-    pub fn near(&self, gap_mm: impl Fn(u32) -> f64) -> impl Iterator<Item = u32> {
-        let may_touch = move |candidate: &&Candidate| {
-            gap_mm(candidate.node) <= candidate.reach_mm + self.reach_growth_mm + SPREAD_MM
-        };
-        self.list
-            .iter()
-            .filter(may_touch)
-            .map(|candidate| candidate.node)
+    #[inline]
+    pub fn near(&self, pose: &Pose4, femur: &FemoralSurface) -> impl Iterator<Item = &Candidates4> {
+        let slack = Lanes::splat(self.reach_growth_mm + SPREAD_MM);
+        self.list.iter().filter(move |four| {
+            let gap = femur.gap_mm(&pose.to_femur(&four.centre));
+            (gap - four.reach_mm - slack).any_below_zero()
+        })
     }
 
     /// The motion of a point is affine in its place, so its length is largest at a corner of the box.
@@ -102,6 +114,32 @@ impl Candidates {
                 .fold(0.0, f64::max)
                 .sqrt(),
             turn_rad: (to.rotation - from.rotation).norm(),
+        }
+    }
+}
+
+impl Candidates4 {
+    fn new(some: &[(u32, f64)], shares: &[Share], thickness_mm: &[f64]) -> Self {
+        let nodes = std::array::from_fn(|lane| some[lane.min(some.len() - 1)].0);
+        let share = |lane: usize| &shares[nodes[lane] as usize];
+        let vector = |of: fn(&Share) -> &Vec3| {
+            Vector::from([0, 1, 2].map(|axis| Lanes::from_lanes(|lane| of(share(lane))[axis])))
+        };
+        Self {
+            nodes,
+            centre: vector(|share| &share.centre),
+            edge_a: vector(|share| &share.edge_a),
+            edge_b: vector(|share| &share.edge_b),
+            area_mm2: Lanes::from_lanes(|lane| {
+                if lane < some.len() {
+                    share(lane).area_mm2
+                } else {
+                    0.0
+                }
+            }),
+            spread_mm2: Lanes::from_lanes(|lane| share(lane).spread_mm2),
+            thickness_mm: Lanes::from_lanes(|lane| thickness_mm[nodes[lane] as usize]),
+            reach_mm: Lanes::from_lanes(|lane| some[lane.min(some.len() - 1)].1),
         }
     }
 }

@@ -1,15 +1,16 @@
 //! The elastic foundation: rigid bodies, and pressure from local overclosure.
 
 use super::{
-    ContactModel, Mat6, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
-    candidates::Candidates,
-    motion::twist_to_femur,
+    ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
+    candidates::{Candidates, Candidates4},
+    motion::{Pose4, twist_to_femur},
     partial::mean_overclosure,
-    traction::{Rubbing, Traction, split_velocity, wrench},
+    traction::{Sliding, TangentSum, Tractions4, WrenchSum},
 };
 use crate::{
-    Vec3,
+    Vec3, Vector,
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
+    number::{LANES, Lanes, Number},
 };
 
 /// How the foundation presses and rubs.
@@ -41,7 +42,7 @@ pub struct Foundation<'a> {
     thickness_mm: Vec<f64>,
     candidates: Candidates,
     /// What presses at the last response.
-    tractions: Vec<Traction>,
+    tractions: Vec<Tractions4>,
     /// Where the femur was then.
     pose: Pose,
 }
@@ -78,59 +79,50 @@ impl<'a> Foundation<'a> {
         self.surface
     }
 
-    /// Pressure and rubbing on one share, if any of it presses.
+    /// Pressure and rubbing on four shares.
     ///
     /// With n the femur's normal, K its curvature, e_k the share's edges and W the mean
     /// overclosure of the share, a motion a and a turn w of the femur change the middle's
     /// overclosure by G . a, the normal by w x n - K a, and each rise n . e_k with the normal.
-    #[inline]
-    fn press(&self, node: u32, pose: &Pose, angular: &Vec3, linear: &Vec3) -> Option<Traction> {
-        let share = &self.surface.shares[node as usize];
-        let place = pose.to_femur(&share.centre);
-        let sample = self.femur.sample(&place, share.spread_mm2);
-        let normal_in_insert = pose.rotation * sample.normal;
+    #[inline(always)]
+    fn press(
+        &self,
+        four: &Candidates4,
+        pose: &Pose4,
+        angular: &Vector<Lanes>,
+        linear: &Vector<Lanes>,
+    ) -> Tractions4 {
+        let place = pose.to_femur(&four.centre);
+        let sample = self.femur.sample(&place, four.spread_mm2);
+        let normal_in_insert = pose.turn_to_insert(&sample.normal);
         let rise = [
-            normal_in_insert.dot(&share.edge_a),
-            normal_in_insert.dot(&share.edge_b),
+            normal_in_insert.dot(&four.edge_a),
+            normal_in_insert.dot(&four.edge_b),
         ];
-        let mean = mean_overclosure(-sample.gap_mm, rise)?;
-        let (pressure_mpa, slope) = self
-            .settings
-            .law
-            .pressure(mean.mm, self.thickness_mm[node as usize]);
-        let stiffness = slope * share.area_mm2;
-        let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
-        let mut load_by_turn = Vec3::zeros();
-        if mean.by_middle < 1.0 {
-            let by_normal =
-                (share.edge_a * mean.by_rise[0] + share.edge_b * mean.by_rise[1]) * stiffness;
-            let by_normal = pose.rotation.tr_mul(&by_normal);
-            let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
-            load_by_motion -= sample.curvature * along_surface;
-            load_by_turn = sample.normal.cross(&by_normal);
-        }
+        let mean = mean_overclosure(-sample.gap_mm, rise);
+        let (pressure_mpa, slope) = self.settings.law.pressures(mean.mm, four.thickness_mm);
+        let stiffness = slope * four.area_mm2;
+        let by_normal = four.edge_a * (mean.by_rise[0] * stiffness)
+            + four.edge_b * (mean.by_rise[1] * stiffness);
+        let by_normal = pose.turn_to_femur(&by_normal);
+        let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
         let velocity = linear + angular.cross(&place);
-        let (along, sliding_mm_per_s, closing_mm_per_s) = split_velocity(&velocity, &sample.normal);
-        Some(Traction {
-            node,
+        Tractions4 {
+            nodes: four.nodes,
             place,
             normal: sample.normal,
             curvature: sample.curvature,
             pressure_mpa,
-            load_n: pressure_mpa * share.area_mm2,
-            covered_mm2: mean.by_middle * share.area_mm2,
-            load_by_motion,
-            load_by_turn,
-            along,
-            sliding_mm_per_s,
-            closing_mm_per_s,
-        })
-    }
-
-    fn rubbing(&self) -> Rubbing {
-        Rubbing {
-            friction: self.settings.friction,
-            slip_tolerance_mm_per_s: self.settings.slip_tolerance_mm_per_s,
+            load_n: pressure_mpa * four.area_mm2,
+            covered_mm2: mean.by_middle * four.area_mm2,
+            load_by_motion: sample.gap_gradient * (mean.by_middle * stiffness)
+                - sample.curvature.times(&along_surface),
+            load_by_turn: sample.normal.cross(&by_normal),
+            sliding: Sliding::new(
+                &velocity,
+                &sample.normal,
+                self.settings.slip_tolerance_mm_per_s,
+            ),
         }
     }
 }
@@ -139,39 +131,36 @@ impl ContactModel for Foundation<'_> {
     fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
         self.pose = motion.pose;
         let to_femur = twist_to_femur(&self.pose);
-        let twist = to_femur * motion.twist;
+        let twist = (to_femur * motion.twist).map(Lanes::splat);
         let (angular, linear) = (
             twist.fixed_rows::<3>(0).into(),
             twist.fixed_rows::<3>(3).into(),
         );
-        self.candidates
-            .update(&self.pose, self.femur, &self.surface.shares);
+        self.candidates.update(
+            &self.pose,
+            self.femur,
+            &self.surface.shares,
+            &self.thickness_mm,
+        );
+        let pose = Pose4::new(&self.pose);
         let mut tractions = std::mem::take(&mut self.tractions);
         tractions.clear();
-        let gap_mm = |node: u32| {
-            self.femur.gap_mm(
-                &self
-                    .pose
-                    .to_femur(&self.surface.shares[node as usize].centre),
-            )
-        };
-        let press = |node| self.press(node, &self.pose, &angular, &linear);
-        tractions.extend(self.candidates.near(gap_mm).filter_map(press));
-        self.tractions = tractions;
-        let rubbing = self.rubbing();
-        let mut total = Vec6::zeros();
-        for traction in &self.tractions {
-            total += wrench(&traction.place, &traction.force_n(&rubbing));
+        let mut total = WrenchSum::new();
+        for four in self.candidates.near(&pose, self.femur) {
+            let pressed = self.press(four, &pose, &angular, &linear);
+            total.add(&pressed.place, &pressed.force_n(self.settings.friction));
+            tractions.push(pressed);
         }
-        to_femur.tr_mul(&total)
+        self.tractions = tractions;
+        to_femur.tr_mul(&total.total())
     }
 
     fn tangent(&self) -> Tangent {
-        let rubbing = self.rubbing();
-        let (mut by_pose, mut by_twist) = (Mat6::zeros(), Mat6::zeros());
-        for traction in &self.tractions {
-            traction.add_tangent(&rubbing, &mut by_pose, &mut by_twist);
+        let mut sum = TangentSum::new();
+        for tractions in &self.tractions {
+            sum.add(tractions, self.settings.friction);
         }
+        let (by_pose, by_twist) = sum.total();
         let to_femur = twist_to_femur(&self.pose);
         Tangent {
             by_pose: to_femur.tr_mul(&by_pose) * to_femur,
@@ -184,19 +173,34 @@ impl ContactModel for Foundation<'_> {
     }
 
     fn touched(&self) -> Vec<TouchedNode> {
-        let rubbing = self.rubbing();
-        let touched = |traction: &Traction| {
-            let node = traction.node as usize;
-            let sliding = self.pose.rotation * traction.along * traction.sliding_mm_per_s;
-            TouchedNode {
-                node: traction.node,
-                is_medial: self.surface.positions[node].z < 0.0,
-                pressure_mpa: traction.pressure_mpa,
-                covered_mm2: traction.covered_mm2,
-                force_n: self.pose.rotation * traction.force_n(&rubbing),
-                sliding_mm_per_s: self.directions[node].map(|direction| sliding.dot(&direction)),
-            }
-        };
-        self.tractions.iter().map(touched).collect()
+        let lanes = self.tractions.iter().flat_map(|tractions| {
+            let force_n = tractions.force_n(self.settings.friction);
+            (0..LANES).map(move |lane| (tractions, force_n, lane))
+        });
+        let presses =
+            |(tractions, _, lane): &(&Tractions4, _, usize)| tractions.load_n.lane(*lane) > 0.0;
+        lanes
+            .filter(presses)
+            .map(|(tractions, force_n, lane)| self.touch(tractions, &force_n, lane))
+            .collect()
+    }
+}
+
+impl Foundation<'_> {
+    fn touch(&self, tractions: &Tractions4, force_n: &Vector<Lanes>, lane: usize) -> TouchedNode {
+        let node = tractions.nodes[lane];
+        let in_insert =
+            |vector: &Vector<Lanes>| self.pose.rotation * vector.map(|lanes| lanes.lane(lane));
+        let sliding =
+            in_insert(&tractions.sliding.along) * tractions.sliding.speed_mm_per_s.lane(lane);
+        TouchedNode {
+            node,
+            is_medial: self.surface.positions[node as usize].z < 0.0,
+            pressure_mpa: tractions.pressure_mpa.lane(lane),
+            covered_mm2: tractions.covered_mm2.lane(lane),
+            force_n: in_insert(force_n),
+            sliding_mm_per_s: self.directions[node as usize]
+                .map(|direction| sliding.dot(&direction)),
+        }
     }
 }

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::number::Number;
+
 /// How an elastic layer on a rigid base answers overclosure with pressure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PressureLaw {
@@ -34,8 +36,22 @@ pub fn confined_modulus(youngs_modulus_mpa: f64, poissons_ratio: f64) -> f64 {
 
 impl PressureLaw {
     /// Pressure, MPa, and its derivative by the overclosure, MPa/mm, for an `overclosure_mm` >= 0
+    /// of a layer `thickness_mm` thick, in every lane.
+    #[inline(always)]
+    pub fn pressures<T: Number>(&self, overclosure_mm: T, thickness_mm: T) -> (T, T) {
+        if let Self::Linear { modulus_mpa } = self {
+            let stiffness = T::splat(*modulus_mpa) / thickness_mm;
+            return (stiffness * overclosure_mm, stiffness);
+        }
+        let at = |lane| self.pressure(overclosure_mm.lane(lane), thickness_mm.lane(lane));
+        (
+            T::from_lanes(|lane| at(lane).0),
+            T::from_lanes(|lane| at(lane).1),
+        )
+    }
+
+    /// Pressure, MPa, and its derivative by the overclosure, MPa/mm, for an `overclosure_mm` >= 0
     /// of a layer `thickness_mm` thick.
-    #[inline]
     pub fn pressure(&self, overclosure_mm: f64, thickness_mm: f64) -> (f64, f64) {
         match self {
             Self::Linear { modulus_mpa } => {

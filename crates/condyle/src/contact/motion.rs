@@ -1,6 +1,9 @@
 //! The femur's motion relative to the insert.
 
-use crate::{Mat3, Vec3};
+use crate::{
+    Mat3, Vec3, Vector,
+    number::{Lanes, Number},
+};
 
 /// A wrench as (moment, force) or a twist as (angular, linear); N mm and N, rad and mm.
 pub type Vec6 = nalgebra::Vector6<f64>;
@@ -34,6 +37,43 @@ impl Pose {
     /// A point of the femoral frame seen from the insert frame.
     pub fn to_insert(&self, point: &Vec3) -> Vec3 {
         self.rotation * point + self.translation
+    }
+}
+
+/// A pose for four points at a time.
+pub(super) struct Pose4 {
+    /// Columns of R.
+    columns: [Vector<Lanes>; 3],
+    translation: Vector<Lanes>,
+}
+
+impl Pose4 {
+    pub fn new(pose: &Pose) -> Self {
+        let column = |axis: usize| Vec3::from(pose.rotation.column(axis)).map(Lanes::splat);
+        Self {
+            columns: [column(0), column(1), column(2)],
+            translation: pose.translation.map(Lanes::splat),
+        }
+    }
+
+    /// Points of the insert frame seen from the femoral frame.
+    #[inline(always)]
+    pub fn to_femur(&self, point: &Vector<Lanes>) -> Vector<Lanes> {
+        self.turn_to_femur(&(point - self.translation))
+    }
+
+    /// Vectors of the insert frame seen from the femoral frame.
+    #[inline(always)]
+    pub fn turn_to_femur(&self, vector: &Vector<Lanes>) -> Vector<Lanes> {
+        let [x, y, z] = &self.columns;
+        Vector::new(x.dot(vector), y.dot(vector), z.dot(vector))
+    }
+
+    /// Vectors of the femoral frame seen from the insert frame.
+    #[inline(always)]
+    pub fn turn_to_insert(&self, vector: &Vector<Lanes>) -> Vector<Lanes> {
+        let [x, y, z] = &self.columns;
+        x * vector.x + y * vector.y + z * vector.z
     }
 }
 

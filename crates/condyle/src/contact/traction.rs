@@ -1,171 +1,192 @@
-//! Force of one share under pressure, and its tangent as a sum of rank-one terms.
+//! Forces of four shares under pressure, and their tangent as a sum of rank-one terms.
 
 use super::{Mat6, Vec6};
-use crate::{Mat3, Vec3};
+use crate::{
+    Vector,
+    geometry::Curvature,
+    number::{LANES, Lanes, Number},
+};
 
-/// Below this the direction of sliding is arbitrary, mm/s.
-const STANDSTILL_MM_PER_S: f64 = 1e-12;
+/// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
+const STANDSTILL_MM_PER_S: f64 = 1e-9;
 
-/// A share under pressure and rubbed; all vectors in the femoral frame.
+/// Four shares under pressure and rubbed; all vectors in the femoral frame.
 ///
 /// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
 /// of sliding, s = v_t/w and w = sqrt(v_t^2 + v0^2).
-#[derive(Clone, Debug)]
-pub(super) struct Traction {
-    pub node: u32,
-    /// Place of the share's centre, mm.
-    pub place: Vec3,
-    /// Unit normal of the femur.
-    pub normal: Vec3,
-    /// Curvature of the femur, 1/mm; right on tangents.
-    pub curvature: Mat3,
-    pub pressure_mpa: f64,
-    /// Area of the share times its pressure, N.
-    pub load_n: f64,
-    /// Area of the part of the share that presses, mm2.
-    pub covered_mm2: f64,
-    /// Derivative of the load by the motion of the femur's material there, N/mm.
-    pub load_by_motion: Vec3,
-    /// Derivative of the load by a turn of the femur about the share, N/rad.
-    pub load_by_turn: Vec3,
+pub(super) struct Tractions4 {
+    pub nodes: [u32; LANES],
+    /// Places of the shares' centres, p, mm.
+    pub place: Vector<Lanes>,
+    /// Unit normals of the femur, n.
+    pub normal: Vector<Lanes>,
+    /// Curvature of the femur, K, 1/mm; right on tangents.
+    pub curvature: Curvature<Lanes>,
+    pub pressure_mpa: Lanes,
+    /// Areas of the shares times their pressure, L, N.
+    pub load_n: Lanes,
+    /// Areas of the parts of the shares that press, mm2.
+    pub covered_mm2: Lanes,
+    /// Derivatives of the loads by the motion of the femur's material there, N/mm.
+    pub load_by_motion: Vector<Lanes>,
+    /// Derivatives of the loads by a turn of the femur about the share, N/rad.
+    pub load_by_turn: Vector<Lanes>,
+    pub sliding: Sliding,
+}
+
+/// How the femur's material moves past a share.
+pub(super) struct Sliding {
     /// Direction of sliding, t1.
-    pub along: Vec3,
+    pub along: Vector<Lanes>,
     /// Speed of sliding, v_t, mm/s.
-    pub sliding_mm_per_s: f64,
+    pub speed_mm_per_s: Lanes,
     /// Velocity of the femur's material out of the femur, c = n . v, mm/s.
-    pub closing_mm_per_s: f64,
+    closing_mm_per_s: Lanes,
+    /// Speed with the tolerance, w, mm/s.
+    regular_mm_per_s: Lanes,
+    /// Part of full friction that is reached, s.
+    part: Lanes,
 }
 
-/// How the surfaces rub.
-#[derive(Clone, Copy)]
-pub(super) struct Rubbing {
-    pub friction: f64,
-    pub slip_tolerance_mm_per_s: f64,
-}
-
-impl Rubbing {
-    /// Speed with the tolerance, w, and the part s of full friction that is reached.
-    #[inline]
-    fn at(&self, sliding_mm_per_s: f64) -> (f64, f64) {
-        let w = (sliding_mm_per_s.powi(2) + self.slip_tolerance_mm_per_s.powi(2)).sqrt();
-        (w, sliding_mm_per_s / w)
+impl Sliding {
+    /// Takes a velocity apart along a surface with normal `normal`.
+    #[inline(always)]
+    pub fn new(velocity: &Vector<Lanes>, normal: &Vector<Lanes>, tolerance_mm_per_s: f64) -> Self {
+        let closing = normal.dot(velocity);
+        let lean = Lanes::splat(STANDSTILL_MM_PER_S);
+        let leaning = Vector::new(-(normal.y * lean), normal.x * lean, Lanes::splat(0.0));
+        let tangential = velocity - normal * closing + leaning;
+        let speed2 = tangential.dot(&tangential);
+        let speed = Number::max(speed2.sqrt(), Lanes::splat(f64::MIN_POSITIVE));
+        let regular = (speed2 + Lanes::splat(tolerance_mm_per_s * tolerance_mm_per_s)).sqrt();
+        Self {
+            along: tangential * (Lanes::splat(1.0) / speed),
+            speed_mm_per_s: speed,
+            closing_mm_per_s: closing,
+            regular_mm_per_s: regular,
+            part: speed / regular,
+        }
     }
 }
 
-/// Direction and speed of sliding, and closing speed, of a velocity past a surface.
-#[inline]
-pub(super) fn split_velocity(velocity: &Vec3, normal: &Vec3) -> (Vec3, f64, f64) {
-    let closing = normal.dot(velocity);
-    let sliding = velocity - normal * closing;
-    let speed = sliding.norm();
-    if speed > STANDSTILL_MM_PER_S {
-        (sliding / speed, speed, closing)
-    } else {
-        (some_tangent(normal), 0.0, closing)
+type Six = [Lanes; 6];
+
+/// The tangent of many shares: its columns are added up in lanes.
+pub(super) struct TangentSum {
+    by_pose: [Six; 6],
+    by_twist: [Six; 6],
+}
+
+impl Tractions4 {
+    /// Forces on the insert, N.
+    #[inline(always)]
+    pub fn force_n(&self, friction: f64) -> Vector<Lanes> {
+        let rub = Lanes::splat(friction) * self.sliding.part;
+        (self.normal + self.sliding.along * rub) * self.load_n
     }
 }
 
-fn some_tangent(normal: &Vec3) -> Vec3 {
-    let other = if normal.x.abs() < 0.9 {
-        Vec3::x()
-    } else {
-        Vec3::y()
-    };
-    normal.cross(&other).normalize()
-}
-
-impl Traction {
-    /// Force on the insert, N.
-    #[inline]
-    pub fn force_n(&self, rubbing: &Rubbing) -> Vec3 {
-        let (_, part) = rubbing.at(self.sliding_mm_per_s);
-        (self.normal + self.along * (rubbing.friction * part)) * self.load_n
+impl TangentSum {
+    pub fn new() -> Self {
+        let zero = [[Lanes::splat(0.0); 6]; 6];
+        Self {
+            by_pose: zero,
+            by_twist: zero,
+        }
     }
 
     /// Adds the derivatives of the wrench at the femur's origin by pose and by twist.
     ///
     /// A motion xi = (w, v) of the femur moves its material at the share by a = v + w x p and turns
     /// the normal by dn = w x n - K a, which lies in the plane of t1 and t2 = n x t1. With the
-    /// wrenches N, T1, T2 of unit forces along n, t1, t2, and the rows R_i = -t_i . dn/dxi:
+    /// wrenches N, T1, T2 of unit forces along n, t1, t2, and the rows R_i xi = -t_i . dn:
     ///
     /// dW = (N + mu s T1) dL - L (q1 T1 - mu s N) R_1 xi - L q2 T2 R_2 xi,
     /// q1 = 1 - mu c (1 - s^2)/w, q2 = 1 - mu c/w;
     ///
     /// and a change of twist tau: dW = L mu/w ((1 - s^2) T1 T1' + T2 T2') tau.
-    #[inline]
-    pub fn add_tangent(&self, rubbing: &Rubbing, by_pose: &mut Mat6, by_twist: &mut Mat6) {
-        let (w, part) = rubbing.at(self.sliding_mm_per_s);
-        let friction = rubbing.friction;
-        let (p, n, t1) = (&self.place, &self.normal, &self.along);
+    #[inline(always)]
+    pub fn add(&mut self, tractions: &Tractions4, friction: f64) {
+        let Sliding {
+            along: t1,
+            closing_mm_per_s,
+            regular_mm_per_s,
+            part,
+            ..
+        } = &tractions.sliding;
+        let (p, n, load) = (&tractions.place, &tractions.normal, tractions.load_n);
         let t2 = n.cross(t1);
-        let [wrench_n, wrench_1, wrench_2] = [n, t1, &t2].map(|force| unit_wrench(p, force));
-        let row = |t: &Vec3| {
-            let bend = self.curvature * t;
+        let [wrench_n, wrench_1, wrench_2] =
+            [n, t1, &t2].map(|force| joined(&p.cross(force), force));
+        let row = |t: &Vector<Lanes>| {
+            let bend = tractions.curvature.times(t);
             joined(&(p.cross(&bend) - n.cross(t)), &bend)
         };
         let load_row = joined(
-            &(p.cross(&self.load_by_motion) + self.load_by_turn),
-            &self.load_by_motion,
+            &(p.cross(&tractions.load_by_motion) + tractions.load_by_turn),
+            &tractions.load_by_motion,
         );
-        let (rub, stuck) = (friction * part, 1.0 - part * part);
-        let turn = friction * self.closing_mm_per_s / w;
-        let load = self.load_n;
-        let first = scaled(
-            &wrench_1,
-            -load * (1.0 - turn * stuck),
-            &wrench_n,
-            load * rub,
-        );
-        let second = scaled(&wrench_2, -load * (1.0 - turn), &wrench_n, 0.0);
-        add_outer(by_pose, &scaled(&wrench_n, 1.0, &wrench_1, rub), &load_row);
-        add_outer(by_pose, &first, &row(t1));
-        add_outer(by_pose, &second, &row(&t2));
-        let drag = load * friction / w;
-        add_outer(
-            by_twist,
-            &scaled(&wrench_1, drag * stuck, &wrench_1, 0.0),
-            &wrench_1,
-        );
-        add_outer(
-            by_twist,
-            &scaled(&wrench_2, drag, &wrench_2, 0.0),
-            &wrench_2,
-        );
+        let (row_1, row_2) = (row(t1), row(&t2));
+        let (one, friction) = (Lanes::splat(1.0), Lanes::splat(friction));
+        let (rub, stuck) = (friction * *part, one - *part * *part);
+        let per_speed = friction / *regular_mm_per_s;
+        let turn = *closing_mm_per_s * per_speed;
+        let whole: Six = std::array::from_fn(|i| wrench_n[i] + rub * wrench_1[i]);
+        let (q1, q2) = (load * (one - turn * stuck), load * (one - turn));
+        let first: Six = std::array::from_fn(|i| load * rub * wrench_n[i] - q1 * wrench_1[i]);
+        let second: Six = std::array::from_fn(|i| -(q2 * wrench_2[i]));
+        for (column, entries) in self.by_pose.iter_mut().enumerate() {
+            for (i, entry) in entries.iter_mut().enumerate() {
+                *entry += whole[i] * load_row[column]
+                    + first[i] * row_1[column]
+                    + second[i] * row_2[column];
+            }
+        }
+        let (drag_1, drag_2) = (load * per_speed * stuck, load * per_speed);
+        // Symmetric: one triangle is enough.
+        for (column, entries) in self.by_twist.iter_mut().enumerate() {
+            let (weight_1, weight_2) = (drag_1 * wrench_1[column], drag_2 * wrench_2[column]);
+            for (i, entry) in entries.iter_mut().enumerate().take(column + 1) {
+                *entry += wrench_1[i] * weight_1 + wrench_2[i] * weight_2;
+            }
+        }
+    }
+
+    /// The sums by pose and by twist.
+    pub fn total(&self) -> (Mat6, Mat6) {
+        let by_pose = Mat6::from_fn(|i, column| self.by_pose[column][i].sum());
+        let by_twist = Mat6::from_fn(|i, column| self.by_twist[column.max(i)][column.min(i)].sum());
+        (by_pose, by_twist)
     }
 }
 
-type Six = [f64; 6];
+/// The wrench of many forces.
+pub(super) struct WrenchSum(Six);
 
-#[inline]
-fn joined(angular: &Vec3, linear: &Vec3) -> Six {
+impl WrenchSum {
+    pub fn new() -> Self {
+        Self([Lanes::splat(0.0); 6])
+    }
+
+    /// Adds forces at places, about the origin.
+    #[inline(always)]
+    pub fn add(&mut self, place: &Vector<Lanes>, force: &Vector<Lanes>) {
+        let wrench = joined(&place.cross(force), force);
+        self.0
+            .iter_mut()
+            .zip(wrench)
+            .for_each(|(sum, part)| *sum += part);
+    }
+
+    /// The sum.
+    pub fn total(&self) -> Vec6 {
+        Vec6::from(self.0.map(Lanes::sum))
+    }
+}
+
+#[inline(always)]
+fn joined(angular: &Vector<Lanes>, linear: &Vector<Lanes>) -> Six {
     [
         angular.x, angular.y, angular.z, linear.x, linear.y, linear.z,
     ]
-}
-
-/// Wrench at the origin of a force at `place`.
-#[inline]
-fn unit_wrench(place: &Vec3, force: &Vec3) -> Six {
-    joined(&place.cross(force), force)
-}
-
-#[inline]
-fn scaled(a: &Six, by_a: f64, b: &Six, by_b: f64) -> Six {
-    std::array::from_fn(|i| a[i] * by_a + b[i] * by_b)
-}
-
-/// Adds a b' to the matrix; a column at a time, as it lies in memory.
-#[inline]
-fn add_outer(matrix: &mut Mat6, a: &Six, b: &Six) {
-    for (column, &weight) in matrix.as_mut_slice().chunks_exact_mut(6).zip(b) {
-        for (entry, &value) in column.iter_mut().zip(a) {
-            *entry += value * weight;
-        }
-    }
-}
-
-/// Wrench at the femur's origin of a force at a share.
-#[inline]
-pub(super) fn wrench(place: &Vec3, force: &Vec3) -> Vec6 {
-    Vec6::from(unit_wrench(place, force))
 }

@@ -1,20 +1,44 @@
 //! The femoral surface as the contact sees it.
 
 use super::{GenericFemur, SmoothField, Torus};
-use crate::{Mat3, Vec3};
+use crate::{Vec3, Vector, number::Number};
+
+/// A symmetric 3 by 3 matrix, 1/mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the names are the places in the matrix")]
+pub struct Curvature<T> {
+    pub xx: T,
+    pub yy: T,
+    pub zz: T,
+    pub xy: T,
+    pub xz: T,
+    pub yz: T,
+}
+
+impl<T: Number> Curvature<T> {
+    /// The matrix times a vector.
+    #[inline(always)]
+    pub fn times(&self, v: &Vector<T>) -> Vector<T> {
+        Vector::new(
+            self.xx * v.x + self.xy * v.y + self.xz * v.z,
+            self.xy * v.x + self.yy * v.y + self.yz * v.z,
+            self.xz * v.x + self.yz * v.y + self.zz * v.z,
+        )
+    }
+}
 
 /// The femoral surface around a point of the femoral frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceSample {
+pub struct SurfaceSample<T> {
     /// Mean gap over the share of the surface around the point, mm; > 0 apart.
-    pub gap_mm: f64,
+    pub gap_mm: T,
     /// Derivative of `gap_mm` by the point, without unit.
-    pub gap_gradient: Vec3,
+    pub gap_gradient: Vector<T>,
     /// Unit normal of the femur, outwards.
-    pub normal: Vec3,
+    pub normal: Vector<T>,
     /// Symmetric; its part along the surface is the derivative of `normal` by the point, 1/mm: the
     /// curvature of the level surface, > 0 convex.
-    pub curvature: Mat3,
+    pub curvature: Curvature<T>,
 }
 
 /// A femoral surface that gives gap, normal and curvature anywhere near it, smoothly.
@@ -35,11 +59,11 @@ impl FemoralSurface {
     }
 
     /// Gap at a point, mm; far from the surface only its sign and that it is large are sure.
-    #[inline]
-    pub fn gap_mm(&self, point: &Vec3) -> f64 {
+    #[inline(always)]
+    pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
         match self {
             Self::Generic(femur) => femur.gap_mm(point),
-            Self::Sphere(sphere) => sphere.gap_mm(point),
+            Self::Sphere(sphere) => sphere.splat().gap_mm(point),
             Self::Mesh(field) => field.gap_mm(point),
         }
     }
@@ -50,11 +74,11 @@ impl FemoralSurface {
     /// second moment M that is g + K:M/2, taken as g + `spread_mm2` div n, and exact to third
     /// order. `spread_mm2` is tr M / 4, a 24th of the area of a square share. A mesh's field holds
     /// its own spread already, see [`SmoothField::averaged_over`].
-    #[inline]
-    pub fn sample(&self, point: &Vec3, spread_mm2: f64) -> SurfaceSample {
+    #[inline(always)]
+    pub fn sample<T: Number>(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
         match self {
             Self::Generic(femur) => femur.sample(point, spread_mm2),
-            Self::Sphere(sphere) => sphere.sample(point, spread_mm2),
+            Self::Sphere(sphere) => sphere.splat().sample(point, spread_mm2),
             Self::Mesh(field) => field.sample(point),
         }
     }

@@ -1,7 +1,7 @@
 //! The generic femoral component: two condyles, each of two pieces of torus.
 
 use super::{SurfaceSample, Torus, TriangleMesh};
-use crate::Vec3;
+use crate::{Vec3, Vector, number::Number};
 
 /// Measures of the generic femoral component, mm and degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,45 +76,50 @@ impl GenericFemur {
     }
 
     /// Gap at a point, mm.
-    #[inline]
-    pub fn gap_mm(&self, point: &Vec3) -> f64 {
+    #[inline(always)]
+    pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
         let (folded, _) = self.folded(point);
         self.piece(&folded).gap_mm(&folded)
     }
 
     /// Gap, normal and curvature at a point, the gap averaged as
     /// [`FemoralSurface::sample`](super::FemoralSurface::sample) says.
-    #[inline]
-    pub fn sample(&self, point: &Vec3, spread_mm2: f64) -> SurfaceSample {
+    #[inline(always)]
+    pub fn sample<T: Number>(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
         let (folded, side) = self.folded(point);
         let mut sample = self.piece(&folded).sample(&folded, spread_mm2);
         sample.gap_gradient.z *= side;
         sample.normal.z *= side;
-        for axis in 0..2 {
-            sample.curvature[(axis, 2)] *= side;
-            sample.curvature[(2, axis)] *= side;
-        }
+        sample.curvature.xz *= side;
+        sample.curvature.yz *= side;
         sample
     }
 
     /// The point moved to the lateral condyle's middle plane, and the side it came from.
-    #[inline]
-    fn folded(&self, point: &Vec3) -> (Vec3, f64) {
-        let side = 1f64.copysign(point.z);
-        (
-            Vec3::new(point.x, point.y, point.z.abs() - self.half_spacing_mm),
-            side,
-        )
+    #[inline(always)]
+    fn folded<T: Number>(&self, point: &Vector<T>) -> (Vector<T>, T) {
+        let side = point.z.below_zero(-T::one(), T::one());
+        let across = point.z.abs() - T::splat(self.half_spacing_mm);
+        (Vector::new(point.x, point.y, across), side)
     }
 
     /// The piece on whose side of the line through both centres a point lies.
-    #[inline]
-    fn piece(&self, point: &Vec3) -> &Torus {
-        let behind = self.transition.x * point.y - self.transition.y * point.x < 0.0;
-        if behind {
-            &self.posterior
-        } else {
-            &self.distal
+    #[inline(always)]
+    fn piece<T: Number>(&self, point: &Vector<T>) -> Torus<T> {
+        let in_front =
+            T::splat(self.transition.x) * point.y - T::splat(self.transition.y) * point.x;
+        let pick = |posterior: f64, distal: f64| {
+            in_front.below_zero(T::splat(posterior), T::splat(distal))
+        };
+        let (posterior, distal) = (&self.posterior, &self.distal);
+        Torus {
+            centre: Vector::new(
+                pick(posterior.centre.x, distal.centre.x),
+                pick(posterior.centre.y, distal.centre.y),
+                T::zero(),
+            ),
+            ring_radius_mm: pick(posterior.ring_radius_mm, distal.ring_radius_mm),
+            tube_radius_mm: T::splat(distal.tube_radius_mm),
         }
     }
 

@@ -16,7 +16,7 @@ mod triangle_mesh;
 
 pub use articulating_surface::{ArticulatingSurface, Share};
 pub use columns::{Column, ColumnGrid, ColumnMesh};
-pub use femoral_surface::{FemoralSurface, SurfaceSample};
+pub use femoral_surface::{Curvature, FemoralSurface, SurfaceSample};
 pub use generic_femur::{GenericFemur, GenericFemurShape};
 pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};
 pub use insert::{Insert, InsertError};

@@ -1,28 +1,17 @@
 //! A torus about an axis along z.
 
-use super::SurfaceSample;
-use crate::{Mat3, Vec3};
+use super::{Curvature, SurfaceSample};
+use crate::{Vec3, Vector, number::Number};
 
 /// The outer side of a torus about an axis along z; with a tube circle about the axis, a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Torus {
+pub struct Torus<T: Number = f64> {
     /// Centre of the torus, mm.
-    pub centre: Vec3,
+    pub centre: Vector<T>,
     /// Distance from the axis to the circle of tube centres, mm; negative for a spindle.
-    pub ring_radius_mm: f64,
+    pub ring_radius_mm: T,
     /// Radius of the tube, mm.
-    pub tube_radius_mm: f64,
-}
-
-/// Where a point lies beside the torus.
-struct Place {
-    /// Unit vector from the axis to the point.
-    outward: Vec3,
-    /// Distance from the axis.
-    from_axis: f64,
-    /// Distance from the circle of tube centres.
-    from_tube: f64,
-    normal: Vec3,
+    pub tube_radius_mm: T,
 }
 
 impl Torus {
@@ -35,9 +24,21 @@ impl Torus {
         }
     }
 
+    /// The same torus in every lane.
+    #[inline(always)]
+    pub fn splat<T: Number>(&self) -> Torus<T> {
+        Torus {
+            centre: self.centre.map(T::splat),
+            ring_radius_mm: T::splat(self.ring_radius_mm),
+            tube_radius_mm: T::splat(self.tube_radius_mm),
+        }
+    }
+}
+
+impl<T: Number> Torus<T> {
     /// Gap at a point, mm.
-    #[inline]
-    pub fn gap_mm(&self, point: &Vec3) -> f64 {
+    #[inline(always)]
+    pub fn gap_mm(&self, point: &Vector<T>) -> T {
         let r = point - self.centre;
         let across = (r.x * r.x + r.y * r.y).sqrt() - self.ring_radius_mm;
         (across * across + r.z * r.z).sqrt() - self.tube_radius_mm
@@ -47,46 +48,35 @@ impl Torus {
     /// [`FemoralSurface::sample`](super::FemoralSurface::sample) says.
     ///
     /// With t the distance from the circle of tube centres, rho that from the axis and rho0 the
-    /// ring's: K = (I - n n' - e e')/t + (1 - rho0/rho)/t e e', e along the ring, and
-    /// div n = (2 - rho0/rho)/t.
-    #[inline]
-    pub fn sample(&self, point: &Vec3, spread_mm2: f64) -> SurfaceSample {
-        let Place {
-            outward,
-            from_axis,
-            from_tube,
-            normal,
-        } = self.place(point);
-        let along = Vec3::new(-outward.y, outward.x, 0.0);
-        let ring = self.ring_radius_mm / from_axis;
-        let per_tube = 1.0 / from_tube;
-        let curvature =
-            (Mat3::identity() - normal * normal.transpose() - along * along.transpose() * ring)
-                * per_tube;
-        let divergence = (2.0 - ring) * per_tube;
-        let divergence_gradient =
-            normal * (-divergence * per_tube) + outward * (ring / from_axis * per_tube);
-        SurfaceSample {
-            gap_mm: from_tube - self.tube_radius_mm + spread_mm2 * divergence,
-            gap_gradient: normal + divergence_gradient * spread_mm2,
-            normal,
-            curvature,
-        }
-    }
-
-    #[inline]
-    fn place(&self, point: &Vec3) -> Place {
+    /// ring's: K = (I - n n' - (rho0/rho) e e')/t, e along the ring, and div n = (2 - rho0/rho)/t.
+    #[inline(always)]
+    pub fn sample(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
         let r = point - self.centre;
         let from_axis = (r.x * r.x + r.y * r.y).sqrt();
-        let outward = Vec3::new(r.x, r.y, 0.0) / from_axis;
+        let per_axis = T::one() / from_axis;
+        let (outward_x, outward_y) = (r.x * per_axis, r.y * per_axis);
         let across = from_axis - self.ring_radius_mm;
         let from_tube = (across * across + r.z * r.z).sqrt();
-        let normal = (outward * across + Vec3::new(0.0, 0.0, r.z)) / from_tube;
-        Place {
-            outward,
-            from_axis,
-            from_tube,
+        let per_tube = T::one() / from_tube;
+        let radial = across * per_tube;
+        let normal = Vector::new(outward_x * radial, outward_y * radial, r.z * per_tube);
+        let ring = self.ring_radius_mm * per_axis;
+        let divergence = (T::splat(2.0) - ring) * per_tube;
+        let inward = -(divergence * per_tube * spread_mm2);
+        let outward = ring * per_axis * per_tube * spread_mm2;
+        let lean = Vector::new(outward_x * outward, outward_y * outward, T::zero());
+        SurfaceSample {
+            gap_mm: from_tube - self.tube_radius_mm + spread_mm2 * divergence,
+            gap_gradient: normal + normal * inward + lean,
             normal,
+            curvature: Curvature {
+                xx: (T::one() - normal.x * normal.x - ring * outward_y * outward_y) * per_tube,
+                yy: (T::one() - normal.y * normal.y - ring * outward_x * outward_x) * per_tube,
+                zz: (T::one() - normal.z * normal.z) * per_tube,
+                xy: (ring * outward_x * outward_y - normal.x * normal.y) * per_tube,
+                xz: -(normal.x * normal.z * per_tube),
+                yz: -(normal.y * normal.z * per_tube),
+            },
         }
     }
 }
@@ -97,7 +87,7 @@ pub(crate) mod tests {
 
     /// Holds gap gradient and curvature of a surface against central differences at `point`.
     pub(crate) fn check_derivatives(
-        sample: impl Fn(&Vec3) -> SurfaceSample,
+        sample: impl Fn(&Vec3) -> SurfaceSample<f64>,
         point: Vec3,
         tolerance: f64,
     ) {
@@ -112,7 +102,7 @@ pub(crate) mod tests {
                 "{slope} {here:?}"
             );
             let turn = (fore.normal - back.normal) / (2.0 * step);
-            let bend: Vec3 = here.curvature.column(axis).into();
+            let bend = here.curvature.times(&Vec3::ith(axis, 1.0));
             let along_surface = bend - here.normal * here.normal.dot(&bend);
             assert!((turn - along_surface).norm() < tolerance, "{turn} {here:?}");
         }
