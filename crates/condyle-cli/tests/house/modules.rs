@@ -2,12 +2,13 @@
 
 use crate::repository::{TextFile, text_files_ending};
 
-const MODULES: &[&str] = &["geometry", "contact", "machine", "wear", "evolve"];
+const MODULES: &[&str] = &["number", "geometry", "contact", "machine", "wear", "evolve"];
 
 /// Each module of `condyle`, and the others that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
-    ("geometry", &[]),
-    ("contact", &["geometry"]),
+    ("number", &[]),
+    ("geometry", &["number"]),
+    ("contact", &["number", "geometry"]),
     // The contact interface, never a mesh.
     ("machine", &["contact"]),
     // Histories, never a solver.
@@ -51,7 +52,8 @@ fn imported(text: &str) -> Vec<String> {
 fn files_of(module: &str) -> Vec<TextFile> {
     let mut files = text_files_ending(".rs");
     let folder = format!("crates/condyle/src/{module}/");
-    files.retain(|file| file.path.starts_with(&folder));
+    let alone = format!("crates/condyle/src/{module}.rs");
+    files.retain(|file| file.path.starts_with(&folder) || file.path == alone);
     files
 }
 
@@ -80,6 +82,13 @@ fn machine_sees_a_contact_interface_and_wear_sees_histories() {
     assert_does_not_import("machine", MODELS_OF_CONTACT);
     assert_does_not_import("wear", MODELS_OF_CONTACT);
     assert_does_not_import("wear", SOLVERS_OF_CONTACT);
+}
+
+#[test]
+fn every_module_has_files_to_look_at() {
+    for (module, _) in MAY_USE {
+        assert!(!files_of(module).is_empty(), "{module}");
+    }
 }
 
 #[test]
