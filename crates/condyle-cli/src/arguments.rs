@@ -24,6 +24,8 @@ pub enum Command {
     Check(Check),
     /// Write a new case file to start from.
     New(New),
+    /// Write a case as an Abaqus input file, to check condyle against Abaqus.
+    Export(Export),
     /// Write the report page of a results folder again.
     Report(Report),
 }
@@ -70,6 +72,24 @@ pub enum Preset {
     StanmoreForce,
     /// Stanmore, displacement control.
     StanmoreDisplacement,
+}
+
+#[derive(Args)]
+pub struct Export {
+    /// The case file.
+    pub case: PathBuf,
+    /// The Abaqus input file to write; it must not be there yet.
+    #[arg(long, value_name = "FILE.inp")]
+    pub out: PathBuf,
+    /// An elastic insert under hard contact, rather than a rigid one under the pressure law.
+    #[arg(long)]
+    pub deformable: bool,
+    /// For Abaqus/Explicit rather than Abaqus/Standard.
+    #[arg(long)]
+    pub explicit: bool,
+    /// Threads for the one-time work on a mesh; the file is the same on any number.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: u16,
 }
 
 #[derive(Args)]

@@ -3,6 +3,7 @@
 mod arguments;
 mod check;
 mod exit;
+mod export;
 mod new;
 mod progress;
 mod report;
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::New(arguments) => new::new(&arguments),
+        Command::Export(arguments) => export::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
     }
 }

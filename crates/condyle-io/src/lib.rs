@@ -3,6 +3,7 @@
 //! Numbers cross this border with their unit in the name, and every error says which file, which
 //! line where the format is text, and what to do.
 
+pub mod abaqus;
 pub mod case;
 pub mod mesh;
 pub mod results;

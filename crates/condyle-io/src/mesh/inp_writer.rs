@@ -12,7 +12,7 @@ use std::io::{self, Write};
 
 pub use contact::PressureOverclosure;
 pub use mesh::{RigidTriangle, element_faces};
-pub use step::{Procedure, Step};
+pub use step::{Application, Procedure, Step};
 
 /// Writes Abaqus keywords to a file or to memory, in the order of the calls.
 ///
@@ -46,16 +46,18 @@ impl<W: Write> InpWriter<W> {
             .try_for_each(|line| writeln!(self.out, "** {line}"))
     }
 
-    fn keyword(&mut self, text: &str) -> io::Result<()> {
+    /// A keyword line as it stands.
+    pub(crate) fn keyword(&mut self, text: &str) -> io::Result<()> {
         writeln!(self.out, "{text}")
     }
 
     /// A data line; one that starts like a keyword would be taken for one.
-    fn line(&mut self, text: &str) -> io::Result<()> {
+    pub(crate) fn line(&mut self, text: &str) -> io::Result<()> {
         writeln!(self.out, "{}", text.trim_start_matches('*'))
     }
 
-    fn reals(&mut self, values: &[f64]) -> io::Result<()> {
+    /// A data line of numbers.
+    pub(crate) fn reals(&mut self, values: &[f64]) -> io::Result<()> {
         let words: Vec<String> = values.iter().map(|&value| real(value)).collect();
         writeln!(self.out, "{}", words.join(", "))
     }

@@ -27,7 +27,7 @@ mod vtu_write;
 pub use error::{MeshFileError, Place};
 pub use hex_file::{HexFile, NamedNodes, NamedSurface, read_hexahedra};
 pub use inp_writer::{
-    InpWriter, PressureOverclosure, Procedure, RigidTriangle, Step, element_faces,
+    Application, InpWriter, PressureOverclosure, Procedure, RigidTriangle, Step, element_faces,
 };
 pub use pvd::{pvd_text, read_pvd, write_pvd};
 pub use stl::write_stl;

@@ -1,7 +1,9 @@
 //! The femoral component as the contact sees it.
 
 use condyle::Vec3;
-use condyle::geometry::{FemoralSurface, GenericFemur, GenericFemurShape, SmoothField};
+use condyle::geometry::{
+    FemoralSurface, GenericFemur, GenericFemurShape, SmoothField, TriangleMesh,
+};
 
 use super::super::{MeshFemur, Side};
 use super::error::{BuildError, BuildWarning};
@@ -49,6 +51,14 @@ impl case::Femur {
             },
             Self::Mesh(femur) => from_mesh(femur, side, flexion_rad, threads, warnings)?,
         })
+    }
+}
+
+impl MeshFemur {
+    /// Its triangles as a checked shell in the femoral frame of a right knee, mm.
+    pub(crate) fn triangles(&self, side: Side) -> Result<TriangleMesh, BuildError> {
+        let placing = Placing::new(self.length_unit, &self.axes, side)?;
+        Ok(shell(self.file.path(), &placing, Faces::Down, &mut Vec::new())?.mesh)
     }
 }
 

@@ -4,11 +4,22 @@ use std::io::{self, Write};
 
 use super::{InpWriter, real};
 
+/// How much an implicit step damps what its increments do not resolve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Application {
+    /// Backward Euler: comes to rest soon.
+    QuasiStatic,
+    /// Little damping, enough for contact.
+    ModerateDissipation,
+}
+
 /// How a step is solved in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Procedure {
-    /// `*DYNAMIC`, implicit, quasi-static damping.
+    /// `*DYNAMIC`, implicit.
     Implicit {
+        /// How much the integration damps.
+        application: Application,
         /// First increment of time, s.
         first_s: f64,
         /// Smallest increment, s.
@@ -56,12 +67,17 @@ impl<W: Write> InpWriter<W> {
         } = *step;
         match procedure {
             Procedure::Implicit {
+                application,
                 first_s,
                 least_s,
                 most_s,
             } => {
+                let application = match application {
+                    Application::QuasiStatic => "QUASI-STATIC",
+                    Application::ModerateDissipation => "MODERATE DISSIPATION",
+                };
                 self.keyword(&format!("*STEP, NAME={name}, NLGEOM=YES, INC=100000"))?;
-                self.keyword("*DYNAMIC, APPLICATION=QUASI-STATIC")?;
+                self.keyword(&format!("*DYNAMIC, APPLICATION={application}"))?;
                 self.reals(&[first_s, period_s, least_s, most_s])
             }
             Procedure::Explicit => {
@@ -136,6 +152,7 @@ mod tests {
     #[test]
     fn an_implicit_step_is_written() {
         let procedure = Procedure::Implicit {
+            application: Application::QuasiStatic,
             first_s: 0.005,
             least_s: 1e-9,
             most_s: 0.01,

@@ -1,0 +1,47 @@
+//! `condyle export` as a user calls it.
+
+use std::{fs, path::Path};
+
+use assert_cmd::Command;
+
+fn export(folder: &Path, case: &str, arguments: &[&str]) -> (i32, String) {
+    fs::write(folder.join("case.toml"), case).expect("the folder takes files");
+    let mut command = Command::cargo_bin("condyle").expect("the command is built");
+    command.current_dir(folder).arg("export").arg("case.toml");
+    let output = command.args(arguments).output().expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.code().unwrap_or(-1), said)
+}
+
+const COARSE: &str = "[insert]\nshape = \"generic\"\nedge_mm = 3.0\n";
+
+#[test]
+fn a_file_is_written_once_and_never_overwritten() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (code, said) = export(folder.path(), COARSE, &["--out", "a.inp"]);
+    assert_eq!((code, said.as_str()), (0, ""));
+    let written = fs::read_to_string(folder.path().join("a.inp")).expect("it is there");
+    assert!(written.starts_with("*HEADING\n") && written.ends_with("*END STEP\n"));
+    let arguments = ["--out", "a.inp", "--deformable", "--explicit"];
+    let (code, said) = export(folder.path(), COARSE, &arguments);
+    assert_eq!(code, 2);
+    assert!(
+        said.contains("a.inp: ") && said.contains("choose another name"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_bad_case_leaves_with_two_and_no_file() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let aside = format!("{COARSE}[femur]\nshape = \"sphere\"\nstart_mm = [90.0, 0.0]\n");
+    for (case, expected) in [
+        ("[insert]\nshape = \"round\"\n", "round"),
+        (&aside, "are apart"),
+    ] {
+        let (code, said) = export(folder.path(), case, &["--out", "a.inp"]);
+        assert_eq!(code, 2, "{said}");
+        assert!(said.contains(expected), "{said}");
+        assert!(!folder.path().join("a.inp").exists());
+    }
+}

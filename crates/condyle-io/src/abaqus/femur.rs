@@ -1,0 +1,121 @@
+//! The femur as triangles.
+
+use condyle::Vec3;
+use condyle::evolve::WearTest;
+use condyle::geometry::{FemoralSurface, GenericFemur, TriangleMesh};
+
+use crate::case::{BuildError, Case, Femur};
+
+/// Triangles of a femur that is not a mesh already, as many as Knight 2007 has.
+const TRIANGLES: f64 = 25_000.0;
+/// Halvings of an icosahedron's edges: 20 * 4^5 triangles.
+const HALVINGS: usize = 5;
+
+/// The femur's surface in the femoral frame, triangles anticlockwise seen from outside.
+pub(super) fn triangles(case: &Case, test: &WearTest) -> Result<TriangleMesh, BuildError> {
+    match (&case.femur, &test.femur) {
+        (Femur::Mesh(femur), _) => femur.triangles(case.heading.side),
+        (_, FemoralSurface::Generic(femur)) => Ok(generic(femur)),
+        (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm)),
+        (Femur::Generic(_), FemoralSurface::Sphere(_) | FemoralSurface::Mesh(_)) => {
+            unreachable!("a generic femur is built as one")
+        }
+    }
+}
+
+/// The generic femur in about [`TRIANGLES`].
+fn generic(femur: &GenericFemur) -> TriangleMesh {
+    const COARSE_MM: f64 = 1.0;
+    let coarse = femur.surface_mesh(COARSE_MM).triangles.len() as f64;
+    femur.surface_mesh(COARSE_MM * (coarse / TRIANGLES).sqrt())
+}
+
+/// A ball about the origin: an icosahedron, its triangles cut in four again and again.
+fn sphere(radius_mm: f64) -> TriangleMesh {
+    let mut ball = icosahedron();
+    for _ in 0..HALVINGS {
+        ball = in_four(&ball);
+    }
+    ball.mapped(|vertex| vertex.normalize() * radius_mm)
+}
+
+fn icosahedron() -> TriangleMesh {
+    let golden = f64::midpoint(1.0, 5f64.sqrt());
+    let mut vertices = Vec::new();
+    for (a, b) in [
+        (1.0, golden),
+        (-1.0, golden),
+        (1.0, -golden),
+        (-1.0, -golden),
+    ] {
+        vertices.extend([
+            Vec3::new(0.0, a, b),
+            Vec3::new(a, b, 0.0),
+            Vec3::new(b, 0.0, a),
+        ]);
+    }
+    let mut triangles = Vec::new();
+    for i in 0..12u32 {
+        for j in i + 1..12 {
+            for k in j + 1..12 {
+                let corners = [i, j, k].map(|n| vertices[n as usize]);
+                if is_face(&corners) {
+                    let [a, b, c] = corners;
+                    let outward = (b - a).cross(&(c - a)).dot(&a) > 0.0;
+                    triangles.push(if outward { [i, j, k] } else { [i, k, j] });
+                }
+            }
+        }
+    }
+    TriangleMesh {
+        vertices,
+        triangles,
+    }
+}
+
+/// Whether three corners of the icosahedron, whose edges are 2 long, are all neighbours.
+fn is_face([a, b, c]: &[Vec3; 3]) -> bool {
+    [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|(one, other)| ((*one - *other).norm() - 2.0).abs() < 1e-9)
+}
+
+fn in_four(mesh: &TriangleMesh) -> TriangleMesh {
+    let mut vertices = mesh.vertices.clone();
+    let mut middles = std::collections::HashMap::new();
+    let mut middle = |a: u32, b: u32| {
+        *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+            let sum = vertices[a as usize] + vertices[b as usize];
+            vertices.push(sum.normalize());
+            vertices.len() as u32 - 1
+        })
+    };
+    let mut triangles = Vec::with_capacity(4 * mesh.triangles.len());
+    for &[a, b, c] in &mesh.triangles {
+        let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+        triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+    }
+    TriangleMesh {
+        vertices,
+        triangles,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn verify_the_ball_is_closed_faces_out_and_has_its_volume() {
+        let ball = sphere(24.0);
+        assert_eq!(
+            (ball.triangles.len(), ball.vertices.len()),
+            (20_480, 10_242)
+        );
+        let exact = 4.0 / 3.0 * PI * 24f64.powi(3);
+        let volume = ball.signed_volume();
+        assert!((volume / exact - 1.0).abs() < 1e-3, "{volume} {exact}");
+    }
+}

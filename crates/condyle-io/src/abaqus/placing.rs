@@ -1,0 +1,100 @@
+//! Where both bodies stand in the simulator's frame when the file begins.
+
+use condyle::Vec3;
+use condyle::contact::Pose;
+use condyle::evolve::{March, WearTest};
+use condyle::machine::{Chain, Drive, Freedom};
+
+/// Freedoms that move the insert, and not the femur.
+const OF_THE_INSERT: [Freedom; 4] = [
+    Freedom::VarusValgus,
+    Freedom::InternalExternal,
+    Freedom::MedioLateral,
+    Freedom::AnteroPosterior,
+];
+/// Smallest gap at the start of an explicit analysis, mm.
+const CLEARANCE_MM: f64 = 0.005;
+
+/// The machine where the file begins.
+pub(super) struct Placing {
+    /// Positions of the six freedoms, mm and rad.
+    pub positions: [f64; 6],
+    /// The femur in the simulator's frame.
+    pub femur: Pose,
+    /// The femur in the insert's frame.
+    femur_in_insert: Pose,
+}
+
+impl Placing {
+    /// Where condyle finds the femur settled; with `apart`, lifted until nothing touches.
+    pub fn new(march: &March, apart: bool) -> Self {
+        let test = march.test();
+        let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
+        let mut positions = settled(march);
+        let is_loaded = matches!(
+            test.machine.row(Freedom::InferoSuperior).drive,
+            Drive::Loaded(_)
+        );
+        if apart && is_loaded {
+            lift(test, &chain, &mut positions);
+        }
+        let mut of_femur = positions;
+        for freedom in OF_THE_INSERT {
+            of_femur[freedom as usize] = 0.0;
+        }
+        Self {
+            positions,
+            femur: chain.at(&of_femur).pose,
+            femur_in_insert: chain.at(&positions).pose,
+        }
+    }
+
+    /// A point of the insert's frame in the simulator's.
+    ///
+    /// Both know where the femur is, so the femur leads from one to the other.
+    pub fn insert_point(&self, point: &Vec3) -> Vec3 {
+        self.femur.to_insert(&self.femur_in_insert.to_femur(point))
+    }
+
+    /// Gap under the femur at every node of the articulating surface, mm.
+    pub fn gaps_mm(&self, test: &WearTest) -> Vec<f64> {
+        gaps_mm(test, &self.femur_in_insert)
+    }
+}
+
+/// Positions after settling: IE, ML, AP and IS at zero, and not yet where a cycle leads them.
+fn settled(march: &March) -> [f64; 6] {
+    let mut positions = march.state().machine.now.positions;
+    for freedom in [
+        Freedom::InternalExternal,
+        Freedom::MedioLateral,
+        Freedom::AnteroPosterior,
+        Freedom::InferoSuperior,
+    ] {
+        positions[freedom as usize] = 0.0;
+    }
+    positions
+}
+
+fn gaps_mm(test: &WearTest, femur: &Pose) -> Vec<f64> {
+    let nodes = &test.insert.mesh().nodes;
+    let gap = |&node: &u32| test.femur.gap_mm(&femur.to_femur(&nodes[node as usize]));
+    test.insert.surface_nodes().iter().map(gap).collect()
+}
+
+/// Raises the femur until no node is nearer than the clearance.
+///
+/// A gap grows no faster than the femur rises, so the steps come from below.
+fn lift(test: &WearTest, chain: &Chain, positions: &mut [f64; 6]) {
+    const MOST_STEPS: usize = 100;
+    const SHORTEST_STEP_MM: f64 = 1e-4;
+    for _ in 0..MOST_STEPS {
+        let gaps = gaps_mm(test, &chain.at(positions).pose);
+        let nearest = gaps.into_iter().fold(f64::INFINITY, f64::min);
+        if nearest >= CLEARANCE_MM {
+            return;
+        }
+        positions[Freedom::InferoSuperior as usize] +=
+            (CLEARANCE_MM - nearest).max(SHORTEST_STEP_MM);
+    }
+}
