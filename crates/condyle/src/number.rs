@@ -108,10 +108,12 @@ impl Lanes {
         (a + b) + (c + d)
     }
 
-    /// Whether any lane is below zero.
+    /// The smallest lane.
     #[inline(always)]
-    pub fn any_below_zero(self) -> bool {
-        self.0.iter().any(|&value| value < 0.0)
+    pub fn least(self) -> f64 {
+        let [a, b, c, d] = self.0;
+        let smaller = |x: f64, y: f64| if x < y { x } else { y };
+        smaller(smaller(a, b), smaller(c, d))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::{
     ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
-    candidates::{Candidates, Candidates4},
     motion::{Pose4, twist_to_femur},
+    nearness::{Look, Nearness, Shares4},
     partial::mean_overclosure,
     traction::{Sliding, TangentSum, Tractions4, WrenchSum},
 };
@@ -39,8 +39,8 @@ pub struct Foundation<'a> {
     surface: ArticulatingSurface,
     /// The surface's own directions at every node.
     directions: Vec<[Vec3; 2]>,
-    thickness_mm: Vec<f64>,
-    candidates: Candidates,
+    shares: Vec<Shares4>,
+    nearness: Nearness,
     /// What presses at the last response.
     tractions: Vec<Tractions4>,
     /// Where the femur was then.
@@ -55,14 +55,15 @@ impl<'a> Foundation<'a> {
         insert: &Insert,
     ) -> Self {
         let surface = insert.surface();
+        let shares = Shares4::of(&surface, insert.thickness_mm());
         Self {
+            settings,
+            femur,
             directions: (0..surface.positions.len())
                 .map(|node| surface.directions(node))
                 .collect(),
-            settings,
-            femur,
-            candidates: Candidates::new(&surface),
-            thickness_mm: insert.thickness_mm().to_vec(),
+            nearness: Nearness::new(&surface, shares.len()),
+            shares,
             surface,
             tractions: Vec::new(),
             pose: Pose::identity(),
@@ -79,7 +80,7 @@ impl<'a> Foundation<'a> {
         self.surface
     }
 
-    /// Pressure and rubbing on four shares.
+    /// Pressure and rubbing on four shares, and how far the nearest is from contact, mm.
     ///
     /// With n the femur's normal, K its curvature, e_k the share's edges and W the mean
     /// overclosure of the share, a motion a and a turn w of the femur change the middle's
@@ -87,11 +88,11 @@ impl<'a> Foundation<'a> {
     #[inline(always)]
     fn press(
         &self,
-        four: &Candidates4,
+        four: &Shares4,
         pose: &Pose4,
         angular: &Vector<Lanes>,
         linear: &Vector<Lanes>,
-    ) -> Tractions4 {
+    ) -> (Tractions4, f64) {
         let place = pose.to_femur(&four.centre);
         let sample = self.femur.sample(&place, four.spread_mm2);
         let normal_in_insert = pose.turn_to_insert(&sample.normal);
@@ -107,7 +108,7 @@ impl<'a> Foundation<'a> {
         let by_normal = pose.turn_to_femur(&by_normal);
         let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
         let velocity = linear + angular.cross(&place);
-        Tractions4 {
+        let tractions = Tractions4 {
             nodes: four.nodes,
             place,
             normal: sample.normal,
@@ -123,7 +124,8 @@ impl<'a> Foundation<'a> {
                 &sample.normal,
                 self.settings.slip_tolerance_mm_per_s,
             ),
-        }
+        };
+        (tractions, (sample.gap_mm - mean.reach_mm).least())
     }
 }
 
@@ -136,20 +138,28 @@ impl ContactModel for Foundation<'_> {
             twist.fixed_rows::<3>(0).into(),
             twist.fixed_rows::<3>(3).into(),
         );
-        self.candidates.update(
-            &self.pose,
-            self.femur,
-            &self.surface.shares,
-            &self.thickness_mm,
-        );
+        self.nearness.travel(&self.pose);
         let pose = Pose4::new(&self.pose);
         let mut tractions = std::mem::take(&mut self.tractions);
         tractions.clear();
         let mut total = WrenchSum::new();
-        for four in self.candidates.near(&pose, self.femur) {
-            let pressed = self.press(four, &pose, &angular, &linear);
-            total.add(&pressed.place, &pressed.force_n(self.settings.friction));
-            tractions.push(pressed);
+        for four in 0..self.shares.len() {
+            let Some(look) = self.nearness.look(four) else {
+                continue;
+            };
+            let shares = &self.shares[four];
+            if look == Look::Search {
+                let gap_mm = self.femur.gap_mm(&pose.to_femur(&shares.centre));
+                if self.nearness.is_far(four, gap_mm) {
+                    continue;
+                }
+            }
+            let (pressed, to_contact_mm) = self.press(shares, &pose, &angular, &linear);
+            self.nearness.found(four, to_contact_mm);
+            if to_contact_mm <= 0.0 {
+                total.add(&pressed.place, &pressed.force_n(self.settings.friction));
+                tractions.push(pressed);
+            }
         }
         self.tractions = tractions;
         to_femur.tr_mul(&total.total())

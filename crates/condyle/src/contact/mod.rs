@@ -1,10 +1,10 @@
 //! Contact between femur and insert: one interface, several models.
 
-mod candidates;
 mod foundation;
 mod history;
 mod law;
 mod motion;
+mod nearness;
 mod partial;
 mod traction;
 

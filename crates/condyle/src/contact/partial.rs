@@ -11,6 +11,8 @@ const LEAST_RISE_MM: f64 = 1e-3;
 pub(super) struct MeanOverclosure<T> {
     /// The mean, mm; 0 where nothing presses.
     pub mm: T,
+    /// Overclosure that the share's most overclosed corner has above its middle, mm.
+    pub reach_mm: T,
     /// Derivative by the overclosure of the share's middle: the part of the share that presses.
     pub by_middle: T,
     /// Derivative by the rise of the overclosure along each edge of the share.
@@ -42,6 +44,7 @@ pub(super) fn mean_overclosure<T: Number>(middle_mm: T, rise_mm: [T; 2]) -> Mean
     let in_part = middle_mm - sum;
     MeanOverclosure {
         mm: in_part.below_zero(mm, middle_mm),
+        reach_mm: sum,
         by_middle: in_part.below_zero((q1 - q2 - q3 + q4) * per_area * half, one),
         by_rise: [
             in_part.below_zero(by_r * rise_mm[0] * per_r, zero),

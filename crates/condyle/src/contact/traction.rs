@@ -116,8 +116,9 @@ impl TangentSum {
         } = &tractions.sliding;
         let (p, n, load) = (&tractions.place, &tractions.normal, tractions.load_n);
         let t2 = n.cross(t1);
-        let [wrench_n, wrench_1, wrench_2] =
-            [n, t1, &t2].map(|force| joined(&p.cross(force), force));
+        let wrench_n = joined(&p.cross(n), n);
+        let wrench_1 = joined(&p.cross(t1), t1);
+        let wrench_2 = joined(&p.cross(&t2), &t2);
         let row = |t: &Vector<Lanes>| {
             let bend = tractions.curvature.times(t);
             joined(&(p.cross(&bend) - n.cross(t)), &bend)

@@ -1,0 +1,180 @@
+//! Which nodes may touch: each is looked at again only when it could have come near.
+
+use super::Pose;
+use crate::{
+    Vec3, Vector,
+    geometry::{ArticulatingSurface, Share},
+    number::{LANES, Lanes, Number},
+};
+
+/// A gap is trusted no further than this, mm: a mesh's distance field ends not far beyond.
+const FARTHEST_TRUSTED_MM: f64 = 1.5;
+
+/// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.
+const GAP_PER_MOTION: f64 = 1.05;
+
+/// Curvature that no articulating surface exceeds, 1/mm: how fast a share's reach may grow.
+const SHARPEST_PER_MM: f64 = 0.2;
+
+/// What the mean gap of a share may differ from the gap at its centre, mm.
+const SPREAD_MM: f64 = 0.02;
+
+/// Four nodes' shares, side by side; a lane too many repeats the last node without area.
+pub(super) struct Shares4 {
+    pub nodes: [u32; LANES],
+    pub centre: Vector<Lanes>,
+    pub edge_a: Vector<Lanes>,
+    pub edge_b: Vector<Lanes>,
+    pub area_mm2: Lanes,
+    pub spread_mm2: Lanes,
+    pub thickness_mm: Lanes,
+}
+
+/// How to look at four shares.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Look {
+    /// They touched last time: press at once.
+    Press,
+    /// They did not: the gap comes first.
+    Search,
+}
+
+/// How far every four shares are from touching, at least.
+///
+/// A gap changes no faster than its point moves in the femoral frame, nor does the reach of a
+/// share. So four shares found `d` away from contact need no look before the femur has travelled
+/// by `d` since, and what is looked at is exactly what a search over all nodes would find.
+pub(super) struct Nearness {
+    /// Travel at which each four are due for the next look, mm.
+    due_mm: Vec<f64>,
+    /// Travel of the femur so far: a bound for every share, mm.
+    travelled_mm: f64,
+    at: Option<Pose>,
+    /// Corners of the box around all shares.
+    box_corners: [Vec3; 8],
+    longest_half_mm: f64,
+}
+
+impl Nearness {
+    pub fn new(surface: &ArticulatingSurface, count: usize) -> Self {
+        Self {
+            due_mm: vec![0.0; count],
+            travelled_mm: 0.0,
+            at: None,
+            box_corners: box_corners(&surface.shares),
+            longest_half_mm: surface.shares.iter().map(half_mm).fold(0.0, f64::max),
+        }
+    }
+
+    /// The femur moves on.
+    ///
+    /// The motion of a point is affine in its place, so it is longest at a corner of the box. A
+    /// share's reach, half its rise over both edges, grows with the turn and the curvature.
+    pub fn travel(&mut self, to: &Pose) {
+        if let Some(from) = self.at.replace(*to) {
+            let moved =
+                |corner: &Vec3| (to.to_femur(corner) - from.to_femur(corner)).norm_squared();
+            let farthest_mm = self
+                .box_corners
+                .iter()
+                .map(moved)
+                .fold(0.0, f64::max)
+                .sqrt();
+            let turn_rad = (to.rotation - from.rotation).norm();
+            let reach_mm = self.longest_half_mm * (turn_rad + farthest_mm * SHARPEST_PER_MM);
+            self.travelled_mm += GAP_PER_MOTION * farthest_mm + reach_mm;
+        }
+    }
+
+    /// Whether four are due for a look, and for which.
+    #[inline(always)]
+    pub fn look(&self, four: usize) -> Option<Look> {
+        let due_mm = self.due_mm[four];
+        if due_mm > self.travelled_mm {
+            None
+        } else if due_mm == f64::NEG_INFINITY {
+            Some(Look::Press)
+        } else {
+            Some(Look::Search)
+        }
+    }
+
+    /// Whether the gaps at four centres rule out contact whichever way the shares lean; notes it.
+    #[inline(always)]
+    pub fn is_far(&mut self, four: usize, gap_mm: Lanes) -> bool {
+        let to_contact_mm = gap_mm.least() - self.longest_half_mm - SPREAD_MM;
+        if to_contact_mm > 0.0 {
+            self.found(four, to_contact_mm);
+        }
+        to_contact_mm > 0.0
+    }
+
+    /// Notes that four touch, or how far they are from it.
+    #[inline(always)]
+    pub fn found(&mut self, four: usize, to_contact_mm: f64) {
+        self.due_mm[four] = if to_contact_mm > 0.0 {
+            self.travelled_mm + to_contact_mm.min(FARTHEST_TRUSTED_MM)
+        } else {
+            f64::NEG_INFINITY
+        };
+    }
+}
+
+impl Shares4 {
+    /// All shares of a surface, four at a time in the order of the nodes.
+    pub fn of(surface: &ArticulatingSurface, thickness_mm: &[f64]) -> Vec<Self> {
+        let count = surface.shares.len() as u32;
+        let first = (0..count).step_by(LANES);
+        first
+            .map(|first| Self::new(first, &surface.shares, thickness_mm))
+            .collect()
+    }
+
+    fn new(first: u32, shares: &[Share], thickness_mm: &[f64]) -> Self {
+        let last = shares.len() as u32 - 1;
+        let nodes: [u32; LANES] = std::array::from_fn(|lane| (first + lane as u32).min(last));
+        let share = |lane: usize| &shares[nodes[lane] as usize];
+        let is_surplus = |lane: usize| first + lane as u32 > last;
+        let vector = |of: fn(&Share) -> &Vec3| {
+            Vector::from([0, 1, 2].map(|axis| Lanes::from_lanes(|lane| of(share(lane))[axis])))
+        };
+        Self {
+            nodes,
+            centre: vector(|share| &share.centre),
+            edge_a: vector(|share| &share.edge_a),
+            edge_b: vector(|share| &share.edge_b),
+            area_mm2: Lanes::from_lanes(|lane| {
+                if is_surplus(lane) {
+                    0.0
+                } else {
+                    share(lane).area_mm2
+                }
+            }),
+            spread_mm2: Lanes::from_lanes(|lane| share(lane).spread_mm2),
+            thickness_mm: Lanes::from_lanes(|lane| thickness_mm[nodes[lane] as usize]),
+        }
+    }
+}
+
+/// Half of both edges of a share: how far its corners can lie from its centre.
+fn half_mm(share: &Share) -> f64 {
+    (share.edge_a.norm() + share.edge_b.norm()) / 2.0
+}
+
+fn box_corners(shares: &[Share]) -> [Vec3; 8] {
+    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    let wider = |(low, high): (Vec3, Vec3), share: &Share| {
+        (low.inf(&share.centre), high.sup(&share.centre))
+    };
+    let (low, high) = shares.iter().fold(none, wider);
+    [0, 1, 2, 3, 4, 5, 6, 7].map(|corner: usize| {
+        let pick = |axis: usize| {
+            if corner >> axis & 1 == 0 {
+                low[axis]
+            } else {
+                high[axis]
+            }
+        };
+        Vec3::new(pick(0), pick(1), pick(2))
+    })
+}
