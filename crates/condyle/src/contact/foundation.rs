@@ -80,7 +80,7 @@ impl<'a> Foundation<'a> {
         self.surface
     }
 
-    /// Pressure and rubbing on four shares, and how far the nearest is from contact, mm.
+    /// Pressure and rubbing on four shares, and their gaps and reaches, mm.
     ///
     /// With n the femur's normal, K its curvature, e_k the share's edges and W the mean
     /// overclosure of the share, a motion a and a turn w of the femur change the middle's
@@ -92,7 +92,7 @@ impl<'a> Foundation<'a> {
         pose: &Pose4,
         angular: &Vector<Lanes>,
         linear: &Vector<Lanes>,
-    ) -> (Tractions4, f64) {
+    ) -> (Tractions4, Lanes, Lanes) {
         let place = pose.to_femur(&four.centre);
         let sample = self.femur.sample(&place, four.spread_mm2);
         let normal_in_insert = pose.turn_to_insert(&sample.normal);
@@ -125,7 +125,7 @@ impl<'a> Foundation<'a> {
                 self.settings.slip_tolerance_mm_per_s,
             ),
         };
-        (tractions, (sample.gap_mm - mean.reach_mm).least())
+        (tractions, sample.gap_mm, mean.reach_mm)
     }
 }
 
@@ -154,9 +154,8 @@ impl ContactModel for Foundation<'_> {
                     continue;
                 }
             }
-            let (pressed, to_contact_mm) = self.press(shares, &pose, &angular, &linear);
-            self.nearness.found(four, to_contact_mm);
-            if to_contact_mm <= 0.0 {
+            let (pressed, gap_mm, reach_mm) = self.press(shares, &pose, &angular, &linear);
+            if self.nearness.found(four, gap_mm, reach_mm) {
                 total.add(&pressed.place, &pressed.force_n(self.settings.friction));
                 tractions.push(pressed);
             }

@@ -47,6 +47,9 @@ pub(super) enum Look {
 pub(super) struct Nearness {
     /// Travel at which each four are due for the next look, mm.
     due_mm: Vec<f64>,
+    /// Reach of each four at their last press, less the travel then, mm: with the travel now it
+    /// bounds the reach now.
+    reach_less_travel_mm: Vec<f64>,
     /// Travel of the femur so far: a bound for every share, mm.
     travelled_mm: f64,
     at: Option<Pose>,
@@ -59,6 +62,7 @@ impl Nearness {
     pub fn new(surface: &ArticulatingSurface, count: usize) -> Self {
         Self {
             due_mm: vec![0.0; count],
+            reach_less_travel_mm: vec![f64::INFINITY; count],
             travelled_mm: 0.0,
             at: None,
             box_corners: box_corners(&surface.shares),
@@ -99,24 +103,28 @@ impl Nearness {
         }
     }
 
-    /// Whether the gaps at four centres rule out contact whichever way the shares lean; notes it.
+    /// Whether the gaps at four centres rule out contact however the shares may lean by now; notes it.
     #[inline(always)]
     pub fn is_far(&mut self, four: usize, gap_mm: Lanes) -> bool {
-        let to_contact_mm = gap_mm.least() - self.longest_half_mm - SPREAD_MM;
+        let grown_mm = self.reach_less_travel_mm[four] + self.travelled_mm;
+        let to_contact_mm = gap_mm.least() - grown_mm.min(self.longest_half_mm) - SPREAD_MM;
         if to_contact_mm > 0.0 {
-            self.found(four, to_contact_mm);
+            self.due_mm[four] = self.travelled_mm + to_contact_mm.min(FARTHEST_TRUSTED_MM);
         }
         to_contact_mm > 0.0
     }
 
-    /// Notes that four touch, or how far they are from it.
+    /// Notes the gaps and reaches that a press has found; says whether anything touches.
     #[inline(always)]
-    pub fn found(&mut self, four: usize, to_contact_mm: f64) {
+    pub fn found(&mut self, four: usize, gap_mm: Lanes, reach_mm: Lanes) -> bool {
+        let to_contact_mm = (gap_mm - reach_mm).least();
+        self.reach_less_travel_mm[four] = -(-reach_mm).least() - self.travelled_mm;
         self.due_mm[four] = if to_contact_mm > 0.0 {
             self.travelled_mm + to_contact_mm.min(FARTHEST_TRUSTED_MM)
         } else {
             f64::NEG_INFINITY
         };
+        to_contact_mm <= 0.0
     }
 }
 

@@ -196,14 +196,16 @@ impl SmoothField {
     #[inline(always)]
     fn rows<T: Number>(&self, corner: &[usize; LANES], k: usize) -> [[T; 3]; 3] {
         let [_, sy, sz] = self.strides();
-        [0, 1, 2].map(|j| {
-            let row = |lane: usize| -> &[f64; 3] {
+        let row = |j: usize| -> [T; 3] {
+            let coefficients: [&[f64; 3]; LANES] = std::array::from_fn(|lane| {
                 self.coefficients[corner[lane] + j * sy + k * sz..]
                     .first_chunk()
                     .expect("locate keeps one node of margin on every side")
-            };
-            [0, 1, 2].map(|i| T::from_lanes(|lane| row(lane)[i]))
-        })
+            });
+            let across = |i: usize| T::from_lanes(|lane| coefficients[lane][i]);
+            [across(0), across(1), across(2)]
+        };
+        [row(0), row(1), row(2)]
     }
 
     #[inline]
