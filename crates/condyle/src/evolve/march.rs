@@ -10,7 +10,7 @@ use crate::{
     Vec3,
     contact::Foundation,
     geometry::ArticulatingSurface,
-    machine::{Chain, Cycle, CycleError, CycleRow, Effort, MachineState, Simulator},
+    machine::{Chain, Cycle, CycleError, CycleRow, Effort, Freedom, MachineState, Simulator},
 };
 
 /// Why a march ended early.
@@ -28,6 +28,17 @@ pub enum MarchError {
         cycles: f64,
         /// Why.
         source: CycleError,
+    },
+    /// The femur fell off the insert.
+    #[error(
+        "update {update}: the femur touches the insert nowhere in the whole cycle, and ends it at AP {ap_mm:.1} mm; \
+         check loads, springs, axes and start_mm"
+    )]
+    LostContact {
+        /// Which update, from 1.
+        update: usize,
+        /// AP at the end of the cycle.
+        ap_mm: f64,
     },
     /// The insert wore through.
     #[error(
@@ -212,6 +223,10 @@ impl March {
                     cycles: cycles_before,
                     source,
                 })?;
+        if cycle.rows.iter().all(|row| row.axial_force_n == 0.0) {
+            let ap_mm = cycle.end.now.positions[Freedom::AnteroPosterior as usize];
+            return Err(MarchError::LostContact { update, ap_mm });
+        }
         self.state.effort = effort;
         let area_mm2: Vec<f64> = surface.shares.iter().map(|share| share.area_mm2).collect();
         let step_mm = self.wear_down(&surface, &cycle, update)?;
