@@ -55,6 +55,8 @@ impl Progress {
             let bar = ProgressBar::new(of as u64 * TICKS).with_style(style);
             bar.set_position(done as u64 * TICKS);
             self.bar = Some(bar);
+        } else if done > 0 {
+            eprintln!("going on: {done} of {of} updates are done");
         }
     }
 }

@@ -1,0 +1,133 @@
+//! A bad case file: said with file, line, caret and advice; exit code 2, and nothing is made.
+
+use crate::bench::Bench;
+
+/// The command refuses `text` at `place`, with these words.
+#[track_caller]
+fn assert_refused(text: &str, place: &str, words: &[&str]) {
+    assert_bench_refused(&Bench::with_case(text), place, words);
+}
+
+#[track_caller]
+fn assert_bench_refused(bench: &Bench, place: &str, words: &[&str]) {
+    for arguments in [
+        &["run", "case.toml", "--out", "out"][..],
+        &["check", "case.toml"],
+    ] {
+        let said = bench.say(arguments);
+        let mut first: Vec<&str> = words[..1].to_vec();
+        first.extend([place, "^"]);
+        said.assert_refused(2, &first);
+        said.assert_refused(2, words);
+        assert_eq!(said.out, "");
+    }
+    assert!(!bench.path("out").exists());
+}
+
+#[test]
+fn unknown_key() {
+    let words = ["[femur] has no key `radus_mm`", "did you mean `radius_mm`?"];
+    let text = "[femur]\nshape = \"sphere\"\nradus_mm = 24.0\n";
+    assert_refused(text, "case.toml:3:1", &words);
+}
+
+#[test]
+fn wrong_type() {
+    let words = ["`updates` must be", "this is text in quotes"];
+    assert_refused("[march]\nupdates = \"ten\"\n", "case.toml:2:11", &words);
+}
+
+#[test]
+fn wrong_unit() {
+    let words = ["the key is `edge_mm`", "write `edge_mm = 1"];
+    assert_refused("[insert]\nedge_cm = 0.1\n", "case.toml:2:1", &words);
+    let words = ["`length_unit` cannot be \"feet\"", "\"mm\""];
+    let text = "[femur]\nshape = \"mesh\"\nfile = \"case.toml\"\nlength_unit = \"feet\"\n";
+    assert_refused(text, "case.toml:4:15", &words);
+}
+
+#[test]
+fn value_out_of_range() {
+    let words = ["outside its range", "it can be 0 to 0.499"];
+    assert_refused(
+        "[material]\npoissons_ratio = 0.5\n",
+        "case.toml:2:18",
+        &words,
+    );
+}
+
+#[test]
+fn missing_file() {
+    let words = ["there is no file", "nowhere.stl", "correct the path"];
+    let text = "[insert]\nshape = \"mesh\"\nfile = \"nowhere.stl\"\n";
+    assert_refused(text, "case.toml:3:8", &words);
+}
+
+#[test]
+fn missing_case_file() {
+    let bench = Bench::new();
+    let said = bench.say(&["run", "case.toml", "--out", "out"]);
+    said.assert_refused(2, &["the file case.toml cannot be read"]);
+    assert!(!bench.path("out").exists());
+}
+
+#[test]
+fn knots_with_a_gap_or_a_nan() {
+    let knots =
+        |points: &str, more: &str| format!("[machine.flexion]\n{more}knots_deg = [\n{points}]\n");
+    let words = ["gap from 20 % to 90 %", "add points between"];
+    let samples = "[0, 0], [10, 1], [20, 2],\n[90, 1], [100, 0],\n";
+    let text = knots(samples, "interpolation = \"spline\"\n");
+    assert_refused(&text, "case.toml:4:", &words);
+    let words = ["is not a finite number", "correct or remove it"];
+    let text = knots("[0, 0],\n[50, nan],\n[100, 0],\n", "");
+    assert_refused(&text, "case.toml:4:", &words);
+}
+
+#[test]
+fn csv_with_a_gap_or_a_nan() {
+    let text = "[machine.axial_force]\nfile = \"wave.csv\"\n";
+    let bench = Bench::with_case(text);
+    let row = |percent: u32| format!("{percent},500\n");
+    let with_gap: String = (0..=100)
+        .step_by(5)
+        .filter(|percent| !(30..60).contains(percent))
+        .map(row)
+        .collect();
+    bench.write("wave.csv", &format!("percent,axial_force_n\n{with_gap}"));
+    let words = ["gap from 25 % to 60 %", "add points between"];
+    assert_bench_refused(&bench, "wave.csv:7:1", &words);
+    let rows: String = (0..=100).step_by(5).map(row).collect();
+    let with_nan = rows.replace("10,500", "10,NaN");
+    bench.write("wave.csv", &format!("percent,axial_force_n\n{with_nan}"));
+    let words = ["`NaN` in column `axial_force_n`", "write a number there"];
+    assert_bench_refused(&bench, "wave.csv:4:4", &words);
+}
+
+#[test]
+fn every_problem_is_said_at_once() {
+    let bench = Bench::with_case("[march]\nupdates = 0\ncycels = 5\n[material]\ndensity = 1\n");
+    let said = bench.say(&["run", "case.toml"]);
+    let words = [
+        "updates",
+        "case.toml:2",
+        "cycels",
+        "case.toml:3",
+        "density",
+        "case.toml:5",
+    ];
+    said.assert_refused(2, &words);
+}
+
+#[test]
+fn words_the_command_does_not_know() {
+    let bench = Bench::new();
+    for arguments in [
+        &["walk"][..],
+        &["run"],
+        &["run", "case.toml", "--threads", "0"],
+        &["new", "case.toml", "--preset", "leeds"],
+    ] {
+        assert_eq!(bench.say(arguments).code, Some(2), "{arguments:?}");
+    }
+}

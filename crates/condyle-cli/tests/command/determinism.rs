@@ -1,0 +1,58 @@
+//! The same case gives the same bytes, whenever and on however many threads.
+
+use crate::bench::{Bench, SMALL, assert_same_bytes, dm_cases};
+use crate::shapes::{FLEXED_A_LITTLE, femur, insert, stl};
+
+/// Runs the bench's case twice on one thread and once on two.
+#[track_caller]
+fn assert_deterministic(bench: &Bench) {
+    let runs = [("one", "1"), ("again", "1"), ("two", "2")];
+    for (out, threads) in runs {
+        let said = bench.say(&["run", "case.toml", "--out", out, "--threads", threads]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+    }
+    assert_same_bytes(&bench.path("one"), &bench.path("again"));
+    assert_same_bytes(&bench.path("one"), &bench.path("two"));
+}
+
+#[test]
+fn a_generic_implant() {
+    assert_deterministic(&Bench::with_case(SMALL));
+}
+
+#[test]
+fn an_implant_of_triangles() {
+    let meshes = "[femur]\nshape = \"mesh\"\nfile = \"femur.stl\"\n";
+    let text = SMALL
+        .replace(
+            "[insert]",
+            &format!("{meshes}[insert]\nshape = \"mesh\"\nfile = \"insert.stl\""),
+        )
+        .replace("edge_mm = 2.5", "edge_mm = 1.5")
+        + FLEXED_A_LITTLE;
+    let bench = Bench::with_case(&text);
+    bench.write("femur.stl", &stl(&femur()));
+    bench.write("insert.stl", &stl(&insert()));
+    assert_deterministic(&bench);
+}
+
+#[test]
+fn the_implant_of_subject_dm() {
+    let Some(cases) = dm_cases("the_implant_of_subject_dm") else {
+        return;
+    };
+    let data = cases
+        .join("../../shared/data/dm-knee")
+        .canonicalize()
+        .unwrap();
+    for name in ["dm-knee.toml", "dm-knee-displacement.toml"] {
+        let text = std::fs::read_to_string(cases.join(name)).unwrap();
+        let text = text
+            .replace("../../shared/data/dm-knee", &data.to_string_lossy())
+            .replace("edge_mm = 1.05", "edge_mm = 2.5")
+            .replace("updates = 10", "updates = 1\n[time]\nincrements = 60");
+        let bench = Bench::with_case(&text);
+        assert_deterministic(&bench);
+        assert!(bench.summary("one").mass_loss_mg > 0.0);
+    }
+}

@@ -1,0 +1,150 @@
+//! The results folder: a run that is in it is never lost.
+
+use std::fs;
+
+use crate::bench::{Bench, SMALL, assert_same_bytes, files_but_wall_time};
+
+#[test]
+fn a_folder_with_a_run_is_refused_and_not_touched() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    let before = files_but_wall_time(&bench.path("out"));
+    let summary = fs::read(bench.path("out/summary.json")).unwrap();
+    let said = bench.say(&["run", "case.toml", "--out", "out"]);
+    said.assert_refused(
+        2,
+        &["out: the folder already holds a run", "--out", "--resume"],
+    );
+    assert_eq!(files_but_wall_time(&bench.path("out")), before);
+    assert_eq!(fs::read(bench.path("out/summary.json")).unwrap(), summary);
+}
+
+#[test]
+fn a_single_file_of_a_run_is_enough_to_refuse() {
+    for name in [
+        "case.toml",
+        "summary.json",
+        "report.html",
+        "insert_0000.vtu",
+    ] {
+        let bench = Bench::with_case(SMALL);
+        fs::create_dir(bench.path("out")).unwrap();
+        bench.write(&format!("out/{name}"), "mine");
+        let said = bench.say(&["run", "case.toml", "--out", "out"]);
+        said.assert_refused(2, &["already holds a run", name]);
+        let left = files_but_wall_time_of_names(&bench);
+        assert_eq!(left, [name]);
+    }
+}
+
+fn files_but_wall_time_of_names(bench: &Bench) -> Vec<String> {
+    let entries = fs::read_dir(bench.path("out")).unwrap();
+    let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
+    entries.map(|entry| name(entry.unwrap())).collect()
+}
+
+#[test]
+fn the_case_is_never_written_over_by_a_run_beside_it() {
+    let bench = Bench::with_case(SMALL);
+    for more in [&[][..], &["--resume"]] {
+        let said = bench.say(&[&["run", "case.toml", "--out", "."], more].concat());
+        said.assert_refused(2, &["."]);
+        assert_eq!(fs::read_to_string(bench.path("case.toml")).unwrap(), SMALL);
+    }
+}
+
+#[test]
+fn other_files_in_the_folder_stay() {
+    let bench = Bench::with_case(SMALL);
+    fs::create_dir(bench.path("out")).unwrap();
+    bench.write("out/notes.txt", "mine");
+    bench.run_into("out");
+    assert_eq!(
+        fs::read_to_string(bench.path("out/notes.txt")).unwrap(),
+        "mine"
+    );
+}
+
+#[test]
+fn a_file_in_place_of_the_folder() {
+    let bench = Bench::with_case(SMALL);
+    bench.write("out", "mine");
+    let said = bench.say(&["run", "case.toml", "--out", "out"]);
+    said.assert_refused(2, &["out: this is a file and no folder", "--out"]);
+    assert_eq!(fs::read_to_string(bench.path("out")).unwrap(), "mine");
+}
+
+#[test]
+fn resume_needs_a_run() {
+    let bench = Bench::with_case(SMALL);
+    let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
+    said.assert_refused(2, &["holds no run to go on with", "leave out --resume"]);
+    assert!(!bench.path("out").exists());
+}
+
+#[test]
+fn resume_with_a_changed_case_is_refused() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    let before = files_but_wall_time(&bench.path("out"));
+    bench.write("case.toml", &SMALL.replace("updates = 3", "updates = 4"));
+    let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
+    said.assert_refused(2, &["is one of another case or other meshes", "--out"]);
+    assert_eq!(files_but_wall_time(&bench.path("out")), before);
+}
+
+#[test]
+fn resume_of_a_finished_run_says_so_and_harms_nothing() {
+    let bench = Bench::with_case(SMALL);
+    let first = bench.run_into("out");
+    let summary = fs::read(bench.path("out/summary.json")).unwrap();
+    let before = files_but_wall_time(&bench.path("out"));
+    let again = bench.resume("out");
+    assert!(
+        again.err.contains("this run is done already"),
+        "{}",
+        again.err
+    );
+    assert_eq!(again.out, first.out);
+    assert_eq!(fs::read(bench.path("out/summary.json")).unwrap(), summary);
+    assert_eq!(files_but_wall_time(&bench.path("out")), before);
+}
+
+#[test]
+fn a_damaged_checkpoint_is_refused_with_advice() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    let file = bench.path("out/checkpoint");
+    let good = fs::read(&file).unwrap();
+    let mut flipped = good.clone();
+    flipped[good.len() / 2] ^= 1;
+    let damages = [
+        flipped,
+        good[..good.len() / 2].to_vec(),
+        good[..30].to_vec(),
+        Vec::new(),
+        b"no checkpoint".to_vec(),
+    ];
+    for damaged in damages {
+        fs::write(&file, &damaged).unwrap();
+        let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
+        said.assert_refused(
+            2,
+            &[
+                "checkpoint cannot be used",
+                "run the case anew into another folder",
+            ],
+        );
+        assert_eq!(fs::read(&file).unwrap(), damaged);
+    }
+    bench.run_into("anew");
+    fs::write(&file, good).unwrap();
+    assert_same_bytes(&bench.path("out"), &bench.path("anew"));
+}
+
+#[test]
+fn the_default_folder_has_the_name_of_the_case() {
+    let bench = Bench::with_case(SMALL);
+    assert_eq!(bench.say(&["run", "case.toml"]).code, Some(0));
+    assert!(bench.path("results/case/summary.json").exists());
+}
