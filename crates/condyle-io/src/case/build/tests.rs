@@ -183,6 +183,29 @@ fn hexahedra_give_the_named_surface_or_the_one_above() {
     assert!(left.mesh().nodes.iter().all(|node| node.z >= 0.0));
 }
 
+/// Where a build that fails points to, as line and column.
+fn place(text: &str, folder: &Path) -> Option<(usize, usize)> {
+    let case = Case::parse(text, "case.toml", folder).unwrap_or_else(|error| panic!("{error}"));
+    let error = case.build(1).err()?;
+    case.at_its_key(&error).problems()[0].line_and_column()
+}
+
+#[test]
+fn a_failed_build_points_to_the_key_behind_it() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.inp"), HEX).unwrap();
+    let text = "[insert]\nshape = \"hexahedra\"\nfile = \"a.inp\"\n";
+    for key in ["articulating_surface", "backside"] {
+        let wrong = format!("{text}{key} = \"SIDE\"\n");
+        assert_eq!(place(&wrong, folder.path()), Some((4, key.len() + 4)));
+    }
+    let upside_down = format!("{text}backside = \"TOP\"\n");
+    assert_eq!(place(&upside_down, folder.path()), Some((4, 12)));
+    std::fs::write(folder.path().join("b.stl"), "no mesh").unwrap();
+    let femur = format!("{text}[femur]\nshape = \"mesh\"\nfile = \"b.stl\"\n");
+    assert_eq!(place(&femur, folder.path()), Some((6, 8)));
+}
+
 #[test]
 fn hexahedra_upside_down_make_no_insert() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,0 +1,150 @@
+//! A run stopped at any increment goes on to the same bytes as one never stopped.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use condyle_io::results::Checkpoint;
+use condyle_lab::{Happening, Outcome, RunError, RunOptions, check, run};
+use tempfile::TempDir;
+
+const CASE: &str = "\
+[insert]
+edge_mm = 3.0
+layers = 1
+[march]
+updates = 3
+[time]
+increments = 40
+";
+
+fn bench(case: &str) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let file = folder.path().join("case.toml");
+    fs::write(&file, case).expect("it can be written");
+    (folder, file)
+}
+
+fn options(out: PathBuf, resume: bool) -> RunOptions {
+    RunOptions {
+        out,
+        resume,
+        threads: 1,
+    }
+}
+
+/// Runs until `stops` says so.
+fn run_until(
+    case: &Path,
+    options: &RunOptions,
+    mut stops: impl FnMut(&Happening<'_>) -> bool,
+) -> Outcome {
+    let mut happening = |happening: Happening<'_>| match stops(&happening) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    run(case, options, &mut happening).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Every file but the summary, which alone has the wall time.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder).expect("it is there");
+    entries
+        .map(|entry| entry.expect("it can be read"))
+        .map(|entry| {
+            (
+                entry.file_name().to_string_lossy().into_owned(),
+                entry.path(),
+            )
+        })
+        .filter(|(name, _)| name != "summary.json")
+        .map(|(name, path)| (name, fs::read(path).expect("it can be read")))
+        .collect()
+}
+
+#[test]
+fn stopped_at_any_increment_again_and_again() {
+    let (folder, case) = bench(CASE);
+    let whole = folder.path().join("whole");
+    let mut increments = 0;
+    run_until(&case, &options(whole.clone(), false), |happening| {
+        increments += usize::from(matches!(happening, Happening::Solved(_)));
+        false
+    });
+    let expected = files(&whole);
+    for stop_after in [1, 17, 40, 41, increments / 2, increments - 1, increments] {
+        let out = folder.path().join(format!("stopped{stop_after}"));
+        let mut resume = false;
+        // An update takes a few cycles, so that a stop must not come before its end for ever.
+        for part in 1.. {
+            let mut left = stop_after * part;
+            let outcome = run_until(&case, &options(out.clone(), resume), |happening| {
+                left -= usize::from(left > 0 && matches!(happening, Happening::Solved(_)));
+                left == 0
+            });
+            resume = true;
+            if let Outcome::Interrupted { done, of } = outcome {
+                assert!(done < of && !out.join("summary.json").exists());
+                continue;
+            }
+            break;
+        }
+        assert!(
+            files(&out) == expected,
+            "stopped after {stop_after} increments"
+        );
+    }
+}
+
+#[test]
+fn stopped_at_the_start_nothing_is_computed_and_nothing_lost() {
+    let (folder, case) = bench(CASE);
+    let out = folder.path().join("out");
+    let outcome = run_until(&case, &options(out.clone(), false), |_| true);
+    assert!(matches!(outcome, Outcome::Interrupted { done: 0, of: 3 }));
+    let outcome = run_until(&case, &options(out, true), |_| false);
+    assert!(matches!(outcome, Outcome::Done(_)));
+}
+
+#[test]
+fn a_finished_run_is_not_run_again() {
+    let (folder, case) = bench(CASE);
+    let out = folder.path().join("out");
+    let Outcome::Done(done) = run_until(&case, &options(out.clone(), false), |_| false) else {
+        panic!("it was not stopped");
+    };
+    let again = run_until(&case, &options(out, true), |_| panic!("nothing happens"));
+    assert!(matches!(again, Outcome::DoneBefore(before) if before == done));
+}
+
+#[test]
+fn a_run_of_another_version_is_not_gone_on_with() {
+    let (folder, case) = bench(CASE);
+    let out = folder.path().join("out");
+    run_until(&case, &options(out.clone(), false), |_| true);
+    let file = out.join("checkpoint");
+    let mut checkpoint = Checkpoint::from_bytes(&fs::read(&file).unwrap()).unwrap();
+    checkpoint.version = "0.0.1".to_owned();
+    fs::write(&file, checkpoint.to_bytes()).unwrap();
+    let mut go_on = |_: Happening<'_>| ControlFlow::Continue(());
+    let error = run(&case, &options(out, true), &mut go_on).unwrap_err();
+    let said = error.to_string();
+    assert!(
+        said.contains("begun by condyle 0.0.1") && said.contains("run the case anew"),
+        "{said}"
+    );
+    assert!(!error.is_physics() && error.in_case().is_none());
+}
+
+#[test]
+fn check_goes_as_far_as_a_run_before_its_first_cycle() {
+    let (_folder, case) = bench(CASE);
+    assert!(check(&case, 1).is_ok());
+    let apart = "[femur]\nshape = \"sphere\"\nstart_mm = [90.0, 0.0]\n";
+    let (_folder, case) = bench(&format!("{apart}{CASE}"));
+    let error = check(&case, 1).unwrap_err();
+    assert!(matches!(error, RunError::Placement { .. }));
+    let problem = &error.in_case().expect("it has a place").problems()[0];
+    assert_eq!(problem.line_and_column(), Some((3, 12)));
+}
