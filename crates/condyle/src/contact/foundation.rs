@@ -89,11 +89,11 @@ impl<'a> Foundation<'a> {
     fn press(
         &self,
         four: &Shares4,
+        place: Vector<Lanes>,
         pose: &Pose4,
         angular: &Vector<Lanes>,
         linear: &Vector<Lanes>,
     ) -> (Tractions4, Lanes, Lanes) {
-        let place = pose.to_femur(&four.centre);
         let sample = self.femur.sample(&place, four.spread_mm2);
         let normal_in_insert = pose.turn_to_insert(&sample.normal);
         let rise = [
@@ -148,14 +148,12 @@ impl ContactModel for Foundation<'_> {
                 continue;
             };
             let shares = &self.shares[four];
-            if look == Look::Search {
-                let gap_mm = self.femur.gap_mm(&pose.to_femur(&shares.centre));
-                if self.nearness.is_far(four, gap_mm) {
-                    continue;
-                }
+            let place = pose.to_femur(&shares.centre);
+            if look == Look::Search && self.nearness.is_far(four, &place) {
+                continue;
             }
-            let (pressed, gap_mm, reach_mm) = self.press(shares, &pose, &angular, &linear);
-            if self.nearness.found(four, gap_mm, reach_mm) {
+            let (pressed, gap_mm, reach_mm) = self.press(shares, place, &pose, &angular, &linear);
+            if self.nearness.found(four, &pressed, gap_mm, reach_mm) {
                 total.add(&pressed.place, &pressed.force_n(self.settings.friction));
                 tractions.push(pressed);
             }

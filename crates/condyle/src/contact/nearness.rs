@@ -1,19 +1,20 @@
 //! Which nodes may touch: each is looked at again only when it could have come near.
 
-use super::Pose;
+use super::{Pose, traction::Tractions4};
 use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, Share},
     number::{LANES, Lanes, Number},
 };
 
-/// A gap is trusted no further than this, mm: a mesh's distance field ends not far beyond.
-const FARTHEST_TRUSTED_MM: f64 = 1.5;
+/// Nearer than this a gap is a true distance with a true normal, mm; further off, a mesh's field
+/// only bounds it.
+const TRUE_GAP_MM: f64 = 2.0;
 
 /// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.
 const GAP_PER_MOTION: f64 = 1.05;
 
-/// Curvature that no articulating surface exceeds, 1/mm: how fast a share's reach may grow.
+/// Curvature that no articulating surface exceeds, 1/mm: how fast a normal may turn.
 const SHARPEST_PER_MM: f64 = 0.2;
 
 /// What the mean gap of a share may differ from the gap at its centre, mm.
@@ -33,10 +34,32 @@ pub(super) struct Shares4 {
 /// How to look at four shares.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Look {
-    /// They touched last time: press at once.
+    /// They touched last time, or were never looked at: press at once.
     Press,
-    /// They did not: the gap comes first.
+    /// They did not touch: what was found then may rule out contact still.
     Search,
+}
+
+/// What a press of four shares that did not touch found.
+#[derive(Clone)]
+struct Found {
+    place: Vector<Lanes>,
+    normal: Vector<Lanes>,
+    gap_mm: Lanes,
+    /// Largest reach, less the travel then, mm: with the travel now it bounds the reach now.
+    reach_less_travel_mm: f64,
+}
+
+impl Found {
+    fn nothing() -> Self {
+        let zero = Vector::repeat(Lanes::splat(0.0));
+        Self {
+            place: zero,
+            normal: zero,
+            gap_mm: Lanes::splat(0.0),
+            reach_less_travel_mm: 0.0,
+        }
+    }
 }
 
 /// How far every four shares are from touching, at least.
@@ -47,9 +70,8 @@ pub(super) enum Look {
 pub(super) struct Nearness {
     /// Travel at which each four are due for the next look, mm.
     due_mm: Vec<f64>,
-    /// Reach of each four at their last press, less the travel then, mm: with the travel now it
-    /// bounds the reach now.
-    reach_less_travel_mm: Vec<f64>,
+    /// What the last press of each four found.
+    found: Vec<Found>,
     /// Travel of the femur so far: a bound for every share, mm.
     travelled_mm: f64,
     at: Option<Pose>,
@@ -61,8 +83,8 @@ pub(super) struct Nearness {
 impl Nearness {
     pub fn new(surface: &ArticulatingSurface, count: usize) -> Self {
         Self {
-            due_mm: vec![0.0; count],
-            reach_less_travel_mm: vec![f64::INFINITY; count],
+            due_mm: vec![f64::NEG_INFINITY; count],
+            found: vec![Found::nothing(); count],
             travelled_mm: 0.0,
             at: None,
             box_corners: box_corners(&surface.shares),
@@ -103,28 +125,47 @@ impl Nearness {
         }
     }
 
-    /// Whether the gaps at four centres rule out contact however the shares may lean by now; notes it.
+    /// Whether what the last press found rules out contact at the places where the shares are now.
+    ///
+    /// Gaps change by n . d for a motion d, but for the turning of the normal on the way, at most
+    /// d^2 / 2 times the sharpest curvature: far less than d itself where the femur slides past.
     #[inline(always)]
-    pub fn is_far(&mut self, four: usize, gap_mm: Lanes) -> bool {
-        let grown_mm = self.reach_less_travel_mm[four] + self.travelled_mm;
-        let to_contact_mm = gap_mm.least() - grown_mm.min(self.longest_half_mm) - SPREAD_MM;
-        if to_contact_mm > 0.0 {
-            self.due_mm[four] = self.travelled_mm + to_contact_mm.min(FARTHEST_TRUSTED_MM);
+    pub fn is_far(&mut self, four: usize, place: &Vector<Lanes>) -> bool {
+        let found = &self.found[four];
+        let motion = place - found.place;
+        let turning = motion.dot(&motion) * Lanes::splat(SHARPEST_PER_MM / 2.0);
+        let gap_mm = found.gap_mm + found.normal.dot(&motion) - turning;
+        let reach_mm = (found.reach_less_travel_mm + self.travelled_mm).min(self.longest_half_mm);
+        let to_contact_mm = gap_mm.least() - reach_mm - SPREAD_MM;
+        let is_far = to_contact_mm > 0.0 && found.gap_mm.least() < TRUE_GAP_MM;
+        if is_far {
+            self.due_mm[four] = self.travelled_mm + to_contact_mm;
         }
-        to_contact_mm > 0.0
+        is_far
     }
 
-    /// Notes the gaps and reaches that a press has found; says whether anything touches.
+    /// Notes what a press has found; says whether anything touches.
     #[inline(always)]
-    pub fn found(&mut self, four: usize, gap_mm: Lanes, reach_mm: Lanes) -> bool {
+    pub fn found(
+        &mut self,
+        four: usize,
+        tractions: &Tractions4,
+        gap_mm: Lanes,
+        reach_mm: Lanes,
+    ) -> bool {
         let to_contact_mm = (gap_mm - reach_mm).least();
-        self.reach_less_travel_mm[four] = -(-reach_mm).least() - self.travelled_mm;
-        self.due_mm[four] = if to_contact_mm > 0.0 {
-            self.travelled_mm + to_contact_mm.min(FARTHEST_TRUSTED_MM)
-        } else {
-            f64::NEG_INFINITY
+        if to_contact_mm <= 0.0 {
+            self.due_mm[four] = f64::NEG_INFINITY;
+            return true;
+        }
+        self.due_mm[four] = self.travelled_mm + to_contact_mm;
+        self.found[four] = Found {
+            place: tractions.place,
+            normal: tractions.normal,
+            gap_mm,
+            reach_less_travel_mm: -(-reach_mm).least() - self.travelled_mm,
         };
-        to_contact_mm <= 0.0
+        false
     }
 }
 

@@ -78,7 +78,7 @@ impl GenericInsertShape {
             }
         }
         let built = grid.hexahedra(&columns, meshing.layers);
-        Insert::new(built.mesh, built.articulating, &built.backside)
+        Insert::new(built.mesh, &built.articulating, &built.backside)
     }
 }
 
@@ -97,7 +97,7 @@ pub fn flat_insert(
     let grid = ColumnGrid::filling((-x, -z), (x, z), meshing.edge_mm);
     let columns = vec![Some((-thickness_mm, 0.0)); grid.point_count()];
     let built = grid.hexahedra(&columns, meshing.layers);
-    Insert::new(built.mesh, built.articulating, &built.backside)
+    Insert::new(built.mesh, &built.articulating, &built.backside)
 }
 
 #[cfg(test)]

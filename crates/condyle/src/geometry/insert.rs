@@ -62,7 +62,7 @@ impl Insert {
     /// An empty mesh or surface, an inverted element, or a node without thickness below it.
     pub fn new(
         mesh: HexMesh,
-        articulating: Vec<[u32; 4]>,
+        articulating: &[[u32; 4]],
         backside: &[[u32; 4]],
     ) -> Result<Self, InsertError> {
         for (count, what) in [
@@ -75,7 +75,7 @@ impl Insert {
             }
         }
         check_elements(&mesh)?;
-        let (nodes, faces) = numbered(&articulating);
+        let (nodes, faces) = numbered(articulating);
         // Sides and backside stay where they are: wear takes away the articulating surface alone.
         let follower = InteriorFollower::new(&mesh, mesh.boundary_quads().into_iter().flatten());
         let positions: Vec<Vec3> = nodes

@@ -63,7 +63,7 @@ pub fn insert_from_shell(
     }
     Ok(Insert::new(
         built.mesh,
-        built.articulating,
+        &built.articulating,
         &built.backside,
     )?)
 }

@@ -20,7 +20,7 @@ const SPACING_MM: f64 = 1.25;
 /// may reach, and the spline's footprint around it.
 const BAND_MM: f64 = 3.5;
 
-/// Gap of the grid nodes beyond the band, mm.
+/// Gap of the grid nodes beyond the band until a bound is found, and of points outside the grid, mm.
 const FAR_MM: f64 = 1e3;
 
 /// A smooth signed distance to a triangle mesh.
@@ -32,6 +32,8 @@ pub struct SmoothField {
     dims: [usize; 3],
     /// Coefficients of the spline, mm.
     coefficients: Vec<f64>,
+    /// Nodes beyond the band: their gap is a bound.
+    is_far: Vec<bool>,
 }
 
 /// Values and first derivatives of the three B-splines that reach a point.
@@ -92,10 +94,13 @@ impl SmoothField {
             origin,
             dims,
             coefficients: Vec::new(),
+            is_far: Vec::new(),
         };
         field.coefficients = field.gaps_at_nodes(&CurvedMesh::new(mesh), threads.max(1));
+        field.bound_far_gaps();
         for stride in field.strides() {
-            field.add_second_differences(stride, -1.0 / 8.0);
+            let before = field.coefficients.clone();
+            field.add_second_differences(&before, stride, -1.0 / 8.0);
         }
         field
     }
@@ -105,7 +110,7 @@ impl SmoothField {
         let factor = spread_mm2 / (SPACING_MM * SPACING_MM);
         let unaveraged = self.coefficients.clone();
         for stride in self.strides() {
-            add_second_differences(&unaveraged, &mut self.coefficients, stride, factor);
+            self.add_second_differences(&unaveraged, stride, factor);
         }
         self
     }
@@ -263,6 +268,34 @@ impl SmoothField {
         }
     }
 
+    /// Gives the nodes beyond the band a lower bound of their distance, with its sign: along the
+    /// grid lines a path is at most sqrt 3 times as long as the straight way.
+    fn bound_far_gaps(&mut self) {
+        const STRAIGHT_PER_PATH: f64 = 0.577;
+        let step = SPACING_MM * STRAIGHT_PER_PATH;
+        let strides = self.strides();
+        let count = self.coefficients.len();
+        self.is_far = self.coefficients.iter().map(|&gap| gap == FAR_MM).collect();
+        let mut near = |here: usize, there: usize| {
+            let (own, gap) = (self.coefficients[here], self.coefficients[there]);
+            if self.is_far[here] && gap.abs() + step < own.abs() {
+                self.coefficients[here] = gap + step.copysign(gap);
+            }
+        };
+        for here in 0..count {
+            strides
+                .iter()
+                .filter(|&&stride| here >= stride)
+                .for_each(|stride| near(here, here - stride));
+        }
+        for here in (0..count).rev() {
+            strides
+                .iter()
+                .filter(|&&stride| here + stride < count)
+                .for_each(|stride| near(here, here + stride));
+        }
+    }
+
     fn node_position(&self, i: usize, j: usize, k: usize) -> Vec3 {
         self.origin + Vec3::new(i as f64, j as f64, k as f64) * SPACING_MM
     }
@@ -278,18 +311,14 @@ impl SmoothField {
         [first, end]
     }
 
-    fn add_second_differences(&mut self, stride: usize, factor: f64) {
-        let before = self.coefficients.clone();
-        add_second_differences(&before, &mut self.coefficients, stride, factor);
-    }
-}
-
-/// Adds `factor` times the second difference along one axis, where no node of it is far.
-fn add_second_differences(from: &[f64], to: &mut [f64], stride: usize, factor: f64) {
-    for i in stride..from.len() - stride {
-        let (left, middle, right) = (from[i - stride], from[i], from[i + stride]);
-        if left < FAR_MM / 2.0 && middle < FAR_MM / 2.0 && right < FAR_MM / 2.0 {
-            to[i] += factor * (left - 2.0 * middle + right);
+    /// Adds `factor` times the second difference along one axis of `from`, where no node of it is
+    /// beyond the band.
+    fn add_second_differences(&mut self, from: &[f64], stride: usize, factor: f64) {
+        for i in stride..from.len() - stride {
+            let (before, after) = (i - stride, i + stride);
+            if !(self.is_far[before] || self.is_far[i] || self.is_far[after]) {
+                self.coefficients[i] += factor * (from[before] - 2.0 * from[i] + from[after]);
+            }
         }
     }
 }

@@ -308,7 +308,7 @@ pub fn low_passed(waveform: &Waveform, harmonics: usize) -> Vec<Knot> {
         terms.iter().enumerate().map(term).sum()
     };
     (0..100)
-        .map(|percent| f64::from(percent))
+        .map(f64::from)
         .map(|percent| Knot {
             percent,
             value: value(percent),

@@ -75,7 +75,7 @@ fn from_hexahedra(insert: &HexahedralInsert, side: Side) -> Result<Insert, Build
     };
     let articulating = surface("articulating_surface", &insert.articulating_surface, 1.0)?;
     let backside = surface("backside", &insert.backside, -1.0)?;
-    Ok(Insert::new(file.mesh, articulating, &backside)?)
+    Ok(Insert::new(file.mesh, &articulating, &backside)?)
 }
 
 /// Moves nodes into the frame; where that mirrors, turns hexahedra and faces the right way again.
