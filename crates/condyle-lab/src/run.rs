@@ -146,6 +146,7 @@ pub fn run(
     if let Found::Done(summary) = found {
         // It may have been stopped before it wrote the page; the same folder gives the same one.
         condyle_report::write_report(&options.out)?;
+        ResultsFolder::existing(&options.out).finish()?;
         return Ok(Outcome::DoneBefore(summary));
     }
     let mut clock = Clock::default();

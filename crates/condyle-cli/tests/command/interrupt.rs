@@ -205,6 +205,9 @@ fn stopped_after_its_last_update_it_only_sums_up() {
         for name in gone {
             fs::remove_file(bench.path("out").join(name)).unwrap();
         }
+        for left in ["time_spent_s", "time_spent_s.part"] {
+            bench.write(&format!("out/{left}"), "0.1\n");
+        }
         bench.resume("out");
         assert_same_bytes(&bench.path("out"), &whole.path("out"));
     }

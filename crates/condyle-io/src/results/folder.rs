@@ -11,7 +11,7 @@ use thiserror::Error;
 use super::{
     Checkpoint, CheckpointError, Summary,
     insert_series::{insert_file_name, insert_pvd, insert_vtu},
-    replace::{replace_file, replace_file_durably},
+    replace::{beside, replace_file, replace_file_durably},
     tables::{kinematics_csv, wear_csv},
 };
 use crate::{case::Side, mesh::MeshFileError};
@@ -235,12 +235,15 @@ impl ResultsFolder {
     /// Where the system refuses.
     pub fn finish(&self) -> Result<(), ResultsError> {
         let file = self.file(TIME_SPENT);
-        match fs::remove_file(&file) {
-            Err(source) if source.kind() != io::ErrorKind::NotFound => {
-                Err(ResultsError::Refused { file, source })
+        for file in [beside(&file), file] {
+            match fs::remove_file(&file) {
+                Err(source) if source.kind() != io::ErrorKind::NotFound => {
+                    return Err(ResultsError::Refused { file, source });
+                }
+                Ok(()) | Err(_) => {}
             }
-            Ok(()) | Err(_) => Ok(()),
         }
+        Ok(())
     }
 
     /// Where it is.

@@ -25,7 +25,7 @@ pub(super) fn replace_file_durably(path: &Path, bytes: &[u8]) -> io::Result<()> 
 
 /// The name of a file while it is written: always the same, so that one left behind by a run that
 /// was stopped is written over by the run that goes on.
-fn beside(path: &Path) -> PathBuf {
+pub(super) fn beside(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".part");
     name.into()
