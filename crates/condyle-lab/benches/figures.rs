@@ -62,12 +62,14 @@ fn contact_evaluation(bencher: Bencher<'_, '_>, case: &str) {
     let poses = poses_at_2600_n(test, &chain);
     let mut contact = Foundation::new(&test.contact, &test.femur, &test.insert);
     let twist = Vec6::new(0.1, 0.2, 1.0, 5.0, 0.0, 20.0);
-    bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
-        for &pose in &poses {
-            black_box(contact.respond(&RelativeMotion { pose, twist }));
-            black_box(contact.tangent());
-        }
-    });
+    bencher
+        .counter(ItemsCount::new(poses.len()))
+        .bench_local(|| {
+            for &pose in &poses {
+                black_box(contact.respond(&RelativeMotion { pose, twist }));
+                black_box(contact.tangent());
+            }
+        });
 }
 
 /// A whole test, from the parsed case to the last update, without files.

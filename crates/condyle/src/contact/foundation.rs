@@ -62,7 +62,7 @@ impl<'a> Foundation<'a> {
             directions: (0..surface.positions.len())
                 .map(|node| surface.directions(node))
                 .collect(),
-            nearness: Nearness::new(&surface, shares.len()),
+            nearness: Nearness::new(&surface, shares.len(), femur.sharpest_per_mm()),
             shares,
             surface,
             tractions: Vec::new(),

@@ -14,9 +14,6 @@ const TRUE_GAP_MM: f64 = 2.0;
 /// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.
 const GAP_PER_MOTION: f64 = 1.05;
 
-/// Curvature that no articulating surface exceeds, 1/mm: how fast a normal may turn.
-const SHARPEST_PER_MM: f64 = 0.2;
-
 /// What the mean gap of a share may differ from the gap at its centre, mm.
 const SPREAD_MM: f64 = 0.02;
 
@@ -46,8 +43,8 @@ struct Found {
     place: Vector<Lanes>,
     normal: Vector<Lanes>,
     gap_mm: Lanes,
-    /// Largest reach, less the travel then, mm: with the travel now it bounds the reach now.
-    reach_less_travel_mm: f64,
+    /// Largest reach, less the growth until then, mm: with the growth now it bounds the reach now.
+    reach_less_growth_mm: f64,
 }
 
 impl Found {
@@ -57,7 +54,7 @@ impl Found {
             place: zero,
             normal: zero,
             gap_mm: Lanes::splat(0.0),
-            reach_less_travel_mm: 0.0,
+            reach_less_growth_mm: 0.0,
         }
     }
 }
@@ -74,6 +71,10 @@ pub(super) struct Nearness {
     found: Vec<Found>,
     /// Travel of the femur so far: a bound for every share, mm.
     travelled_mm: f64,
+    /// What the reach of a share may have grown by so far, mm.
+    reach_growth_mm: f64,
+    /// Largest curvature of the femur, 1/mm: how fast its normal may turn.
+    sharpest_per_mm: f64,
     at: Option<Pose>,
     /// Corners of the box around all shares.
     box_corners: [Vec3; 8],
@@ -81,11 +82,13 @@ pub(super) struct Nearness {
 }
 
 impl Nearness {
-    pub fn new(surface: &ArticulatingSurface, count: usize) -> Self {
+    pub fn new(surface: &ArticulatingSurface, count: usize, sharpest_per_mm: f64) -> Self {
         Self {
             due_mm: vec![f64::NEG_INFINITY; count],
             found: vec![Found::nothing(); count],
             travelled_mm: 0.0,
+            reach_growth_mm: 0.0,
+            sharpest_per_mm,
             at: None,
             box_corners: box_corners(&surface.shares),
             longest_half_mm: surface.shares.iter().map(half_mm).fold(0.0, f64::max),
@@ -107,7 +110,8 @@ impl Nearness {
                 .fold(0.0, f64::max)
                 .sqrt();
             let turn_rad = (to.rotation - from.rotation).norm();
-            let reach_mm = self.longest_half_mm * (turn_rad + farthest_mm * SHARPEST_PER_MM);
+            let reach_mm = self.longest_half_mm * (turn_rad + farthest_mm * self.sharpest_per_mm);
+            self.reach_growth_mm += reach_mm;
             self.travelled_mm += GAP_PER_MOTION * farthest_mm + reach_mm;
         }
     }
@@ -133,9 +137,10 @@ impl Nearness {
     pub fn is_far(&mut self, four: usize, place: &Vector<Lanes>) -> bool {
         let found = &self.found[four];
         let motion = place - found.place;
-        let turning = motion.dot(&motion) * Lanes::splat(SHARPEST_PER_MM / 2.0);
+        let turning = motion.dot(&motion) * Lanes::splat(self.sharpest_per_mm / 2.0);
         let gap_mm = found.gap_mm + found.normal.dot(&motion) - turning;
-        let reach_mm = (found.reach_less_travel_mm + self.travelled_mm).min(self.longest_half_mm);
+        let reach_mm =
+            (found.reach_less_growth_mm + self.reach_growth_mm).min(self.longest_half_mm);
         let to_contact_mm = gap_mm.least() - reach_mm - SPREAD_MM;
         let is_far = to_contact_mm > 0.0 && found.gap_mm.least() < TRUE_GAP_MM;
         if is_far {
@@ -163,7 +168,7 @@ impl Nearness {
             place: tractions.place,
             normal: tractions.normal,
             gap_mm,
-            reach_less_travel_mm: -(-reach_mm).least() - self.travelled_mm,
+            reach_less_growth_mm: -(-reach_mm).least() - self.reach_growth_mm,
         };
         false
     }

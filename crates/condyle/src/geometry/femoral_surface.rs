@@ -27,6 +27,9 @@ impl<T: Number> Curvature<T> {
     }
 }
 
+/// How much sharper than the surface its level surfaces inside are, as deep as contact goes.
+const DEEPER: f64 = 1.2;
+
 /// The femoral surface around a point of the femoral frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceSample<T> {
@@ -89,6 +92,17 @@ impl FemoralSurface {
             Self::Generic(femur) => femur.reach_mm(),
             Self::Sphere(ball) => ball.centre.norm() + ball.tube_radius_mm,
             Self::Mesh(field) => field.reach_mm(),
+        }
+    }
+
+    /// Curvature that the surface nowhere exceeds where it articulates, 1/mm.
+    ///
+    /// Of a mesh it is not known: 0.2, sharper than any condyle.
+    pub fn sharpest_per_mm(&self) -> f64 {
+        match self {
+            Self::Generic(femur) => DEEPER * femur.sharpest_per_mm(),
+            Self::Sphere(ball) => DEEPER / ball.tube_radius_mm,
+            Self::Mesh(_) => 0.2,
         }
     }
 

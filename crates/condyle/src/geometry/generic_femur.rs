@@ -70,6 +70,15 @@ impl GenericFemur {
         &self.shape
     }
 
+    /// Largest curvature of the surface, 1/mm.
+    pub fn sharpest_per_mm(&self) -> f64 {
+        let shape = &self.shape;
+        1.0 / shape
+            .coronal_radius_mm
+            .min(shape.posterior_radius_mm)
+            .min(shape.distal_radius_mm)
+    }
+
     /// How far from the origin the component reaches at most, mm.
     pub fn reach_mm(&self) -> f64 {
         self.distal.centre.norm() + self.shape.distal_radius_mm + self.half_spacing_mm
