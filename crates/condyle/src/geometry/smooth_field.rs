@@ -6,7 +6,7 @@
 //! quadratic surface). Then a quadratic B-spline through those gaps gives a value, a gradient and
 //! a Hessian anywhere between the nodes, the first two continuous, from 27 numbers.
 
-use super::{Curvature, SurfaceSample, TriangleMesh, curved_mesh::CurvedMesh};
+use super::{Curvature, SurfaceSample, TriangleMesh, curved_mesh::CurvedMesh, shell_report};
 use crate::{
     Vec3, Vector,
     number::{LANES, Number},
@@ -97,7 +97,7 @@ impl SmoothField {
             is_far: Vec::new(),
         };
         field.coefficients = field.gaps_at_nodes(&CurvedMesh::new(mesh), threads.max(1));
-        field.bound_far_gaps();
+        field.bound_far_gaps(shell_report(mesh).is_closed());
         for stride in field.strides() {
             let before = field.coefficients.clone();
             field.add_second_differences(&before, stride, -1.0 / 8.0);
@@ -268,9 +268,12 @@ impl SmoothField {
         }
     }
 
-    /// Gives the nodes beyond the band a lower bound of their distance, with its sign: along the
-    /// grid lines a path is at most sqrt 3 times as long as the straight way.
-    fn bound_far_gaps(&mut self) {
+    /// Gives the nodes beyond the band a lower bound of their distance: along the grid lines a path
+    /// is at most sqrt 3 times as long as the straight way.
+    ///
+    /// Far inside a closed surface it is negative. An open one has no inside: past its rim, a sign
+    /// carried round from its back would make the insert overlap it.
+    fn bound_far_gaps(&mut self, is_closed: bool) {
         const STRAIGHT_PER_PATH: f64 = 0.577;
         let step = SPACING_MM * STRAIGHT_PER_PATH;
         let strides = self.strides();
@@ -279,7 +282,8 @@ impl SmoothField {
         let mut near = |here: usize, there: usize| {
             let (own, gap) = (self.coefficients[here], self.coefficients[there]);
             if self.is_far[here] && gap.abs() + step < own.abs() {
-                self.coefficients[here] = gap + step.copysign(gap);
+                let sign = if is_closed { gap.signum() } else { 1.0 };
+                self.coefficients[here] = sign * (gap.abs() + step);
             }
         };
         for here in 0..count {
@@ -434,5 +438,32 @@ mod tests {
         let field = SmoothField::new(&ball(2.0), 1);
         assert!(field.gap_mm(&Vec3::new(0.0, -200.0, 0.0)) > 100.0);
         assert!(field.sample(&Vec3::new(0.0, -29.0, 0.0)).gap_mm > 2.0);
+    }
+
+    #[test]
+    fn an_open_surface_has_no_inside_beyond_its_band() {
+        let mut cap = ball(1.5);
+        let is_low = |triangle: &[u32; 3]| {
+            let below = |&vertex: &u32| cap.vertices[vertex as usize].y < -15.0;
+            triangle.iter().all(below)
+        };
+        cap.triangles = cap.triangles.iter().copied().filter(is_low).collect();
+        let used = |i: usize| cap.triangles.iter().flatten().any(|&v| v as usize == i);
+        let low = cap.vertices[cap.triangles[0][0] as usize];
+        for i in 0..cap.vertices.len() {
+            if !used(i) {
+                cap.vertices[i] = low;
+            }
+        }
+        let field = SmoothField::new(&cap, 1);
+        for x in -5..=5 {
+            let x = 4.5 * f64::from(x);
+            for y in [-12.0, -13.5] {
+                let gap_mm = field.gap_mm(&Vec3::new(x, y, 0.0));
+                let behind_mm = 24.0 - x.hypot(y);
+                assert!(behind_mm < 4.5 || gap_mm > 0.0, "{x} {y}: {gap_mm}");
+            }
+        }
+        assert!((field.gap_mm(&Vec3::new(0.0, -23.0, 0.0)) + 1.0).abs() < 1e-3);
     }
 }
