@@ -10,6 +10,8 @@ use crate::results::{Extreme, Region, Side, SurfaceFields};
 
 /// Bands between 0 and the largest value, at most.
 const MOST_BANDS: usize = 12;
+/// Half the width of the text below a marker, px.
+const HALF_TEXT_WIDTH: f64 = 80.0;
 /// Distance between the height lines of the bare surface, mm.
 const HEIGHT_STEP: f64 = 1.0;
 /// A largest value below this counts as nothing to show.
@@ -289,12 +291,15 @@ impl Map<'_> {
     /// A ring at the place, a leader down to its text below the surface.
     fn marker(&self, name: &str, extreme: &Extreme) -> String {
         let (x, y) = self.place()(extreme.position.x, extreme.position.z);
-        let text_y = TOP + self.surface_size().1 + 50.0;
+        let (width, height) = self.surface_size();
+        let text_y = TOP + height + 50.0;
+        // A scar at the rim has its ring there, but its text stays inside the picture.
+        let text_x = x.clamp(HALF_TEXT_WIDTH, (LEFT + width).max(HALF_TEXT_WIDTH));
         let lines = format!("M{x:.1} {:.1}V{:.1}", y + 4.5, text_y - 13.0);
         let (value, place) = (self.value_text(extreme.value), place_text(extreme));
         let largest = self.largest;
         format!(
-            r#"<circle class="halo" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="halo" d="{lines}"/><circle class="mark" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="leader" d="{lines}"/><text x="{x:.1}" y="{text_y:.1}" text-anchor="middle">{largest} {}: <tspan class="strong">{value}</tspan><tspan x="{x:.1}" dy="1.35em">{place}</tspan></text>"#,
+            r#"<circle class="halo" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="halo" d="{lines}"/><circle class="mark" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="leader" d="{lines}"/><text x="{text_x:.1}" y="{text_y:.1}" text-anchor="middle">{largest} {}: <tspan class="strong">{value}</tspan><tspan x="{text_x:.1}" dy="1.35em">{place}</tspan></text>"#,
             name.to_lowercase()
         )
     }
