@@ -327,6 +327,25 @@ fn force_does_not_depend_on_the_calls_before() {
 }
 
 #[test]
+fn what_was_far_away_is_found_when_it_comes_near() {
+    let insert = default_insert();
+    let settings = linear();
+    for femur in [FemoralSurface::sphere(24.0), mesh_femur(&insert)] {
+        let mut walked = Foundation::new(&settings, &femur, &insert);
+        // In the air, beyond the rim, and from one dish to the other, in long steps and short ones.
+        for i in 0..120 {
+            let angle = 0.37 * f64::from(i);
+            let height = 23.9 + if i % 5 == 0 { 15.0 } else { 0.0 };
+            let place = Vec3::new(30.0 * angle.sin(), height, 45.0 * (0.61 * angle).cos());
+            let near = Vec3::new(2.0 * angle.sin(), 23.8, 23.0 + angle.cos());
+            let motion = at(if i % 3 == 0 { place } else { near });
+            let fresh = Foundation::new(&settings, &femur, &insert).respond(&motion);
+            assert_eq!(walked.respond(&motion), fresh, "step {i}");
+        }
+    }
+}
+
+#[test]
 fn verify_wrench_is_the_sum_of_the_nodes_forces() {
     let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
     let insert = default_insert();

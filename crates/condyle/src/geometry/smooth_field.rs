@@ -20,8 +20,12 @@ const SPACING_MM: f64 = 1.25;
 /// may reach, and the spline's footprint around it.
 const BAND_MM: f64 = 3.5;
 
-/// Gap of the grid nodes beyond the band until a bound is found, and of points outside the grid, mm.
+/// Gap of the grid nodes beyond the band until a bound is found, mm.
 const FAR_MM: f64 = 1e3;
+
+/// Gap of points outside the grid, mm: a lower bound, since the grid reaches further than that
+/// beyond the surface.
+const OUTSIDE_MM: f64 = BAND_MM + SPACING_MM;
 
 /// A smooth signed distance to a triangle mesh.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,7 +135,7 @@ impl SmoothField {
             let rows = self.rows(&here.corner, k).map(|row| dot3(&x.value, &row));
             gap += z.value[k] * dot3(&y.value, &rows);
         }
-        here.inside.below_zero(T::splat(FAR_MM), gap)
+        here.inside.below_zero(T::splat(OUTSIDE_MM), gap)
     }
 
     /// Gap, normal and curvature at a point.
@@ -161,7 +165,7 @@ impl SmoothField {
             bend[5] += s * gy;
         }
         sample_from(
-            here.inside.below_zero(T::splat(FAR_MM), gap),
+            here.inside.below_zero(T::splat(OUTSIDE_MM), gap),
             gradient,
             bend,
         )
@@ -436,7 +440,9 @@ mod tests {
     #[test]
     fn far_points_are_apart() {
         let field = SmoothField::new(&ball(2.0), 1);
-        assert!(field.gap_mm(&Vec3::new(0.0, -200.0, 0.0)) > 100.0);
+        // Outside the grid the gap is a bound below the distance.
+        let outside = field.gap_mm(&Vec3::new(0.0, -200.0, 0.0));
+        assert!(outside > BAND_MM && outside < 176.0, "{outside}");
         assert!(field.sample(&Vec3::new(0.0, -29.0, 0.0)).gap_mm > 2.0);
     }
 

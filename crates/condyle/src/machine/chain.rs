@@ -164,20 +164,23 @@ mod tests {
     use super::*;
     use crate::machine::{Drive, FreedomSettings};
 
-    fn chain() -> Chain {
+    fn machine() -> Machine {
         let row = FreedomSettings {
             drive: Drive::Locked(0.0),
             inertia: 0.0,
             damping: 0.0,
         };
-        let machine = Machine {
+        Machine {
             freedoms: [(); 6].map(|()| row.clone()),
             ap_springs: Vec::new(),
             frequency_hz: 1.1,
             vv_axis_mm: (-20.0, -5.0),
             ie_axis_mm: (1.0, 0.5),
-        };
-        Chain::new(&machine, Vec3::new(-5.0, 22.0, 0.0), (0.5, -0.3))
+        }
+    }
+
+    fn chain() -> Chain {
+        Chain::new(&machine(), Vec3::new(-5.0, 22.0, 0.0), (0.5, -0.3))
     }
 
     const SOMEWHERE: [f64; 6] = [0.03, -0.1, 1.2, -3.0, 0.4, 0.7];
@@ -251,19 +254,7 @@ mod tests {
 
     #[test]
     fn zeroing_keeps_the_pose() {
-        let row = FreedomSettings {
-            drive: Drive::Locked(0.0),
-            inertia: 0.0,
-            damping: 0.0,
-        };
-        let machine = Machine {
-            freedoms: [(); 6].map(|()| row.clone()),
-            ap_springs: Vec::new(),
-            frequency_hz: 1.1,
-            vv_axis_mm: (-20.0, -5.0),
-            ie_axis_mm: (1.0, 0.5),
-        };
-        let zeroed = chain().zeroed_at(&machine, &SOMEWHERE);
+        let zeroed = chain().zeroed_at(&machine(), &SOMEWHERE);
         let [vv, ie, _, _, _, flexion] = SOMEWHERE;
         let before = chain().at(&SOMEWHERE).pose;
         let after = zeroed.at(&[vv, ie, 0.0, 0.0, 0.0, flexion]).pose;
