@@ -184,7 +184,7 @@ impl<C: ContactModel> Integrator<'_, C> {
         &self,
         state: &MachineState,
         differences: &Differences,
-        positions: [f64; 6],
+        mut positions: [f64; 6],
         phase: f64,
     ) -> Kinematics {
         let past = |now: &[f64; 6], before: Option<&[f64; 6]>, j: usize| {
@@ -196,7 +196,7 @@ impl<C: ContactModel> Integrator<'_, C> {
             rates[j] = differences.slope * positions[j]
                 + past(&state.now.positions, before.map(|b| &b.positions), j);
         }
-        drive(self.machine, phase, &mut positions.clone(), &mut rates);
+        drive(self.machine, phase, &mut positions, &mut rates);
         for j in 0..6 {
             accelerations[j] =
                 differences.slope * rates[j] + past(&state.now.rates, before.map(|b| &b.rates), j);
@@ -232,41 +232,29 @@ pub(super) fn loads_at(machine: &Machine, phase: f64) -> [f64; 6] {
     })
 }
 
+/// Lever of a freedom, mm: what turns its moments into forces and its rotations into motions.
+fn lever_mm(j: usize) -> f64 {
+    if FREEDOMS[j].is_rotation() {
+        MOMENT_LEVER_MM
+    } else {
+        1.0
+    }
+}
+
 /// Largest force out of balance, N, moments on their lever.
 pub(super) fn out_of_balance_n(residual: &Vec6) -> f64 {
-    let force = |j: usize| {
-        residual[j].abs()
-            / if FREEDOMS[j].is_rotation() {
-                MOMENT_LEVER_MM
-            } else {
-                1.0
-            }
-    };
+    let force = |j: usize| residual[j].abs() / lever_mm(j);
     (0..6).map(force).fold(0.0, f64::max)
 }
 
 /// Length of a residual, N, moments on their lever.
 fn length_n(residual: &Vec6) -> f64 {
-    let force = |j: usize| {
-        residual[j]
-            / if FREEDOMS[j].is_rotation() {
-                MOMENT_LEVER_MM
-            } else {
-                1.0
-            }
-    };
+    let force = |j: usize| residual[j] / lever_mm(j);
     (0..6).map(|j| force(j).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Longest motion of a correction, mm, rotations on their lever.
 pub(super) fn longest_mm(correction: &Vec6) -> f64 {
-    let motion = |j: usize| {
-        correction[j].abs()
-            * if FREEDOMS[j].is_rotation() {
-                MOMENT_LEVER_MM
-            } else {
-                1.0
-            }
-    };
+    let motion = |j: usize| correction[j].abs() * lever_mm(j);
     (0..6).map(motion).fold(0.0, f64::max)
 }
