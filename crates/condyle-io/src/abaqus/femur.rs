@@ -17,7 +17,8 @@ pub(super) fn triangles(case: &Case, test: &WearTest) -> Result<TriangleMesh, Bu
         (Femur::Mesh(femur), _) => femur.triangles(case.heading.side),
         (_, FemoralSurface::Generic(femur)) => Ok(generic(femur)),
         (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm)),
-        (Femur::Generic(_), FemoralSurface::Sphere(_) | FemoralSurface::Mesh(_)) => {
+        (Femur::Cylinder(cylinder), _) => Ok(tube(cylinder.radius_mm)),
+        (Femur::Generic(_), _) => {
             unreachable!("a generic femur is built as one")
         }
     }
@@ -28,6 +29,32 @@ fn generic(femur: &GenericFemur) -> TriangleMesh {
     const COARSE_MM: f64 = 1.0;
     let coarse = femur.surface_mesh(COARSE_MM).triangles.len() as f64;
     femur.surface_mesh(COARSE_MM * (coarse / TRIANGLES).sqrt())
+}
+
+/// A tube about the z axis, longer than any insert is wide.
+fn tube(radius_mm: f64) -> TriangleMesh {
+    const HALF_LENGTH_MM: f64 = 60.0;
+    const EDGE_MM: f64 = 1.5;
+    let around = (std::f64::consts::TAU * radius_mm / EDGE_MM).ceil() as u32;
+    let along = (2.0 * HALF_LENGTH_MM / EDGE_MM).ceil() as u32;
+    let mut mesh = TriangleMesh::default();
+    for ring in 0..=along {
+        let z = HALF_LENGTH_MM * (2.0 * f64::from(ring) / f64::from(along) - 1.0);
+        for i in 0..around {
+            let (sine, cosine) =
+                (std::f64::consts::TAU * f64::from(i) / f64::from(around)).sin_cos();
+            let place = Vec3::new(radius_mm * cosine, radius_mm * sine, z);
+            mesh.vertices.push(place);
+        }
+    }
+    for ring in 0..along {
+        for i in 0..around {
+            let (a, b) = (ring * around + i, ring * around + (i + 1) % around);
+            let (c, d) = (b + around, a + around);
+            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    mesh
 }
 
 /// A ball about the origin: an icosahedron, its triangles cut in four again and again.
@@ -117,5 +144,16 @@ mod tests {
         let exact = 4.0 / 3.0 * PI * 24f64.powi(3);
         let volume = ball.signed_volume();
         assert!((volume / exact - 1.0).abs() < 1e-3, "{volume} {exact}");
+    }
+
+    #[test]
+    fn verify_the_tube_faces_out_and_has_the_radius() {
+        let tube = tube(20.0);
+        for triangle in 0..tube.triangles.len() {
+            let [a, b, c] = tube.corners(triangle);
+            let outward = Vec3::new(a.x, a.y, 0.0);
+            assert!((outward.norm() - 20.0).abs() < 1e-9);
+            assert!((b - a).cross(&(c - a)).dot(&outward) > 0.0);
+        }
     }
 }

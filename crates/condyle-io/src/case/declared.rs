@@ -113,6 +113,14 @@ settings! {
         start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
     }
 
+    /// One endless cylinder about the medio-lateral axis, for verification.
+    CylinderFemur {
+        /// Radius of the cylinder.
+        radius_mm: f64 = 24.0, in within(1.0, 500.0);
+        /// Where its axis starts in the insert frame, [x, z], before it settles; over the origin if not given.
+        start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
+    }
+
     /// A femoral component read from a triangle mesh.
     MeshFemur {
         /// STL, OBJ, PLY or VTP file, relative to the case file.

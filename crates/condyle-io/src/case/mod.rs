@@ -37,9 +37,10 @@ pub use build::{BuildError, BuildWarning, Built};
 pub use channel::Channel;
 pub use contact::{Contact, PressureLawChoice};
 pub use declared::{
-    DriveWord, FlatInsert, Friction, GenericFemur, GenericInsert, Heading, HexahedralInsert,
-    LengthUnit, MachineSettings, March, Material, MeshFemur, MeshInsert, Preset, PressureForm,
-    Rotation, Side, Sign, SphereFemur, Springs, StiffnessOf, Time, Translation, Wear, WearLawWord,
+    CylinderFemur, DriveWord, FlatInsert, Friction, GenericFemur, GenericInsert, Heading,
+    HexahedralInsert, LengthUnit, MachineSettings, March, Material, MeshFemur, MeshInsert, Preset,
+    PressureForm, Rotation, Side, Sign, SphereFemur, Springs, StiffnessOf, Time, Translation, Wear,
+    WearLawWord,
 };
 pub use files::DataFile;
 pub use keys::{Key, Limits, Settings, unit_of};

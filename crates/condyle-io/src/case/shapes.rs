@@ -2,8 +2,8 @@
 
 use super::axes;
 use super::declared::{
-    FlatInsert, GenericFemur, GenericInsert, HexahedralInsert, MeshFemur, MeshInsert, Side,
-    SphereFemur,
+    CylinderFemur, FlatInsert, GenericFemur, GenericInsert, HexahedralInsert, MeshFemur,
+    MeshInsert, Side, SphereFemur,
 };
 use super::files::DataFile;
 use super::keys::{Key, Settings, choice};
@@ -18,6 +18,8 @@ choice! {
         Mesh = "mesh",
         /// One sphere.
         Sphere = "sphere",
+        /// One cylinder.
+        Cylinder = "cylinder",
     }
 
     /// What the insert is made from.
@@ -42,6 +44,8 @@ pub enum Femur {
     Mesh(MeshFemur),
     /// One sphere, for verification.
     Sphere(SphereFemur),
+    /// One cylinder about the medio-lateral axis, for verification.
+    Cylinder(CylinderFemur),
 }
 
 /// The tibial insert.
@@ -81,6 +85,7 @@ impl Femur {
         ("generic", GenericFemur::KEYS),
         ("mesh", MeshFemur::KEYS),
         ("sphere", SphereFemur::KEYS),
+        ("cylinder", CylinderFemur::KEYS),
     ];
 
     pub(super) fn read(section: &Section<'_>, side: Side, log: &mut Log<'_>) -> Option<Self> {
@@ -90,6 +95,7 @@ impl Femur {
             FemurShape::Generic => Self::Generic(GenericFemur::read(section, log)?),
             FemurShape::Mesh => Self::Mesh(MeshFemur::read(section, log)?),
             FemurShape::Sphere => Self::Sphere(SphereFemur::read(section, log)?),
+            FemurShape::Cylinder => Self::Cylinder(CylinderFemur::read(section, log)?),
         };
         if let Self::Mesh(mesh) = &femur {
             axes::check(&mesh.axes, side, section.value_span("axes"), log);
@@ -101,7 +107,7 @@ impl Femur {
     pub fn file(&self) -> Option<&DataFile> {
         match self {
             Self::Mesh(mesh) => Some(&mesh.file),
-            Self::Generic(_) | Self::Sphere(_) => None,
+            Self::Generic(_) | Self::Sphere(_) | Self::Cylinder(_) => None,
         }
     }
 
@@ -111,6 +117,7 @@ impl Femur {
             Self::Generic(_) => FemurShape::Generic.word(),
             Self::Mesh(_) => FemurShape::Mesh.word(),
             Self::Sphere(_) => FemurShape::Sphere.word(),
+            Self::Cylinder(_) => FemurShape::Cylinder.word(),
         }
     }
 }

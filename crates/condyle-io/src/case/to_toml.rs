@@ -91,6 +91,7 @@ impl Case {
             Femur::Generic(femur) => femur.write(out),
             Femur::Mesh(femur) => femur.write(out),
             Femur::Sphere(femur) => femur.write(out),
+            Femur::Cylinder(femur) => femur.write(out),
         }
         out.table("insert");
         out.setting(&INSERT_SHAPE, &self.insert.shape().to_owned());

@@ -1,6 +1,6 @@
 //! The femoral surface as the contact sees it.
 
-use super::{GenericFemur, SmoothField, Torus};
+use super::{Cylinder, GenericFemur, SmoothField, Torus};
 use crate::{Vec3, Vector, number::Number};
 
 /// A symmetric 3 by 3 matrix, 1/mm.
@@ -51,6 +51,8 @@ pub enum FemoralSurface {
     Generic(GenericFemur),
     /// One ball, for verification.
     Sphere(Torus),
+    /// One cylinder about the z axis, for verification.
+    Cylinder(Cylinder),
     /// The smooth distance field of a triangle mesh.
     Mesh(SmoothField),
 }
@@ -67,6 +69,7 @@ impl FemoralSurface {
         match self {
             Self::Generic(femur) => femur.gap_mm(point),
             Self::Sphere(sphere) => sphere.splat().gap_mm(point),
+            Self::Cylinder(cylinder) => cylinder.gap_mm(point),
             Self::Mesh(field) => field.gap_mm(point),
         }
     }
@@ -82,15 +85,18 @@ impl FemoralSurface {
         match self {
             Self::Generic(femur) => femur.sample(point, spread_mm2),
             Self::Sphere(sphere) => sphere.splat().sample(point, spread_mm2),
+            Self::Cylinder(cylinder) => cylinder.sample(point, spread_mm2),
             Self::Mesh(field) => field.sample(point),
         }
     }
 
-    /// How far from the femoral frame's origin any of the femur reaches at most, mm.
+    /// How far from the femoral frame's origin any of the femur reaches at most, mm; of a cylinder,
+    /// across its axis.
     pub fn reach_mm(&self) -> f64 {
         match self {
             Self::Generic(femur) => femur.reach_mm(),
             Self::Sphere(ball) => ball.centre.norm() + ball.tube_radius_mm,
+            Self::Cylinder(cylinder) => cylinder.radius_mm,
             Self::Mesh(field) => field.reach_mm(),
         }
     }
@@ -102,6 +108,7 @@ impl FemoralSurface {
         match self {
             Self::Generic(femur) => DEEPER * femur.sharpest_per_mm(),
             Self::Sphere(ball) => DEEPER / ball.tube_radius_mm,
+            Self::Cylinder(cylinder) => DEEPER / cylinder.radius_mm,
             Self::Mesh(_) => 0.2,
         }
     }

@@ -3,6 +3,7 @@
 mod articulating_surface;
 mod columns;
 mod curved_mesh;
+mod cylinder;
 mod femoral_surface;
 mod generic_femur;
 mod generic_insert;
@@ -16,6 +17,7 @@ mod triangle_mesh;
 
 pub use articulating_surface::{ArticulatingSurface, Share};
 pub use columns::{Column, ColumnGrid, ColumnMesh};
+pub use cylinder::Cylinder;
 pub use femoral_surface::{Curvature, FemoralSurface, SurfaceSample};
 pub use generic_femur::{GenericFemur, GenericFemurShape};
 pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};

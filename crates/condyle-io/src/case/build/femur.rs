@@ -2,7 +2,7 @@
 
 use condyle::Vec3;
 use condyle::geometry::{
-    FemoralSurface, GenericFemur, GenericFemurShape, SmoothField, TriangleMesh,
+    Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, SmoothField, TriangleMesh,
 };
 
 use super::super::{MeshFemur, Side};
@@ -46,6 +46,13 @@ impl case::Femur {
             }
             Self::Sphere(femur) => BuiltFemur {
                 surface: FemoralSurface::sphere(femur.radius_mm),
+                flexion_axis_mm: (0.0, 0.0),
+                start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
+            },
+            Self::Cylinder(femur) => BuiltFemur {
+                surface: FemoralSurface::Cylinder(Cylinder {
+                    radius_mm: femur.radius_mm,
+                }),
                 flexion_axis_mm: (0.0, 0.0),
                 start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
             },

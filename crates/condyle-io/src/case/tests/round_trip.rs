@@ -42,6 +42,7 @@ fn every_choice_round_trips() {
     let texts = [
         "title = \"a \\\"b\\\" \\\\ c\"\nside = \"left\"\n",
         "[femur]\nshape = \"sphere\"\nradius_mm = 12.5\nstart_mm = [1.0, -2.0]\n",
+        "[femur]\nshape = \"cylinder\"\nradius_mm = 12.5\nstart_mm = [1.0, -2.0]\n",
         "[insert]\nshape = \"flat\"\nlayers = 5\n",
         "[contact]\nlaw = \"logarithmic\"\n",
         "[contact]\nlaw = \"tabulated\"\ntable = [[0, 0], [0.05, 5.0], [0.1, 12.0]]\n",
