@@ -13,6 +13,7 @@ mod fingerprint;
 mod keys;
 mod machine;
 mod origin;
+mod overriding;
 mod parse;
 mod problems;
 mod samples;
@@ -45,6 +46,7 @@ pub use declared::{
 pub use files::DataFile;
 pub use keys::{Key, Limits, Settings, unit_of};
 pub use machine::{Freedoms, Machine, Waveforms};
+pub use overriding::{NumberKey, Override, OverrideError};
 pub use problems::{CaseError, Look, Problem, Reason};
 pub use schema::schema_markdown;
 pub use shapes::{Femur, Insert};

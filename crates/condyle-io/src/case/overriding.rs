@@ -1,0 +1,294 @@
+//! One number of a case set from outside, before the case is read.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use miette::NamedSource;
+use thiserror::Error;
+use toml_edit::{DocumentMut, Item, TableLike, Value};
+
+use super::keys::split_unit;
+use super::table::read_source;
+use super::unknown::nearest;
+use super::{Case, CaseError};
+
+/// A number that a case has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NumberKey {
+    /// Dotted path, such as `march.updates`.
+    pub path: String,
+    /// Whether it counts something, rather than measuring it.
+    pub is_whole: bool,
+}
+
+/// A number to be taken in place of the one that the case file gives, or leaves out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Override {
+    path: String,
+    text: String,
+    value: f64,
+}
+
+/// Why a key or a value cannot stand in for one of a case.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum OverrideError {
+    /// No number of the case is called so.
+    #[error(
+        "the case has no number called `{key}`; {}",
+        match near {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "give its dotted path, such as `march.updates`".to_owned(),
+        }
+    )]
+    UnknownKey {
+        /// As written.
+        key: String,
+        /// One that looks like it.
+        near: Option<String>,
+    },
+    /// Several numbers of the case are called so.
+    #[error("the case has more than one number called `{key}`; write `{}`", paths.join("` or `"))]
+    ManyKeys {
+        /// As written.
+        key: String,
+        /// Their dotted paths.
+        paths: Vec<String>,
+    },
+    /// A value that is no number.
+    #[error("`{text}` is no value for `{path}`; write a number, such as 10 or 0.5")]
+    NotNumber {
+        /// The key.
+        path: String,
+        /// As written.
+        text: String,
+    },
+}
+
+impl Override {
+    /// The number written as `text` for the key at the dotted `path`.
+    ///
+    /// # Errors
+    /// A text that is no finite number of TOML. Whether the key exists and the number is in its
+    /// range is seen when a case is read with it.
+    pub fn new(path: &str, text: &str) -> Result<Self, OverrideError> {
+        let value = match text.parse::<Value>() {
+            Ok(Value::Integer(whole)) => Some(*whole.value() as f64),
+            Ok(Value::Float(float)) => Some(*float.value()),
+            Ok(_) | Err(_) => None,
+        };
+        let (path, text) = (path.to_owned(), text.trim().to_owned());
+        match value.filter(|value| value.is_finite()) {
+            Some(value) => Ok(Self { path, text, value }),
+            None => Err(OverrideError::NotNumber { path, text }),
+        }
+    }
+
+    /// Dotted path of the key.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The number as written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The number, in the unit of the key's name.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// The text of a case with this number in it; a text that is not TOML stays as it is.
+    fn applied_to(&self, case: &str) -> String {
+        let Ok(mut document) = case.parse::<DocumentMut>() else {
+            return case.to_owned();
+        };
+        let (tables, key) = self.path.rsplit_once('.').unwrap_or(("", &self.path));
+        let names = tables.split('.').filter(|name| !name.is_empty());
+        let table = names.fold(
+            document.as_table_mut() as &mut dyn TableLike,
+            |above, name| table_in(above, name),
+        );
+        set(table, key, self.text.parse().unwrap_or(self.value.into()));
+        document.to_string()
+    }
+}
+
+/// The table `name`, put there if it is not; a reader then says what should be there instead.
+fn table_in<'a>(above: &'a mut dyn TableLike, name: &str) -> &'a mut dyn TableLike {
+    if !above.get(name).is_some_and(Item::is_table_like) {
+        above.insert(name, toml_edit::table());
+    }
+    above
+        .get_mut(name)
+        .and_then(Item::as_table_like_mut)
+        .expect("it was put there")
+}
+
+/// Sets a value, with the blanks and the comment around the one before.
+fn set(table: &mut dyn TableLike, key: &str, mut value: Value) {
+    if let Some(before) = table.get(key).and_then(Item::as_value) {
+        *value.decor_mut() = before.decor().clone();
+    }
+    table.insert(key, Item::Value(value));
+}
+
+impl Case {
+    /// Reads the case file at `path` with one number changed. Messages show the changed text, and
+    /// say so in its name.
+    ///
+    /// # Errors
+    /// As [`Case::read`].
+    pub fn read_with(path: &Path, number: &Override) -> Result<Self, CaseError> {
+        let file = read_source(path).map_err(CaseError::unreadable)?;
+        let name = format!("{} with {} = {}", file.name(), number.path, number.text);
+        let source = Arc::new(NamedSource::new(name, number.applied_to(file.inner())));
+        Self::from_source(&source, path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Every number of the case, defaults too, in the order they are written.
+    pub fn number_keys(&self) -> Vec<NumberKey> {
+        let mut keys = Vec::new();
+        let written: toml::Table = self.to_toml().parse().unwrap_or_default();
+        add_numbers(&written, "", &mut keys);
+        keys
+    }
+
+    /// The dotted path of the number that `written` means: a dotted path as it is, or the name of
+    /// a key, with or without its unit.
+    ///
+    /// # Errors
+    /// A name that no number has, or several.
+    pub fn path_of_number(&self, written: &str) -> Result<String, OverrideError> {
+        if written.contains('.') {
+            return Ok(written.to_owned());
+        }
+        let keys = self.number_keys();
+        let is_meant = |key: &&NumberKey| is_called(leaf(&key.path), written);
+        let paths: Vec<String> = keys
+            .iter()
+            .filter(is_meant)
+            .map(|key| key.path.clone())
+            .collect();
+        let key = written.to_owned();
+        match <[String; 1]>::try_from(paths) {
+            Ok([path]) => Ok(path),
+            Err(paths) if paths.is_empty() => {
+                let near = nearest(written, keys.iter().map(|key| leaf(&key.path)));
+                Err(OverrideError::UnknownKey { key, near })
+            }
+            Err(paths) => Err(OverrideError::ManyKeys { key, paths }),
+        }
+    }
+
+    /// Whether the number at the dotted `path` counts something.
+    pub fn is_whole_number(&self, path: &str) -> bool {
+        let keys = self.number_keys();
+        keys.iter().any(|key| key.path == path && key.is_whole)
+    }
+}
+
+fn leaf(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
+fn is_called(name: &str, written: &str) -> bool {
+    name == written || split_unit(name).0 == written
+}
+
+fn add_numbers(table: &toml::Table, above: &str, keys: &mut Vec<NumberKey>) {
+    for (name, value) in table {
+        let path = match above {
+            "" => name.clone(),
+            above => format!("{above}.{name}"),
+        };
+        match value {
+            toml::Value::Table(inside) => add_numbers(inside, &path, keys),
+            toml::Value::Integer(_) | toml::Value::Float(_) => keys.push(NumberKey {
+                is_whole: value.is_integer(),
+                path,
+            }),
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn applied(path: &str, text: &str, case: &str) -> String {
+        let number = Override::new(path, text).expect("a number");
+        number.applied_to(case)
+    }
+
+    #[test]
+    fn only_the_number_changes() {
+        let case = "title = \"a\"\n\n[march] # long\ncycles = 10  # few\nupdates = 2   # fewer\n";
+        let changed = applied("march.updates", "5", case);
+        assert_eq!(changed, case.replace("= 2 ", "= 5 "));
+        assert_eq!(applied("march.updates", "5", &changed), changed);
+        assert_eq!(
+            applied("march.updates", "0x10", case),
+            case.replace("= 2 ", "= 0x10 ")
+        );
+    }
+
+    #[test]
+    fn a_key_or_table_that_is_not_there_is_added() {
+        assert_eq!(
+            applied("time.increments", "50", "[march]\nupdates = 2\n"),
+            "[march]\nupdates = 2\n\n[time]\nincrements = 50\n"
+        );
+        assert_eq!(
+            applied(
+                "machine.springs.free_play_mm",
+                "1.5",
+                "machine.frequency_hz = 1\n"
+            ),
+            "machine.frequency_hz = 1\n\n[machine.springs]\nfree_play_mm = 1.5\n"
+        );
+        assert_eq!(applied("a.b", "1", "a = {}\n"), "a = { b = 1 }\n");
+    }
+
+    #[test]
+    fn a_text_that_is_not_toml_is_left_for_the_reader() {
+        assert_eq!(applied("march.updates", "5", "[march\n"), "[march\n");
+    }
+
+    #[test]
+    fn values_are_finite_numbers() {
+        let value = |text| Override::new("a", text).map(|number| number.value());
+        assert_eq!(value("1_000"), Ok(1000.0));
+        assert_eq!(value("-1e-3"), Ok(-1e-3));
+        for text in ["", "ten", "inf", "nan", "[1]", "1 2", ".5"] {
+            let error = Override::new("march.updates", text).expect_err(text);
+            let expected = format!("`{text}` is no value for `march.updates`; write a number");
+            assert!(error.to_string().starts_with(&expected), "{error}");
+        }
+    }
+
+    #[test]
+    fn names_of_numbers_are_found_with_and_without_unit() {
+        let case = Case::parse("", "case.toml", Path::new("")).expect("all have defaults");
+        let path = |written| case.path_of_number(written).map_err(|e| e.to_string());
+        assert_eq!(path("updates").as_deref(), Ok("march.updates"));
+        assert_eq!(
+            path("slip_tolerance").as_deref(),
+            Ok("contact.slip_tolerance_mm_per_s")
+        );
+        assert_eq!(path("edge_mm").as_deref(), Ok("insert.edge_mm"));
+        assert_eq!(path("what.ever").as_deref(), Ok("what.ever"));
+        assert!(case.is_whole_number("march.updates") && !case.is_whole_number("insert.edge_mm"));
+        assert_eq!(
+            path("updatse").unwrap_err(),
+            "the case has no number called `updatse`; did you mean `updates`?"
+        );
+        assert!(path("xyz").unwrap_err().contains("such as `march.updates`"));
+        let many = path("spacing_mm").unwrap_err();
+        assert!(
+            many.ends_with("write `femur.spacing_mm` or `insert.spacing_mm`"),
+            "{many}"
+        );
+    }
+}
