@@ -9,6 +9,7 @@ mod figure;
 mod number;
 mod page;
 mod pictures;
+mod plots;
 mod results;
 
 pub use error::ReportError;
@@ -17,7 +18,8 @@ pub use pictures::{
     kinematics_svg, wear_curve_svg, wear_map_svg, write_kinematics, write_wear_curve,
     write_wear_map,
 };
-pub use results::{Results, Side, Summary, SurfaceFields, Table};
+pub use plots::{Plot, plots_svg};
+pub use results::{Extreme, Region, Results, Side, Summary, SurfaceFields, Table};
 
 use std::path::{Path, PathBuf};
 

@@ -38,6 +38,8 @@ pub(crate) struct Panel {
     pub(crate) positive: String,
     /// The horizontal axis.
     pub(crate) x: Axis,
+    /// Ticks of the horizontal axis, if not at its round numbers: where, and their texts.
+    pub(crate) x_marks: Vec<(f64, String)>,
     /// Unit of the horizontal axis, after its last tick; may be empty.
     pub(crate) x_unit: &'static str,
     /// What the horizontal axis shows, on a line below it; may be empty.
@@ -118,9 +120,10 @@ impl Panel {
             let (x, base, label) = (LEFT - 7.0, height + 3.8, y.label(tick));
             out += &format!(r#"<text x="{x}" y="{base:.1}" text-anchor="end">{label}</text>"#);
         }
-        for tick in self.x.ticks() {
-            out += &self.x_label(tick);
+        if self.x_marks.is_empty() {
+            out.extend(self.x.ticks().map(|tick| self.x_label(tick)));
         }
+        out.extend(self.x_marks.iter().map(|mark| self.x_mark(mark)));
         out += &self.x_title();
         let (lines, zero) = (lines.data(), zero.data());
         format!(r#"<path class="grid" d="{lines}"/><path class="axis" d="{zero}"/>{out}"#)
@@ -135,6 +138,11 @@ impl Panel {
         }
         let (unit, end) = (escape(self.x_unit), self.right() + 8.0);
         format!(r#"<text x="{end:.1}" y="{y}" text-anchor="end">{label}&#160;{unit}</text>"#)
+    }
+
+    fn x_mark(&self, (at, text): &(f64, String)) -> String {
+        let (x, y, text) = (self.to_x(*at), self.bottom() + 17.0, escape(text));
+        format!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{text}</text>"#)
     }
 
     fn x_title(&self) -> String {

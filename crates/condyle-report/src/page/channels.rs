@@ -174,6 +174,7 @@ fn panel(channel: &Channel, values: &[f64], percent: &[f64], ends: &[Cycle]) -> 
             high: 100.0,
             step: 20.0,
         },
+        x_marks: Vec::new(),
         x_unit: "%",
         x_title: "",
         size: SIZE,

@@ -72,6 +72,7 @@ fn panel(quantity: &Quantity, table: &Table) -> Option<Panel> {
         unit: quantity.unit.to_owned(),
         positive: String::new(),
         x: Axis::covering(0.0, points.last()?.0, 1e-6, 5),
+        x_marks: Vec::new(),
         x_unit: "",
         x_title: unit.name,
         size: SIZE,

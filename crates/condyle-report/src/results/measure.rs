@@ -5,7 +5,7 @@ use crate::Vec3;
 
 /// A part of the surface by the sign of z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Region {
+pub enum Region {
     /// z below 0: medial in a right knee.
     Left,
     /// z at or above 0: lateral in a right knee.
@@ -16,11 +16,11 @@ pub(crate) enum Region {
 
 /// The largest value of a field and where it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Extreme {
+pub struct Extreme {
     /// The value, in the unit of the field.
-    pub(crate) value: f64,
+    pub value: f64,
     /// The node's position, mm.
-    pub(crate) position: Vec3,
+    pub position: Vec3,
 }
 
 impl Region {
@@ -35,7 +35,7 @@ impl Region {
 
 impl SurfaceFields {
     /// The largest finite value of a field in a region; `None` where it has no node.
-    pub(crate) fn largest(&self, values: &[f64], region: Region) -> Option<Extreme> {
+    pub fn largest(&self, values: &[f64], region: Region) -> Option<Extreme> {
         self.nodes
             .iter()
             .zip(values)
@@ -45,7 +45,7 @@ impl SurfaceFields {
     }
 
     /// The smallest value above 0 of a field in a region; `None` where there is none.
-    pub(crate) fn smallest_positive(&self, values: &[f64], region: Region) -> Option<f64> {
+    pub fn smallest_positive(&self, values: &[f64], region: Region) -> Option<f64> {
         let in_region = self
             .nodes
             .iter()
@@ -58,14 +58,14 @@ impl SurfaceFields {
     }
 
     /// Integral of a field over a region's faces: sum of face area times mean of the corners.
-    pub(crate) fn integral(&self, values: &[f64], region: Region) -> f64 {
+    pub fn integral(&self, values: &[f64], region: Region) -> f64 {
         self.faces(region)
             .map(|(quad, area)| area * mean(values, quad))
             .sum()
     }
 
     /// Area of the faces of a region where the mean of a field is above `threshold`, mm2.
-    pub(crate) fn area_above(&self, values: &[f64], threshold: f64, region: Region) -> f64 {
+    pub fn area_above(&self, values: &[f64], threshold: f64, region: Region) -> f64 {
         self.faces(region)
             .filter(|&(quad, _)| mean(values, quad) > threshold)
             .map(|(_, area)| area)

@@ -9,7 +9,7 @@ mod surface_of_mesh;
 mod table;
 
 pub(crate) use case::title;
-pub(crate) use measure::{Extreme, Region};
+pub use measure::{Extreme, Region};
 pub use summary::Summary;
 pub use surface::SurfaceFields;
 pub use table::Table;
