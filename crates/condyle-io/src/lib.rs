@@ -5,5 +5,6 @@
 
 pub mod abaqus;
 pub mod case;
+pub mod measured;
 pub mod mesh;
 pub mod results;

@@ -29,7 +29,7 @@ pub enum AxesError {
 }
 
 impl AxesError {
-    pub(super) const ADVICE: &'static str = "name where x, y and z of the file point; the third \
+    pub(crate) const ADVICE: &'static str = "name where x, y and z of the file point; the third \
         is the cross product of the first two, such as [\"anterior\", \"superior\", \"right\"]";
 }
 
@@ -126,7 +126,7 @@ fn known_word(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Opt
 }
 
 /// Reports axes that are no right-handed frame on a `side` knee.
-pub(super) fn check(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
+pub(crate) fn check(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
     if let Err(error) = axes.rotation(side) {
         let key = "axes".to_owned();
         log.problem(span, Reason::Axes { key, error });

@@ -33,7 +33,7 @@ pub struct Limits {
 }
 
 /// Limits from `least` to `most`, both allowed.
-pub(super) const fn within(least: f64, most: f64) -> Limits {
+pub(crate) const fn within(least: f64, most: f64) -> Limits {
     Limits { least, most }
 }
 
@@ -51,7 +51,7 @@ impl fmt::Display for Limits {
 }
 
 /// A number as a person would write it.
-pub(super) fn plain(value: f64) -> String {
+pub(crate) fn plain(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e9).contains(&value.abs()) {
         format!("{value:e}")
     } else {
@@ -90,7 +90,7 @@ const UNITS: &[(&str, &str)] = &[
 ];
 
 /// A key's name without its unit, and the unit in words.
-pub(super) fn split_unit(name: &str) -> (&str, Option<&'static str>) {
+pub(crate) fn split_unit(name: &str) -> (&str, Option<&'static str>) {
     UNITS
         .iter()
         .find_map(|&(suffix, unit)| Some((name.strip_suffix(suffix)?, Some(unit))))
@@ -239,7 +239,7 @@ macro_rules! choice {
     )+ };
 }
 
-pub(super) use {choice, default_text, default_value, limits_of, settings};
+pub(crate) use {choice, default_text, default_value, limits_of, settings};
 
 #[cfg(test)]
 mod tests {

@@ -3,28 +3,28 @@
 //! Values stay in the units of their names; they become mm, N, s, MPa, tonne and rad only in the
 //! last step, where a case is built.
 
-mod axes;
+pub(crate) mod axes;
 mod build;
 mod channel;
 mod contact;
 mod declared;
-mod files;
+pub(crate) mod files;
 mod fingerprint;
-mod keys;
+pub(crate) mod keys;
 mod machine;
 mod origin;
 mod overriding;
-mod parse;
-mod problems;
+pub(crate) mod parse;
+pub(crate) mod problems;
 mod samples;
 mod schema;
-mod setting;
+pub(crate) mod setting;
 mod shapes;
-mod table;
+pub(crate) mod table;
 #[cfg(test)]
 mod tests;
-mod to_toml;
-mod unknown;
+pub(crate) mod to_toml;
+pub(crate) mod unknown;
 mod waveforms;
 
 use std::path::Path;

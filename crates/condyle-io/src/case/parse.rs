@@ -20,7 +20,7 @@ pub struct Log<'a> {
 }
 
 impl<'a> Log<'a> {
-    pub(super) fn new(source: &Source, folder: &'a Path) -> Self {
+    pub(crate) fn new(source: &Source, folder: &'a Path) -> Self {
         Self {
             source: Arc::clone(source),
             folder,
@@ -29,27 +29,27 @@ impl<'a> Log<'a> {
     }
 
     /// The case file.
-    pub(super) fn source(&self) -> &Source {
+    pub(crate) fn source(&self) -> &Source {
         &self.source
     }
 
     /// Folder that paths in the case count from.
-    pub(super) fn folder(&self) -> &'a Path {
+    pub(crate) fn folder(&self) -> &'a Path {
         self.folder
     }
 
     /// Notes a problem in the case file.
-    pub(super) fn problem(&mut self, span: Range<usize>, reason: Reason) {
+    pub(crate) fn problem(&mut self, span: Range<usize>, reason: Reason) {
         let problem = Problem::at(&self.source, span, reason);
         self.problems.push(problem);
     }
 
     /// Notes a problem in a file that the case names.
-    pub(super) fn problem_in(&mut self, source: &Source, span: Range<usize>, reason: Reason) {
+    pub(crate) fn problem_in(&mut self, source: &Source, span: Range<usize>, reason: Reason) {
         self.problems.push(Problem::at(source, span, reason));
     }
 
-    pub(super) fn into_problems(self) -> Vec<Problem> {
+    pub(crate) fn into_problems(self) -> Vec<Problem> {
         self.problems
     }
 }
@@ -63,7 +63,7 @@ pub struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// The whole file.
-    pub(super) fn root(table: &'a DeTable<'a>) -> Self {
+    pub(crate) fn root(table: &'a DeTable<'a>) -> Self {
         Self {
             path: String::new(),
             table: Some(table),
@@ -72,7 +72,7 @@ impl<'a> Section<'a> {
     }
 
     /// The table `name` inside this one.
-    pub(super) fn table(&self, name: &str, log: &mut Log<'_>) -> Self {
+    pub(crate) fn table(&self, name: &str, log: &mut Log<'_>) -> Self {
         let path = match self.path.as_str() {
             "" => name.to_owned(),
             above => format!("{above}.{name}"),
@@ -89,25 +89,25 @@ impl<'a> Section<'a> {
     }
 
     /// Path of the table, such as `machine.springs`.
-    pub(super) fn path(&self) -> &str {
+    pub(crate) fn path(&self) -> &str {
         &self.path
     }
 
     /// The table as a message names it.
-    pub(super) fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         match self.path.as_str() {
-            "" => "the top of the case".to_owned(),
+            "" => "the top of the file".to_owned(),
             path => format!("[{path}]"),
         }
     }
 
     /// Whether the file has the table.
-    pub(super) fn is_given(&self) -> bool {
+    pub(crate) fn is_given(&self) -> bool {
         self.table.is_some()
     }
 
     /// Where the table is named; where the one around it is, if it is absent.
-    pub(super) fn span(&self) -> Range<usize> {
+    pub(crate) fn span(&self) -> Range<usize> {
         self.span.clone()
     }
 
@@ -122,17 +122,17 @@ impl<'a> Section<'a> {
     }
 
     /// The value of `name`.
-    pub(super) fn value(&self, name: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+    pub(crate) fn value(&self, name: &str) -> Option<&'a Spanned<DeValue<'a>>> {
         self.entry(name).map(|(_, value)| value)
     }
 
     /// Where the name of the key `name` stands, or that of the table.
-    pub(super) fn key_span(&self, name: &str) -> Range<usize> {
+    pub(crate) fn key_span(&self, name: &str) -> Range<usize> {
         self.entry(name).map_or(self.span(), |(key, _)| key.span())
     }
 
     /// Where the value of `name` stands, or the name of the table.
-    pub(super) fn value_span(&self, name: &str) -> Range<usize> {
+    pub(crate) fn value_span(&self, name: &str) -> Range<usize> {
         self.value(name).map_or(self.span(), Spanned::span)
     }
 
@@ -159,7 +159,7 @@ impl<'a> Section<'a> {
 
     /// Reports every key that is in none of `known`; one that `others` have under a different
     /// choice is said to belong there.
-    pub(super) fn check_keys(&self, known: &[&str], others: &Others<'_>, log: &mut Log<'_>) {
+    pub(crate) fn check_keys(&self, known: &[&str], others: &Others<'_>, log: &mut Log<'_>) {
         for (key, value) in self.table.into_iter().flatten() {
             let name = key.get_ref().as_ref();
             if known.contains(&name) {
@@ -179,7 +179,7 @@ impl<'a> Section<'a> {
 }
 
 /// The keys that a table has under each choice of one key, such as `shape`.
-pub(super) struct Others<'a> {
+pub(crate) struct Others<'a> {
     /// The key that chooses.
     pub key: &'a str,
     /// The word chosen.
@@ -190,7 +190,7 @@ pub(super) struct Others<'a> {
 
 impl Others<'_> {
     /// No choices at all.
-    pub(super) const NONE: Others<'static> = Others {
+    pub(crate) const NONE: Others<'static> = Others {
         key: "",
         word: "",
         all: &[],
@@ -208,6 +208,6 @@ impl Others<'_> {
 }
 
 /// Names of declared keys.
-pub(super) fn names(keys: &[Key]) -> impl Iterator<Item = &'static str> + '_ {
+pub(crate) fn names(keys: &[Key]) -> impl Iterator<Item = &'static str> + '_ {
     keys.iter().map(|key| key.name)
 }

@@ -13,6 +13,7 @@ use miette::{
 use thiserror::Error;
 
 use super::axes::AxesError;
+use crate::measured::MeasuredReason;
 
 /// Why a case cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -251,6 +252,9 @@ pub enum Reason {
         /// The column.
         column: String,
     },
+    /// What only measured data can have wrong.
+    #[error(transparent)]
+    Measured(#[from] MeasuredReason),
 }
 
 impl Reason {
@@ -312,6 +316,7 @@ impl Reason {
             }
             Self::NotNumber { .. } => Some("write a number there, or remove the row".to_owned()),
             Self::Syntax { .. } => Some(SYNTAX_ADVICE.to_owned()),
+            Self::Measured(reason) => Some(reason.advice()),
             Self::WrongType { .. }
             | Self::Unfit { .. }
             | Self::UnreadableFile { .. }
@@ -338,12 +343,12 @@ fn how_to_get(path: &std::path::Path) -> String {
          from"
             .to_owned()
     } else {
-        "correct the path; it counts from the folder of the case file".to_owned()
+        "correct the path; it counts from the folder of the file that names it".to_owned()
     }
 }
 
 /// A named text that problems point into.
-pub(super) type Source = Arc<NamedSource<String>>;
+pub(crate) type Source = Arc<NamedSource<String>>;
 
 /// One thing that is wrong, at its place.
 #[derive(Clone, Debug)]
@@ -355,7 +360,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub(super) fn at(source: &Source, span: Range<usize>, reason: Reason) -> Self {
+    pub(crate) fn at(source: &Source, span: Range<usize>, reason: Reason) -> Self {
         Self {
             reason,
             source: Some(Arc::clone(source)),
@@ -435,7 +440,7 @@ pub struct CaseError {
 
 impl CaseError {
     /// Problems of the case file `case` come first, in its order; then those of files it names.
-    pub(super) fn new(mut problems: Vec<Problem>, case: &Source) -> Self {
+    pub(crate) fn new(mut problems: Vec<Problem>, case: &Source) -> Self {
         let elsewhere = |problem: &Problem| match &problem.source {
             Some(source) => !Arc::ptr_eq(source, case),
             None => false,
@@ -448,7 +453,7 @@ impl CaseError {
     }
 
     /// A case file that cannot be opened.
-    pub(super) fn unreadable(reason: Reason) -> Self {
+    pub(crate) fn unreadable(reason: Reason) -> Self {
         Self {
             problems: vec![Problem::nowhere(reason)],
         }

@@ -22,7 +22,7 @@ pub trait Setting: Sized {
 }
 
 /// Words in quotes with commas between: `"a", "b" or "c"`.
-pub(super) fn quoted_list(words: &[&str]) -> String {
+pub(crate) fn quoted_list(words: &[&str]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     match quoted.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
@@ -31,7 +31,7 @@ pub(super) fn quoted_list(words: &[&str]) -> String {
 }
 
 /// Reports that `value` is not what `key` takes.
-pub(super) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
+pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
     let reason = Reason::WrongType {
         key: key.name.to_owned(),
         wanted: (key.kind)(),
@@ -41,7 +41,7 @@ pub(super) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<
 }
 
 /// What a value is, in words.
-pub(super) fn type_name(value: &DeValue<'_>) -> &'static str {
+pub(crate) fn type_name(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "text in quotes",
         DeValue::Integer(_) => "an integer",
@@ -54,7 +54,7 @@ pub(super) fn type_name(value: &DeValue<'_>) -> &'static str {
 }
 
 /// A float or an integer as a number; none for anything else.
-pub(super) fn number(value: &DeValue<'_>) -> Option<f64> {
+pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().replace('_', "").parse().ok(),
         DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
@@ -65,7 +65,7 @@ pub(super) fn number(value: &DeValue<'_>) -> Option<f64> {
 }
 
 /// One of `words`, as written, or the reason in `log`.
-pub(super) fn read_word<'a>(
+pub(crate) fn read_word<'a>(
     value: &'a Spanned<DeValue<'_>>,
     key: &Key,
     words: &[&str],
@@ -179,7 +179,7 @@ impl Setting for String {
 }
 
 /// A basic string of TOML.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 

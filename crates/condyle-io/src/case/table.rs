@@ -9,23 +9,23 @@ use miette::NamedSource;
 use super::problems::{Reason, Source};
 
 /// A CSV file: names of its columns, and rows of cells that are yet to be read as numbers.
-pub(super) struct Table<'a> {
+pub(crate) struct Table<'a> {
     text: &'a str,
     header: Vec<Range<usize>>,
     rows: Vec<Vec<Range<usize>>>,
 }
 
 /// A number and where it stands.
-pub(super) struct Cell {
+pub(crate) struct Cell {
     pub value: f64,
     pub span: Range<usize>,
 }
 
 /// A problem with the place where it is.
-pub(super) type Placed = (Range<usize>, Reason);
+pub(crate) type Placed = (Range<usize>, Reason);
 
 /// Reads a file that a case names; the name under which problems show it is its path.
-pub(super) fn read_source(path: &Path) -> Result<Source, Reason> {
+pub(crate) fn read_source(path: &Path) -> Result<Source, Reason> {
     let name = path.display().to_string();
     match std::fs::read_to_string(path) {
         Ok(text) => Ok(Arc::new(NamedSource::new(name, text))),
@@ -41,7 +41,7 @@ impl<'a> Table<'a> {
     ///
     /// The header is the last line above the numbers with as many names as they have columns, and
     /// may be a comment; a name ends at a blank, so that a remark may follow the last.
-    pub(super) fn split(text: &'a str, file: &str, example: &str) -> Result<Self, Placed> {
+    pub(crate) fn split(text: &'a str, file: &str, example: &str) -> Result<Self, Placed> {
         let is_data = |line: &Range<usize>| {
             let first = text[line.clone()].split(',').next().unwrap_or_default();
             first.trim().parse::<f64>().is_ok()
@@ -69,23 +69,39 @@ impl<'a> Table<'a> {
     }
 
     /// Names of the columns.
-    pub(super) fn columns(&self) -> Vec<&'a str> {
+    pub(crate) fn columns(&self) -> Vec<&'a str> {
         let name = |span: &Range<usize>| &self.text[span.clone()];
         self.header.iter().map(name).collect()
     }
 
     /// Where the name of a column stands.
-    pub(super) fn column_span(&self, column: usize) -> Range<usize> {
+    pub(crate) fn column_span(&self, column: usize) -> Range<usize> {
         self.header[column].clone()
     }
 
     /// The numbers of a column, or every cell that is none.
-    pub(super) fn numbers(&self, column: usize) -> Result<Vec<Cell>, Vec<Placed>> {
+    pub(crate) fn numbers(&self, column: usize) -> Result<Vec<Cell>, Vec<Placed>> {
         let mut good = Vec::new();
         let mut bad = Vec::new();
         for row in &self.rows {
             match self.number(row, column) {
                 Ok(cell) => good.push(cell),
+                Err(problem) => bad.push(problem),
+            }
+        }
+        if bad.is_empty() { Ok(good) } else { Err(bad) }
+    }
+
+    /// The numbers of a column with the row of each, empty cells left out, or every cell that is
+    /// none.
+    pub(crate) fn numbers_given(&self, column: usize) -> Result<Vec<(usize, Cell)>, Vec<Placed>> {
+        let is_given = |row: &[Range<usize>]| row.get(column).is_none_or(|span| !span.is_empty());
+        let rows = self.rows.iter().enumerate();
+        let mut good = Vec::new();
+        let mut bad = Vec::new();
+        for (index, row) in rows.filter(|(_, row)| is_given(row)) {
+            match self.number(row, column) {
+                Ok(cell) => good.push((index, cell)),
                 Err(problem) => bad.push(problem),
             }
         }

@@ -32,7 +32,7 @@ impl Writer {
     }
 
     /// Writes a key with its value and what it means; a value that is left out only as a remark.
-    pub(super) fn setting<T: Setting>(&mut self, key: &Key, value: &T) {
+    pub(crate) fn setting<T: Setting>(&mut self, key: &Key, value: &T) {
         match value.text() {
             Some(text) => self.line(&format!("{} = {text}", key.name), key.doc),
             None => self.line(&format!("# {} =", key.name), key.doc),

@@ -33,7 +33,7 @@ const CONVERSIONS: &[(&str, &str, f64)] = &[
 ];
 
 /// The likeliest reason why `section` has no `key` among `keys`.
-pub(super) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&str]) -> Reason {
+pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&str]) -> Reason {
     wrong_unit(key, value, keys).unwrap_or_else(|| Reason::UnknownKey {
         key: key.to_owned(),
         section: section.to_owned(),
@@ -79,7 +79,7 @@ fn convert(key: &str, meant: &str, number: f64) -> Option<String> {
 const ALIKE: f64 = 0.6;
 
 /// The one of `known` that looks most like `written`.
-pub(super) fn nearest<'a>(written: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
+pub(crate) fn nearest<'a>(written: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     known
         .map(|word| (likeness(written, word), word))
         .filter(|(likeness, _)| *likeness >= ALIKE)

@@ -14,13 +14,14 @@ const LEAST_SLOPE_COSINE: f64 = 0.5;
 /// Over a triangle with corners v_i and vertex normals n_i, the point c with barycentric
 /// coordinates b_i is lifted along the normals by (1/2) sum b_i ((v_i - c) . n_i) n_i. Half of the
 /// blended tangent planes (Boubekeur & Alexa 2008, alpha = 1/2) is exact for a quadratic surface.
-pub(super) struct CurvedMesh<'a> {
+pub struct CurvedMesh<'a> {
     mesh: &'a TriangleMesh,
     vertex_normals: Vec<Vec3>,
     planes: Vec<(Vec3, f64)>,
 }
 
 impl<'a> CurvedMesh<'a> {
+    /// The curved surface that `mesh` samples.
     pub fn new(mesh: &'a TriangleMesh) -> Self {
         let plane = |triangle| {
             let [a, b, c] = mesh.corners(triangle);
@@ -37,10 +38,12 @@ impl<'a> CurvedMesh<'a> {
         }
     }
 
+    /// How many triangles the mesh has.
     pub fn triangle_count(&self) -> usize {
         self.mesh.triangles.len()
     }
 
+    /// Positions of the corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.mesh.corners(triangle)
     }
@@ -92,14 +95,34 @@ impl<'a> CurvedMesh<'a> {
 
     /// Signed distance from a point to the curved surface over the triangle, mm; > 0 outside.
     pub fn curved_gap_mm(&self, triangle: usize, point: &Vec3) -> f64 {
+        let foot = self.foot(triangle, point);
+        (point - foot.point).dot(&foot.normal)
+    }
+
+    /// The place of the curved surface over the triangle that belongs to a point.
+    pub fn foot(&self, triangle: usize, point: &Vec3) -> Foot {
         let corners = self.corners(triangle);
         let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
         let weights = closest_on_triangle(&corners, point);
         let flat = weighted(&corners, weights);
-        let foot = flat + lift(&corners, &normals, weights, &flat);
         let normal = weighted(&normals, weights);
-        (point - foot).dot(&normal) / normal.norm()
+        Foot {
+            weights,
+            point: flat + lift(&corners, &normals, weights, &flat),
+            normal: normal.try_normalize(0.0).unwrap_or_default(),
+        }
     }
+}
+
+/// A place on the curved surface over a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Foot {
+    /// Barycentric coordinates on the flat triangle.
+    pub weights: [f64; 3],
+    /// Position on the curved surface, mm.
+    pub point: Vec3,
+    /// Outward unit normal there.
+    pub normal: Vec3,
 }
 
 /// From the flat triangle to the curved surface.

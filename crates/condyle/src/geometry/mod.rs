@@ -17,6 +17,7 @@ mod triangle_mesh;
 
 pub use articulating_surface::{ArticulatingSurface, Share};
 pub use columns::{Column, ColumnGrid, ColumnMesh};
+pub use curved_mesh::{CurvedMesh, Foot};
 pub use cylinder::Cylinder;
 pub use femoral_surface::{Curvature, FemoralSurface, SurfaceSample};
 pub use generic_femur::{GenericFemur, GenericFemurShape};

@@ -48,7 +48,7 @@ fn missing_file_says_where_it_was_looked_for() {
             "`file`: there is no file cases/shapes/femur.stl",
             " 3 | file = \"shapes/femur.stl\"",
             "   :        ^^^^^^^^^^^^^^^^^^",
-            "help: correct the path; it counts from the folder of the case file",
+            "help: correct the path; it counts from the folder of the file that names it",
         ],
     );
 }

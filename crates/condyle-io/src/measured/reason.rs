@@ -1,0 +1,152 @@
+//! What only measured data can have wrong.
+
+use thiserror::Error;
+
+/// Why measured data cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum MeasuredReason {
+    /// A file that names no data.
+    #[error("the file names no measured data")]
+    Nothing,
+    /// A column that a run has no like of.
+    #[error("a run has no column `{column}` to compare with")]
+    UnknownColumn {
+        /// Its name in the file.
+        column: String,
+        /// A column that looks like it.
+        near: Option<String>,
+        /// Every column there is.
+        columns: String,
+    },
+    /// A column that stands twice in its file.
+    #[error("the column `{column}` stands twice in its file")]
+    RepeatedColumn {
+        /// Its name.
+        column: String,
+    },
+    /// A file without anything to compare.
+    #[error("{file} has no column beside `{first}`")]
+    NoData {
+        /// The file.
+        file: String,
+        /// Its first column.
+        first: String,
+    },
+    /// A first column that is not what it must be.
+    #[error("the first column must be `{wanted}`, this one is `{found}`")]
+    FirstColumn {
+        /// What it must be called.
+        wanted: &'static str,
+        /// As written.
+        found: String,
+    },
+    /// A column of masses whose name does not say the unit.
+    #[error("`{column}` does not say that it is a mass in mg")]
+    NoMass {
+        /// Its name.
+        column: String,
+    },
+    /// Numbers that must grow from row to row.
+    #[error("`{column}` is {value}, after {before} in the row above: it must grow")]
+    NotGrowing {
+        /// The column.
+        column: String,
+        /// The number.
+        value: f64,
+        /// The one before it.
+        before: f64,
+    },
+    /// A number outside what it can be.
+    #[error("`{column}` is {value}: it must be {range}")]
+    OutOfRange {
+        /// The column.
+        column: String,
+        /// The number.
+        value: f64,
+        /// What it can be, with its unit.
+        range: &'static str,
+    },
+    /// A column with too few numbers.
+    #[error("`{column}` has {found} numbers where {needed} are needed")]
+    TooFew {
+        /// The column.
+        column: String,
+        /// Numbers it has.
+        found: usize,
+        /// Numbers it needs.
+        needed: usize,
+    },
+    /// All columns are soak controls.
+    #[error("every column of {file} is a soak control: there is no specimen")]
+    NoSpecimen {
+        /// The file.
+        file: String,
+    },
+    /// Too few weighings for a line with an interval.
+    #[error("{rows} weighings are left for the line, of which three are needed")]
+    TooFewWeighings {
+        /// Weighings after the first that count.
+        rows: usize,
+    },
+    /// A phase that is no part of a cycle.
+    #[error("the phase `{name}` is {found}: it must be [start, end] in percent, 0 to 100")]
+    Phase {
+        /// Its name.
+        name: String,
+        /// As read.
+        found: String,
+    },
+    /// A range of a place that is empty.
+    #[error("`{key}` is [{low}, {high}]: the second must be the larger")]
+    EmptyRange {
+        /// The key.
+        key: &'static str,
+        /// First.
+        low: f64,
+        /// Second.
+        high: f64,
+    },
+    /// A fit region that is not given.
+    #[error("`fit = \"region\"` needs `fit_x_mm`, `fit_z_mm` or both")]
+    NoRegion,
+    /// A scan that cannot be read.
+    #[error("{0}")]
+    Scan(String),
+}
+
+impl MeasuredReason {
+    /// What to do about it.
+    pub(crate) fn advice(&self) -> String {
+        match self {
+            Self::Nothing => "add one of [kinematics], [gravimetric] and [surface], each with \
+                `file = `"
+                .to_owned(),
+            Self::UnknownColumn { near, columns, .. } => match near {
+                Some(near) => format!("did you mean `{near}`? It can be {columns}"),
+                None => format!("remove it, or name it one of {columns}"),
+            },
+            Self::RepeatedColumn { .. } => "give each column a name of its own".to_owned(),
+            Self::NoData { .. } => "add a column of what was measured".to_owned(),
+            Self::FirstColumn { wanted, .. } => {
+                format!("put `{wanted}` first, and name it so")
+            }
+            Self::NoMass { .. } => "let its name end in `_mg`, with masses in mg".to_owned(),
+            Self::NotGrowing { .. } => "sort the rows, and keep one of each".to_owned(),
+            Self::OutOfRange { .. } => "correct the number, or remove the row".to_owned(),
+            Self::TooFew { .. } => "add rows, or leave the column out".to_owned(),
+            Self::NoSpecimen { .. } => {
+                "name the soak controls in `soak_controls`, and leave the specimens out of it"
+                    .to_owned()
+            }
+            Self::TooFewWeighings { .. } => "add weighings, or lower `fit_from_cycles`; the first \
+                row starts the test, and its loss of 0 does not count"
+                .to_owned(),
+            Self::Phase { .. } => "write it as `\"mid stance\" = [10, 30]`".to_owned(),
+            Self::EmptyRange { .. } => "write the smaller one first".to_owned(),
+            Self::NoRegion => "add one, such as `fit_x_mm = [-20, 20]`".to_owned(),
+            Self::Scan(_) => "export the scan again as STL, PLY, or CSV with the columns \
+                x_mm,y_mm,z_mm"
+                .to_owned(),
+        }
+    }
+}

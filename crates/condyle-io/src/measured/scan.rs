@@ -1,0 +1,153 @@
+//! A scan of a worn insert: a surface, or points as CSV.
+
+use condyle::geometry::TriangleMesh;
+use condyle::{Mat3, Vec3};
+
+use super::declared::{FitWord, ScanKeys};
+use super::kinematics::{note, open, shown};
+use super::reason::MeasuredReason;
+use crate::case::keys::Settings;
+use crate::case::parse::{Log, Others, Section, names};
+use crate::case::table::{Cell, Placed, Table};
+use crate::case::{Reason, Side, axes};
+use crate::mesh::read_surface;
+
+const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
+/// Six numbers of a rigid motion need at least as many points.
+const LEAST_POINTS: usize = 12;
+
+/// A scan in the frame of the results, mm, before it is registered.
+#[derive(Clone, Debug)]
+pub struct Scan {
+    /// The keys of the table.
+    pub keys: ScanKeys,
+    /// The points, turned by the axes and moved by `start_mm`.
+    pub points: Vec<Vec3>,
+    /// Outward unit normal at each point, where the file is a surface.
+    pub normals: Option<Vec<Vec3>>,
+}
+
+/// Reads `[surface]` and its file for a `side` knee.
+pub(super) fn read(root: &Section<'_>, side: Side, log: &mut Log<'_>) -> Option<Scan> {
+    let section = root.table("surface", log);
+    let known: Vec<&str> = names(ScanKeys::KEYS).collect();
+    section.check_keys(&known, &Others::NONE, log);
+    let keys = ScanKeys::read(&section, log)?;
+    axes::check(&keys.axes, side, section.value_span("axes"), log);
+    check_region(&keys, &section, log);
+    // Reported by the check already.
+    let rotation = keys.axes.rotation(side).ok()?;
+    let is_csv = keys
+        .file
+        .path()
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    let scan = match is_csv {
+        true => points(&keys, &section, log),
+        false => surface(&keys, &section, log),
+    }?;
+    let scan = placed(scan, &rotation, Vec3::from(keys.start_mm));
+    Some(Scan {
+        keys,
+        points: scan.0,
+        normals: scan.1,
+    })
+}
+
+/// Points and their normals.
+type Raw = (Vec<Vec3>, Option<Vec<Vec3>>);
+
+fn placed((points, normals): Raw, rotation: &Mat3, start: Vec3) -> Raw {
+    let points = points.iter().map(|point| rotation * point + start);
+    let normals = normals.map(|all| all.iter().map(|normal| rotation * normal).collect());
+    (points.collect(), normals)
+}
+
+fn surface(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) -> Option<Raw> {
+    match read_surface(keys.file.path()) {
+        Ok(mesh) => Some(vertices(&mesh, keys.length_unit.in_mm())),
+        Err(error) => {
+            let reason = MeasuredReason::Scan(error.to_string());
+            log.problem(section.value_span("file"), reason.into());
+            None
+        }
+    }
+}
+
+fn vertices(mesh: &TriangleMesh, in_mm: f64) -> Raw {
+    let normals = mesh.vertex_normals();
+    (
+        mesh.vertices.iter().map(|vertex| vertex * in_mm).collect(),
+        Some(normals),
+    )
+}
+
+fn points(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) -> Option<Raw> {
+    let source = open(&keys.file, section, log)?;
+    match rows(source.inner(), &shown(&keys.file)) {
+        Ok(points) => Some((points, None)),
+        Err(problems) => {
+            note(problems, &source, log);
+            None
+        }
+    }
+}
+
+fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
+    let table = Table::split(text, file, &COORDINATES.join(",")).map_err(|placed| vec![placed])?;
+    let columns = table.columns();
+    let mut found = Vec::new();
+    for name in COORDINATES {
+        let Some(index) = columns.iter().position(|column| *column == name) else {
+            let reason = Reason::NoColumn {
+                column: name.to_owned(),
+                file: file.to_owned(),
+                columns: columns.iter().map(|&name| name.to_owned()).collect(),
+            };
+            return Err(vec![(table.column_span(0), reason)]);
+        };
+        found.push(table.numbers(index)?);
+    }
+    let value = |column: &Vec<Cell>, row: usize| column[row].value;
+    let point = |row| {
+        Vec3::new(
+            value(&found[0], row),
+            value(&found[1], row),
+            value(&found[2], row),
+        )
+    };
+    match found[0].len() {
+        few if few < LEAST_POINTS => Err(vec![super::kinematics::too_few(
+            COORDINATES[0],
+            few,
+            LEAST_POINTS,
+            table.column_span(0),
+        )]),
+        all => Ok((0..all).map(point).collect()),
+    }
+}
+
+fn check_region(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) {
+    let ranges = [("fit_x_mm", keys.fit_x_mm), ("fit_z_mm", keys.fit_z_mm)];
+    for (key, range) in ranges {
+        let Some([low, high]) = range else { continue };
+        if low >= high {
+            let reason = MeasuredReason::EmptyRange { key, low, high };
+            log.problem(section.value_span(key), reason.into());
+        }
+        if keys.fit != FitWord::Region {
+            let (key, needs) = (key.to_owned(), "`fit = \"region\"`".to_owned());
+            log.problem(
+                section.key_span(&key),
+                Reason::Idle {
+                    key: key.clone(),
+                    needs,
+                },
+            );
+        }
+    }
+    let none = ranges.iter().all(|(_, range)| range.is_none());
+    if keys.fit == FitWord::Region && none {
+        log.problem(section.value_span("fit"), MeasuredReason::NoRegion.into());
+    }
+}
