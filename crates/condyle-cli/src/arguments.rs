@@ -28,6 +28,8 @@ pub enum Command {
     Export(Export),
     /// Write the report page of a results folder again.
     Report(Report),
+    /// Run a case over finer and finer values of one of its numbers, and see what changes.
+    Converge(Converge),
 }
 
 #[derive(Args)]
@@ -99,4 +101,29 @@ pub struct Report {
     /// Also write wear_map.svg, wear.svg and kinematics.svg.
     #[arg(long)]
     pub pictures: bool,
+}
+
+#[derive(Args)]
+pub struct Converge {
+    /// The case file.
+    pub case: PathBuf,
+    /// A number of the case and its values: a dotted path such as insert.edge_mm=2,1,0.5, or the last word of one.
+    #[arg(
+        long,
+        value_name = "KEY=VALUES",
+        default_value = "updates=1,2,5,10,20,40"
+    )]
+    pub over: String,
+    /// Folder for the table, the picture and the results of every run; it must be empty.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Go on with the study that was stopped in that folder.
+    #[arg(long)]
+    pub resume: bool,
+    /// Runs at the same time, as many as the machine has cores if not given; the results are the same on any number.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+    /// Print converge.json, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
 }

@@ -6,7 +6,7 @@ use std::{
     process::ExitCode,
 };
 
-use condyle_io::case::Look;
+use condyle_io::case::{CaseError, Look};
 use condyle_lab::RunError;
 
 /// Bad input.
@@ -34,6 +34,12 @@ pub fn fail_run(error: &RunError) -> ExitCode {
     };
     eprint!("{}", in_case.render(look()));
     ExitCode::from(code)
+}
+
+/// Prints what is wrong with a case file, with carets, and gives the exit code.
+pub fn fail_case(error: &CaseError) -> ExitCode {
+    eprint!("{}", error.render(look()));
+    ExitCode::from(BAD_INPUT)
 }
 
 fn look() -> Look {

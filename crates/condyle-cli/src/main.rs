@@ -2,6 +2,7 @@
 
 mod arguments;
 mod check;
+mod converge;
 mod exit;
 mod export;
 mod new;
@@ -22,5 +23,6 @@ fn main() -> ExitCode {
         Command::New(arguments) => new::new(&arguments),
         Command::Export(arguments) => export::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Converge(arguments) => converge::converge(&arguments),
     }
 }

@@ -61,7 +61,7 @@ fn default_folder(arguments: &Run) -> PathBuf {
 }
 
 /// A flag that the first Ctrl-C (or SIGTERM) raises; a second ends the program at once.
-fn stop_on_interrupt() -> Arc<AtomicBool> {
+pub fn stop_on_interrupt() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let set = ctrlc::set_handler(move || {

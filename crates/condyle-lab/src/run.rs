@@ -140,9 +140,20 @@ pub fn run(
     options: &RunOptions,
     happening: &mut dyn FnMut(Happening<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, RunError> {
-    let case = Case::read(case_path)?;
+    run_case(&Case::read(case_path)?, options, happening)
+}
+
+/// Runs a case that is read already, as [`run`] does.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_case(
+    case: &Case,
+    options: &RunOptions,
+    happening: &mut dyn FnMut(Happening<'_>) -> ControlFlow<()>,
+) -> Result<Outcome, RunError> {
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
-    let found = found(&case, options, &inputs_blake3)?;
+    let found = found(case, options, &inputs_blake3)?;
     if let Found::Done(summary) = found {
         // It may have been stopped before it wrote the page; the same folder gives the same one.
         condyle_report::write_report(&options.out)?;
@@ -150,7 +161,7 @@ pub fn run(
         return Ok(Outcome::DoneBefore(summary));
     }
     let mut clock = Clock::default();
-    let built = clock.time(|| build(&case, options.threads))?;
+    let built = clock.time(|| build(case, options.threads))?;
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
     for warning in &warnings {
         let _ = happening(Happening::Warning(warning.clone()));
@@ -163,7 +174,7 @@ pub fn run(
             (ResultsFolder::existing(&options.out), march)
         }
         Found::Case | Found::Nothing | Found::Done(_) => {
-            let march = clock.time(|| start(&case, built.test))?;
+            let march = clock.time(|| start(case, built.test))?;
             let folder = ResultsFolder::create(&options.out)?;
             folder.write_case(&case.to_toml())?;
             folder.write_update(&march, side, &inputs_blake3)?;

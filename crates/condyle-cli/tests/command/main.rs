@@ -4,6 +4,7 @@ mod bad_bodies;
 mod bad_case;
 mod bench;
 mod contract;
+mod converge;
 mod determinism;
 mod folders;
 mod interrupt;
