@@ -51,6 +51,14 @@ choice! {
         Each = "each",
     }
 
+    /// How time is integrated.
+    IntegratorWord {
+        /// Backward differences and Newton's method.
+        Implicit = "implicit",
+        /// Central differences, as a cross-check.
+        Explicit = "explicit",
+    }
+
     /// What moves a freedom.
     DriveWord {
         /// Held at a position.
@@ -293,6 +301,10 @@ settings! {
         repeat_tolerance_mm: f64 = 0.01, in within(1e-9, 10.0);
         /// Largest difference of a rotation between two cycles that repeat.
         repeat_tolerance_deg: f64 = 0.01, in within(1e-9, 10.0);
+        /// How an increment is stepped through: implicit in one step, or explicit in many short ones.
+        integrator: IntegratorWord = IntegratorWord::Implicit;
+        /// Explicit: inertia is added wherever a stable step would be shorter than this; 0 adds none.
+        explicit_step_s: f64 = 0.0, in within(0.0, 1e-3);
     }
 }
 

@@ -87,6 +87,7 @@ const UNITS: &[(&str, &str)] = &[
     ("_nm", "N m"),
     ("_mm", "mm"),
     ("_n", "N"),
+    ("_s", "s"),
 ];
 
 /// A key's name without its unit, and the unit in words.

@@ -39,9 +39,9 @@ pub use channel::Channel;
 pub use contact::{Contact, PressureLawChoice};
 pub use declared::{
     CylinderFemur, DriveWord, FlatInsert, Friction, GenericFemur, GenericInsert, Heading,
-    HexahedralInsert, LengthUnit, MachineSettings, March, Material, MeshFemur, MeshInsert, Preset,
-    PressureForm, Rotation, Side, Sign, SphereFemur, Springs, StiffnessOf, Time, Translation, Wear,
-    WearLawWord,
+    HexahedralInsert, IntegratorWord, LengthUnit, MachineSettings, March, Material, MeshFemur,
+    MeshInsert, Preset, PressureForm, Rotation, Side, Sign, SphereFemur, Springs, StiffnessOf,
+    Time, Translation, Wear, WearLawWord,
 };
 pub use files::DataFile;
 pub use keys::{Key, Limits, Settings, unit_of};

@@ -30,6 +30,8 @@ const CONVERSIONS: &[(&str, &str, f64)] = &[
     ("_kg_per_m3", "_mg_per_mm3", 1e-3),
     ("_m_per_s", "_mm_per_s", 1000.0),
     ("_kg_mm2", "_kg_m2", 1e-6),
+    ("_ms", "_s", 1e-3),
+    ("_us", "_s", 1e-6),
 ];
 
 /// The likeliest reason why `section` has no `key` among `keys`.

@@ -62,6 +62,12 @@ pub struct Summary {
     pub contact_evaluations: u64,
     /// Steps that were halved.
     pub step_halvings: u64,
+    /// Steps of the explicit integrator; none of the implicit one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explicit_steps: Option<u64>,
+    /// Most inertia that explicit steps added, as a part of the machine's own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub added_inertia: Option<f64>,
     /// Hexahedra of the insert.
     pub hexahedra: usize,
     /// Nodes of its articulating surface.
@@ -86,6 +92,7 @@ impl Summary {
         let updates = &state.updates;
         let last = updates.last()?;
         let first_cycle = &state.first_and_last.as_ref()?.0.rows;
+        let explicit = Some(&state.effort).filter(|effort| effort.explicit_steps > 0);
         let largest =
             |value: fn(&UpdateRecord) -> f64| updates.iter().map(value).fold(0.0, f64::max);
         Some(Self {
@@ -106,6 +113,8 @@ impl Summary {
             newton_iterations: state.effort.newton_iterations,
             contact_evaluations: state.effort.contact_evaluations,
             step_halvings: state.effort.halvings,
+            explicit_steps: explicit.map(|effort| effort.explicit_steps),
+            added_inertia: explicit.map(|effort| effort.added_inertia),
             hexahedra: input.hexahedra,
             articulating_nodes: input.articulating_nodes,
             worst_quality: updates

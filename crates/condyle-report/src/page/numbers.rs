@@ -155,6 +155,18 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "How often force, moment and tangent of the contact were computed.",
             ),
             known(
+                "explicit_steps",
+                "Explicit steps",
+                "",
+                "Steps of central differences, where the explicit integrator was asked for.",
+            ),
+            known(
+                "added_inertia",
+                "Inertia added",
+                "",
+                "Most inertia added to allow the explicit step asked for, as a part of the machine's own.",
+            ),
+            known(
                 "worst_quality",
                 "Worst element quality",
                 "",

@@ -6,8 +6,9 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 use super::{
-    Chain, FREEDOMS, Machine, TimeSettings,
+    Chain, FREEDOMS, Freedom, Integration, Machine, TimeSettings,
     balance::Kinematics,
+    explicit::{Explicit, NoStep},
     integrator::{Effort, Integrator, MachineState, NotConverged, drive},
 };
 use crate::contact::{ContactModel, CycleHistory, Moment, TouchedNode};
@@ -72,6 +73,27 @@ pub enum CycleError {
         positions: [f64; 6],
         /// Force left out of balance, N.
         residual_n: f64,
+    },
+    /// Explicit steps whose motion left all bounds.
+    #[error(
+        "explicit steps leave all bounds at {percent:.2} % of the cycle, past {}; check loads and springs there, or \
+         take the implicit integrator",
+        places(positions)
+    )]
+    Unstable {
+        /// Place in the cycle, %.
+        percent: f64,
+        /// Positions before it, mm and rad, in the order of [`FREEDOMS`].
+        positions: [f64; 6],
+    },
+    /// Explicit steps of a freedom that weighs nothing.
+    #[error(
+        "the explicit integrator needs inertia on every loaded freedom, and {freedom:?} has none; give it some, or \
+         take the implicit integrator"
+    )]
+    NoInertia {
+        /// Which freedom.
+        freedom: Freedom,
     },
     /// Somebody asked to stop.
     #[error("interrupted")]
@@ -155,12 +177,18 @@ impl<C: ContactModel> Simulator<'_, C> {
         let mut solved = 0;
         while !repeats && solved < count * self.time.most_cycles_to_repeat {
             let place = (first + solved) % count;
-            state = self.advance(
-                &state,
-                (place + 1) as f64 / count as f64,
-                MOST_HALVINGS,
-                effort,
-            )?;
+            let to = (place + 1) as f64 / count as f64;
+            state = match self.time.integration {
+                Integration::Implicit => self.advance(&state, to, MOST_HALVINGS, effort)?,
+                Integration::Explicit { least_step_s } => Explicit {
+                    machine: self.machine,
+                    chain: self.chain,
+                    contact: &mut self.contact,
+                    least_step_s,
+                    effort,
+                }
+                .advance(&state, to)?,
+            };
             let here = self.land(place, &state);
             repeats = landed[place]
                 .replace(here)
@@ -256,6 +284,18 @@ impl From<NotConverged> for CycleError {
             percent: 100.0 * failed.phase,
             positions: failed.positions,
             residual_n: failed.residual_n,
+        }
+    }
+}
+
+impl From<NoStep> for CycleError {
+    fn from(failed: NoStep) -> Self {
+        match failed {
+            NoStep::NoInertia(freedom) => Self::NoInertia { freedom },
+            NoStep::Unstable { phase, positions } => Self::Unstable {
+                percent: 100.0 * phase,
+                positions,
+            },
         }
     }
 }

@@ -5,6 +5,7 @@
 mod balance;
 mod chain;
 mod cycle;
+mod explicit;
 mod freedom;
 mod integrator;
 mod restraint;
@@ -19,5 +20,5 @@ pub use freedom::{Drive, FREEDOMS, Freedom, FreedomSettings, Machine};
 pub use integrator::{Effort, MachineState};
 pub use restraint::ApSpring;
 pub use settle::{NotSettled, settle};
-pub use time_settings::TimeSettings;
+pub use time_settings::{Integration, TimeSettings};
 pub use waveform::{Interpolation, Knot, Waveform, WaveformError, low_passed, without_drift};

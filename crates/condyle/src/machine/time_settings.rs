@@ -13,6 +13,20 @@ pub struct TimeSettings {
     pub repeat_tolerance_rad: f64,
     /// Cycles to wait for one that repeats itself.
     pub most_cycles_to_repeat: usize,
+    /// How one increment is stepped through.
+    pub integration: Integration,
+}
+
+/// How an increment is stepped through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integration {
+    /// Second-order backward differences and Newton's method, one step an increment.
+    Implicit,
+    /// Central differences in as many stable steps as an increment takes.
+    Explicit {
+        /// Inertia is added wherever the stable step is shorter than this, s; 0 adds none.
+        least_step_s: f64,
+    },
 }
 
 impl Default for TimeSettings {
@@ -23,6 +37,7 @@ impl Default for TimeSettings {
             repeat_tolerance_mm: 1e-2,
             repeat_tolerance_rad: 0.01f64.to_radians(),
             most_cycles_to_repeat: 10,
+            integration: Integration::Implicit,
         }
     }
 }

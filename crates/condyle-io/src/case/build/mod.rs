@@ -10,12 +10,12 @@ mod tests;
 
 use condyle::contact::{FoundationSettings, PressureLaw, confined_modulus};
 use condyle::evolve::{Schedule, WearTest};
-use condyle::machine::TimeSettings;
+use condyle::machine::{Integration, TimeSettings};
 use condyle::wear::Archard;
 
 pub use error::{BuildError, BuildWarning};
 
-use super::{Case, PressureLawChoice, WearLawWord};
+use super::{Case, IntegratorWord, PressureLawChoice, WearLawWord};
 
 /// A wear test ready to run, and what was put right on the way to it.
 pub struct Built {
@@ -85,6 +85,12 @@ impl Case {
             repeat_tolerance_mm: time.repeat_tolerance_mm,
             repeat_tolerance_rad: time.repeat_tolerance_deg.to_radians(),
             most_cycles_to_repeat: time.most_cycles_to_repeat as usize,
+            integration: match time.integrator {
+                IntegratorWord::Implicit => Integration::Implicit,
+                IntegratorWord::Explicit => Integration::Explicit {
+                    least_step_s: time.explicit_step_s,
+                },
+            },
         }
     }
 }
