@@ -7,17 +7,49 @@
 mod ball;
 mod case;
 mod convergence;
+mod drives;
+mod foundation_rows;
+mod law;
+mod machine;
+mod marched;
 mod number;
 mod page;
+mod plate;
 mod pressed;
+mod quadrature;
+mod recorder;
 mod row;
+mod rub_test;
 
+#[path = "../archard-ball-on-flat/mod.rs"]
+mod archard_ball_on_flat;
+#[path = "../archard-pin-on-plate/mod.rs"]
+mod archard_pin_on_plate;
+#[path = "../cylinder-on-foundation/mod.rs"]
+mod cylinder_on_foundation;
+#[path = "../friction-block/mod.rs"]
+mod friction_block;
+#[path = "../off-centre-load/mod.rs"]
+mod off_centre_load;
 #[path = "../sphere-on-foundation/mod.rs"]
 mod sphere_on_foundation;
+#[path = "../springs/mod.rs"]
+mod springs;
+#[path = "../wearing-ball/mod.rs"]
+mod wearing_ball;
 
 pub use case::Case;
 pub use page::{page, table};
 pub use row::{Order, Row};
 
 /// Every case, in the order of the page.
-pub const CASES: &[Case] = &[sphere_on_foundation::CASE];
+pub const CASES: &[Case] = &[
+    sphere_on_foundation::CASE,
+    cylinder_on_foundation::CASE,
+    off_centre_load::CASE,
+    springs::CASE,
+    friction_block::CASE,
+    archard_pin_on_plate::CASE,
+    archard_ball_on_flat::CASE,
+    wearing_ball::CASE,
+];

@@ -4,32 +4,23 @@ use condyle::{
     Mat3, Vec3,
     contact::{
         ContactModel, Foundation, FoundationSettings, Pose, PressureLaw, RelativeMotion, Vec6,
-        confined_modulus,
     },
+    geometry::{Insert, Meshing, flat_insert},
 };
 
-/// Modulus of the confined layer of the default material, MPa: E = 463 MPa, v = 0.46.
-pub(crate) fn modulus_mpa() -> f64 {
-    confined_modulus(463.0, 0.46)
-}
-
-/// A foundation of the default material.
-pub(crate) fn linear(friction: f64) -> FoundationSettings {
-    foundation(
-        PressureLaw::Linear {
-            modulus_mpa: modulus_mpa(),
-        },
-        friction,
-    )
-}
-
-/// A foundation of any law; friction is full well below the slowest slip of these cases.
-pub(crate) fn foundation(law: PressureLaw, friction: f64) -> FoundationSettings {
+/// A foundation without friction.
+pub(crate) fn without_friction(law: &PressureLaw) -> FoundationSettings {
     FoundationSettings {
-        law,
-        friction,
+        law: law.clone(),
+        friction: 0.0,
         slip_tolerance_mm_per_s: 1.0,
     }
+}
+
+/// A flat square block of one layer, the articulating surface at y = 0.
+pub(crate) fn block(size_mm: f64, thickness_mm: f64, edge_mm: f64) -> Insert {
+    let meshing = Meshing { edge_mm, layers: 1 };
+    flat_insert((size_mm, size_mm), thickness_mm, meshing).expect("a block is an insert")
 }
 
 /// What the contact carries at one motion.
@@ -69,4 +60,22 @@ pub(crate) fn press(contact: &mut Foundation<'_>, motion: &RelativeMotion) -> Pr
         area_mm2: touched.iter().map(|node| node.covered_mm2).sum(),
         peak_pressure_mpa: pressures.fold(0.0, f64::max),
     }
+}
+
+/// What is exact of a body pressed on a flat layer.
+pub(crate) struct Exact {
+    /// Vertical force, N.
+    pub force_n: f64,
+    /// Area in contact, mm2.
+    pub area_mm2: f64,
+    /// Highest pressure, MPa.
+    pub peak_mpa: f64,
+}
+
+/// Half of the force's range over its mean.
+pub(crate) fn ripple(forces_n: &[f64]) -> f64 {
+    let low = forces_n.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = forces_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mean = forces_n.iter().sum::<f64>() / forces_n.len() as f64;
+    (high - low) / 2.0 / mean
 }

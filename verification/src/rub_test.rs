@@ -1,0 +1,59 @@
+//! A femur that rubs an insert, moved along AP under a load that is held.
+
+use condyle::{
+    contact::FoundationSettings,
+    evolve::{Schedule, WearTest},
+    geometry::{FemoralSurface, Insert},
+    machine::{Drive, Waveform},
+    wear::Archard,
+};
+
+use crate::machine::{exact_time, machine};
+
+/// Wear factor of these tests, that of Knight 2007, mm3/(N m).
+pub(crate) const WEAR_FACTOR_MM3_PER_NM: f64 = 2.64e-7;
+
+/// A metre in millimetres.
+pub(crate) const MM_PER_M: f64 = 1000.0;
+
+/// What a rub is made of.
+pub(crate) struct Rub {
+    pub femur: FemoralSurface,
+    pub insert: Insert,
+    pub contact: FoundationSettings,
+    /// Motion of the insert along AP.
+    pub ap: Drive,
+    pub load_n: f64,
+    pub increments: usize,
+    pub cycles: f64,
+    pub updates: usize,
+}
+
+impl Rub {
+    /// The wear test; what is not moved or loaded is locked.
+    pub(crate) fn test(self) -> WearTest {
+        let locked = || Drive::Locked(0.0);
+        let load = Drive::Loaded(Waveform::constant(-self.load_n));
+        let drives = [locked(), locked(), locked(), self.ap, load, locked()];
+        let mut time = exact_time(self.increments);
+        time.force_tolerance_n = 1e-6 * self.load_n;
+        (time.repeat_tolerance_mm, time.repeat_tolerance_rad) = (1e-5, 1e-6);
+        WearTest {
+            femur: self.femur,
+            flexion_axis_mm: (0.0, 0.0),
+            start_mm: (0.0, 0.0),
+            insert: self.insert,
+            machine: machine(drives, Vec::new()),
+            contact: self.contact,
+            wear: Box::new(Archard {
+                wear_factor_mm3_per_nm: WEAR_FACTOR_MM3_PER_NM,
+            }),
+            density_mg_per_mm3: 0.93,
+            time,
+            schedule: Schedule {
+                cycles: self.cycles,
+                updates: self.updates,
+            },
+        }
+    }
+}
