@@ -68,6 +68,7 @@ pub(crate) fn exact_time(increments: usize) -> TimeSettings {
         repeat_tolerance_mm: 1e-10,
         repeat_tolerance_rad: 1e-12,
         most_cycles_to_repeat: 50,
+        ..TimeSettings::default()
     }
 }
 
