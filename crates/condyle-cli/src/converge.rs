@@ -35,7 +35,7 @@ pub fn converge(arguments: &Converge) -> ExitCode {
     let stop = stop_on_interrupt();
     let told = Mutex::new(BTreeSet::new());
     let outcome = study(&plan, &options, &|happening| {
-        show(&happening, &told);
+        show(happening, &told);
         match stop.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),

@@ -36,6 +36,9 @@ pub enum ConvergeHappening<'a> {
     Ran(&'a Planned, &'a Summary),
 }
 
+/// Hears of everything, from any thread, and may stop the study by breaking.
+pub type Listener<'a> = dyn Fn(&ConvergeHappening<'_>) -> ControlFlow<()> + Sync + 'a;
+
 /// How a study ended.
 #[derive(Clone, Debug)]
 pub enum Converged {
@@ -140,20 +143,18 @@ impl Convergence {
 /// Runs every case of `plan` into a folder of its own, and writes what they tell into
 /// `converge.csv`, `converge.json` and `converge.svg` beside them.
 ///
-/// `happening` hears of everything, from any thread, and may stop the study by breaking.
-///
 /// # Errors
 /// A folder that cannot be used, or the error of the coarsest run that failed; the others are kept.
 pub fn converge(
     plan: &ConvergePlan,
     options: &ConvergeOptions,
-    happening: &(dyn Fn(ConvergeHappening<'_>) -> ControlFlow<()> + Sync),
+    listener: &Listener<'_>,
 ) -> Result<Converged, ConvergeError> {
     if !options.resume {
         check_free(&options.out)?;
     }
     let mut points = Vec::new();
-    for (run, outcome) in plan.runs.iter().zip(run_all(plan, options, happening)) {
+    for (run, outcome) in plan.runs.iter().zip(run_all(plan, options, listener)) {
         match outcome {
             Ok(Some(summary)) => points.push(Point {
                 value: run.number.value(),
@@ -164,6 +165,7 @@ pub fn converge(
             Ok(None) => return Ok(Converged::Interrupted),
             Err(source) => {
                 let number = format!("{} = {}", plan.path, run.number.text());
+                let source = Box::new(source);
                 return Err(ConvergeError::Run { number, source });
             }
         }
@@ -181,11 +183,7 @@ pub fn converge(
 type Ran = Result<Option<Box<Summary>>, RunError>;
 
 /// Runs all cases, the finest first because it tends to take longest; results in the plan's order.
-fn run_all(
-    plan: &ConvergePlan,
-    options: &ConvergeOptions,
-    happening: &(dyn Fn(ConvergeHappening<'_>) -> ControlFlow<()> + Sync),
-) -> Vec<Ran> {
+fn run_all(plan: &ConvergePlan, options: &ConvergeOptions, listener: &Listener<'_>) -> Vec<Ran> {
     let outcomes: Vec<Mutex<Ran>> = plan.runs.iter().map(|_| Mutex::new(Ok(None))).collect();
     let taken = AtomicUsize::new(0);
     let work = || {
@@ -194,7 +192,7 @@ fn run_all(
             .len()
             .checked_sub(1 + taken.fetch_add(1, Ordering::Relaxed))
         {
-            let ran = run_one(&plan.runs[left], options, happening);
+            let ran = run_one(&plan.runs[left], options, listener);
             let stop = matches!(ran, Ok(None));
             *outcomes[left].lock().expect("no thread panics with it") = ran;
             if stop {
@@ -211,11 +209,7 @@ fn run_all(
     outcomes.into_iter().map(outcome).collect()
 }
 
-fn run_one(
-    run: &Planned,
-    options: &ConvergeOptions,
-    happening: &(dyn Fn(ConvergeHappening<'_>) -> ControlFlow<()> + Sync),
-) -> Ran {
+fn run_one(run: &Planned, options: &ConvergeOptions, listener: &Listener<'_>) -> Ran {
     let out = options.out.join(folder_name(run));
     let resume = options.resume && holds_a_run(&out);
     let threads = 1;
@@ -224,10 +218,10 @@ fn run_one(
         resume,
         threads,
     };
-    let mut tell = |what: Happening<'_>| happening(ConvergeHappening::In(run, what));
+    let mut tell = |what: Happening<'_>| listener(&ConvergeHappening::In(run, what));
     match run_case(&run.case, &options, &mut tell)? {
         Outcome::Done(summary) | Outcome::DoneBefore(summary) => {
-            let _ = happening(ConvergeHappening::Ran(run, &summary));
+            let _ = listener(&ConvergeHappening::Ran(run, &summary));
             Ok(Some(summary))
         }
         Outcome::Interrupted { .. } => Ok(None),

@@ -61,7 +61,7 @@ pub enum ConvergeError {
         /// The key and its value, such as `march.updates = 1`.
         number: String,
         /// Why.
-        source: RunError,
+        source: Box<RunError>,
     },
 }
 

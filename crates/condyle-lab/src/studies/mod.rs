@@ -3,11 +3,12 @@
 mod converge;
 mod converge_files;
 mod converge_plan;
+pub mod knight_2007;
 mod observed_order;
 
 pub use converge::{
-    ConvergeHappening, ConvergeOptions, Converged, Convergence, Point, QUANTITIES, Quantity,
-    converge,
+    ConvergeHappening, ConvergeOptions, Converged, Convergence, Listener, Point, QUANTITIES,
+    Quantity, converge,
 };
 pub use converge_plan::{ConvergeError, ConvergePlan, Planned};
 pub use observed_order::{Extrapolation, extrapolate};

@@ -1,0 +1,224 @@
+//! The table of Knight et al. 2007 [knight2007], run on a case of one's own.
+//!
+//! A case in force control runs over 1, 2, 5, 10, 20 and 40 updates; its first cycle becomes the
+//! waveforms of a case in displacement control; and what the paper found is set beside what comes out.
+
+mod findings;
+mod motions;
+mod pictures;
+mod rows;
+mod series;
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use condyle_io::results::Summary;
+use condyle_report::{ReportError, Results};
+use serde::Serialize;
+use thiserror::Error;
+
+use super::{
+    ConvergeError, ConvergeOptions, ConvergePlan, Converged, Convergence, Listener, converge,
+};
+pub use findings::{Findings, Scar};
+pub use rows::Row;
+
+/// The updates of the force-controlled runs: the paper's 1 x 5M to 40 x 125k, and two between.
+const UPDATES: &str = "updates=1,2,5,10,20,40";
+/// Of the displacement-controlled ones.
+const DISPLACEMENT_UPDATES: &str = "updates=1,10";
+
+/// What a study is made from, and where it goes.
+#[derive(Clone, Debug)]
+pub struct StudyFiles {
+    /// The case in force control.
+    pub force_case: PathBuf,
+    /// The case in displacement control, which reads `ap-motion.csv` and `ie-motion.csv` from its
+    /// own folder: both are written here.
+    pub displacement_case: PathBuf,
+    /// An empty folder for the runs.
+    pub runs: PathBuf,
+    /// A folder for `results.md`, `results.json` and the pictures.
+    pub out: PathBuf,
+}
+
+/// When and from what the results were made.
+#[derive(Clone, Debug, Serialize)]
+pub struct Stamp {
+    /// Commit of the source.
+    pub commit: String,
+    /// Date of the run.
+    pub date: String,
+}
+
+/// Why a study is not done.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// The runs.
+    #[error(transparent)]
+    Converge(#[from] ConvergeError),
+    /// The results of a run.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// A run that lacks what the study needs.
+    #[error("{}: there is no {what} in it; the study needs whole results folders", folder.display())]
+    Lacking {
+        /// The results folder.
+        folder: PathBuf,
+        /// What it lacks.
+        what: &'static str,
+    },
+    /// The system refused to write.
+    #[error("{}: {source}; check that the folder can be written and the disk is not full", path.display())]
+    Refused {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Somebody asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// What `results.json` holds.
+#[derive(Serialize)]
+struct File<'a> {
+    version: &'static str,
+    #[serde(flatten)]
+    stamp: &'a Stamp,
+    findings: &'a Findings,
+    rows: &'a [Row],
+}
+
+/// A run, read back from its folder.
+struct Ran {
+    updates: usize,
+    folder: PathBuf,
+    summary: Summary,
+    results: Results,
+}
+
+/// Runs everything, writes the tables and the pictures, and gives the Markdown of the table.
+///
+/// `listener` hears of every run, and may stop the study by breaking.
+///
+/// # Errors
+/// A bad case, physics that cannot be solved, or files that cannot be written.
+pub fn study(
+    files: &StudyFiles,
+    stamp: &Stamp,
+    listener: &Listener<'_>,
+) -> Result<String, StudyError> {
+    let out = files.runs.join("force");
+    let force = run(&files.force_case, UPDATES, &out, listener)?;
+    let folder = files.displacement_case.parent().unwrap_or(Path::new(""));
+    for (name, text) in motions::of_first_cycle(reference(&force))? {
+        write(&folder.join(name), &text)?;
+    }
+    let out = files.runs.join("displacement");
+    let displacement = run(
+        &files.displacement_case,
+        DISPLACEMENT_UPDATES,
+        &out,
+        listener,
+    )?;
+    let findings = Findings::of(&force, &displacement)?;
+    let rows = rows::rows(&findings);
+    let text = rows::markdown(&rows, stamp);
+    write(&files.out.join("results.md"), &text)?;
+    write(
+        &files.out.join("results.json"),
+        &json(stamp, &findings, &rows),
+    )?;
+    let map = condyle_report::wear_map_svg(&reference(&force).folder)?;
+    write(&files.out.join("wear-map.svg"), &map)?;
+    let depth = pictures::depth_svg(&force, &displacement)?;
+    write(&files.out.join("wear-over-cycles.svg"), &depth)?;
+    Ok(text)
+}
+
+/// The run of the paper's interval, 500 000 cycles of 5 million.
+fn reference(force: &[Ran]) -> &Ran {
+    let is_reference = |ran: &&Ran| ran.updates == 10;
+    force.iter().find(is_reference).unwrap_or(&force[0])
+}
+
+fn run(
+    case: &Path,
+    over: &str,
+    out: &Path,
+    listener: &Listener<'_>,
+) -> Result<Vec<Ran>, StudyError> {
+    let plan = ConvergePlan::new(case, over)?;
+    let options = ConvergeOptions {
+        out: out.to_owned(),
+        // One at a time: their times are part of the table.
+        threads: 1,
+        resume: false,
+    };
+    match converge(&plan, &options, listener)? {
+        Converged::Done(convergence) => read_back(convergence, out),
+        Converged::Interrupted => Err(StudyError::Interrupted),
+    }
+}
+
+fn read_back(convergence: Convergence, out: &Path) -> Result<Vec<Ran>, StudyError> {
+    let points = convergence.points.into_iter();
+    points
+        .map(|point| {
+            let folder = out.join(&point.folder);
+            Ok(Ran {
+                updates: point.summary.updates,
+                results: Results::read(&folder)?,
+                summary: point.summary,
+                folder,
+            })
+        })
+        .collect()
+}
+
+fn json(stamp: &Stamp, findings: &Findings, rows: &[Row]) -> String {
+    let file = File {
+        version: env!("CARGO_PKG_VERSION"),
+        stamp,
+        findings,
+        rows,
+    };
+    serde_json::to_string_pretty(&file).expect("numbers and text always serialise") + "\n"
+}
+
+fn write(path: &Path, text: &str) -> Result<(), StudyError> {
+    fs::write(path, text).map_err(|source| StudyError::Refused {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+impl Ran {
+    /// A column of wear.csv or kinematics.csv.
+    fn column(&self, table: Table, name: &'static str) -> Result<&[f64], StudyError> {
+        let table = match table {
+            Table::Wear => &self.results.wear,
+            Table::Kinematics => &self.results.kinematics,
+        };
+        let column = table.as_ref().and_then(|table| table.column(name));
+        column.ok_or_else(|| self.lacks(name))
+    }
+
+    fn lacks(&self, what: &'static str) -> StudyError {
+        StudyError::Lacking {
+            folder: self.folder.clone(),
+            what,
+        }
+    }
+}
+
+/// Tables of a results folder.
+#[derive(Clone, Copy)]
+enum Table {
+    Wear,
+    Kinematics,
+}
