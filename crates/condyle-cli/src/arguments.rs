@@ -30,6 +30,10 @@ pub enum Command {
     Report(Report),
     /// Run a case over finer and finer values of one of its numbers, and see what changes.
     Converge(Converge),
+    /// Hold a run against measured kinematics, weighed wear and a scanned surface.
+    Compare(Compare),
+    /// Find the wear factor with which a run wears as fast as the specimens did.
+    CalibrateWear(CalibrateWear),
 }
 
 #[derive(Args)]
@@ -124,6 +128,31 @@ pub struct Converge {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Print converge.json, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct Compare {
+    /// The results folder.
+    pub results: PathBuf,
+    /// The TOML file that names the measured data.
+    pub measured: PathBuf,
+    /// Folder for compare.json, the pictures and the table of depths [default: compare in the results folder].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print compare.json, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct CalibrateWear {
+    /// The results folder; its case is run again with other wear factors, and nothing in it is changed.
+    pub results: PathBuf,
+    /// The TOML file that names the measured data; it needs [gravimetric].
+    pub measured: PathBuf,
+    /// Print the factor, its interval and every trial as JSON, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
 }

@@ -1,7 +1,9 @@
 //! The condyle command: words to calls, nothing else.
 
 mod arguments;
+mod calibrate_wear;
 mod check;
+mod compare;
 mod converge;
 mod exit;
 mod export;
@@ -24,5 +26,7 @@ fn main() -> ExitCode {
         Command::Export(arguments) => export::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Converge(arguments) => converge::converge(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
+        Command::CalibrateWear(arguments) => calibrate_wear::calibrate_wear(&arguments),
     }
 }

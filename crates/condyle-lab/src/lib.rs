@@ -1,5 +1,6 @@
 //! Runs of cases, and studies over them.
 
+pub mod measured;
 mod run;
 pub mod studies;
 

@@ -242,14 +242,14 @@ pub fn check(case_path: &Path, threads: usize) -> Result<(Case, Vec<BuildWarning
     Ok((case, built.warnings))
 }
 
-fn build(case: &Case, threads: usize) -> Result<Built, RunError> {
+pub(crate) fn build(case: &Case, threads: usize) -> Result<Built, RunError> {
     case.build(threads).map_err(|source| RunError::Build {
         shown: case.at_its_key(&source),
         source,
     })
 }
 
-fn start(case: &Case, test: WearTest) -> Result<March, RunError> {
+pub(crate) fn start(case: &Case, test: WearTest) -> Result<March, RunError> {
     March::start(test).map_err(|source| RunError::Placement {
         shown: case.placement_at_its_key(&source),
         source,

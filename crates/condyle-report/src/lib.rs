@@ -6,6 +6,7 @@
 
 mod error;
 mod figure;
+pub mod measured;
 mod number;
 mod page;
 mod pictures;

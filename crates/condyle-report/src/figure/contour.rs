@@ -123,7 +123,9 @@ impl<'a> Contours<'a> {
             return p;
         }
         let (u, v) = (self.values[a as usize], self.values[b as usize]);
-        let share = (level - u) / (v - u);
+        // Next to a place without a value the region ends half-way.
+        let share = Some((level - u) / (v - u)).filter(|share| share.is_finite());
+        let share = share.unwrap_or(0.5);
         (p.0 + share * (q.0 - p.0), p.1 + share * (q.1 - p.1))
     }
 }

@@ -37,6 +37,19 @@ pub(crate) enum Shades {
     Viridis,
     /// Yellow, grey, blue.
     Cividis,
+    /// Blue below 0, red above.
+    RedBlue,
+}
+
+/// What the colours of a map range over.
+#[derive(Clone, Copy)]
+pub(crate) enum Range {
+    /// From 0 to the largest value.
+    Own,
+    /// From 0 to this value, so that two maps can be compared.
+    UpTo(f64),
+    /// To this value on both sides of 0; values that are NaN stay bare.
+    BothWays(f64),
 }
 
 /// A map of one field.
@@ -57,6 +70,8 @@ pub(crate) struct Map<'a> {
     pub(crate) side: Side,
     /// The colours.
     pub(crate) shades: Shades,
+    /// What they range over.
+    pub(crate) range: Range,
     /// Scale of the picture, px per mm.
     pub(crate) px_per_mm: f64,
 }
@@ -123,18 +138,26 @@ impl Map<'_> {
     }
 
     fn largest_value(&self) -> f64 {
-        self.surface
-            .largest(self.values, Region::Whole)
-            .map_or(0.0, |extreme| extreme.value)
+        match self.range {
+            Range::Own => self
+                .surface
+                .largest(self.values, Region::Whole)
+                .map_or(0.0, |extreme| extreme.value),
+            Range::UpTo(largest) | Range::BothWays(largest) => largest,
+        }
     }
 
     fn bands(&self) -> Axis {
         let largest = self.largest_value();
-        let step = round_step(largest.max(NOTHING) / MOST_BANDS as f64);
-        let count = (largest / step - 1e-9).ceil().max(1.0);
+        let (sides, low) = match self.range {
+            Range::Own | Range::UpTo(_) => (1, 0.0),
+            Range::BothWays(_) => (2, -1.0),
+        };
+        let step = round_step(largest.max(NOTHING) / (MOST_BANDS / sides) as f64);
+        let high = (largest / step - 1e-9).ceil().max(1.0) * step;
         Axis {
-            low: 0.0,
-            high: count * step,
+            low: low * high,
+            high,
             step,
         }
     }
@@ -156,7 +179,7 @@ impl Map<'_> {
     fn surface_picture(&self, bands: &Axis) -> String {
         let borders = borders(&self.surface.quads);
         let contours = Contours::new(self.surface, &borders, self.values, self.place());
-        let outline = path(&contours.region(f64::NEG_INFINITY));
+        let outline = path(&self.outline(&borders).region(f64::NEG_INFINITY));
         let mut out = format!(r#"<path fill="{BARE}" d="{outline}"/>"#);
         if self.largest_value() > NOTHING {
             out += &self.filled(&contours, bands);
@@ -166,16 +189,21 @@ impl Map<'_> {
         out + &format!(r#"<path class="rim" d="{outline}"/>"#)
     }
 
+    /// The whole surface, whatever the values on it.
+    fn outline<'a>(&'a self, borders: &'a [[bool; 4]]) -> Contours<'a> {
+        let flat = vec![0.0; self.surface.nodes.len()];
+        Contours::new(self.surface, borders, &flat, self.place())
+    }
+
     /// Each band is painted over the one below; the first leaves out what is next to nothing.
     fn filled(&self, contours: &Contours, bands: &Axis) -> String {
         (0..bands.intervals())
             .map(|band| {
-                let level = bands.step
-                    * if band == 0 {
-                        NEXT_TO_NOTHING
-                    } else {
-                        band as f64
-                    };
+                let level = match (band, self.range) {
+                    (0, Range::BothWays(_)) => f64::NEG_INFINITY,
+                    (0, Range::Own | Range::UpTo(_)) => bands.step * NEXT_TO_NOTHING,
+                    (band, _) => bands.low + bands.step * band as f64,
+                };
                 let (fill, shape) = (self.colour(band, bands), path(&contours.region(level)));
                 format!(r#"<path class="iso" fill="{fill}" d="{shape}"/>"#)
             })
@@ -184,10 +212,15 @@ impl Map<'_> {
 
     fn colour(&self, band: usize, bands: &Axis) -> String {
         let share = (band as f64 + 0.5) / bands.intervals() as f64;
+        let is_next_to_zero = (share - 0.5).abs() * (bands.intervals() as f64) < 1.0;
+        if matches!(self.range, Range::BothWays(_)) && is_next_to_zero {
+            return BARE.to_owned();
+        }
         let gradient = match self.shades {
             Shades::Magma => colorous::MAGMA,
             Shades::Viridis => colorous::VIRIDIS,
             Shades::Cividis => colorous::CIVIDIS,
+            Shades::RedBlue => colorous::RED_BLUE,
         };
         format!("#{:x}", gradient.eval_continuous(1.0 - 0.95 * share))
     }
@@ -276,9 +309,26 @@ impl Map<'_> {
         [Region::Left, Region::Right]
             .into_iter()
             .zip(self.side.regions())
-            .filter_map(|(region, name)| Some((name, self.surface.largest(self.values, region)?)))
-            .filter(|(_, extreme)| extreme.value > NOTHING)
+            .filter_map(|(region, name)| Some((name, self.extreme(region)?)))
+            .filter(|(_, extreme)| extreme.value.abs() > NOTHING)
             .collect()
+    }
+
+    /// The largest value of a region; with its sign, where values go both ways.
+    fn extreme(&self, region: Region) -> Option<Extreme> {
+        let highest = self.surface.largest(self.values, region)?;
+        if !matches!(self.range, Range::BothWays(_)) {
+            return Some(highest);
+        }
+        let turned: Vec<f64> = self.values.iter().map(|value| -value).collect();
+        let lowest = self.surface.largest(&turned, region)?;
+        Some(match lowest.value > highest.value {
+            true => Extreme {
+                value: -lowest.value,
+                ..lowest
+            },
+            false => highest,
+        })
     }
 
     fn markers(&self) -> String {

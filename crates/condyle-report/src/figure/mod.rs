@@ -9,7 +9,7 @@ mod sheet;
 mod style;
 
 pub(crate) use axis::Axis;
-pub(crate) use map::{Map, Shades};
+pub(crate) use map::{Map, Range, Shades};
 pub(crate) use panel::{Curve, Panel};
 pub(crate) use sheet::{alone, sheet};
 pub(crate) use style::{css, variables};

@@ -14,9 +14,12 @@ const BOTTOM: f64 = 30.0;
 const X_TITLE: f64 = 15.0;
 const MOST_INTERVALS: usize = 5;
 
+/// Class of what was measured on one of several specimens.
+const SPECIMEN: &str = "specimen";
+
 /// A line of a plot.
 pub(crate) struct Curve {
-    /// Class of its style: `first` or `last`.
+    /// Class of its style: `first`, `last` or `specimen`.
     pub(crate) class: &'static str,
     /// Points (x, y); a point with NaN breaks the line.
     pub(crate) points: Vec<(f64, f64)>,
@@ -168,7 +171,8 @@ impl Panel {
         path.open(points());
         let mut out = format!(r#"<path class="{}" d="{}"/>"#, curve.class, path.data());
         if curve.dots {
-            out.extend(points().filter(|point| point.1.is_finite()).map(dot));
+            let seen = points().filter(|point| point.1.is_finite());
+            out.extend(seen.map(|point| dot(point, curve.class)));
         }
         if let (Some(label), Some((x, y))) = (&curve.end, points().next_back()) {
             let (x, y) = (x + 4.0, y - 9.0);
@@ -201,6 +205,10 @@ impl Panel {
     }
 }
 
-fn dot((x, y): (f64, f64)) -> String {
-    format!(r#"<circle class="dot" cx="{x:.1}" cy="{y:.1}" r="2.6"/>"#)
+fn dot((x, y): (f64, f64), class: &str) -> String {
+    let class = match class {
+        SPECIMEN => "dot specimen",
+        _ => "dot",
+    };
+    format!(r#"<circle class="{class}" cx="{x:.1}" cy="{y:.1}" r="2.6"/>"#)
 }

@@ -8,16 +8,21 @@ use crate::results::{Results, Table};
 const SIZE: (f64, f64) = (340.0, 206.0);
 
 /// A column of kinematics.csv as people call it.
-pub(super) struct Channel {
-    pub(super) column: &'static str,
-    pub(super) title: &'static str,
-    pub(super) unit: &'static str,
-    positive: &'static str,
+pub(crate) struct Channel {
+    pub(crate) column: &'static str,
+    pub(crate) title: &'static str,
+    pub(crate) unit: &'static str,
+    pub(crate) positive: &'static str,
     from_zero: bool,
-    least_span: f64,
+    pub(crate) least_span: f64,
 }
 
-pub(super) const CHANNELS: [Channel; 11] = [
+/// The channel of a column.
+pub(crate) fn channel(column: &str) -> Option<&'static Channel> {
+    CHANNELS.iter().find(|channel| channel.column == column)
+}
+
+pub(super) static CHANNELS: [Channel; 11] = [
     motion("flexion_deg", "Flexion", "degrees", "flexion", 1.0),
     load("axial_force_n", "Axial force", "N", "compression", 10.0),
     motion(

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::figure::{Map, Shades};
+use crate::figure::{Map, Range, Shades};
 use crate::results::{Results, SurfaceFields};
 
 /// A small map with its caption.
@@ -72,6 +72,7 @@ fn plain<'a>(
         values: surface.field(field)?,
         side: results.side,
         shades: Shades::Magma,
+        range: Range::Own,
         px_per_mm,
     })
 }

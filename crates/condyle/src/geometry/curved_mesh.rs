@@ -56,8 +56,12 @@ impl<'a> CurvedMesh<'a> {
 
     /// Squared distance from a point to the flat triangle.
     pub fn distance2(&self, triangle: usize, point: &Vec3) -> f64 {
-        let corners = self.corners(triangle);
-        (weighted(&corners, closest_on_triangle(&corners, point)) - point).norm_squared()
+        Self::distance2_to_triangle(&self.corners(triangle), point)
+    }
+
+    /// Squared distance from a point to a flat triangle, mm2.
+    pub fn distance2_to_triangle(corners: &[Vec3; 3], point: &Vec3) -> f64 {
+        (weighted(corners, closest_on_triangle(corners, point)) - point).norm_squared()
     }
 
     /// Height of the curved surface over the triangle at a place (x, z), if the triangle covers it.

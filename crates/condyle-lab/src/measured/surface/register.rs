@@ -1,0 +1,276 @@
+//! Laying a scan onto the predicted surface: iterated closest points, point to plane.
+
+use condyle::{Mat3, Vec3};
+use condyle_io::measured::{FitWord, Scan, ScanKeys};
+use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector6};
+use serde::Serialize;
+
+use super::super::CompareError;
+use super::sheet::{Foot, Sheet};
+
+/// Points of the scan that are laid onto the surface; more of them cost time and gain nothing.
+const MOST_POINTS: usize = 8000;
+/// A scan starts within this distance of its place, mm.
+const REACH_MM: f64 = 15.0;
+/// The reach becomes shorter by this factor at every step, down to `farthest_mm`.
+const REACH_SHRINKS: f64 = 0.8;
+/// Steps at most.
+const MOST_STEPS: usize = 300;
+/// A step shorter than this, at the scan's radius of gyration, is none, mm.
+const REST_MM: f64 = 1e-6;
+/// A last step up to this is small enough where the points keep changing sides, mm.
+const NEARLY_REST_MM: f64 = 1e-3;
+/// Normals may lean from each other by 60 degrees.
+pub(super) const LEAST_COSINE: f64 = 0.5;
+/// Residuals beyond this many scales have no weight: 95 % efficient for normal noise.
+const TUKEY: f64 = 4.685;
+/// From the median of absolute residuals to the standard deviation of normal noise.
+const SCALE_OF_MEDIAN: f64 = 1.4826;
+/// Smallest scale of residuals, mm: round-off of a scan without noise.
+const LEAST_SCALE_MM: f64 = 1e-7;
+/// A motion that the surface resists less than this part of the most resisted one is free.
+const LEAST_RESISTANCE: f64 = 1e-7;
+
+/// A rigid motion from the scan as given (axes, unit and `start_mm` applied) to the prediction.
+#[derive(Clone, Debug, Serialize)]
+pub struct Registration {
+    /// Rows of the rotation matrix R in x -> R x + t.
+    pub rotation: [[f64; 3]; 3],
+    /// t.
+    pub translation_mm: [f64; 3],
+    /// Angle of the rotation.
+    pub angle_deg: f64,
+    /// How far the middle of the fitted points was moved.
+    pub shift_mm: f64,
+    /// Points fitted, those without weight left out.
+    pub points: usize,
+    /// Root of the weighted mean square of what is left between scan and prediction, along the
+    /// normal, where they were laid onto each other.
+    pub residual_rms_mm: f64,
+    /// Standard error of the motion that the surface fixes least, at the radius of gyration of the
+    /// fitted points; for independent noise.
+    pub weakest_standard_error_mm: f64,
+    /// Steps made.
+    pub steps: usize,
+    /// The same motion.
+    #[serde(skip)]
+    motion: Isometry3<f64>,
+}
+
+impl Registration {
+    /// A point of the scan in its place.
+    pub fn moved(&self, point: &Vec3) -> Vec3 {
+        self.motion.transform_point(&(*point).into()).coords
+    }
+
+    /// A direction of the scan in its place.
+    pub fn turned(&self, direction: &Vec3) -> Vec3 {
+        self.motion.transform_vector(direction)
+    }
+}
+
+/// Lays a scan onto `target`, whose nodes are worn by `depth`.
+pub(super) fn register(
+    scan: &Scan,
+    target: &Sheet<'_>,
+    depth: &[f64],
+) -> Result<Registration, CompareError> {
+    let places = Places::of(scan);
+    let mut motion = Isometry3::identity();
+    let mut reach = REACH_MM.max(scan.keys.farthest_mm);
+    let mut step_mm = f64::INFINITY;
+    for steps in 1..=MOST_STEPS {
+        let pairs = places.pairs(&motion, target, reach, |foot| fits(&scan.keys, foot, depth));
+        let fit = Fit::of(&pairs).ok_or(CompareError::ScanElsewhere {
+            near: pairs.len(),
+            points: places.points.len(),
+        })?;
+        let step = fit.step().ok_or(CompareError::ScanSlides)?;
+        motion = step * motion;
+        step_mm = fit.length_of(&step);
+        let is_last = reach <= scan.keys.farthest_mm && step_mm < REST_MM;
+        if is_last || (steps == MOST_STEPS && step_mm < NEARLY_REST_MM) {
+            return Ok(fit.registration(motion, steps));
+        }
+        reach = (reach * REACH_SHRINKS).max(scan.keys.farthest_mm);
+    }
+    Err(CompareError::ScanRestless {
+        iterations: MOST_STEPS,
+        step_mm,
+    })
+}
+
+/// Whether a place of the prediction is one that scans are laid onto.
+fn fits(keys: &ScanKeys, foot: &Foot, depth: &[f64]) -> bool {
+    let within = |range: Option<[f64; 2]>, value: f64| {
+        range.is_none_or(|[low, high]| (low..=high).contains(&value))
+    };
+    match keys.fit {
+        FitWord::All => true,
+        FitWord::Unworn => foot.value(depth) <= keys.unworn_depth_mm,
+        FitWord::Region => {
+            within(keys.fit_x_mm, foot.point.x) && within(keys.fit_z_mm, foot.point.z)
+        }
+    }
+}
+
+/// The points of a scan that are laid onto the surface, with their normals.
+struct Places {
+    points: Vec<Vec3>,
+    normals: Option<Vec<Vec3>>,
+}
+
+/// A point of the scan, and what it is to come to.
+struct Pair {
+    point: Vec3,
+    normal: Vec3,
+    height_mm: f64,
+}
+
+impl Places {
+    fn of(scan: &Scan) -> Self {
+        let every = scan.points.len().div_ceil(MOST_POINTS).max(1);
+        let some = |all: &Vec<Vec3>| all.iter().step_by(every).copied().collect();
+        Self {
+            points: some(&scan.points),
+            normals: scan.normals.as_ref().map(some),
+        }
+    }
+
+    /// Points within reach of places that fit, facing the same way.
+    fn pairs(
+        &self,
+        motion: &Isometry3<f64>,
+        target: &Sheet<'_>,
+        reach: f64,
+        fits: impl Fn(&Foot) -> bool,
+    ) -> Vec<Pair> {
+        let pair = |(index, point): (usize, &Vec3)| {
+            let point = motion.transform_point(&(*point).into()).coords;
+            let foot = target.foot(&point)?;
+            let normal = self.normals.as_ref().map(|normals| normals[index]);
+            let faces = normal.is_none_or(|normal| {
+                motion.transform_vector(&normal).dot(&foot.normal) > LEAST_COSINE
+            });
+            let is_near = (point - foot.point).norm() <= reach;
+            (faces && is_near && !foot.on_border && fits(&foot)).then_some(Pair {
+                point,
+                normal: foot.normal,
+                height_mm: foot.height_mm,
+            })
+        };
+        self.points.iter().enumerate().filter_map(pair).collect()
+    }
+}
+
+/// Weighted normal equations of the six small motions about the middle of the points: three turns,
+/// as lengths at the radius of gyration, and three shifts.
+struct Fit {
+    middle: Vec3,
+    gyration_mm: f64,
+    matrix: Matrix6<f64>,
+    right_side: Vector6<f64>,
+    points: usize,
+    residual_rms_mm: f64,
+}
+
+impl Fit {
+    /// None for fewer pairs than a rigid motion takes.
+    fn of(pairs: &[Pair]) -> Option<Self> {
+        const LEAST_PAIRS: usize = 12;
+        if pairs.len() < LEAST_PAIRS {
+            return None;
+        }
+        let count = pairs.len() as f64;
+        let middle = pairs.iter().map(|pair| pair.point).sum::<Vec3>() / count;
+        let squares = pairs
+            .iter()
+            .map(|pair| (pair.point - middle).norm_squared());
+        let gyration_mm = (squares.sum::<f64>() / count).sqrt();
+        let scale = scale(pairs);
+        let mut fit = Self {
+            middle,
+            gyration_mm,
+            matrix: Matrix6::zeros(),
+            right_side: Vector6::zeros(),
+            points: 0,
+            residual_rms_mm: 0.0,
+        };
+        let mut weights = 0.0;
+        for pair in pairs {
+            weights += fit.add(pair, scale);
+        }
+        fit.residual_rms_mm = (fit.residual_rms_mm / weights).sqrt();
+        Some(fit)
+    }
+
+    /// Adds a pair with its weight, which it returns.
+    fn add(&mut self, pair: &Pair, scale: f64) -> f64 {
+        let weight = tukey(pair.height_mm / scale);
+        let turn = (pair.point - self.middle).cross(&pair.normal) / self.gyration_mm;
+        let shift = pair.normal;
+        let row = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
+        self.matrix += row * row.transpose() * weight;
+        self.right_side -= row * (weight * pair.height_mm);
+        self.residual_rms_mm += weight * pair.height_mm.powi(2);
+        self.points += usize::from(weight > 0.0);
+        weight
+    }
+
+    /// The motion that takes most of the residuals away; none where the surface leaves one free.
+    fn step(&self) -> Option<Isometry3<f64>> {
+        let resistances = self.matrix.symmetric_eigenvalues();
+        if resistances.min() <= LEAST_RESISTANCE * resistances.max() {
+            return None;
+        }
+        let solved = self.matrix.cholesky()?.solve(&self.right_side);
+        let turn = solved.fixed_rows::<3>(0) / self.gyration_mm;
+        let rotation = UnitQuaternion::from_scaled_axis(turn);
+        let shift = solved.fixed_rows::<3>(3) + self.middle - rotation * self.middle;
+        Some(Isometry3::from_parts(Translation3::from(shift), rotation))
+    }
+
+    /// How far a motion moves the points, about.
+    fn length_of(&self, motion: &Isometry3<f64>) -> f64 {
+        motion.rotation.angle() * self.gyration_mm + self.shift_of(motion)
+    }
+
+    fn shift_of(&self, motion: &Isometry3<f64>) -> f64 {
+        (motion.transform_point(&self.middle.into()).coords - self.middle).norm()
+    }
+
+    fn registration(&self, motion: Isometry3<f64>, steps: usize) -> Registration {
+        let rotation: Mat3 = motion.rotation.to_rotation_matrix().into_inner();
+        let row = |i: usize| [rotation[(i, 0)], rotation[(i, 1)], rotation[(i, 2)]];
+        let weakest = self.matrix.symmetric_eigenvalues().min();
+        let start = motion.inverse_transform_point(&self.middle.into()).coords;
+        Registration {
+            rotation: [row(0), row(1), row(2)],
+            translation_mm: motion.translation.vector.into(),
+            angle_deg: motion.rotation.angle().to_degrees(),
+            shift_mm: (self.middle - start).norm(),
+            points: self.points,
+            residual_rms_mm: self.residual_rms_mm,
+            weakest_standard_error_mm: self.residual_rms_mm / weakest.sqrt(),
+            steps,
+            motion,
+        }
+    }
+}
+
+/// Standard deviation of the residuals, by their median.
+fn scale(pairs: &[Pair]) -> f64 {
+    let mut sizes: Vec<f64> = pairs.iter().map(|pair| pair.height_mm.abs()).collect();
+    let middle = sizes.len() / 2;
+    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+    (SCALE_OF_MEDIAN * *median).max(LEAST_SCALE_MM)
+}
+
+/// Tukey's weight of a residual in units of the scale.
+fn tukey(residual: f64) -> f64 {
+    let part = residual / TUKEY;
+    match part.abs() < 1.0 {
+        true => (1.0 - part * part).powi(2),
+        false => 0.0,
+    }
+}

@@ -1,0 +1,120 @@
+//! A comparison as files: numbers as JSON and CSV, pictures as SVG.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use condyle_report::SurfaceFields;
+use condyle_report::measured::{
+    ComparedCurve, ComparedWear, compared_kinematics_svg, compared_surface_svg, compared_wear_svg,
+};
+
+use super::{
+    CompareError, Comparison, GravimetricComparison, KinematicsComparison, SurfaceComparison,
+};
+
+impl Comparison {
+    /// `compare.json`: everything but the curves and the map, units in the names.
+    pub fn json(&self) -> String {
+        let text = serde_json::to_string_pretty(self);
+        text.expect("numbers and text always serialise") + "\n"
+    }
+
+    /// Writes the files into `folder`, which is made if it is not there; gives their paths.
+    ///
+    /// # Errors
+    /// The folder or a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, CompareError> {
+        let failed = |path: &Path| {
+            let path = path.to_path_buf();
+            |source| CompareError::Write { path, source }
+        };
+        fs::create_dir_all(folder).map_err(failed(folder))?;
+        let mut written = Vec::new();
+        for (name, text) in self.files() {
+            let path = folder.join(name);
+            fs::write(&path, text).map_err(failed(&path))?;
+            written.push(path);
+        }
+        Ok(written)
+    }
+
+    fn files(&self) -> Vec<(&'static str, String)> {
+        let mut files = vec![("compare.json", self.json())];
+        if let Some(kinematics) = &self.kinematics {
+            files.push(("compare_kinematics.svg", kinematics.svg()));
+        }
+        if let Some(gravimetric) = &self.gravimetric {
+            files.push(("compare_wear.svg", gravimetric.svg()));
+        }
+        if let Some(surface) = &self.surface {
+            files.push(("compare_surface.csv", surface.csv()));
+            let map = compared_surface_svg(&surface.fields, self.side);
+            files.extend(map.map(|map| ("compare_surface.svg", map)));
+        }
+        files
+    }
+}
+
+impl KinematicsComparison {
+    fn svg(&self) -> String {
+        let curve = |column: &super::ColumnComparison| ComparedCurve {
+            column: column.column,
+            points: column.points.clone(),
+        };
+        let curves: Vec<ComparedCurve> = self.columns.iter().map(curve).collect();
+        let title = format!("Motion in the {} cycle, measured and predicted", self.cycle);
+        compared_kinematics_svg(&title, &curves)
+    }
+}
+
+impl GravimetricComparison {
+    fn svg(&self) -> String {
+        let specimen = |index: usize| {
+            let point = |weighing: &super::Weighing| (weighing.cycles, weighing.loss_mg[index]);
+            self.weighings.iter().map(point).collect()
+        };
+        let predicted = self
+            .weighings
+            .iter()
+            .filter_map(|weighing| Some((weighing.cycles, weighing.predicted_loss_mg?)));
+        compared_wear_svg(&ComparedWear {
+            specimens: (0..self.specimens.len()).map(specimen).collect(),
+            line: self.ends_of_line(),
+            predicted: predicted.collect(),
+        })
+    }
+
+    /// The line through all weighings, from the first that counts to the last.
+    fn ends_of_line(&self) -> [(f64, f64); 2] {
+        let counted = || self.weighings.iter().filter(|weighing| weighing.in_line);
+        let at = |weighing: Option<&super::Weighing>| {
+            let cycles = weighing.map_or(0.0, |weighing| weighing.cycles);
+            let start = self.all.intercept_mg.unwrap_or_default();
+            (
+                cycles,
+                start + self.all.mg_per_million_cycles * cycles / 1e6,
+            )
+        };
+        [at(counted().next()), at(counted().next_back())]
+    }
+}
+
+impl SurfaceComparison {
+    /// A row a node that the scan covers.
+    fn csv(&self) -> String {
+        let mut text = String::from("x_mm,y_mm,z_mm,predicted_mm,scanned_mm,difference_mm\n");
+        let SurfaceFields { nodes, fields, .. } = &self.fields;
+        for (index, node) in nodes.iter().enumerate() {
+            let values: Vec<f64> = fields.iter().map(|(_, values)| values[index]).collect();
+            if let [predicted, scanned, difference] = values[..]
+                && scanned.is_finite()
+            {
+                let (x, y, z) = (node.x, node.y, node.z);
+                writeln!(text, "{x},{y},{z},{predicted},{scanned},{difference}")
+                    .expect("writing to a string cannot fail");
+            }
+        }
+        text
+    }
+}
