@@ -7,6 +7,7 @@
 mod ball;
 mod case;
 mod convergence;
+mod default_case;
 mod drives;
 mod foundation_rows;
 mod law;
@@ -20,6 +21,7 @@ mod quadrature;
 mod recorder;
 mod row;
 mod rub_test;
+mod witness;
 
 #[path = "../archard-ball-on-flat/mod.rs"]
 mod archard_ball_on_flat;
@@ -27,10 +29,16 @@ mod archard_ball_on_flat;
 mod archard_pin_on_plate;
 #[path = "../cylinder-on-foundation/mod.rs"]
 mod cylinder_on_foundation;
+#[path = "../energy-balance/mod.rs"]
+mod energy_balance;
+#[path = "../explicit-integrator/mod.rs"]
+mod explicit_integrator;
 #[path = "../friction-block/mod.rs"]
 mod friction_block;
 #[path = "../off-centre-load/mod.rs"]
 mod off_centre_load;
+#[path = "../opensim-contact/mod.rs"]
+mod opensim_contact;
 #[path = "../sphere-on-foundation/mod.rs"]
 mod sphere_on_foundation;
 #[path = "../springs/mod.rs"]
@@ -52,4 +60,7 @@ pub const CASES: &[Case] = &[
     archard_pin_on_plate::CASE,
     archard_ball_on_flat::CASE,
     wearing_ball::CASE,
+    opensim_contact::CASE,
+    explicit_integrator::CASE,
+    energy_balance::CASE,
 ];

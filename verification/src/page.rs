@@ -9,6 +9,9 @@ const ERROR_DIGITS: usize = 2;
 /// An error below this part of its tolerance is as good as none, and depends on the machine.
 const NEGLIGIBLE: f64 = 1e-3;
 
+/// What stands for the table of a case whose data are not there; such a page is not for the book.
+pub const WITHOUT_DATA: &str = "**fails**: its data are not there.";
+
 const TOP: &str = "\
 # Verification
 
@@ -32,7 +35,11 @@ pub fn page() -> String {
 
 fn section(case: &Case, rows: &[Row]) -> String {
     let (title, introduction, name) = (case.title(), case.introduction(), case.name);
-    let table = table(rows);
+    let table = if rows.is_empty() {
+        format!("{WITHOUT_DATA}\n")
+    } else {
+        table(rows)
+    };
     format!("\n## {title}\n\n{introduction}\n\n`verification/{name}`\n\n{table}")
 }
 
@@ -117,6 +124,10 @@ mod tests {
     #[test]
     fn page_of_the_book_is_current() {
         let page = page();
+        if page.contains(WITHOUT_DATA) && std::env::var("CI").as_deref() != Ok("true") {
+            eprintln!("skipped: page_of_the_book_is_current: data of a case are not there");
+            return;
+        }
         for (computed, written) in page.lines().zip(CURRENT.lines()) {
             let words = || computed.split(' ').zip(written.split(' '));
             let agrees = words().all(|(one, other)| same(one, other))

@@ -1,0 +1,89 @@
+//! The default case's gait cycle on the unworn insert, solved as finely as one likes.
+
+use std::{cell::RefCell, ops::ControlFlow};
+
+use condyle::{
+    evolve::{March, WearTest},
+    machine::{Chain, CycleRow, Effort, Integration, Simulator, TimeSettings},
+};
+
+use crate::{
+    marched::test_of,
+    witness::{Instant, Witness},
+};
+
+/// How near the end of a cycle must lie to its start, mm.
+const REPEATS_MM: f64 = 1e-5;
+/// The same of rotations, rad.
+const REPEATS_RAD: f64 = 1e-7;
+
+/// The default case, its femur settled on the insert.
+pub(crate) struct DefaultCase {
+    march: March,
+}
+
+/// A cycle that repeats itself.
+pub(crate) struct Solved {
+    /// One an increment.
+    pub rows: Vec<CycleRow>,
+    /// The contact at the end of every increment.
+    pub contact: Vec<Instant>,
+    pub effort: Effort,
+}
+
+impl DefaultCase {
+    pub(crate) fn new() -> Self {
+        let test = test_of(include_str!("../../cases/stanmore-force.toml"));
+        let march = March::start(test).expect("a shipped case settles");
+        Self { march }
+    }
+
+    pub(crate) fn test(&self) -> &WearTest {
+        self.march.test()
+    }
+
+    pub(crate) fn chain(&self) -> Chain {
+        let (test, zero_mm) = (self.test(), self.march.state().zero_mm);
+        Chain::new(&test.machine, zero_mm, test.flexion_axis_mm)
+    }
+
+    /// Cycles from rest, where the femur settled, until one repeats itself.
+    pub(crate) fn solved(&self, increments: usize, integration: Integration) -> Solved {
+        let (test, chain) = (self.test(), self.chain());
+        let time = TimeSettings {
+            increments,
+            integration,
+            force_tolerance_n: 1e-4,
+            repeat_tolerance_mm: REPEATS_MM,
+            repeat_tolerance_rad: REPEATS_RAD,
+            ..test.time
+        };
+        let seen = RefCell::new(Vec::new());
+        let mut simulator = Simulator {
+            machine: &test.machine,
+            chain: &chain,
+            contact: Witness::new(test, &seen),
+            time: &time,
+        };
+        let mut effort = Effort::default();
+        let mut watch = |_| ControlFlow::Continue(());
+        let cycle = simulator
+            .cycle(&self.march.state().machine, &mut effort, &mut watch)
+            .expect("a shipped case is solved");
+        assert!(cycle.repeats, "no cycle repeats itself");
+        Solved {
+            rows: cycle.rows,
+            contact: last_of_each_place(&seen.into_inner(), increments),
+            effort,
+        }
+    }
+}
+
+/// Of increments that started at 0 % and went on beyond a cycle, the last at every place.
+fn last_of_each_place(seen: &[Instant], increments: usize) -> Vec<Instant> {
+    let last = |place: usize| {
+        let rounds = (seen.len() - 1 - place) / increments;
+        seen[place + rounds * increments]
+    };
+    (0..increments).map(last).collect()
+}
