@@ -185,6 +185,9 @@ fn tendency(extrapolation: Extrapolation) -> [String; 3] {
             significant(extrapolated),
             percent(finest_error_percent),
         ],
+        Extrapolation::Slow { order } => {
+            [format!("{order:.2}"), "too slow".to_owned(), String::new()]
+        }
         Extrapolation::Unchanged => none("unchanged"),
         Extrapolation::Oscillating => none("oscillates"),
         Extrapolation::Diverging => none("diverges"),

@@ -4,6 +4,8 @@ use serde::Serialize;
 
 /// Steps whose ratios differ by less than this share are in constant ratio.
 const SAME_RATIO: f64 = 1e-6;
+/// A lower order than this is noise, and what it extrapolates to means nothing.
+const LEAST_ORDER: f64 = 0.4;
 /// Results that differ by less than this share are the same: round-off.
 const SAME_RESULT: f64 = 1e-12;
 
@@ -23,6 +25,11 @@ pub enum Extrapolation {
         extrapolated: f64,
         /// How far the finest result lies above that, % of it; an estimate.
         finest_error_percent: f64,
+    },
+    /// The differences shrink too slowly to say what the results tend to.
+    Slow {
+        /// Observed order.
+        order: f64,
     },
     /// The results do not depend on the step.
     Unchanged,
@@ -77,9 +84,13 @@ fn of_triple([coarse, middle, fine]: [f64; 3], ratio: f64) -> Extrapolation {
         return Extrapolation::Unchanged;
     }
     let shrinking = first / last;
+    let order = shrinking.ln() / ratio.ln();
+    if order < LEAST_ORDER {
+        return Extrapolation::Slow { order };
+    }
     let extrapolated = fine + last / (shrinking - 1.0);
     Extrapolation::Converging {
-        order: shrinking.ln() / ratio.ln(),
+        order,
         extrapolated,
         finest_error_percent: 100.0 * (fine - extrapolated) / extrapolated,
     }
@@ -129,6 +140,16 @@ mod tests {
         let found = extrapolate(&steps, &results);
         assert!(
             matches!(found, Extrapolation::Converging { order, .. } if (order - 2.0).abs() < 1e-9),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn verify_an_order_near_zero_is_not_extrapolated() {
+        let steps = [4.0, 2.0, 1.0];
+        let found = extrapolate(&steps, &sequence(&steps, 0.2));
+        assert!(
+            matches!(found, Extrapolation::Slow { order } if (order - 0.2).abs() < 1e-9),
             "{found:?}"
         );
     }
