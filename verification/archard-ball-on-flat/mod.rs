@@ -115,8 +115,10 @@ fn of_a_knee() -> Vec<Row> {
 }
 
 fn knee() -> WearTest {
+    let default = include_str!("../../cases/stanmore-force.toml");
+    let above = default.split("[march]").next().unwrap_or_default();
     let cycles = CYCLES as u64;
-    test_of(&format!("[march]\ncycles = {cycles}\nupdates = 1\n"))
+    test_of(&format!("{above}[march]\ncycles = {cycles}\nupdates = 1\n"))
 }
 
 /// Normal force times sliding over the cycle that a march is about to solve.

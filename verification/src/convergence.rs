@@ -22,3 +22,9 @@ pub(crate) fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), v| (sum + v * v, count + 1.0));
     f64::sqrt(sum / count)
 }
+
+/// Order found from values at three sizes of the step, each half of the one before: log2 of the
+/// ratio of their differences.
+pub(crate) fn order_of_differences([coarse, middle, fine]: [f64; 3]) -> f64 {
+    ((middle - coarse) / (fine - middle)).log2()
+}

@@ -10,6 +10,8 @@ mod convergence;
 mod default_case;
 mod drives;
 mod foundation_rows;
+#[cfg(test)]
+mod held;
 mod law;
 mod machine;
 mod marched;
@@ -35,10 +37,14 @@ mod energy_balance;
 mod explicit_integrator;
 #[path = "../friction-block/mod.rs"]
 mod friction_block;
+#[path = "../invariances/mod.rs"]
+mod invariances;
 #[path = "../off-centre-load/mod.rs"]
 mod off_centre_load;
 #[path = "../opensim-contact/mod.rs"]
 mod opensim_contact;
+#[path = "../refinement/mod.rs"]
+mod refinement;
 #[path = "../sphere-on-foundation/mod.rs"]
 mod sphere_on_foundation;
 #[path = "../springs/mod.rs"]
@@ -60,6 +66,8 @@ pub const CASES: &[Case] = &[
     archard_pin_on_plate::CASE,
     archard_ball_on_flat::CASE,
     wearing_ball::CASE,
+    invariances::CASE,
+    refinement::CASE,
     opensim_contact::CASE,
     explicit_integrator::CASE,
     energy_balance::CASE,

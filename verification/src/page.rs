@@ -6,13 +6,14 @@ use crate::{CASES, Case, Row, number::rounded};
 const VALUE_DIGITS: usize = 5;
 /// Digits of errors, tolerances and orders.
 const ERROR_DIGITS: usize = 2;
-/// An error below this part of its tolerance is as good as none, and depends on the machine.
+/// An error below this part of its tolerance is as good as none, and depends on the machine: it is
+/// not printed, and the computed value is printed as the exact one.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// What stands for the table of a case whose data are not there; such a page is not for the book.
 pub const WITHOUT_DATA: &str = "**fails**: its data are not there.";
 
-const TOP: &str = "\
+pub(crate) const TOP: &str = "\
 # Verification
 
 Whether the equations are solved right: cases whose answer is known, each computed by condyle and held against
@@ -33,7 +34,8 @@ pub fn page() -> String {
     page
 }
 
-fn section(case: &Case, rows: &[Row]) -> String {
+/// What the page says of a case.
+pub(crate) fn section(case: &Case, rows: &[Row]) -> String {
     let (title, introduction, name) = (case.title(), case.introduction(), case.name);
     let table = if rows.is_empty() {
         format!("{WITHOUT_DATA}\n")
@@ -59,11 +61,16 @@ pub fn table(rows: &[Row]) -> String {
 fn line(row: &Row, orders: bool) -> String {
     let value = |value| with_unit(&rounded(value, VALUE_DIGITS), row.unit);
     let mark = if row.holds() { "" } else { " **fails**" };
+    let computed = if is_negligible(row) {
+        row.exact
+    } else {
+        row.computed
+    };
     let line = format!(
         "| {}{mark} | {} | {} | {} | {} |",
         row.quantity,
         value(row.exact),
-        value(row.computed),
+        value(computed),
         error(row),
         tolerance(row, row.tolerance)
     );
@@ -74,10 +81,13 @@ fn line(row: &Row, orders: bool) -> String {
     }
 }
 
+fn is_negligible(row: &Row) -> bool {
+    row.error() < NEGLIGIBLE * row.tolerance
+}
+
 fn error(row: &Row) -> String {
-    let negligible = NEGLIGIBLE * row.tolerance;
-    if row.error() < negligible {
-        format!("< {}", tolerance(row, negligible))
+    if is_negligible(row) {
+        format!("< {}", tolerance(row, NEGLIGIBLE * row.tolerance))
     } else {
         tolerance(row, row.error())
     }
@@ -108,39 +118,6 @@ fn with_unit(number: &str, unit: &str) -> String {
 mod tests {
     use super::*;
 
-    const CURRENT: &str = include_str!("../../docs/src/verification.md");
-
-    /// Numbers may differ by this part between machines and compilers.
-    const SAME_WITHIN: f64 = 0.25;
-
-    fn same(one: &str, other: &str) -> bool {
-        let numbers = (one.parse::<f64>(), other.parse::<f64>());
-        match numbers {
-            (Ok(one), Ok(other)) => (one - other).abs() <= SAME_WITHIN * one.abs().max(other.abs()),
-            _ => one == other,
-        }
-    }
-
-    #[test]
-    fn page_of_the_book_is_current() {
-        let page = page();
-        if page.contains(WITHOUT_DATA) && std::env::var("CI").as_deref() != Ok("true") {
-            eprintln!("skipped: page_of_the_book_is_current: data of a case are not there");
-            return;
-        }
-        for (computed, written) in page.lines().zip(CURRENT.lines()) {
-            let words = || computed.split(' ').zip(written.split(' '));
-            let agrees = words().all(|(one, other)| same(one, other))
-                && computed.split(' ').count() == written.split(' ').count();
-            assert!(
-                agrees,
-                "{written}\nis now\n{computed}\n\
-                 write it anew: cargo run --release -p condyle-verification -- --page"
-            );
-        }
-        assert_eq!(page.lines().count(), CURRENT.lines().count());
-    }
-
     #[test]
     fn a_table_reads_as_its_rows_say() {
         let rows = [
@@ -151,7 +128,7 @@ mod tests {
 | quantity | exact | computed | error | at most | order |
 | --- | --- | --- | --- | --- | --- |
 | force | 2000.0 N | 2001.0 N | 0.050 % | 0.50 % | 2.0 (theory 2.0) |
-| slip | 0 mm | 1.0000e-14 mm | < 1.0e-12 mm | 1.0e-9 mm |  |
+| slip | 0 mm | 0 mm | < 1.0e-12 mm | 1.0e-9 mm |  |
 ";
         assert_eq!(table(&rows), expected);
         let wrong = table(&[Row::relative("force", "N", 1.0, 2.0, 0.1)]);

@@ -1,0 +1,112 @@
+//! Contact of bodies that are turned and shifted together.
+
+use condyle::{
+    Mat3, Vec3,
+    contact::{ContactModel, Foundation, Mat6, Pose, RelativeMotion, Tangent, Vec6, cross_matrix},
+    geometry::{ColumnGrid, FemoralSurface, GenericInsertShape, Insert},
+};
+use nalgebra::Rotation3;
+
+use crate::{Row, plate::rubbing};
+
+/// A turn and then a shift of everything.
+struct Moved {
+    turn: Mat3,
+    shift: Vec3,
+}
+
+impl Moved {
+    fn point(&self, point: &Vec3) -> Vec3 {
+        self.turn * point + self.shift
+    }
+
+    /// The matrix A that takes wrenches at the origin along; twists go with the inverse of its
+    /// transpose, since power stays, and so tangents as A K A'.
+    fn wrenches(&self) -> Mat6 {
+        let mut matrix = Mat6::zeros();
+        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.turn);
+        matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.turn);
+        let lever = cross_matrix(&self.shift) * self.turn;
+        matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&lever);
+        matrix
+    }
+
+    fn motion(&self, motion: &RelativeMotion) -> RelativeMotion {
+        let to_old = self.wrenches().transpose();
+        RelativeMotion {
+            pose: Pose {
+                rotation: self.turn * motion.pose.rotation,
+                translation: self.point(&motion.pose.translation),
+            },
+            twist: to_old.try_inverse().expect("a rigid motion") * motion.twist,
+        }
+    }
+}
+
+pub(super) fn rows() -> [Row; 3] {
+    let level = Rotation3::new(Vec3::new(0.6, 0.0, 0.8) * 5f64.to_radians());
+    let upright = Rotation3::new(Vec3::y() * 40f64.to_radians());
+    let moved = Moved {
+        turn: (level * upright).into_inner(),
+        shift: Vec3::new(12.0, -5.0, 30.0),
+    };
+    let motion = RelativeMotion {
+        pose: Pose {
+            rotation: Mat3::identity(),
+            translation: Vec3::new(1.3, 23.8, 22.4),
+        },
+        twist: Vec6::new(0.3, -0.2, 0.5, 12.0, 1.0, -7.0),
+    };
+    let (wrench, tangent) = response(&insert(Vec3::clone), &motion);
+    let there = response(&insert(|point| moved.point(point)), &moved.motion(&motion));
+    let along = moved.wrenches();
+    let apart = |there: Mat6, here: Mat6| (there - along * here * along.transpose()).norm();
+    let row = |what: &str, apart: f64, size: f64| {
+        Row::absolute(
+            format!("contact turned: {what}, part"),
+            "",
+            0.0,
+            apart / size,
+            1e-10,
+        )
+    };
+    [
+        row("wrench", (there.0 - along * wrench).norm(), there.0.norm()),
+        row(
+            "derivative by pose",
+            apart(there.1.by_pose, tangent.by_pose),
+            there.1.by_pose.norm(),
+        ),
+        row(
+            "derivative by twist",
+            apart(there.1.by_twist, tangent.by_twist),
+            there.1.by_twist.norm(),
+        ),
+    ]
+}
+
+/// A ball's wrench and tangent.
+fn response(insert: &Insert, motion: &RelativeMotion) -> (Vec6, Tangent) {
+    let (femur, (settings, _)) = (FemoralSurface::sphere(24.0), rubbing(0.07, 1.0));
+    let mut contact = Foundation::new(&settings, &femur, insert);
+    (contact.respond(motion), contact.tangent())
+}
+
+/// The lateral dish, every node placed anew.
+fn insert(place: impl Fn(&Vec3) -> Vec3) -> Insert {
+    let shape = GenericInsertShape::default();
+    let grid = ColumnGrid::filling((-20.0, 6.0), (20.0, 40.0), 1.0);
+    let column = |i, k| {
+        let (x, z) = grid.place_mm(i, k);
+        Some((-shape.thickness_mm, shape.height_mm(x, z)))
+    };
+    let points = (0..=grid.cells.0).flat_map(|i| (0..=grid.cells.1).map(move |k| (i, k)));
+    let columns: Vec<_> = points.map(|(i, k)| column(i, k)).collect();
+    let mut built = grid.hexahedra(&columns, 1);
+    built
+        .mesh
+        .nodes
+        .iter_mut()
+        .for_each(|node| *node = place(node));
+    Insert::new(built.mesh, &built.articulating, &built.backside).expect("an insert")
+}

@@ -1,0 +1,122 @@
+//! A knee twice as large, loaded so that its pressures are the same.
+
+use condyle::{
+    evolve::{March, WearTest},
+    geometry::{ColumnGrid, GenericInsertShape, Insert},
+    machine::Drive,
+};
+
+use super::knee::EXACTLY;
+use crate::{
+    Row,
+    marched::{marched, test_of},
+};
+
+const FACTOR: f64 = 2.0;
+
+/// What the lengths that stand in the program leave, and what friction makes of it.
+const TOLERANCE: f64 = 3e-5;
+
+pub(super) fn rows() -> [Row; 3] {
+    let [one, two] = [1.0, FACTOR].map(|factor| marched(test(factor)));
+    let updates = [&one, &two].map(|march: &March| march.state().updates.last().expect("one"));
+    let [one, two] = updates;
+    [
+        Row::relative(
+            "volume, twice as large, over 8",
+            "mm3",
+            one.volume_loss_mm3,
+            two.volume_loss_mm3 / FACTOR.powi(3),
+            TOLERANCE,
+        ),
+        Row::relative(
+            "depth, twice as large, over 2",
+            "mm",
+            one.max_depth_mm,
+            two.max_depth_mm / FACTOR,
+            TOLERANCE,
+        ),
+        Row::relative(
+            "peak pressure, twice as large",
+            "MPa",
+            one.peak_pressure_mpa,
+            two.peak_pressure_mpa,
+            TOLERANCE,
+        ),
+    ]
+}
+
+/// A generic knee `factor` times as large.
+fn test(factor: f64) -> WearTest {
+    let femur = format!(
+        "\
+[femur]
+distal_radius_mm = {:?}
+posterior_radius_mm = {:?}
+coronal_radius_mm = {:?}
+spacing_mm = {:?}
+[contact]
+slip_tolerance_mm_per_s = {:?}
+",
+        38.0 * factor,
+        22.0 * factor,
+        24.0 * factor,
+        46.0 * factor,
+        10.0 * factor,
+    );
+    let mut test = test_of(&(femur + &EXACTLY.replace("100", "400")));
+    test.insert = insert(factor);
+    scale_machine(&mut test, factor);
+    test
+}
+
+/// The middle of the generic insert's dishes, which the contact does not leave.
+fn insert(factor: f64) -> Insert {
+    let shape = GenericInsertShape::default();
+    let grid = ColumnGrid::filling((-22.0, -34.0), (20.0, 34.0), 1.5);
+    let column = |i, k| {
+        let (x, z) = grid.place_mm(i, k);
+        (-factor * shape.thickness_mm, factor * shape.height_mm(x, z))
+    };
+    let points = (0..=grid.cells.0).flat_map(|i| (0..=grid.cells.1).map(move |k| (i, k)));
+    let columns: Vec<_> = points.map(|(i, k)| Some(column(i, k))).collect();
+    let built = grown(grid, factor).hexahedra(&columns, 1);
+    Insert::new(built.mesh, &built.articulating, &built.backside).expect("an insert")
+}
+
+fn grown(grid: ColumnGrid, factor: f64) -> ColumnGrid {
+    let larger = |(x, z): (f64, f64)| (x * factor, z * factor);
+    ColumnGrid {
+        origin_mm: larger(grid.origin_mm),
+        step_mm: larger(grid.step_mm),
+        ..grid
+    }
+}
+
+/// Loads, springs, inertia, damping and axes, so that pressures stay.
+fn scale_machine(test: &mut WearTest, factor: f64) {
+    let (square, cube) = (factor.powi(2), factor.powi(3));
+    let machine = &mut test.machine;
+    for (row, freedom) in machine.freedoms.iter_mut().zip(condyle::machine::FREEDOMS) {
+        let rotates = freedom.is_rotation();
+        let (load, slow) = if rotates {
+            (cube, cube)
+        } else {
+            (square, factor)
+        };
+        row.inertia *= slow;
+        row.damping *= slow;
+        if let Drive::Loaded(waveform) = &mut row.drive {
+            *waveform = waveform.clone().scaled(load);
+        }
+    }
+    for spring in &mut machine.ap_springs {
+        spring.lateral_offset_mm *= factor;
+        spring.free_play_mm *= factor;
+        spring.posterior_n_per_mm *= factor;
+        spring.anterior_n_per_mm *= factor;
+    }
+    machine.vv_axis_mm = (-20.0 * factor, -5.0 * factor);
+    test.time.force_tolerance_n *= square;
+    test.time.repeat_tolerance_mm *= factor;
+}
