@@ -1,6 +1,9 @@
 //! `condyle converge`, through the front door.
 
 use std::fs;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 
 use crate::bench::{Bench, assert_same_bytes, updates_kept};
 
@@ -97,6 +100,35 @@ fn resume_goes_on_with_what_is_there() {
         assert!(one == two, "{name}");
     }
     assert_eq!(updates_kept(&bench.path("out/updates-4")), 4);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_what_is_done_and_resume_reaches_the_same_numbers() {
+    let bench = Bench::with_case(TINY);
+    let arguments = ["converge", "case.toml", "--over", "updates=20,25", "--out"];
+    let with = |more: &[&'static str]| [&arguments[..], more].concat();
+    let mut command = bench.command(&with(&["out", "--threads", "1"]));
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("it starts");
+    let begun = bench.path("out/updates-25/insert_0002.vtu");
+    while !begun.exists() && child.try_wait().expect("it can be asked").is_none() {
+        sleep(Duration::from_micros(200));
+    }
+    let id = child.id().to_string();
+    let sent = Command::new("kill").args(["-INT", &id]).status();
+    assert!(sent.expect("kill is there").success());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("and --resume"));
+    assert!(!bench.path("out/updates-20").exists());
+    assert!(!bench.path("out/converge.csv").exists());
+    for more in [&["out", "--resume"][..], &["whole"]] {
+        let said = bench.say(&with(more));
+        assert_eq!(said.code, Some(0), "{}", said.err);
+    }
+    let csv = |out: &str| fs::read(bench.path(out).join("converge.csv")).unwrap();
+    assert!(csv("out") == csv("whole"));
 }
 
 /// The command refuses `over` with these words, and makes nothing.

@@ -200,19 +200,26 @@ fn write(path: &Path, text: &str) -> Result<(), StudyError> {
 impl Ran {
     /// A column of wear.csv or kinematics.csv.
     fn column(&self, table: Table, name: &'static str) -> Result<&[f64], StudyError> {
-        let table = match table {
-            Table::Wear => &self.results.wear,
-            Table::Kinematics => &self.results.kinematics,
-        };
-        let column = table.as_ref().and_then(|table| table.column(name));
-        column.ok_or_else(|| self.lacks(name))
+        column_of(&self.results, table, name).ok_or_else(|| self.lacks(name))
     }
 
     fn lacks(&self, what: &'static str) -> StudyError {
-        StudyError::Lacking {
-            folder: self.folder.clone(),
-            what,
-        }
+        lacks(&self.folder, what)
+    }
+}
+
+fn column_of<'a>(results: &'a Results, table: Table, name: &str) -> Option<&'a [f64]> {
+    let table = match table {
+        Table::Wear => &results.wear,
+        Table::Kinematics => &results.kinematics,
+    };
+    table.as_ref()?.column(name)
+}
+
+fn lacks(folder: &Path, what: &'static str) -> StudyError {
+    StudyError::Lacking {
+        folder: folder.to_owned(),
+        what,
     }
 }
 
@@ -221,4 +228,40 @@ impl Ran {
 enum Table {
     Wear,
     Kinematics,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_results_folder_lacks_is_said() {
+        let empty = Results::default();
+        assert_eq!(column_of(&empty, Table::Wear, "max_depth_mm"), None);
+        assert_eq!(column_of(&empty, Table::Kinematics, "ap_mm"), None);
+        let said = lacks(Path::new("runs/updates-5"), "max_depth_mm").to_string();
+        assert!(
+            said.starts_with("runs/updates-5: there is no max_depth_mm in it; "),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn a_results_folder_that_is_gone_is_said() {
+        let error: StudyError = Results::read(Path::new("no-such-folder"))
+            .expect_err("it is not there")
+            .into();
+        assert!(error.to_string().contains("no-such-folder"), "{error}");
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_written_is_said() {
+        let error = write(Path::new("no-such-folder/results.md"), "").expect_err("no folder");
+        let said = error.to_string();
+        assert!(said.starts_with("no-such-folder/results.md: "), "{said}");
+        assert!(
+            said.contains("check that the folder can be written"),
+            "{said}"
+        );
+    }
 }
