@@ -3,12 +3,17 @@
 mod bad_bodies;
 mod bad_case;
 mod bench;
+mod calibrate;
+mod compare_kinematics;
+mod compare_surface;
+mod compare_wear;
 mod contract;
 mod converge;
 mod determinism;
 mod folders;
 mod interrupt;
 mod left_knee;
+mod measured;
 mod physics;
 mod shapes;
 mod words;

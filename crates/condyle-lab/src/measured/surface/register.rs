@@ -274,3 +274,51 @@ fn tukey(residual: f64) -> f64 {
         false => 0.0,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pairs(normal: impl Fn(f64, f64) -> Vec3) -> Vec<Pair> {
+        let pair = |index: u32| {
+            let (x, z) = (f64::from(index % 6), f64::from(index / 6));
+            Pair {
+                point: Vec3::new(x, 0.0, z),
+                normal: normal(x, z),
+                height_mm: 0.1,
+            }
+        };
+        (0..36).map(pair).collect()
+    }
+
+    #[test]
+    fn a_plane_leaves_the_scan_free_to_slide() {
+        let fit = Fit::of(&pairs(|_, _| Vec3::y())).unwrap();
+        assert!(fit.step().is_none());
+        let said = CompareError::ScanSlides.to_string();
+        assert!(said.contains("it can slide or turn along itself"), "{said}");
+    }
+
+    #[test]
+    fn verify_a_shift_that_every_residual_asks_for_is_the_step() {
+        let normals =
+            |x: f64, z: f64| Vec3::new((1.3 * x + z).sin(), 2.0, (0.7 * z * x).cos()).normalize();
+        let shift = Vec3::new(0.1, -0.2, 0.3);
+        let mut all = pairs(normals);
+        all.iter_mut()
+            .for_each(|pair| pair.height_mm = -shift.dot(&pair.normal));
+        let step = Fit::of(&all).unwrap().step().unwrap();
+        assert!((step.translation.vector - shift).norm() < 1e-9);
+        assert!(step.rotation.angle() < 1e-9);
+    }
+
+    #[test]
+    fn fewer_pairs_than_a_motion_takes_are_no_fit() {
+        assert!(Fit::of(&pairs(|_, _| Vec3::y())[..11]).is_none());
+    }
+
+    #[test]
+    fn residuals_far_beyond_the_scale_have_no_weight() {
+        assert_eq!((tukey(0.0), tukey(5.0), tukey(-5.0)), (1.0, 0.0, 0.0));
+    }
+}

@@ -1,0 +1,146 @@
+//! The wear factor from weighings: found again where it is known.
+
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use crate::bench::{Bench, SMALL};
+use crate::measured::{close, measured_bench};
+
+const TABLE: &str = "[gravimetric]\nfile = \"masses.csv\"\n";
+const KNOWN: f64 = 4.1e-7;
+
+fn with_factor(factor: f64) -> Bench {
+    let bench = Bench::with_case(&format!(
+        "{SMALL}[wear]\nwear_factor_mm3_per_nm = {factor:e}\n"
+    ));
+    bench.run_into("out");
+    bench
+}
+
+/// Masses of two specimens around what a run with the known factor loses.
+fn masses_of(bench: &Bench, spread_mg: f64) -> String {
+    let run = bench.table("out", "wear.csv");
+    let mut text = String::from("cycles,k1_mg,k2_mg\n0,21000,21000\n");
+    for (cycles, mass) in run["cycles"].iter().zip(&run["mass_loss_mg"]) {
+        let apart = spread_mg * cycles / 1e6;
+        let (one, other) = (21_000.0 - mass - apart, 21_000.0 - mass + apart);
+        writeln!(text, "{cycles},{one},{other}").unwrap();
+    }
+    text
+}
+
+fn calibrated(bench: &Bench) -> Value {
+    let said = bench.say(&["calibrate-wear", "out", "measured.toml", "--json"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    serde_json::from_str(&said.out).expect("it prints JSON and nothing else")
+}
+
+#[test]
+fn verify_the_factor_of_another_run_is_found_from_its_masses() {
+    let bench = measured_bench();
+    bench.write("masses.csv", &masses_of(&with_factor(KNOWN), 0.5));
+    bench.write("measured.toml", TABLE);
+    let json = calibrated(&bench);
+    close(&json["wear_factor_mm3_per_nm"], KNOWN, 1.5e-3 * KNOWN);
+    close(&json["run_with_mm3_per_nm"], 2.64e-7, 0.0);
+    let ends = &json["wear_factor_interval_mm3_per_nm"];
+    let (low, high) = (
+        ends["low"].as_f64().unwrap(),
+        ends["high"].as_f64().unwrap(),
+    );
+    assert!(low < KNOWN && KNOWN < high, "{low} {high}");
+    let rates = &json["interval_mg_per_million_cycles"];
+    let (slow, fast) = (
+        rates["low"].as_f64().unwrap(),
+        rates["high"].as_f64().unwrap(),
+    );
+    // Nearly in proportion: the interval of the factor is as wide as that of the rate.
+    assert!(
+        ((high / low) / (fast / slow) - 1.0).abs() < 0.1,
+        "{low} {high} {slow} {fast}"
+    );
+    assert!(json["trials"].as_array().unwrap().len() >= 4);
+}
+
+#[test]
+fn verify_the_calibrated_case_wears_at_the_measured_rate() {
+    let bench = measured_bench();
+    bench.write(
+        "masses.csv",
+        "cycles,k_mg\n0,900\n1e6,875\n3e6,825\n5e6,775\n",
+    );
+    bench.write("measured.toml", TABLE);
+    let factor = calibrated(&bench)["wear_factor_mm3_per_nm"]
+        .as_f64()
+        .unwrap();
+    let again = with_factor(factor);
+    again.write(
+        "masses.csv",
+        "cycles,k_mg\n0,900\n1e6,875\n3e6,825\n5e6,775\n",
+    );
+    again.write("measured.toml", TABLE);
+    let said = again.say(&["compare", "out", "measured.toml", "--json"]);
+    let json: Value = serde_json::from_str(&said.out).unwrap();
+    close(
+        &json["gravimetric"]["predicted"]["mg_per_million_cycles"],
+        25.0,
+        0.025,
+    );
+}
+
+#[test]
+fn the_interval_may_count_specimens_instead_of_weighings() {
+    let bench = measured_bench();
+    bench.write("masses.csv", &masses_of(&with_factor(KNOWN), 0.05));
+    bench.write(
+        "measured.toml",
+        &format!("{TABLE}interval = \"specimens\"\n"),
+    );
+    let said = bench.say(&["calibrate-wear", "out", "measured.toml"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    for words in [
+        "mean of the specimens",
+        "wear factor",
+        "95 % interval",
+        "[wear] wear_factor_mm3_per_nm =",
+    ] {
+        assert!(said.out.contains(words), "{words}: {}", said.out);
+    }
+    assert!(said.err.contains("mg per million cycles"), "{}", said.err);
+}
+
+#[test]
+fn what_cannot_be_calibrated_is_said() {
+    let bench = measured_bench();
+    let refuses = |masses: &str, code: i32, expected: &[&str]| {
+        bench.write("masses.csv", masses);
+        bench.write("measured.toml", TABLE);
+        let said = bench.say(&["calibrate-wear", "out", "measured.toml"]);
+        said.assert_refused(code, expected);
+    };
+    refuses(
+        "cycles,k_mg\n0,900\n1e6,901\n2e6,902\n3e6,903\n",
+        2,
+        &["the measured wear rate is -1.000", "soak controls"],
+    );
+    refuses(
+        "cycles,k_g\n0,900\n",
+        2,
+        &["does not say that it is a mass in mg"],
+    );
+    let heavy = "cycles,k_mg\n0,90000\n1e6,81000\n2e6,72000\n3e6,63000\n";
+    refuses(heavy, 3, &["with a wear factor of", "update"]);
+    bench.write("measured.toml", "[kinematics]\nfile = \"motion.csv\"\n");
+    bench.write("motion.csv", "percent,ap_mm\n0,1\n8,2\n");
+    let said = bench.say(&["calibrate-wear", "out", "measured.toml"]);
+    said.assert_refused(2, &["no [gravimetric] table"]);
+    let unworn = with_factor(0.0);
+    unworn.write(
+        "masses.csv",
+        "cycles,k_mg\n0,900\n1e6,890\n2e6,880\n3e6,870\n",
+    );
+    unworn.write("measured.toml", TABLE);
+    let said = unworn.say(&["calibrate-wear", "out", "measured.toml"]);
+    said.assert_refused(2, &["the run wears nothing", "give it one above 0"]);
+}
