@@ -14,11 +14,10 @@ fn shifted(bench: &Bench, cycle: usize, keep: impl Fn(f64) -> bool) -> String {
     let run = bench.table("out", "kinematics.csv");
     let instants = 50;
     let mut text = String::from("percent,ap_mm\n");
-    for row in cycle * instants..(cycle + 1) * instants {
-        let percent = run["percent"][row];
-        let value = run["ap_mm"][row] + difference(percent);
-        if keep(percent) {
-            writeln!(text, "{percent},{value}").unwrap();
+    let rows = run["percent"].iter().zip(&run["ap_mm"]);
+    for (percent, value) in rows.skip(cycle * instants).take(instants) {
+        if keep(*percent) {
+            writeln!(text, "{percent},{}", value + difference(*percent)).unwrap();
         }
     }
     text
