@@ -50,10 +50,7 @@ impl Rub {
             }),
             density_mg_per_mm3: 0.93,
             time,
-            schedule: Schedule {
-                cycles: self.cycles,
-                updates: self.updates,
-            },
+            schedule: Schedule::evenly(self.cycles, self.updates),
         }
     }
 }

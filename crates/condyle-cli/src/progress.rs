@@ -2,32 +2,39 @@
 
 use std::io::{IsTerminal, stderr};
 
-use condyle_lab::Happening;
+use condyle_lab::{Happening, Reached};
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Ticks of the bar for each update.
-const TICKS: u64 = 100;
+/// Ticks of the bar for the whole test.
+const TICKS: f64 = 1000.0;
 
 /// Shows how far a run has come, on standard error.
 pub struct Progress {
     bar: Option<ProgressBar>,
-    of: usize,
+    of_cycles: f64,
 }
 
 impl Progress {
     pub fn new() -> Self {
-        Self { bar: None, of: 0 }
+        Self {
+            bar: None,
+            of_cycles: 0.0,
+        }
     }
 
     pub fn show(&mut self, happening: &Happening<'_>) {
         match happening {
             Happening::Warning(warning) => eprintln!("warning: {warning}"),
-            Happening::Started { done, of } => self.start(*done, *of),
+            Happening::Started(reached) => self.start(*reached),
             Happening::Solved(progress) => {
                 if let Some(bar) = &self.bar {
-                    let part = progress.cycles_solved.min(1.0);
-                    bar.set_position((((progress.update - 1) as f64 + part) * TICKS as f64) as u64);
-                    bar.set_message(format!("update {} of {}", progress.update, self.of));
+                    bar.set_position(self.ticks(progress.cycles));
+                    bar.set_message(format!("update {}", progress.update));
+                }
+            }
+            Happening::Estimating => {
+                if let Some(bar) = &self.bar {
+                    bar.set_message("estimating the error");
                 }
             }
             Happening::Updated(update) => {
@@ -47,16 +54,30 @@ impl Progress {
         }
     }
 
-    fn start(&mut self, done: usize, of: usize) {
-        self.of = of;
+    fn ticks(&self, cycles: f64) -> u64 {
+        (cycles / self.of_cycles * TICKS) as u64
+    }
+
+    fn start(&mut self, reached: Reached) {
+        self.of_cycles = reached.of_cycles;
         if stderr().is_terminal() {
             let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}")
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
-            let bar = ProgressBar::new(of as u64 * TICKS).with_style(style);
-            bar.set_position(done as u64 * TICKS);
+            let bar = ProgressBar::new(TICKS as u64).with_style(style);
+            bar.set_position(self.ticks(reached.cycles));
             self.bar = Some(bar);
-        } else if done > 0 {
-            eprintln!("going on: {done} of {of} updates are done");
+        } else if reached.updates > 0 {
+            eprintln!("going on: {}", in_words(&reached));
         }
     }
+}
+
+/// How far a run has come, such as `3 updates are done, 1500000 of 5000000 cycles`.
+pub fn in_words(reached: &Reached) -> String {
+    let Reached {
+        updates,
+        cycles,
+        of_cycles,
+    } = reached;
+    format!("{updates} updates are done, {cycles:.0} of {of_cycles:.0} cycles")
 }

@@ -10,10 +10,14 @@ use std::{
     },
 };
 
-use condyle_io::results::Summary;
+use condyle_io::results::{ErrorEstimate, ErrorParts, Summary};
 use condyle_lab::{Outcome, RunOptions};
 
-use crate::{arguments::Run, exit, progress::Progress};
+use crate::{
+    arguments::Run,
+    exit,
+    progress::{Progress, in_words},
+};
 
 pub fn run(arguments: &Run) -> ExitCode {
     let options = RunOptions {
@@ -44,10 +48,11 @@ pub fn run(arguments: &Run) -> ExitCode {
             print_summary(&summary, &options, arguments.json);
             ExitCode::SUCCESS
         }
-        Ok(Outcome::Interrupted { done, of }) => {
+        Ok(Outcome::Interrupted(reached)) => {
             let (case, out) = (arguments.case.display(), options.out.display());
             eprintln!(
-                "interrupted: {done} of {of} updates are kept; go on with: condyle run {case} --out {out} --resume"
+                "interrupted: {}, and kept; go on with: condyle run {case} --out {out} --resume",
+                in_words(&reached)
             );
             ExitCode::from(exit::INTERRUPTED)
         }
@@ -104,14 +109,31 @@ fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
         medial_load_share,
         ..
     } = summary;
+    let parts = |of: fn(&ErrorEstimate) -> &ErrorParts| summary.error.as_ref().map(of);
     vec![
         ("gait cycles", format!("{:.0}", summary.cycles)),
-        ("mass loss", format!("{:.2} mg", summary.mass_loss_mg)),
+        (
+            "mass loss",
+            with_error(
+                summary.mass_loss_mg,
+                2,
+                "mg",
+                parts(|error| &error.mass_loss_percent),
+            ),
+        ),
         (
             "volume loss",
             format!("{volume_loss_mm3:.2} mm3 ({volume_loss_mesh_mm3:.2} from the mesh)"),
         ),
-        ("deepest wear", format!("{:.4} mm", summary.max_depth_mm)),
+        (
+            "deepest wear",
+            with_error(
+                summary.max_depth_mm,
+                4,
+                "mm",
+                parts(|error| &error.max_depth_percent),
+            ),
+        ),
         (
             "peak pressure",
             format!("{:.1} MPa", summary.peak_pressure_mpa),
@@ -146,4 +168,28 @@ fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
         ),
         ("time, solver only", format!("{:.3} s", summary.wall_s)),
     ]
+}
+
+/// A number with its unit and what is known of its discretisation error.
+fn with_error(value: f64, digits: usize, unit: &str, error: Option<&ErrorParts>) -> String {
+    let plain = format!("{value:.digits$}");
+    let Some(error) = error else {
+        return format!("{plain} {unit}");
+    };
+    let part = |name: &str, percent: Option<f64>| match percent {
+        Some(percent) => format!("{name} {:.2}", percent.abs()),
+        None => format!("{name} unknown"),
+    };
+    let parts = [
+        part("increments", error.increments),
+        part("updates", error.updates),
+        part("mesh", error.mesh),
+        part("slip tolerance", error.slip_tolerance),
+    ];
+    let off = value * error.total / 100.0;
+    format!(
+        "{plain} +/- {off:.digits$} {unit} (discretisation, {:.2} %: {})",
+        error.total,
+        parts.join(", ")
+    )
 }

@@ -1,7 +1,8 @@
 //! Runs of cases, and studies over them.
 
+mod accuracy;
 pub mod measured;
 mod run;
 pub mod studies;
 
-pub use run::{Happening, Outcome, RunError, RunOptions, check, run, run_case};
+pub use run::{Happening, Outcome, Reached, RunError, RunOptions, check, run, run_case};

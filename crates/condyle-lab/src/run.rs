@@ -17,6 +17,8 @@ use condyle_io::{
 };
 use thiserror::Error;
 
+use crate::accuracy;
+
 /// How a case is run.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
@@ -28,20 +30,38 @@ pub struct RunOptions {
     pub threads: usize,
 }
 
+/// How far a run has come on the disk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// Updates done.
+    pub updates: usize,
+    /// Gait cycles done.
+    pub cycles: f64,
+    /// Gait cycles in all.
+    pub of_cycles: f64,
+}
+
+impl Reached {
+    fn by(march: &March) -> Self {
+        Self {
+            updates: march.state().updates.len(),
+            cycles: march.cycles(),
+            of_cycles: march.test().schedule.cycles,
+        }
+    }
+}
+
 /// What happens while a case runs.
 #[derive(Clone, Debug)]
 pub enum Happening<'a> {
     /// Something was put right or looks doubtful.
     Warning(String),
-    /// The bodies are placed, or the checkpoint is read: so many updates of how many are done.
-    Started {
-        /// Updates done.
-        done: usize,
-        /// Updates in all.
-        of: usize,
-    },
+    /// The bodies are placed, or the checkpoint is read.
+    Started(Reached),
     /// An increment is solved.
     Solved(Progress),
+    /// All updates are done, and an increment is solved to estimate how accurate they are.
+    Estimating,
     /// An update is done and on the disk.
     Updated(&'a UpdateRecord),
 }
@@ -54,12 +74,7 @@ pub enum Outcome {
     /// The folder holds the whole run already; nothing was computed.
     DoneBefore(Box<Summary>),
     /// Somebody asked to stop; what was computed is kept, and can be gone on with.
-    Interrupted {
-        /// Updates done.
-        done: usize,
-        /// Updates in all.
-        of: usize,
-    },
+    Interrupted(Reached),
 }
 
 /// Why a run failed.
@@ -182,17 +197,10 @@ pub fn run_case(
             (folder, march)
         }
     };
-    let of = march.test().schedule.updates;
-    let mut stop = happening(Happening::Started {
-        done: march.state().updates.len(),
-        of,
-    });
+    let mut stop = happening(Happening::Started(Reached::by(&march)));
     while !march.is_done() {
         if stop.is_break() {
-            return Ok(Outcome::Interrupted {
-                done: march.state().updates.len(),
-                of,
-            });
+            return Ok(Outcome::Interrupted(Reached::by(&march)));
         }
         let mut watch = |progress| happening(Happening::Solved(progress));
         match clock.time(|| march.update(&mut watch).cloned()) {
@@ -213,7 +221,15 @@ pub fn run_case(
             }
         }
     }
-    let summary = summary(&march, clock.spent, inputs_blake3, warnings);
+    let mut summary = summary(&march, clock.spent, inputs_blake3, warnings);
+    if case.accuracy.estimate {
+        let reached = Reached::by(&march);
+        let mut watch = || happening(Happening::Estimating);
+        match accuracy::estimate(case, march, &mut watch) {
+            Ok(error) => summary.error = error,
+            Err(accuracy::Interrupted) => return Ok(Outcome::Interrupted(reached)),
+        }
+    }
     folder.write_summary(&summary)?;
     condyle_report::write_report(folder.path())?;
     folder.finish()?;
@@ -223,8 +239,8 @@ pub fn run_case(
 /// What the folder holds; an error if it is not free, or with `resume` if there is no run in it.
 fn found(case: &Case, options: &RunOptions, inputs_blake3: &str) -> Result<Found, ResultsError> {
     if options.resume {
-        let updates = case.march.updates as usize;
-        ResultsFolder::reopen(&options.out, &case.to_toml(), inputs_blake3, updates)
+        let cycles = case.march.cycles as f64;
+        ResultsFolder::reopen(&options.out, &case.to_toml(), inputs_blake3, cycles)
     } else {
         ResultsFolder::free(&options.out).map(|()| Found::Nothing)
     }
@@ -271,6 +287,7 @@ fn summary(
         wall_s: spent.as_secs_f64(),
         inputs_blake3,
         warnings,
+        error: None,
     })
     .expect("a march that is done has an update")
 }

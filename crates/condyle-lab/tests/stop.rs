@@ -65,7 +65,16 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 
 #[test]
 fn stopped_at_any_increment_again_and_again() {
-    let (folder, case) = bench(CASE);
+    assert_same_bytes_however_stopped(CASE);
+}
+
+#[test]
+fn a_march_that_finds_its_own_intervals_stopped_at_any_increment() {
+    assert_same_bytes_however_stopped(&CASE.replace("updates = 3", "update = \"auto\""));
+}
+
+fn assert_same_bytes_however_stopped(case: &str) {
+    let (folder, case) = bench(case);
     let whole = folder.path().join("whole");
     let mut increments = 0;
     run_until(&case, &options(whole.clone(), false), |happening| {
@@ -84,8 +93,8 @@ fn stopped_at_any_increment_again_and_again() {
                 left == 0
             });
             resume = true;
-            if let Outcome::Interrupted { done, of } = outcome {
-                assert!(done < of && !out.join("summary.json").exists());
+            if let Outcome::Interrupted(reached) = outcome {
+                assert!(reached.cycles < reached.of_cycles && !out.join("summary.json").exists());
                 continue;
             }
             break;
@@ -102,7 +111,7 @@ fn stopped_at_the_start_nothing_is_computed_and_nothing_lost() {
     let (folder, case) = bench(CASE);
     let out = folder.path().join("out");
     let outcome = run_until(&case, &options(out.clone(), false), |_| true);
-    assert!(matches!(outcome, Outcome::Interrupted { done: 0, of: 3 }));
+    assert!(matches!(outcome, Outcome::Interrupted(reached) if reached.updates == 0));
     let outcome = run_until(&case, &options(out, true), |_| false);
     assert!(matches!(outcome, Outcome::Done(_)));
 }

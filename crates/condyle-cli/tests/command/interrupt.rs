@@ -56,7 +56,7 @@ fn ctrl_c_keeps_the_updates_done_and_resume_reaches_the_same_bytes() {
         assert!(!bench.path("out/summary.json").exists());
         let said = bench.resume("out");
         assert!(
-            said.err.contains(&format!("{kept} of 30 updates are done")),
+            said.err.contains(&format!("{kept} updates are done")),
             "{}",
             said.err
         );
@@ -95,7 +95,7 @@ fn the_words_of_an_interrupt_say_how_to_go_on() {
     signal(&child, "-INT");
     let output = child.wait_with_output().unwrap();
     let err = String::from_utf8(output.stderr).unwrap();
-    assert!(err.contains("of 30 updates are kept"), "{err}");
+    assert!(err.contains("updates are done"), "{err}");
     assert!(
         err.contains("condyle run case.toml --out out --resume"),
         "{err}"

@@ -69,6 +69,14 @@ choice! {
         Loaded = "loaded",
     }
 
+    /// When the worn shape is brought up to date.
+    UpdateWord {
+        /// So many times, evenly over the cycles.
+        Fixed = "fixed",
+        /// As seldom as a tolerance on the maximum depth allows.
+        Auto = "auto",
+    }
+
     /// Which wear law.
     WearLawWord {
         /// Depth per cycle = Kw sum of p |ds|.
@@ -281,12 +289,28 @@ settings! {
         wear_factor_mm3_per_nm: f64 = 2.64e-7, in within(0.0, 1e-3);
     }
 
-    /// The march over the life of the insert.
-    March {
+    /// The whole test.
+    WholeTest {
         /// Gait cycles in all.
         cycles: u64 = 5_000_000, in within(1.0, 1e10);
+    }
+
+    /// Updates of the worn shape, evenly over the cycles.
+    FixedUpdates {
         /// How often the worn shape is brought up to date, evenly over the cycles.
         updates: u64 = 10, in within(1.0, 10_000.0);
+    }
+
+    /// Updates of the worn shape as the depth asks for them.
+    ByDepthUpdates {
+        /// Error of the maximum depth that one interval may make, as a fraction of the depth expected at the end; it mostly wears away in those that follow.
+        depth_tolerance_fraction: f64 = 0.03, in within(1e-5, 0.5);
+    }
+
+    /// What a run tells of its own accuracy.
+    Accuracy {
+        /// Whether discretisation errors are estimated after the run, by solving the unworn cycle more coarsely.
+        estimate: bool = true;
     }
 
     /// Steps and tolerances in time.

@@ -12,6 +12,7 @@ pub(crate) mod files;
 mod fingerprint;
 pub(crate) mod keys;
 mod machine;
+mod march;
 mod origin;
 mod overriding;
 pub(crate) mod parse;
@@ -38,14 +39,15 @@ pub use build::{BuildError, BuildWarning, Built};
 pub use channel::Channel;
 pub use contact::{Contact, PressureLawChoice};
 pub use declared::{
-    CylinderFemur, DriveWord, FlatInsert, Friction, GenericFemur, GenericInsert, Heading,
-    HexahedralInsert, IntegratorWord, LengthUnit, MachineSettings, March, Material, MeshFemur,
-    MeshInsert, Preset, PressureForm, Rotation, Side, Sign, SphereFemur, Springs, StiffnessOf,
-    Time, Translation, Wear, WearLawWord,
+    Accuracy, ByDepthUpdates, CylinderFemur, DriveWord, FixedUpdates, FlatInsert, Friction,
+    GenericFemur, GenericInsert, Heading, HexahedralInsert, IntegratorWord, LengthUnit,
+    MachineSettings, Material, MeshFemur, MeshInsert, Preset, PressureForm, Rotation, Side, Sign,
+    SphereFemur, Springs, StiffnessOf, Time, Translation, Wear, WearLawWord,
 };
 pub use files::DataFile;
 pub use keys::{Key, Limits, Settings, unit_of};
 pub use machine::{Freedoms, Machine, Waveforms};
+pub use march::{March, Update};
 pub use overriding::{NumberKey, Override, OverrideError};
 pub use problems::{CaseError, Look, Problem, Reason};
 pub use schema::schema_markdown;
@@ -77,12 +79,14 @@ pub struct Case {
     pub march: March,
     /// Steps and tolerances in time.
     pub time: Time,
+    /// What a run tells of its own accuracy.
+    pub accuracy: Accuracy,
     origin: Origin,
 }
 
 /// Every table of a case, in the order they are written.
 const TABLES: &[&str] = &[
-    "femur", "insert", "material", "contact", "machine", "wear", "march", "time",
+    "femur", "insert", "material", "contact", "machine", "wear", "march", "time", "accuracy",
 ];
 
 impl Case {
@@ -136,8 +140,9 @@ fn read_case(root: &Section<'_>, log: &mut Log<'_>) -> Option<Case> {
     let contact = Contact::read(&root.table("contact", log), log);
     let machine = Machine::read(&root.table("machine", log), log);
     let wear = read_plain(root, "wear", log);
-    let march = read_plain(root, "march", log);
+    let march = March::read(&root.table("march", log), log);
     let time = read_plain(root, "time", log);
+    let accuracy = read_plain(root, "accuracy", log);
     Some(Case {
         heading: heading?,
         femur: femur?,
@@ -148,6 +153,7 @@ fn read_case(root: &Section<'_>, log: &mut Log<'_>) -> Option<Case> {
         wear: wear?,
         march: march?,
         time: time?,
+        accuracy: accuracy?,
         origin: Origin::of(log.source()),
     })
 }

@@ -5,10 +5,12 @@ use std::fmt::Write;
 use super::channel::Channel;
 use super::contact;
 use super::declared::{
-    Friction, Heading, MachineSettings, March, Material, Rotation, Springs, Time, Translation, Wear,
+    Accuracy, Friction, Heading, MachineSettings, Material, Rotation, Springs, Time, Translation,
+    Wear, WholeTest,
 };
 use super::keys::{Key, Settings};
 use super::machine::PRESET;
+use super::march::{March, UPDATE};
 use super::shapes::{FEMUR_SHAPE, INSERT_SHAPE};
 use super::waveforms::{WaveformSource, knots_doc};
 use super::{Femur, Insert, unit_of};
@@ -40,8 +42,15 @@ pub fn schema_markdown() -> String {
     );
     waveforms(&mut page);
     section(&mut page, "[wear]", &[Wear::KEYS]);
-    section(&mut page, "[march]", &[March::KEYS]);
+    chosen(
+        &mut page,
+        "[march]",
+        &[WholeTest::KEYS, &[UPDATE]],
+        "update",
+        March::UPDATES,
+    );
     section(&mut page, "[time]", &[Time::KEYS]);
+    section(&mut page, "[accuracy]", &[Accuracy::KEYS]);
     page
 }
 
@@ -87,9 +96,14 @@ fn row(page: &mut String, key: &Key) {
 }
 
 fn body(page: &mut String, title: &str, shape: Key, shapes: &[(&str, &[Key])]) {
-    section(page, title, &[&[shape]]);
-    for (word, keys) in shapes {
-        page.push_str(&format!("\nWith `shape = \"{word}\"`:\n\n"));
+    chosen(page, title, &[&[shape]], "shape", shapes);
+}
+
+/// A table whose other keys depend on the word that the key `by` has.
+fn chosen(page: &mut String, title: &str, keys: &[&[Key]], by: &str, words: &[(&str, &[Key])]) {
+    section(page, title, keys);
+    for (word, keys) in words {
+        page.push_str(&format!("\nWith `{by} = \"{word}\"`:\n\n"));
         table(page, &[keys]);
     }
 }

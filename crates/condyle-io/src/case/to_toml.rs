@@ -81,6 +81,8 @@ impl Case {
         self.march.write(&mut out);
         out.table("time");
         self.time.write(&mut out);
+        out.table("accuracy");
+        self.accuracy.write(&mut out);
         out.text
     }
 

@@ -156,7 +156,7 @@ impl ResultsFolder {
         Ok(Self::existing(path))
     }
 
-    /// What the folder holds of a run of `updates` updates to go on with.
+    /// What the folder holds of a run of `cycles` gait cycles to go on with.
     ///
     /// `case_toml` is the case as [`Self::write_case`] would write it.
     ///
@@ -166,7 +166,7 @@ impl ResultsFolder {
         path: &Path,
         case_toml: &str,
         inputs_blake3: &str,
-        updates: usize,
+        cycles: f64,
     ) -> Result<Found, ResultsError> {
         let folder = Self::existing(path);
         if !folder.file("checkpoint").exists() {
@@ -189,8 +189,10 @@ impl ResultsFolder {
                 version: checkpoint.version,
             });
         }
+        let last = checkpoint.state.updates.last();
+        let done = last.is_some_and(|last| last.cycles >= cycles);
         Ok(match folder.summary() {
-            Some(summary) if checkpoint.state.updates.len() >= updates => Found::Done(summary),
+            Some(summary) if done => Found::Done(summary),
             Some(_) | None => Found::Checkpoint(Box::new(checkpoint), folder.time_spent_s()),
         })
     }

@@ -1,6 +1,7 @@
 //! The results folder: what a run writes, one file a table, all readable without condyle.
 
 mod checkpoint;
+mod error_estimate;
 mod folder;
 mod insert_series;
 mod replace;
@@ -8,6 +9,7 @@ mod summary;
 mod tables;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use error_estimate::{ErrorEstimate, ErrorParts, Part};
 pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_series::insert_file_name;
 pub use summary::{Summary, SummaryInput};

@@ -6,6 +6,8 @@ use condyle::{
 };
 use serde::{Deserialize, Serialize};
 
+use super::ErrorEstimate;
+
 /// What a summary is made from.
 pub struct SummaryInput<'a> {
     /// The march, done.
@@ -23,6 +25,8 @@ pub struct SummaryInput<'a> {
     pub inputs_blake3: String,
     /// What was put right or looks doubtful.
     pub warnings: Vec<String>,
+    /// Estimated discretisation errors; none if the case asks for none.
+    pub error: Option<ErrorEstimate>,
 }
 
 /// The numbers of a finished run; units are in the names.
@@ -38,6 +42,8 @@ pub struct Summary {
     pub volume_loss_mesh_mm3: f64,
     /// Deepest wear, mm.
     pub max_depth_mm: f64,
+    /// Estimated discretisation errors of mass loss and deepest wear; none if the case asks for none.
+    pub error: Option<ErrorEstimate>,
     /// Highest pressure at a node in any cycle, MPa.
     pub peak_pressure_mpa: f64,
     /// Largest contact area in any cycle, mm2.
@@ -101,6 +107,7 @@ impl Summary {
             volume_loss_mm3: last.volume_loss_mm3,
             volume_loss_mesh_mm3: last.volume_loss_mesh_mm3,
             max_depth_mm: last.max_depth_mm,
+            error: input.error,
             peak_pressure_mpa: largest(|update| update.peak_pressure_mpa),
             peak_contact_area_mm2: largest(|update| update.peak_contact_area_mm2),
             ap_range_mm: range(first_cycle, Freedom::AnteroPosterior),

@@ -2,10 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use serde::{Deserialize, Serialize};
-use thiserror::Error;
-
-use super::{PlacementError, WearTest, placement::place};
+use super::{
+    CycleRecord, MarchError, MarchState, NodeFields, PlacementError, Progress, StepError,
+    UpdateRecord, Updates, WearTest,
+    interval::shared_out,
+    placement::place,
+    rates::{Rates, total},
+    step::{Before, Step},
+};
 use crate::{
     Vec3,
     contact::Foundation,
@@ -13,128 +17,11 @@ use crate::{
     machine::{Chain, Cycle, CycleError, CycleRow, Effort, Freedom, MachineState, Simulator},
 };
 
-/// Why a march ended early.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum MarchError {
-    /// The bodies make no knee.
-    #[error(transparent)]
-    Placement(#[from] PlacementError),
-    /// A cycle was not solved.
-    #[error("update {update}, after {cycles:.0} cycles: {source}")]
-    Cycle {
-        /// Which update, from 1.
-        update: usize,
-        /// Cycles done before it.
-        cycles: f64,
-        /// Why.
-        source: CycleError,
-    },
-    /// The femur fell off the insert.
-    #[error(
-        "update {update}: the femur touches the insert nowhere in the whole cycle, and ends it at AP {ap_mm:.1} mm; \
-         check loads, springs, axes and start_mm"
-    )]
-    LostContact {
-        /// Which update, from 1.
-        update: usize,
-        /// AP at the end of the cycle.
-        ap_mm: f64,
-    },
-    /// The insert wore through.
-    #[error(
-        "update {update}: the insert is worn through at ({x:.1}, {z:.1}) mm; use fewer cycles or a thicker insert"
-    )]
-    WornThrough {
-        /// Which update, from 1.
-        update: usize,
-        /// Place along x.
-        x: f64,
-        /// Place along z.
-        z: f64,
-    },
-}
-
-/// How far a march has come.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Which update, from 1.
-    pub update: usize,
-    /// Cycles solved for it; the last of them counts once it repeats itself.
-    pub cycles_solved: f64,
-}
-
-/// What one update found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct UpdateRecord {
-    /// Cycles done after it.
-    pub cycles: f64,
-    /// Volume worn so far, from depth times area, mm3.
-    pub volume_loss_mm3: f64,
-    /// Volume worn so far, from the change of the mesh, mm3.
-    pub volume_loss_mesh_mm3: f64,
-    /// Mass worn so far, mg.
-    pub mass_loss_mg: f64,
-    /// Deepest wear so far, mm.
-    pub max_depth_mm: f64,
-    /// Highest pressure of its cycle, MPa.
-    pub peak_pressure_mpa: f64,
-    /// Largest area of its cycle, mm2.
-    pub peak_contact_area_mm2: f64,
-    /// Cycles solved until one repeated itself.
-    pub cycles_solved: f64,
-    /// Whether one did.
-    pub repeats: bool,
-    /// Smallest scaled Jacobian of the worn mesh.
-    pub worst_quality: f64,
-}
-
-/// The motions and loads of one solved cycle, and how many cycles of wear it came after.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CycleRecord {
-    /// Cycles done before it.
-    pub cycles: f64,
-    /// One row an increment.
-    pub rows: Vec<CycleRow>,
-}
-
-/// Results of an update at every node of the articulating surface.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NodeFields {
-    /// Depth worn so far, mm.
-    pub wear_depth_mm: Vec<f64>,
-    /// Depth one cycle wears, mm.
-    pub depth_per_cycle_mm: Vec<f64>,
-    /// Highest pressure of the cycle, MPa.
-    pub peak_pressure_mpa: Vec<f64>,
-    /// Distance slid under pressure in the cycle, mm.
-    pub sliding_distance_mm: Vec<f64>,
-    /// Thickness left, mm.
-    pub thickness_mm: Vec<f64>,
-}
-
-/// All that a march must remember to go on from an update, to the same bytes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MarchState {
-    /// Results of the updates done.
-    pub updates: Vec<UpdateRecord>,
-    /// Nodes of the mesh as worn.
-    pub mesh_nodes: Vec<Vec3>,
-    /// Depth worn at each surface node, mm.
-    pub worn_mm: Vec<f64>,
-    /// The machine at the end of the last cycle.
-    pub machine: MachineState,
-    /// Where the femoral frame's origin is in the insert frame at neutral, mm.
-    pub zero_mm: Vec3,
-    /// Work done.
-    pub effort: Effort,
-    /// The first cycle and the last one solved.
-    pub first_and_last: Option<(CycleRecord, CycleRecord)>,
-}
-
 /// A wear test on its way.
 pub struct March {
     test: WearTest,
     chain: Chain,
+    unworn_nodes: Vec<Vec3>,
     unworn_volume_mm3: f64,
     state: MarchState,
     fields: NodeFields,
@@ -146,7 +33,24 @@ impl March {
     /// # Errors
     /// Bodies that do not meet, overlap deeply, or do not come to rest.
     pub fn start(test: WearTest) -> Result<Self, PlacementError> {
-        let test = prepared(test);
+        Self::placed(prepared(test, 0.0))
+    }
+
+    /// The same test changed, from its start; this march is given up.
+    ///
+    /// # Errors
+    /// As [`March::start`].
+    pub fn restarted(
+        mut self,
+        change: impl FnOnce(WearTest) -> WearTest,
+    ) -> Result<Self, PlacementError> {
+        let none = vec![0.0; self.state.worn_mm.len()];
+        self.test.insert.restore(self.unworn_nodes, &none);
+        let averaged_mm2 = self.test.insert.surface().mean_spread_mm2();
+        Self::placed(prepared(change(self.test), averaged_mm2))
+    }
+
+    fn placed(test: WearTest) -> Result<Self, PlacementError> {
         let mut effort = Effort::default();
         let (chain, settled) = place(&test, &mut effort)?;
         let state = MarchState {
@@ -157,25 +61,31 @@ impl March {
             zero_mm: chain.zero_mm(),
             effort,
             first_and_last: None,
+            first_step: None,
+            last_step: None,
+            settled_error: StepError::default(),
+            step_error: StepError::default(),
         };
         Ok(Self::from_parts(test, chain, state))
     }
 
     /// Goes on from a state of the same test.
     pub fn resume(test: WearTest, state: MarchState) -> Self {
-        let test = prepared(test);
+        let test = prepared(test, 0.0);
         let chain = Chain::new(&test.machine, state.zero_mm, test.flexion_axis_mm);
         Self::from_parts(test, chain, state)
     }
 
     fn from_parts(mut test: WearTest, chain: Chain, state: MarchState) -> Self {
         let unworn_volume_mm3 = test.insert.mesh().volume();
+        let unworn_nodes = test.insert.mesh().nodes.clone();
         test.insert
             .restore(state.mesh_nodes.clone(), &state.worn_mm);
         let fields = NodeFields::unworn(&test, &state.worn_mm);
         Self {
             test,
             chain,
+            unworn_nodes,
             unworn_volume_mm3,
             state,
             fields,
@@ -199,7 +109,7 @@ impl March {
 
     /// Whether all cycles are done.
     pub fn is_done(&self) -> bool {
-        self.state.updates.len() >= self.test.schedule.updates
+        self.cycles() >= self.test.schedule.cycles
     }
 
     /// Solves the next cycle that repeats itself, and wears the insert by an interval of it.
@@ -214,55 +124,68 @@ impl March {
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<&UpdateRecord, MarchError> {
         let update = self.state.updates.len() + 1;
-        let cycles_before = self.cycles();
+        let cycles = self.cycles();
         let mut effort = self.state.effort;
         let (surface, cycle) =
             self.repeating_cycle(update, &mut effort, watch)
                 .map_err(|source| MarchError::Cycle {
                     update,
-                    cycles: cycles_before,
+                    cycles,
                     source,
                 })?;
         if cycle.rows.iter().all(|row| row.axial_force_n == 0.0) {
             let ap_mm = cycle.end.now.positions[Freedom::AnteroPosterior as usize];
             return Err(MarchError::LostContact { update, ap_mm });
         }
+        let rates = Rates::of(
+            &cycle,
+            &surface,
+            self.test.wear.as_ref(),
+            &self.test.contact,
+            self.test.insert.thickness_mm(),
+        );
+        let before = Before {
+            rates: &rates,
+            last: self.state.last_step.as_ref(),
+            worn_mm: &self.state.worn_mm,
+            cycles,
+            updates: update - 1,
+        };
+        let step = Step::next(before, &self.test.schedule);
+        let worn_mm3 = total(&rates.area_mm2, &step.depth_mm);
+        let settled_error = self.state.settled_error.after(before);
+        let step_error = settled_error.with_last(before, step.interval, worn_mm3);
+        self.wear_down(&surface, &cycle, &rates, &step)?;
         self.state.effort = effort;
-        let area_mm2: Vec<f64> = surface.shares.iter().map(|share| share.area_mm2).collect();
-        let step_mm = self.wear_down(&surface, &cycle, update)?;
-        let worn: f64 = area_mm2
-            .iter()
-            .zip(&step_mm)
-            .map(|(area, depth)| area * depth)
-            .sum();
-        let volume_loss_mm3 = worn
-            + self
-                .state
-                .updates
-                .last()
-                .map_or(0.0, |last| last.volume_loss_mm3);
-        self.state.updates.push(UpdateRecord {
-            cycles: cycles_before + self.test.schedule.interval(),
+        (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
+        let record = self.record(&cycle, &step, worn_mm3);
+        self.state.updates.push(record);
+        let remembered = step.remembered(rates);
+        if self.state.first_step.is_none() {
+            self.state.first_step = Some(remembered.clone());
+        }
+        self.state.last_step = Some(remembered);
+        self.keep(cycle, cycles);
+        Ok(&self.state.updates[update - 1])
+    }
+
+    /// What the update that has just worn the insert by `worn_mm3` found.
+    fn record(&self, cycle: &Cycle, step: &Step, worn_mm3: f64) -> UpdateRecord {
+        let last = self.state.updates.last();
+        let volume_loss_mm3 = worn_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
+        let most = |value: fn(&CycleRow) -> f64| cycle.rows.iter().map(value).fold(0.0, f64::max);
+        UpdateRecord {
+            cycles: step.cycles_after,
             volume_loss_mm3,
             volume_loss_mesh_mm3: self.unworn_volume_mm3 - self.test.insert.mesh().volume(),
             mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
             max_depth_mm: largest(&self.state.worn_mm),
-            peak_pressure_mpa: cycle
-                .rows
-                .iter()
-                .map(|row| row.peak_pressure_mpa)
-                .fold(0.0, f64::max),
-            peak_contact_area_mm2: cycle
-                .rows
-                .iter()
-                .map(|row| row.contact_area_mm2)
-                .fold(0.0, f64::max),
+            peak_pressure_mpa: most(|row| row.peak_pressure_mpa),
+            peak_contact_area_mm2: most(|row| row.contact_area_mm2),
             cycles_solved: cycle.increments_solved as f64 / self.test.time.increments as f64,
             repeats: cycle.repeats,
             worst_quality: self.test.insert.mesh().worst_quality(),
-        });
-        self.keep(cycle, cycles_before);
-        Ok(&self.state.updates[update - 1])
+        }
     }
 
     /// Cycles done so far.
@@ -284,62 +207,56 @@ impl March {
             time: &self.test.time,
         };
         let increments = self.test.time.increments as f64;
+        let (cycles, interval) = (self.cycles(), self.likely_interval());
         let mut watch_cycle = |solved| {
+            let cycles_solved = solved as f64 / increments;
             watch(Progress {
                 update,
-                cycles_solved: solved as f64 / increments,
+                cycles_solved,
+                cycles: cycles + interval * cycles_solved.min(1.0),
             })
         };
         let cycle = simulator.cycle(&self.state.machine, effort, &mut watch_cycle)?;
         Ok((simulator.contact.into_surface(), cycle))
     }
 
-    /// Wears the insert by one interval of a cycle; returns the depth at every surface node.
+    /// Cycles that the next step will likely take.
+    fn likely_interval(&self) -> f64 {
+        let schedule = &self.test.schedule;
+        let last = self.state.last_step.as_ref().map(|last| last.interval);
+        let left = schedule.cycles - self.cycles();
+        match schedule.updates {
+            Updates::Even(updates) => schedule.cycles / updates as f64,
+            Updates::ByDepth { .. } => last.map_or(0.0, |last| shared_out(left, last)),
+        }
+    }
+
+    /// Wears the insert by a step.
     fn wear_down(
         &mut self,
         surface: &ArticulatingSurface,
         cycle: &Cycle,
-        update: usize,
-    ) -> Result<Vec<f64>, MarchError> {
-        let interval = self.test.schedule.interval();
-        let nodes = 0..cycle.history.node_count();
-        let per_cycle_mm: Vec<f64> = nodes
-            .clone()
-            .map(|node| self.test.wear.depth_per_cycle_mm(&cycle.history.node(node)))
-            .collect();
-        let step_mm: Vec<f64> = per_cycle_mm.iter().map(|depth| depth * interval).collect();
-        for node in nodes.clone() {
-            if step_mm[node] >= self.test.insert.thickness_mm()[node] {
-                let place = surface.positions[node];
-                return Err(MarchError::WornThrough {
-                    update,
-                    x: place.x,
-                    z: place.z,
-                });
-            }
+        rates: &Rates,
+        step: &Step,
+    ) -> Result<(), MarchError> {
+        let thickness_mm = self.test.insert.thickness_mm();
+        let mut nodes = step.depth_mm.iter().zip(thickness_mm);
+        if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
+            let place = surface.positions[node];
+            return Err(MarchError::WornThrough {
+                update: self.state.updates.len() + 1,
+                x: place.x,
+                z: place.z,
+            });
         }
-        self.test.insert.wear_down(surface, &step_mm);
-        self.state
-            .worn_mm
-            .iter_mut()
-            .zip(&step_mm)
-            .for_each(|(worn, step)| *worn += step);
-        self.state
-            .mesh_nodes
-            .clone_from(&self.test.insert.mesh().nodes);
-        self.fields = NodeFields {
-            wear_depth_mm: self.state.worn_mm.clone(),
-            depth_per_cycle_mm: per_cycle_mm,
-            peak_pressure_mpa: nodes
-                .clone()
-                .map(|node| cycle.history.node(node).peak_pressure_mpa())
-                .collect(),
-            sliding_distance_mm: nodes
-                .map(|node| cycle.history.node(node).sliding_distance_mm())
-                .collect(),
-            thickness_mm: self.test.insert.thickness_mm().to_vec(),
-        };
-        Ok(step_mm)
+        self.test.insert.wear_down(surface, &step.depth_mm);
+        let worn = self.state.worn_mm.iter_mut().zip(&step.depth_mm);
+        worn.for_each(|(worn, step)| *worn += step);
+        let nodes = &self.test.insert.mesh().nodes;
+        self.state.mesh_nodes.clone_from(nodes);
+        let thickness_mm = self.test.insert.thickness_mm();
+        self.fields = NodeFields::of(cycle, rates, &self.state.worn_mm, thickness_mm);
+        Ok(())
     }
 
     fn keep(&mut self, cycle: Cycle, cycles: f64) {
@@ -357,28 +274,16 @@ impl March {
     }
 }
 
-/// The test with its femur made ready for the shares of its insert.
-fn prepared(test: WearTest) -> WearTest {
+/// The test with its femur made ready for the shares of its insert; it may have been for shares
+/// that spread over `averaged_mm2`.
+fn prepared(test: WearTest, averaged_mm2: f64) -> WearTest {
     let spread_mm2 = test.insert.surface().mean_spread_mm2();
     WearTest {
-        femur: test.femur.prepared_for(spread_mm2),
+        femur: test.femur.prepared_for(spread_mm2 - averaged_mm2),
         ..test
     }
 }
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
-}
-
-impl NodeFields {
-    fn unworn(test: &WearTest, worn_mm: &[f64]) -> Self {
-        let none = vec![0.0; worn_mm.len()];
-        Self {
-            wear_depth_mm: worn_mm.to_vec(),
-            depth_per_cycle_mm: none.clone(),
-            peak_pressure_mpa: none.clone(),
-            sliding_distance_mm: none,
-            thickness_mm: test.insert.thickness_mm().to_vec(),
-        }
-    }
 }

@@ -1,11 +1,23 @@
 //! From depth to new shape: the march over millions of cycles.
 
+mod interval;
 mod march;
+mod march_error;
 mod placement;
+mod rates;
+mod records;
 mod schedule;
+mod state;
+mod step;
+mod step_error;
 mod wear_test;
 
-pub use march::{CycleRecord, March, MarchError, MarchState, NodeFields, Progress, UpdateRecord};
+pub use march::March;
+pub use march_error::MarchError;
 pub use placement::PlacementError;
-pub use schedule::Schedule;
+pub use records::{CycleRecord, NodeFields, Progress, UpdateRecord};
+pub use schedule::{Schedule, Updates};
+pub use state::MarchState;
+pub use step::StepRecord;
+pub use step_error::StepError;
 pub use wear_test::WearTest;

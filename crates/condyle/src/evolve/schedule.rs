@@ -1,17 +1,31 @@
 //! How the cycles of a test are shared out between updates of the geometry.
 
-/// A march by a fixed interval, as Knight 2007 does it.
+/// The cycles of a test, and how often the geometry is brought up to date on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
     /// Gait cycles of the whole test.
     pub cycles: f64,
-    /// Updates of the geometry, each after the same number of cycles.
-    pub updates: usize,
+    /// When the geometry is updated.
+    pub updates: Updates,
+}
+
+/// When the geometry is updated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Updates {
+    /// So many times, each after the same number of cycles, as Knight 2007 does it.
+    Even(usize),
+    /// As seldom as the depth of wear allows.
+    ByDepth {
+        /// Largest error of the maximum depth that one interval may make, as a fraction of the
+        /// depth expected at the end; greater than 0.
+        tolerance: f64,
+    },
 }
 
 impl Schedule {
-    /// Cycles between two updates.
-    pub fn interval(&self) -> f64 {
-        self.cycles / self.updates as f64
+    /// `updates` of the geometry, each after the same number of `cycles`.
+    pub fn evenly(cycles: f64, updates: usize) -> Self {
+        let updates = Updates::Even(updates);
+        Self { cycles, updates }
     }
 }

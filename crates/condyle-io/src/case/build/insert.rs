@@ -13,6 +13,26 @@ use crate::mesh::{HexFile, read_hexahedra};
 /// Length and width of the flat block, mm, about those of the generic insert.
 const FLAT_SIZE_MM: (f64, f64) = (46.0, 72.0);
 
+impl case::Case {
+    /// The insert of this case in a mesh of twice the edge.
+    ///
+    /// # Errors
+    /// In words: an insert that is read as hexahedra, or that has no such mesh.
+    pub fn coarser_insert(&self) -> Result<Insert, String> {
+        let mut coarser = self.insert.clone();
+        match &mut coarser {
+            case::Insert::Generic(insert) => insert.edge_mm *= 2.0,
+            case::Insert::Flat(insert) => insert.edge_mm *= 2.0,
+            case::Insert::Mesh(insert) => insert.edge_mm *= 2.0,
+            case::Insert::Hexahedra(_) => {
+                return Err("an insert read as hexahedra has no coarser mesh".to_owned());
+            }
+        }
+        let built = coarser.build(self.heading.side, &mut Vec::new());
+        built.map_err(|why| why.to_string())
+    }
+}
+
 impl case::Insert {
     pub(super) fn build(
         &self,

@@ -9,13 +9,13 @@ mod meshes;
 mod tests;
 
 use condyle::contact::{FoundationSettings, PressureLaw, confined_modulus};
-use condyle::evolve::{Schedule, WearTest};
+use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::machine::{Integration, TimeSettings};
 use condyle::wear::Archard;
 
 pub use error::{BuildError, BuildWarning};
 
-use super::{Case, IntegratorWord, PressureLawChoice, WearLawWord};
+use super::{Case, IntegratorWord, PressureLawChoice, Update, WearLawWord};
 
 /// A wear test ready to run, and what was put right on the way to it.
 pub struct Built {
@@ -57,7 +57,12 @@ impl Case {
             time: self.time_settings(),
             schedule: Schedule {
                 cycles: self.march.cycles as f64,
-                updates: self.march.updates as usize,
+                updates: match &self.march.update {
+                    Update::Fixed(fixed) => Updates::Even(fixed.updates as usize),
+                    Update::Auto(by_depth) => Updates::ByDepth {
+                        tolerance: by_depth.depth_tolerance_fraction,
+                    },
+                },
             },
         };
         Ok(Built { test, warnings })

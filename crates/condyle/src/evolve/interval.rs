@@ -1,0 +1,124 @@
+//! How many cycles a step may take before the depth of wear is in error.
+
+use super::step::Before;
+
+/// The first step takes this share of the test at most: nothing is known yet of how rates change.
+const FIRST_SHARE: f64 = 0.1;
+/// A step is at most this many times as long as the one before, ...
+const MOST_GROWTH: f64 = 2.0;
+/// ... and at least this many times.
+const LEAST_GROWTH: f64 = 0.25;
+/// Longest step in units of 1 / relaxation. Euler's method wears a node that presses harder than
+/// its neighbours beyond them from 1 on, and for ever further from 2 on.
+const LONGEST: f64 = 1.8;
+/// A step in error is shortened by this factor until it is not.
+const SHORTER: f64 = 0.9;
+
+/// The longest interval whose estimated error of the maximum depth is within `tolerance` times
+/// the depth expected at the end, and that is stable.
+pub(super) fn adaptive_interval(before: Before<'_>, all_cycles: f64, tolerance: f64) -> f64 {
+    let left = all_cycles - before.cycles;
+    let stable = LONGEST / before.rates.relaxation_per_cycle.max(f64::MIN_POSITIVE);
+    let Some(last) = before.last else {
+        return stable.min(FIRST_SHARE * all_cycles);
+    };
+    let expected_mm = deepest(before, |node| before.rates.depth_per_cycle_mm[node] * left);
+    let shortest = LEAST_GROWTH * last.interval;
+    let mut interval = stable.min(MOST_GROWTH * last.interval);
+    while interval > shortest && foreseen_error_mm(before, interval) > tolerance * expected_mm {
+        interval *= SHORTER;
+    }
+    interval.max(shortest)
+}
+
+/// By how much the maximum depth after `interval` cycles differs between the first order and the
+/// second, mm: every node's rate taken as the last one, or extrapolated from the last two.
+pub(super) fn foreseen_error_mm(before: Before<'_>, interval: f64) -> f64 {
+    let Some(last) = before.last else {
+        return 0.0;
+    };
+    let rates = &before.rates.depth_per_cycle_mm;
+    let first = deepest(before, |node| rates[node] * interval);
+    let half = interval * interval / (2.0 * last.interval);
+    let second = deepest(before, |node| {
+        rates[node] * interval + half * (rates[node] - last.depth_per_cycle_mm[node])
+    });
+    (second - first).abs()
+}
+
+/// The cycles that are left in equal intervals, none longer than `wished`: so the last is no stump.
+pub(super) fn shared_out(left: f64, wished: f64) -> f64 {
+    // A hair is allowed, so that 5 x 0.2 is five intervals and not six.
+    const HAIR: f64 = 1e-9;
+    left / (left / wished - HAIR).ceil().max(1.0)
+}
+
+/// The deepest node after `more` at every node.
+pub(super) fn deepest(before: Before<'_>, more: impl Fn(usize) -> f64) -> f64 {
+    let worn = before.worn_mm.iter().enumerate();
+    worn.map(|(node, worn)| worn + more(node))
+        .fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::rates::Rates;
+    use crate::evolve::step::StepRecord;
+
+    fn rates(depth_per_cycle_mm: f64, relaxation_per_cycle: f64) -> Rates {
+        Rates {
+            depth_per_cycle_mm: vec![depth_per_cycle_mm],
+            area_mm2: vec![1.0],
+            relaxation_per_cycle,
+        }
+    }
+
+    fn last(depth_per_cycle_mm: f64, interval: f64) -> StepRecord {
+        StepRecord {
+            interval,
+            depth_per_cycle_mm: vec![depth_per_cycle_mm],
+            volume_per_cycle_mm3: depth_per_cycle_mm,
+            volume_mm3: depth_per_cycle_mm * interval,
+            relaxation_per_cycle: 0.0,
+        }
+    }
+
+    fn interval(now: &Rates, last: Option<&StepRecord>) -> f64 {
+        let before = Before {
+            rates: now,
+            last,
+            worn_mm: &[0.1],
+            cycles: 1e6,
+            updates: 2,
+        };
+        adaptive_interval(before, 5e6, 0.01)
+    }
+
+    #[test]
+    fn steps_start_small_grow_slowly_and_stay_stable() {
+        let near = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-12);
+        near(interval(&rates(1e-7, 1e-6), None), 5e5);
+        near(interval(&rates(1e-7, 1e-5), None), 1.8e5);
+        near(interval(&rates(1e-7, 0.0), Some(&last(1e-7, 1e5))), 2e5);
+        near(interval(&rates(1e-7, 2e-6), Some(&last(1e-7, 1e6))), 9e5);
+    }
+
+    #[test]
+    fn verify_the_error_foreseen_is_held_to_the_tolerance() {
+        // 0.1 mm and 4e6 cycles of 1e-7 mm: 0.5 mm are expected, 0.005 mm may be wrong.
+        let (now, before) = (rates(1e-7, 0.0), last(1.1e-7, 1e6));
+        let exact = (0.005 * 2.0 * 1e6 / 1e-8_f64).sqrt();
+        let found = interval(&now, Some(&before));
+        assert!(found <= exact && found > SHORTER * exact, "{found} {exact}");
+        let falls = last(1e-6, 1e6);
+        assert_eq!(interval(&now, Some(&falls)), 2.5e5);
+    }
+
+    #[test]
+    fn cycles_left_are_shared_out_evenly() {
+        assert_eq!(shared_out(1.0, 0.2), 0.2);
+        assert_eq!(shared_out(1.0, 0.6), 0.5);
+        assert_eq!(shared_out(1.0, 7.0), 1.0);
+    }
+}

@@ -1,0 +1,201 @@
+//! One step of the march: so many cycles, and what they wear away.
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Schedule, Updates,
+    interval::{adaptive_interval, shared_out},
+    rates::{Rates, total},
+};
+
+/// A step of the march.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Step {
+    /// Its cycles.
+    pub interval: f64,
+    /// Cycles of the test done after it.
+    pub cycles_after: f64,
+    /// What it wears at every surface node, mm.
+    pub depth_mm: Vec<f64>,
+}
+
+/// What the next step remembers of a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepRecord {
+    /// Its cycles.
+    pub interval: f64,
+    /// Depth that a cycle wore at every surface node when it began, mm.
+    pub depth_per_cycle_mm: Vec<f64>,
+    /// Volume that a cycle wore when it began, mm3.
+    pub volume_per_cycle_mm3: f64,
+    /// Volume that it took, mm3.
+    pub volume_mm3: f64,
+    /// How fast wear flattened the pressure when it began, a cycle.
+    pub relaxation_per_cycle: f64,
+}
+
+/// Where a march stands before a step.
+#[derive(Clone, Copy)]
+pub(super) struct Before<'a> {
+    /// What a cycle wears now.
+    pub rates: &'a Rates,
+    /// The step that led here.
+    pub last: Option<&'a StepRecord>,
+    /// Depth worn so far at every surface node, mm.
+    pub worn_mm: &'a [f64],
+    /// Cycles done.
+    pub cycles: f64,
+    /// Updates done.
+    pub updates: usize,
+}
+
+impl Step {
+    /// The next step of a march by `schedule`.
+    pub fn next(before: Before<'_>, schedule: &Schedule) -> Self {
+        let left = schedule.cycles - before.cycles;
+        match schedule.updates {
+            Updates::Even(updates) => {
+                let interval = schedule.cycles / updates as f64;
+                let is_last = before.updates + 1 >= updates;
+                Self {
+                    interval,
+                    cycles_after: after(before.cycles, interval, is_last, schedule),
+                    depth_mm: straight(before.rates, interval),
+                }
+            }
+            Updates::ByDepth { tolerance } => {
+                let wished = adaptive_interval(before, schedule.cycles, tolerance);
+                let interval = shared_out(left, wished);
+                Self {
+                    interval,
+                    cycles_after: after(before.cycles, interval, interval >= left, schedule),
+                    depth_mm: extrapolated(before.rates, before.last, interval),
+                }
+            }
+        }
+    }
+
+    /// What the next step remembers of this one.
+    pub fn remembered(&self, rates: Rates) -> StepRecord {
+        StepRecord {
+            interval: self.interval,
+            volume_per_cycle_mm3: rates.volume_per_cycle_mm3(),
+            volume_mm3: total(&rates.area_mm2, &self.depth_mm),
+            relaxation_per_cycle: rates.relaxation_per_cycle,
+            depth_per_cycle_mm: rates.depth_per_cycle_mm,
+        }
+    }
+}
+
+/// The last step lands on the last cycle, whatever the intervals sum up to.
+fn after(cycles: f64, interval: f64, is_last: bool, schedule: &Schedule) -> f64 {
+    match is_last {
+        true => schedule.cycles,
+        false => cycles + interval,
+    }
+}
+
+/// Depth that an interval wears if every cycle wears as the one solved: Euler's method.
+fn straight(rates: &Rates, interval: f64) -> Vec<f64> {
+    let depth = |rate: &f64| rate * interval;
+    rates.depth_per_cycle_mm.iter().map(depth).collect()
+}
+
+/// Depth that an interval wears if the volume per cycle goes on changing as it did over the last
+/// one, which makes the volume second order in the interval.
+///
+/// The volume that this adds to Euler's goes where the rates grow, in proportion; one that it
+/// takes away goes where they fall. To extrapolate every node by itself (Adams and Bashforth's
+/// method) would be unstable from 1 / relaxation on: the pressure that a node has lost its
+/// neighbours have got, and an interval later it comes back.
+fn extrapolated(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<f64> {
+    let mut depth_mm = straight(rates, interval);
+    let Some(last) = last else {
+        return depth_mm;
+    };
+    let change = rates.volume_per_cycle_mm3() - last.volume_per_cycle_mm3;
+    let added_mm3 = interval * interval / (2.0 * last.interval) * change;
+    let towards = |(now, before): (&f64, &f64)| (now - before).max(0.0) * change.signum();
+    let pattern: Vec<f64> = match change >= 0.0 {
+        true => rates
+            .depth_per_cycle_mm
+            .iter()
+            .zip(&last.depth_per_cycle_mm)
+            .map(towards)
+            .collect(),
+        false => last
+            .depth_per_cycle_mm
+            .iter()
+            .zip(&rates.depth_per_cycle_mm)
+            .map(towards)
+            .collect(),
+    };
+    let pattern_mm3 = total(&rates.area_mm2, &pattern);
+    if pattern_mm3 != 0.0 {
+        for (depth, part) in depth_mm.iter_mut().zip(&pattern) {
+            *depth = (*depth + part * added_mm3 / pattern_mm3).max(0.0);
+        }
+    }
+    depth_mm
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rates(depth_per_cycle_mm: &[f64]) -> Rates {
+        Rates {
+            depth_per_cycle_mm: depth_per_cycle_mm.to_vec(),
+            area_mm2: vec![2.0; depth_per_cycle_mm.len()],
+            relaxation_per_cycle: 0.0,
+        }
+    }
+
+    fn last(depth_per_cycle_mm: &[f64], interval: f64) -> StepRecord {
+        let step = Step {
+            interval,
+            cycles_after: interval,
+            depth_mm: straight(&rates(depth_per_cycle_mm), interval),
+        };
+        step.remembered(rates(depth_per_cycle_mm))
+    }
+
+    #[test]
+    fn verify_a_volume_that_changes_evenly_is_met_exactly() {
+        // 2 mm2 x (5 -> 7 -> ...) mm a cycle, one mm a cycle more each cycle and node.
+        for (before, now, per_cycle) in [
+            ([2.0, 3.0], [5.0, 2.0], 2.0),
+            ([5.0, 2.0], [2.0, 3.0], -2.0),
+        ] {
+            let depth = extrapolated(&rates(&now), Some(&last(&before, 2.0)), 3.0);
+            let rate = 2.0 * (now[0] + now[1]);
+            let exact = 3.0 * rate + 0.5 * 9.0 * per_cycle;
+            assert!((total(&[2.0; 2], &depth) - exact).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_is_added_goes_where_the_rates_grow() {
+        let depth = extrapolated(&rates(&[5.0, 2.0]), Some(&last(&[2.0, 3.0], 2.0)), 3.0);
+        assert!(depth[0] > 15.0 && depth[1] == 6.0);
+        assert_eq!(extrapolated(&rates(&[5.0, 2.0]), None, 3.0), [15.0, 6.0]);
+    }
+
+    #[test]
+    fn the_last_even_step_lands_on_the_last_cycle() {
+        let schedule = Schedule::evenly(5e6, 3);
+        let now = rates(&[1e-8]);
+        let mut cycles = 0.0;
+        for updates in 0..3 {
+            let before = Before {
+                rates: &now,
+                last: None,
+                worn_mm: &[0.0],
+                cycles,
+                updates,
+            };
+            cycles = Step::next(before, &schedule).cycles_after;
+        }
+        assert_eq!(cycles, 5e6);
+    }
+}
