@@ -13,7 +13,7 @@ use condyle::{
 };
 use condyle_io::{
     case::{BuildError, BuildWarning, Built, Case, CaseError},
-    results::{Found, ResultsError, ResultsFolder, Summary, SummaryInput},
+    results::{ErrorEstimate, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
 };
 use thiserror::Error;
 
@@ -225,10 +225,12 @@ pub fn run_case(
     if case.accuracy.estimate {
         let reached = Reached::by(&march);
         let mut watch = || happening(Happening::Estimating);
-        match accuracy::estimate(case, march, &mut watch) {
-            Ok(error) => summary.error = error,
-            Err(accuracy::Interrupted) => return Ok(Outcome::Interrupted(reached)),
-        }
+        let mut clock = Clock::default();
+        let Ok(error) = clock.time(|| accuracy::estimate(case, march, &mut watch)) else {
+            return Ok(Outcome::Interrupted(reached));
+        };
+        let wall_s = clock.spent.as_secs_f64();
+        summary.error = error.map(|error| ErrorEstimate { wall_s, ..error });
     }
     folder.write_summary(&summary)?;
     condyle_report::write_report(folder.path())?;

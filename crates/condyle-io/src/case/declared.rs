@@ -222,7 +222,7 @@ settings! {
         /// Coulomb coefficient of friction.
         friction: f64 = 0.07, in within(0.0, 2.0);
         /// Sliding speed at which friction is nearly full: smaller is truer and slower.
-        slip_tolerance_mm_per_s: f64 = 1.0, in within(1e-6, 1000.0);
+        slip_tolerance_mm_per_s: f64 = 0.3, in within(1e-6, 1000.0);
     }
 
     /// The simulator's numbers.
@@ -304,7 +304,7 @@ settings! {
     /// Updates of the worn shape as the depth asks for them.
     ByDepthUpdates {
         /// Error of the maximum depth that one interval may make, as a fraction of the depth expected at the end; it mostly wears away in those that follow.
-        depth_tolerance_fraction: f64 = 0.03, in within(1e-5, 0.5);
+        depth_tolerance_fraction: f64 = 0.05, in within(1e-5, 0.5);
     }
 
     /// What a run tells of its own accuracy.

@@ -17,8 +17,8 @@ pub enum Part {
     SlipTolerance,
 }
 
-/// Estimated discretisation error of a number, %, by its parts: what a much finer value would
-/// change it by; none where a part cannot be estimated.
+/// Estimated discretisation error of a number by its parts: what a much finer value would change
+/// it by; none where a part cannot be estimated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorParts {
     /// From the increments in the gait cycle.
@@ -36,12 +36,18 @@ pub struct ErrorParts {
 /// Estimated discretisation errors of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEstimate {
-    /// Of the mass loss, and so of the volume loss.
+    /// Of the mass loss, and so of the volume loss, %.
     pub mass_loss_percent: ErrorParts,
-    /// Of the maximum depth.
+    /// The same, mg.
+    pub mass_loss_mg: ErrorParts,
+    /// Of the maximum depth, %.
     pub max_depth_percent: ErrorParts,
+    /// The same, mm.
+    pub max_depth_mm: ErrorParts,
     /// Parts that could not be estimated, and why.
     pub not_estimated: BTreeMap<String, String>,
+    /// Seconds that the estimate took, which are not among those of the solver.
+    pub wall_s: f64,
 }
 
 impl Part {
@@ -76,21 +82,33 @@ impl ErrorParts {
 }
 
 impl ErrorEstimate {
-    /// Sets a part: % of mass loss and of maximum depth, or why there is none.
-    pub fn set(&mut self, part: Part, found: Result<[f64; 2], String>) {
-        let found = found.and_then(
-            |percent| match percent.iter().all(|part| part.is_finite()) {
-                true => Ok(percent),
-                false => Err("nothing was worn".to_owned()),
-            },
-        );
-        let [mass, depth] = found.as_ref().map_or([None; 2], |found| found.map(Some));
-        self.mass_loss_percent.set(part, mass);
-        self.max_depth_percent.set(part, depth);
-        match found {
-            Ok(_) => self.not_estimated.remove(part.name()),
-            Err(why) => self.not_estimated.insert(part.name().to_owned(), why),
-        };
+    /// Of a mass loss, mg, and a maximum depth, mm: of each part % of both, or why there is none.
+    pub fn of(
+        mass_loss_mg: f64,
+        max_depth_mm: f64,
+        parts: impl IntoIterator<Item = (Part, Result<[f64; 2], String>)>,
+    ) -> Self {
+        let mut estimate = Self::default();
+        for (part, found) in parts {
+            let found = found.and_then(finite);
+            let [mass, depth] = found.as_ref().map_or([None; 2], |found| found.map(Some));
+            let share = |percent: Option<f64>, of: f64| percent.map(|percent| percent / 100.0 * of);
+            estimate.mass_loss_percent.set(part, mass);
+            estimate.mass_loss_mg.set(part, share(mass, mass_loss_mg));
+            estimate.max_depth_percent.set(part, depth);
+            estimate.max_depth_mm.set(part, share(depth, max_depth_mm));
+            if let Err(why) = found {
+                estimate.not_estimated.insert(part.name().to_owned(), why);
+            }
+        }
+        estimate
+    }
+}
+
+fn finite(percent: [f64; 2]) -> Result<[f64; 2], String> {
+    match percent.iter().all(|part| part.is_finite()) {
+        true => Ok(percent),
+        false => Err("nothing was worn".to_owned()),
     }
 }
 
@@ -100,13 +118,18 @@ mod tests {
 
     #[test]
     fn verify_parts_add_in_quadrature_and_the_rest_says_why() {
-        let mut estimate = ErrorEstimate::default();
-        estimate.set(Part::Increments, Ok([-3.0, 0.5]));
-        estimate.set(Part::SlipTolerance, Ok([4.0, 1.2]));
-        estimate.set(Part::Mesh, Err("there is no coarser mesh".to_owned()));
-        estimate.set(Part::Updates, Ok([0.0, f64::NAN]));
+        let parts = [
+            (Part::Increments, Ok([-3.0, 0.5])),
+            (Part::SlipTolerance, Ok([4.0, 1.2])),
+            (Part::Mesh, Err("there is no coarser mesh".to_owned())),
+            (Part::Updates, Ok([0.0, f64::NAN])),
+        ];
+        let estimate = ErrorEstimate::of(200.0, 0.1, parts);
         assert_eq!(estimate.mass_loss_percent.total, 5.0);
         assert_eq!(estimate.max_depth_percent.total, 1.3);
+        assert_eq!(estimate.mass_loss_mg.increments, Some(-6.0));
+        assert_eq!(estimate.mass_loss_mg.total, 10.0);
+        assert_eq!(estimate.max_depth_mm.slip_tolerance, Some(0.0012));
         assert_eq!(estimate.mass_loss_percent.mesh, None);
         assert_eq!(estimate.not_estimated["mesh"], "there is no coarser mesh");
         assert_eq!(estimate.not_estimated["updates"], "nothing was worn");

@@ -50,6 +50,13 @@ impl March {
         Self::placed(prepared(change(self.test), averaged_mm2))
     }
 
+    /// The same march with its machine in the middle of a motion, such as that of another march;
+    /// the next cycle repeats itself sooner, the nearer that is to its own.
+    pub fn in_motion(mut self, machine: MachineState) -> Self {
+        self.state.machine = machine;
+        self
+    }
+
     fn placed(test: WearTest) -> Result<Self, PlacementError> {
         let mut effort = Effort::default();
         let (chain, settled) = place(&test, &mut effort)?;
@@ -62,6 +69,7 @@ impl March {
             effort,
             first_and_last: None,
             first_step: None,
+            first_cycle_end: None,
             last_step: None,
             settled_error: StepError::default(),
             step_error: StepError::default(),
@@ -154,7 +162,7 @@ impl March {
         let step = Step::next(before, &self.test.schedule);
         let worn_mm3 = total(&rates.area_mm2, &step.depth_mm);
         let settled_error = self.state.settled_error.after(before);
-        let step_error = settled_error.with_last(before, step.interval, worn_mm3);
+        let step_error = settled_error.with_last(before, &step);
         self.wear_down(&surface, &cycle, &rates, &step)?;
         self.state.effort = effort;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
@@ -163,6 +171,7 @@ impl March {
         let remembered = step.remembered(rates);
         if self.state.first_step.is_none() {
             self.state.first_step = Some(remembered.clone());
+            self.state.first_cycle_end = Some(cycle.end);
         }
         self.state.last_step = Some(remembered);
         self.keep(cycle, cycles);

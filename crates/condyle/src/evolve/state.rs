@@ -27,6 +27,8 @@ pub struct MarchState {
     pub first_and_last: Option<(CycleRecord, CycleRecord)>,
     /// The first step, on the unworn insert.
     pub first_step: Option<StepRecord>,
+    /// The machine at the end of the first cycle that repeated itself.
+    pub first_cycle_end: Option<MachineState>,
     /// The step before, which the next one is extrapolated from.
     pub last_step: Option<StepRecord>,
     /// What the steps but the last have cost in accuracy.

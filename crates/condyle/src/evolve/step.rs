@@ -26,6 +26,8 @@ pub struct StepRecord {
     pub interval: f64,
     /// Depth that a cycle wore at every surface node when it began, mm.
     pub depth_per_cycle_mm: Vec<f64>,
+    /// Depth that it took at every surface node, mm.
+    pub depth_mm: Vec<f64>,
     /// Volume that a cycle wore when it began, mm3.
     pub volume_per_cycle_mm3: f64,
     /// Volume that it took, mm3.
@@ -53,36 +55,33 @@ impl Step {
     /// The next step of a march by `schedule`.
     pub fn next(before: Before<'_>, schedule: &Schedule) -> Self {
         let left = schedule.cycles - before.cycles;
-        match schedule.updates {
+        let (interval, is_last) = match schedule.updates {
             Updates::Even(updates) => {
                 let interval = schedule.cycles / updates as f64;
-                let is_last = before.updates + 1 >= updates;
-                Self {
-                    interval,
-                    cycles_after: after(before.cycles, interval, is_last, schedule),
-                    depth_mm: straight(before.rates, interval),
-                }
+                (interval, before.updates + 1 >= updates)
             }
             Updates::ByDepth { tolerance } => {
                 let wished = adaptive_interval(before, schedule.cycles, tolerance);
                 let interval = shared_out(left, wished);
-                Self {
-                    interval,
-                    cycles_after: after(before.cycles, interval, interval >= left, schedule),
-                    depth_mm: extrapolated(before.rates, before.last, interval),
-                }
+                (interval, interval >= left)
             }
+        };
+        Self {
+            interval,
+            cycles_after: after(before.cycles, interval, is_last, schedule),
+            depth_mm: extrapolated(before.rates, before.last, interval),
         }
     }
 
     /// What the next step remembers of this one.
-    pub fn remembered(&self, rates: Rates) -> StepRecord {
+    pub fn remembered(self, rates: Rates) -> StepRecord {
         StepRecord {
             interval: self.interval,
             volume_per_cycle_mm3: rates.volume_per_cycle_mm3(),
             volume_mm3: total(&rates.area_mm2, &self.depth_mm),
             relaxation_per_cycle: rates.relaxation_per_cycle,
             depth_per_cycle_mm: rates.depth_per_cycle_mm,
+            depth_mm: self.depth_mm,
         }
     }
 }

@@ -3,16 +3,18 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    interval::{deepest, foreseen_error_mm},
-    step::{Before, StepRecord},
+    interval::{deepest, second_order},
+    rates::total,
+    step::{Before, Step},
 };
 
-/// Estimated error of a march from the length of its steps alone.
+/// Estimated error of a march from the length of its steps alone: what the exact march would have
+/// worn more.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepError {
-    /// Volume that the exact march would have worn more, mm3.
+    /// In volume, mm3.
     pub volume_mm3: f64,
-    /// Error of the maximum depth, mm, 0 or more.
+    /// In maximum depth, mm.
     pub max_depth_mm: f64,
 }
 
@@ -26,28 +28,35 @@ impl StepError {
         let Some(last) = before.last else {
             return self;
         };
-        let mean = (before.rates.volume_per_cycle_mm3() + last.volume_per_cycle_mm3) / 2.0;
-        let rates = &before.rates.depth_per_cycle_mm;
-        let missed =
-            |node: usize| last.interval / 2.0 * (rates[node] - last.depth_per_cycle_mm[node]);
-        let missed_mm = (deepest(before, missed) - deepest(before, |_| 0.0)).abs();
+        let now = before.rates;
+        let mean = (now.volume_per_cycle_mm3() + last.volume_per_cycle_mm3) / 2.0;
+        let missed = |node: usize| {
+            let mean = (now.depth_per_cycle_mm[node] + last.depth_per_cycle_mm[node]) / 2.0;
+            mean * last.interval - last.depth_mm[node]
+        };
         Self {
             volume_mm3: self.volume_mm3 + mean * last.interval - last.volume_mm3,
-            max_depth_mm: self.max_depth_mm / (1.0 + last.relaxation_per_cycle * last.interval)
-                + missed_mm,
+            max_depth_mm: faded(self.max_depth_mm, last.relaxation_per_cycle * last.interval)
+                + deepest(before, missed)
+                - deepest(before, |_| 0.0),
         }
     }
 
-    /// With the last step added, `interval` cycles after `before`, foreseen from the rates so far.
-    pub(super) fn with_last(self, before: Before<'_>, interval: f64, taken_mm3: f64) -> Self {
-        let now = before.rates.volume_per_cycle_mm3();
-        let change = |last: &StepRecord| (now - last.volume_per_cycle_mm3) / last.interval;
-        let slope = before.last.map_or(0.0, change);
-        let exact_mm3 = now * interval + slope * interval * interval / 2.0;
-        let faded = 1.0 + before.rates.relaxation_per_cycle * interval;
+    /// With the last step added, foreseen from the rates so far.
+    pub(super) fn with_last(self, before: Before<'_>, step: &Step) -> Self {
+        let exact = |node| second_order(before, node, step.interval);
+        let exact_mm: Vec<f64> = (0..step.depth_mm.len()).map(exact).collect();
+        let volume = |depth_mm: &[f64]| total(&before.rates.area_mm2, depth_mm);
+        let relaxed = before.rates.relaxation_per_cycle * step.interval;
         Self {
-            volume_mm3: self.volume_mm3 + exact_mm3 - taken_mm3,
-            max_depth_mm: self.max_depth_mm / faded + foreseen_error_mm(before, interval),
+            volume_mm3: self.volume_mm3 + volume(&exact_mm) - volume(&step.depth_mm),
+            max_depth_mm: faded(self.max_depth_mm, relaxed)
+                + deepest(before, |node| exact_mm[node])
+                - deepest(before, |node| step.depth_mm[node]),
         }
     }
+}
+
+fn faded(error: f64, relaxed: f64) -> f64 {
+    error / (1.0 + relaxed)
 }
