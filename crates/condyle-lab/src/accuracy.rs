@@ -1,15 +1,18 @@
 //! How far a run's mass loss and maximum depth lie from what finer steps and meshes would give.
 //!
-//! The cycle on the unworn insert is solved again, each time with one of increments, slip
-//! tolerance and mesh changed; by how much what it wears changes tells the error of the run, from
-//! the order at which it falls. What the length of the march's steps costs is known from the
-//! march itself.
+//! Two cycles on the way are solved again with finer increments, and with a looser slip tolerance;
+//! the first one, on the unworn insert, with a coarser mesh. By how much what they wear changes
+//! tells the error of the run, from the order at which it falls. What the length of the march's
+//! steps costs is known from the march itself.
 
 use std::ops::ControlFlow;
 
 use condyle::{
     contact::FoundationSettings,
-    evolve::{March, MarchError, MarchState, PlacementError, Schedule, StepRecord, WearTest},
+    evolve::{
+        March, MarchError, MarchState, PlacementError, Schedule, StepRecord, Waypoint, WearTest,
+    },
+    geometry::Insert,
     machine::{CycleError, MachineState, TimeSettings},
 };
 use condyle_io::{
@@ -51,16 +54,16 @@ pub(crate) fn estimate(
     let Some(mut again) = Again::of(march, watch) else {
         return Ok(None);
     };
-    let finer = known(again.error(FINER_INCREMENTS, |mut test| {
+    let finer = known(again.on_the_way(FINER_INCREMENTS, |mut test| {
         test.time.increments *= 2;
         test
     }))?;
-    let looser = known(again.error(LOOSER_SLIP, |mut test| {
+    let looser = known(again.once(LOOSER_SLIP, |mut test| {
         test.contact.slip_tolerance_mm_per_s *= 2.0;
         test
     }))?;
     let coarser = match case.coarser_insert() {
-        Ok(insert) => known(again.error(COARSER_MESH, |test| WearTest { insert, ..test }))?,
+        Ok(insert) => known(again.unworn(COARSER_MESH, insert))?,
         Err(why) => Err(why),
     };
     let parts = [
@@ -92,16 +95,16 @@ fn of_updates(state: &MarchState) -> Result<[f64; 2], String> {
     ])
 }
 
-/// The unworn cycle, solved again.
+/// Cycles of a run, solved again.
 struct Again<'a> {
     /// Nothing once it has been lost to a test that could not start.
     march: Option<March>,
     time: TimeSettings,
     contact: FoundationSettings,
-    /// The motion that the run's first cycle ended with: every cycle solved again is near it.
-    motion: MachineState,
-    /// What the run's first cycle wore.
-    first: StepRecord,
+    /// What the run's first cycle wore, and the motion it ended with.
+    first: (StepRecord, MachineState),
+    /// Cycles on the way, which stand for all, one if both are the same.
+    waypoints: Vec<Waypoint>,
     scar: Scar,
     /// By what power of the rates volume loss and maximum depth grow.
     growth: [f64; 2],
@@ -114,46 +117,115 @@ impl<'a> Again<'a> {
         Some(Self {
             time: march.test().time,
             contact: march.test().contact.clone(),
-            motion: state.first_cycle_end?,
             first: state.first_step.clone()?,
-            growth: growth(state)?,
+            waypoints: waypoints(state),
             scar: Scar::of(&march),
+            growth: growth(state)?,
             march: Some(march),
             watch,
         })
     }
 
-    /// Errors of mass loss and maximum depth in %: `factor` times what the change makes.
-    fn error(
+    /// Errors of mass loss and maximum depth in %: `factor` times what a change makes on the way,
+    /// the mean of the waypoints.
+    fn on_the_way(
         &mut self,
         factor: f64,
-        change: impl FnOnce(WearTest) -> WearTest,
+        change: impl Fn(WearTest) -> WearTest,
     ) -> Result<[f64; 2], Without> {
-        let mut march = self.restarted(change)?;
-        let reference = self.scar.worn(&march, &self.first.depth_per_cycle_mm);
-        let solved = march.update(&mut |_| (self.watch)()).map(|_| ());
-        let first = march.state().first_step.as_ref();
-        let worn = first.map(|first| self.scar.worn(&march, &first.depth_per_cycle_mm));
-        self.march = Some(march);
-        solved?;
-        let worn = worn.ok_or_else(|| Without::Reason("nothing was worn".to_owned()))?;
-        let change = |i: usize| 100.0 * factor * (worn[i] / reference[i] - 1.0);
-        Ok([0, 1].map(|i| self.growth[i] * change(i)))
+        let count = self.waypoints.len();
+        let mut mean = [0.0; 2];
+        for waypoint in 0..count {
+            let here = self.at(waypoint, factor, &change)?;
+            mean = [0, 1].map(|i| mean[i] + here[i] / count as f64);
+        }
+        Ok(mean)
     }
 
-    /// The test changed, unworn, in the run's motion; so short that it stays unworn.
-    fn restarted(&mut self, change: impl FnOnce(WearTest) -> WearTest) -> Result<March, Without> {
+    /// The same at the last waypoint alone, for a change that makes much the same all the way.
+    fn once(
+        &mut self,
+        factor: f64,
+        change: impl Fn(WearTest) -> WearTest,
+    ) -> Result<[f64; 2], Without> {
+        self.at(self.waypoints.len() - 1, factor, &change)
+    }
+
+    fn at(
+        &mut self,
+        waypoint: usize,
+        factor: f64,
+        change: &impl Fn(WearTest) -> WearTest,
+    ) -> Result<[f64; 2], Without> {
+        let (march, as_run) = (self.taken()?, self.as_run());
+        let waypoint = &self.waypoints[waypoint];
+        let march = march.returned_to(waypoint, |test| change(as_run(test)));
+        let weights = self.scar.weights();
+        let reference = worn(&waypoint.step, &weights);
+        self.solved(march, &weights, reference, factor)
+    }
+
+    /// The same of another mesh, unworn.
+    fn unworn(&mut self, factor: f64, insert: Insert) -> Result<[f64; 2], Without> {
+        let as_run = self.as_run();
+        let march = self.taken()?;
+        let march = march.restarted(|test| as_run(WearTest { insert, ..test }))?;
+        let reference = worn(&self.first.0, &self.scar.weights());
+        let weights = self.scar.weights_on(&march);
+        self.solved(march.in_motion(self.first.1), &weights, reference, factor)
+    }
+
+    fn taken(&mut self) -> Result<March, Without> {
         let lost = || Without::Reason("the part before it could not be solved".to_owned());
-        let march = self.march.take().ok_or_else(lost)?;
-        let unchanged = |test| WearTest {
-            time: self.time,
-            contact: self.contact.clone(),
+        self.march.take().ok_or_else(lost)
+    }
+
+    /// What makes a test that of the run again, but so short that nothing to speak of is worn.
+    fn as_run(&self) -> impl FnOnce(WearTest) -> WearTest + use<> {
+        let (time, contact) = (self.time, self.contact.clone());
+        move |test| WearTest {
+            time,
+            contact,
             schedule: Schedule::evenly(1.0, 1),
             ..test
-        };
-        let march = march.restarted(|test| change(unchanged(test)))?;
-        Ok(march.in_motion(self.motion))
+        }
     }
+
+    fn solved(
+        &mut self,
+        mut march: March,
+        weights: &[f64],
+        reference: [f64; 2],
+        factor: f64,
+    ) -> Result<[f64; 2], Without> {
+        let solved = march.update(&mut |_| (self.watch)()).map(|_| ());
+        let now = match &march.state().first_step {
+            Some((step, _)) => worn(step, weights),
+            None => [0.0; 2],
+        };
+        self.march = Some(march);
+        solved?;
+        Ok([0, 1].map(|i| self.growth[i] * 100.0 * factor * (now[i] / reference[i] - 1.0)))
+    }
+}
+
+fn waypoints(state: &MarchState) -> Vec<Waypoint> {
+    let mut waypoints: Vec<Waypoint> = state.waypoints.iter().flatten().cloned().collect();
+    waypoints.dedup_by(|a, b| a.worn_mm == b.worn_mm);
+    waypoints
+}
+
+/// The volume that a cycle wore, and the mean of its depth by `weights`.
+fn worn(step: &StepRecord, weights: &[f64]) -> [f64; 2] {
+    let weighted = || {
+        step.area_mm2
+            .iter()
+            .zip(weights)
+            .map(|(area, weight)| area * weight)
+    };
+    let rates = weighted().zip(&step.depth_per_cycle_mm);
+    let deep: f64 = rates.map(|(weight, rate)| weight * rate).sum();
+    [step.volume_per_cycle_mm3(), deep / weighted().sum::<f64>()]
 }
 
 impl From<PlacementError> for Without {
@@ -184,12 +256,12 @@ fn growth(state: &MarchState) -> Option<[f64; 2]> {
     let rates = state.worn_mm.iter().zip(&step.depth_per_cycle_mm);
     let (_, rate) = rates.max_by(|a, b| a.0.total_cmp(b.0))?;
     Some([
-        step.volume_per_cycle_mm3 * last.cycles / last.volume_loss_mm3,
+        step.volume_per_cycle_mm3() * last.cycles / last.volume_loss_mm3,
         rate * last.cycles / last.max_depth_mm,
     ])
 }
 
-/// Where the insert is worn in the end: (x, z) of its nodes and their depth as a part of the largest.
+/// Where the insert is worn in the end: (x, z) of its nodes, and their depth as a part of the largest.
 struct Scar(Vec<([f64; 2], f64)>);
 
 impl Scar {
@@ -200,28 +272,23 @@ impl Scar {
         Self(places(march).zip(depths).collect())
     }
 
-    /// How deep it is at a place: that of the nearest node.
-    fn depth(&self, [x, z]: [f64; 2]) -> f64 {
-        let apart2 = |[a, b]: [f64; 2]| (a - x).powi(2) + (b - z).powi(2);
-        let nodes = self.0.iter().map(|(place, depth)| (apart2(*place), *depth));
-        nodes
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map_or(0.0, |(_, depth)| depth)
+    /// How much every node counts for the maximum depth.
+    fn weights(&self) -> Vec<f64> {
+        let depths = self.0.iter().map(|(_, depth)| depth);
+        depths.map(|depth| depth.powi(DEEP_POWER)).collect()
     }
 
-    /// The volume that these rates wear from the surface of `march`, and the mean of the rates
-    /// where the scar is deep.
-    fn worn(&self, march: &March, rates: &[f64]) -> [f64; 2] {
-        let shares = &march.test().insert.surface().shares;
-        let nodes = shares.iter().zip(places(march)).zip(rates);
-        let [mut volume, mut deep, mut all] = [0.0; 3];
-        for ((share, place), rate) in nodes {
-            let weight = share.area_mm2 * self.depth(place).powi(DEEP_POWER);
-            volume += share.area_mm2 * rate;
-            deep += weight * rate;
-            all += weight;
-        }
-        [volume, deep / all]
+    /// The same on another mesh, whose nodes are as deep as the nearest one here.
+    fn weights_on(&self, march: &March) -> Vec<f64> {
+        let depth = |[x, z]: [f64; 2]| {
+            let apart2 = |[a, b]: [f64; 2]| (a - x).powi(2) + (b - z).powi(2);
+            let nodes = self.0.iter().map(|(place, depth)| (apart2(*place), *depth));
+            let nearest = nodes.min_by(|a, b| a.0.total_cmp(&b.0));
+            nearest.map_or(0.0, |(_, depth)| depth)
+        };
+        places(march)
+            .map(|place| depth(place).powi(DEEP_POWER))
+            .collect()
     }
 }
 

@@ -2,8 +2,11 @@
 
 use super::step::{Before, StepRecord};
 
-/// The first step takes this share of the test at most: nothing is known yet of how rates change.
+/// The first step takes this share of the test at most, since nothing is known yet of how rates
+/// change, ...
 const FIRST_SHARE: f64 = 0.12;
+/// ... and less where the tolerance is smaller than this: the error of a step is second order.
+const FIRST_TOLERANCE: f64 = 0.05;
 /// A step is at most this many times as long as the one before, ...
 const MOST_GROWTH: f64 = 2.0;
 /// ... and at least this many times.
@@ -20,7 +23,8 @@ pub(super) fn adaptive_interval(before: Before<'_>, all_cycles: f64, tolerance: 
     let left = all_cycles - before.cycles;
     let stable = LONGEST / before.rates.relaxation_per_cycle.max(f64::MIN_POSITIVE);
     let Some(last) = before.last else {
-        return stable.min(FIRST_SHARE * all_cycles);
+        let share = FIRST_SHARE * (tolerance / FIRST_TOLERANCE).sqrt().min(1.0);
+        return stable.min(share * all_cycles);
     };
     let expected_mm = deepest(before, |node| before.rates.depth_per_cycle_mm[node] * left);
     let shortest = LEAST_GROWTH * last.interval;
@@ -78,9 +82,8 @@ mod tests {
         StepRecord {
             interval,
             depth_per_cycle_mm: vec![depth_per_cycle_mm],
-            volume_per_cycle_mm3: depth_per_cycle_mm,
             depth_mm: vec![depth_per_cycle_mm * interval],
-            volume_mm3: depth_per_cycle_mm * interval,
+            area_mm2: vec![1.0],
             relaxation_per_cycle: 0.0,
         }
     }

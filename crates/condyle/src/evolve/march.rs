@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use super::{
-    CycleRecord, MarchError, MarchState, NodeFields, PlacementError, Progress, StepError,
-    UpdateRecord, Updates, WearTest,
+    CycleRecord, MarchError, MarchState, NodeFields, PlacementError, Progress, UpdateRecord,
+    Updates, Waypoint, WearTest,
     interval::shared_out,
     placement::place,
     rates::{Rates, total},
@@ -57,22 +57,31 @@ impl March {
         self
     }
 
+    /// The same bodies in a test changed otherwise, from a step on the way as if it were the first.
+    pub fn returned_to(
+        mut self,
+        waypoint: &Waypoint,
+        change: impl FnOnce(WearTest) -> WearTest,
+    ) -> Self {
+        let (nodes, worn_mm) = (waypoint.mesh_nodes.clone(), waypoint.worn_mm.clone());
+        self.test = change(self.test);
+        self.test.insert.restore(nodes.clone(), &worn_mm);
+        self.fields = NodeFields::unworn(&self.test, &worn_mm);
+        self.state = MarchState::at(nodes, worn_mm, waypoint.machine, self.state.zero_mm);
+        self
+    }
+
     fn placed(test: WearTest) -> Result<Self, PlacementError> {
         let mut effort = Effort::default();
         let (chain, settled) = place(&test, &mut effort)?;
         let state = MarchState {
-            updates: Vec::new(),
-            mesh_nodes: test.insert.mesh().nodes.clone(),
-            worn_mm: vec![0.0; test.insert.surface_nodes().len()],
-            machine: MachineState::at_rest(&test.machine, settled),
-            zero_mm: chain.zero_mm(),
             effort,
-            first_and_last: None,
-            first_step: None,
-            first_cycle_end: None,
-            last_step: None,
-            settled_error: StepError::default(),
-            step_error: StepError::default(),
+            ..MarchState::at(
+                test.insert.mesh().nodes.clone(),
+                vec![0.0; test.insert.surface_nodes().len()],
+                MachineState::at_rest(&test.machine, settled),
+                chain.zero_mm(),
+            )
         };
         Ok(Self::from_parts(test, chain, state))
     }
@@ -163,17 +172,20 @@ impl March {
         let worn_mm3 = total(&rates.area_mm2, &step.depth_mm);
         let settled_error = self.state.settled_error.after(before);
         let step_error = settled_error.with_last(before, &step);
+        let (mesh_nodes, worn_mm) = (self.state.mesh_nodes.clone(), self.state.worn_mm.clone());
         self.wear_down(&surface, &cycle, &rates, &step)?;
         self.state.effort = effort;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
         let record = self.record(&cycle, &step, worn_mm3);
         self.state.updates.push(record);
-        let remembered = step.remembered(rates);
-        if self.state.first_step.is_none() {
-            self.state.first_step = Some(remembered.clone());
-            self.state.first_cycle_end = Some(cycle.end);
-        }
-        self.state.last_step = Some(remembered);
+        let waypoint = Waypoint {
+            step: step.remembered(rates),
+            mesh_nodes,
+            worn_mm,
+            machine: cycle.end,
+        };
+        let part = cycles / self.test.schedule.cycles;
+        self.state.pass(part, waypoint);
         self.keep(cycle, cycles);
         Ok(&self.state.updates[update - 1])
     }

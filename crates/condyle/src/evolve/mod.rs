@@ -17,7 +17,7 @@ pub use march_error::MarchError;
 pub use placement::PlacementError;
 pub use records::{CycleRecord, NodeFields, Progress, UpdateRecord};
 pub use schedule::{Schedule, Updates};
-pub use state::MarchState;
+pub use state::{MarchState, WAYPOINTS, Waypoint};
 pub use step::StepRecord;
 pub use step_error::StepError;
 pub use wear_test::WearTest;

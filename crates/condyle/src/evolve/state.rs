@@ -8,6 +8,23 @@ use crate::{
     machine::{Effort, MachineState},
 };
 
+/// Parts of the cycles at which two values stand for all: the mean of a cubic polynomial is that
+/// of its values here, (1 -+ 1/sqrt 3) / 2 (Gauss's rule of two points).
+pub const WAYPOINTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+
+/// A step on the way, and the insert and the motion that it began with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Waypoint {
+    /// The step.
+    pub step: StepRecord,
+    /// Nodes of the mesh before it.
+    pub mesh_nodes: Vec<Vec3>,
+    /// Depth worn at each surface node before it, mm.
+    pub worn_mm: Vec<f64>,
+    /// The machine at the end of its cycle.
+    pub machine: MachineState,
+}
+
 /// All that a march must remember to go on from an update, to the same bytes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MarchState {
@@ -25,14 +42,52 @@ pub struct MarchState {
     pub effort: Effort,
     /// The first cycle and the last one solved.
     pub first_and_last: Option<(CycleRecord, CycleRecord)>,
-    /// The first step, on the unworn insert.
-    pub first_step: Option<StepRecord>,
-    /// The machine at the end of the first cycle that repeated itself.
-    pub first_cycle_end: Option<MachineState>,
+    /// The first step, on the unworn insert, and the machine at the end of its cycle.
+    pub first_step: Option<(StepRecord, MachineState)>,
+    /// The last steps that began before each of [`WAYPOINTS`]; none before the first.
+    pub waypoints: [Option<Waypoint>; 2],
     /// The step before, which the next one is extrapolated from.
     pub last_step: Option<StepRecord>,
     /// What the steps but the last have cost in accuracy.
     pub settled_error: StepError,
     /// What all steps have cost in accuracy, that of the last foreseen.
     pub step_error: StepError,
+}
+
+impl MarchState {
+    /// Remembers a step that began when this part of the cycles was done.
+    pub(super) fn pass(&mut self, part: f64, waypoint: Waypoint) {
+        if self.first_step.is_none() {
+            self.first_step = Some((waypoint.step.clone(), waypoint.machine));
+        }
+        self.last_step = Some(waypoint.step.clone());
+        for (at, kept) in WAYPOINTS.iter().zip(&mut self.waypoints) {
+            if part <= *at {
+                *kept = Some(waypoint.clone());
+            }
+        }
+    }
+
+    /// Before the first update, on an insert worn by `worn_mm`.
+    pub(super) fn at(
+        mesh_nodes: Vec<Vec3>,
+        worn_mm: Vec<f64>,
+        machine: MachineState,
+        zero_mm: Vec3,
+    ) -> Self {
+        Self {
+            updates: Vec::new(),
+            mesh_nodes,
+            worn_mm,
+            machine,
+            zero_mm,
+            effort: Effort::default(),
+            first_and_last: None,
+            first_step: None,
+            waypoints: [None, None],
+            last_step: None,
+            settled_error: StepError::default(),
+            step_error: StepError::default(),
+        }
+    }
 }

@@ -28,12 +28,22 @@ pub struct StepRecord {
     pub depth_per_cycle_mm: Vec<f64>,
     /// Depth that it took at every surface node, mm.
     pub depth_mm: Vec<f64>,
-    /// Volume that a cycle wore when it began, mm3.
-    pub volume_per_cycle_mm3: f64,
-    /// Volume that it took, mm3.
-    pub volume_mm3: f64,
+    /// Area of every surface node's share when it began, mm2.
+    pub area_mm2: Vec<f64>,
     /// How fast wear flattened the pressure when it began, a cycle.
     pub relaxation_per_cycle: f64,
+}
+
+impl StepRecord {
+    /// Volume that a cycle wore when it began, mm3.
+    pub fn volume_per_cycle_mm3(&self) -> f64 {
+        total(&self.area_mm2, &self.depth_per_cycle_mm)
+    }
+
+    /// Volume that it took, mm3.
+    pub fn volume_mm3(&self) -> f64 {
+        total(&self.area_mm2, &self.depth_mm)
+    }
 }
 
 /// Where a march stands before a step.
@@ -77,11 +87,10 @@ impl Step {
     pub fn remembered(self, rates: Rates) -> StepRecord {
         StepRecord {
             interval: self.interval,
-            volume_per_cycle_mm3: rates.volume_per_cycle_mm3(),
-            volume_mm3: total(&rates.area_mm2, &self.depth_mm),
             relaxation_per_cycle: rates.relaxation_per_cycle,
             depth_per_cycle_mm: rates.depth_per_cycle_mm,
             depth_mm: self.depth_mm,
+            area_mm2: rates.area_mm2,
         }
     }
 }
@@ -112,7 +121,7 @@ fn extrapolated(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<
     let Some(last) = last else {
         return depth_mm;
     };
-    let change = rates.volume_per_cycle_mm3() - last.volume_per_cycle_mm3;
+    let change = rates.volume_per_cycle_mm3() - last.volume_per_cycle_mm3();
     let added_mm3 = interval * interval / (2.0 * last.interval) * change;
     let towards = |(now, before): (&f64, &f64)| (now - before).max(0.0) * change.signum();
     let pattern: Vec<f64> = match change >= 0.0 {

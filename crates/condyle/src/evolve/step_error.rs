@@ -8,13 +8,12 @@ use super::{
     step::{Before, Step},
 };
 
-/// Estimated error of a march from the length of its steps alone: what the exact march would have
-/// worn more.
+/// Estimated error of a march from the length of its steps alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepError {
-    /// In volume, mm3.
+    /// Volume that the exact march would have worn more, mm3.
     pub volume_mm3: f64,
-    /// In maximum depth, mm.
+    /// Error of the maximum depth, mm, 0 or more.
     pub max_depth_mm: f64,
 }
 
@@ -23,22 +22,22 @@ impl StepError {
     ///
     /// Volume: the trapezoidal rule against what the step took; errors add up. Depth: the same at
     /// the deepest node; a node that is too deep wears less thereafter, so that an error made
-    /// earlier shrinks by 1 / (1 + relaxation x interval) with every step.
+    /// earlier fades. Errors of depth change their sign from step to step, so that their squares
+    /// are added.
     pub(super) fn after(self, before: Before<'_>) -> Self {
         let Some(last) = before.last else {
             return self;
         };
         let now = before.rates;
-        let mean = (now.volume_per_cycle_mm3() + last.volume_per_cycle_mm3) / 2.0;
+        let mean = (now.volume_per_cycle_mm3() + last.volume_per_cycle_mm3()) / 2.0;
         let missed = |node: usize| {
             let mean = (now.depth_per_cycle_mm[node] + last.depth_per_cycle_mm[node]) / 2.0;
             mean * last.interval - last.depth_mm[node]
         };
         Self {
-            volume_mm3: self.volume_mm3 + mean * last.interval - last.volume_mm3,
+            volume_mm3: self.volume_mm3 + mean * last.interval - last.volume_mm3(),
             max_depth_mm: faded(self.max_depth_mm, last.relaxation_per_cycle * last.interval)
-                + deepest(before, missed)
-                - deepest(before, |_| 0.0),
+                .hypot(deepest(before, missed) - deepest(before, |_| 0.0)),
         }
     }
 
@@ -47,16 +46,19 @@ impl StepError {
         let exact = |node| second_order(before, node, step.interval);
         let exact_mm: Vec<f64> = (0..step.depth_mm.len()).map(exact).collect();
         let volume = |depth_mm: &[f64]| total(&before.rates.area_mm2, depth_mm);
+        let missed_mm =
+            deepest(before, |node| exact_mm[node]) - deepest(before, |node| step.depth_mm[node]);
         let relaxed = before.rates.relaxation_per_cycle * step.interval;
         Self {
             volume_mm3: self.volume_mm3 + volume(&exact_mm) - volume(&step.depth_mm),
-            max_depth_mm: faded(self.max_depth_mm, relaxed)
-                + deepest(before, |node| exact_mm[node])
-                - deepest(before, |node| step.depth_mm[node]),
+            max_depth_mm: faded(self.max_depth_mm, relaxed).hypot(missed_mm),
         }
     }
 }
 
+/// What is left of an error after a step of `relaxed` = relaxation x interval: as much of it as
+/// Euler's method leaves, |1 - relaxed|, but no more than the exact march, 1 / (1 + relaxed), since
+/// what wears too little in one step wears more in the next, and never less than nothing.
 fn faded(error: f64, relaxed: f64) -> f64 {
-    error / (1.0 + relaxed)
+    error * (1.0 - relaxed).abs().min(1.0 / (1.0 + relaxed))
 }
