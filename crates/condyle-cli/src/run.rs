@@ -95,11 +95,21 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) {
     if doubtful > 0 {
         println!("warning: in {doubtful} updates no cycle repeated itself within the tolerance");
     }
+    for (part, why) in not_estimated(summary) {
+        println!("warning: the error from {part} could not be estimated: {why}");
+    }
     println!(
         "results in {}; open {}",
         options.out.display(),
         options.out.join("report.html").display()
     );
+}
+
+/// Parts of the error that have no estimate, and why.
+fn not_estimated(summary: &Summary) -> impl Iterator<Item = (String, &String)> {
+    let error = summary.error.iter();
+    let parts = error.flat_map(|error| &error.not_estimated);
+    parts.map(|(part, why)| (part.replace('_', " "), why))
 }
 
 fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
@@ -110,7 +120,7 @@ fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
         ..
     } = summary;
     let parts = |of: fn(&ErrorEstimate) -> &ErrorParts| summary.error.as_ref().map(of);
-    vec![
+    let mut rows = vec![
         ("gait cycles", format!("{:.0}", summary.cycles)),
         (
             "mass loss",
@@ -167,29 +177,48 @@ fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
             format!("{}, {:.3}", summary.hexahedra, summary.worst_quality),
         ),
         ("time, solver only", format!("{:.3} s", summary.wall_s)),
+    ];
+    if let Some(error) = &summary.error {
+        rows.extend(rows_of_error(error));
+    }
+    rows
+}
+
+/// Where the discretisation error comes from: signed, what finer values would change.
+fn rows_of_error(error: &ErrorEstimate) -> [(&'static str, String); 3] {
+    [
+        (
+            "error of mass, by parts",
+            in_parts(&error.mass_loss_percent),
+        ),
+        (
+            "error of depth, by parts",
+            in_parts(&error.max_depth_percent),
+        ),
+        ("time, error estimate", format!("{:.3} s", error.wall_s)),
     ]
 }
 
-/// A number with its unit and what is known of its discretisation error.
-fn with_error(value: f64, digits: usize, unit: &str, error: Option<&ErrorParts>) -> String {
-    let plain = format!("{value:.digits$}");
-    let Some(error) = error else {
-        return format!("{plain} {unit}");
-    };
-    let part = |name: &str, percent: Option<f64>| match percent {
-        Some(percent) => format!("{name} {:.2}", percent.abs()),
+fn in_parts(error: &ErrorParts) -> String {
+    let part = |(name, percent): (&str, Option<f64>)| match percent {
+        Some(percent) => format!("{name} {percent:+.2} %"),
         None => format!("{name} unknown"),
     };
     let parts = [
-        part("increments", error.increments),
-        part("updates", error.updates),
-        part("mesh", error.mesh),
-        part("slip tolerance", error.slip_tolerance),
+        ("increments", error.increments),
+        ("updates", error.updates),
+        ("mesh", error.mesh),
+        ("slip tolerance", error.slip_tolerance),
     ];
-    let off = value * error.total / 100.0;
-    format!(
-        "{plain} +/- {off:.digits$} {unit} (discretisation, {:.2} %: {})",
-        error.total,
-        parts.join(", ")
-    )
+    parts.map(part).join(", ")
+}
+
+/// A number with its unit and its estimated discretisation error.
+fn with_error(value: f64, digits: usize, unit: &str, error: Option<&ErrorParts>) -> String {
+    let plain = format!("{value:.digits$} {unit}");
+    let Some(ErrorParts { total, .. }) = error else {
+        return plain;
+    };
+    let off = value * total / 100.0;
+    format!("{plain}, discretisation error +/- {off:.digits$} {unit} ({total:.2} %)")
 }

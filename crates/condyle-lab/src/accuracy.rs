@@ -114,13 +114,14 @@ struct Again<'a> {
 impl<'a> Again<'a> {
     fn of(march: March, watch: &'a mut dyn FnMut() -> ControlFlow<()>) -> Option<Self> {
         let state = march.state();
+        let scar = Scar::of(&march);
         Some(Self {
             time: march.test().time,
             contact: march.test().contact.clone(),
             first: state.first_step.clone()?,
             waypoints: waypoints(state),
-            scar: Scar::of(&march),
-            growth: growth(state)?,
+            growth: growth(state, &scar)?,
+            scar,
             march: Some(march),
             watch,
         })
@@ -217,15 +218,20 @@ fn waypoints(state: &MarchState) -> Vec<Waypoint> {
 
 /// The volume that a cycle wore, and the mean of its depth by `weights`.
 fn worn(step: &StepRecord, weights: &[f64]) -> [f64; 2] {
-    let weighted = || {
-        step.area_mm2
-            .iter()
-            .zip(weights)
-            .map(|(area, weight)| area * weight)
-    };
-    let rates = weighted().zip(&step.depth_per_cycle_mm);
-    let deep: f64 = rates.map(|(weight, rate)| weight * rate).sum();
-    [step.volume_per_cycle_mm3(), deep / weighted().sum::<f64>()]
+    [
+        step.volume_per_cycle_mm3(),
+        mean(step, weights, &step.depth_per_cycle_mm),
+    ]
+}
+
+/// Mean over the surface by `weights`.
+fn mean(step: &StepRecord, weights: &[f64], values: &[f64]) -> f64 {
+    let [mut sum, mut all] = [0.0; 2];
+    for ((area, weight), value) in step.area_mm2.iter().zip(weights).zip(values) {
+        sum += area * weight * value;
+        all += area * weight;
+    }
+    sum / all
 }
 
 impl From<PlacementError> for Without {
@@ -251,13 +257,14 @@ impl From<MarchError> for Without {
 /// Rates that are 1 % higher all along are a test that is 1 % longer: volume and depth grow by
 /// rate x cycles / (all so far) of that, with the rate of the end. A scar that spreads deepens
 /// more slowly in the end than on the average, and so forgives.
-fn growth(state: &MarchState) -> Option<[f64; 2]> {
+fn growth(state: &MarchState, scar: &Scar) -> Option<[f64; 2]> {
     let (last, step) = (state.updates.last()?, state.last_step.as_ref()?);
-    let rates = state.worn_mm.iter().zip(&step.depth_per_cycle_mm);
-    let (_, rate) = rates.max_by(|a, b| a.0.total_cmp(b.0))?;
+    let weights = scar.weights();
+    let [volume_mm3, depth_mm] = worn(step, &weights);
+    let so_far_mm = mean(step, &weights, &state.worn_mm);
     Some([
-        step.volume_per_cycle_mm3() * last.cycles / last.volume_loss_mm3,
-        rate * last.cycles / last.max_depth_mm,
+        volume_mm3 * last.cycles / last.volume_loss_mm3,
+        depth_mm * last.cycles / so_far_mm,
     ])
 }
 

@@ -1,5 +1,6 @@
 //! The page: what stands on it, and in which order.
 
+mod accuracy;
 mod channels;
 mod compartments;
 mod curves;
@@ -49,6 +50,7 @@ struct Page<'a> {
     small_maps: Vec<maps::Small>,
     numbers: Vec<numbers::Group>,
     checks: Option<String>,
+    accuracy: Option<accuracy::Accuracy>,
     provenance: Vec<story::Fact>,
     case: Option<&'a str>,
 }
@@ -74,6 +76,7 @@ impl<'a> Page<'a> {
             small_maps: maps::small(results, SMALL),
             numbers: numbers::groups(results),
             checks: story::volume_check(results),
+            accuracy: accuracy::accuracy(results),
             provenance: story::provenance(results),
             case: results.case.as_deref(),
         }

@@ -27,6 +27,11 @@ impl Summary {
         self.values.get(key)?.as_str()
     }
 
+    /// The table called `key`.
+    pub fn table(&self, key: &str) -> Option<&Map<String, Value>> {
+        self.values.get(key)?.as_object()
+    }
+
     /// All entries, sorted by name.
     pub fn entries(&self) -> impl Iterator<Item = (&str, &Value)> {
         self.values.iter().map(|(key, value)| (key.as_str(), value))

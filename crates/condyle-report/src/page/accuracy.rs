@@ -1,0 +1,78 @@
+//! The discretisation errors that a run states, and where they come from.
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::number::{fixed, significant};
+use crate::results::Results;
+
+/// The table of estimated errors.
+#[derive(Serialize)]
+pub(super) struct Accuracy {
+    rows: Vec<Row>,
+    /// Why parts have no estimate, a sentence each.
+    missing: Vec<String>,
+}
+
+/// An error of mass loss and of maximum depth: %, mg, %, mm.
+#[derive(Serialize)]
+struct Row {
+    name: &'static str,
+    values: [String; 4],
+    meaning: &'static str,
+}
+
+/// Parts of the error: key in the summary, name, and what would take the error away.
+const PARTS: [(&str, &str, &str); 5] = [
+    (
+        "increments",
+        "Increments",
+        "finer increments of the gait cycle",
+    ),
+    ("updates", "Updates", "more updates of the shape"),
+    ("mesh", "Mesh", "shorter edges of the mesh"),
+    (
+        "slip_tolerance",
+        "Slip tolerance",
+        "friction that sticks rather than creeps",
+    ),
+    ("total", "Together", "root of the sum of squares"),
+];
+
+/// What the summary estimates; none where it estimates nothing.
+pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
+    let error = results.summary.as_ref()?.table("error")?;
+    let row = |(key, name, meaning): &(&'static str, &'static str, &'static str)| Row {
+        name,
+        values: values(error, key),
+        meaning,
+    };
+    Some(Accuracy {
+        rows: PARTS.iter().map(row).collect(),
+        missing: missing(error),
+    })
+}
+
+fn values(error: &Map<String, Value>, part: &str) -> [String; 4] {
+    let number = |table: &str| error.get(table)?.get(part)?.as_f64();
+    let shown = |table: &str, digits: fn(f64) -> String| {
+        number(table).map_or_else(|| String::from("unknown"), digits)
+    };
+    [
+        shown("mass_loss_percent", |percent| fixed(percent, 2)),
+        shown("mass_loss_mg", |mass| significant(mass, 2)),
+        shown("max_depth_percent", |percent| fixed(percent, 2)),
+        shown("max_depth_mm", |depth| significant(depth, 2)),
+    ]
+}
+
+fn missing(error: &Map<String, Value>) -> Vec<String> {
+    let reasons = error.get("not_estimated").and_then(Value::as_object);
+    let sentence = |(part, why): (&String, &Value)| {
+        let (part, why) = (part.replace('_', " "), why.as_str()?);
+        Some(format!(
+            "The error from {part} could not be estimated: {why}."
+        ))
+    };
+    reasons.into_iter().flatten().filter_map(sentence).collect()
+}
