@@ -17,8 +17,6 @@ const DEFAULT_CASE: &str = include_str!("../../cases/stanmore-force.toml");
 /// Accepted error of the mass loss, and of the deepest wear.
 const MASS: f64 = 0.005;
 const DEPTH: f64 = 0.01;
-/// Accepted error of the mass loss by friction that creeps where it should stick.
-const MASS_BY_CREEP: f64 = 0.015;
 
 /// The default case with some of its lines changed.
 struct Finer {
@@ -32,7 +30,7 @@ struct Finer {
 const DEFAULT: Finer = Finer {
     increments: 200,
     edge_mm: 1.05,
-    slip_tolerance_mm_per_s: 1.0,
+    slip_tolerance_mm_per_s: 0.3,
     repeat_tolerance: 0.01,
 };
 
@@ -78,9 +76,9 @@ fn by_mesh() -> [Row; 2] {
     errors("edge 1.05 mm", limit(&two, 2.0), two[0], MASS)
 }
 
-/// `at_default` has the slip tolerance of 1 mm/s.
+/// `at_default` has the slip tolerance of 0.3 mm/s.
 fn by_creep(at_default: Loss) -> [Row; 2] {
-    let [half, quarter] = [0.5, 0.25].map(|slip_tolerance_mm_per_s| {
+    let [half, quarter] = [0.15, 0.075].map(|slip_tolerance_mm_per_s| {
         let finer = Finer {
             slip_tolerance_mm_per_s,
             ..REPEATING
@@ -88,7 +86,7 @@ fn by_creep(at_default: Loss) -> [Row; 2] {
         finer.loss()
     });
     let limit = limit(&[half, quarter], 1.0);
-    let [mass, depth] = errors("slip tolerance 1 mm/s", limit, at_default, MASS_BY_CREEP);
+    let [mass, depth] = errors("slip tolerance 0.3 mm/s", limit, at_default, MASS);
     let three = [at_default, half, quarter];
     [
         mass.with_order(1.0, order(&three, 0), 0.25),
@@ -137,7 +135,7 @@ impl Finer {
         let changes = [
             ("increments = 200", time),
             ("edge_mm = 1.05", edge),
-            ("slip_tolerance_mm_per_s = 1.0", slip),
+            ("slip_tolerance_mm_per_s = 0.3", slip),
         ];
         let change = |text: String, (line, new): &(&str, String)| {
             assert!(text.contains(line), "the default case has no longer {line}");

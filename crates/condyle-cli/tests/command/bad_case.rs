@@ -57,6 +57,27 @@ fn value_out_of_range() {
 }
 
 #[test]
+fn updates_that_do_not_go_together() {
+    let words = ["`update` cannot be \"sometimes\"", "\"fixed\" or \"auto\""];
+    assert_refused(
+        "[march]\nupdate = \"sometimes\"\n",
+        "case.toml:2:10",
+        &words,
+    );
+    let words = ["`updates` belongs to update = \"fixed\"", "remove the key"];
+    let text = "[march]\nupdate = \"auto\"\nupdates = 5\n";
+    assert_refused(text, "case.toml:3:1", &words);
+    let words = ["belongs to update = \"auto\"", "write `update = \"auto\"`"];
+    let text = "[march]\ndepth_tolerance_fraction = 0.1\n";
+    assert_refused(text, "case.toml:2:1", &words);
+    let words = ["is 0, outside its range", "it can be 1e-5 to 0.5"];
+    let text = "[march]\nupdate = \"auto\"\ndepth_tolerance_fraction = 0\n";
+    assert_refused(text, "case.toml:3:28", &words);
+    let words = ["`estimate` must be true or false", "text in quotes"];
+    assert_refused("[accuracy]\nestimate = \"no\"\n", "case.toml:2:12", &words);
+}
+
+#[test]
 fn missing_file() {
     let words = ["there is no file", "nowhere.stl", "correct the path"];
     let text = "[insert]\nshape = \"mesh\"\nfile = \"nowhere.stl\"\n";

@@ -131,6 +131,36 @@ fn ctrl_c_keeps_what_is_done_and_resume_reaches_the_same_numbers() {
     assert!(csv("out") == csv("whole"));
 }
 
+#[test]
+fn a_march_that_finds_its_updates_is_refined_by_its_tolerance() {
+    let bench = Bench::with_case(&TINY.replace("updates = 1", "update = \"auto\""));
+    let said = bench.say(&["converge", "case.toml", "--out", "out"]);
+    let words = ["finds its updates itself", "depth_tolerance_fraction=0.1,"];
+    said.assert_refused(2, &words);
+    let by_path = [
+        "converge",
+        "case.toml",
+        "--over",
+        "march.updates=1,2",
+        "--out",
+        "out",
+    ];
+    bench
+        .say(&by_path)
+        .assert_refused(2, &["`updates` belongs to update = \"fixed\""]);
+    let over = "depth_tolerance_fraction=0.2,0.001";
+    let said = bench.say(&["converge", "case.toml", "--over", over, "--out", "out"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let [coarse, fine] = ["0.2", "0.001"].map(|tolerance| {
+        updates_kept(
+            &bench
+                .path("out")
+                .join(format!("depth_tolerance_fraction-{tolerance}")),
+        )
+    });
+    assert!(coarse < fine, "{coarse} {fine}");
+}
+
 /// The command refuses `over` with these words, and makes nothing.
 #[track_caller]
 fn assert_refused(over: &str, words: &[&str]) {

@@ -46,6 +46,12 @@ pub enum OverrideError {
         /// One that looks like it.
         near: Option<String>,
     },
+    /// Updates of a march that finds them itself.
+    #[error(
+        "the march of this case finds its updates itself, since it has update = \"auto\"; refine what it goes by, such as \
+         depth_tolerance_fraction=0.1,0.03,0.01, or write update = \"fixed\""
+    )]
+    UpdatesAreFound,
     /// Several numbers of the case are called so.
     #[error("the case has more than one number called `{key}`; write `{}`", paths.join("` or `"))]
     ManyKeys {
@@ -173,6 +179,9 @@ impl Case {
         let key = written.to_owned();
         match <[String; 1]>::try_from(paths) {
             Ok([path]) => Ok(path),
+            Err(paths) if paths.is_empty() && key == "updates" => {
+                Err(OverrideError::UpdatesAreFound)
+            }
             Err(paths) if paths.is_empty() => {
                 let near = nearest(written, keys.iter().map(|key| leaf(&key.path)));
                 Err(OverrideError::UnknownKey { key, near })
@@ -266,6 +275,16 @@ mod tests {
             let expected = format!("`{text}` is no value for `march.updates`; write a number");
             assert!(error.to_string().starts_with(&expected), "{error}");
         }
+    }
+
+    #[test]
+    fn updates_that_a_march_finds_itself_are_no_number() {
+        let text = "[march]\nupdate = \"auto\"\n";
+        let case = Case::parse(text, "case.toml", Path::new("")).expect("it is a case");
+        let error = case.path_of_number("updates").unwrap_err();
+        assert_eq!(error, OverrideError::UpdatesAreFound);
+        let said = error.to_string();
+        assert!(said.contains("update = \"auto\"") && said.contains("depth_tolerance_fraction"));
     }
 
     #[test]

@@ -1,0 +1,165 @@
+//! The default case: how exact it is, what it says of that, and a march that finds its own intervals.
+
+use std::path::{Path, PathBuf};
+
+use condyle_io::{
+    case::{Case, Update},
+    results::{ErrorParts, Summary},
+};
+use condyle_lab::{Outcome, RunOptions, run_case};
+
+fn case(name: &str) -> Case {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    Case::read(&cases.join(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn default_case() -> Case {
+    case("stanmore-force.toml")
+}
+
+fn auto_case() -> Case {
+    case("stanmore-force-auto.toml")
+}
+
+fn run(case: &Case) -> Summary {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let out: PathBuf = folder.path().join("out");
+    let (resume, threads) = (false, 1);
+    let options = RunOptions {
+        out,
+        resume,
+        threads,
+    };
+    let outcome = run_case(case, &options, &mut |_| std::ops::ControlFlow::Continue(()));
+    match outcome.unwrap_or_else(|error| panic!("{error}")) {
+        Outcome::Done(summary) => *summary,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Mass loss and maximum depth of a case changed, without an estimate.
+fn losses(mut case: Case, change: impl FnOnce(&mut Case)) -> [f64; 2] {
+    case.accuracy.estimate = false;
+    change(&mut case);
+    let summary = run(&case);
+    assert_eq!(summary.error, None);
+    [summary.mass_loss_mg, summary.max_depth_mm]
+}
+
+fn updated(case: &mut Case, updates: u64) {
+    match &mut case.march.update {
+        Update::Fixed(fixed) => fixed.updates = updates,
+        Update::Auto(_) => panic!("this case finds its updates itself"),
+    }
+}
+
+/// What is true of a part, %: `factor` times the change of the losses that a refinement makes.
+fn truth(default: [f64; 2], factor: f64, refine: impl FnOnce(&mut Case)) -> [f64; 2] {
+    let refined = losses(default_case(), refine);
+    [0, 1].map(|i| 100.0 * factor * (refined[i] / default[i] - 1.0))
+}
+
+/// Errors of less than this tell nothing: cycles repeat themselves no better, %.
+const NOISE_PERCENT: f64 = 0.1;
+
+#[track_caller]
+fn assert_within_a_factor_of_two(what: &str, found: Option<f64>, truth: f64) {
+    let found = found.unwrap_or_else(|| panic!("{what} is not estimated"));
+    let (large, small) = (found.abs().max(truth.abs()), found.abs().min(truth.abs()));
+    let is_near = large <= 2.0 * small + NOISE_PERCENT;
+    assert!(is_near, "{what}: estimated {found:.3} %, true {truth:.3} %");
+}
+
+#[track_caller]
+fn assert_near(what: &str, found: [Option<f64>; 2], truth: [f64; 2]) {
+    assert_within_a_factor_of_two(&format!("mass by {what}"), found[0], truth[0]);
+    assert_within_a_factor_of_two(&format!("depth by {what}"), found[1], truth[1]);
+}
+
+#[test]
+fn verify_the_estimated_errors_of_the_default_case() {
+    let summary = run(&default_case());
+    let error = summary
+        .error
+        .expect("a case asks for it unless it says otherwise");
+    assert!(error.not_estimated.is_empty() && error.wall_s > 0.0);
+    let part = |of: fn(&ErrorParts) -> Option<f64>| {
+        [of(&error.mass_loss_percent), of(&error.max_depth_percent)]
+    };
+    let default = [summary.mass_loss_mg, summary.max_depth_mm];
+    let finer = |case: &mut Case| case.time.increments = 800;
+    let increments = truth(default, 1.0, finer);
+    assert_near("increments", part(|parts| parts.increments), increments);
+    let updates = truth(default, 1.0, |case| updated(case, 40));
+    assert_near("updates", part(|parts| parts.updates), updates);
+    let sticking = |case: &mut Case| case.contact.friction.slip_tolerance_mm_per_s /= 2.0;
+    let slip_tolerance = truth(default, 2.0, sticking);
+    assert_near(
+        "slip tolerance",
+        part(|parts| parts.slip_tolerance),
+        slip_tolerance,
+    );
+    let finer_mesh = |case: &mut Case| match &mut case.insert {
+        condyle_io::case::Insert::Generic(insert) => insert.edge_mm /= 2.0,
+        other => panic!("{other:?}"),
+    };
+    let mesh = truth(default, 4.0 / 3.0, finer_mesh);
+    assert_near("mesh", part(|parts| parts.mesh), mesh);
+}
+
+#[test]
+fn the_default_case_states_half_a_percent_of_mass_and_one_of_depth() {
+    let summary = run(&default_case());
+    let error = summary
+        .error
+        .expect("a case asks for it unless it says otherwise");
+    assert!(error.mass_loss_percent.total < 0.5, "{error:?}");
+    assert!(error.max_depth_percent.total < 1.0, "{error:?}");
+    let mass_mg = error.mass_loss_percent.total / 100.0 * summary.mass_loss_mg;
+    assert!((error.mass_loss_mg.total / mass_mg - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_march_that_finds_its_own_intervals_is_as_deep_as_forty_updates() {
+    let many = losses(default_case(), |case| updated(case, 40));
+    let mut case = auto_case();
+    case.accuracy.estimate = false;
+    let few = run(&case);
+    assert!(few.cycles_solved <= 8.0, "{}", few.cycles_solved);
+    let off = few.max_depth_mm / many[1] - 1.0;
+    assert!(off.abs() < 0.01, "{off}");
+    let off = few.mass_loss_mg / many[0] - 1.0;
+    assert!(off.abs() < 0.005, "{off}");
+}
+
+#[test]
+fn a_tighter_tolerance_takes_more_intervals_and_errs_less() {
+    let many = losses(default_case(), |case| updated(case, 80));
+    let mut last = (0, f64::INFINITY);
+    for tolerance in [0.1, 0.01, 0.001] {
+        let mut case = auto_case();
+        case.accuracy.estimate = false;
+        match &mut case.march.update {
+            Update::Auto(by_depth) => by_depth.depth_tolerance_fraction = tolerance,
+            Update::Fixed(_) => panic!("this case finds its updates itself"),
+        }
+        let summary = run(&case);
+        let now = (
+            summary.updates,
+            (summary.max_depth_mm / many[1] - 1.0).abs(),
+        );
+        assert!(now.0 > last.0 && now.1 < last.1, "{now:?} after {last:?}");
+        last = now;
+    }
+}
+
+#[test]
+fn what_cannot_be_estimated_says_why() {
+    let mut case = default_case();
+    updated(&mut case, 1);
+    case.time.increments = 40;
+    let error = run(&case).error.expect("the other parts can");
+    assert_eq!(error.mass_loss_percent.updates, None);
+    assert!(error.not_estimated["updates"].contains("one update has no other"));
+    assert!(error.mass_loss_percent.increments.is_some());
+}
