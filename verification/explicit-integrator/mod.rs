@@ -21,7 +21,7 @@ const NEAR: f64 = 0.02;
 /// The default 200 increments follow the quick motions of heel strike this coarsely.
 const NEAR_BY_DEFAULT: f64 = 0.35;
 /// Explicit steps asked for where inertia is added, s.
-const LONG_STEP_S: f64 = 2e-5;
+const LONG_STEP_S: f64 = 6e-6;
 /// What the inertia added for them may change, mm and degrees.
 const NEAR_WITH_INERTIA: f64 = 0.5;
 
@@ -40,7 +40,7 @@ fn rows() -> Vec<Row> {
     let [coarse, middle, fine] = [200, 1600, 3200].map(from_implicit);
     let heavy = explicit(LONG_STEP_S);
     let added = 100.0 * heavy.effort.added_inertia;
-    let heavy_steps = format!("explicit steps of 20 us with up to {added:.0} % more inertia");
+    let heavy_steps = format!("explicit steps of 6 us with up to {added:.0} % more inertia");
     let [mm, deg] = held(fine, "3200 increments", NEAR);
     let mut rows = Vec::new();
     rows.extend(held(coarse, "200 increments", NEAR_BY_DEFAULT));

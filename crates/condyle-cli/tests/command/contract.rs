@@ -50,6 +50,41 @@ fn text(bench: &Bench, name: &str) -> String {
 }
 
 #[test]
+fn the_summary_states_the_discretisation_error_by_its_parts() {
+    let bench = done();
+    let summary: Value = serde_json::from_str(&text(&bench, "summary.json")).unwrap();
+    for table in [
+        "mass_loss_percent",
+        "mass_loss_mg",
+        "max_depth_percent",
+        "max_depth_mm",
+    ] {
+        for part in ["increments", "updates", "mesh", "slip_tolerance", "total"] {
+            let number = summary["error"][table][part].as_f64();
+            assert!(number.is_some_and(f64::is_finite), "{table} {part}");
+        }
+    }
+    let said = bench.say(&["run", "case.toml", "--out", "again"]);
+    for words in [
+        "discretisation error +/-",
+        "error of mass, by parts",
+        "slip tolerance",
+    ] {
+        assert!(said.out.contains(words), "{words}: {}", said.out);
+    }
+}
+
+#[test]
+fn an_estimate_that_is_not_asked_for_is_not_made() {
+    let bench = Bench::with_case(&format!("{SMALL}[accuracy]\nestimate = false\n"));
+    let said = bench.say(&["run", "case.toml", "--out", "out"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(!said.out.contains("discretisation"), "{}", said.out);
+    assert!(text(&bench, "summary.json").contains("\"error\": null"));
+    assert!(text(&bench, "report.html").contains("was not estimated"));
+}
+
+#[test]
 fn the_folder_has_the_files_of_the_contract_and_no_others() {
     let bench = done();
     let mut names: Vec<String> = fs::read_dir(bench.path("out"))

@@ -65,6 +65,30 @@ fn every_number_of_the_summary_is_on_the_page() {
 }
 
 #[test]
+fn the_estimated_error_is_shown_by_its_parts() {
+    let page = report_html(&fixture::results());
+    for shown in [
+        "1.03</td>",
+        "0.26</td>",
+        "0.23</td>",
+        "0.00047</td>",
+        "\u{2212}0.97</td>",
+        "The error from mesh could not be estimated: an insert read as hexahedra has no coarser mesh.",
+    ] {
+        assert!(page.contains(shown), "{shown}");
+    }
+    assert_eq!(page.matches(">unknown<").count(), 4);
+    assert!(!page.contains("0.148"), "its time differs from run to run");
+}
+
+#[test]
+fn a_run_without_an_estimate_says_so() {
+    let mut results = fixture::results();
+    results.summary = Some(Summary::parse("{\"cycles\": 1, \"error\": null}").expect("is JSON"));
+    assert!(report_html(&results).contains("was not estimated"));
+}
+
+#[test]
 fn the_case_is_shown_as_text() {
     let case = Some(String::from("title = \"a <b> & c\""));
     let html = report_html(&Results {
