@@ -185,7 +185,7 @@ impl March {
             machine: cycle.end,
         };
         let part = cycles / self.test.schedule.cycles;
-        self.state.pass(part, waypoint);
+        self.state.pass(part, &waypoint);
         self.keep(cycle, cycles);
         Ok(&self.state.updates[update - 1])
     }

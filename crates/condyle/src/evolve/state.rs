@@ -56,7 +56,7 @@ pub struct MarchState {
 
 impl MarchState {
     /// Remembers a step that began when this part of the cycles was done.
-    pub(super) fn pass(&mut self, part: f64, waypoint: Waypoint) {
+    pub(super) fn pass(&mut self, part: f64, waypoint: &Waypoint) {
         if self.first_step.is_none() {
             self.first_step = Some((waypoint.step.clone(), waypoint.machine));
         }
