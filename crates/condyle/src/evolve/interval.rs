@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn steps_start_small_grow_slowly_and_stay_stable() {
         let near = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 1e-12);
-        near(interval(&rates(1e-7, 1e-6), None), 6e5);
+        near(interval(&rates(1e-7, 1e-6), None), 6e5 * 0.2_f64.sqrt());
         near(interval(&rates(1e-7, 1e-5), None), 1.8e5);
         near(interval(&rates(1e-7, 0.0), Some(&last(1e-7, 1e5))), 2e5);
         near(interval(&rates(1e-7, 2e-6), Some(&last(1e-7, 1e6))), 9e5);

@@ -62,3 +62,50 @@ impl StepError {
 fn faded(error: f64, relaxed: f64) -> f64 {
     error * (1.0 - relaxed).abs().min(1.0 / (1.0 + relaxed))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{rates::Rates, step::StepRecord};
+
+    fn rates(depth_per_cycle_mm: f64) -> Rates {
+        Rates {
+            depth_per_cycle_mm: vec![depth_per_cycle_mm],
+            area_mm2: vec![2.0],
+            relaxation_per_cycle: 0.25,
+        }
+    }
+
+    #[test]
+    fn verify_a_step_misses_the_trapezoidal_rule_less_what_it_took() {
+        let step = Step {
+            interval: 2.0,
+            cycles_after: 2.0,
+            depth_mm: vec![6.0],
+        };
+        let last: StepRecord = step.remembered(rates(3.0));
+        let now = rates(5.0);
+        let before = Before {
+            rates: &now,
+            last: Some(&last),
+            worn_mm: &[6.0],
+            cycles: 2.0,
+            updates: 1,
+        };
+        let earlier = StepError {
+            volume_mm3: 1.0,
+            max_depth_mm: 3.0,
+        };
+        // 2 cycles of (3 + 5)/2 mm, less 6 mm: 2 mm; of the 3 mm, 1 - 0.25 x 2 are left.
+        let after = earlier.after(before);
+        assert_eq!(after.volume_mm3, 1.0 + 2.0 * 2.0);
+        assert_eq!(after.max_depth_mm, 1.5_f64.hypot(2.0));
+    }
+
+    #[test]
+    fn an_error_fades_and_never_grows() {
+        assert_eq!(faded(1.0, 0.0), 1.0);
+        assert_eq!(faded(1.0, 0.9), 1.0 - 0.9);
+        assert_eq!(faded(1.0, 3.0), 0.25);
+    }
+}
