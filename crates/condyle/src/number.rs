@@ -9,6 +9,7 @@ use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
+use wide::f64x4;
 
 /// A real number, or several side by side.
 pub trait Number:
@@ -90,71 +91,80 @@ pub const LANES: usize = 4;
 
 /// Four numbers side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(32))]
-pub struct Lanes(pub [f64; LANES]);
+#[repr(transparent)]
+pub struct Lanes(f64x4);
 
 impl Lanes {
+    /// Four numbers.
     #[inline(always)]
-    fn zip(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
-        Self(std::array::from_fn(|lane| {
-            function(self.0[lane], other.0[lane])
-        }))
+    pub fn new(lanes: [f64; LANES]) -> Self {
+        Self(f64x4::new(lanes))
+    }
+
+    /// The four numbers.
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; LANES] {
+        self.0.to_array()
     }
 
     /// The sum over the lanes, always in the same order.
     #[inline]
     pub fn sum(self) -> f64 {
-        let [a, b, c, d] = self.0;
+        let [a, b, c, d] = self.to_array();
         (a + b) + (c + d)
     }
 
     /// The smallest lane.
     #[inline(always)]
     pub fn least(self) -> f64 {
-        let [a, b, c, d] = self.0;
+        let [a, b, c, d] = self.to_array();
         let smaller = |x: f64, y: f64| if x < y { x } else { y };
         smaller(smaller(a, b), smaller(c, d))
+    }
+
+    /// The largest lane.
+    #[inline(always)]
+    pub fn greatest(self) -> f64 {
+        -(-self).least()
     }
 }
 
 impl Number for Lanes {
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        Self([value; LANES])
+        Self(f64x4::splat(value))
     }
 
     const COUNT: usize = LANES;
 
     #[inline(always)]
-    fn from_lanes(value: impl FnMut(usize) -> f64) -> Self {
-        Self(std::array::from_fn(value))
+    fn from_lanes(mut value: impl FnMut(usize) -> f64) -> Self {
+        Self::new([value(0), value(1), value(2), value(3)])
     }
 
     #[inline(always)]
     fn lane(self, lane: usize) -> f64 {
-        self.0[lane]
+        self.0.as_array()[lane]
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(self.0.map(f64::sqrt))
+        Self(self.0.sqrt())
     }
 
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(self.0.map(f64::abs))
+        Self(self.0.abs())
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        self.zip(other, Number::max)
+        Self(self.0.fast_max(other.0))
     }
 
     #[inline(always)]
     fn below_zero(self, then: Self, otherwise: Self) -> Self {
-        Self(std::array::from_fn(|lane| {
-            self.0[lane].below_zero(then.0[lane], otherwise.0[lane])
-        }))
+        Self(self.0.simd_lt(f64x4::ZERO).select(then.0, otherwise.0))
     }
 }
 
@@ -165,7 +175,7 @@ macro_rules! operators {
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                self.zip(other, f64::$method)
+                Self(self.0.$method(other.0))
             }
         }
 
@@ -190,7 +200,7 @@ impl Neg for Lanes {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(Neg::neg))
+        Self(-self.0)
     }
 }
 
@@ -220,18 +230,20 @@ mod tests {
     fn every_lane_does_as_a_single_number_does() {
         let (a, b) = ([1.5, -2.0, 0.3, 7.0], [0.1, 3.0, -0.7, 7.0]);
         let formula = |x: f64, y: f64| ((x * y - x / y).abs() + y).sqrt().max(x);
-        let lanes = Lanes(a);
-        let other = Lanes(b);
+        let lanes = Lanes::new(a);
+        let other = Lanes::new(b);
         let together = Number::max(
             Number::sqrt(Number::abs(lanes * other - lanes / other) + other),
             lanes,
         );
         for lane in 0..LANES {
             let single = Number::max(formula(a[lane], b[lane]), a[lane]);
-            assert!(together.0[lane] == single || (together.0[lane].is_nan() && single.is_nan()));
+            assert!(
+                together.lane(lane) == single || (together.lane(lane).is_nan() && single.is_nan())
+            );
         }
         let chosen = lanes.below_zero(Lanes::zero(), Lanes::one());
-        assert_eq!(chosen.0, [1.0, 0.0, 1.0, 1.0]);
+        assert_eq!(chosen.to_array(), [1.0, 0.0, 1.0, 1.0]);
         assert_eq!(lanes.sum(), (1.5 - 2.0) + (0.3 + 7.0));
     }
 }

@@ -2,14 +2,16 @@
 
 use super::{
     ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
-    motion::{Pose4, twist_to_femur},
-    nearness::{Look, Nearness, Shares4},
+    motion::{Pose4, Twist4, twist_to_femur},
+    nearness::{Nearness, predicted_to_contact_mm},
     partial::mean_overclosure,
+    seen::{MOVED_ALONG_MM, Seen},
+    shares::Shares4,
     traction::{Sliding, TangentSum, Tractions4, WrenchSum},
 };
 use crate::{
     Vec3, Vector,
-    geometry::{ArticulatingSurface, FemoralSurface, Insert},
+    geometry::{ArticulatingSurface, FemoralSurface, Insert, SurfaceSample},
     number::{LANES, Lanes, Number},
 };
 
@@ -40,6 +42,8 @@ pub struct Foundation<'a> {
     /// The surface's own directions at every node.
     directions: Vec<[Vec3; 2]>,
     shares: Vec<Shares4>,
+    /// What every four of them saw of the femur.
+    seen: Vec<Seen>,
     nearness: Nearness,
     /// What presses at the last response.
     tractions: Vec<Tractions4>,
@@ -62,7 +66,8 @@ impl<'a> Foundation<'a> {
             directions: (0..surface.positions.len())
                 .map(|node| surface.directions(node))
                 .collect(),
-            nearness: Nearness::new(&surface, shares.len(), femur.sharpest_per_mm()),
+            nearness: Nearness::new(&shares),
+            seen: vec![Seen::nothing(); shares.len()],
             shares,
             surface,
             tractions: Vec::new(),
@@ -80,86 +85,112 @@ impl<'a> Foundation<'a> {
         self.surface
     }
 
-    /// Pressure and rubbing on four shares, and their gaps and reaches, mm.
-    ///
-    /// With n the femur's normal, K its curvature, e_k the share's edges and W the mean
-    /// overclosure of the share, a motion a and a turn w of the femur change the middle's
-    /// overclosure by G . a, the normal by w x n - K a, and each rise n . e_k with the normal.
+    /// Goes over all shares that may touch at a motion; see [`ContactModel::respond`].
     #[inline(always)]
-    fn press(
-        &self,
-        four: &Shares4,
-        place: Vector<Lanes>,
-        pose: &Pose4,
-        angular: &Vector<Lanes>,
-        linear: &Vector<Lanes>,
-    ) -> (Tractions4, Lanes, Lanes) {
-        let sample = self.femur.sample(&place, four.spread_mm2);
-        let normal_in_insert = pose.turn_to_insert(&sample.normal);
-        let rise = [
-            normal_in_insert.dot(&four.edge_a),
-            normal_in_insert.dot(&four.edge_b),
-        ];
-        let mean = mean_overclosure(-sample.gap_mm, rise);
-        let (pressure_mpa, slope) = self.settings.law.pressures(mean.mm, four.thickness_mm);
-        let stiffness = slope * four.area_mm2;
-        let by_normal = four.edge_a * (mean.by_rise[0] * stiffness)
-            + four.edge_b * (mean.by_rise[1] * stiffness);
-        let by_normal = pose.turn_to_femur(&by_normal);
-        let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
-        let velocity = linear + angular.cross(&place);
-        let tractions = Tractions4 {
-            nodes: four.nodes,
-            place,
-            normal: sample.normal,
-            curvature: sample.curvature,
-            pressure_mpa,
-            load_n: pressure_mpa * four.area_mm2,
-            covered_mm2: mean.by_middle * four.area_mm2,
-            load_by_motion: sample.gap_gradient * (mean.by_middle * stiffness)
-                - sample.curvature.times(&along_surface),
-            load_by_turn: sample.normal.cross(&by_normal),
-            sliding: Sliding::new(
-                &velocity,
-                &sample.normal,
-                self.settings.slip_tolerance_mm_per_s,
-            ),
-        };
-        (tractions, sample.gap_mm, mean.reach_mm)
+    fn go_over_shares(&mut self, motion: &RelativeMotion) -> Vec6 {
+        self.pose = motion.pose;
+        let to_femur = twist_to_femur(&self.pose);
+        let pose = Pose4::new(&self.pose);
+        let twist = Twist4::new(&(to_femur * motion.twist));
+        self.nearness.travel(&self.pose);
+        self.tractions.clear();
+        let mut total = WrenchSum::new();
+        for four in 0..self.shares.len() {
+            if !self.nearness.is_due(four) {
+                continue;
+            }
+            let Some((place, sample)) = self.look(four, &pose) else {
+                continue;
+            };
+            let shares = &self.shares[four];
+            let (pressed, to_contact_mm) =
+                press(self.settings, shares, place, &sample, &pose, &twist);
+            if to_contact_mm <= 0.0 {
+                self.nearness.touches(four);
+                total.add(&pressed.place, &pressed.force_n(self.settings.friction));
+                self.tractions.push(pressed);
+            } else {
+                self.nearness
+                    .is_apart(four, shares, &self.seen[four], to_contact_mm);
+            }
+        }
+        to_femur.tr_mul(&total.total())
     }
+
+    /// The femur as four shares see it now, in its frame; none where they surely do not touch.
+    #[inline(always)]
+    fn look(&mut self, four: usize, pose: &Pose4) -> Option<(Vector<Lanes>, SurfaceSample<Lanes>)> {
+        let (shares, seen) = (&self.shares[four], &self.seen[four]);
+        let place = pose.to_femur(&shares.centre);
+        let motion = place - seen.place;
+        let motion2 = motion.dot(&motion);
+        let moved = seen.sample.moved(&motion);
+        if motion2.greatest() <= MOVED_ALONG_MM * MOVED_ALONG_MM {
+            return Some((place, moved));
+        }
+        let rise = rises(shares, &pose.turn_to_insert(&moved.normal));
+        let reach_mm = (rise[0].abs() + rise[1].abs()) * Lanes::splat(0.5);
+        let apart = predicted_to_contact_mm(shares, seen, motion2, moved.gap_mm, reach_mm);
+        if let Some(to_contact_mm) = apart {
+            self.nearness.is_apart(four, shares, seen, to_contact_mm);
+            return None;
+        }
+        self.seen[four] = Seen::at(self.femur, place, shares.spread_mm2);
+        Some((place, self.seen[four].sample))
+    }
+}
+
+/// Rises of the overclosure along both edges of four shares, mm, under a normal in their frame.
+#[inline(always)]
+fn rises(shares: &Shares4, normal: &Vector<Lanes>) -> [Lanes; 2] {
+    [normal.dot(&shares.edge_a), normal.dot(&shares.edge_b)]
+}
+
+/// Pressure and rubbing on four shares, and how far the nearest is from touching, mm.
+///
+/// With n the femur's normal, K its curvature, e_k the share's edges and W the mean overclosure of
+/// the share, a motion a and a turn w of the femur change the middle's overclosure by G . a, the
+/// normal by w x n - K a, and each rise n . e_k with the normal.
+#[inline(always)]
+fn press(
+    settings: &FoundationSettings,
+    shares: &Shares4,
+    place: Vector<Lanes>,
+    sample: &SurfaceSample<Lanes>,
+    pose: &Pose4,
+    twist: &Twist4,
+) -> (Tractions4, f64) {
+    let rise = rises(shares, &pose.turn_to_insert(&sample.normal));
+    let mean = mean_overclosure(-sample.gap_mm, rise);
+    let (pressure_mpa, slope) = settings.law.pressures(mean.mm, shares.per_thickness);
+    let stiffness = slope * shares.area_mm2;
+    let by_normal = shares.edge_a * (mean.by_rise[0] * stiffness)
+        + shares.edge_b * (mean.by_rise[1] * stiffness);
+    let by_normal = pose.turn_to_femur(&by_normal);
+    let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
+    let tractions = Tractions4 {
+        nodes: shares.nodes,
+        place,
+        normal: sample.normal,
+        curvature: sample.curvature,
+        pressure_mpa,
+        load_n: pressure_mpa * shares.area_mm2,
+        covered_mm2: mean.by_middle * shares.area_mm2,
+        load_by_motion: sample.gap_gradient * (mean.by_middle * stiffness)
+            - sample.curvature.times(&along_surface),
+        load_by_turn: sample.normal.cross(&by_normal),
+        sliding: Sliding::new(
+            &twist.velocity(&place),
+            &sample.normal,
+            settings.slip_tolerance_mm_per_s,
+        ),
+    };
+    (tractions, (sample.gap_mm - mean.reach_mm).least())
 }
 
 impl ContactModel for Foundation<'_> {
     fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
-        self.pose = motion.pose;
-        let to_femur = twist_to_femur(&self.pose);
-        let twist = (to_femur * motion.twist).map(Lanes::splat);
-        let (angular, linear) = (
-            twist.fixed_rows::<3>(0).into(),
-            twist.fixed_rows::<3>(3).into(),
-        );
-        self.nearness.travel(&self.pose);
-        let pose = Pose4::new(&self.pose);
-        let mut tractions = std::mem::take(&mut self.tractions);
-        tractions.clear();
-        let mut total = WrenchSum::new();
-        for four in 0..self.shares.len() {
-            let Some(look) = self.nearness.look(four) else {
-                continue;
-            };
-            let shares = &self.shares[four];
-            let place = pose.to_femur(&shares.centre);
-            if look == Look::Search && self.nearness.is_far(four, &place) {
-                continue;
-            }
-            let (pressed, gap_mm, reach_mm) = self.press(shares, place, &pose, &angular, &linear);
-            if self.nearness.found(four, &pressed, gap_mm, reach_mm) {
-                total.add(&pressed.place, &pressed.force_n(self.settings.friction));
-                tractions.push(pressed);
-            }
-        }
-        self.tractions = tractions;
-        to_femur.tr_mul(&total.total())
+        self.go_over_shares(motion)
     }
 
     fn tangent(&self) -> Tangent {

@@ -6,6 +6,8 @@ mod law;
 mod motion;
 mod nearness;
 mod partial;
+mod seen;
+mod shares;
 mod traction;
 
 pub use foundation::{Foundation, FoundationSettings};
@@ -48,7 +50,8 @@ pub trait ContactModel {
     /// Wrench on the insert about its origin at a relative motion: moment, N mm, then force, N; in
     /// the insert frame.
     ///
-    /// The answer depends on the motion alone, not on the calls before.
+    /// The answer depends on the motion alone and not on the calls before, but for what a model
+    /// says it rounds.
     fn respond(&mut self, motion: &RelativeMotion) -> Vec6;
 
     /// The exact derivatives of the wrench at the last [`ContactModel::respond`].

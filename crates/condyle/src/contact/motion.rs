@@ -77,6 +77,28 @@ impl Pose4 {
     }
 }
 
+/// A twist for four points at a time.
+pub(super) struct Twist4 {
+    angular: Vector<Lanes>,
+    linear: Vector<Lanes>,
+}
+
+impl Twist4 {
+    pub fn new(twist: &Vec6) -> Self {
+        let twist = twist.map(Lanes::splat);
+        Self {
+            angular: twist.fixed_rows::<3>(0).into(),
+            linear: twist.fixed_rows::<3>(3).into(),
+        }
+    }
+
+    /// Velocities of points.
+    #[inline(always)]
+    pub fn velocity(&self, place: &Vector<Lanes>) -> Vector<Lanes> {
+        self.linear + self.angular.cross(place)
+    }
+}
+
 /// Pose and velocity of the femur relative to the insert.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelativeMotion {

@@ -44,6 +44,58 @@ pub struct SurfaceSample<T> {
     pub curvature: Curvature<T>,
 }
 
+impl<T: Number> SurfaceSample<T> {
+    /// A sample that no surface gives: infinitely far.
+    pub fn far() -> Self {
+        let (zero, none) = (T::zero(), Vector::repeat(T::zero()));
+        Self {
+            gap_mm: T::splat(f64::INFINITY),
+            gap_gradient: none,
+            normal: none,
+            curvature: Curvature {
+                xx: zero,
+                yy: zero,
+                zz: zero,
+                xy: zero,
+                xz: zero,
+                yz: zero,
+            },
+        }
+    }
+
+    /// The sample a short `motion` d away: g + G . d + d . K d/2, G + K d and n + (I - n n') K d.
+    #[inline(always)]
+    pub fn moved(&self, motion: &Vector<T>) -> Self {
+        let bend = self.curvature.times(motion);
+        let slope = self.gap_gradient + bend * T::splat(0.5);
+        Self {
+            gap_mm: self.gap_mm + slope.dot(motion),
+            gap_gradient: self.gap_gradient + bend,
+            normal: self.normal + bend - self.normal * self.normal.dot(&bend),
+            curvature: self.curvature,
+        }
+    }
+}
+
+/// Bounds on the femoral surface within 1.25 mm of a point along every axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surroundings<T> {
+    /// No curvature is larger, 1/mm.
+    pub sharpest_per_mm: T,
+    /// No two second derivatives of the gap differ by more, 1/mm.
+    pub bend_range_per_mm: T,
+}
+
+impl<T: Number> Surroundings<T> {
+    /// Those of a convex surface nowhere sharper than `sharpest_per_mm`.
+    pub fn uniform(sharpest_per_mm: f64) -> Self {
+        Self {
+            sharpest_per_mm: T::splat(sharpest_per_mm),
+            bend_range_per_mm: T::splat(sharpest_per_mm),
+        }
+    }
+}
+
 /// A femoral surface that gives gap, normal and curvature anywhere near it, smoothly.
 #[derive(Clone, Debug)]
 pub enum FemoralSurface {
@@ -101,15 +153,14 @@ impl FemoralSurface {
         }
     }
 
-    /// Curvature that the surface nowhere exceeds where it articulates, 1/mm.
-    ///
-    /// Of a mesh it is not known: 0.2, sharper than any condyle.
-    pub fn sharpest_per_mm(&self) -> f64 {
+    /// Bounds on the surface around a point.
+    #[inline(always)]
+    pub fn surroundings<T: Number>(&self, point: &Vector<T>) -> Surroundings<T> {
         match self {
-            Self::Generic(femur) => DEEPER * femur.sharpest_per_mm(),
-            Self::Sphere(ball) => DEEPER / ball.tube_radius_mm,
-            Self::Cylinder(cylinder) => DEEPER / cylinder.radius_mm,
-            Self::Mesh(_) => 0.2,
+            Self::Generic(femur) => Surroundings::uniform(DEEPER * femur.sharpest_per_mm()),
+            Self::Sphere(ball) => Surroundings::uniform(DEEPER / ball.tube_radius_mm),
+            Self::Cylinder(cylinder) => Surroundings::uniform(DEEPER / cylinder.radius_mm),
+            Self::Mesh(field) => field.surroundings(point),
         }
     }
 

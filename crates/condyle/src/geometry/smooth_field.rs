@@ -6,7 +6,10 @@
 //! quadratic surface). Then a quadratic B-spline through those gaps gives a value, a gradient and
 //! a Hessian anywhere between the nodes, the first two continuous, from 27 numbers.
 
-use super::{Curvature, SurfaceSample, TriangleMesh, curved_mesh::CurvedMesh, shell_report};
+use super::{
+    Curvature, SurfaceSample, Surroundings, TriangleMesh, bend_map::BendMap,
+    curved_mesh::CurvedMesh, shell_report,
+};
 use crate::{
     Vec3, Vector,
     number::{LANES, Number},
@@ -38,6 +41,8 @@ pub struct SmoothField {
     coefficients: Vec<f64>,
     /// Nodes beyond the band: their gap is a bound.
     is_far: Vec<bool>,
+    /// How the field bends around any point.
+    bends: BendMap,
 }
 
 /// Values and first derivatives of the three B-splines that reach a point.
@@ -99,6 +104,7 @@ impl SmoothField {
             dims,
             coefficients: Vec::new(),
             is_far: Vec::new(),
+            bends: BendMap::default(),
         };
         field.coefficients = field.gaps_at_nodes(&CurvedMesh::new(mesh), threads.max(1));
         field.bound_far_gaps(shell_report(mesh).is_closed());
@@ -106,10 +112,13 @@ impl SmoothField {
             let before = field.coefficients.clone();
             field.add_second_differences(&before, stride, -1.0 / 8.0);
         }
+        field.bends = BendMap::new(&field);
         field
     }
 
     /// The field averaged over flat shares of surface: g + `spread_mm2` div n.
+    ///
+    /// What bounds its curvature still does: a mean bends no more.
     pub fn averaged_over(mut self, spread_mm2: f64) -> Self {
         let factor = spread_mm2 / (SPACING_MM * SPACING_MM);
         let unaveraged = self.coefficients.clone();
@@ -117,6 +126,38 @@ impl SmoothField {
             self.add_second_differences(&unaveraged, stride, factor);
         }
         self
+    }
+
+    /// Bounds on the surface around a point.
+    #[inline(always)]
+    pub fn surroundings<T: Number>(&self, point: &Vector<T>) -> Surroundings<T> {
+        let corner = self.locate(point).corner;
+        let [sx, sy, sz] = self.strides();
+        let bends = corner.map(|corner| self.bends.around(corner + sx + sy + sz));
+        Surroundings {
+            sharpest_per_mm: T::from_lanes(|lane| bends[lane].sharpest_per_mm),
+            bend_range_per_mm: T::from_lanes(|lane| bends[lane].range_per_mm),
+        }
+    }
+
+    /// Distance between the nodes of the grid, mm.
+    pub(super) fn spacing_mm(&self) -> f64 {
+        SPACING_MM
+    }
+
+    /// How many nodes the grid has.
+    pub(super) fn node_count(&self) -> usize {
+        self.coefficients.len()
+    }
+
+    /// Numbers and places of the nodes within the grid.
+    pub(super) fn inner_nodes(&self) -> impl Iterator<Item = (usize, Vec3)> {
+        let [nx, ny, nz] = self.dims;
+        let [sx, sy, sz] = self.strides();
+        let layers = (1..nz - 1).flat_map(move |k| (1..ny - 1).map(move |j| (j, k)));
+        layers.flat_map(move |(j, k)| {
+            (1..nx - 1).map(move |i| (i * sx + j * sy + k * sz, self.node_position(i, j, k)))
+        })
     }
 
     /// How far from the femoral frame's origin the grid reaches, mm.
@@ -218,7 +259,7 @@ impl SmoothField {
     }
 
     #[inline]
-    fn strides(&self) -> [usize; 3] {
+    pub(super) fn strides(&self) -> [usize; 3] {
         [1, self.dims[0], self.dims[0] * self.dims[1]]
     }
 
