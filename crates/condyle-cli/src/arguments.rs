@@ -150,7 +150,7 @@ pub struct Compare {
 pub struct CalibrateWear {
     /// The results folder; its case is run again with other wear factors, and nothing in it is changed.
     pub results: PathBuf,
-    /// The TOML file that names the measured data; it needs [gravimetric].
+    /// The TOML file that names the measured data; it needs `[gravimetric]`.
     pub measured: PathBuf,
     /// Print the factor, its interval and every trial as JSON, and nothing else on standard output.
     #[arg(long)]

@@ -1,4 +1,4 @@
-//! The table of Knight et al. 2007 [knight2007], run on a case of one's own.
+//! The table of Knight et al. 2007 (`knight2007`), run on a case of one's own.
 //!
 //! A case in force control runs over 1, 2, 5, 10, 20 and 40 updates; its first cycle becomes the
 //! waveforms of a case in displacement control; and what the paper found is set beside what comes out.
