@@ -42,6 +42,7 @@ pub enum InsertError {
 /// A tibial insert, unworn or worn.
 pub struct Insert {
     mesh: HexMesh,
+    unworn_nodes: Vec<Vec3>,
     /// Mesh nodes of the articulating surface, ascending; "surface node i" is `nodes[i]`.
     nodes: Vec<u32>,
     /// Faces of the articulating surface, in numbers of surface nodes.
@@ -85,6 +86,7 @@ impl Insert {
         let normals = ArticulatingSurface::new(&positions, &faces).normals;
         let thickness_mm = thickness_at_nodes(&positions, &normals, &mesh, backside)?;
         Ok(Self {
+            unworn_nodes: mesh.nodes.clone(),
             mesh,
             nodes,
             faces,
@@ -129,7 +131,7 @@ impl Insert {
     ///
     /// `depth_mm`: one a surface node, 0 or more. The thickness shrinks by as much.
     pub fn wear_down(&mut self, surface: &ArticulatingSurface, depth_mm: &[f64]) {
-        let mut displacement = vec![Vec3::zeros(); self.mesh.nodes.len()];
+        let mut displacement = self.as_before(surface, depth_mm);
         for (i, &node) in self.nodes.iter().enumerate() {
             displacement[node as usize] = -surface.normals[i] * depth_mm[i];
             self.worn_mm[i] += depth_mm[i];
@@ -139,6 +141,21 @@ impl Insert {
         for (node, step) in self.mesh.nodes.iter_mut().zip(&displacement) {
             *node += step;
         }
+    }
+
+    /// How every mesh node moves if the mesh goes on as it has come so far, in proportion to the
+    /// depth: nearly how it will, so that the inside is found in few iterations.
+    fn as_before(&self, surface: &ArticulatingSurface, depth_mm: &[f64]) -> Vec<Vec3> {
+        let moved = |node: usize| self.mesh.nodes[node] - self.unworn_nodes[node];
+        let (mut along, mut whole) = (0.0, 0.0);
+        for (i, &node) in self.nodes.iter().enumerate() {
+            let so_far = moved(node as usize);
+            along -= so_far.dot(&surface.normals[i]) * depth_mm[i];
+            whole += so_far.norm_squared();
+        }
+        let share = if whole > 0.0 { along / whole } else { 0.0 };
+        let nodes = 0..self.mesh.nodes.len();
+        nodes.map(|node| moved(node) * share).collect()
     }
 
     /// Puts a worn insert back to a stored state: all mesh nodes, and the depth worn so far at

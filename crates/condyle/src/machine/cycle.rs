@@ -234,13 +234,10 @@ impl<C: ContactModel> Simulator<'_, C> {
         repeats: bool,
     ) -> Cycle {
         let landed: Vec<Landed> = landed.into_iter().flatten().collect();
-        let records: Vec<(u32, Moment)> = landed
-            .iter()
-            .flat_map(|here| here.moments.iter().copied())
-            .collect();
+        let records = landed.iter().flat_map(|here| &here.moments);
         Cycle {
             rows: landed.iter().map(|here| here.row).collect(),
-            history: CycleHistory::from_records(self.contact.node_count(), &records),
+            history: CycleHistory::from_records(self.contact.node_count(), records),
             end,
             increments_solved: solved,
             repeats,
