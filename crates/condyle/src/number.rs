@@ -43,6 +43,8 @@ pub trait Number:
     fn abs(self) -> Self;
     /// The larger of two.
     fn max(self, other: Self) -> Self;
+    /// The smallest lane.
+    fn least(self) -> f64;
     /// `then` where `self` is below zero, `otherwise` elsewhere.
     fn below_zero(self, then: Self, otherwise: Self) -> Self;
 }
@@ -81,6 +83,11 @@ impl Number for f64 {
     }
 
     #[inline(always)]
+    fn least(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
     fn below_zero(self, then: Self, otherwise: Self) -> Self {
         if self < 0.0 { then } else { otherwise }
     }
@@ -112,14 +119,6 @@ impl Lanes {
     pub fn sum(self) -> f64 {
         let [a, b, c, d] = self.to_array();
         (a + b) + (c + d)
-    }
-
-    /// The smallest lane.
-    #[inline(always)]
-    pub fn least(self) -> f64 {
-        let [a, b, c, d] = self.to_array();
-        let smaller = |x: f64, y: f64| if x < y { x } else { y };
-        smaller(smaller(a, b), smaller(c, d))
     }
 
     /// The largest lane.
@@ -160,6 +159,13 @@ impl Number for Lanes {
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self(self.0.fast_max(other.0))
+    }
+
+    #[inline(always)]
+    fn least(self) -> f64 {
+        let [a, b, c, d] = self.to_array();
+        let smaller = |x: f64, y: f64| if x < y { x } else { y };
+        smaller(smaller(a, b), smaller(c, d))
     }
 
     #[inline(always)]

@@ -3,9 +3,9 @@
 use super::{
     ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
     motion::{Pose4, Twist4, twist_to_femur},
-    nearness::{Nearness, predicted_to_contact_mm},
-    partial::mean_overclosure,
-    seen::{MOVED_ALONG_MM, Seen},
+    nearness::Nearness,
+    partial::{Rises, mean_overclosure},
+    seen::Seen,
     shares::Shares4,
     traction::{Sliding, TangentSum, Tractions4, WrenchSum},
 };
@@ -99,54 +99,36 @@ impl<'a> Foundation<'a> {
             if !self.nearness.is_due(four) {
                 continue;
             }
-            let Some((place, sample)) = self.look(four, &pose) else {
-                continue;
-            };
             let shares = &self.shares[four];
-            let (pressed, to_contact_mm) =
-                press(self.settings, shares, place, &sample, &pose, &twist);
-            if to_contact_mm <= 0.0 {
-                self.nearness.touches(four);
-                total.add(&pressed.place, &pressed.force_n(self.settings.friction));
-                self.tractions.push(pressed);
-            } else {
-                self.nearness
-                    .is_apart(four, shares, &self.seen[four], to_contact_mm);
+            let place = pose.to_femur(&shares.centre);
+            if self.nearness.is_still_apart(four, shares, &place) {
+                continue;
             }
+            let sample = self.seen[four].look(self.femur, &place, shares.spread_mm2);
+            let rises = rises(shares, &pose.turn_to_insert(&sample.normal));
+            if (sample.gap_mm - rises.reach_mm()).least() > 0.0 {
+                let around = self.femur.surroundings(&place);
+                let reach_mm = rises.reach_mm();
+                self.nearness
+                    .is_apart(four, shares, place, &sample, reach_mm, around);
+                continue;
+            }
+            self.nearness.touches(four);
+            let pressed = press(self.settings, shares, place, &sample, &rises, &pose, &twist);
+            total.add(&pressed.place, &pressed.force_n(self.settings.friction));
+            self.tractions.push(pressed);
         }
         to_femur.tr_mul(&total.total())
     }
-
-    /// The femur as four shares see it now, in its frame; none where they surely do not touch.
-    #[inline(always)]
-    fn look(&mut self, four: usize, pose: &Pose4) -> Option<(Vector<Lanes>, SurfaceSample<Lanes>)> {
-        let (shares, seen) = (&self.shares[four], &self.seen[four]);
-        let place = pose.to_femur(&shares.centre);
-        let motion = place - seen.place;
-        let motion2 = motion.dot(&motion);
-        let moved = seen.sample.moved(&motion);
-        if motion2.greatest() <= MOVED_ALONG_MM * MOVED_ALONG_MM {
-            return Some((place, moved));
-        }
-        let rise = rises(shares, &pose.turn_to_insert(&moved.normal));
-        let reach_mm = (rise[0].abs() + rise[1].abs()) * Lanes::splat(0.5);
-        let apart = predicted_to_contact_mm(shares, seen, motion2, moved.gap_mm, reach_mm);
-        if let Some(to_contact_mm) = apart {
-            self.nearness.is_apart(four, shares, seen, to_contact_mm);
-            return None;
-        }
-        self.seen[four] = Seen::at(self.femur, place, shares.spread_mm2);
-        Some((place, self.seen[four].sample))
-    }
 }
 
-/// Rises of the overclosure along both edges of four shares, mm, under a normal in their frame.
+/// Rises of the overclosure along both edges of four shares, under a normal in their frame.
 #[inline(always)]
-fn rises(shares: &Shares4, normal: &Vector<Lanes>) -> [Lanes; 2] {
-    [normal.dot(&shares.edge_a), normal.dot(&shares.edge_b)]
+fn rises(shares: &Shares4, normal: &Vector<Lanes>) -> Rises<Lanes> {
+    Rises::new([normal.dot(&shares.edge_a), normal.dot(&shares.edge_b)])
 }
 
-/// Pressure and rubbing on four shares, and how far the nearest is from touching, mm.
+/// Pressure and rubbing on four shares.
 ///
 /// With n the femur's normal, K its curvature, e_k the share's edges and W the mean overclosure of
 /// the share, a motion a and a turn w of the femur change the middle's overclosure by G . a, the
@@ -157,18 +139,24 @@ fn press(
     shares: &Shares4,
     place: Vector<Lanes>,
     sample: &SurfaceSample<Lanes>,
+    rises: &Rises<Lanes>,
     pose: &Pose4,
     twist: &Twist4,
-) -> (Tractions4, f64) {
-    let rise = rises(shares, &pose.turn_to_insert(&sample.normal));
-    let mean = mean_overclosure(-sample.gap_mm, rise);
+) -> Tractions4 {
+    let mean = mean_overclosure(-sample.gap_mm, rises);
     let (pressure_mpa, slope) = settings.law.pressures(mean.mm, shares.per_thickness);
     let stiffness = slope * shares.area_mm2;
-    let by_normal = shares.edge_a * (mean.by_rise[0] * stiffness)
-        + shares.edge_b * (mean.by_rise[1] * stiffness);
-    let by_normal = pose.turn_to_femur(&by_normal);
-    let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
-    let tractions = Tractions4 {
+    let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
+    let mut load_by_turn = Vector::repeat(Lanes::splat(0.0));
+    if let Some(by_rise) = mean.by_rise {
+        let by_normal =
+            shares.edge_a * (by_rise[0] * stiffness) + shares.edge_b * (by_rise[1] * stiffness);
+        let by_normal = pose.turn_to_femur(&by_normal);
+        let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
+        load_by_motion -= sample.curvature.times(&along_surface);
+        load_by_turn = sample.normal.cross(&by_normal);
+    }
+    Tractions4 {
         nodes: shares.nodes,
         place,
         normal: sample.normal,
@@ -176,16 +164,14 @@ fn press(
         pressure_mpa,
         load_n: pressure_mpa * shares.area_mm2,
         covered_mm2: mean.by_middle * shares.area_mm2,
-        load_by_motion: sample.gap_gradient * (mean.by_middle * stiffness)
-            - sample.curvature.times(&along_surface),
-        load_by_turn: sample.normal.cross(&by_normal),
+        load_by_motion,
+        load_by_turn,
         sliding: Sliding::new(
             &twist.velocity(&place),
             &sample.normal,
             settings.slip_tolerance_mm_per_s,
         ),
-    };
-    (tractions, (sample.gap_mm - mean.reach_mm).least())
+    }
 }
 
 impl ContactModel for Foundation<'_> {
@@ -229,8 +215,7 @@ impl Foundation<'_> {
         let node = tractions.nodes[lane];
         let in_insert =
             |vector: &Vector<Lanes>| self.pose.rotation * vector.map(|lanes| lanes.lane(lane));
-        let sliding =
-            in_insert(&tractions.sliding.along) * tractions.sliding.speed_mm_per_s.lane(lane);
+        let sliding = in_insert(&tractions.sliding.velocity_mm_per_s);
         TouchedNode {
             node,
             is_medial: self.surface.positions[node as usize].z < 0.0,

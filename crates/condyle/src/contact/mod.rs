@@ -1,5 +1,6 @@
 //! Contact between femur and insert: one interface, several models.
 
+mod clearance;
 mod foundation;
 mod history;
 mod law;

@@ -2,7 +2,7 @@
 
 use crate::{
     Vector,
-    geometry::{FemoralSurface, SurfaceSample, Surroundings},
+    geometry::{FemoralSurface, SurfaceSample},
     number::{Lanes, Number},
 };
 
@@ -16,9 +16,8 @@ pub(super) const MOVED_ALONG_MM: f64 = 0.02;
 /// What four shares saw of the femur, and from where in its frame.
 #[derive(Clone)]
 pub(super) struct Seen {
-    pub place: Vector<Lanes>,
-    pub sample: SurfaceSample<Lanes>,
-    pub surroundings: Surroundings<Lanes>,
+    place: Vector<Lanes>,
+    sample: SurfaceSample<Lanes>,
 }
 
 impl Seen {
@@ -27,16 +26,25 @@ impl Seen {
         Self {
             place: Vector::repeat(Lanes::splat(f64::INFINITY)),
             sample: SurfaceSample::far(),
-            surroundings: Surroundings::uniform(f64::INFINITY),
         }
     }
 
+    /// The femur as four shares see it at `place`.
     #[inline(always)]
-    pub fn at(femur: &FemoralSurface, place: Vector<Lanes>, spread_mm2: Lanes) -> Self {
-        Self {
-            place,
-            sample: femur.sample(&place, spread_mm2),
-            surroundings: femur.surroundings(&place),
+    pub fn look(
+        &mut self,
+        femur: &FemoralSurface,
+        place: &Vector<Lanes>,
+        spread_mm2: Lanes,
+    ) -> SurfaceSample<Lanes> {
+        let motion = place - self.place;
+        if motion.dot(&motion).greatest() <= MOVED_ALONG_MM * MOVED_ALONG_MM {
+            return self.sample.moved(&motion);
         }
+        *self = Self {
+            place: *place,
+            sample: femur.sample(place, spread_mm2),
+        };
+        self.sample
     }
 }

@@ -36,16 +36,15 @@ pub(super) struct Tractions4 {
 
 /// How the femur's material moves past a share.
 pub(super) struct Sliding {
-    /// Direction of sliding, t1.
-    pub along: Vector<Lanes>,
-    /// Speed of sliding, v_t, mm/s.
-    pub speed_mm_per_s: Lanes,
+    /// Velocity along the surface, mm/s; where nothing slides, a lean so slight that it only gives
+    /// a direction.
+    pub velocity_mm_per_s: Vector<Lanes>,
+    /// Square of the speed of sliding, v_t^2, mm2/s2.
+    speed2: Lanes,
     /// Velocity of the femur's material out of the femur, c = n . v, mm/s.
     closing_mm_per_s: Lanes,
-    /// Speed with the tolerance, w, mm/s.
-    regular_mm_per_s: Lanes,
-    /// Part of full friction that is reached, s.
-    part: Lanes,
+    /// One over the speed with the tolerance, 1/w, s/mm.
+    per_regular: Lanes,
 }
 
 impl Sliding {
@@ -57,15 +56,24 @@ impl Sliding {
         let leaning = Vector::new(-(normal.y * lean), normal.x * lean, Lanes::splat(0.0));
         let tangential = velocity - normal * closing + leaning;
         let speed2 = tangential.dot(&tangential);
-        let speed = Number::max(speed2.sqrt(), Lanes::splat(f64::MIN_POSITIVE));
-        let regular = (speed2 + Lanes::splat(tolerance_mm_per_s * tolerance_mm_per_s)).sqrt();
+        let regular2 = speed2 + Lanes::splat(tolerance_mm_per_s * tolerance_mm_per_s);
         Self {
-            along: tangential * (Lanes::splat(1.0) / speed),
-            speed_mm_per_s: speed,
+            velocity_mm_per_s: tangential,
+            speed2,
             closing_mm_per_s: closing,
-            regular_mm_per_s: regular,
-            part: speed / regular,
+            per_regular: Lanes::splat(1.0) / regular2.sqrt(),
         }
+    }
+
+    /// Direction of sliding t1, and the part s of full friction that is reached.
+    #[inline(always)]
+    fn direction_and_part(&self) -> (Vector<Lanes>, Lanes) {
+        let least = Lanes::splat(f64::MIN_POSITIVE);
+        let speed = Number::max(self.speed2, least).sqrt();
+        (
+            self.velocity_mm_per_s * (Lanes::splat(1.0) / speed),
+            speed * self.per_regular,
+        )
     }
 }
 
@@ -81,8 +89,8 @@ impl Tractions4 {
     /// Forces on the insert, N.
     #[inline(always)]
     pub fn force_n(&self, friction: f64) -> Vector<Lanes> {
-        let rub = Lanes::splat(friction) * self.sliding.part;
-        (self.normal + self.sliding.along * rub) * self.load_n
+        let rub = Lanes::splat(friction) * self.sliding.per_regular;
+        (self.normal + self.sliding.velocity_mm_per_s * rub) * self.load_n
     }
 }
 
@@ -107,17 +115,12 @@ impl TangentSum {
     /// and a change of twist tau: dW = L mu/w ((1 - s^2) T1 T1' + T2 T2') tau.
     #[inline(always)]
     pub fn add(&mut self, tractions: &Tractions4, friction: f64) {
-        let Sliding {
-            along: t1,
-            closing_mm_per_s,
-            regular_mm_per_s,
-            part,
-            ..
-        } = &tractions.sliding;
+        let sliding = &tractions.sliding;
+        let (t1, part) = sliding.direction_and_part();
         let (p, n, load) = (&tractions.place, &tractions.normal, tractions.load_n);
-        let t2 = n.cross(t1);
+        let t2 = n.cross(&t1);
         let wrench_n = joined(&p.cross(n), n);
-        let wrench_1 = joined(&p.cross(t1), t1);
+        let wrench_1 = joined(&p.cross(&t1), &t1);
         let wrench_2 = joined(&p.cross(&t2), &t2);
         let row = |t: &Vector<Lanes>| {
             let bend = tractions.curvature.times(t);
@@ -127,11 +130,11 @@ impl TangentSum {
             &(p.cross(&tractions.load_by_motion) + tractions.load_by_turn),
             &tractions.load_by_motion,
         );
-        let (row_1, row_2) = (row(t1), row(&t2));
+        let (row_1, row_2) = (row(&t1), row(&t2));
         let (one, friction) = (Lanes::splat(1.0), Lanes::splat(friction));
-        let (rub, stuck) = (friction * *part, one - *part * *part);
-        let per_speed = friction / *regular_mm_per_s;
-        let turn = *closing_mm_per_s * per_speed;
+        let (rub, stuck) = (friction * part, one - part * part);
+        let per_speed = friction * sliding.per_regular;
+        let turn = sliding.closing_mm_per_s * per_speed;
         let whole: Six = std::array::from_fn(|i| wrench_n[i] + rub * wrench_1[i]);
         let (q1, q2) = (load * (one - turn * stuck), load * (one - turn));
         let first: Six = std::array::from_fn(|i| load * rub * wrench_n[i] - q1 * wrench_1[i]);

@@ -128,16 +128,16 @@ impl SmoothField {
         self
     }
 
-    /// Bounds on the surface around a point.
+    /// Bounds on the surface around points, in every lane.
     #[inline(always)]
-    pub fn surroundings<T: Number>(&self, point: &Vector<T>) -> Surroundings<T> {
-        let corner = self.locate(point).corner;
+    pub fn surroundings<T: Number>(&self, points: &Vector<T>) -> Surroundings {
+        let corners = self.locate(points).corner;
         let [sx, sy, sz] = self.strides();
-        let bends = corner.map(|corner| self.bends.around(corner + sx + sy + sz));
-        Surroundings {
-            sharpest_per_mm: T::from_lanes(|lane| bends[lane].sharpest_per_mm),
-            bend_range_per_mm: T::from_lanes(|lane| bends[lane].range_per_mm),
-        }
+        let around = |corner: &usize| self.bends.around(corner + sx + sy + sz);
+        let lanes = corners[..T::COUNT].iter().map(around);
+        lanes
+            .reduce(Surroundings::joined)
+            .unwrap_or(Surroundings::UNKNOWN)
     }
 
     /// Distance between the nodes of the grid, mm.
