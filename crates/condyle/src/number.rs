@@ -41,6 +41,10 @@ pub trait Number:
     fn sqrt(self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
+    /// `self` times `factor` plus `addend`, rounded once.
+    fn times_plus(self, factor: Self, addend: Self) -> Self;
+    /// `self` times `factor` less `subtrahend`, rounded once.
+    fn times_minus(self, factor: Self, subtrahend: Self) -> Self;
     /// The larger of two.
     fn max(self, other: Self) -> Self;
     /// The smallest lane.
@@ -75,6 +79,16 @@ impl Number for f64 {
     #[inline(always)]
     fn abs(self) -> Self {
         f64::abs(self)
+    }
+
+    #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        self.mul_add(factor, addend)
+    }
+
+    #[inline(always)]
+    fn times_minus(self, factor: Self, subtrahend: Self) -> Self {
+        self.mul_add(factor, -subtrahend)
     }
 
     #[inline(always)]
@@ -154,6 +168,16 @@ impl Number for Lanes {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.abs())
+    }
+
+    #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        Self(self.0.mul_add(factor.0, addend.0))
+    }
+
+    #[inline(always)]
+    fn times_minus(self, factor: Self, subtrahend: Self) -> Self {
+        Self(self.0.mul_sub(factor.0, subtrahend.0))
     }
 
     #[inline(always)]

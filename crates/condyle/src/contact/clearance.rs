@@ -5,6 +5,7 @@ use crate::{
     Vector,
     geometry::{SurfaceSample, Surroundings},
     number::{Lanes, Number},
+    products::dot,
 };
 
 /// Four shares that were seen apart: from where, and how the gap goes on from there.
@@ -67,7 +68,7 @@ impl Clearance {
     #[inline(always)]
     pub fn least_mm(&self, place: &Vector<Lanes>, half_mm: f64, turned_rad: f64) -> f64 {
         let motion = place - self.place;
-        let motion2 = motion.dot(&motion).greatest();
+        let motion2 = dot(&motion, &motion).greatest();
         let Surroundings {
             radius_mm,
             sharpest_per_mm,
@@ -79,7 +80,7 @@ impl Clearance {
         }
         let turn_rad = sharpest_per_mm * motion_mm + (turned_rad - self.turned_rad);
         let error_mm = 0.5 * hollow_per_mm * motion2 + half_mm * turn_rad;
-        (self.clear_mm + self.gap_gradient.dot(&motion)).least() - error_mm
+        (self.clear_mm + dot(&self.gap_gradient, &motion)).least() - error_mm
     }
 
     /// How far the femur may travel before the shares, now `clear_mm` from contact, could touch, mm.

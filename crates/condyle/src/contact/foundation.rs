@@ -13,6 +13,7 @@ use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, FemoralSurface, Insert, SurfaceSample},
     number::{LANES, Lanes, Number},
+    products::{cross, dot, scaled_plus, without_part_along},
 };
 
 /// How the foundation presses and rubs.
@@ -125,7 +126,7 @@ impl<'a> Foundation<'a> {
 /// Rises of the overclosure along both edges of four shares, under a normal in their frame.
 #[inline(always)]
 fn rises(shares: &Shares4, normal: &Vector<Lanes>) -> Rises<Lanes> {
-    Rises::new([normal.dot(&shares.edge_a), normal.dot(&shares.edge_b)])
+    Rises::new([dot(normal, &shares.edge_a), dot(normal, &shares.edge_b)])
 }
 
 /// Pressure and rubbing on four shares.
@@ -149,12 +150,12 @@ fn press(
     let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
     let mut load_by_turn = Vector::repeat(Lanes::splat(0.0));
     if let Some(by_rise) = mean.by_rise {
-        let by_normal =
-            shares.edge_a * (by_rise[0] * stiffness) + shares.edge_b * (by_rise[1] * stiffness);
+        let [by_a, by_b] = by_rise.map(|by_rise| by_rise * stiffness);
+        let by_normal = scaled_plus(&shares.edge_a, by_a, &(shares.edge_b * by_b));
         let by_normal = pose.turn_to_femur(&by_normal);
-        let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
+        let along_surface = without_part_along(&by_normal, &sample.normal);
         load_by_motion -= sample.curvature.times(&along_surface);
-        load_by_turn = sample.normal.cross(&by_normal);
+        load_by_turn = cross(&sample.normal, &by_normal);
     }
     Tractions4 {
         nodes: shares.nodes,

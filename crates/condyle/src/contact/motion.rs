@@ -3,6 +3,7 @@
 use crate::{
     Mat3, Vec3, Vector,
     number::{Lanes, Number},
+    products::{dot, scaled_plus},
 };
 
 /// A wrench as (moment, force) or a twist as (angular, linear); N mm and N, rad and mm.
@@ -66,14 +67,14 @@ impl Pose4 {
     #[inline(always)]
     pub fn turn_to_femur(&self, vector: &Vector<Lanes>) -> Vector<Lanes> {
         let [x, y, z] = &self.columns;
-        Vector::new(x.dot(vector), y.dot(vector), z.dot(vector))
+        Vector::new(dot(x, vector), dot(y, vector), dot(z, vector))
     }
 
     /// Vectors of the femoral frame seen from the insert frame.
     #[inline(always)]
     pub fn turn_to_insert(&self, vector: &Vector<Lanes>) -> Vector<Lanes> {
         let [x, y, z] = &self.columns;
-        x * vector.x + y * vector.y + z * vector.z
+        scaled_plus(x, vector.x, &scaled_plus(y, vector.y, &(z * vector.z)))
     }
 }
 
@@ -95,7 +96,12 @@ impl Twist4 {
     /// Velocities of points.
     #[inline(always)]
     pub fn velocity(&self, place: &Vector<Lanes>) -> Vector<Lanes> {
-        self.linear + self.angular.cross(place)
+        let (w, p, v) = (&self.angular, place, &self.linear);
+        Vector::new(
+            w.y.times_plus(p.z, v.x - w.z * p.y),
+            w.z.times_plus(p.x, v.y - w.x * p.z),
+            w.x.times_plus(p.y, v.z - w.y * p.x),
+        )
     }
 }
 

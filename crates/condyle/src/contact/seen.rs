@@ -4,6 +4,7 @@ use crate::{
     Vector,
     geometry::{FemoralSurface, SurfaceSample},
     number::{Lanes, Number},
+    products::dot,
 };
 
 /// Motion up to which a sample is moved along to second order rather than taken anew, mm.
@@ -38,7 +39,7 @@ impl Seen {
         spread_mm2: Lanes,
     ) -> SurfaceSample<Lanes> {
         let motion = place - self.place;
-        if motion.dot(&motion).greatest() <= MOVED_ALONG_MM * MOVED_ALONG_MM {
+        if dot(&motion, &motion).greatest() <= MOVED_ALONG_MM * MOVED_ALONG_MM {
             return self.sample.moved(&motion);
         }
         *self = Self {

@@ -5,6 +5,7 @@ use crate::{
     Vector,
     geometry::Curvature,
     number::{LANES, Lanes, Number},
+    products::{cross, dot, scaled_plus},
 };
 
 /// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
@@ -51,11 +52,11 @@ impl Sliding {
     /// Takes a velocity apart along a surface with normal `normal`.
     #[inline(always)]
     pub fn new(velocity: &Vector<Lanes>, normal: &Vector<Lanes>, tolerance_mm_per_s: f64) -> Self {
-        let closing = normal.dot(velocity);
+        let closing = dot(normal, velocity);
         let lean = Lanes::splat(STANDSTILL_MM_PER_S);
         let leaning = Vector::new(-(normal.y * lean), normal.x * lean, Lanes::splat(0.0));
-        let tangential = velocity - normal * closing + leaning;
-        let speed2 = tangential.dot(&tangential);
+        let tangential = scaled_plus(normal, -closing, &(velocity + leaning));
+        let speed2 = dot(&tangential, &tangential);
         let regular2 = speed2 + Lanes::splat(tolerance_mm_per_s * tolerance_mm_per_s);
         Self {
             velocity_mm_per_s: tangential,
@@ -90,7 +91,7 @@ impl Tractions4 {
     #[inline(always)]
     pub fn force_n(&self, friction: f64) -> Vector<Lanes> {
         let rub = Lanes::splat(friction) * self.sliding.per_regular;
-        (self.normal + self.sliding.velocity_mm_per_s * rub) * self.load_n
+        scaled_plus(&self.sliding.velocity_mm_per_s, rub, &self.normal) * self.load_n
     }
 }
 
@@ -118,16 +119,16 @@ impl TangentSum {
         let sliding = &tractions.sliding;
         let (t1, part) = sliding.direction_and_part();
         let (p, n, load) = (&tractions.place, &tractions.normal, tractions.load_n);
-        let t2 = n.cross(&t1);
-        let wrench_n = joined(&p.cross(n), n);
-        let wrench_1 = joined(&p.cross(&t1), &t1);
-        let wrench_2 = joined(&p.cross(&t2), &t2);
+        let t2 = cross(n, &t1);
+        let wrench_n = joined(&cross(p, n), n);
+        let wrench_1 = joined(&cross(p, &t1), &t1);
+        let wrench_2 = joined(&cross(p, &t2), &t2);
         let row = |t: &Vector<Lanes>| {
             let bend = tractions.curvature.times(t);
-            joined(&(p.cross(&bend) - n.cross(t)), &bend)
+            joined(&(cross(p, &bend) - cross(n, t)), &bend)
         };
         let load_row = joined(
-            &(p.cross(&tractions.load_by_motion) + tractions.load_by_turn),
+            &(cross(p, &tractions.load_by_motion) + tractions.load_by_turn),
             &tractions.load_by_motion,
         );
         let (row_1, row_2) = (row(&t1), row(&t2));
@@ -135,15 +136,16 @@ impl TangentSum {
         let (rub, stuck) = (friction * part, one - part * part);
         let per_speed = friction * sliding.per_regular;
         let turn = sliding.closing_mm_per_s * per_speed;
-        let whole: Six = std::array::from_fn(|i| wrench_n[i] + rub * wrench_1[i]);
+        let whole: Six = std::array::from_fn(|i| rub.times_plus(wrench_1[i], wrench_n[i]));
         let (q1, q2) = (load * (one - turn * stuck), load * (one - turn));
-        let first: Six = std::array::from_fn(|i| load * rub * wrench_n[i] - q1 * wrench_1[i]);
+        let first: Six =
+            std::array::from_fn(|i| (load * rub).times_minus(wrench_n[i], q1 * wrench_1[i]));
         let second: Six = std::array::from_fn(|i| -(q2 * wrench_2[i]));
         for (column, entries) in self.by_pose.iter_mut().enumerate() {
             for (i, entry) in entries.iter_mut().enumerate() {
-                *entry += whole[i] * load_row[column]
-                    + first[i] * row_1[column]
-                    + second[i] * row_2[column];
+                let by_load = whole[i].times_plus(load_row[column], *entry);
+                let by_first = first[i].times_plus(row_1[column], by_load);
+                *entry = second[i].times_plus(row_2[column], by_first);
             }
         }
         let (drag_1, drag_2) = (load * per_speed * stuck, load * per_speed);
@@ -151,7 +153,8 @@ impl TangentSum {
         for (column, entries) in self.by_twist.iter_mut().enumerate() {
             let (weight_1, weight_2) = (drag_1 * wrench_1[column], drag_2 * wrench_2[column]);
             for (i, entry) in entries.iter_mut().enumerate().take(column + 1) {
-                *entry += wrench_1[i] * weight_1 + wrench_2[i] * weight_2;
+                let by_first = wrench_1[i].times_plus(weight_1, *entry);
+                *entry = wrench_2[i].times_plus(weight_2, by_first);
             }
         }
     }
@@ -175,7 +178,7 @@ impl WrenchSum {
     /// Adds forces at places, about the origin.
     #[inline(always)]
     pub fn add(&mut self, place: &Vector<Lanes>, force: &Vector<Lanes>) {
-        let wrench = joined(&place.cross(force), force);
+        let wrench = joined(&cross(place, force), force);
         self.0
             .iter_mut()
             .zip(wrench)

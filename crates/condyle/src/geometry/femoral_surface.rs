@@ -1,7 +1,11 @@
 //! The femoral surface as the contact sees it.
 
 use super::{Cylinder, GenericFemur, SmoothField, Torus};
-use crate::{Vec3, Vector, number::Number};
+use crate::{
+    Vec3, Vector,
+    number::Number,
+    products::{dot, scaled_plus, without_part_along},
+};
 
 /// A symmetric 3 by 3 matrix, 1/mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,9 +24,9 @@ impl<T: Number> Curvature<T> {
     #[inline(always)]
     pub fn times(&self, v: &Vector<T>) -> Vector<T> {
         Vector::new(
-            self.xx * v.x + self.xy * v.y + self.xz * v.z,
-            self.xy * v.x + self.yy * v.y + self.yz * v.z,
-            self.xz * v.x + self.yz * v.y + self.zz * v.z,
+            dot(&Vector::new(self.xx, self.xy, self.xz), v),
+            dot(&Vector::new(self.xy, self.yy, self.yz), v),
+            dot(&Vector::new(self.xz, self.yz, self.zz), v),
         )
     }
 }
@@ -70,11 +74,11 @@ impl<T: Number> SurfaceSample<T> {
     #[inline(always)]
     pub fn moved(&self, motion: &Vector<T>) -> Self {
         let bend = self.curvature.times(motion);
-        let slope = self.gap_gradient + bend * T::splat(0.5);
+        let slope = scaled_plus(&bend, T::splat(0.5), &self.gap_gradient);
         Self {
-            gap_mm: self.gap_mm + slope.dot(motion),
+            gap_mm: self.gap_mm + dot(&slope, motion),
             gap_gradient: self.gap_gradient + bend,
-            normal: self.normal + bend - self.normal * self.normal.dot(&bend),
+            normal: self.normal + without_part_along(&bend, &self.normal),
             curvature: self.curvature,
         }
     }

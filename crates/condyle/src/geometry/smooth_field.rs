@@ -70,7 +70,7 @@ impl<T: Number> Basis<T> {
 
 #[inline(always)]
 fn dot3<T: Number>(a: &[T; 3], b: &[T; 3]) -> T {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    a[0].times_plus(b[0], a[1].times_plus(b[1], a[2] * b[2]))
 }
 
 /// The second difference: second derivatives of the three B-splines are 1, -2, 1 everywhere.
@@ -194,16 +194,15 @@ impl SmoothField {
             let fxx = rows.map(|row| bent(&row));
             let (v, s, b) = (z.value[k], z.slope[k], T::splat([1.0, -2.0, 1.0][k]));
             let (g, gx, gy) = (dot3(&y.value, &f), dot3(&y.value, &fx), dot3(&y.slope, &f));
-            gap += v * g;
-            gradient[0] += v * gx;
-            gradient[1] += v * gy;
-            gradient[2] += s * g;
-            bend[0] += v * dot3(&y.value, &fxx);
-            bend[1] += v * bent(&f);
-            bend[2] += b * g;
-            bend[3] += v * dot3(&y.slope, &fx);
-            bend[4] += s * gx;
-            bend[5] += s * gy;
+            gap = v.times_plus(g, gap);
+            for (sum, (weight, part)) in gradient.iter_mut().zip([(v, gx), (v, gy), (s, g)]) {
+                *sum = weight.times_plus(part, *sum);
+            }
+            let (gxx, gyy, gxy) = (dot3(&y.value, &fxx), bent(&f), dot3(&y.slope, &fx));
+            let parts = [(v, gxx), (v, gyy), (b, g), (v, gxy), (s, gx), (s, gy)];
+            for (sum, (weight, part)) in bend.iter_mut().zip(parts) {
+                *sum = weight.times_plus(part, *sum);
+            }
         }
         sample_from(
             here.inside.below_zero(T::splat(OUTSIDE_MM), gap),
