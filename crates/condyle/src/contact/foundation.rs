@@ -2,7 +2,7 @@
 
 use super::{
     ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
-    motion::{Pose4, Twist4, twist_to_femur},
+    motion::{Pose4, Twist4, small_motion, twist_to_femur},
     nearness::Nearness,
     partial::{Rises, mean_overclosure},
     seen::Seen,
@@ -163,7 +163,7 @@ fn press(
         normal: sample.normal,
         curvature: sample.curvature,
         pressure_mpa,
-        load_n: pressure_mpa * shares.area_mm2,
+        area_mm2: shares.area_mm2,
         covered_mm2: mean.by_middle * shares.area_mm2,
         load_by_motion,
         load_by_turn,
@@ -197,34 +197,39 @@ impl ContactModel for Foundation<'_> {
         self.surface.positions.len()
     }
 
-    fn touched(&self) -> Vec<TouchedNode> {
-        let lanes = self.tractions.iter().flat_map(|tractions| {
-            let force_n = tractions.force_n(self.settings.friction);
-            (0..LANES).map(move |lane| (tractions, force_n, lane))
-        });
-        let presses =
-            |(tractions, _, lane): &(&Tractions4, _, usize)| tractions.load_n.lane(*lane) > 0.0;
-        lanes
-            .filter(presses)
-            .map(|(tractions, force_n, lane)| self.touch(tractions, &force_n, lane))
-            .collect()
+    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
+        let to_femur = twist_to_femur(&self.pose);
+        let moved = Twist4::new(&(to_femur * small_motion(&self.pose, &motion.pose)));
+        let twist = Twist4::new(&(to_femur * motion.twist));
+        let mut touched = Vec::with_capacity(LANES * self.tractions.len());
+        for tractions in &self.tractions {
+            let tolerance = self.settings.slip_tolerance_mm_per_s;
+            self.touch(&tractions.moved(&moved, &twist, tolerance), &mut touched);
+        }
+        touched
     }
 }
 
 impl Foundation<'_> {
-    fn touch(&self, tractions: &Tractions4, force_n: &Vector<Lanes>, lane: usize) -> TouchedNode {
-        let node = tractions.nodes[lane];
-        let in_insert =
-            |vector: &Vector<Lanes>| self.pose.rotation * vector.map(|lanes| lanes.lane(lane));
-        let sliding = in_insert(&tractions.sliding.velocity_mm_per_s);
-        TouchedNode {
-            node,
-            is_medial: self.surface.positions[node as usize].z < 0.0,
-            pressure_mpa: tractions.pressure_mpa.lane(lane),
-            covered_mm2: tractions.covered_mm2.lane(lane),
-            force_n: in_insert(force_n),
-            sliding_mm_per_s: self.directions[node as usize]
-                .map(|direction| sliding.dot(&direction)),
+    /// Adds those of four shares that press.
+    fn touch(&self, tractions: &Tractions4, touched: &mut Vec<TouchedNode>) {
+        let turn = Pose4::new(&self.pose);
+        let force_n = turn.turn_to_insert(&tractions.force_n(self.settings.friction));
+        let sliding = turn.turn_to_insert(&tractions.sliding.velocity_mm_per_s);
+        for (lane, &node) in tractions.nodes.iter().enumerate() {
+            let pressure_mpa = tractions.pressure_mpa.lane(lane);
+            if pressure_mpa * tractions.area_mm2.lane(lane) > 0.0 {
+                let at = |vector: &Vector<Lanes>| vector.map(|lanes| lanes.lane(lane));
+                let along = |direction: &Vec3| at(&sliding).dot(direction);
+                touched.push(TouchedNode {
+                    node,
+                    is_medial: self.surface.positions[node as usize].z < 0.0,
+                    pressure_mpa,
+                    covered_mm2: tractions.covered_mm2.lane(lane),
+                    force_n: at(&force_n),
+                    sliding_mm_per_s: self.directions[node as usize].each_ref().map(along),
+                });
+            }
         }
     }
 }

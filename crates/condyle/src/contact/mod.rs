@@ -61,6 +61,7 @@ pub trait ContactModel {
     /// How many surface nodes there are.
     fn node_count(&self) -> usize;
 
-    /// The nodes in contact at the last [`ContactModel::respond`], ascending.
-    fn touched(&self) -> Vec<TouchedNode>;
+    /// The nodes in contact at a motion, ascending: that of the last [`ContactModel::respond`], or one
+    /// so near that loads and speeds may be taken along to first order.
+    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode>;
 }

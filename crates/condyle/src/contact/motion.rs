@@ -93,6 +93,11 @@ impl Twist4 {
         }
     }
 
+    /// The angular velocity.
+    pub fn angular(&self) -> &Vector<Lanes> {
+        &self.angular
+    }
+
     /// Velocities of points.
     #[inline(always)]
     pub fn velocity(&self, place: &Vector<Lanes>) -> Vector<Lanes> {
@@ -113,6 +118,19 @@ pub struct RelativeMotion {
     /// Angular velocity, rad/s, then the velocity of the femur's material at the insert's origin,
     /// mm/s; in the insert frame.
     pub twist: Vec6,
+}
+
+/// The small motion from one pose to another, a turn and the shift of the femur's material at the
+/// insert's origin; in the insert frame.
+pub(super) fn small_motion(from: &Pose, to: &Pose) -> Vec6 {
+    let turned = to.rotation * from.rotation.transpose();
+    let turn = Vec3::new(
+        turned[(2, 1)] - turned[(1, 2)],
+        turned[(0, 2)] - turned[(2, 0)],
+        turned[(1, 0)] - turned[(0, 1)],
+    ) / 2.0;
+    let shift = to.translation - from.translation - turn.cross(&from.translation);
+    Vec6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z)
 }
 
 /// The matrix \[v\] with \[v\] w = v x w.

@@ -1,6 +1,6 @@
 //! Forces of four shares under pressure, and their tangent as a sum of rank-one terms.
 
-use super::{Mat6, Vec6};
+use super::{Mat6, Vec6, motion::Twist4};
 use crate::{
     Vector,
     geometry::Curvature,
@@ -24,8 +24,8 @@ pub(super) struct Tractions4 {
     /// Curvature of the femur, K, 1/mm; right on tangents.
     pub curvature: Curvature<Lanes>,
     pub pressure_mpa: Lanes,
-    /// Areas of the shares times their pressure, L, N.
-    pub load_n: Lanes,
+    /// Areas of the shares, mm2; their product with the pressure is the load L, N.
+    pub area_mm2: Lanes,
     /// Areas of the parts of the shares that press, mm2.
     pub covered_mm2: Lanes,
     /// Derivatives of the loads by the motion of the femur's material there, N/mm.
@@ -87,11 +87,28 @@ pub(super) struct TangentSum {
 }
 
 impl Tractions4 {
+    /// The same shares after a short motion of the femur, turn and shift in its frame, to first
+    /// order, and with the speeds of `twist`; the covered area stays.
+    #[inline(always)]
+    pub fn moved(&self, motion: &Twist4, twist: &Twist4, tolerance_mm_per_s: f64) -> Self {
+        let shift = motion.velocity(&self.place);
+        let rise_n = dot(&self.load_by_motion, &shift) + dot(&self.load_by_turn, motion.angular());
+        let least = Lanes::splat(f64::MIN_POSITIVE);
+        let pressure_mpa = self.pressure_mpa + rise_n / Number::max(self.area_mm2, least);
+        let velocity = twist.velocity(&self.place);
+        Self {
+            pressure_mpa: Number::max(pressure_mpa, Lanes::splat(0.0)),
+            sliding: Sliding::new(&velocity, &self.normal, tolerance_mm_per_s),
+            ..*self
+        }
+    }
+
     /// Forces on the insert, N.
     #[inline(always)]
     pub fn force_n(&self, friction: f64) -> Vector<Lanes> {
         let rub = Lanes::splat(friction) * self.sliding.per_regular;
-        scaled_plus(&self.sliding.velocity_mm_per_s, rub, &self.normal) * self.load_n
+        scaled_plus(&self.sliding.velocity_mm_per_s, rub, &self.normal)
+            * (self.pressure_mpa * self.area_mm2)
     }
 }
 
@@ -118,7 +135,8 @@ impl TangentSum {
     pub fn add(&mut self, tractions: &Tractions4, friction: f64) {
         let sliding = &tractions.sliding;
         let (t1, part) = sliding.direction_and_part();
-        let (p, n, load) = (&tractions.place, &tractions.normal, tractions.load_n);
+        let (p, n) = (&tractions.place, &tractions.normal);
+        let load = tractions.pressure_mpa * tractions.area_mm2;
         let t2 = cross(n, &t1);
         let wrench_n = joined(&cross(p, n), n);
         let wrench_1 = joined(&cross(p, &t1), &t1);
