@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 /// Lever on which a moment out of balance counts as a force, mm.
 const MOMENT_LEVER_MM: f64 = 10.0;
 /// Iterations after which a step is given up, and tried in halves.
-const MOST_ITERATIONS: usize = 25;
+const MOST_ITERATIONS: usize = 12;
 /// A correction taken back keeps at least this part.
 const LEAST_PART_OF_CORRECTION: f64 = 0.1;
 /// A correction taken back to less than this has found no better place, mm.
 const SHORTEST_CORRECTION_MM: f64 = 1e-9;
 /// A residual that is foreseen, and not computed, must be this part of the tolerance at most.
-const FORESEEN: f64 = 0.1;
+const FORESEEN: f64 = 1.0;
 /// A whole correction that leaves more of the residual is none of the last, quadratic ones.
 const CONVERGING: f64 = 0.1;
 /// Farthest that one iteration may move, mm; on the lever, rad.
