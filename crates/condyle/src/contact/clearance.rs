@@ -1,9 +1,9 @@
 //! How far four shares are from touching, as long as what was seen of the femur still says so.
 
-use super::shares::Shares4;
+use super::{seen::Seen, shares::Shares4};
 use crate::{
     Vector,
-    geometry::{SurfaceSample, Surroundings},
+    geometry::Surroundings,
     number::{Lanes, Number},
     products::dot,
 };
@@ -42,12 +42,10 @@ impl Clearance {
         self.surroundings.radius_mm = Surroundings::UNKNOWN.radius_mm;
     }
 
-    /// What a sample at `place` says of shares with a reach of `reach_mm` there, seen when the femur
-    /// had turned by `turned_rad` in all.
+    /// What shares with a reach of `reach_mm` saw when the femur had turned by `turned_rad` in all.
     #[inline(always)]
-    pub fn seen(
-        place: Vector<Lanes>,
-        sample: &SurfaceSample<Lanes>,
+    pub fn new(
+        seen: &Seen,
         reach_mm: Lanes,
         shares: &Shares4,
         surroundings: Surroundings,
@@ -55,9 +53,9 @@ impl Clearance {
     ) -> Self {
         let jump_mm = shares.spread_mm2 * Lanes::splat(surroundings.sharpest_per_mm);
         Self {
-            place,
-            gap_gradient: sample.gap_gradient,
-            clear_mm: sample.gap_mm - reach_mm - jump_mm,
+            place: seen.place,
+            gap_gradient: seen.sample.gap_gradient,
+            clear_mm: seen.sample.gap_mm - reach_mm - jump_mm,
             surroundings,
             turned_rad,
         }

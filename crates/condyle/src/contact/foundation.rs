@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     Vec3, Vector,
-    geometry::{ArticulatingSurface, FemoralSurface, Insert, SurfaceSample},
+    geometry::{ArticulatingSurface, FemoralSurface, Insert},
     number::{LANES, Lanes, Number},
     products::{cross, dot, scaled_plus, without_part_along},
 };
@@ -30,6 +30,14 @@ pub struct FoundationSettings {
     pub slip_tolerance_mm_per_s: f64,
 }
 
+/// Four shares that touch, as they see the femur.
+struct Look {
+    four: u32,
+    seen: Seen,
+    /// How the overclosure rises along the shares' edges.
+    rises: Rises<Lanes>,
+}
+
 /// Contact of a rigid femur with an elastic layer on a rigid base.
 ///
 /// Every node's share of the articulating surface presses with the law's pressure at its mean
@@ -46,7 +54,10 @@ pub struct Foundation<'a> {
     /// What every four of them saw of the femur.
     seen: Vec<Seen>,
     nearness: Nearness,
-    /// What presses at the last response.
+    /// The fours that may touch, and the places of their centres in the femoral frame.
+    due: Vec<(u32, Vector<Lanes>)>,
+    /// The fours that touched at the last response, and what pressed them.
+    looks: Vec<Look>,
     tractions: Vec<Tractions4>,
     /// Where the femur was then.
     pose: Pose,
@@ -71,6 +82,8 @@ impl<'a> Foundation<'a> {
             seen: vec![Seen::nothing(); shares.len()],
             shares,
             surface,
+            due: Vec::new(),
+            looks: Vec::new(),
             tractions: Vec::new(),
             pose: Pose::identity(),
         }
@@ -86,47 +99,39 @@ impl<'a> Foundation<'a> {
         self.surface
     }
 
-    /// Goes over all shares that may touch at a motion; see [`ContactModel::respond`].
-    #[inline(always)]
-    fn go_over_shares(&mut self, motion: &RelativeMotion) -> Vec6 {
-        self.pose = motion.pose;
-        let to_femur = twist_to_femur(&self.pose);
-        let pose = Pose4::new(&self.pose);
-        let twist = Twist4::new(&(to_femur * motion.twist));
-        self.nearness.travel(&self.pose);
+    /// Looks from every four that may touch, and keeps those that do.
+    fn look(&mut self, pose: &Pose4) {
+        self.looks.clear();
+        for &(four, place) in &self.due {
+            let at = four as usize;
+            let shares = &self.shares[at];
+            let seen = self.seen[at].look(self.femur, place, shares.spread_mm2);
+            let normal = pose.turn_to_insert(&seen.sample.normal);
+            let rises = Rises::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
+            let reach_mm = rises.reach_mm();
+            if (seen.sample.gap_mm - reach_mm).least() > 0.0 {
+                let around = self.femur.surroundings(&place);
+                self.nearness.is_apart(at, shares, &seen, reach_mm, around);
+            } else {
+                self.nearness.touches(at);
+                self.looks.push(Look { four, seen, rises });
+            }
+        }
+    }
+
+    /// Presses all that touch; the wrench on the insert at the femur's origin.
+    fn press(&mut self, pose: &Pose4, twist: &Twist4) -> Vec6 {
         self.tractions.clear();
         let mut total = WrenchSum::new();
-        for four in 0..self.shares.len() {
-            if !self.nearness.is_due(four) {
-                continue;
-            }
-            let shares = &self.shares[four];
-            let place = pose.to_femur(&shares.centre);
-            if self.nearness.is_still_apart(four, shares, &place) {
-                continue;
-            }
-            let sample = self.seen[four].look(self.femur, &place, shares.spread_mm2);
-            let rises = rises(shares, &pose.turn_to_insert(&sample.normal));
-            if (sample.gap_mm - rises.reach_mm()).least() > 0.0 {
-                let around = self.femur.surroundings(&place);
-                let reach_mm = rises.reach_mm();
-                self.nearness
-                    .is_apart(four, shares, place, &sample, reach_mm, around);
-                continue;
-            }
-            self.nearness.touches(four);
-            let pressed = press(self.settings, shares, place, &sample, &rises, &pose, &twist);
-            total.add(&pressed.place, &pressed.force_n(self.settings.friction));
+        for look in &self.looks {
+            let shares = &self.shares[look.four as usize];
+            let pressed = press(self.settings, shares, look, pose, twist);
+            let force_n = pressed.force_n(&look.seen.sample.normal, self.settings.friction);
+            total.add(&look.seen.place, &force_n);
             self.tractions.push(pressed);
         }
-        to_femur.tr_mul(&total.total())
+        total.total()
     }
-}
-
-/// Rises of the overclosure along both edges of four shares, under a normal in their frame.
-#[inline(always)]
-fn rises(shares: &Shares4, normal: &Vector<Lanes>) -> Rises<Lanes> {
-    Rises::new([dot(normal, &shares.edge_a), dot(normal, &shares.edge_b)])
 }
 
 /// Pressure and rubbing on four shares.
@@ -138,13 +143,12 @@ fn rises(shares: &Shares4, normal: &Vector<Lanes>) -> Rises<Lanes> {
 fn press(
     settings: &FoundationSettings,
     shares: &Shares4,
-    place: Vector<Lanes>,
-    sample: &SurfaceSample<Lanes>,
-    rises: &Rises<Lanes>,
+    look: &Look,
     pose: &Pose4,
     twist: &Twist4,
 ) -> Tractions4 {
-    let mean = mean_overclosure(-sample.gap_mm, rises);
+    let Seen { place, sample } = &look.seen;
+    let mean = mean_overclosure(-sample.gap_mm, &look.rises);
     let (pressure_mpa, slope) = settings.law.pressures(mean.mm, shares.per_thickness);
     let stiffness = slope * shares.area_mm2;
     let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
@@ -158,17 +162,13 @@ fn press(
         load_by_turn = cross(&sample.normal, &by_normal);
     }
     Tractions4 {
-        nodes: shares.nodes,
-        place,
-        normal: sample.normal,
-        curvature: sample.curvature,
         pressure_mpa,
         area_mm2: shares.area_mm2,
         covered_mm2: mean.by_middle * shares.area_mm2,
         load_by_motion,
         load_by_turn,
         sliding: Sliding::new(
-            &twist.velocity(&place),
+            &twist.velocity(place),
             &sample.normal,
             settings.slip_tolerance_mm_per_s,
         ),
@@ -177,13 +177,20 @@ fn press(
 
 impl ContactModel for Foundation<'_> {
     fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
-        self.go_over_shares(motion)
+        self.pose = motion.pose;
+        let to_femur = twist_to_femur(&self.pose);
+        let pose = Pose4::new(&self.pose);
+        let twist = Twist4::new(&(to_femur * motion.twist));
+        self.nearness.travel(&self.pose);
+        self.nearness.find_due(&self.shares, &pose, &mut self.due);
+        self.look(&pose);
+        to_femur.tr_mul(&self.press(&pose, &twist))
     }
 
     fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
-        for tractions in &self.tractions {
-            sum.add(tractions, self.settings.friction);
+        for (look, tractions) in self.looks.iter().zip(&self.tractions) {
+            sum.add(&look.seen, tractions, self.settings.friction);
         }
         let (by_pose, by_twist) = sum.total();
         let to_femur = twist_to_femur(&self.pose);
@@ -201,32 +208,77 @@ impl ContactModel for Foundation<'_> {
         let to_femur = twist_to_femur(&self.pose);
         let moved = Twist4::new(&(to_femur * small_motion(&self.pose, &motion.pose)));
         let twist = Twist4::new(&(to_femur * motion.twist));
-        let mut touched = Vec::with_capacity(LANES * self.tractions.len());
-        for tractions in &self.tractions {
-            let tolerance = self.settings.slip_tolerance_mm_per_s;
-            self.touch(&tractions.moved(&moved, &twist, tolerance), &mut touched);
+        let pose = Pose4::new(&self.pose);
+        let mut touched = Vec::with_capacity(LANES * self.looks.len());
+        for (look, tractions) in self.looks.iter().zip(&self.tractions) {
+            let landed = self.landed(look, tractions, &moved, &twist, &pose);
+            self.touch(
+                &self.shares[look.four as usize].nodes,
+                &landed,
+                &mut touched,
+            );
         }
         touched
     }
 }
 
+/// Four shares at the end of an increment; vectors in the insert frame.
+struct Landed4 {
+    pressure_mpa: Lanes,
+    area_mm2: Lanes,
+    covered_mm2: Lanes,
+    force_n: Vector<Lanes>,
+    sliding_mm_per_s: Vector<Lanes>,
+}
+
 impl Foundation<'_> {
+    /// Four shares after a short motion of the femur, turn and shift in its frame, to first order,
+    /// and with the speeds of `twist`; the covered area stays.
+    #[inline(always)]
+    fn landed(
+        &self,
+        look: &Look,
+        tractions: &Tractions4,
+        motion: &Twist4,
+        twist: &Twist4,
+        pose: &Pose4,
+    ) -> Landed4 {
+        let Seen { place, sample } = &look.seen;
+        let rise_n = tractions.load_rise_n(place, motion);
+        let area_mm2 = Number::max(tractions.area_mm2, Lanes::splat(f64::MIN_POSITIVE));
+        let pressure_mpa = tractions.pressure_mpa + rise_n / area_mm2;
+        let landed = Tractions4 {
+            pressure_mpa: Number::max(pressure_mpa, Lanes::splat(0.0)),
+            sliding: Sliding::new(
+                &twist.velocity(place),
+                &sample.normal,
+                self.settings.slip_tolerance_mm_per_s,
+            ),
+            ..*tractions
+        };
+        let force_n = landed.force_n(&sample.normal, self.settings.friction);
+        Landed4 {
+            pressure_mpa: landed.pressure_mpa,
+            area_mm2: landed.area_mm2,
+            covered_mm2: landed.covered_mm2,
+            force_n: pose.turn_to_insert(&force_n),
+            sliding_mm_per_s: pose.turn_to_insert(&landed.sliding.velocity_mm_per_s),
+        }
+    }
+
     /// Adds those of four shares that press.
-    fn touch(&self, tractions: &Tractions4, touched: &mut Vec<TouchedNode>) {
-        let turn = Pose4::new(&self.pose);
-        let force_n = turn.turn_to_insert(&tractions.force_n(self.settings.friction));
-        let sliding = turn.turn_to_insert(&tractions.sliding.velocity_mm_per_s);
-        for (lane, &node) in tractions.nodes.iter().enumerate() {
-            let pressure_mpa = tractions.pressure_mpa.lane(lane);
-            if pressure_mpa * tractions.area_mm2.lane(lane) > 0.0 {
+    fn touch(&self, nodes: &[u32; LANES], landed: &Landed4, touched: &mut Vec<TouchedNode>) {
+        for (lane, &node) in nodes.iter().enumerate() {
+            let pressure_mpa = landed.pressure_mpa.lane(lane);
+            if pressure_mpa * landed.area_mm2.lane(lane) > 0.0 {
                 let at = |vector: &Vector<Lanes>| vector.map(|lanes| lanes.lane(lane));
-                let along = |direction: &Vec3| at(&sliding).dot(direction);
+                let along = |direction: &Vec3| at(&landed.sliding_mm_per_s).dot(direction);
                 touched.push(TouchedNode {
                     node,
                     is_medial: self.surface.positions[node as usize].z < 0.0,
                     pressure_mpa,
-                    covered_mm2: tractions.covered_mm2.lane(lane),
-                    force_n: at(&force_n),
+                    covered_mm2: landed.covered_mm2.lane(lane),
+                    force_n: at(&landed.force_n),
                     sliding_mm_per_s: self.directions[node as usize].each_ref().map(along),
                 });
             }

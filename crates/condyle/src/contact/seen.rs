@@ -17,8 +17,9 @@ pub(super) const MOVED_ALONG_MM: f64 = 0.02;
 /// What four shares saw of the femur, and from where in its frame.
 #[derive(Clone)]
 pub(super) struct Seen {
-    place: Vector<Lanes>,
-    sample: SurfaceSample<Lanes>,
+    /// Places of the shares' centres, p, mm.
+    pub place: Vector<Lanes>,
+    pub sample: SurfaceSample<Lanes>,
 }
 
 impl Seen {
@@ -30,22 +31,23 @@ impl Seen {
         }
     }
 
-    /// The femur as four shares see it at `place`.
+    /// The femur as four shares see it at `place`; remembered if it was taken anew.
     #[inline(always)]
     pub fn look(
         &mut self,
         femur: &FemoralSurface,
-        place: &Vector<Lanes>,
+        place: Vector<Lanes>,
         spread_mm2: Lanes,
-    ) -> SurfaceSample<Lanes> {
+    ) -> Self {
         let motion = place - self.place;
         if dot(&motion, &motion).greatest() <= MOVED_ALONG_MM * MOVED_ALONG_MM {
-            return self.sample.moved(&motion);
+            let sample = self.sample.moved(&motion);
+            return Self { place, sample };
         }
         *self = Self {
-            place: *place,
-            sample: femur.sample(place, spread_mm2),
+            place,
+            sample: femur.sample(&place, spread_mm2),
         };
-        self.sample
+        self.clone()
     }
 }

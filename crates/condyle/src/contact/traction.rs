@@ -1,10 +1,9 @@
 //! Forces of four shares under pressure, and their tangent as a sum of rank-one terms.
 
-use super::{Mat6, Vec6, motion::Twist4};
+use super::{Mat6, Vec6, motion::Twist4, seen::Seen};
 use crate::{
     Vector,
-    geometry::Curvature,
-    number::{LANES, Lanes, Number},
+    number::{Lanes, Number},
     products::{cross, dot, scaled_plus},
 };
 
@@ -16,13 +15,6 @@ const STANDSTILL_MM_PER_S: f64 = 1e-9;
 /// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
 /// of sliding, s = v_t/w and w = sqrt(v_t^2 + v0^2).
 pub(super) struct Tractions4 {
-    pub nodes: [u32; LANES],
-    /// Places of the shares' centres, p, mm.
-    pub place: Vector<Lanes>,
-    /// Unit normals of the femur, n.
-    pub normal: Vector<Lanes>,
-    /// Curvature of the femur, K, 1/mm; right on tangents.
-    pub curvature: Curvature<Lanes>,
     pub pressure_mpa: Lanes,
     /// Areas of the shares, mm2; their product with the pressure is the load L, N.
     pub area_mm2: Lanes,
@@ -87,28 +79,20 @@ pub(super) struct TangentSum {
 }
 
 impl Tractions4 {
-    /// The same shares after a short motion of the femur, turn and shift in its frame, to first
-    /// order, and with the speeds of `twist`; the covered area stays.
+    /// Rises of the loads of shares at `place` by a short motion of the femur, turn and shift in
+    /// its frame, N.
     #[inline(always)]
-    pub fn moved(&self, motion: &Twist4, twist: &Twist4, tolerance_mm_per_s: f64) -> Self {
-        let shift = motion.velocity(&self.place);
-        let rise_n = dot(&self.load_by_motion, &shift) + dot(&self.load_by_turn, motion.angular());
-        let least = Lanes::splat(f64::MIN_POSITIVE);
-        let pressure_mpa = self.pressure_mpa + rise_n / Number::max(self.area_mm2, least);
-        let velocity = twist.velocity(&self.place);
-        Self {
-            pressure_mpa: Number::max(pressure_mpa, Lanes::splat(0.0)),
-            sliding: Sliding::new(&velocity, &self.normal, tolerance_mm_per_s),
-            ..*self
-        }
+    pub fn load_rise_n(&self, place: &Vector<Lanes>, motion: &Twist4) -> Lanes {
+        dot(&self.load_by_motion, &motion.velocity(place))
+            + dot(&self.load_by_turn, motion.angular())
     }
 
-    /// Forces on the insert, N.
+    /// Forces on the insert under a femur with `normal`, N.
     #[inline(always)]
-    pub fn force_n(&self, friction: f64) -> Vector<Lanes> {
+    pub fn force_n(&self, normal: &Vector<Lanes>, friction: f64) -> Vector<Lanes> {
         let rub = Lanes::splat(friction) * self.sliding.per_regular;
-        scaled_plus(&self.sliding.velocity_mm_per_s, rub, &self.normal)
-            * (self.pressure_mpa * self.area_mm2)
+        let traction = scaled_plus(&self.sliding.velocity_mm_per_s, rub, normal);
+        traction * (self.pressure_mpa * self.area_mm2)
     }
 }
 
@@ -132,17 +116,17 @@ impl TangentSum {
     ///
     /// and a change of twist tau: dW = L mu/w ((1 - s^2) T1 T1' + T2 T2') tau.
     #[inline(always)]
-    pub fn add(&mut self, tractions: &Tractions4, friction: f64) {
+    pub fn add(&mut self, seen: &Seen, tractions: &Tractions4, friction: f64) {
         let sliding = &tractions.sliding;
         let (t1, part) = sliding.direction_and_part();
-        let (p, n) = (&tractions.place, &tractions.normal);
+        let (p, n) = (&seen.place, &seen.sample.normal);
         let load = tractions.pressure_mpa * tractions.area_mm2;
         let t2 = cross(n, &t1);
         let wrench_n = joined(&cross(p, n), n);
         let wrench_1 = joined(&cross(p, &t1), &t1);
         let wrench_2 = joined(&cross(p, &t2), &t2);
         let row = |t: &Vector<Lanes>| {
-            let bend = tractions.curvature.times(t);
+            let bend = seen.sample.curvature.times(t);
             joined(&(cross(p, &bend) - cross(n, t)), &bend)
         };
         let load_row = joined(
