@@ -3,7 +3,7 @@
 use crate::{HexMesh, Vec3, hex::HEX_EDGES};
 
 /// Relative residual at which the following is taken as solved: far below what the shape of an element can feel.
-const RELATIVE_RESIDUAL: f64 = 1e-4;
+const RELATIVE_RESIDUAL: f64 = 1e-3;
 
 /// Spreads the displacement of some nodes into the mesh, harmonically: every free node moves by
 /// the mean of its neighbours along the edges.

@@ -53,14 +53,16 @@ pub fn trilinear_volume(corners: &[Vec3; 8]) -> f64 {
     let origin = corners[0];
     crate::HEX_FACES
         .iter()
-        .map(|face| {
-            let [a, b, c, d] = face.map(|i| corners[i] - origin);
-            // Mean of the two ways to cut the quad into triangles.
-            let triple = |p: &Vec3, q: &Vec3, r: &Vec3| p.dot(&q.cross(r));
-            (triple(&a, &b, &c) + triple(&a, &c, &d) + triple(&a, &b, &d) + triple(&b, &c, &d))
-                / 12.0
-        })
+        .map(|face| volume_below(&face.map(|i| corners[i] - origin)))
         .sum()
+}
+
+/// Volume of the cone from the origin to a bilinear quad; positive if it is anticlockwise seen
+/// from outside. Over a closed surface these add up to the volume inside.
+pub fn volume_below([a, b, c, d]: &[Vec3; 4]) -> f64 {
+    // Mean of the two ways to cut the quad into triangles.
+    let triple = |p: &Vec3, q: &Vec3, r: &Vec3| p.dot(&q.cross(r));
+    (triple(a, b, c) + triple(a, c, d) + triple(a, b, d) + triple(b, c, d)) / 12.0
 }
 
 /// Smallest scaled Jacobian over the eight corners: 1 for a brick, 0 or less where the element

@@ -12,6 +12,15 @@ pub struct Moment {
     pub slip_mm: [f64; 2],
 }
 
+impl Moment {
+    /// Distance slid, mm.
+    #[inline]
+    pub fn distance_mm(&self) -> f64 {
+        let [anterior, lateral] = self.slip_mm;
+        (anterior * anterior + lateral * lateral).sqrt()
+    }
+}
+
 /// All instants at which one node was in contact, in the order of time.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeHistory<'a> {
@@ -79,10 +88,7 @@ impl NodeHistory<'_> {
 
     /// Distance slid under pressure, mm.
     pub fn sliding_distance_mm(&self) -> f64 {
-        self.moments
-            .iter()
-            .map(|moment| moment.slip_mm[0].hypot(moment.slip_mm[1]))
-            .sum()
+        self.moments.iter().map(Moment::distance_mm).sum()
     }
 }
 

@@ -1,6 +1,6 @@
 //! The tibial insert: a hexahedral mesh, its articulating surface, and how it wears away.
 
-use condyle_fem::{HexMesh, InteriorFollower};
+use condyle_fem::{HexMesh, InteriorFollower, volume_below};
 use thiserror::Error;
 
 use super::{ArticulatingSurface, thickness::thickness_at_nodes};
@@ -43,6 +43,8 @@ pub enum InsertError {
 pub struct Insert {
     mesh: HexMesh,
     unworn_nodes: Vec<Vec3>,
+    /// Quads around the mesh, facing out.
+    boundary: Vec<[u32; 4]>,
     /// Mesh nodes of the articulating surface, ascending; "surface node i" is `nodes[i]`.
     nodes: Vec<u32>,
     /// Faces of the articulating surface, in numbers of surface nodes.
@@ -78,7 +80,8 @@ impl Insert {
         check_elements(&mesh)?;
         let (nodes, faces) = numbered(articulating);
         // Sides and backside stay where they are: wear takes away the articulating surface alone.
-        let follower = InteriorFollower::new(&mesh, mesh.boundary_quads().into_iter().flatten());
+        let boundary = mesh.boundary_quads();
+        let follower = InteriorFollower::new(&mesh, boundary.iter().flatten().copied());
         let positions: Vec<Vec3> = nodes
             .iter()
             .map(|&node| mesh.nodes[node as usize])
@@ -87,6 +90,7 @@ impl Insert {
         let thickness_mm = thickness_at_nodes(&positions, &normals, &mesh, backside)?;
         Ok(Self {
             unworn_nodes: mesh.nodes.clone(),
+            boundary,
             mesh,
             nodes,
             faces,
@@ -100,6 +104,15 @@ impl Insert {
     /// The hexahedra.
     pub fn mesh(&self) -> &HexMesh {
         &self.mesh
+    }
+
+    /// Volume of the mesh as it is now, mm3: what its boundary encloses.
+    pub fn volume_mm3(&self) -> f64 {
+        // Near the mesh, so that the cones are small and few digits are lost.
+        let origin = self.mesh.nodes[self.boundary[0][0] as usize];
+        let corners = |quad: &[u32; 4]| quad.map(|node| self.mesh.nodes[node as usize] - origin);
+        let quads = self.boundary.iter();
+        quads.map(|quad| volume_below(&corners(quad))).sum()
     }
 
     /// Mesh nodes of the articulating surface, ascending; the order of every array a surface node.
