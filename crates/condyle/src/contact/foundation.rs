@@ -7,7 +7,8 @@ use super::{
     partial::{Rises, mean_overclosure},
     seen::Seen,
     shares::Shares4,
-    traction::{Sliding, TangentSum, Tractions4, WrenchSum},
+    tangent::TangentSum,
+    traction::{Sliding, Tractions4, WrenchSum},
 };
 use crate::{
     Vec3, Vector,
@@ -189,8 +190,11 @@ impl ContactModel for Foundation<'_> {
 
     fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
-        for (look, tractions) in self.looks.iter().zip(&self.tractions) {
-            sum.add(&look.seen, tractions, self.settings.friction);
+        for (looks, tractions) in self.looks.chunks(2).zip(self.tractions.chunks(2)) {
+            let one = (&looks[0].seen, &tractions[0]);
+            let nothing = (one.0, &Tractions4::none());
+            let other = looks.get(1).map(|look| (&look.seen, &tractions[1]));
+            sum.add(one, other.unwrap_or(nothing), self.settings.friction);
         }
         let (by_pose, by_twist) = sum.total();
         let to_femur = twist_to_femur(&self.pose);

@@ -9,6 +9,7 @@ mod nearness;
 mod partial;
 mod seen;
 mod shares;
+mod tangent;
 mod traction;
 
 pub use foundation::{Foundation, FoundationSettings};

@@ -1,4 +1,4 @@
-//! One number or four at a time.
+//! One number, or several at a time.
 //!
 //! The formulas of the hot loop are written once, for any [`Number`]. With [`Lanes`] they work on
 //! four nodes at a time, which the compiler turns into vector instructions on any machine; every
@@ -9,7 +9,10 @@ use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
-use wide::f64x4;
+
+mod lanes;
+
+pub use lanes::{LANES, Lanes, Singles};
 
 /// A real number, or several side by side.
 pub trait Number:
@@ -41,6 +44,8 @@ pub trait Number:
     fn sqrt(self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
+    /// The largest whole number that is not larger.
+    fn floor(self) -> Self;
     /// `self` times `factor` plus `addend`, rounded once.
     fn times_plus(self, factor: Self, addend: Self) -> Self;
     /// `self` times `factor` less `subtrahend`, rounded once.
@@ -82,6 +87,11 @@ impl Number for f64 {
     }
 
     #[inline(always)]
+    fn floor(self) -> Self {
+        f64::floor(self)
+    }
+
+    #[inline(always)]
     fn times_plus(self, factor: Self, addend: Self) -> Self {
         self.mul_add(factor, addend)
     }
@@ -104,151 +114,6 @@ impl Number for f64 {
     #[inline(always)]
     fn below_zero(self, then: Self, otherwise: Self) -> Self {
         if self < 0.0 { then } else { otherwise }
-    }
-}
-
-/// How many nodes go side by side.
-pub const LANES: usize = 4;
-
-/// Four numbers side by side.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(transparent)]
-pub struct Lanes(f64x4);
-
-impl Lanes {
-    /// Four numbers.
-    #[inline(always)]
-    pub fn new(lanes: [f64; LANES]) -> Self {
-        Self(f64x4::new(lanes))
-    }
-
-    /// The four numbers.
-    #[inline(always)]
-    pub fn to_array(self) -> [f64; LANES] {
-        self.0.to_array()
-    }
-
-    /// The sum over the lanes, always in the same order.
-    #[inline]
-    pub fn sum(self) -> f64 {
-        let [a, b, c, d] = self.to_array();
-        (a + b) + (c + d)
-    }
-
-    /// The largest lane.
-    #[inline(always)]
-    pub fn greatest(self) -> f64 {
-        -(-self).least()
-    }
-}
-
-impl Number for Lanes {
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self(f64x4::splat(value))
-    }
-
-    const COUNT: usize = LANES;
-
-    #[inline(always)]
-    fn from_lanes(mut value: impl FnMut(usize) -> f64) -> Self {
-        Self::new([value(0), value(1), value(2), value(3)])
-    }
-
-    #[inline(always)]
-    fn lane(self, lane: usize) -> f64 {
-        self.0.as_array()[lane]
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt())
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.abs())
-    }
-
-    #[inline(always)]
-    fn times_plus(self, factor: Self, addend: Self) -> Self {
-        Self(self.0.mul_add(factor.0, addend.0))
-    }
-
-    #[inline(always)]
-    fn times_minus(self, factor: Self, subtrahend: Self) -> Self {
-        Self(self.0.mul_sub(factor.0, subtrahend.0))
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self(self.0.fast_max(other.0))
-    }
-
-    #[inline(always)]
-    fn least(self) -> f64 {
-        let [a, b, c, d] = self.to_array();
-        let smaller = |x: f64, y: f64| if x < y { x } else { y };
-        smaller(smaller(a, b), smaller(c, d))
-    }
-
-    #[inline(always)]
-    fn below_zero(self, then: Self, otherwise: Self) -> Self {
-        Self(self.0.simd_lt(f64x4::ZERO).select(then.0, otherwise.0))
-    }
-}
-
-macro_rules! operators {
-    ($($operation:ident $method:ident $assign_operation:ident $assign_method:ident;)*) => {$(
-        impl $operation for Lanes {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(self.0.$method(other.0))
-            }
-        }
-
-        impl $assign_operation for Lanes {
-            #[inline(always)]
-            fn $assign_method(&mut self, other: Self) {
-                *self = self.$method(other);
-            }
-        }
-    )*};
-}
-
-operators! {
-    Add add AddAssign add_assign;
-    Sub sub SubAssign sub_assign;
-    Mul mul MulAssign mul_assign;
-    Div div DivAssign div_assign;
-}
-
-impl Neg for Lanes {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
-}
-
-impl Zero for Lanes {
-    #[inline(always)]
-    fn zero() -> Self {
-        Self::splat(0.0)
-    }
-
-    fn is_zero(&self) -> bool {
-        *self == Self::zero()
-    }
-}
-
-impl One for Lanes {
-    #[inline(always)]
-    fn one() -> Self {
-        Self::splat(1.0)
     }
 }
 
@@ -275,5 +140,21 @@ mod tests {
         let chosen = lanes.below_zero(Lanes::zero(), Lanes::one());
         assert_eq!(chosen.to_array(), [1.0, 0.0, 1.0, 1.0]);
         assert_eq!(lanes.sum(), (1.5 - 2.0) + (0.3 + 7.0));
+    }
+
+    #[test]
+    fn singles_are_two_lanes_rounded() {
+        let (a, b) = (
+            Lanes::new([1.5, -2.0, 0.1, 7.0]),
+            Lanes::new([3.0, 4.0, 5.0, 6.0]),
+        );
+        let singles = Singles::pair(a, b);
+        assert_eq!(singles.lane(1), -2.0);
+        assert_eq!(singles.lane(2), f64::from(0.1_f32));
+        assert_eq!(singles.lane(4), 3.0);
+        assert_eq!(singles.least(), -2.0);
+        assert!((singles.sum() - 24.6).abs() < 1e-6);
+        let product = singles.times_plus(Singles::splat(2.0), -singles);
+        assert!((0..8).all(|lane| product.lane(lane) == singles.lane(lane)));
     }
 }
