@@ -76,9 +76,11 @@ macro_rules! side_by_side {
 
             #[inline(always)]
             fn from_lanes(mut value: impl FnMut(usize) -> f64) -> Self {
-                Self($wide::new(std::array::from_fn(|lane| {
-                    value(lane) as $single
-                })))
+                let mut lanes = [0.0; $count];
+                for (lane, number) in lanes.iter_mut().enumerate() {
+                    *number = value(lane) as $single;
+                }
+                Self($wide::new(lanes))
             }
 
             #[inline(always)]

@@ -40,6 +40,14 @@ pub trait Number:
     fn from_lanes(value: impl FnMut(usize) -> f64) -> Self;
     /// The value in one lane.
     fn lane(self, lane: usize) -> f64;
+
+    /// The first three columns of a matrix that has a row of four numbers for every lane.
+    #[inline(always)]
+    fn columns(rows: &[Lanes; LANES]) -> [Self; 3] {
+        let column = |i: usize| Self::from_lanes(|lane| rows[lane].lane(i));
+        [column(0), column(1), column(2)]
+    }
+
     /// Square root.
     fn sqrt(self) -> Self;
     /// Magnitude.
