@@ -30,7 +30,7 @@ impl ContactModel for Apart {
         0
     }
 
-    fn touched(&self) -> Vec<TouchedNode> {
+    fn touched(&mut self, _: &RelativeMotion) -> Vec<TouchedNode> {
         Vec::new()
     }
 }

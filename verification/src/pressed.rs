@@ -53,7 +53,7 @@ pub(crate) fn moving(place: Vec3, velocity: Vec3) -> RelativeMotion {
 /// Lets the contact respond to a motion.
 pub(crate) fn press(contact: &mut Foundation<'_>, motion: &RelativeMotion) -> Pressed {
     let wrench = contact.respond(motion);
-    let touched = contact.touched();
+    let touched = contact.touched(motion);
     let pressures = touched.iter().map(|node| node.pressure_mpa);
     Pressed {
         force_n: wrench.fixed_rows::<3>(3).into(),

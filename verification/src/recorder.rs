@@ -51,8 +51,8 @@ impl ContactModel for Recorder<'_> {
         self.inner.node_count()
     }
 
-    fn touched(&self) -> Vec<TouchedNode> {
-        let touched = self.inner.touched();
+    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
+        let touched = self.inner.touched(motion);
         let sum = touched.iter().map(|node| self.rubs(node)).sum();
         self.rubbed.borrow_mut().push(sum);
         touched

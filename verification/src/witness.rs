@@ -24,7 +24,6 @@ pub(crate) struct Instant {
 pub(crate) struct Witness<'a> {
     inner: Foundation<'a>,
     test: &'a WearTest,
-    last: Option<(RelativeMotion, Vec6)>,
     seen: &'a RefCell<Vec<Instant>>,
 }
 
@@ -33,7 +32,6 @@ impl<'a> Witness<'a> {
         Self {
             inner: Foundation::new(&test.contact, &test.femur, &test.insert),
             test,
-            last: None,
             seen,
         }
     }
@@ -65,9 +63,7 @@ impl<'a> Witness<'a> {
 
 impl ContactModel for Witness<'_> {
     fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
-        let wrench = self.inner.respond(motion);
-        self.last = Some((*motion, wrench));
-        wrench
+        self.inner.respond(motion)
     }
 
     fn tangent(&self) -> Tangent {
@@ -78,16 +74,16 @@ impl ContactModel for Witness<'_> {
         self.inner.node_count()
     }
 
-    fn touched(&self) -> Vec<TouchedNode> {
-        let touched = self.inner.touched();
-        let (motion, wrench) = self.last.expect("asked after a response");
+    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
+        let wrench = self.inner.respond(motion);
+        let touched = self.inner.touched(motion);
         self.seen.borrow_mut().push(Instant {
             twist: motion.twist,
             wrench,
             stored_nmm: touched.iter().map(|node| self.stored_nmm(node)).sum(),
             friction_nmm_per_s: touched
                 .iter()
-                .map(|node| self.friction_nmm_per_s(node, &motion))
+                .map(|node| self.friction_nmm_per_s(node, motion))
                 .sum(),
         });
         touched

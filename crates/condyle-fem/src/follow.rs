@@ -1,27 +1,9 @@
 //! The inside of a mesh follows its moved surface.
 
-use std::collections::BTreeSet;
-
-use crate::{HexMesh, Vec3};
-
-/// Edges of a hexahedron in VTK's numbering.
-const HEX_EDGES: [[usize; 2]; 12] = [
-    [0, 1],
-    [1, 2],
-    [2, 3],
-    [3, 0],
-    [4, 5],
-    [5, 6],
-    [6, 7],
-    [7, 4],
-    [0, 4],
-    [1, 5],
-    [2, 6],
-    [3, 7],
-];
+use crate::{HexMesh, Vec3, hex::HEX_EDGES};
 
 /// Relative residual at which the following is taken as solved: far below what the shape of an element can feel.
-const RELATIVE_RESIDUAL: f64 = 1e-4;
+const RELATIVE_RESIDUAL: f64 = 1e-3;
 
 /// Spreads the displacement of some nodes into the mesh, harmonically: every free node moves by
 /// the mean of its neighbours along the edges.
@@ -29,8 +11,9 @@ const RELATIVE_RESIDUAL: f64 = 1e-4;
 /// In a stack of layers below a moved surface that is the linear interpolation between the
 /// surface and the fixed backside, so an element thins but cannot invert before the stack is gone.
 pub struct InteriorFollower {
-    is_held: Vec<bool>,
-    /// Neighbours of node i are `neighbours[first[i]..first[i + 1]]`.
+    /// Nodes that are not held, ascending; "row k" is that of node `free[k]`.
+    free: Vec<u32>,
+    /// Neighbours of row k are `neighbours[first[k]..first[k + 1]]`.
     first: Vec<usize>,
     neighbours: Vec<u32>,
 }
@@ -42,24 +25,17 @@ impl InteriorFollower {
         for node in held {
             is_held[node as usize] = true;
         }
-        let edges: BTreeSet<(u32, u32)> = mesh
-            .hexes
-            .iter()
-            .flat_map(|hex| HEX_EDGES.map(|[a, b]| (hex[a], hex[b])))
-            .flat_map(|(a, b)| [(a, b), (b, a)])
+        let edges = free_edges(mesh, &is_held);
+        let free: Vec<u32> = (0..mesh.nodes.len() as u32)
+            .filter(|&node| !is_held[node as usize])
             .collect();
-        let mut first = vec![0; mesh.nodes.len() + 1];
-        for &(a, _) in &edges {
-            first[a as usize + 1] += 1;
-        }
-        for i in 0..mesh.nodes.len() {
-            first[i + 1] += first[i];
-        }
-        let neighbours = edges.into_iter().map(|(_, b)| b).collect();
+        let starts = free
+            .iter()
+            .map(|node| edges.partition_point(|edge| edge.0 < *node));
         Self {
-            is_held,
-            first,
-            neighbours,
+            first: starts.chain([edges.len()]).collect(),
+            neighbours: edges.iter().map(|edge| edge.1).collect(),
+            free,
         }
     }
 
@@ -68,51 +44,84 @@ impl InteriorFollower {
     /// `displacement`: one vector a node; those of held nodes are the data, the others the
     /// starting guess. Conjugate gradients, preconditioned by the diagonal.
     pub fn follow(&self, displacement: &mut [Vec3]) {
-        let mut residual: Vec<Vec3> = (0..displacement.len())
-            .map(|i| self.pull(i, displacement))
-            .collect();
-        let scale = dot(&residual, &residual).sqrt();
-        let mut precision = self.precondition(&residual);
-        let mut direction = precision.clone();
-        let mut rho = dot(&residual, &precision);
-        for _ in 0..displacement.len() {
-            if dot(&residual, &residual).sqrt() <= RELATIVE_RESIDUAL * scale {
+        let enough2 = (RELATIVE_RESIDUAL * self.pull_of_held(displacement)).powi(2);
+        let mut residual: Vec<Vec3> = self.pulls(displacement).collect();
+        let mut direction = vec![Vec3::zeros(); displacement.len()];
+        let mut image = vec![Vec3::zeros(); residual.len()];
+        let mut rho = f64::INFINITY;
+        for _ in 0..self.free.len() {
+            if dot(&residual, &residual) <= enough2 {
                 break;
             }
-            let image: Vec<Vec3> = (0..direction.len())
-                .map(|i| -self.pull(i, &direction))
-                .collect();
-            let step = rho / dot(&direction, &image);
-            for i in 0..displacement.len() {
-                displacement[i] += direction[i] * step;
-                residual[i] -= image[i] * step;
-            }
-            precision = self.precondition(&residual);
-            let next = dot(&residual, &precision);
-            for (d, z) in direction.iter_mut().zip(&precision) {
-                *d = z + *d * (next / rho);
-            }
+            let next = self.turn(&mut direction, &residual, rho);
             rho = next;
+            let mut resistance = 0.0;
+            for ((image, pull), &node) in
+                image.iter_mut().zip(self.pulls(&direction)).zip(&self.free)
+            {
+                *image = pull;
+                resistance -= pull.dot(&direction[node as usize]);
+            }
+            let step = rho / resistance;
+            for ((residual, image), &node) in residual.iter_mut().zip(&image).zip(&self.free) {
+                *residual += image * step;
+                displacement[node as usize] += direction[node as usize] * step;
+            }
         }
     }
 
-    /// What the neighbours of node `i` pull it by: sum of w (u_j - u_i); none if it is held.
-    fn pull(&self, i: usize, u: &[Vec3]) -> Vec3 {
-        if self.is_held[i] {
-            return Vec3::zeros();
+    /// The next direction of search, from the last one and the scaled residual; returns their
+    /// product.
+    fn turn(&self, direction: &mut [Vec3], residual: &[Vec3], rho: f64) -> f64 {
+        let scale = |k: usize| 1.0 / (self.first[k + 1] - self.first[k]) as f64;
+        let rows = || residual.iter().enumerate();
+        let next: f64 = rows().map(|(k, r)| r.norm_squared() * scale(k)).sum();
+        let keep = next / rho;
+        for (k, r) in rows() {
+            let d = &mut direction[self.free[k] as usize];
+            *d = r * scale(k) + *d * keep;
         }
-        let around = self.around(i);
-        around.iter().map(|&j| u[j as usize]).sum::<Vec3>() - u[i] * around.len() as f64
+        next
     }
 
-    fn precondition(&self, residual: &[Vec3]) -> Vec<Vec3> {
-        let scaled = |(i, r): (usize, &Vec3)| r / self.around(i).len() as f64;
-        residual.iter().enumerate().map(scaled).collect()
+    /// What the neighbours of every free node pull it by: sum of (u_j - u_i).
+    fn pulls(&self, u: &[Vec3]) -> impl Iterator<Item = Vec3> {
+        self.free.iter().enumerate().map(|(k, &node)| {
+            let around = self.around(k);
+            let sum: Vec3 = around.iter().map(|&j| u[j as usize]).sum();
+            sum - u[node as usize] * around.len() as f64
+        })
     }
 
-    fn around(&self, i: usize) -> &[u32] {
-        &self.neighbours[self.first[i]..self.first[i + 1]]
+    /// Length of what the held nodes alone pull by.
+    fn pull_of_held(&self, displacement: &[Vec3]) -> f64 {
+        let mut held = displacement.to_vec();
+        for &node in &self.free {
+            held[node as usize] = Vec3::zeros();
+        }
+        self.pulls(&held)
+            .map(|pull| pull.norm_squared())
+            .sum::<f64>()
+            .sqrt()
     }
+
+    fn around(&self, k: usize) -> &[u32] {
+        &self.neighbours[self.first[k]..self.first[k + 1]]
+    }
+}
+
+/// The edges from free nodes, (from, to), ascending.
+fn free_edges(mesh: &HexMesh, is_held: &[bool]) -> Vec<(u32, u32)> {
+    let both_ways = |hex: &[u32; 8]| HEX_EDGES.map(|[a, b]| [(hex[a], hex[b]), (hex[b], hex[a])]);
+    let mut edges: Vec<(u32, u32)> = mesh
+        .hexes
+        .iter()
+        .flat_map(|hex| both_ways(hex).into_iter().flatten())
+        .filter(|(from, _)| !is_held[*from as usize])
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
 }
 
 fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {

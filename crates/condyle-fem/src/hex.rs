@@ -2,9 +2,25 @@
 
 use crate::Vec3;
 
+/// Edges of a hexahedron in VTK's numbering.
+pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
+    [0, 1],
+    [1, 2],
+    [2, 3],
+    [3, 0],
+    [4, 5],
+    [5, 6],
+    [6, 7],
+    [7, 4],
+    [0, 4],
+    [1, 5],
+    [2, 6],
+    [3, 7],
+];
+
 /// Corner neighbours of each corner, ordered so that the triple product of the
 /// three edges is positive in a hexahedron of VTK's numbering.
-const CORNER_EDGES: [[usize; 3]; 8] = [
+const CORNER_ENDS: [[usize; 3]; 8] = [
     [1, 3, 4],
     [2, 0, 5],
     [3, 1, 6],
@@ -13,6 +29,18 @@ const CORNER_EDGES: [[usize; 3]; 8] = [
     [4, 6, 1],
     [5, 7, 2],
     [6, 4, 3],
+];
+
+/// The edges from each corner to those.
+const CORNER_EDGES: [[usize; 3]; 8] = [
+    [0, 3, 8],
+    [1, 0, 9],
+    [2, 1, 10],
+    [3, 2, 11],
+    [7, 4, 8],
+    [4, 5, 9],
+    [5, 6, 10],
+    [6, 7, 11],
 ];
 
 /// Exact volume enclosed by a hexahedron with bilinear faces.
@@ -25,34 +53,40 @@ pub fn trilinear_volume(corners: &[Vec3; 8]) -> f64 {
     let origin = corners[0];
     crate::HEX_FACES
         .iter()
-        .map(|face| {
-            let [a, b, c, d] = face.map(|i| corners[i] - origin);
-            // Mean of the two ways to cut the quad into triangles.
-            let triple = |p: &Vec3, q: &Vec3, r: &Vec3| p.dot(&q.cross(r));
-            (triple(&a, &b, &c) + triple(&a, &c, &d) + triple(&a, &b, &d) + triple(&b, &c, &d))
-                / 12.0
-        })
+        .map(|face| volume_below(&face.map(|i| corners[i] - origin)))
         .sum()
+}
+
+/// Volume of the cone from the origin to a bilinear quad; positive if it is anticlockwise seen
+/// from outside. Over a closed surface these add up to the volume inside.
+pub fn volume_below([a, b, c, d]: &[Vec3; 4]) -> f64 {
+    // Mean of the two ways to cut the quad into triangles.
+    let triple = |p: &Vec3, q: &Vec3, r: &Vec3| p.dot(&q.cross(r));
+    (triple(a, b, c) + triple(a, c, d) + triple(a, b, d) + triple(b, c, d)) / 12.0
 }
 
 /// Smallest scaled Jacobian over the eight corners: 1 for a brick, 0 or less where the element
 /// is flat or inverted at a corner.
 ///
 /// At each corner it is the triple product of the three edges over the product of their lengths.
+/// The smallest is found among signed squares, so that one root is enough.
 pub fn scaled_jacobian(corners: &[Vec3; 8]) -> f64 {
-    CORNER_EDGES
-        .iter()
-        .enumerate()
-        .map(|(corner, ends)| {
-            let [u, v, w] = ends.map(|end| corners[end] - corners[corner]);
-            let lengths = u.norm() * v.norm() * w.norm();
-            if lengths > 0.0 {
-                u.cross(&v).dot(&w) / lengths
-            } else {
-                0.0
-            }
-        })
-        .fold(f64::INFINITY, f64::min)
+    let edges = HEX_EDGES.map(|[from, to]| (corners[to] - corners[from]).norm_squared());
+    let signed_square = |corner: usize| {
+        let [u, v, w] = CORNER_ENDS[corner].map(|end| corners[end] - corners[corner]);
+        let lengths2: f64 = CORNER_EDGES[corner]
+            .map(|edge| edges[edge])
+            .iter()
+            .product();
+        let triple = u.cross(&v).dot(&w);
+        if lengths2 > 0.0 {
+            triple * triple.abs() / lengths2
+        } else {
+            0.0
+        }
+    };
+    let least = (0..8).map(signed_square).fold(f64::INFINITY, f64::min);
+    least.abs().sqrt().copysign(least)
 }
 
 #[cfg(test)]

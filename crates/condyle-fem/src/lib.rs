@@ -7,7 +7,7 @@ mod hex;
 mod mesh;
 
 pub use follow::InteriorFollower;
-pub use hex::{scaled_jacobian, trilinear_volume};
+pub use hex::{scaled_jacobian, trilinear_volume, volume_below};
 pub use mesh::{HEX_FACES, HexMesh};
 
 /// A point or a vector in space.

@@ -1,7 +1,5 @@
 //! A mesh of hexahedra: nodes, elements, boundary.
 
-use std::collections::BTreeMap;
-
 use crate::{Vec3, scaled_jacobian, trilinear_volume};
 
 /// The six faces of a hexahedron as corners in VTK order, each anticlockwise seen from outside.
@@ -46,13 +44,31 @@ impl HexMesh {
     /// The quads that belong to one hexahedron only, anticlockwise seen from outside,
     /// in the order of the elements.
     pub fn boundary_quads(&self) -> Vec<[u32; 4]> {
-        let mut uses: BTreeMap<[u32; 4], u32> = BTreeMap::new();
-        for quad in self.quads() {
-            *uses.entry(sorted(quad)).or_default() += 1;
+        let shared = self.shared_quads();
+        let alone = self.quads().zip(shared).filter(|(_, is_shared)| !is_shared);
+        alone.map(|(quad, _)| quad).collect()
+    }
+
+    /// Whether each quad belongs to another hexahedron too.
+    ///
+    /// Every quad is compared with those before it that have the same lowest node: a few.
+    fn shared_quads(&self) -> Vec<bool> {
+        const NONE: usize = usize::MAX;
+        let quads: Vec<[u32; 4]> = self.quads().map(sorted).collect();
+        let mut is_shared = vec![false; quads.len()];
+        let mut newest = vec![NONE; self.nodes.len()];
+        let mut older = vec![NONE; quads.len()];
+        for (here, quad) in quads.iter().enumerate() {
+            older[here] = std::mem::replace(&mut newest[quad[0] as usize], here);
+            let mut other = older[here];
+            while other != NONE {
+                if quads[other] == *quad {
+                    (is_shared[other], is_shared[here]) = (true, true);
+                }
+                other = older[other];
+            }
         }
-        self.quads()
-            .filter(|&quad| uses[&sorted(quad)] == 1)
-            .collect()
+        is_shared
     }
 
     fn quads(&self) -> impl Iterator<Item = [u32; 4]> + '_ {

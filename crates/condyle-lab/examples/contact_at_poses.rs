@@ -35,7 +35,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("percent,force_x_n,force_y_n,force_z_n,area_mm2,first_us,again_us");
     for ((percent, pose), [first_us, again_us]) in poses.iter().zip(times) {
         let wrench = contact.respond(&at_rest(pose));
-        let area_mm2: f64 = contact.touched().iter().map(|node| node.covered_mm2).sum();
+        let touched = contact.touched(&at_rest(pose));
+        let area_mm2: f64 = touched.iter().map(|node| node.covered_mm2).sum();
         let (x, y, z) = (wrench[3], wrench[4], wrench[5]);
         println!("{percent:.1},{x:.4},{y:.4},{z:.4},{area_mm2:.4},{first_us:.2},{again_us:.2}");
     }

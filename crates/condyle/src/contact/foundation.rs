@@ -2,15 +2,19 @@
 
 use super::{
     ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
-    motion::{Pose4, twist_to_femur},
-    nearness::{Look, Nearness, Shares4},
-    partial::mean_overclosure,
-    traction::{Sliding, TangentSum, Tractions4, WrenchSum},
+    motion::{Pose4, Twist4, small_motion, twist_to_femur},
+    nearness::Nearness,
+    partial::{Rises, mean_overclosure},
+    seen::Seen,
+    shares::Shares4,
+    tangent::TangentSum,
+    traction::{Sliding, Tractions4, WrenchSum},
 };
 use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     number::{LANES, Lanes, Number},
+    products::{cross, dot, scaled_plus, without_part_along},
 };
 
 /// How the foundation presses and rubs.
@@ -27,6 +31,14 @@ pub struct FoundationSettings {
     pub slip_tolerance_mm_per_s: f64,
 }
 
+/// Four shares that touch, as they see the femur.
+struct Look {
+    four: u32,
+    seen: Seen,
+    /// How the overclosure rises along the shares' edges.
+    rises: Rises<Lanes>,
+}
+
 /// Contact of a rigid femur with an elastic layer on a rigid base.
 ///
 /// Every node's share of the articulating surface presses with the law's pressure at its mean
@@ -40,8 +52,13 @@ pub struct Foundation<'a> {
     /// The surface's own directions at every node.
     directions: Vec<[Vec3; 2]>,
     shares: Vec<Shares4>,
+    /// What every four of them saw of the femur.
+    seen: Vec<Seen>,
     nearness: Nearness,
-    /// What presses at the last response.
+    /// The fours that may touch, and the places of their centres in the femoral frame.
+    due: Vec<(u32, Vector<Lanes>)>,
+    /// The fours that touched at the last response, and what pressed them.
+    looks: Vec<Look>,
     tractions: Vec<Tractions4>,
     /// Where the femur was then.
     pose: Pose,
@@ -62,9 +79,12 @@ impl<'a> Foundation<'a> {
             directions: (0..surface.positions.len())
                 .map(|node| surface.directions(node))
                 .collect(),
-            nearness: Nearness::new(&surface, shares.len(), femur.sharpest_per_mm()),
+            nearness: Nearness::new(&shares),
+            seen: vec![Seen::nothing(); shares.len()],
             shares,
             surface,
+            due: Vec::new(),
+            looks: Vec::new(),
             tractions: Vec::new(),
             pose: Pose::identity(),
         }
@@ -80,52 +100,79 @@ impl<'a> Foundation<'a> {
         self.surface
     }
 
-    /// Pressure and rubbing on four shares, and their gaps and reaches, mm.
-    ///
-    /// With n the femur's normal, K its curvature, e_k the share's edges and W the mean
-    /// overclosure of the share, a motion a and a turn w of the femur change the middle's
-    /// overclosure by G . a, the normal by w x n - K a, and each rise n . e_k with the normal.
-    #[inline(always)]
-    fn press(
-        &self,
-        four: &Shares4,
-        place: Vector<Lanes>,
-        pose: &Pose4,
-        angular: &Vector<Lanes>,
-        linear: &Vector<Lanes>,
-    ) -> (Tractions4, Lanes, Lanes) {
-        let sample = self.femur.sample(&place, four.spread_mm2);
-        let normal_in_insert = pose.turn_to_insert(&sample.normal);
-        let rise = [
-            normal_in_insert.dot(&four.edge_a),
-            normal_in_insert.dot(&four.edge_b),
-        ];
-        let mean = mean_overclosure(-sample.gap_mm, rise);
-        let (pressure_mpa, slope) = self.settings.law.pressures(mean.mm, four.thickness_mm);
-        let stiffness = slope * four.area_mm2;
-        let by_normal = four.edge_a * (mean.by_rise[0] * stiffness)
-            + four.edge_b * (mean.by_rise[1] * stiffness);
+    /// Looks from every four that may touch, and keeps those that do.
+    fn look(&mut self, pose: &Pose4) {
+        self.looks.clear();
+        for &(four, place) in &self.due {
+            let at = four as usize;
+            let shares = &self.shares[at];
+            let seen = self.seen[at].look(self.femur, place, shares.spread_mm2);
+            let normal = pose.turn_to_insert(&seen.sample.normal);
+            let rises = Rises::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
+            let reach_mm = rises.reach_mm();
+            if (seen.sample.gap_mm - reach_mm).least() > 0.0 {
+                let around = self.femur.surroundings(&place);
+                self.nearness.is_apart(at, shares, &seen, reach_mm, around);
+            } else {
+                self.nearness.touches(at);
+                self.looks.push(Look { four, seen, rises });
+            }
+        }
+    }
+
+    /// Presses all that touch; the wrench on the insert at the femur's origin.
+    fn press(&mut self, pose: &Pose4, twist: &Twist4) -> Vec6 {
+        self.tractions.clear();
+        let mut total = WrenchSum::new();
+        for look in &self.looks {
+            let shares = &self.shares[look.four as usize];
+            let pressed = press(self.settings, shares, look, pose, twist);
+            let force_n = pressed.force_n(&look.seen.sample.normal, self.settings.friction);
+            total.add(&look.seen.place, &force_n);
+            self.tractions.push(pressed);
+        }
+        total.total()
+    }
+}
+
+/// Pressure and rubbing on four shares.
+///
+/// With n the femur's normal, K its curvature, e_k the share's edges and W the mean overclosure of
+/// the share, a motion a and a turn w of the femur change the middle's overclosure by G . a, the
+/// normal by w x n - K a, and each rise n . e_k with the normal.
+#[inline(always)]
+fn press(
+    settings: &FoundationSettings,
+    shares: &Shares4,
+    look: &Look,
+    pose: &Pose4,
+    twist: &Twist4,
+) -> Tractions4 {
+    let Seen { place, sample } = &look.seen;
+    let mean = mean_overclosure(-sample.gap_mm, &look.rises);
+    let (pressure_mpa, slope) = settings.law.pressures(mean.mm, shares.per_thickness);
+    let stiffness = slope * shares.area_mm2;
+    let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
+    let mut load_by_turn = Vector::repeat(Lanes::splat(0.0));
+    if let Some(by_rise) = mean.by_rise {
+        let [by_a, by_b] = by_rise.map(|by_rise| by_rise * stiffness);
+        let by_normal = scaled_plus(&shares.edge_a, by_a, &(shares.edge_b * by_b));
         let by_normal = pose.turn_to_femur(&by_normal);
-        let along_surface = by_normal - sample.normal * sample.normal.dot(&by_normal);
-        let velocity = linear + angular.cross(&place);
-        let tractions = Tractions4 {
-            nodes: four.nodes,
-            place,
-            normal: sample.normal,
-            curvature: sample.curvature,
-            pressure_mpa,
-            load_n: pressure_mpa * four.area_mm2,
-            covered_mm2: mean.by_middle * four.area_mm2,
-            load_by_motion: sample.gap_gradient * (mean.by_middle * stiffness)
-                - sample.curvature.times(&along_surface),
-            load_by_turn: sample.normal.cross(&by_normal),
-            sliding: Sliding::new(
-                &velocity,
-                &sample.normal,
-                self.settings.slip_tolerance_mm_per_s,
-            ),
-        };
-        (tractions, sample.gap_mm, mean.reach_mm)
+        let along_surface = without_part_along(&by_normal, &sample.normal);
+        load_by_motion -= sample.curvature.times(&along_surface);
+        load_by_turn = cross(&sample.normal, &by_normal);
+    }
+    Tractions4 {
+        pressure_mpa,
+        area_mm2: shares.area_mm2,
+        covered_mm2: mean.by_middle * shares.area_mm2,
+        load_by_motion,
+        load_by_turn,
+        sliding: Sliding::new(
+            &twist.velocity(place),
+            &sample.normal,
+            settings.slip_tolerance_mm_per_s,
+        ),
     }
 }
 
@@ -133,39 +180,21 @@ impl ContactModel for Foundation<'_> {
     fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
         self.pose = motion.pose;
         let to_femur = twist_to_femur(&self.pose);
-        let twist = (to_femur * motion.twist).map(Lanes::splat);
-        let (angular, linear) = (
-            twist.fixed_rows::<3>(0).into(),
-            twist.fixed_rows::<3>(3).into(),
-        );
-        self.nearness.travel(&self.pose);
         let pose = Pose4::new(&self.pose);
-        let mut tractions = std::mem::take(&mut self.tractions);
-        tractions.clear();
-        let mut total = WrenchSum::new();
-        for four in 0..self.shares.len() {
-            let Some(look) = self.nearness.look(four) else {
-                continue;
-            };
-            let shares = &self.shares[four];
-            let place = pose.to_femur(&shares.centre);
-            if look == Look::Search && self.nearness.is_far(four, &place) {
-                continue;
-            }
-            let (pressed, gap_mm, reach_mm) = self.press(shares, place, &pose, &angular, &linear);
-            if self.nearness.found(four, &pressed, gap_mm, reach_mm) {
-                total.add(&pressed.place, &pressed.force_n(self.settings.friction));
-                tractions.push(pressed);
-            }
-        }
-        self.tractions = tractions;
-        to_femur.tr_mul(&total.total())
+        let twist = Twist4::new(&(to_femur * motion.twist));
+        self.nearness.travel(&self.pose);
+        self.nearness.find_due(&self.shares, &pose, &mut self.due);
+        self.look(&pose);
+        to_femur.tr_mul(&self.press(&pose, &twist))
     }
 
     fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
-        for tractions in &self.tractions {
-            sum.add(tractions, self.settings.friction);
+        for (looks, tractions) in self.looks.chunks(2).zip(self.tractions.chunks(2)) {
+            let one = (&looks[0].seen, &tractions[0]);
+            let nothing = (one.0, &Tractions4::none());
+            let other = looks.get(1).map(|look| (&look.seen, &tractions[1]));
+            sum.add(one, other.unwrap_or(nothing), self.settings.friction);
         }
         let (by_pose, by_twist) = sum.total();
         let to_femur = twist_to_femur(&self.pose);
@@ -179,35 +208,84 @@ impl ContactModel for Foundation<'_> {
         self.surface.positions.len()
     }
 
-    fn touched(&self) -> Vec<TouchedNode> {
-        let lanes = self.tractions.iter().flat_map(|tractions| {
-            let force_n = tractions.force_n(self.settings.friction);
-            (0..LANES).map(move |lane| (tractions, force_n, lane))
-        });
-        let presses =
-            |(tractions, _, lane): &(&Tractions4, _, usize)| tractions.load_n.lane(*lane) > 0.0;
-        lanes
-            .filter(presses)
-            .map(|(tractions, force_n, lane)| self.touch(tractions, &force_n, lane))
-            .collect()
+    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
+        let to_femur = twist_to_femur(&self.pose);
+        let moved = Twist4::new(&(to_femur * small_motion(&self.pose, &motion.pose)));
+        let twist = Twist4::new(&(to_femur * motion.twist));
+        let pose = Pose4::new(&self.pose);
+        let mut touched = Vec::with_capacity(LANES * self.looks.len());
+        for (look, tractions) in self.looks.iter().zip(&self.tractions) {
+            let landed = self.landed(look, tractions, &moved, &twist, &pose);
+            self.touch(
+                &self.shares[look.four as usize].nodes,
+                &landed,
+                &mut touched,
+            );
+        }
+        touched
     }
 }
 
+/// Four shares at the end of an increment; vectors in the insert frame.
+struct Landed4 {
+    pressure_mpa: Lanes,
+    area_mm2: Lanes,
+    covered_mm2: Lanes,
+    force_n: Vector<Lanes>,
+    sliding_mm_per_s: Vector<Lanes>,
+}
+
 impl Foundation<'_> {
-    fn touch(&self, tractions: &Tractions4, force_n: &Vector<Lanes>, lane: usize) -> TouchedNode {
-        let node = tractions.nodes[lane];
-        let in_insert =
-            |vector: &Vector<Lanes>| self.pose.rotation * vector.map(|lanes| lanes.lane(lane));
-        let sliding =
-            in_insert(&tractions.sliding.along) * tractions.sliding.speed_mm_per_s.lane(lane);
-        TouchedNode {
-            node,
-            is_medial: self.surface.positions[node as usize].z < 0.0,
-            pressure_mpa: tractions.pressure_mpa.lane(lane),
-            covered_mm2: tractions.covered_mm2.lane(lane),
-            force_n: in_insert(force_n),
-            sliding_mm_per_s: self.directions[node as usize]
-                .map(|direction| sliding.dot(&direction)),
+    /// Four shares after a short motion of the femur, turn and shift in its frame, to first order,
+    /// and with the speeds of `twist`; the covered area stays.
+    #[inline(always)]
+    fn landed(
+        &self,
+        look: &Look,
+        tractions: &Tractions4,
+        motion: &Twist4,
+        twist: &Twist4,
+        pose: &Pose4,
+    ) -> Landed4 {
+        let Seen { place, sample } = &look.seen;
+        let rise_n = tractions.load_rise_n(place, motion);
+        let area_mm2 = Number::max(tractions.area_mm2, Lanes::splat(f64::MIN_POSITIVE));
+        let pressure_mpa = tractions.pressure_mpa + rise_n / area_mm2;
+        let landed = Tractions4 {
+            pressure_mpa: Number::max(pressure_mpa, Lanes::splat(0.0)),
+            sliding: Sliding::new(
+                &twist.velocity(place),
+                &sample.normal,
+                self.settings.slip_tolerance_mm_per_s,
+            ),
+            ..*tractions
+        };
+        let force_n = landed.force_n(&sample.normal, self.settings.friction);
+        Landed4 {
+            pressure_mpa: landed.pressure_mpa,
+            area_mm2: landed.area_mm2,
+            covered_mm2: landed.covered_mm2,
+            force_n: pose.turn_to_insert(&force_n),
+            sliding_mm_per_s: pose.turn_to_insert(&landed.sliding.velocity_mm_per_s),
+        }
+    }
+
+    /// Adds those of four shares that press.
+    fn touch(&self, nodes: &[u32; LANES], landed: &Landed4, touched: &mut Vec<TouchedNode>) {
+        for (lane, &node) in nodes.iter().enumerate() {
+            let pressure_mpa = landed.pressure_mpa.lane(lane);
+            if pressure_mpa * landed.area_mm2.lane(lane) > 0.0 {
+                let at = |vector: &Vector<Lanes>| vector.map(|lanes| lanes.lane(lane));
+                let along = |direction: &Vec3| at(&landed.sliding_mm_per_s).dot(direction);
+                touched.push(TouchedNode {
+                    node,
+                    is_medial: self.surface.positions[node as usize].z < 0.0,
+                    pressure_mpa,
+                    covered_mm2: landed.covered_mm2.lane(lane),
+                    force_n: at(&landed.force_n),
+                    sliding_mm_per_s: self.directions[node as usize].each_ref().map(along),
+                });
+            }
         }
     }
 }

@@ -12,6 +12,15 @@ pub struct Moment {
     pub slip_mm: [f64; 2],
 }
 
+impl Moment {
+    /// Distance slid, mm.
+    #[inline]
+    pub fn distance_mm(&self) -> f64 {
+        let [anterior, lateral] = self.slip_mm;
+        (anterior * anterior + lateral * lateral).sqrt()
+    }
+}
+
 /// All instants at which one node was in contact, in the order of time.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeHistory<'a> {
@@ -29,9 +38,12 @@ pub struct CycleHistory {
 
 impl CycleHistory {
     /// Sorts `records` of (node, moment), given in the order of time, by their nodes.
-    pub fn from_records(node_count: usize, records: &[(u32, Moment)]) -> Self {
+    pub fn from_records<'a>(
+        node_count: usize,
+        records: impl Iterator<Item = &'a (u32, Moment)> + Clone,
+    ) -> Self {
         let mut first = vec![0; node_count + 1];
-        for (node, _) in records {
+        for (node, _) in records.clone() {
             first[*node as usize + 1] += 1;
         }
         for i in 0..node_count {
@@ -42,7 +54,7 @@ impl CycleHistory {
             pressure_mpa: 0.0,
             slip_mm: [0.0; 2],
         };
-        let mut moments = vec![nowhere; records.len()];
+        let mut moments = vec![nowhere; first[node_count]];
         let mut next = first.clone();
         for (node, moment) in records {
             let place = &mut next[*node as usize];
@@ -76,10 +88,7 @@ impl NodeHistory<'_> {
 
     /// Distance slid under pressure, mm.
     pub fn sliding_distance_mm(&self) -> f64 {
-        self.moments
-            .iter()
-            .map(|moment| moment.slip_mm[0].hypot(moment.slip_mm[1]))
-            .sum()
+        self.moments.iter().map(Moment::distance_mm).sum()
     }
 }
 
@@ -95,7 +104,7 @@ mod tests {
             slip_mm: [1.0, 0.0],
         };
         let records = [(2, moment(1.0)), (0, moment(1.0)), (2, moment(3.0))];
-        let history = CycleHistory::from_records(3, &records);
+        let history = CycleHistory::from_records(3, records.iter());
         assert_eq!(history.node_count(), 3);
         assert_eq!(history.node(2).moments, [moment(1.0), moment(3.0)]);
         assert!(history.node(1).moments.is_empty());

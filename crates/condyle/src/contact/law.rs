@@ -36,14 +36,14 @@ pub fn confined_modulus(youngs_modulus_mpa: f64, poissons_ratio: f64) -> f64 {
 
 impl PressureLaw {
     /// Pressure, MPa, and its derivative by the overclosure, MPa/mm, for an `overclosure_mm` >= 0
-    /// of a layer `thickness_mm` thick, in every lane.
+    /// of a layer of thickness 1/`per_thickness`, in every lane.
     #[inline(always)]
-    pub fn pressures<T: Number>(&self, overclosure_mm: T, thickness_mm: T) -> (T, T) {
+    pub fn pressures<T: Number>(&self, overclosure_mm: T, per_thickness: T) -> (T, T) {
         if let Self::Linear { modulus_mpa } = self {
-            let stiffness = T::splat(*modulus_mpa) / thickness_mm;
+            let stiffness = T::splat(*modulus_mpa) * per_thickness;
             return (stiffness * overclosure_mm, stiffness);
         }
-        let at = |lane| self.pressure(overclosure_mm.lane(lane), thickness_mm.lane(lane));
+        let at = |lane| self.pressure(overclosure_mm.lane(lane), 1.0 / per_thickness.lane(lane));
         (
             T::from_lanes(|lane| at(lane).0),
             T::from_lanes(|lane| at(lane).1),

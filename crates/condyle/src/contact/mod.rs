@@ -1,11 +1,15 @@
 //! Contact between femur and insert: one interface, several models.
 
+mod clearance;
 mod foundation;
 mod history;
 mod law;
 mod motion;
 mod nearness;
 mod partial;
+mod seen;
+mod shares;
+mod tangent;
 mod traction;
 
 pub use foundation::{Foundation, FoundationSettings};
@@ -48,7 +52,8 @@ pub trait ContactModel {
     /// Wrench on the insert about its origin at a relative motion: moment, N mm, then force, N; in
     /// the insert frame.
     ///
-    /// The answer depends on the motion alone, not on the calls before.
+    /// The answer depends on the motion alone and not on the calls before, but for what a model
+    /// says it rounds.
     fn respond(&mut self, motion: &RelativeMotion) -> Vec6;
 
     /// The exact derivatives of the wrench at the last [`ContactModel::respond`].
@@ -57,6 +62,7 @@ pub trait ContactModel {
     /// How many surface nodes there are.
     fn node_count(&self) -> usize;
 
-    /// The nodes in contact at the last [`ContactModel::respond`], ascending.
-    fn touched(&self) -> Vec<TouchedNode>;
+    /// The nodes in contact at a motion, ascending: that of the last [`ContactModel::respond`], or one
+    /// so near that loads and speeds may be taken along to first order.
+    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode>;
 }

@@ -3,6 +3,7 @@
 use crate::{
     Mat3, Vec3, Vector,
     number::{Lanes, Number},
+    products::{dot, scaled_plus},
 };
 
 /// A wrench as (moment, force) or a twist as (angular, linear); N mm and N, rad and mm.
@@ -66,14 +67,46 @@ impl Pose4 {
     #[inline(always)]
     pub fn turn_to_femur(&self, vector: &Vector<Lanes>) -> Vector<Lanes> {
         let [x, y, z] = &self.columns;
-        Vector::new(x.dot(vector), y.dot(vector), z.dot(vector))
+        Vector::new(dot(x, vector), dot(y, vector), dot(z, vector))
     }
 
     /// Vectors of the femoral frame seen from the insert frame.
     #[inline(always)]
     pub fn turn_to_insert(&self, vector: &Vector<Lanes>) -> Vector<Lanes> {
         let [x, y, z] = &self.columns;
-        x * vector.x + y * vector.y + z * vector.z
+        scaled_plus(x, vector.x, &scaled_plus(y, vector.y, &(z * vector.z)))
+    }
+}
+
+/// A twist for four points at a time.
+pub(super) struct Twist4 {
+    angular: Vector<Lanes>,
+    linear: Vector<Lanes>,
+}
+
+impl Twist4 {
+    pub fn new(twist: &Vec6) -> Self {
+        let twist = twist.map(Lanes::splat);
+        Self {
+            angular: twist.fixed_rows::<3>(0).into(),
+            linear: twist.fixed_rows::<3>(3).into(),
+        }
+    }
+
+    /// The angular velocity.
+    pub fn angular(&self) -> &Vector<Lanes> {
+        &self.angular
+    }
+
+    /// Velocities of points.
+    #[inline(always)]
+    pub fn velocity(&self, place: &Vector<Lanes>) -> Vector<Lanes> {
+        let (w, p, v) = (&self.angular, place, &self.linear);
+        Vector::new(
+            w.y.times_plus(p.z, v.x - w.z * p.y),
+            w.z.times_plus(p.x, v.y - w.x * p.z),
+            w.x.times_plus(p.y, v.z - w.y * p.x),
+        )
     }
 }
 
@@ -85,6 +118,19 @@ pub struct RelativeMotion {
     /// Angular velocity, rad/s, then the velocity of the femur's material at the insert's origin,
     /// mm/s; in the insert frame.
     pub twist: Vec6,
+}
+
+/// The small motion from one pose to another, a turn and the shift of the femur's material at the
+/// insert's origin; in the insert frame.
+pub(super) fn small_motion(from: &Pose, to: &Pose) -> Vec6 {
+    let turned = to.rotation * from.rotation.transpose();
+    let turn = Vec3::new(
+        turned[(2, 1)] - turned[(1, 2)],
+        turned[(0, 2)] - turned[(2, 0)],
+        turned[(1, 0)] - turned[(0, 1)],
+    ) / 2.0;
+    let shift = to.translation - from.translation - turn.cross(&from.translation);
+    Vec6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z)
 }
 
 /// The matrix \[v\] with \[v\] w = v x w.

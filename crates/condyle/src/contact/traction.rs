@@ -1,10 +1,10 @@
-//! Forces of four shares under pressure, and their tangent as a sum of rank-one terms.
+//! Forces of four shares under pressure.
 
-use super::{Mat6, Vec6};
+use super::{Vec6, motion::Twist4};
 use crate::{
     Vector,
-    geometry::Curvature,
-    number::{LANES, Lanes, Number},
+    number::{Lanes, Number},
+    products::{cross, dot, scaled_plus},
 };
 
 /// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
@@ -15,16 +15,9 @@ const STANDSTILL_MM_PER_S: f64 = 1e-9;
 /// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
 /// of sliding, s = v_t/w and w = sqrt(v_t^2 + v0^2).
 pub(super) struct Tractions4 {
-    pub nodes: [u32; LANES],
-    /// Places of the shares' centres, p, mm.
-    pub place: Vector<Lanes>,
-    /// Unit normals of the femur, n.
-    pub normal: Vector<Lanes>,
-    /// Curvature of the femur, K, 1/mm; right on tangents.
-    pub curvature: Curvature<Lanes>,
     pub pressure_mpa: Lanes,
-    /// Areas of the shares times their pressure, L, N.
-    pub load_n: Lanes,
+    /// Areas of the shares, mm2; their product with the pressure is the load L, N.
+    pub area_mm2: Lanes,
     /// Areas of the parts of the shares that press, mm2.
     pub covered_mm2: Lanes,
     /// Derivatives of the loads by the motion of the femur's material there, N/mm.
@@ -36,133 +29,70 @@ pub(super) struct Tractions4 {
 
 /// How the femur's material moves past a share.
 pub(super) struct Sliding {
-    /// Direction of sliding, t1.
-    pub along: Vector<Lanes>,
-    /// Speed of sliding, v_t, mm/s.
-    pub speed_mm_per_s: Lanes,
+    /// Velocity along the surface, mm/s; where nothing slides, a lean so slight that it only gives
+    /// a direction.
+    pub velocity_mm_per_s: Vector<Lanes>,
     /// Velocity of the femur's material out of the femur, c = n . v, mm/s.
-    closing_mm_per_s: Lanes,
-    /// Speed with the tolerance, w, mm/s.
-    regular_mm_per_s: Lanes,
-    /// Part of full friction that is reached, s.
-    part: Lanes,
+    pub closing_mm_per_s: Lanes,
+    /// One over the speed with the tolerance, 1/w, s/mm.
+    pub per_regular: Lanes,
 }
 
 impl Sliding {
     /// Takes a velocity apart along a surface with normal `normal`.
     #[inline(always)]
     pub fn new(velocity: &Vector<Lanes>, normal: &Vector<Lanes>, tolerance_mm_per_s: f64) -> Self {
-        let closing = normal.dot(velocity);
+        let closing = dot(normal, velocity);
         let lean = Lanes::splat(STANDSTILL_MM_PER_S);
         let leaning = Vector::new(-(normal.y * lean), normal.x * lean, Lanes::splat(0.0));
-        let tangential = velocity - normal * closing + leaning;
-        let speed2 = tangential.dot(&tangential);
-        let speed = Number::max(speed2.sqrt(), Lanes::splat(f64::MIN_POSITIVE));
-        let regular = (speed2 + Lanes::splat(tolerance_mm_per_s * tolerance_mm_per_s)).sqrt();
+        let tangential = scaled_plus(normal, -closing, &(velocity + leaning));
+        let speed2 = dot(&tangential, &tangential);
+        let regular2 = speed2 + Lanes::splat(tolerance_mm_per_s * tolerance_mm_per_s);
         Self {
-            along: tangential * (Lanes::splat(1.0) / speed),
-            speed_mm_per_s: speed,
+            velocity_mm_per_s: tangential,
             closing_mm_per_s: closing,
-            regular_mm_per_s: regular,
-            part: speed / regular,
+            per_regular: Lanes::splat(1.0) / regular2.sqrt(),
         }
     }
-}
-
-type Six = [Lanes; 6];
-
-/// The tangent of many shares: its columns are added up in lanes.
-pub(super) struct TangentSum {
-    by_pose: [Six; 6],
-    by_twist: [Six; 6],
 }
 
 impl Tractions4 {
-    /// Forces on the insert, N.
-    #[inline(always)]
-    pub fn force_n(&self, friction: f64) -> Vector<Lanes> {
-        let rub = Lanes::splat(friction) * self.sliding.part;
-        (self.normal + self.sliding.along * rub) * self.load_n
-    }
-}
-
-impl TangentSum {
-    pub fn new() -> Self {
-        let zero = [[Lanes::splat(0.0); 6]; 6];
+    /// Shares that nothing presses.
+    pub fn none() -> Self {
+        let (zero, nowhere) = (Lanes::splat(0.0), Vector::repeat(Lanes::splat(0.0)));
         Self {
-            by_pose: zero,
-            by_twist: zero,
+            pressure_mpa: zero,
+            area_mm2: zero,
+            covered_mm2: zero,
+            load_by_motion: nowhere,
+            load_by_turn: nowhere,
+            sliding: Sliding {
+                velocity_mm_per_s: nowhere,
+                closing_mm_per_s: zero,
+                per_regular: zero,
+            },
         }
     }
 
-    /// Adds the derivatives of the wrench at the femur's origin by pose and by twist.
-    ///
-    /// A motion xi = (w, v) of the femur moves its material at the share by a = v + w x p and turns
-    /// the normal by dn = w x n - K a, which lies in the plane of t1 and t2 = n x t1. With the
-    /// wrenches N, T1, T2 of unit forces along n, t1, t2, and the rows R_i xi = -t_i . dn:
-    ///
-    /// dW = (N + mu s T1) dL - L (q1 T1 - mu s N) R_1 xi - L q2 T2 R_2 xi,
-    /// q1 = 1 - mu c (1 - s^2)/w, q2 = 1 - mu c/w;
-    ///
-    /// and a change of twist tau: dW = L mu/w ((1 - s^2) T1 T1' + T2 T2') tau.
+    /// Rises of the loads of shares at `place` by a short motion of the femur, turn and shift in
+    /// its frame, N.
     #[inline(always)]
-    pub fn add(&mut self, tractions: &Tractions4, friction: f64) {
-        let Sliding {
-            along: t1,
-            closing_mm_per_s,
-            regular_mm_per_s,
-            part,
-            ..
-        } = &tractions.sliding;
-        let (p, n, load) = (&tractions.place, &tractions.normal, tractions.load_n);
-        let t2 = n.cross(t1);
-        let wrench_n = joined(&p.cross(n), n);
-        let wrench_1 = joined(&p.cross(t1), t1);
-        let wrench_2 = joined(&p.cross(&t2), &t2);
-        let row = |t: &Vector<Lanes>| {
-            let bend = tractions.curvature.times(t);
-            joined(&(p.cross(&bend) - n.cross(t)), &bend)
-        };
-        let load_row = joined(
-            &(p.cross(&tractions.load_by_motion) + tractions.load_by_turn),
-            &tractions.load_by_motion,
-        );
-        let (row_1, row_2) = (row(t1), row(&t2));
-        let (one, friction) = (Lanes::splat(1.0), Lanes::splat(friction));
-        let (rub, stuck) = (friction * *part, one - *part * *part);
-        let per_speed = friction / *regular_mm_per_s;
-        let turn = *closing_mm_per_s * per_speed;
-        let whole: Six = std::array::from_fn(|i| wrench_n[i] + rub * wrench_1[i]);
-        let (q1, q2) = (load * (one - turn * stuck), load * (one - turn));
-        let first: Six = std::array::from_fn(|i| load * rub * wrench_n[i] - q1 * wrench_1[i]);
-        let second: Six = std::array::from_fn(|i| -(q2 * wrench_2[i]));
-        for (column, entries) in self.by_pose.iter_mut().enumerate() {
-            for (i, entry) in entries.iter_mut().enumerate() {
-                *entry += whole[i] * load_row[column]
-                    + first[i] * row_1[column]
-                    + second[i] * row_2[column];
-            }
-        }
-        let (drag_1, drag_2) = (load * per_speed * stuck, load * per_speed);
-        // Symmetric: one triangle is enough.
-        for (column, entries) in self.by_twist.iter_mut().enumerate() {
-            let (weight_1, weight_2) = (drag_1 * wrench_1[column], drag_2 * wrench_2[column]);
-            for (i, entry) in entries.iter_mut().enumerate().take(column + 1) {
-                *entry += wrench_1[i] * weight_1 + wrench_2[i] * weight_2;
-            }
-        }
+    pub fn load_rise_n(&self, place: &Vector<Lanes>, motion: &Twist4) -> Lanes {
+        dot(&self.load_by_motion, &motion.velocity(place))
+            + dot(&self.load_by_turn, motion.angular())
     }
 
-    /// The sums by pose and by twist.
-    pub fn total(&self) -> (Mat6, Mat6) {
-        let by_pose = Mat6::from_fn(|i, column| self.by_pose[column][i].sum());
-        let by_twist = Mat6::from_fn(|i, column| self.by_twist[column.max(i)][column.min(i)].sum());
-        (by_pose, by_twist)
+    /// Forces on the insert under a femur with `normal`, N.
+    #[inline(always)]
+    pub fn force_n(&self, normal: &Vector<Lanes>, friction: f64) -> Vector<Lanes> {
+        let rub = Lanes::splat(friction) * self.sliding.per_regular;
+        let traction = scaled_plus(&self.sliding.velocity_mm_per_s, rub, normal);
+        traction * (self.pressure_mpa * self.area_mm2)
     }
 }
 
 /// The wrench of many forces.
-pub(super) struct WrenchSum(Six);
+pub(super) struct WrenchSum([Lanes; 6]);
 
 impl WrenchSum {
     pub fn new() -> Self {
@@ -172,7 +102,8 @@ impl WrenchSum {
     /// Adds forces at places, about the origin.
     #[inline(always)]
     pub fn add(&mut self, place: &Vector<Lanes>, force: &Vector<Lanes>) {
-        let wrench = joined(&place.cross(force), force);
+        let moment = cross(place, force);
+        let wrench = [moment.x, moment.y, moment.z, force.x, force.y, force.z];
         self.0
             .iter_mut()
             .zip(wrench)
@@ -183,11 +114,4 @@ impl WrenchSum {
     pub fn total(&self) -> Vec6 {
         Vec6::from(self.0.map(Lanes::sum))
     }
-}
-
-#[inline(always)]
-fn joined(angular: &Vector<Lanes>, linear: &Vector<Lanes>) -> Six {
-    [
-        angular.x, angular.y, angular.z, linear.x, linear.y, linear.z,
-    ]
 }

@@ -94,7 +94,7 @@ impl March {
     }
 
     fn from_parts(mut test: WearTest, chain: Chain, state: MarchState) -> Self {
-        let unworn_volume_mm3 = test.insert.mesh().volume();
+        let unworn_volume_mm3 = test.insert.volume_mm3();
         let unworn_nodes = test.insert.mesh().nodes.clone();
         test.insert
             .restore(state.mesh_nodes.clone(), &state.worn_mm);
@@ -198,7 +198,7 @@ impl March {
         UpdateRecord {
             cycles: step.cycles_after,
             volume_loss_mm3,
-            volume_loss_mesh_mm3: self.unworn_volume_mm3 - self.test.insert.mesh().volume(),
+            volume_loss_mesh_mm3: self.unworn_volume_mm3 - self.test.insert.volume_mm3(),
             mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
             max_depth_mm: largest(&self.state.worn_mm),
             peak_pressure_mpa: most(|row| row.peak_pressure_mpa),

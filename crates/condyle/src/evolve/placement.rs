@@ -152,11 +152,12 @@ fn check_depth(
     contact: &mut Foundation<'_>,
     pose: &Pose,
 ) -> Result<(), PlacementError> {
-    contact.respond(&RelativeMotion {
+    let motion = RelativeMotion {
         pose: *pose,
         twist: Vec6::zeros(),
-    });
-    for touched in contact.touched() {
+    };
+    contact.respond(&motion);
+    for touched in contact.touched(&motion) {
         let node = touched.node as usize;
         let overclosure_mm = -test.femur.gap_mm(&pose.to_femur(&surface.positions[node]));
         let thickness_mm = test.insert.thickness_mm()[node];

@@ -54,9 +54,8 @@ impl Quarter {
 impl ArticulatingSurface {
     /// The surface of `faces`, in numbers of `positions`, facing out.
     pub fn new(positions: &[Vec3], faces: &[[u32; 4]]) -> Self {
-        let mut quarters: Vec<Vec<Quarter>> =
-            positions.iter().map(|_| Vec::with_capacity(4)).collect();
         let mut normals = vec![Vec3::zeros(); positions.len()];
+        let mut firsts = vec![FirstMoments::default(); positions.len()];
         for face in faces {
             let corners = face.map(|i| positions[i as usize]);
             let [a, b, c, d] = corners;
@@ -64,21 +63,28 @@ impl ArticulatingSurface {
                 .cross(&(d - b))
                 .try_normalize(0.0)
                 .unwrap_or_default();
-            for turn in 0..4 {
-                let at = |k: usize| corners[(turn + k) % 4];
-                quarters[face[turn] as usize].push(Quarter::new(at(0), at(1), at(2), at(3)));
-                normals[face[turn] as usize] += normal;
+            for (turn, &node) in face.iter().enumerate() {
+                normals[node as usize] += normal;
+                firsts[node as usize].add(&positions[node as usize], &quarter(&corners, turn));
             }
         }
+        let flats: Vec<Flat> = firsts.iter().map(Flat::new).collect();
+        let mut seconds = vec![Mat3::zeros(); positions.len()];
+        for face in faces {
+            let corners = face.map(|i| positions[i as usize]);
+            for (turn, &node) in face.iter().enumerate() {
+                let (from, flat) = (positions[node as usize], &flats[node as usize]);
+                seconds[node as usize] += flat.second_moment(&from, &quarter(&corners, turn));
+            }
+        }
+        let nodes = positions.iter().zip(&flats).zip(&seconds);
         Self {
             normals: normals
                 .iter()
                 .map(|n| n.try_normalize(0.0).unwrap_or_default())
                 .collect(),
-            shares: positions
-                .iter()
-                .zip(&quarters)
-                .map(|(p, around)| share(p, around))
+            shares: nodes
+                .map(|((node, flat), second)| flat.share(node, second))
                 .collect(),
             positions: positions.to_vec(),
         }
@@ -115,40 +121,82 @@ impl ArticulatingSurface {
     }
 }
 
-/// A node's share from the quarters of faces around it.
-///
-/// Between nodes the true surface bulges away from the bilinear faces: the mean of a parabola over
-/// a share is a third of what the bilinear faces say. So of the centroid's offset from the node,
-/// the part along the normal counts a third.
-fn share(node: &Vec3, quarters: &[Quarter]) -> Share {
-    let area = |quarter: &Quarter| quarter.area_vector.norm();
-    let area_mm2: f64 = quarters.iter().map(area).sum();
-    let normal = quarters
-        .iter()
-        .map(|q| q.area_vector)
-        .sum::<Vec3>()
-        .normalize();
-    let offset = quarters
-        .iter()
-        .map(|q| (q.centre - node) * area(q))
-        .sum::<Vec3>()
-        / area_mm2;
-    let along_normal = normal * offset.dot(&normal);
-    let flat_centre = offset - along_normal;
-    let mut moment = Mat3::zeros();
-    for quarter in quarters {
-        let [a, b] = quarter.edges;
-        let lever = quarter.centre - node - flat_centre;
-        let own = (a * a.transpose() + b * b.transpose()) / 12.0;
-        moment += (own + lever * lever.transpose()) * (area(quarter) / area_mm2);
+/// The quarter of a face at its corner number `turn`.
+fn quarter(corners: &[Vec3; 4], turn: usize) -> Quarter {
+    let at = |k: usize| corners[(turn + k) % 4];
+    Quarter::new(at(0), at(1), at(2), at(3))
+}
+
+/// Sums over the quarters of faces around a node.
+#[derive(Clone, Copy, Default)]
+struct FirstMoments {
+    area_mm2: f64,
+    area_vector: Vec3,
+    /// Offset of the centroids from the node, times the area.
+    offset: Vec3,
+    /// An edge of one of them, for a direction.
+    edge: Vec3,
+}
+
+impl FirstMoments {
+    fn add(&mut self, node: &Vec3, quarter: &Quarter) {
+        let area = quarter.area_vector.norm();
+        if self.area_mm2 == 0.0 {
+            self.edge = quarter.edges[0];
+        }
+        self.area_mm2 += area;
+        self.area_vector += quarter.area_vector;
+        self.offset += (quarter.centre - node) * area;
     }
-    let [edge_a, edge_b] = parallelogram(&moment, &normal, &quarters[0].edges[0]);
-    Share {
-        centre: node + flat_centre + along_normal / 3.0,
-        edge_a,
-        edge_b,
-        area_mm2,
-        spread_mm2: (edge_a.norm_squared() + edge_b.norm_squared()) / 48.0,
+}
+
+/// The plane of a node's share, and where its centroid lies.
+struct Flat {
+    area_mm2: f64,
+    normal: Vec3,
+    /// Offset of the centroid from the node along the plane.
+    offset: Vec3,
+    /// And along its normal.
+    rise: Vec3,
+    edge: Vec3,
+}
+
+impl Flat {
+    fn new(sums: &FirstMoments) -> Self {
+        let normal = sums.area_vector.normalize();
+        let offset = sums.offset / sums.area_mm2;
+        let rise = normal * offset.dot(&normal);
+        Self {
+            area_mm2: sums.area_mm2,
+            normal,
+            offset: offset - rise,
+            rise,
+            edge: sums.edge,
+        }
+    }
+
+    /// A quarter's part in the second moment over the area.
+    fn second_moment(&self, node: &Vec3, quarter: &Quarter) -> Mat3 {
+        let [a, b] = quarter.edges;
+        let lever = quarter.centre - node - self.offset;
+        let own = (a * a.transpose() + b * b.transpose()) / 12.0;
+        (own + lever * lever.transpose()) * (quarter.area_vector.norm() / self.area_mm2)
+    }
+
+    /// The node's share.
+    ///
+    /// Between nodes the true surface bulges away from the bilinear faces: the mean of a parabola
+    /// over a share is a third of what the bilinear faces say. So of the centroid's offset from the
+    /// node, the part along the normal counts a third.
+    fn share(&self, node: &Vec3, second_moment: &Mat3) -> Share {
+        let [edge_a, edge_b] = parallelogram(second_moment, &self.normal, &self.edge);
+        Share {
+            centre: node + self.offset + self.rise / 3.0,
+            edge_a,
+            edge_b,
+            area_mm2: self.area_mm2,
+            spread_mm2: (edge_a.norm_squared() + edge_b.norm_squared()) / 48.0,
+        }
     }
 }
 

@@ -1,7 +1,11 @@
 //! The femoral surface as the contact sees it.
 
 use super::{Cylinder, GenericFemur, SmoothField, Torus};
-use crate::{Vec3, Vector, number::Number};
+use crate::{
+    Vec3, Vector,
+    number::Number,
+    products::{dot, scaled_plus, without_part_along},
+};
 
 /// A symmetric 3 by 3 matrix, 1/mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,15 +24,18 @@ impl<T: Number> Curvature<T> {
     #[inline(always)]
     pub fn times(&self, v: &Vector<T>) -> Vector<T> {
         Vector::new(
-            self.xx * v.x + self.xy * v.y + self.xz * v.z,
-            self.xy * v.x + self.yy * v.y + self.yz * v.z,
-            self.xz * v.x + self.yz * v.y + self.zz * v.z,
+            dot(&Vector::new(self.xx, self.xy, self.xz), v),
+            dot(&Vector::new(self.xy, self.yy, self.yz), v),
+            dot(&Vector::new(self.xz, self.yz, self.zz), v),
         )
     }
 }
 
 /// How much sharper than the surface its level surfaces inside are, as deep as contact goes.
 const DEEPER: f64 = 1.2;
+
+/// As far as contact ever looks, mm.
+pub(super) const FAR_MM: f64 = 10.0;
 
 /// The femoral surface around a point of the femoral frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +49,82 @@ pub struct SurfaceSample<T> {
     /// Symmetric; its part along the surface is the derivative of `normal` by the point, 1/mm: the
     /// curvature of the level surface, > 0 convex.
     pub curvature: Curvature<T>,
+}
+
+impl<T: Number> SurfaceSample<T> {
+    /// A sample that no surface gives: infinitely far.
+    pub fn far() -> Self {
+        let (zero, none) = (T::zero(), Vector::repeat(T::zero()));
+        Self {
+            gap_mm: T::splat(f64::INFINITY),
+            gap_gradient: none,
+            normal: none,
+            curvature: Curvature {
+                xx: zero,
+                yy: zero,
+                zz: zero,
+                xy: zero,
+                xz: zero,
+                yz: zero,
+            },
+        }
+    }
+
+    /// The sample a short `motion` d away: g + G . d + d . K d/2, G + K d and n + (I - n n') K d.
+    #[inline(always)]
+    pub fn moved(&self, motion: &Vector<T>) -> Self {
+        let bend = self.curvature.times(motion);
+        let slope = scaled_plus(&bend, T::splat(0.5), &self.gap_gradient);
+        Self {
+            gap_mm: self.gap_mm + dot(&slope, motion),
+            gap_gradient: self.gap_gradient + bend,
+            normal: self.normal + without_part_along(&bend, &self.normal),
+            curvature: self.curvature,
+        }
+    }
+}
+
+/// Bounds on the femoral surface around a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surroundings {
+    /// How far from the point they hold, mm; less than 0 where nothing is known.
+    pub radius_mm: f64,
+    /// No curvature is larger, 1/mm.
+    pub sharpest_per_mm: f64,
+    /// The gap bends back nowhere by more: no second derivative of it is below minus this, 1/mm.
+    pub hollow_per_mm: f64,
+}
+
+impl Surroundings {
+    /// Where nothing is known.
+    pub const UNKNOWN: Self = Self {
+        radius_mm: -1.0,
+        sharpest_per_mm: f64::INFINITY,
+        hollow_per_mm: f64::INFINITY,
+    };
+
+    /// What holds around both of two points.
+    #[inline(always)]
+    pub fn joined(self, other: Self) -> Self {
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        Self {
+            radius_mm: -larger(-self.radius_mm, -other.radius_mm),
+            sharpest_per_mm: larger(self.sharpest_per_mm, other.sharpest_per_mm),
+            hollow_per_mm: larger(self.hollow_per_mm, other.hollow_per_mm),
+        }
+    }
+
+    /// Those of a convex surface nowhere sharper than `sharpest_per_mm`.
+    ///
+    /// The distance from a convex body is convex. Its mean over a share is nearly so: it bends back
+    /// by 6 spread K^3 at most, a few thousandths of K for shares of 2 mm on a ball of 20 mm.
+    pub fn convex(sharpest_per_mm: f64, radius_mm: f64) -> Self {
+        Self {
+            radius_mm,
+            sharpest_per_mm: DEEPER * sharpest_per_mm,
+            hollow_per_mm: 0.01 * sharpest_per_mm,
+        }
+    }
 }
 
 /// A femoral surface that gives gap, normal and curvature anywhere near it, smoothly.
@@ -101,15 +184,14 @@ impl FemoralSurface {
         }
     }
 
-    /// Curvature that the surface nowhere exceeds where it articulates, 1/mm.
-    ///
-    /// Of a mesh it is not known: 0.2, sharper than any condyle.
-    pub fn sharpest_per_mm(&self) -> f64 {
+    /// Bounds on the surface around points, in every lane.
+    #[inline(always)]
+    pub fn surroundings<T: Number>(&self, points: &Vector<T>) -> Surroundings {
         match self {
-            Self::Generic(femur) => DEEPER * femur.sharpest_per_mm(),
-            Self::Sphere(ball) => DEEPER / ball.tube_radius_mm,
-            Self::Cylinder(cylinder) => DEEPER / cylinder.radius_mm,
-            Self::Mesh(_) => 0.2,
+            Self::Generic(femur) => femur.surroundings(points),
+            Self::Sphere(ball) => Surroundings::convex(1.0 / ball.tube_radius_mm, FAR_MM),
+            Self::Cylinder(cylinder) => Surroundings::convex(1.0 / cylinder.radius_mm, FAR_MM),
+            Self::Mesh(field) => field.surroundings(points),
         }
     }
 

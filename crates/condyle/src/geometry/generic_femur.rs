@@ -1,6 +1,6 @@
 //! The generic femoral component: two condyles, each of two pieces of torus.
 
-use super::{SurfaceSample, Torus, TriangleMesh};
+use super::{SurfaceSample, Surroundings, Torus, TriangleMesh, femoral_surface::FAR_MM};
 use crate::{Vec3, Vector, number::Number};
 
 /// Measures of the generic femoral component, mm and degrees.
@@ -77,6 +77,14 @@ impl GenericFemur {
             .coronal_radius_mm
             .min(shape.posterior_radius_mm)
             .min(shape.distal_radius_mm)
+    }
+
+    /// Bounds around points: each condyle is convex, so they hold as far as the plane half-way to
+    /// the other one.
+    #[inline(always)]
+    pub fn surroundings<T: Number>(&self, points: &Vector<T>) -> Surroundings {
+        let radius_mm = points.z.abs().least().min(FAR_MM);
+        Surroundings::convex(self.sharpest_per_mm(), radius_mm)
     }
 
     /// How far from the origin the component reaches at most, mm.

@@ -1,6 +1,6 @@
 //! The tibial insert: a hexahedral mesh, its articulating surface, and how it wears away.
 
-use condyle_fem::{HexMesh, InteriorFollower};
+use condyle_fem::{HexMesh, InteriorFollower, volume_below};
 use thiserror::Error;
 
 use super::{ArticulatingSurface, thickness::thickness_at_nodes};
@@ -42,6 +42,9 @@ pub enum InsertError {
 /// A tibial insert, unworn or worn.
 pub struct Insert {
     mesh: HexMesh,
+    unworn_nodes: Vec<Vec3>,
+    /// Quads around the mesh, facing out.
+    boundary: Vec<[u32; 4]>,
     /// Mesh nodes of the articulating surface, ascending; "surface node i" is `nodes[i]`.
     nodes: Vec<u32>,
     /// Faces of the articulating surface, in numbers of surface nodes.
@@ -77,7 +80,8 @@ impl Insert {
         check_elements(&mesh)?;
         let (nodes, faces) = numbered(articulating);
         // Sides and backside stay where they are: wear takes away the articulating surface alone.
-        let follower = InteriorFollower::new(&mesh, mesh.boundary_quads().into_iter().flatten());
+        let boundary = mesh.boundary_quads();
+        let follower = InteriorFollower::new(&mesh, boundary.iter().flatten().copied());
         let positions: Vec<Vec3> = nodes
             .iter()
             .map(|&node| mesh.nodes[node as usize])
@@ -85,6 +89,8 @@ impl Insert {
         let normals = ArticulatingSurface::new(&positions, &faces).normals;
         let thickness_mm = thickness_at_nodes(&positions, &normals, &mesh, backside)?;
         Ok(Self {
+            unworn_nodes: mesh.nodes.clone(),
+            boundary,
             mesh,
             nodes,
             faces,
@@ -98,6 +104,15 @@ impl Insert {
     /// The hexahedra.
     pub fn mesh(&self) -> &HexMesh {
         &self.mesh
+    }
+
+    /// Volume of the mesh as it is now, mm3: what its boundary encloses.
+    pub fn volume_mm3(&self) -> f64 {
+        // Near the mesh, so that the cones are small and few digits are lost.
+        let origin = self.mesh.nodes[self.boundary[0][0] as usize];
+        let corners = |quad: &[u32; 4]| quad.map(|node| self.mesh.nodes[node as usize] - origin);
+        let quads = self.boundary.iter();
+        quads.map(|quad| volume_below(&corners(quad))).sum()
     }
 
     /// Mesh nodes of the articulating surface, ascending; the order of every array a surface node.
@@ -129,7 +144,7 @@ impl Insert {
     ///
     /// `depth_mm`: one a surface node, 0 or more. The thickness shrinks by as much.
     pub fn wear_down(&mut self, surface: &ArticulatingSurface, depth_mm: &[f64]) {
-        let mut displacement = vec![Vec3::zeros(); self.mesh.nodes.len()];
+        let mut displacement = self.as_before(surface, depth_mm);
         for (i, &node) in self.nodes.iter().enumerate() {
             displacement[node as usize] = -surface.normals[i] * depth_mm[i];
             self.worn_mm[i] += depth_mm[i];
@@ -139,6 +154,21 @@ impl Insert {
         for (node, step) in self.mesh.nodes.iter_mut().zip(&displacement) {
             *node += step;
         }
+    }
+
+    /// How every mesh node moves if the mesh goes on as it has come so far, in proportion to the
+    /// depth: nearly how it will, so that the inside is found in few iterations.
+    fn as_before(&self, surface: &ArticulatingSurface, depth_mm: &[f64]) -> Vec<Vec3> {
+        let moved = |node: usize| self.mesh.nodes[node] - self.unworn_nodes[node];
+        let (mut along, mut whole) = (0.0, 0.0);
+        for (i, &node) in self.nodes.iter().enumerate() {
+            let so_far = moved(node as usize);
+            along -= so_far.dot(&surface.normals[i]) * depth_mm[i];
+            whole += so_far.norm_squared();
+        }
+        let share = if whole > 0.0 { along / whole } else { 0.0 };
+        let nodes = 0..self.mesh.nodes.len();
+        nodes.map(|node| moved(node) * share).collect()
     }
 
     /// Puts a worn insert back to a stored state: all mesh nodes, and the depth worn so far at

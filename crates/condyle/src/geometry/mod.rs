@@ -1,6 +1,7 @@
 //! Shapes, meshes, and the distance to a surface.
 
 mod articulating_surface;
+mod bend_map;
 mod columns;
 mod curved_mesh;
 mod cylinder;
@@ -19,7 +20,7 @@ pub use articulating_surface::{ArticulatingSurface, Share};
 pub use columns::{Column, ColumnGrid, ColumnMesh};
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use cylinder::Cylinder;
-pub use femoral_surface::{Curvature, FemoralSurface, SurfaceSample};
+pub use femoral_surface::{Curvature, FemoralSurface, SurfaceSample, Surroundings};
 pub use generic_femur::{GenericFemur, GenericFemurShape};
 pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};
 pub use insert::{Insert, InsertError};

@@ -231,7 +231,8 @@ mod tests {
         )
         .unwrap();
         assert!(
-            (insert.mesh().volume() - 4800.0).abs() < 1e-6,
+            (insert.mesh().volume() - 4800.0).abs() < 1e-6
+                && (insert.volume_mm3() - 4800.0).abs() < 1e-6,
             "{}",
             insert.mesh().volume()
         );

@@ -1,7 +1,7 @@
 //! The balance of forces on every freedom, and its tangent.
 
 use super::{ApSpring, Chain, Configuration, Drive, Freedom, Machine};
-use crate::contact::{ContactModel, Mat6, RelativeMotion, Vec6};
+use crate::contact::{ContactModel, Mat6, Vec6};
 use serde::{Deserialize, Serialize};
 
 /// Positions, rates and accelerations of the six freedoms, mm and rad and s.
@@ -40,11 +40,7 @@ impl<'a, C: ContactModel> Balance<'a, C> {
         kinematics: Kinematics,
     ) -> Self {
         let configuration = chain.at(&kinematics.positions);
-        let twist = configuration.twist(&kinematics.rates);
-        let wrench = contact.respond(&RelativeMotion {
-            pose: configuration.pose,
-            twist,
-        });
+        let wrench = contact.respond(&configuration.motion(&kinematics.rates));
         Self {
             machine,
             contact,

@@ -3,7 +3,7 @@
 use super::{FREEDOMS, Freedom, Machine};
 use crate::{
     Vec3,
-    contact::{Pose, Vec6},
+    contact::{Pose, RelativeMotion, Vec6},
 };
 
 /// The kinematics of the machine.
@@ -76,6 +76,14 @@ impl Chain {
 }
 
 impl Configuration {
+    /// Pose and twist of the femur relative to the insert at given rates.
+    pub fn motion(&self, rates: &[f64; 6]) -> RelativeMotion {
+        RelativeMotion {
+            pose: self.pose,
+            twist: self.twist(rates),
+        }
+    }
+
     /// Twist of the femur relative to the insert at given rates, in the insert frame.
     pub fn twist(&self, rates: &[f64; 6]) -> Vec6 {
         self.screws

@@ -206,9 +206,12 @@ impl<C: ContactModel> Simulator<'_, C> {
     ///
     /// Every touched node's pressure and slip stand for the whole increment: the trapezoidal rule
     /// of a cycle that repeats, second order in the increment.
-    fn land(&self, place: usize, state: &MachineState) -> Landed {
+    fn land(&mut self, place: usize, state: &MachineState) -> Landed {
         let percent = 100.0 * (place + 1) as f64 / self.time.increments as f64;
-        let touched = self.contact.touched();
+        let configuration = self.chain.at(&state.now.positions);
+        let touched = self
+            .contact
+            .touched(&configuration.motion(&state.now.rates));
         let moment = |node: &TouchedNode| Moment {
             percent,
             pressure_mpa: node.pressure_mpa,
@@ -234,13 +237,10 @@ impl<C: ContactModel> Simulator<'_, C> {
         repeats: bool,
     ) -> Cycle {
         let landed: Vec<Landed> = landed.into_iter().flatten().collect();
-        let records: Vec<(u32, Moment)> = landed
-            .iter()
-            .flat_map(|here| here.moments.iter().copied())
-            .collect();
+        let records = landed.iter().flat_map(|here| &here.moments);
         Cycle {
             rows: landed.iter().map(|here| here.row).collect(),
-            history: CycleHistory::from_records(self.contact.node_count(), &records),
+            history: CycleHistory::from_records(self.contact.node_count(), records),
             end,
             increments_solved: solved,
             repeats,

@@ -233,7 +233,7 @@ mod tests {
             0
         }
 
-        fn touched(&self) -> Vec<TouchedNode> {
+        fn touched(&mut self, _: &RelativeMotion) -> Vec<TouchedNode> {
             Vec::new()
         }
     }

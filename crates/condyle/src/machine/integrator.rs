@@ -10,11 +10,15 @@ use serde::{Deserialize, Serialize};
 /// Lever on which a moment out of balance counts as a force, mm.
 const MOMENT_LEVER_MM: f64 = 10.0;
 /// Iterations after which a step is given up, and tried in halves.
-const MOST_ITERATIONS: usize = 25;
+const MOST_ITERATIONS: usize = 12;
 /// A correction taken back keeps at least this part.
 const LEAST_PART_OF_CORRECTION: f64 = 0.1;
 /// A correction taken back to less than this has found no better place, mm.
 const SHORTEST_CORRECTION_MM: f64 = 1e-9;
+/// A residual that is foreseen, and not computed, must be this part of the tolerance at most.
+const FORESEEN: f64 = 1.0;
+/// A whole correction that leaves more of the residual is none of the last, quadratic ones.
+const CONVERGING: f64 = 0.1;
 /// Farthest that one iteration may move, mm; on the lever, rad.
 const LONGEST_CORRECTION_MM: f64 = 1.0;
 
@@ -59,6 +63,10 @@ struct Attempt {
     residual_n: f64,
     /// The part of the last correction that was taken.
     taken: Vec6,
+    /// Whether that was all of it.
+    is_whole: bool,
+    /// Length of the residual where the attempt is now, as far as it can be foreseen, N.
+    foreseen_n: f64,
 }
 
 impl Attempt {
@@ -67,6 +75,8 @@ impl Attempt {
             positions,
             residual_n: f64::INFINITY,
             taken: Vec6::zeros(),
+            is_whole: false,
+            foreseen_n: f64::INFINITY,
         }
     }
 
@@ -82,16 +92,34 @@ impl Attempt {
             let keep = (before / (before + after)).max(LEAST_PART_OF_CORRECTION);
             self.step(self.taken * (keep - 1.0));
             self.taken *= keep;
+            self.is_whole = false;
             return longest_mm(&self.taken) > SHORTEST_CORRECTION_MM;
         }
-        self.residual_n = residual_n;
         let solved = tangent().lu().solve(&-residual);
         let Some(correction) = solved.filter(|c| c.iter().all(|x| x.is_finite())) else {
             return false;
         };
-        self.taken = correction * (LONGEST_CORRECTION_MM / longest_mm(&correction)).min(1.0);
+        let part = (LONGEST_CORRECTION_MM / longest_mm(&correction)).min(1.0);
+        self.foresee(residual_n, part == 1.0);
+        self.taken = correction * part;
         self.step(self.taken);
         true
+    }
+
+    /// Foresees the residual after a correction from one of `residual_n`.
+    ///
+    /// Near the solution each whole correction leaves c r^2 of a residual r. So two in a row that
+    /// shortened r0 to r1 say that r1^3/r0^2 is left.
+    fn foresee(&mut self, residual_n: f64, is_whole: bool) {
+        let contraction = residual_n / self.residual_n;
+        let converges = is_whole && self.is_whole && contraction <= CONVERGING;
+        self.foreseen_n = if converges {
+            residual_n * contraction * contraction
+        } else {
+            f64::INFINITY
+        };
+        self.residual_n = residual_n;
+        self.is_whole = is_whole;
     }
 
     fn step(&mut self, motion: Vec6) {
@@ -144,6 +172,11 @@ impl<C: ContactModel> Integrator<'_, C> {
             acceleration: differences.slope.powi(2),
         };
         let loads = loads_at(self.machine, phase);
+        let landed = |now| MachineState {
+            phase,
+            now,
+            before: Some((state.now, step_s)),
+        };
         let mut attempt = Attempt::new(self.predicted(state, phase, step_s, ratio));
         for _ in 0..MOST_ITERATIONS {
             let kinematics = self.kinematics(state, &differences, attempt.positions, phase);
@@ -151,16 +184,21 @@ impl<C: ContactModel> Integrator<'_, C> {
             self.effort.contact_evaluations += 1;
             let residual = balance.residual(&loads);
             if out_of_balance_n(&residual) <= self.force_tolerance_n {
-                return Ok(MachineState {
-                    phase,
-                    now: kinematics,
-                    before: Some((state.now, step_s)),
-                });
+                return Ok(landed(kinematics));
             }
             if !attempt.improve(&residual, || balance.tangent(slopes)) {
                 break;
             }
             self.effort.newton_iterations += 1;
+            if attempt.foreseen_n <= FORESEEN * self.force_tolerance_n {
+                let positions = attempt.positions;
+                return Ok(landed(self.kinematics(
+                    state,
+                    &differences,
+                    positions,
+                    phase,
+                )));
+            }
         }
         Err(NotConverged {
             phase,

@@ -20,7 +20,7 @@ impl WearLaw for Archard {
         let work: f64 = history
             .moments
             .iter()
-            .map(|moment| moment.pressure_mpa * moment.slip_mm[0].hypot(moment.slip_mm[1]))
+            .map(|moment| moment.pressure_mpa * moment.distance_mm())
             .sum();
         self.wear_factor_mm3_per_nm / MM_PER_M * work
     }

@@ -1,0 +1,163 @@
+//! The tangent of many shares under pressure, as a sum of rank-one terms.
+
+use super::{Mat6, seen::Seen, traction::Tractions4};
+use crate::{
+    Vector,
+    geometry::Curvature,
+    number::{Lanes, Number, Singles},
+    products::{cross, dot},
+};
+
+/// Square of the least speed of sliding that gives a direction, mm2/s2; below any that occurs.
+const LEAST_SPEED2: f64 = 1e-30;
+
+type Six<T> = [T; 6];
+
+/// The tangent of many shares: its columns are added up in lanes.
+///
+/// In single precision, eight shares at a time: a correction of Newton's method that is right to
+/// six digits leaves a millionth of the residual, and halves what is the dearest part of the sum.
+pub(super) struct TangentSum {
+    by_pose: [Six<Singles>; 6],
+    by_twist: [Six<Singles>; 6],
+}
+
+/// What the tangent asks of shares under pressure; see [`Tractions4`].
+struct Facets<T> {
+    place: Vector<T>,
+    normal: Vector<T>,
+    curvature: Curvature<T>,
+    load_n: T,
+    load_by_motion: Vector<T>,
+    load_by_turn: Vector<T>,
+    velocity: Vector<T>,
+    closing: T,
+    per_regular: T,
+}
+
+impl Facets<Singles> {
+    /// Twice four shares.
+    #[inline(always)]
+    fn pair(one: (&Seen, &Tractions4), other: (&Seen, &Tractions4)) -> Self {
+        let of = |value: fn(&Seen, &Tractions4) -> Lanes| {
+            Singles::pair(value(one.0, one.1), value(other.0, other.1))
+        };
+        let vector = |value: fn(&Seen, &Tractions4) -> Vector<Lanes>| {
+            value(one.0, one.1).zip_map(&value(other.0, other.1), Singles::pair)
+        };
+        Self {
+            place: vector(|seen, _| seen.place),
+            normal: vector(|seen, _| seen.sample.normal),
+            curvature: Curvature {
+                xx: of(|seen, _| seen.sample.curvature.xx),
+                yy: of(|seen, _| seen.sample.curvature.yy),
+                zz: of(|seen, _| seen.sample.curvature.zz),
+                xy: of(|seen, _| seen.sample.curvature.xy),
+                xz: of(|seen, _| seen.sample.curvature.xz),
+                yz: of(|seen, _| seen.sample.curvature.yz),
+            },
+            load_n: of(|_, tractions| tractions.pressure_mpa * tractions.area_mm2),
+            load_by_motion: vector(|_, tractions| tractions.load_by_motion),
+            load_by_turn: vector(|_, tractions| tractions.load_by_turn),
+            velocity: vector(|_, tractions| tractions.sliding.velocity_mm_per_s),
+            closing: of(|_, tractions| tractions.sliding.closing_mm_per_s),
+            per_regular: of(|_, tractions| tractions.sliding.per_regular),
+        }
+    }
+}
+
+impl TangentSum {
+    pub fn new() -> Self {
+        let zero = [[Singles::splat(0.0); 6]; 6];
+        Self {
+            by_pose: zero,
+            by_twist: zero,
+        }
+    }
+
+    /// Adds twice four shares; the derivatives of the wrench at the femur's origin by pose and by
+    /// twist.
+    #[inline(always)]
+    pub fn add(&mut self, one: (&Seen, &Tractions4), other: (&Seen, &Tractions4), friction: f64) {
+        self.add_facets(&Facets::pair(one, other), Singles::splat(friction));
+    }
+
+    /// A motion xi = (w, v) of the femur moves its material at the share by a = v + w x p and turns
+    /// the normal by dn = w x n - K a, which lies in the plane of t1 and t2 = n x t1. With the
+    /// wrenches N, T1, T2 of unit forces along n, t1, t2, and the rows R_i xi = -t_i . dn:
+    ///
+    /// dW = (N + mu s T1) dL - L (q1 T1 - mu s N) R_1 xi - L q2 T2 R_2 xi,
+    /// q1 = 1 - mu c (1 - s^2)/w, q2 = 1 - mu c/w;
+    ///
+    /// and a change of twist tau: dW = L mu/w ((1 - s^2) T1 T1' + T2 T2') tau.
+    #[inline(always)]
+    fn add_facets(&mut self, facets: &Facets<Singles>, friction: Singles) {
+        let Facets {
+            place: p,
+            normal: n,
+            load_n: load,
+            ..
+        } = facets;
+        let one = Singles::splat(1.0);
+        let speed2 = dot(&facets.velocity, &facets.velocity);
+        let speed = Number::max(speed2, Singles::splat(LEAST_SPEED2)).sqrt();
+        let t1 = facets.velocity * (one / speed);
+        let t2 = cross(n, &t1);
+        let wrench_n = joined(&cross(p, n), n);
+        let wrench_1 = joined(&cross(p, &t1), &t1);
+        let wrench_2 = joined(&cross(p, &t2), &t2);
+        // n x t1 = t2 and n x t2 = -t1.
+        let row = |t: &Vector<Singles>, across: &Vector<Singles>| {
+            let bend = facets.curvature.times(t);
+            joined(&(cross(p, &bend) - across), &bend)
+        };
+        let (row_1, row_2) = (row(&t1, &t2), row(&t2, &-t1));
+        let load_row = joined(
+            &(cross(p, &facets.load_by_motion) + facets.load_by_turn),
+            &facets.load_by_motion,
+        );
+        let part = speed * facets.per_regular;
+        let (rub, stuck) = (friction * part, one - part * part);
+        let per_speed = friction * facets.per_regular;
+        let turn = facets.closing * per_speed;
+        let (q1, q2) = (*load * (one - turn * stuck), *load * (one - turn));
+        let whole = six(|i| rub.times_plus(wrench_1[i], wrench_n[i]));
+        let first = six(|i| (*load * rub).times_minus(wrench_n[i], q1 * wrench_1[i]));
+        let second = six(|i| -(q2 * wrench_2[i]));
+        for (column, entries) in self.by_pose.iter_mut().enumerate() {
+            for (i, entry) in entries.iter_mut().enumerate() {
+                let by_load = whole[i].times_plus(load_row[column], *entry);
+                let by_first = first[i].times_plus(row_1[column], by_load);
+                *entry = second[i].times_plus(row_2[column], by_first);
+            }
+        }
+        let (drag_1, drag_2) = (*load * per_speed * stuck, *load * per_speed);
+        // Symmetric: one triangle is enough.
+        for (column, entries) in self.by_twist.iter_mut().enumerate() {
+            let (weight_1, weight_2) = (drag_1 * wrench_1[column], drag_2 * wrench_2[column]);
+            for (i, entry) in entries.iter_mut().enumerate().take(column + 1) {
+                let by_first = wrench_1[i].times_plus(weight_1, *entry);
+                *entry = wrench_2[i].times_plus(weight_2, by_first);
+            }
+        }
+    }
+
+    /// The sums by pose and by twist.
+    pub fn total(&self) -> (Mat6, Mat6) {
+        let by_pose = Mat6::from_fn(|i, column| self.by_pose[column][i].sum());
+        let by_twist = Mat6::from_fn(|i, column| self.by_twist[column.max(i)][column.min(i)].sum());
+        (by_pose, by_twist)
+    }
+}
+
+#[inline(always)]
+fn six<T>(of: impl FnMut(usize) -> T) -> Six<T> {
+    std::array::from_fn(of)
+}
+
+#[inline(always)]
+fn joined<T: Number>(angular: &Vector<T>, linear: &Vector<T>) -> Six<T> {
+    [
+        angular.x, angular.y, angular.z, linear.x, linear.y, linear.z,
+    ]
+}

@@ -1,0 +1,188 @@
+//! How a distance field bends around any point near its surface.
+
+use std::ops::Range;
+
+use super::{Curvature, SmoothField, Surroundings};
+use crate::{
+    Vec3, Vector,
+    number::{LANES, Lanes, Number},
+};
+
+/// Gaps at which a surface touches or nearly does, mm.
+const NEAR_MM: Range<f64> = -0.6..2.0;
+
+/// Half the diagonal of a cell and a little, in edges of it.
+const HALF_DIAGONAL: f64 = 0.9;
+
+/// How many cells around one are looked at.
+const CELLS_AROUND: usize = 2;
+
+/// For every cell of a field's grid that the surface comes near, how it bends there and in the
+/// cells around: the extremes of eight samples a cell.
+///
+/// Deeper than contact goes, a femoral component has an inside with edges of its own; what bends
+/// there is not asked.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct BendMap {
+    /// Number of each cell in `bends`.
+    number: Vec<u32>,
+    bends: Vec<Bends>,
+    radius_mm: f64,
+}
+
+/// Extremes of the bending of a field, 1/mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bends {
+    sharpest: f64,
+    hollow: f64,
+}
+
+impl Bends {
+    /// Of nothing.
+    const NONE: Self = Self {
+        sharpest: 0.0,
+        hollow: 0.0,
+    };
+
+    fn joined(self, other: Self) -> Self {
+        Self {
+            sharpest: self.sharpest.max(other.sharpest),
+            hollow: self.hollow.max(other.hollow),
+        }
+    }
+
+    /// At one point, from the field's slope and curvature K there.
+    ///
+    /// No eigenvalue of a symmetric matrix is larger than its norm, nor smaller than
+    /// tr/3 - sqrt(2/3 (K:K - tr^2/3)).
+    fn at(slope: f64, [xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Self {
+        let trace = xx + yy + zz;
+        let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
+        let spread2 = (square - trace * trace / 3.0).max(0.0);
+        let lowest = trace / 3.0 - (spread2 * 2.0 / 3.0).sqrt();
+        Self {
+            sharpest: square.sqrt(),
+            hollow: (-lowest).max(0.0) * slope,
+        }
+    }
+}
+
+const NOT_NEAR: u32 = u32::MAX;
+
+impl BendMap {
+    /// The map of a field whose cells lie around the nodes of its grid.
+    pub fn new(field: &SmoothField) -> Self {
+        let [sx, sy, sz] = field.strides();
+        let edge_mm = field.spacing_mm();
+        let margin_mm = HALF_DIAGONAL * edge_mm;
+        let near = NEAR_MM.start - margin_mm..NEAR_MM.end + margin_mm;
+        let mut number = vec![NOT_NEAR; field.node_count()];
+        let (mut cells, mut bends) = (Vec::new(), Vec::new());
+        for (node, place) in field.inner_nodes() {
+            if near.contains(&field.gap_mm(&place)) {
+                number[node] = bends.len() as u32;
+                cells.push(node);
+                bends.push(in_cell(field, &place, edge_mm));
+            }
+        }
+        for _ in 0..CELLS_AROUND {
+            bends = with_cells_beside(&bends, &cells, &number, [sx, sy, sz]);
+        }
+        Self {
+            number,
+            bends,
+            radius_mm: CELLS_AROUND as f64 * edge_mm,
+        }
+    }
+
+    /// Bounds around any point of the cell around a grid node.
+    #[inline]
+    pub fn around(&self, node: usize) -> Surroundings {
+        let bends = self.bends.get(self.number[node] as usize);
+        bends.map_or(Surroundings::UNKNOWN, |bends| Surroundings {
+            radius_mm: self.radius_mm,
+            sharpest_per_mm: bends.sharpest,
+            hollow_per_mm: bends.hollow,
+        })
+    }
+}
+
+/// Every cell's bends joined with those of the 26 cells around it.
+fn with_cells_beside(
+    bends: &[Bends],
+    cells: &[usize],
+    number: &[u32],
+    [sx, sy, sz]: [usize; 3],
+) -> Vec<Bends> {
+    let around = |&cell: &usize| {
+        let mut all = Bends::NONE;
+        for z in [cell - sz, cell, cell + sz] {
+            for y in [z - sy, z, z + sy] {
+                for x in [y - sx, y, y + sx] {
+                    let other = number.get(x).and_then(|&number| bends.get(number as usize));
+                    all = other.map_or(all, |other| all.joined(*other));
+                }
+            }
+        }
+        all
+    };
+    cells.iter().map(around).collect()
+}
+
+/// Extremes at eight points of a cell, those left out where nothing touches.
+fn in_cell(field: &SmoothField, middle: &Vec3, edge_mm: f64) -> Bends {
+    let mut all = Bends::NONE;
+    let quarter = |bit: bool| if bit { edge_mm / 4.0 } else { -edge_mm / 4.0 };
+    for half in [false, true] {
+        let points = Vector::new(
+            Lanes::from_lanes(|lane| middle.x + quarter(lane & 1 == 0)),
+            Lanes::from_lanes(|lane| middle.y + quarter(lane & 2 == 0)),
+            Lanes::splat(middle.z + quarter(half)),
+        );
+        let sample = field.sample(&points);
+        let slopes = sample.gap_gradient.dot(&sample.gap_gradient).sqrt();
+        for lane in 0..LANES {
+            if NEAR_MM.contains(&sample.gap_mm.lane(lane)) {
+                let curvature = entries(&sample.curvature, lane);
+                all = all.joined(Bends::at(slopes.lane(lane), curvature));
+            }
+        }
+    }
+    all
+}
+
+fn entries(curvature: &Curvature<Lanes>, lane: usize) -> [f64; 6] {
+    let Curvature {
+        xx,
+        yy,
+        zz,
+        xy,
+        xz,
+        yz,
+    } = curvature;
+    [xx, yy, zz, xy, xz, yz].map(|entry| entry.lane(lane))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, SymmetricEigen};
+
+    #[test]
+    fn bends_bound_the_eigenvalues() {
+        let curvatures = [
+            [0.05, 0.0, 0.03, 0.0, 0.0, 0.0],
+            [0.05, -0.02, 0.03, 0.01, 0.02, -0.04],
+            [-0.01, -0.02, 0.0, 0.005, 0.0, 0.0],
+        ];
+        for [xx, yy, zz, xy, xz, yz] in curvatures {
+            let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+            let values = SymmetricEigen::new(matrix).eigenvalues;
+            let bends = Bends::at(1.0, [xx, yy, zz, xy, xz, yz]);
+            assert!(values.amax() <= bends.sharpest + 1e-15);
+            assert!(values.min() >= -bends.hollow - 1e-15);
+        }
+        // Two equal curvatures: the bound is the third, along the normal.
+        assert!(Bends::at(1.0, [0.05, 0.0, 0.05, 0.0, 0.0, 0.0]).hollow < 1e-9);
+    }
+}

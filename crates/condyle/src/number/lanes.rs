@@ -1,0 +1,191 @@
+//! Numbers side by side.
+
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use num_traits::{One, Zero};
+use wide::{f32x8, f64x4};
+
+use super::Number;
+
+/// How many nodes go side by side.
+pub const LANES: usize = 4;
+
+/// Four numbers side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
+pub struct Lanes(f64x4);
+
+/// Eight numbers of single precision side by side: twice as many, where six digits are enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
+pub struct Singles(f32x8);
+
+impl Lanes {
+    /// Four numbers.
+    #[inline(always)]
+    pub fn new(lanes: [f64; LANES]) -> Self {
+        Self(f64x4::new(lanes))
+    }
+
+    /// The four numbers.
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; LANES] {
+        self.0.to_array()
+    }
+
+    /// The sum over the lanes, always in the same order.
+    #[inline]
+    pub fn sum(self) -> f64 {
+        let [a, b, c, d] = self.to_array();
+        (a + b) + (c + d)
+    }
+
+    /// The largest lane.
+    #[inline(always)]
+    pub fn greatest(self) -> f64 {
+        let [a, b, c, d] = self.to_array();
+        let larger = |x: f64, y: f64| if x > y { x } else { y };
+        larger(larger(a, b), larger(c, d))
+    }
+}
+
+impl Singles {
+    /// Twice four numbers.
+    #[inline(always)]
+    pub fn pair(one: Lanes, other: Lanes) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (one.to_array(), other.to_array());
+        Self(f32x8::new([a, b, c, d, e, f, g, h].map(|x| x as f32)))
+    }
+
+    /// The sum over the lanes, always in the same order.
+    #[inline]
+    pub fn sum(self) -> f64 {
+        self.0.to_array().map(f64::from).iter().sum()
+    }
+}
+
+macro_rules! side_by_side {
+    ($name:ident, $wide:ident, $single:ident, $count:literal) => {
+        impl Number for $name {
+            #[inline(always)]
+            fn splat(value: f64) -> Self {
+                Self($wide::splat(value as $single))
+            }
+
+            const COUNT: usize = $count;
+
+            #[inline(always)]
+            fn from_lanes(mut value: impl FnMut(usize) -> f64) -> Self {
+                let mut lanes = [0.0; $count];
+                for (lane, number) in lanes.iter_mut().enumerate() {
+                    *number = value(lane) as $single;
+                }
+                Self($wide::new(lanes))
+            }
+
+            #[inline(always)]
+            fn lane(self, lane: usize) -> f64 {
+                self.0.as_array()[lane].into()
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self(self.0.sqrt())
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                Self(self.0.abs())
+            }
+
+            #[inline(always)]
+            fn floor(self) -> Self {
+                Self(self.0.floor())
+            }
+
+            #[inline(always)]
+            fn times_plus(self, factor: Self, addend: Self) -> Self {
+                Self(self.0.mul_add(factor.0, addend.0))
+            }
+
+            #[inline(always)]
+            fn times_minus(self, factor: Self, subtrahend: Self) -> Self {
+                Self(self.0.mul_sub(factor.0, subtrahend.0))
+            }
+
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                Self(self.0.fast_max(other.0))
+            }
+
+            #[inline(always)]
+            fn least(self) -> f64 {
+                let smaller = |x: $single, y: $single| if x < y { x } else { y };
+                let lanes = self.0.to_array();
+                lanes.into_iter().fold($single::INFINITY, smaller).into()
+            }
+
+            #[inline(always)]
+            fn below_zero(self, then: Self, otherwise: Self) -> Self {
+                Self(self.0.simd_lt($wide::ZERO).select(then.0, otherwise.0))
+            }
+        }
+
+        impl Neg for $name {
+            type Output = Self;
+
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self(-self.0)
+            }
+        }
+
+        impl Zero for $name {
+            #[inline(always)]
+            fn zero() -> Self {
+                Self::splat(0.0)
+            }
+
+            fn is_zero(&self) -> bool {
+                *self == Self::zero()
+            }
+        }
+
+        impl One for $name {
+            #[inline(always)]
+            fn one() -> Self {
+                Self::splat(1.0)
+            }
+        }
+
+        operators! { $name
+            Add add AddAssign add_assign;
+            Sub sub SubAssign sub_assign;
+            Mul mul MulAssign mul_assign;
+            Div div DivAssign div_assign;
+        }
+    };
+}
+
+macro_rules! operators {
+    ($name:ident $($operation:ident $method:ident $assign_operation:ident $assign_method:ident;)*) => {$(
+        impl $operation for $name {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0))
+            }
+        }
+
+        impl $assign_operation for $name {
+            #[inline(always)]
+            fn $assign_method(&mut self, other: Self) {
+                *self = self.$method(other);
+            }
+        }
+    )*};
+}
+
+side_by_side! {Lanes, f64x4, f64, 4}
+side_by_side! {Singles, f32x8, f32, 8}

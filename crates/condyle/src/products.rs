@@ -1,0 +1,51 @@
+//! Products of vectors whose sums are rounded once: half the instructions of products and sums.
+
+use crate::{Vector, number::Number};
+
+/// a . b
+#[inline(always)]
+pub fn dot<T: Number>(a: &Vector<T>, b: &Vector<T>) -> T {
+    a.x.times_plus(b.x, a.y.times_plus(b.y, a.z * b.z))
+}
+
+/// a x b
+#[inline(always)]
+pub fn cross<T: Number>(a: &Vector<T>, b: &Vector<T>) -> Vector<T> {
+    Vector::new(
+        a.y.times_minus(b.z, a.z * b.y),
+        a.z.times_minus(b.x, a.x * b.z),
+        a.x.times_minus(b.y, a.y * b.x),
+    )
+}
+
+/// v f + w
+#[inline(always)]
+pub fn scaled_plus<T: Number>(v: &Vector<T>, f: T, w: &Vector<T>) -> Vector<T> {
+    Vector::new(
+        v.x.times_plus(f, w.x),
+        v.y.times_plus(f, w.y),
+        v.z.times_plus(f, w.z),
+    )
+}
+
+/// v without its part along a unit vector n: v - n (n . v)
+#[inline(always)]
+pub fn without_part_along<T: Number>(v: &Vector<T>, n: &Vector<T>) -> Vector<T> {
+    scaled_plus(n, -dot(n, v), v)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Vec3;
+
+    #[test]
+    fn products_are_those_of_the_vectors() {
+        let (a, b) = (Vec3::new(1.5, -2.0, 0.7), Vec3::new(-0.3, 4.0, 2.5));
+        assert!((dot(&a, &b) - a.dot(&b)).abs() < 1e-14);
+        assert!((cross(&a, &b) - a.cross(&b)).norm() < 1e-14);
+        assert!((scaled_plus(&a, 3.0, &b) - (a * 3.0 + b)).norm() < 1e-14);
+        let n = b.normalize();
+        assert!(dot(&without_part_along(&a, &n), &n).abs() < 1e-14);
+    }
+}
