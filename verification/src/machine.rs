@@ -26,6 +26,10 @@ impl ContactModel for Apart {
         }
     }
 
+    fn mean_slip(&self) -> [Vec3; 2] {
+        [Vec3::zeros(); 2]
+    }
+
     fn node_count(&self) -> usize {
         0
     }

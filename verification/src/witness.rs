@@ -70,6 +70,10 @@ impl ContactModel for Witness<'_> {
         self.inner.tangent()
     }
 
+    fn mean_slip(&self) -> [condyle::Vec3; 2] {
+        self.inner.mean_slip()
+    }
+
     fn node_count(&self) -> usize {
         self.inner.node_count()
     }

@@ -8,7 +8,7 @@ use super::{
     seen::Seen,
     shares::Shares4,
     tangent::TangentSum,
-    traction::{Sliding, Tractions4, WrenchSum},
+    traction::{Sliding, SlipSums, Tractions4, WrenchSum},
 };
 use crate::{
     Vec3, Vector,
@@ -60,6 +60,8 @@ pub struct Foundation<'a> {
     /// The fours that touched at the last response, and what pressed them.
     looks: Vec<Look>,
     tractions: Vec<Tractions4>,
+    /// How the two sides slid.
+    mean_slip: [Vec3; 2],
     /// Where the femur was then.
     pose: Pose,
 }
@@ -86,6 +88,7 @@ impl<'a> Foundation<'a> {
             due: Vec::new(),
             looks: Vec::new(),
             tractions: Vec::new(),
+            mean_slip: [Vec3::zeros(); 2],
             pose: Pose::identity(),
         }
     }
@@ -124,13 +127,16 @@ impl<'a> Foundation<'a> {
     fn press(&mut self, pose: &Pose4, twist: &Twist4) -> Vec6 {
         self.tractions.clear();
         let mut total = WrenchSum::new();
+        let mut slips = SlipSums::new();
         for look in &self.looks {
             let shares = &self.shares[look.four as usize];
             let pressed = press(self.settings, shares, look, pose, twist);
             let force_n = pressed.force_n(&look.seen.sample.normal, self.settings.friction);
             total.add(&look.seen.place, &force_n);
+            slips.add(shares.centre.z, &pressed);
             self.tractions.push(pressed);
         }
+        self.mean_slip = slips.means();
         total.total()
     }
 }
@@ -202,6 +208,10 @@ impl ContactModel for Foundation<'_> {
             by_pose: to_femur.tr_mul(&by_pose) * to_femur,
             by_twist: to_femur.tr_mul(&by_twist) * to_femur,
         }
+    }
+
+    fn mean_slip(&self) -> [Vec3; 2] {
+        self.mean_slip
     }
 
     fn node_count(&self) -> usize {

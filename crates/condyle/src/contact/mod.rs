@@ -59,6 +59,10 @@ pub trait ContactModel {
     /// The exact derivatives of the wrench at the last [`ContactModel::respond`].
     fn tangent(&self) -> Tangent;
 
+    /// Velocity of the femur's surface past the insert's at the last [`ContactModel::respond`], the
+    /// mean over each side weighted by load, mm/s: medial, then lateral; in the femoral frame.
+    fn mean_slip(&self) -> [Vec3; 2];
+
     /// How many surface nodes there are.
     fn node_count(&self) -> usize;
 

@@ -2,7 +2,7 @@
 
 use super::{Vec6, motion::Twist4};
 use crate::{
-    Vector,
+    Vec3, Vector,
     number::{Lanes, Number},
     products::{cross, dot, scaled_plus},
 };
@@ -113,5 +113,38 @@ impl WrenchSum {
     /// The sum.
     pub fn total(&self) -> Vec6 {
         Vec6::from(self.0.map(Lanes::sum))
+    }
+}
+
+/// Slip of many shares weighted by their loads, on the medial and on the lateral side.
+pub(super) struct SlipSums([(Lanes, Vector<Lanes>); 2]);
+
+impl SlipSums {
+    pub fn new() -> Self {
+        let zero = Lanes::splat(0.0);
+        Self([(zero, Vector::repeat(zero)); 2])
+    }
+
+    /// Adds shares at `z`; the medial side is where it is negative.
+    #[inline(always)]
+    pub fn add(&mut self, z: Lanes, pressed: &Tractions4) {
+        let (zero, load) = (Lanes::splat(0.0), pressed.pressure_mpa * pressed.area_mm2);
+        let velocity = &pressed.sliding.velocity_mm_per_s;
+        let mut add = |side: usize, load: Lanes| {
+            let (loads, slips) = &mut self.0[side];
+            *loads += load;
+            *slips = scaled_plus(velocity, load, slips);
+        };
+        add(0, z.below_zero(load, zero));
+        add(1, z.below_zero(zero, load));
+    }
+
+    /// The mean of each side, mm/s; none where nothing is loaded.
+    pub fn means(&self) -> [Vec3; 2] {
+        let mean = |side: usize| {
+            let (loads, slips) = &self.0[side];
+            slips.map(Lanes::sum) / loads.sum().max(f64::MIN_POSITIVE)
+        };
+        [mean(0), mean(1)]
     }
 }

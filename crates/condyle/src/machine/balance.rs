@@ -1,7 +1,10 @@
 //! The balance of forces on every freedom, and its tangent.
 
 use super::{ApSpring, Chain, Configuration, Drive, Freedom, Machine};
-use crate::contact::{ContactModel, Mat6, Vec6};
+use crate::{
+    Vec3,
+    contact::{ContactModel, Mat6, Vec6},
+};
 use serde::{Deserialize, Serialize};
 
 /// Positions, rates and accelerations of the six freedoms, mm and rad and s.
@@ -70,6 +73,11 @@ impl<'a, C: ContactModel> Balance<'a, C> {
             residual[j] = 0.0;
         }
         residual
+    }
+
+    /// How the two sides slip; see [`ContactModel::mean_slip`].
+    pub fn mean_slip(&self) -> [Vec3; 2] {
+        self.contact.mean_slip()
     }
 
     /// Derivative of the residual by the positions; the identity on rows that are not loaded.

@@ -229,6 +229,10 @@ mod tests {
             }
         }
 
+        fn mean_slip(&self) -> [Vec3; 2] {
+            [Vec3::zeros(); 2]
+        }
+
         fn node_count(&self) -> usize {
             0
         }

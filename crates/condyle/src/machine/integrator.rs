@@ -4,7 +4,10 @@ use super::{
     Chain, Drive, FREEDOMS, Machine,
     balance::{Balance, Kinematics, StepSlopes},
 };
-use crate::contact::{ContactModel, Mat6, Vec6};
+use crate::{
+    Vec3,
+    contact::{ContactModel, Mat6, Vec6},
+};
 use serde::{Deserialize, Serialize};
 
 /// Lever on which a moment out of balance counts as a force, mm.
@@ -63,6 +66,8 @@ struct Attempt {
     residual_n: f64,
     /// The part of the last correction that was taken.
     taken: Vec6,
+    /// How the two sides slid where the last full correction was computed, mm/s.
+    slips: [Vec3; 2],
     /// Whether that was all of it.
     is_whole: bool,
     /// Length of the residual where the attempt is now, as far as it can be foreseen, N.
@@ -75,6 +80,7 @@ impl Attempt {
             positions,
             residual_n: f64::INFINITY,
             taken: Vec6::zeros(),
+            slips: [Vec3::zeros(); 2],
             is_whole: false,
             foreseen_n: f64::INFINITY,
         }
@@ -82,19 +88,28 @@ impl Attempt {
 
     /// Moves to better positions; false where there are none.
     ///
-    /// A correction that has made the residual longer, as friction does when it turns round, is
-    /// taken back in part: to the minimum of the parabola through both lengths and the slope
-    /// that Newton's method implies.
-    fn improve(&mut self, residual: &Vec6, tangent: impl FnOnce() -> Mat6) -> bool {
+    /// A correction that has made the residual longer is taken back in part. Mostly friction has
+    /// turned round, and then the place to go on from is where the slip stands still: there friction
+    /// resists most, and a correction from there does not fly past. Otherwise it is the minimum of
+    /// the parabola through both lengths and the slope that Newton's method implies.
+    fn improve(
+        &mut self,
+        residual: &Vec6,
+        slips: [Vec3; 2],
+        tangent: impl FnOnce() -> Mat6,
+    ) -> bool {
         let residual_n = length_n(residual);
         if residual_n > self.residual_n {
+            if let Some(keep) = standstill(&self.slips, &slips) {
+                self.take_back(keep);
+                self.residual_n = f64::INFINITY;
+                return true;
+            }
             let (before, after) = (self.residual_n.powi(2), residual_n.powi(2));
-            let keep = (before / (before + after)).max(LEAST_PART_OF_CORRECTION);
-            self.step(self.taken * (keep - 1.0));
-            self.taken *= keep;
-            self.is_whole = false;
+            self.take_back((before / (before + after)).max(LEAST_PART_OF_CORRECTION));
             return longest_mm(&self.taken) > SHORTEST_CORRECTION_MM;
         }
+        self.slips = slips;
         let solved = tangent().lu().solve(&-residual);
         let Some(correction) = solved.filter(|c| c.iter().all(|x| x.is_finite())) else {
             return false;
@@ -104,6 +119,13 @@ impl Attempt {
         self.taken = correction * part;
         self.step(self.taken);
         true
+    }
+
+    /// Keeps a part of the last correction only.
+    fn take_back(&mut self, keep: f64) {
+        self.step(self.taken * (keep - 1.0));
+        self.taken *= keep;
+        self.is_whole = false;
     }
 
     /// Foresees the residual after a correction from one of `residual_n`.
@@ -128,6 +150,18 @@ impl Attempt {
             .zip(&motion)
             .for_each(|(q, c)| *q += c);
     }
+}
+
+/// The part of a correction after which the first of two sides, slipping as `before` and then as
+/// `after`, stands still; none if none turns round.
+fn standstill(before: &[Vec3; 2], after: &[Vec3; 2]) -> Option<f64> {
+    let sides = before.iter().zip(after);
+    let turning = sides.filter(|(before, after)| before.dot(after) < 0.0);
+    let part = |(before, after): (&Vec3, &Vec3)| {
+        let change = after - before;
+        -before.dot(&change) / change.norm_squared()
+    };
+    turning.map(part).reduce(f64::min)
 }
 
 /// The weights of the backward differences: rate = slope q + sum of the past.
@@ -186,7 +220,8 @@ impl<C: ContactModel> Integrator<'_, C> {
             if out_of_balance_n(&residual) <= self.force_tolerance_n {
                 return Ok(landed(kinematics));
             }
-            if !attempt.improve(&residual, || balance.tangent(slopes)) {
+            let slips = balance.mean_slip();
+            if !attempt.improve(&residual, slips, || balance.tangent(slopes)) {
                 break;
             }
             self.effort.newton_iterations += 1;
