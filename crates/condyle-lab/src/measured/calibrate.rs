@@ -66,7 +66,7 @@ pub enum CalibrateError {
     /// A search that does not end.
     #[error(
         "after {runs} runs the wear rate is still {left_percent:.2} % off the measured one, with a \
-         factor of {factor_mm3_per_nm:.3e} mm3/(N m); use more updates in the case"
+         factor of {factor_mm3_per_nm:.3e} mm3/(N m); use more updates or increments in the case"
     )]
     NotFound {
         /// Runs made.
