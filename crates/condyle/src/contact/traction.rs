@@ -104,10 +104,9 @@ impl WrenchSum {
     pub fn add(&mut self, place: &Vector<Lanes>, force: &Vector<Lanes>) {
         let moment = cross(place, force);
         let wrench = [moment.x, moment.y, moment.z, force.x, force.y, force.z];
-        self.0
-            .iter_mut()
-            .zip(wrench)
-            .for_each(|(sum, part)| *sum += part);
+        for (sum, part) in self.0.iter_mut().zip(&wrench) {
+            *sum += *part;
+        }
     }
 
     /// The sum.
