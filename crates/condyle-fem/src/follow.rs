@@ -25,17 +25,14 @@ impl InteriorFollower {
         for node in held {
             is_held[node as usize] = true;
         }
-        let edges = free_edges(mesh, &is_held);
         let free: Vec<u32> = (0..mesh.nodes.len() as u32)
             .filter(|&node| !is_held[node as usize])
             .collect();
-        let starts = free
-            .iter()
-            .map(|node| edges.partition_point(|edge| edge.0 < *node));
+        let (first, neighbours) = neighbours_of(&free, mesh);
         Self {
-            first: starts.chain([edges.len()]).collect(),
-            neighbours: edges.iter().map(|edge| edge.1).collect(),
             free,
+            first,
+            neighbours,
         }
     }
 
@@ -110,18 +107,39 @@ impl InteriorFollower {
     }
 }
 
-/// The edges from free nodes, (from, to), ascending.
-fn free_edges(mesh: &HexMesh, is_held: &[bool]) -> Vec<(u32, u32)> {
-    let both_ways = |hex: &[u32; 8]| HEX_EDGES.map(|[a, b]| [(hex[a], hex[b]), (hex[b], hex[a])]);
-    let mut edges: Vec<(u32, u32)> = mesh
-        .hexes
-        .iter()
-        .flat_map(|hex| both_ways(hex).into_iter().flatten())
-        .filter(|(from, _)| !is_held[*from as usize])
-        .collect();
-    edges.sort_unstable();
-    edges.dedup();
-    edges
+/// The neighbours along the edges of every free node, ascending, and where each node's begin.
+///
+/// An edge is met once in every hexahedron around it: all are put into their node's place first,
+/// and there are few enough of them to sort.
+fn neighbours_of(free: &[u32], mesh: &HexMesh) -> (Vec<usize>, Vec<u32>) {
+    let edges = || {
+        let both_ways =
+            |hex: &[u32; 8]| HEX_EDGES.map(|[a, b]| [(hex[a], hex[b]), (hex[b], hex[a])]);
+        mesh.hexes
+            .iter()
+            .flat_map(move |hex| both_ways(hex).into_iter().flatten())
+    };
+    let mut place = vec![0; mesh.nodes.len() + 1];
+    for (from, _) in edges() {
+        place[from as usize + 1] += 1;
+    }
+    for node in 0..mesh.nodes.len() {
+        place[node + 1] += place[node];
+    }
+    let start = place.clone();
+    let mut met = vec![0; start[mesh.nodes.len()]];
+    for (from, to) in edges() {
+        met[place[from as usize]] = to;
+        place[from as usize] += 1;
+    }
+    let (mut first, mut neighbours) = (vec![0], Vec::new());
+    for &node in free {
+        let around = &mut met[start[node as usize]..start[node as usize + 1]];
+        around.sort_unstable();
+        neighbours.extend(around.chunk_by(u32::eq).map(|same| same[0]));
+        first.push(neighbours.len());
+    }
+    (first, neighbours)
 }
 
 fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {

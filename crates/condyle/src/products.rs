@@ -2,6 +2,12 @@
 
 use crate::{Vector, number::Number};
 
+/// Zero, written out: the compiler does not take nalgebra's repetition of it apart.
+#[inline(always)]
+pub fn nowhere<T: Number>() -> Vector<T> {
+    Vector::new(T::zero(), T::zero(), T::zero())
+}
+
 /// a . b
 #[inline(always)]
 pub fn dot<T: Number>(a: &Vector<T>, b: &Vector<T>) -> T {

@@ -5,7 +5,7 @@ use crate::{
     Vector,
     geometry::Surroundings,
     number::{Lanes, Number},
-    products::dot,
+    products::{dot, nowhere},
 };
 
 /// Four shares that were seen apart: from where, and how the gap goes on from there.
@@ -26,10 +26,9 @@ pub(super) struct Clearance {
 impl Clearance {
     /// Nothing is known.
     pub fn unknown() -> Self {
-        let none = Vector::repeat(Lanes::splat(0.0));
         Self {
-            place: none,
-            gap_gradient: none,
+            place: nowhere(),
+            gap_gradient: nowhere(),
             clear_mm: Lanes::splat(0.0),
             surroundings: Surroundings::UNKNOWN,
             turned_rad: 0.0,

@@ -14,7 +14,7 @@ use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     number::{LANES, Lanes, Number},
-    products::{cross, dot, scaled_plus, without_part_along},
+    products::{cross, dot, nowhere, scaled_plus, without_part_along},
 };
 
 /// How the foundation presses and rubs.
@@ -159,9 +159,9 @@ fn press(
     let (pressure_mpa, slope) = settings.law.pressures(mean.mm, shares.per_thickness);
     let stiffness = slope * shares.area_mm2;
     let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
-    let mut load_by_turn = Vector::repeat(Lanes::splat(0.0));
+    let mut load_by_turn = nowhere();
     if let Some(by_rise) = mean.by_rise {
-        let [by_a, by_b] = by_rise.map(|by_rise| by_rise * stiffness);
+        let (by_a, by_b) = (by_rise[0] * stiffness, by_rise[1] * stiffness);
         let by_normal = scaled_plus(&shares.edge_a, by_a, &(shares.edge_b * by_b));
         let by_normal = pose.turn_to_femur(&by_normal);
         let along_surface = without_part_along(&by_normal, &sample.normal);

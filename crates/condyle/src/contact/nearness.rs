@@ -10,6 +10,9 @@ use crate::{
 /// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.
 const GAP_PER_MOTION: f64 = 1.05;
 
+/// How far ahead the fours that are due soon are listed, mm of travel.
+const AHEAD_MM: f64 = 0.05;
+
 /// How far every four shares are from touching, at least.
 ///
 /// A gap changes no faster than its point moves in the femoral frame, and the reach of a share no
@@ -20,6 +23,9 @@ pub(super) struct Nearness {
     /// Travel at which each four are due for the next look, mm.
     due_mm: Vec<f64>,
     clearances: Vec<Clearance>,
+    /// The fours that are due before the femur has travelled to `horizon_mm`.
+    near: Vec<u32>,
+    horizon_mm: f64,
     /// Travel of the femur so far: a bound for every share, mm.
     travelled_mm: f64,
     /// Turns of the femur so far, rad.
@@ -35,6 +41,8 @@ impl Nearness {
         Self {
             due_mm: vec![f64::NEG_INFINITY; shares.len()],
             clearances: vec![Clearance::unknown(); shares.len()],
+            near: Vec::new(),
+            horizon_mm: f64::NEG_INFINITY,
             travelled_mm: 0.0,
             turned_rad: 0.0,
             at: None,
@@ -69,26 +77,46 @@ impl Nearness {
         pose: &Pose4,
         due: &mut Vec<(u32, Vector<Lanes>)>,
     ) {
+        if self.travelled_mm > self.horizon_mm {
+            self.find_near(shares, pose);
+        }
         due.clear();
-        for (four, shares) in shares.iter().enumerate() {
-            if self.due_mm[four] <= self.travelled_mm {
-                let place = pose.to_femur(&shares.centre);
-                if !self.is_still_apart(four, shares.half_mm, &place) {
-                    due.push((four as u32, place));
-                }
+        for &four in &self.near {
+            let at = four as usize;
+            if self.due_mm[at] <= self.travelled_mm {
+                due.push((four, pose.to_femur(&shares[at].centre)));
             }
         }
     }
 
-    /// Whether what was seen of four before says that they do not touch at `place` either.
+    /// Lists the fours that are due soon.
+    ///
+    /// Newton's corrections are short: they go over this list, and not over all shares.
+    fn find_near(&mut self, shares: &[Shares4], pose: &Pose4) {
+        self.near.clear();
+        self.horizon_mm = self.travelled_mm + AHEAD_MM;
+        for (four, shares) in shares.iter().enumerate() {
+            if self.due_mm[four] > self.horizon_mm {
+                continue;
+            }
+            if self.due_mm[four] != f64::NEG_INFINITY {
+                self.put_off(four, shares.half_mm, &pose.to_femur(&shares.centre));
+            }
+            if self.due_mm[four] <= self.horizon_mm {
+                self.near.push(four as u32);
+            }
+        }
+    }
+
+    /// Puts the next look from four off if what was seen before says that they do not touch at
+    /// `place` either.
     #[inline(always)]
-    fn is_still_apart(&mut self, four: usize, half_mm: f64, place: &Vector<Lanes>) -> bool {
+    fn put_off(&mut self, four: usize, half_mm: f64, place: &Vector<Lanes>) {
         let clearance = &self.clearances[four];
         let clear_mm = clearance.least_mm(place, half_mm, self.turned_rad);
         if clear_mm > 0.0 {
             self.due_mm[four] = self.travelled_mm + clearance.travel_mm(clear_mm, half_mm);
         }
-        clear_mm > 0.0
     }
 
     /// Four touch: they are always due.

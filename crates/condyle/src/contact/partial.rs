@@ -19,9 +19,11 @@ impl<T: Number> Rises<T> {
     #[inline(always)]
     pub fn new(signed_mm: [T; 2]) -> Self {
         let least2 = T::splat(LEAST_RISE_MM * LEAST_RISE_MM);
+        let size = |rise: T| rise.times_plus(rise, least2).sqrt();
+        let [a, b] = signed_mm;
         Self {
             signed_mm,
-            size_mm: signed_mm.map(|rise| (rise * rise + least2).sqrt()),
+            size_mm: [size(a), size(b)],
         }
     }
 
@@ -59,14 +61,13 @@ pub(super) fn mean_overclosure<T: Number>(middle_mm: T, rises: &Rises<T>) -> Mea
             by_rise: None,
         };
     }
-    let (zero, part) = (T::zero(), mean_in_part(middle_mm, rises));
+    let part = mean_in_part(middle_mm, rises);
+    let none_or = |by: T| in_part.below_zero(by, T::zero());
     // Where all corners press, the closed form is right but loses digits.
     MeanOverclosure {
         mm: in_part.below_zero(part.mm, middle_mm),
         by_middle: in_part.below_zero(part.by_middle, T::one()),
-        by_rise: part
-            .by_rise
-            .map(|by| by.map(|by| in_part.below_zero(by, zero))),
+        by_rise: part.by_rise.map(|[a, b]| [none_or(a), none_or(b)]),
     }
 }
 
@@ -77,15 +78,16 @@ fn mean_in_part<T: Number>(middle_mm: T, rises: &Rises<T>) -> MeanOverclosure<T>
     let (zero, half) = (T::zero(), T::splat(0.5));
     let [r, s] = rises.size_mm;
     let (sum, difference) = (rises.reach_mm(), (r - s) * half);
-    let [c1, c2, c3, c4] =
-        [sum, difference, -difference, -sum].map(|corner| Number::max(middle_mm + corner, zero));
-    let [q1, q2, q3, q4] = [c1 * c1, c2 * c2, c3 * c3, c4 * c4];
+    let corner = |rise: T| Number::max(middle_mm + rise, zero);
+    let (c1, c2) = (corner(sum), corner(difference));
+    let (c3, c4) = (corner(-difference), corner(-sum));
+    let (q1, q2, q3, q4) = (c1 * c1, c2 * c2, c3 * c3, c4 * c4);
     let per_area = T::one() / (r * s);
     let (per_r, per_s) = (s * per_area, r * per_area);
     let mm = (c1 * q1 - c2 * q2 - c3 * q3 + c4 * q4) * per_area * T::splat(1.0 / 6.0);
     let by_r = (q1 - q2 + q3 - q4) * per_area * T::splat(0.25) - mm * per_r;
     let by_s = (q1 + q2 - q3 - q4) * per_area * T::splat(0.25) - mm * per_s;
-    let [sign_r, sign_s] = [rises.signed_mm[0] * per_r, rises.signed_mm[1] * per_s];
+    let (sign_r, sign_s) = (rises.signed_mm[0] * per_r, rises.signed_mm[1] * per_s);
     MeanOverclosure {
         mm,
         by_middle: (q1 - q2 - q3 + q4) * per_area * half,

@@ -15,7 +15,7 @@ use crate::{
 pub(super) const MOVED_ALONG_MM: f64 = 0.02;
 
 /// What four shares saw of the femur, and from where in its frame.
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 pub(super) struct Seen {
     /// Places of the shares' centres, p, mm.
     pub place: Vector<Lanes>,
@@ -48,6 +48,6 @@ impl Seen {
             place,
             sample: femur.sample(&place, spread_mm2),
         };
-        self.clone()
+        *self
     }
 }

@@ -4,7 +4,7 @@ use super::{Vec6, motion::Twist4};
 use crate::{
     Vec3, Vector,
     number::{Lanes, Number},
-    products::{cross, dot, scaled_plus},
+    products::{cross, dot, nowhere, scaled_plus},
 };
 
 /// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
@@ -59,15 +59,15 @@ impl Sliding {
 impl Tractions4 {
     /// Shares that nothing presses.
     pub fn none() -> Self {
-        let (zero, nowhere) = (Lanes::splat(0.0), Vector::repeat(Lanes::splat(0.0)));
+        let zero = Lanes::splat(0.0);
         Self {
             pressure_mpa: zero,
             area_mm2: zero,
             covered_mm2: zero,
-            load_by_motion: nowhere,
-            load_by_turn: nowhere,
+            load_by_motion: nowhere(),
+            load_by_turn: nowhere(),
             sliding: Sliding {
-                velocity_mm_per_s: nowhere,
+                velocity_mm_per_s: nowhere(),
                 closing_mm_per_s: zero,
                 per_regular: zero,
             },
@@ -120,8 +120,7 @@ pub(super) struct SlipSums([(Lanes, Vector<Lanes>); 2]);
 
 impl SlipSums {
     pub fn new() -> Self {
-        let zero = Lanes::splat(0.0);
-        Self([(zero, Vector::repeat(zero)); 2])
+        Self([(Lanes::splat(0.0), nowhere()); 2])
     }
 
     /// Adds shares at `z`; the medial side is where it is negative.
