@@ -49,9 +49,9 @@ pub struct Foundation<'a> {
     settings: &'a FoundationSettings,
     femur: &'a FemoralSurface,
     surface: ArticulatingSurface,
-    /// The surface's own directions at every node.
-    directions: Vec<[Vec3; 2]>,
     shares: Vec<Shares4>,
+    /// The surface's own directions at every four nodes.
+    directions: Vec<[Vector<Lanes>; 2]>,
     /// What every four of them saw of the femur.
     seen: Vec<Seen>,
     nearness: Nearness,
@@ -78,8 +78,9 @@ impl<'a> Foundation<'a> {
         Self {
             settings,
             femur,
-            directions: (0..surface.positions.len())
-                .map(|node| surface.directions(node))
+            directions: shares
+                .iter()
+                .map(|four| directions(&surface, four))
                 .collect(),
             nearness: Nearness::new(&shares),
             seen: vec![Seen::nothing(); shares.len()],
@@ -226,23 +227,28 @@ impl ContactModel for Foundation<'_> {
         let mut touched = Vec::with_capacity(LANES * self.looks.len());
         for (look, tractions) in self.looks.iter().zip(&self.tractions) {
             let landed = self.landed(look, tractions, &moved, &twist, &pose);
-            self.touch(
-                &self.shares[look.four as usize].nodes,
-                &landed,
-                &mut touched,
-            );
+            landed.touch(&self.shares[look.four as usize], &mut touched);
         }
         touched
     }
 }
 
-/// Four shares at the end of an increment; vectors in the insert frame.
+/// The surface's own directions at four nodes.
+fn directions(surface: &ArticulatingSurface, four: &Shares4) -> [Vector<Lanes>; 2] {
+    let at = |lane: usize| surface.directions(four.nodes[lane] as usize);
+    [0, 1].map(|which| {
+        Vector::from([0, 1, 2].map(|axis| Lanes::from_lanes(|lane| at(lane)[which][axis])))
+    })
+}
+
+/// Four shares at the end of an increment.
 struct Landed4 {
     pressure_mpa: Lanes,
-    area_mm2: Lanes,
     covered_mm2: Lanes,
+    /// In the insert frame.
     force_n: Vector<Lanes>,
-    sliding_mm_per_s: Vector<Lanes>,
+    /// In the surface's own directions.
+    sliding_mm_per_s: [Lanes; 2],
 }
 
 impl Foundation<'_> {
@@ -258,8 +264,9 @@ impl Foundation<'_> {
         pose: &Pose4,
     ) -> Landed4 {
         let Seen { place, sample } = &look.seen;
+        let shares = &self.shares[look.four as usize];
         let rise_n = tractions.load_rise_n(place, motion);
-        let area_mm2 = Number::max(tractions.area_mm2, Lanes::splat(f64::MIN_POSITIVE));
+        let area_mm2 = Number::max(shares.area_mm2, Lanes::splat(f64::MIN_POSITIVE));
         let pressure_mpa = tractions.pressure_mpa + rise_n / area_mm2;
         let landed = Tractions4 {
             pressure_mpa: Number::max(pressure_mpa, Lanes::splat(0.0)),
@@ -271,29 +278,33 @@ impl Foundation<'_> {
             ..*tractions
         };
         let force_n = landed.force_n(&sample.normal, self.settings.friction);
+        let sliding = pose.turn_to_insert(&landed.sliding.velocity_mm_per_s);
+        let [anterior, lateral] = &self.directions[look.four as usize];
         Landed4 {
             pressure_mpa: landed.pressure_mpa,
-            area_mm2: landed.area_mm2,
             covered_mm2: landed.covered_mm2,
             force_n: pose.turn_to_insert(&force_n),
-            sliding_mm_per_s: pose.turn_to_insert(&landed.sliding.velocity_mm_per_s),
+            sliding_mm_per_s: [dot(&sliding, anterior), dot(&sliding, lateral)],
         }
     }
+}
 
+impl Landed4 {
     /// Adds those of four shares that press.
-    fn touch(&self, nodes: &[u32; LANES], landed: &Landed4, touched: &mut Vec<TouchedNode>) {
-        for (lane, &node) in nodes.iter().enumerate() {
-            let pressure_mpa = landed.pressure_mpa.lane(lane);
-            if pressure_mpa * landed.area_mm2.lane(lane) > 0.0 {
-                let at = |vector: &Vector<Lanes>| vector.map(|lanes| lanes.lane(lane));
-                let along = |direction: &Vec3| at(&landed.sliding_mm_per_s).dot(direction);
+    #[inline(always)]
+    fn touch(&self, shares: &Shares4, touched: &mut Vec<TouchedNode>) {
+        for (lane, &node) in shares.nodes.iter().enumerate() {
+            let pressure_mpa = self.pressure_mpa.lane(lane);
+            if pressure_mpa * shares.area_mm2.lane(lane) > 0.0 {
+                let force = &self.force_n;
+                let [anterior, lateral] = &self.sliding_mm_per_s;
                 touched.push(TouchedNode {
                     node,
-                    is_medial: self.surface.positions[node as usize].z < 0.0,
+                    is_medial: shares.is_medial[lane],
                     pressure_mpa,
-                    covered_mm2: landed.covered_mm2.lane(lane),
-                    force_n: at(&landed.force_n),
-                    sliding_mm_per_s: self.directions[node as usize].each_ref().map(along),
+                    covered_mm2: self.covered_mm2.lane(lane),
+                    force_n: Vec3::new(force.x.lane(lane), force.y.lane(lane), force.z.lane(lane)),
+                    sliding_mm_per_s: [anterior.lane(lane), lateral.lane(lane)],
                 });
             }
         }

@@ -9,6 +9,7 @@ use crate::{
 /// Four nodes' shares, side by side; a lane too many repeats the last node without area.
 pub(super) struct Shares4 {
     pub nodes: [u32; LANES],
+    pub is_medial: [bool; LANES],
     pub centre: Vector<Lanes>,
     pub edge_a: Vector<Lanes>,
     pub edge_b: Vector<Lanes>,
@@ -26,11 +27,12 @@ impl Shares4 {
         let count = surface.shares.len() as u32;
         let first = (0..count).step_by(LANES);
         first
-            .map(|first| Self::new(first, &surface.shares, thickness_mm))
+            .map(|first| Self::new(first, surface, thickness_mm))
             .collect()
     }
 
-    fn new(first: u32, shares: &[Share], thickness_mm: &[f64]) -> Self {
+    fn new(first: u32, surface: &ArticulatingSurface, thickness_mm: &[f64]) -> Self {
+        let shares = &surface.shares;
         let last = shares.len() as u32 - 1;
         let nodes: [u32; LANES] = std::array::from_fn(|lane| (first + lane as u32).min(last));
         let share = |lane: usize| &shares[nodes[lane] as usize];
@@ -40,6 +42,7 @@ impl Shares4 {
         };
         Self {
             nodes,
+            is_medial: nodes.map(|node| surface.positions[node as usize].z < 0.0),
             centre: vector(|share| &share.centre),
             edge_a: vector(|share| &share.edge_a),
             edge_b: vector(|share| &share.edge_b),
