@@ -121,8 +121,15 @@ macro_rules! side_by_side {
             #[inline(always)]
             fn least(self) -> f64 {
                 let smaller = |x: $single, y: $single| if x < y { x } else { y };
-                let lanes = self.0.to_array();
-                lanes.into_iter().fold($single::INFINITY, smaller).into()
+                let mut lanes = self.0.to_array();
+                let mut left = $count;
+                while left > 1 {
+                    left /= 2;
+                    for lane in 0..left {
+                        lanes[lane] = smaller(lanes[lane], lanes[lane + left]);
+                    }
+                }
+                lanes[0].into()
             }
 
             #[inline(always)]
