@@ -317,6 +317,8 @@ settings! {
     Time {
         /// Increments in a gait cycle.
         increments: u64 = 200, in within(20.0, 100_000.0);
+        /// An implicit increment is halved until its own error is estimated below this; rotations on a lever of 10 mm. 0 never halves for that.
+        increment_error_mm: f64 = 0.0, in within(0.0, 10.0);
         /// Largest residual force of a converged increment.
         force_tolerance_n: f64 = 0.01, in within(1e-9, 10.0);
         /// Cycles to run at most until one repeats the one before.

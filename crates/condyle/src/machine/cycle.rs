@@ -9,7 +9,7 @@ use super::{
     Chain, FREEDOMS, Freedom, Integration, Machine, TimeSettings,
     balance::Kinematics,
     explicit::{Explicit, NoStep},
-    integrator::{Effort, Integrator, MachineState, NotConverged, drive},
+    integrator::{Effort, Integrator, MachineState, NotConverged, drive, step_error_mm},
 };
 use crate::contact::{ContactModel, CycleHistory, Moment, TouchedNode};
 
@@ -251,7 +251,7 @@ impl<C: ContactModel> Simulator<'_, C> {
         1.0 / (self.machine.frequency_hz * self.time.increments as f64)
     }
 
-    /// Steps to a phase, in halves where a step does not converge.
+    /// Steps to a phase, in halves where a step does not converge or is not exact enough.
     fn advance(
         &mut self,
         state: &MachineState,
@@ -267,14 +267,21 @@ impl<C: ContactModel> Simulator<'_, C> {
             effort,
         };
         match integrator.step(state, to - state.phase) {
-            Ok(next) => Ok(MachineState { phase: to, ..next }),
+            Ok(next) if halvings == 0 || self.is_exact_enough(state, &next) => {
+                Ok(MachineState { phase: to, ..next })
+            }
             Err(failed) if halvings == 0 => Err(failed.into()),
-            Err(_) => {
+            _ => {
                 effort.halvings += 1;
                 let middle = self.advance(state, (state.phase + to) / 2.0, halvings - 1, effort)?;
                 self.advance(&middle, to, halvings - 1, effort)
             }
         }
+    }
+
+    fn is_exact_enough(&self, from: &MachineState, to: &MachineState) -> bool {
+        let at_most_mm = self.time.increment_error_mm;
+        at_most_mm == 0.0 || step_error_mm(self.machine, from, to) <= at_most_mm
     }
 }
 

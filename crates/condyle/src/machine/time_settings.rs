@@ -5,6 +5,9 @@
 pub struct TimeSettings {
     /// Increments a cycle.
     pub increments: usize,
+    /// An implicit increment is halved until its own error is estimated below this, mm; rotations on
+    /// a lever of 10 mm. 0 takes every increment in one step.
+    pub increment_error_mm: f64,
     /// Largest force left out of balance, N; for moments, this much on a lever of 10 mm.
     pub force_tolerance_n: f64,
     /// A cycle counts once its end lies this near to its start, mm ...
@@ -33,6 +36,7 @@ impl Default for TimeSettings {
     fn default() -> Self {
         Self {
             increments: 200,
+            increment_error_mm: 0.0,
             force_tolerance_n: 1e-2,
             repeat_tolerance_mm: 1e-2,
             repeat_tolerance_rad: 0.01f64.to_radians(),

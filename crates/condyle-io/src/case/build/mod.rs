@@ -86,6 +86,7 @@ impl Case {
         let time = &self.time;
         TimeSettings {
             increments: time.increments as usize,
+            increment_error_mm: time.increment_error_mm,
             force_tolerance_n: time.force_tolerance_n,
             repeat_tolerance_mm: time.repeat_tolerance_mm,
             repeat_tolerance_rad: time.repeat_tolerance_deg.to_radians(),

@@ -1,0 +1,59 @@
+//! Increments that are halved where their own error is estimated too large.
+
+use std::{ops::ControlFlow, path::Path};
+
+use condyle::{
+    contact::Foundation,
+    evolve::March,
+    machine::{Chain, Cycle, Effort, Simulator, TimeSettings},
+};
+use condyle_io::case::Case;
+
+/// One repeating cycle of the default case.
+fn cycle(march: &March, increments: usize, increment_error_mm: f64) -> Cycle {
+    let test = march.test();
+    let time = TimeSettings {
+        increments,
+        increment_error_mm,
+        ..test.time
+    };
+    let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
+    let mut simulator = Simulator {
+        machine: &test.machine,
+        chain: &chain,
+        contact: Foundation::new(&test.contact, &test.femur, &test.insert),
+        time: &time,
+    };
+    let (mut effort, mut watch) = (Effort::default(), |_| ControlFlow::Continue(()));
+    let solved = simulator.cycle(&march.state().machine, &mut effort, &mut watch);
+    solved.expect("the default case is solved")
+}
+
+/// Root mean square difference of AP, mm, over the places of the coarser cycle.
+fn apart_mm(coarse: &Cycle, fine: &Cycle) -> f64 {
+    const AP: usize = 3;
+    let each = fine.rows.len() / coarse.rows.len();
+    let finer = fine.rows.iter().skip(each - 1).step_by(each);
+    let squares = coarse.rows.iter().zip(finer);
+    let sum: f64 = squares
+        .map(|(a, b)| (a.positions[AP] - b.positions[AP]).powi(2))
+        .sum();
+    (sum / coarse.rows.len() as f64).sqrt()
+}
+
+#[test]
+fn verify_halved_increments_are_nearer_to_the_truth() {
+    let case = Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../cases/stanmore-force.toml"
+    ));
+    let test = Case::read(case).unwrap().build(1).unwrap().test;
+    let march = March::start(test).unwrap();
+    let truth = cycle(&march, 3200, 0.0);
+    let errors =
+        [0.0, 0.01, 0.001].map(|at_most_mm| apart_mm(&cycle(&march, 100, at_most_mm), &truth));
+    assert!(
+        errors[1] < 0.5 * errors[0] && errors[2] < 0.5 * errors[1],
+        "{errors:?}"
+    );
+}
