@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::geometry::Share;
+use crate::{Vec3, geometry::Share};
 
 /// What is added to the least squares for every coefficient but the constant, where a length is a
 /// share's edge: a patch that does not tell a coefficient then takes it to be small, and one that
@@ -23,7 +23,7 @@ pub(super) struct Quadratic {
 
 /// Directions along a share, and its length.
 struct Plane {
-    along: [crate::Vec3; 2],
+    along: [Vec3; 2],
     length_mm: f64,
 }
 
@@ -37,7 +37,7 @@ impl Plane {
         }
     }
 
-    fn flat(&self, vector: &crate::Vec3) -> [f64; 2] {
+    fn flat(&self, vector: &Vec3) -> [f64; 2] {
         self.along.map(|along| along.dot(vector) / self.length_mm)
     }
 }
@@ -45,9 +45,10 @@ impl Plane {
 impl Quadratic {
     /// The least-squares fit to means over shares, in the plane of `around`; none without a mean.
     ///
-    /// With a share's centre u and its second moment M = (a a' + b b')/12 over its edges, the mean
-    /// of the quadratic is constant + slope . u + bend : (u u' + M)/2, exactly. Where the means do
-    /// not determine all six coefficients, those that they do not speak of are 0.
+    /// With a share's centre u and its spread s, the mean of the quadratic is
+    /// constant + slope . u + bend : (u u'/2 + s I), as the contact takes its means (see
+    /// [`FemoralSurface::sample`](crate::geometry::FemoralSurface::sample)). Where the means do not
+    /// determine all six coefficients, these are the smallest that fit.
     pub fn fit<'a>(
         around: &Share,
         means: impl Iterator<Item = (&'a Share, f64)> + Clone,
@@ -101,9 +102,98 @@ impl Quadratic {
 /// How the mean over a share depends on the six coefficients.
 fn row(plane: &Plane, share: &Share, around: &Share) -> SVector<f64, 6> {
     let [x, y] = plane.flat(&(share.centre - around.centre));
-    let [[ax, ay], [bx, by]] = [&share.edge_a, &share.edge_b].map(|edge| plane.flat(edge));
-    let xx = x * x + (ax * ax + bx * bx) / 12.0;
-    let xy = x * y + (ax * ay + bx * by) / 12.0;
-    let yy = y * y + (ay * ay + by * by) / 12.0;
-    SVector::from([1.0, x, y, xx / 2.0, xy, yy / 2.0])
+    let moment = 2.0 * share.spread_mm2 / (plane.length_mm * plane.length_mm);
+    SVector::from([
+        1.0,
+        x,
+        y,
+        (x * x + moment) / 2.0,
+        x * y,
+        (y * y + moment) / 2.0,
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ArticulatingSurface;
+
+    /// A skewed grid of 5 by 5 nodes in a plane that lies askew.
+    fn skewed() -> ArticulatingSurface {
+        let (a, b) = (Vec3::new(0.9, 0.2, 0.1), Vec3::new(0.3, -0.1, 0.7));
+        let nodes = (0..5).flat_map(|i| (0..5).map(move |k| a * f64::from(i) + b * f64::from(k)));
+        let cells = (0..4).flat_map(|i| (0..4).map(move |k| 5 * i + k));
+        let faces: Vec<[u32; 4]> = cells.map(|n| [n, n + 1, n + 6, n + 5]).collect();
+        ArticulatingSurface::new(&nodes.collect::<Vec<_>>(), &faces)
+    }
+
+    /// A quadratic of the place, its second derivatives along `steep` and `flat`.
+    struct Hill {
+        top: Vec3,
+        steep: Vec3,
+        flat: Vec3,
+    }
+
+    impl Hill {
+        fn on(surface: &ArticulatingSurface, away: [f64; 2]) -> Self {
+            let share = &surface.shares[12];
+            let normal = share.edge_a.cross(&share.edge_b).normalize();
+            let steep = normal.cross(&Vec3::new(0.3, 0.1, 1.0)).normalize();
+            Self {
+                top: share.centre + share.edge_a * away[0] + share.edge_b * away[1],
+                flat: normal.cross(&steep),
+                steep,
+            }
+        }
+
+        /// Its mean over a share: 7 at the top, falling by 0.4 x^2/2 and 0.1 y^2/2.
+        fn mean(&self, share: &Share) -> f64 {
+            let [x, y] =
+                [&self.steep, &self.flat].map(|along| along.dot(&(share.centre - self.top)));
+            7.0 - 0.2 * x * x - 0.05 * y * y - 0.5 * share.spread_mm2
+        }
+
+        fn highest(&self, surface: &ArticulatingSurface, nodes: &[usize]) -> f64 {
+            let shares = nodes.iter().map(|&node| &surface.shares[node]);
+            let means = shares.map(|share| (share, self.mean(share)));
+            Quadratic::fit(&surface.shares[12], means)
+                .unwrap()
+                .highest()
+        }
+    }
+
+    #[test]
+    fn verify_top_of_a_quadratic_on_a_skewed_grid() {
+        let surface = skewed();
+        let nine = [12, 6, 7, 8, 11, 13, 16, 17, 18];
+        for away in [[0.0, 0.0], [0.3, -0.2], [0.5, 0.5], [-0.5, 0.1]] {
+            let hill = Hill::on(&surface, away);
+            for nodes in [&nine[..], &[12, 6, 7, 11, 13, 17]] {
+                let highest = hill.highest(&surface, nodes);
+                assert!((highest - 7.0).abs() < 1e-7, "{away:?} {highest}");
+            }
+        }
+    }
+
+    #[test]
+    fn beyond_the_share_its_end_is_the_highest() {
+        let surface = skewed();
+        let hill = Hill::on(&surface, [3.0, 0.0]);
+        let highest = hill.highest(&surface, &[12, 6, 7, 8, 11, 13, 16, 17, 18]);
+        let share = &surface.shares[12];
+        assert!(highest > hill.mean(share) && highest < 7.0, "{highest}");
+    }
+
+    #[test]
+    fn what_few_shares_do_not_tell_is_small() {
+        let surface = skewed();
+        let hill = Hill::on(&surface, [0.0, 0.0]);
+        let share = &surface.shares[12];
+        assert_eq!(hill.highest(&surface, &[12]), hill.mean(share));
+        assert!(Quadratic::fit(share, std::iter::empty()).is_none());
+        for nodes in [&[12, 11][..], &[12, 11, 13], &[12, 11, 13, 7]] {
+            let highest = hill.highest(&surface, nodes);
+            assert!((highest - 7.0).abs() < 0.1, "{nodes:?} {highest}");
+        }
+    }
 }
