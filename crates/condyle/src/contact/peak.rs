@@ -48,19 +48,12 @@ struct Look {
 impl PeakSearch<'_> {
     /// Highest pressure at or around the nodes that touch, MPa; either side may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
-        let sides = [true, false].map(|is_medial| {
-            let on_side = touched.iter().filter(|node| node.is_medial == is_medial);
-            self.highest_of(on_side)
-        });
-        sides[0].max(sides[1])
-    }
-
-    fn highest_of<'t>(&self, nodes: impl Iterator<Item = &'t TouchedNode> + Clone) -> f64 {
-        let means = nodes.clone().map(|node| node.pressure_mpa);
-        let highest = means.fold(0.0, f64::max);
-        let tops = nodes.filter(|node| node.pressure_mpa >= highest * (1.0 - EQUAL));
+        let highest = highest_of_sides(touched);
+        let leads = highest.map(|highest| highest * (1.0 - EQUAL));
+        let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.is_medial)];
+        let tops = touched.iter().filter(leads);
         tops.map(|top| self.highest_around(top.node))
-            .fold(highest, f64::max)
+            .fold(highest[0].max(highest[1]), f64::max)
     }
 
     /// Highest pressure within the share of a node, MPa.
@@ -69,8 +62,9 @@ impl PeakSearch<'_> {
         let share = |look: &Look| &self.shares[look.node as usize];
         let top = &looks[0];
         let is_surface = |look: &&Look| {
-            let distance_mm = (share(look).centre - share(top).centre).norm();
-            (look.gap_mm - top.gap_mm).abs() <= GAP_PER_DISTANCE * distance_mm
+            let distance2_mm2 = (share(look).centre - share(top).centre).norm_squared();
+            let change = (look.gap_mm - top.gap_mm) / GAP_PER_DISTANCE;
+            change * change <= distance2_mm2
         };
         let means = looks.iter().filter(is_surface);
         Quadratic::fit(share(top), means.map(|look| (share(look), look.mean)))
@@ -104,4 +98,17 @@ impl PeakSearch<'_> {
         let spread_mm2 = Lanes::from_lanes(|lane| share(lane).spread_mm2);
         self.femur.sample(&place, spread_mm2).gap_mm
     }
+}
+
+/// Highest mean over a share on the lateral and on the medial side, MPa.
+fn highest_of_sides(touched: &[TouchedNode]) -> [f64; 2] {
+    let mut highest = [0.0; 2];
+    for node in touched {
+        let highest = &mut highest[usize::from(node.is_medial)];
+        // A jump that is seldom taken is faster than a maximum that waits for the one before.
+        if node.pressure_mpa > *highest {
+            *highest = node.pressure_mpa;
+        }
+    }
+    highest
 }
