@@ -119,13 +119,12 @@ fn verify_peak_under_a_cylinder_at_any_angle() {
     let femur = FemoralSurface::Cylinder(Cylinder { radius_mm });
     for law in laws() {
         let exact = law.pressure(0.2, THICKNESS_MM).0;
-        for turn_deg in [0.0_f64, 7.0, 26.6, 40.0, 90.0] {
+        for turn_deg in [0.0_f64, 7.0, 26.6, 45.0, 90.0] {
             for part in [0.0, 0.2, 0.5] {
                 let place = Vec3::new(1.05 * part, radius_mm - 0.2, 1.05 * part);
                 let turn = turn_deg.to_radians();
                 let [mean, peak] = mean_and_peak(&law, &femur, &insert, place, turn);
                 assert!(mean <= peak);
-                // Where it leaves the layer askew, it presses as hard on shares with few around.
                 assert_near(peak, exact, 0.01, &format!("{turn_deg} deg, {part}"));
             }
         }

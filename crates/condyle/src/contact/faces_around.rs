@@ -31,20 +31,28 @@ impl FacesAround {
         }
     }
 
-    /// A node, and then all that have a face in common with it.
-    pub fn nodes_around(&self, node: u32) -> Vec<u32> {
-        let at = node as usize;
-        let mut nodes = Vec::with_capacity(16);
+    /// A node, and then those around it: all that have a face in common with it and, if these are
+    /// fewer than `least` in all, those around them too.
+    pub fn patch(&self, node: u32, least: usize) -> Vec<u32> {
+        let mut nodes = Vec::with_capacity(32);
         nodes.push(node);
-        for other in self.faces[self.first[at]..self.first[at + 1]]
-            .iter()
-            .flatten()
-        {
+        self.add_around(node, &mut nodes);
+        if nodes.len() < least {
+            for beside in 1..nodes.len() {
+                self.add_around(nodes[beside], &mut nodes);
+            }
+        }
+        nodes
+    }
+
+    fn add_around(&self, node: u32, nodes: &mut Vec<u32>) {
+        let at = node as usize;
+        let faces = &self.faces[self.first[at]..self.first[at + 1]];
+        for other in faces.iter().flatten() {
             if !nodes.contains(other) {
                 nodes.push(*other);
             }
         }
-        nodes
     }
 }
 
@@ -53,17 +61,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nodes_around_are_those_of_the_faces_around() {
+    fn a_patch_is_of_the_faces_around_and_larger_where_these_are_few() {
         let faces = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
         let around = FacesAround::new(9, &faces);
-        let sorted = |node| {
-            let mut nodes = around.nodes_around(node);
+        let sorted = |node, least| {
+            let mut nodes = around.patch(node, least);
             assert_eq!(nodes[0], node);
             nodes.sort_unstable();
             nodes
         };
-        assert_eq!(sorted(4), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
-        assert_eq!(sorted(0), [0, 1, 3, 4]);
-        assert_eq!(sorted(5), [1, 2, 4, 5, 7, 8]);
+        assert_eq!(sorted(4, 7), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+        assert_eq!(sorted(0, 4), [0, 1, 3, 4]);
+        assert_eq!(sorted(5, 6), [1, 2, 4, 5, 7, 8]);
+        assert_eq!(sorted(0, 7), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
     }
 }

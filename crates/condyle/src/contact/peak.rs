@@ -18,6 +18,10 @@ const EQUAL: f64 = 1e-9;
 /// field is only nearly one. More than that has no surface behind it.
 const GAP_PER_DISTANCE: f64 = 1.05;
 
+/// Around any node inside a surface there are as many, and they determine a quadratic; at its rim
+/// there are fewer, and farther ones must help.
+const LEAST_NODES: usize = 7;
+
 /// Looks for the highest pressure.
 ///
 /// The law's measure of overclosure (see [`PressureLaw::measure`]) is smooth where the pressure is
@@ -26,8 +30,8 @@ const GAP_PER_DISTANCE: f64 = 1.05;
 /// the peak is the law's pressure at its maximum within the share. It is never below the highest
 /// mean over a share.
 ///
-/// The error falls with the third power of the edge; where the surface ends and the quadratic is
-/// not determined, with the first.
+/// Its error falls with the third power of the edge, under a body that is smooth and symmetric about the
+/// peak with the fourth.
 pub(super) struct PeakSearch<'a> {
     pub law: &'a PressureLaw,
     pub femur: &'a FemoralSurface,
@@ -58,7 +62,7 @@ impl PeakSearch<'_> {
 
     /// Highest pressure within the share of a node, MPa.
     fn highest_around(&self, node: u32) -> f64 {
-        let looks = self.look(&self.faces.nodes_around(node));
+        let looks = self.look(&self.faces.patch(node, LEAST_NODES));
         let share = |look: &Look| &self.shares[look.node as usize];
         let top = &looks[0];
         let is_surface = |look: &&Look| {

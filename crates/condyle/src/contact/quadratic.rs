@@ -60,7 +60,7 @@ impl Quadratic {
         matrix[(0, 0)] = 0.0;
         for (share, mean) in means {
             let row = row(&plane, share, around);
-            matrix += row * row.transpose();
+            matrix.syger(1.0, &row, &row, 1.0);
             right += row * (mean - base);
         }
         let [constant, x, y, xx, xy, yy] = matrix.cholesky()?.solve(&right).into();
