@@ -32,7 +32,7 @@ const PLACES: u32 = 128;
 
 const ACCEPTED: Accepted = Accepted {
     force: 0.005,
-    peak: 0.05,
+    peak: 0.01,
     area: 0.03,
     ripple: 0.002,
 };

@@ -37,6 +37,10 @@ impl ContactModel for Apart {
     fn touched(&mut self, _: &RelativeMotion) -> Vec<TouchedNode> {
         Vec::new()
     }
+
+    fn peak_pressure_mpa(&self, _: &RelativeMotion, _: &[TouchedNode]) -> f64 {
+        0.0
+    }
 }
 
 /// A machine whose rows, in the order of the freedoms, are driven so; one cycle a second, light

@@ -54,11 +54,10 @@ pub(crate) fn moving(place: Vec3, velocity: Vec3) -> RelativeMotion {
 pub(crate) fn press(contact: &mut Foundation<'_>, motion: &RelativeMotion) -> Pressed {
     let wrench = contact.respond(motion);
     let touched = contact.touched(motion);
-    let pressures = touched.iter().map(|node| node.pressure_mpa);
     Pressed {
         force_n: wrench.fixed_rows::<3>(3).into(),
         area_mm2: touched.iter().map(|node| node.covered_mm2).sum(),
-        peak_pressure_mpa: pressures.fold(0.0, f64::max),
+        peak_pressure_mpa: contact.peak_pressure_mpa(motion, &touched),
     }
 }
 

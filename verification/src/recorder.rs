@@ -61,4 +61,8 @@ impl ContactModel for Recorder<'_> {
         self.rubbed.borrow_mut().push(sum);
         touched
     }
+
+    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64 {
+        self.inner.peak_pressure_mpa(motion, touched)
+    }
 }

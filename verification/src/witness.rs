@@ -92,4 +92,8 @@ impl ContactModel for Witness<'_> {
         });
         touched
     }
+
+    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64 {
+        self.inner.peak_pressure_mpa(motion, touched)
+    }
 }

@@ -246,7 +246,7 @@ fn verify_ball_on_a_flat_foundation() {
 }
 
 #[test]
-fn verify_peak_pressure_under_a_ball_on_a_node() {
+fn verify_highest_mean_pressure_under_a_ball_on_a_node() {
     let insert = flat_insert((24.0, 24.0), 9.0, one_millimetre()).unwrap();
     let (femur, settings) = (FemoralSurface::sphere(24.0), linear());
     let overclosure = overclosure_at_2000_n();

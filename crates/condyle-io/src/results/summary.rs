@@ -44,7 +44,7 @@ pub struct Summary {
     pub max_depth_mm: f64,
     /// Estimated discretisation errors of mass loss and deepest wear; none if the case asks for none.
     pub error: Option<ErrorEstimate>,
-    /// Highest pressure at a node in any cycle, MPa.
+    /// Highest pressure anywhere, between nodes too, in any cycle, MPa.
     pub peak_pressure_mpa: f64,
     /// Largest contact area in any cycle, mm2.
     pub peak_contact_area_mm2: f64,

@@ -51,7 +51,7 @@ pub(super) fn rows(results: &Results) -> Vec<Row> {
     for (field, name, unit) in [
         (
             "peak_pressure_mpa",
-            "Peak pressure in the last cycle",
+            "Highest pressure of a node in the last cycle",
             "MPa",
         ),
         (

@@ -44,7 +44,7 @@ pub(super) fn small(results: &Results, px_per_mm: f64) -> Vec<Small> {
         ..map
     });
     let captions = [
-        "Largest contact pressure that each place sees in one gait cycle, last update.",
+        "Largest contact pressure that each node sees in one gait cycle, the mean over its share of the surface, last update.",
         "Distance that the femur slides over each place while it presses on it, in one gait cycle, last update.",
     ];
     let maps = [pressure, sliding].into_iter().zip(captions);

@@ -94,7 +94,7 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "peak_pressure_mpa",
                 "Peak pressure",
                 "MPa",
-                "Largest contact pressure anywhere and at any instant.",
+                "Largest contact pressure anywhere, between the nodes of the mesh too, and at any instant.",
             ),
             known(
                 "peak_contact_area_mm2",

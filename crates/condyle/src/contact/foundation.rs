@@ -2,9 +2,11 @@
 
 use super::{
     ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
+    faces_around::FacesAround,
     motion::{Pose4, Twist4, small_motion, twist_to_femur},
     nearness::Nearness,
     partial::{Rises, mean_overclosure},
+    peak::PeakSearch,
     seen::Seen,
     shares::Shares4,
     tangent::TangentSum,
@@ -52,6 +54,7 @@ pub struct Foundation<'a> {
     shares: Vec<Shares4>,
     /// The surface's own directions at every four nodes.
     directions: Vec<[Vector<Lanes>; 2]>,
+    faces: FacesAround,
     /// What every four of them saw of the femur.
     seen: Vec<Seen>,
     nearness: Nearness,
@@ -84,6 +87,7 @@ impl<'a> Foundation<'a> {
                 .collect(),
             nearness: Nearness::new(&shares),
             seen: vec![Seen::nothing(); shares.len()],
+            faces: FacesAround::new(surface.positions.len(), insert.surface_faces()),
             shares,
             surface,
             due: Vec::new(),
@@ -230,6 +234,18 @@ impl ContactModel for Foundation<'_> {
             landed.touch(&self.shares[look.four as usize], &mut touched);
         }
         touched
+    }
+
+    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64 {
+        let search = PeakSearch {
+            law: &self.settings.law,
+            femur: self.femur,
+            shares: &self.surface.shares,
+            fours: &self.shares,
+            faces: &self.faces,
+            pose: Pose4::new(&motion.pose),
+        };
+        search.highest_mpa(touched)
     }
 }
 

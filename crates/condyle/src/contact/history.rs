@@ -78,7 +78,7 @@ impl CycleHistory {
 }
 
 impl NodeHistory<'_> {
-    /// Highest pressure of the cycle, MPa.
+    /// Highest mean pressure on the node's share in the cycle, MPa.
     pub fn peak_pressure_mpa(&self) -> f64 {
         self.moments
             .iter()

@@ -50,6 +50,16 @@ impl PressureLaw {
         )
     }
 
+    /// What alone the pressure depends on: the strain d/h, or with a table the overclosure d, mm.
+    ///
+    /// As an overclosure of a layer 1 mm thick it gives the same pressure.
+    pub fn measure(&self, overclosure_mm: f64, per_thickness: f64) -> f64 {
+        match self {
+            Self::Linear { .. } | Self::Logarithmic { .. } => overclosure_mm * per_thickness,
+            Self::Tabulated(_) => overclosure_mm,
+        }
+    }
+
     /// Pressure, MPa, and its derivative by the overclosure, MPa/mm, for an `overclosure_mm` >= 0
     /// of a layer `thickness_mm` thick.
     pub fn pressure(&self, overclosure_mm: f64, thickness_mm: f64) -> (f64, f64) {
@@ -199,6 +209,21 @@ mod tests {
         let (value, slope) = minus_log_one_minus(1e-9);
         assert!((value / 1e-9 - 1.0).abs() < 1e-8 && (slope - 1.0).abs() < 1e-8);
         assert!((minus_log_one_minus(0.5).0 - 2f64.ln()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_layer_of_a_millimetre_with_the_measure_has_the_same_pressure() {
+        let table = PressureTable::new(vec![(0.0, 0.0), (0.1, 5.0), (0.4, 60.0)]).unwrap();
+        let (modulus_mpa, overclosure, thickness) = (2000.0, 0.3, 9.0);
+        for law in [
+            PressureLaw::Linear { modulus_mpa },
+            PressureLaw::Logarithmic { modulus_mpa },
+            PressureLaw::Tabulated(table),
+        ] {
+            let pressure = law.pressure(overclosure, thickness).0;
+            let measure = law.measure(overclosure, 1.0 / thickness);
+            assert!((law.pressure(measure, 1.0).0 / pressure - 1.0).abs() < 1e-14);
+        }
     }
 
     #[test]

@@ -1,12 +1,15 @@
 //! Contact between femur and insert: one interface, several models.
 
 mod clearance;
+mod faces_around;
 mod foundation;
 mod history;
 mod law;
 mod motion;
 mod nearness;
 mod partial;
+mod peak;
+mod quadratic;
 mod seen;
 mod shares;
 mod tangent;
@@ -69,4 +72,8 @@ pub trait ContactModel {
     /// The nodes in contact at a motion, ascending: that of the last [`ContactModel::respond`], or one
     /// so near that loads and speeds may be taken along to first order.
     fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode>;
+
+    /// Highest pressure at a motion, MPa, at nodes and between them, where `touched` are the nodes in
+    /// contact: not below the largest mean over a node's share.
+    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64;
 }

@@ -29,7 +29,7 @@ pub struct UpdateRecord {
     pub mass_loss_mg: f64,
     /// Deepest wear so far, mm.
     pub max_depth_mm: f64,
-    /// Highest pressure of its cycle, MPa.
+    /// Highest pressure of its cycle anywhere, between nodes too, MPa.
     pub peak_pressure_mpa: f64,
     /// Largest area of its cycle, mm2.
     pub peak_contact_area_mm2: f64,
@@ -57,7 +57,7 @@ pub struct NodeFields {
     pub wear_depth_mm: Vec<f64>,
     /// Depth one cycle wears, mm.
     pub depth_per_cycle_mm: Vec<f64>,
-    /// Highest pressure of the cycle, MPa.
+    /// Highest pressure of the cycle, the mean over the node's share, MPa.
     pub peak_pressure_mpa: Vec<f64>,
     /// Distance slid under pressure in the cycle, mm.
     pub sliding_distance_mm: Vec<f64>,

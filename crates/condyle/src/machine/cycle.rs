@@ -27,7 +27,7 @@ pub struct CycleRow {
     pub axial_force_n: f64,
     /// Area in contact, mm2.
     pub contact_area_mm2: f64,
-    /// Highest pressure at a node, MPa.
+    /// Highest pressure anywhere, at a node or between nodes, MPa.
     pub peak_pressure_mpa: f64,
     /// Part of the axial force on the medial side, N.
     pub medial_force_n: f64,
@@ -209,9 +209,9 @@ impl<C: ContactModel> Simulator<'_, C> {
     fn land(&mut self, place: usize, state: &MachineState) -> Landed {
         let percent = 100.0 * (place + 1) as f64 / self.time.increments as f64;
         let configuration = self.chain.at(&state.now.positions);
-        let touched = self
-            .contact
-            .touched(&configuration.motion(&state.now.rates));
+        let motion = configuration.motion(&state.now.rates);
+        let touched = self.contact.touched(&motion);
+        let peak_pressure_mpa = self.contact.peak_pressure_mpa(&motion, &touched);
         let moment = |node: &TouchedNode| Moment {
             percent,
             pressure_mpa: node.pressure_mpa,
@@ -221,7 +221,7 @@ impl<C: ContactModel> Simulator<'_, C> {
         };
         Landed {
             state: *state,
-            row: row(percent, state, &touched),
+            row: row(percent, state, &touched, peak_pressure_mpa),
             moments: touched
                 .iter()
                 .map(|node| (node.node, moment(node)))
@@ -307,7 +307,12 @@ impl From<NoStep> for CycleError {
     }
 }
 
-fn row(percent: f64, state: &MachineState, touched: &[TouchedNode]) -> CycleRow {
+fn row(
+    percent: f64,
+    state: &MachineState,
+    touched: &[TouchedNode],
+    peak_pressure_mpa: f64,
+) -> CycleRow {
     let side_n = |is_medial: bool| {
         let on_side = touched.iter().filter(|node| node.is_medial == is_medial);
         on_side.map(|node| -node.force_n.y).sum::<f64>()
@@ -318,10 +323,7 @@ fn row(percent: f64, state: &MachineState, touched: &[TouchedNode]) -> CycleRow 
         positions: state.now.positions,
         axial_force_n: medial_force_n + lateral_force_n,
         contact_area_mm2: touched.iter().map(|node| node.covered_mm2).sum(),
-        peak_pressure_mpa: touched
-            .iter()
-            .map(|node| node.pressure_mpa)
-            .fold(0.0, f64::max),
+        peak_pressure_mpa,
         medial_force_n,
         lateral_force_n,
     }

@@ -240,6 +240,10 @@ mod tests {
         fn touched(&mut self, _: &RelativeMotion) -> Vec<TouchedNode> {
             Vec::new()
         }
+
+        fn peak_pressure_mpa(&self, _: &RelativeMotion, _: &[TouchedNode]) -> f64 {
+            0.0
+        }
     }
 
     /// A machine that moves IS alone, without load.

@@ -1,0 +1,78 @@
+//! Which nodes of a surface lie around a node.
+
+/// The faces around every node of a surface.
+pub(super) struct FacesAround {
+    /// Those of node i are `faces[first[i]..first[i + 1]]`.
+    first: Vec<usize>,
+    faces: Vec<[u32; 4]>,
+}
+
+impl FacesAround {
+    /// Sorts `faces`, in numbers of nodes, by the nodes at their corners.
+    pub fn new(node_count: usize, faces: &[[u32; 4]]) -> Self {
+        let mut first = vec![0; node_count + 1];
+        for &node in faces.iter().flatten() {
+            first[node as usize + 1] += 1;
+        }
+        for node in 0..node_count {
+            first[node + 1] += first[node];
+        }
+        let mut next = first.clone();
+        let mut sorted = vec![[0; 4]; first[node_count]];
+        for face in faces {
+            for &node in face {
+                sorted[next[node as usize]] = *face;
+                next[node as usize] += 1;
+            }
+        }
+        Self {
+            first,
+            faces: sorted,
+        }
+    }
+
+    /// A node, and then those around it: all that have a face in common with it and, if these are
+    /// fewer than `least` in all, those around them too.
+    pub fn patch(&self, node: u32, least: usize) -> Vec<u32> {
+        let mut nodes = Vec::with_capacity(32);
+        nodes.push(node);
+        self.add_around(node, &mut nodes);
+        if nodes.len() < least {
+            for beside in 1..nodes.len() {
+                self.add_around(nodes[beside], &mut nodes);
+            }
+        }
+        nodes
+    }
+
+    fn add_around(&self, node: u32, nodes: &mut Vec<u32>) {
+        let at = node as usize;
+        let faces = &self.faces[self.first[at]..self.first[at + 1]];
+        for other in faces.iter().flatten() {
+            if !nodes.contains(other) {
+                nodes.push(*other);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_patch_is_of_the_faces_around_and_larger_where_these_are_few() {
+        let faces = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
+        let around = FacesAround::new(9, &faces);
+        let sorted = |node, least| {
+            let mut nodes = around.patch(node, least);
+            assert_eq!(nodes[0], node);
+            nodes.sort_unstable();
+            nodes
+        };
+        assert_eq!(sorted(4, 7), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+        assert_eq!(sorted(0, 4), [0, 1, 3, 4]);
+        assert_eq!(sorted(5, 6), [1, 2, 4, 5, 7, 8]);
+        assert_eq!(sorted(0, 7), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+    }
+}

@@ -1,0 +1,118 @@
+//! The highest pressure, which lies between the nodes.
+
+use super::{
+    PressureLaw, TouchedNode, faces_around::FacesAround, motion::Pose4, quadratic::Quadratic,
+    shares::Shares4,
+};
+use crate::{
+    Vector,
+    geometry::{FemoralSurface, Share},
+    number::{LANES, Lanes, Number},
+};
+
+/// Nodes whose pressures differ by no more than this part press equally: which of them leads is a
+/// matter of round-off, and of which way round the knee is told.
+const EQUAL: f64 = 1e-9;
+
+/// What a gap may change by from point to point, as a part of their distance, where a distance
+/// field is only nearly one. More than that has no surface behind it.
+const GAP_PER_DISTANCE: f64 = 1.05;
+
+/// Around any node inside a surface there are as many, and they determine a quadratic; at its rim
+/// there are fewer, and farther ones must help.
+const LEAST_NODES: usize = 7;
+
+/// Looks for the highest pressure.
+///
+/// The law's measure of overclosure (see [`PressureLaw::measure`]) is smooth where the pressure is
+/// not: at the edge of contact and at the corners of a table. So it is this that is fitted, with a
+/// quadratic over the node that presses most and those around it, whether they touch or not, and
+/// the peak is the law's pressure at its maximum within the share. It is never below the highest
+/// mean over a share.
+///
+/// Its error falls with the third power of the edge, under a body that is smooth and symmetric about the
+/// peak with the fourth.
+pub(super) struct PeakSearch<'a> {
+    pub law: &'a PressureLaw,
+    pub femur: &'a FemoralSurface,
+    pub shares: &'a [Share],
+    pub fours: &'a [Shares4],
+    pub faces: &'a FacesAround,
+    pub pose: Pose4,
+}
+
+/// The overclosure of a share whether it touches or not.
+struct Look {
+    node: u32,
+    gap_mm: f64,
+    /// In the law's measure.
+    mean: f64,
+}
+
+impl PeakSearch<'_> {
+    /// Highest pressure at or around the nodes that touch, MPa; either side may have it.
+    pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
+        let highest = highest_of_sides(touched);
+        let leads = highest.map(|highest| highest * (1.0 - EQUAL));
+        let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.is_medial)];
+        let tops = touched.iter().filter(leads);
+        tops.map(|top| self.highest_around(top.node))
+            .fold(highest[0].max(highest[1]), f64::max)
+    }
+
+    /// Highest pressure within the share of a node, MPa.
+    fn highest_around(&self, node: u32) -> f64 {
+        let looks = self.look(&self.faces.patch(node, LEAST_NODES));
+        let share = |look: &Look| &self.shares[look.node as usize];
+        let top = &looks[0];
+        let is_surface = |look: &&Look| {
+            let distance2_mm2 = (share(look).centre - share(top).centre).norm_squared();
+            let change = (look.gap_mm - top.gap_mm) / GAP_PER_DISTANCE;
+            change * change <= distance2_mm2
+        };
+        let means = looks.iter().filter(is_surface);
+        Quadratic::fit(share(top), means.map(|look| (share(look), look.mean)))
+            .map_or(0.0, |fit| self.law.pressure(fit.highest().max(0.0), 1.0).0)
+    }
+
+    fn look(&self, nodes: &[u32]) -> Vec<Look> {
+        let mut looks = Vec::with_capacity(nodes.len() + LANES);
+        for nodes in nodes.chunks(LANES) {
+            let gaps_mm = self.gaps_mm(nodes);
+            let look = |(lane, &node): (usize, &u32)| {
+                let gap_mm = gaps_mm.lane(lane);
+                let per_thickness = self.fours[node as usize / LANES].per_thickness;
+                let per_thickness = per_thickness.lane(node as usize % LANES);
+                Look {
+                    node,
+                    gap_mm,
+                    mean: self.law.measure(-gap_mm, per_thickness),
+                }
+            };
+            looks.extend(nodes.iter().enumerate().map(look));
+        }
+        looks
+    }
+
+    /// Mean gaps over the shares of up to four nodes, mm.
+    fn gaps_mm(&self, nodes: &[u32]) -> Lanes {
+        let share = |lane: usize| &self.shares[nodes[lane.min(nodes.len() - 1)] as usize];
+        let axis = |axis: usize| Lanes::from_lanes(|lane| share(lane).centre[axis]);
+        let place = self.pose.to_femur(&Vector::new(axis(0), axis(1), axis(2)));
+        let spread_mm2 = Lanes::from_lanes(|lane| share(lane).spread_mm2);
+        self.femur.sample(&place, spread_mm2).gap_mm
+    }
+}
+
+/// Highest mean over a share on the lateral and on the medial side, MPa.
+fn highest_of_sides(touched: &[TouchedNode]) -> [f64; 2] {
+    let mut highest = [0.0; 2];
+    for node in touched {
+        let highest = &mut highest[usize::from(node.is_medial)];
+        // A jump that is seldom taken is faster than a maximum that waits for the one before.
+        if node.pressure_mpa > *highest {
+            *highest = node.pressure_mpa;
+        }
+    }
+    highest
+}

@@ -1,0 +1,199 @@
+//! A quadratic through means over shares.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::{Vec3, geometry::Share};
+
+/// What is added to the least squares for every coefficient but the constant, where a length is a
+/// share's edge: a patch that does not tell a coefficient then takes it to be small, and one that
+/// tells it does not feel it.
+const LEAST_SQUARES_FLOOR: f64 = 1e-10;
+
+/// q(u) = constant + slope . u + u . bend u / 2 along the plane of a share, u from its centre in
+/// units of `length_mm`.
+#[derive(Clone, Debug)]
+pub(super) struct Quadratic {
+    constant: f64,
+    slope: [f64; 2],
+    /// xx, xy, yy.
+    bend: [f64; 3],
+    /// Edges of the share.
+    edges: [[f64; 2]; 2],
+}
+
+/// Directions along a share, and its length.
+struct Plane {
+    along: [Vec3; 2],
+    length_mm: f64,
+}
+
+impl Plane {
+    fn of(share: &Share) -> Self {
+        let first = share.edge_a.normalize();
+        let normal = share.edge_a.cross(&share.edge_b).normalize();
+        Self {
+            along: [first, normal.cross(&first)],
+            length_mm: share.area_mm2.sqrt(),
+        }
+    }
+
+    fn flat(&self, vector: &Vec3) -> [f64; 2] {
+        self.along.map(|along| along.dot(vector) / self.length_mm)
+    }
+}
+
+impl Quadratic {
+    /// The least-squares fit to means over shares, in the plane of `around`; none without a mean.
+    ///
+    /// With a share's centre u and its spread s, the mean of the quadratic is
+    /// constant + slope . u + bend : (u u'/2 + s I), as the contact takes its means (see
+    /// [`FemoralSurface::sample`](crate::geometry::FemoralSurface::sample)). Where the means do not
+    /// determine all six coefficients, these are the smallest that fit.
+    pub fn fit<'a>(
+        around: &Share,
+        means: impl Iterator<Item = (&'a Share, f64)> + Clone,
+    ) -> Option<Self> {
+        let plane = Plane::of(around);
+        let (_, base) = means.clone().next()?;
+        let mut matrix = SMatrix::<f64, 6, 6>::identity() * LEAST_SQUARES_FLOOR;
+        let mut right = SVector::<f64, 6>::zeros();
+        matrix[(0, 0)] = 0.0;
+        for (share, mean) in means {
+            let row = row(&plane, share, around);
+            matrix.syger(1.0, &row, &row, 1.0);
+            right += row * (mean - base);
+        }
+        let [constant, x, y, xx, xy, yy] = matrix.cholesky()?.solve(&right).into();
+        Some(Self {
+            constant: constant + base,
+            slope: [x, y],
+            bend: [xx, xy, yy],
+            edges: [&around.edge_a, &around.edge_b].map(|edge| plane.flat(edge)),
+        })
+    }
+
+    /// The largest value within the share.
+    ///
+    /// Along either axis of the bend it is at the stationary point, or at the end of the share
+    /// where there is none before it.
+    pub fn highest(&self) -> f64 {
+        let [xx, xy, yy] = self.bend;
+        let mean = (xx + yy) / 2.0;
+        let apart = ((xx - yy) / 2.0).hypot(xy);
+        let (sine, cosine) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
+        let first = self.highest_along([cosine, sine], mean + apart);
+        self.constant + first + self.highest_along([-sine, cosine], mean - apart)
+    }
+
+    /// How far it rises along one axis, with the second derivative `bend`.
+    fn highest_along(&self, axis: [f64; 2], bend: f64) -> f64 {
+        let along = |vector: &[f64; 2]| (vector[0] * axis[0] + vector[1] * axis[1]).abs();
+        let slope = along(&self.slope);
+        let end = self.edges.iter().map(along).sum::<f64>() / 2.0;
+        let at = if -bend * end > slope {
+            -slope / bend
+        } else {
+            end
+        };
+        (slope + bend * at / 2.0) * at
+    }
+}
+
+/// How the mean over a share depends on the six coefficients.
+fn row(plane: &Plane, share: &Share, around: &Share) -> SVector<f64, 6> {
+    let [x, y] = plane.flat(&(share.centre - around.centre));
+    let moment = 2.0 * share.spread_mm2 / (plane.length_mm * plane.length_mm);
+    SVector::from([
+        1.0,
+        x,
+        y,
+        (x * x + moment) / 2.0,
+        x * y,
+        (y * y + moment) / 2.0,
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ArticulatingSurface;
+
+    /// A skewed grid of 5 by 5 nodes in a plane that lies askew.
+    fn skewed() -> ArticulatingSurface {
+        let (a, b) = (Vec3::new(0.9, 0.2, 0.1), Vec3::new(0.3, -0.1, 0.7));
+        let nodes = (0..5).flat_map(|i| (0..5).map(move |k| a * f64::from(i) + b * f64::from(k)));
+        let cells = (0..4).flat_map(|i| (0..4).map(move |k| 5 * i + k));
+        let faces: Vec<[u32; 4]> = cells.map(|n| [n, n + 1, n + 6, n + 5]).collect();
+        ArticulatingSurface::new(&nodes.collect::<Vec<_>>(), &faces)
+    }
+
+    /// A quadratic of the place, its second derivatives along `steep` and `flat`.
+    struct Hill {
+        top: Vec3,
+        steep: Vec3,
+        flat: Vec3,
+    }
+
+    impl Hill {
+        fn on(surface: &ArticulatingSurface, away: [f64; 2]) -> Self {
+            let share = &surface.shares[12];
+            let normal = share.edge_a.cross(&share.edge_b).normalize();
+            let steep = normal.cross(&Vec3::new(0.3, 0.1, 1.0)).normalize();
+            Self {
+                top: share.centre + share.edge_a * away[0] + share.edge_b * away[1],
+                flat: normal.cross(&steep),
+                steep,
+            }
+        }
+
+        /// Its mean over a share: 7 at the top, falling by 0.4 x^2/2 and 0.1 y^2/2.
+        fn mean(&self, share: &Share) -> f64 {
+            let [x, y] =
+                [&self.steep, &self.flat].map(|along| along.dot(&(share.centre - self.top)));
+            7.0 - 0.2 * x * x - 0.05 * y * y - 0.5 * share.spread_mm2
+        }
+
+        fn highest(&self, surface: &ArticulatingSurface, nodes: &[usize]) -> f64 {
+            let shares = nodes.iter().map(|&node| &surface.shares[node]);
+            let means = shares.map(|share| (share, self.mean(share)));
+            Quadratic::fit(&surface.shares[12], means)
+                .unwrap()
+                .highest()
+        }
+    }
+
+    #[test]
+    fn verify_top_of_a_quadratic_on_a_skewed_grid() {
+        let surface = skewed();
+        let nine = [12, 6, 7, 8, 11, 13, 16, 17, 18];
+        for away in [[0.0, 0.0], [0.3, -0.2], [0.5, 0.5], [-0.5, 0.1]] {
+            let hill = Hill::on(&surface, away);
+            for nodes in [&nine[..], &[12, 6, 7, 11, 13, 17]] {
+                let highest = hill.highest(&surface, nodes);
+                assert!((highest - 7.0).abs() < 1e-7, "{away:?} {highest}");
+            }
+        }
+    }
+
+    #[test]
+    fn beyond_the_share_its_end_is_the_highest() {
+        let surface = skewed();
+        let hill = Hill::on(&surface, [3.0, 0.0]);
+        let highest = hill.highest(&surface, &[12, 6, 7, 8, 11, 13, 16, 17, 18]);
+        let share = &surface.shares[12];
+        assert!(highest > hill.mean(share) && highest < 7.0, "{highest}");
+    }
+
+    #[test]
+    fn what_few_shares_do_not_tell_is_small() {
+        let surface = skewed();
+        let hill = Hill::on(&surface, [0.0, 0.0]);
+        let share = &surface.shares[12];
+        assert_eq!(hill.highest(&surface, &[12]), hill.mean(share));
+        assert!(Quadratic::fit(share, std::iter::empty()).is_none());
+        for nodes in [&[12, 11][..], &[12, 11, 13], &[12, 11, 13, 7]] {
+            let highest = hill.highest(&surface, nodes);
+            assert!((highest - 7.0).abs() < 0.1, "{nodes:?} {highest}");
+        }
+    }
+}
