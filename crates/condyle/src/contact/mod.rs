@@ -70,3 +70,25 @@ pub trait ContactModel {
     /// so near that loads and speeds may be taken along to first order.
     fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode>;
 }
+
+impl<C: ContactModel + ?Sized> ContactModel for Box<C> {
+    fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
+        (**self).respond(motion)
+    }
+
+    fn tangent(&self) -> Tangent {
+        (**self).tangent()
+    }
+
+    fn mean_slip(&self) -> [Vec3; 2] {
+        (**self).mean_slip()
+    }
+
+    fn node_count(&self) -> usize {
+        (**self).node_count()
+    }
+
+    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
+        (**self).touched(motion)
+    }
+}

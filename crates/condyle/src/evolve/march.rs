@@ -12,9 +12,9 @@ use super::{
 };
 use crate::{
     Vec3,
-    contact::Foundation,
+    contact::{ContactModel, Foundation},
     geometry::ArticulatingSurface,
-    machine::{Chain, Cycle, CycleError, CycleRow, Effort, Freedom, MachineState, Simulator},
+    machine::{Chain, Cycle, CycleRow, Effort, Freedom, MachineState, Simulator},
 };
 
 /// A wear test on its way.
@@ -140,23 +140,42 @@ impl March {
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<&UpdateRecord, MarchError> {
+        let contact = Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert);
+        let mut effort = self.state.effort;
+        let (contact, cycle) = self.repeating_cycle(contact, &mut effort, watch)?;
+        self.wear(&contact.into_surface(), cycle, effort)
+    }
+
+    /// As [`March::update`], on another model of contact: the one made for the test as worn so far.
+    ///
+    /// # Errors
+    /// As [`March::update`].
+    pub fn update_on(
+        &mut self,
+        model: impl for<'a> Fn(&'a WearTest) -> Box<dyn ContactModel + 'a>,
+        watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<&UpdateRecord, MarchError> {
+        let mut effort = self.state.effort;
+        let (_, cycle) = self.repeating_cycle(model(&self.test), &mut effort, watch)?;
+        self.wear(&self.test.insert.surface(), cycle, effort)
+    }
+
+    /// Wears the insert by an interval of a solved cycle.
+    fn wear(
+        &mut self,
+        surface: &ArticulatingSurface,
+        cycle: Cycle,
+        effort: Effort,
+    ) -> Result<&UpdateRecord, MarchError> {
         let update = self.state.updates.len() + 1;
         let cycles = self.cycles();
-        let mut effort = self.state.effort;
-        let (surface, cycle) =
-            self.repeating_cycle(update, &mut effort, watch)
-                .map_err(|source| MarchError::Cycle {
-                    update,
-                    cycles,
-                    source,
-                })?;
         if cycle.rows.iter().all(|row| row.axial_force_n == 0.0) {
             let ap_mm = cycle.end.now.positions[Freedom::AnteroPosterior as usize];
             return Err(MarchError::LostContact { update, ap_mm });
         }
         let rates = Rates::of(
             &cycle,
-            &surface,
+            surface,
             self.test.wear.as_ref(),
             &self.test.contact,
             self.test.insert.thickness_mm(),
@@ -173,7 +192,7 @@ impl March {
         let settled_error = self.state.settled_error.after(before);
         let step_error = settled_error.with_last(before, &step);
         let (mesh_nodes, worn_mm) = (self.state.mesh_nodes.clone(), self.state.worn_mm.clone());
-        self.wear_down(&surface, &cycle, &rates, &step)?;
+        self.wear_down(surface, &cycle, &rates, &step)?;
         self.state.effort = effort;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
         let record = self.record(&cycle, &step, worn_mm3);
@@ -214,17 +233,18 @@ impl March {
         self.state.updates.last().map_or(0.0, |last| last.cycles)
     }
 
-    /// A cycle that repeats itself, the geometry held still, and the surface it pressed on.
-    fn repeating_cycle(
+    /// A cycle that repeats itself, the geometry held still, and the contact that it pressed on.
+    fn repeating_cycle<C: ContactModel>(
         &self,
-        update: usize,
+        contact: C,
         effort: &mut Effort,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(ArticulatingSurface, Cycle), CycleError> {
+    ) -> Result<(C, Cycle), MarchError> {
+        let update = self.state.updates.len() + 1;
         let mut simulator = Simulator {
             machine: &self.test.machine,
             chain: &self.chain,
-            contact: Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert),
+            contact,
             time: &self.test.time,
         };
         let increments = self.test.time.increments as f64;
@@ -237,8 +257,14 @@ impl March {
                 cycles: cycles + interval * cycles_solved.min(1.0),
             })
         };
-        let cycle = simulator.cycle(&self.state.machine, effort, &mut watch_cycle)?;
-        Ok((simulator.contact.into_surface(), cycle))
+        match simulator.cycle(&self.state.machine, effort, &mut watch_cycle) {
+            Ok(cycle) => Ok((simulator.contact, cycle)),
+            Err(source) => Err(MarchError::Cycle {
+                update,
+                cycles,
+                source,
+            }),
+        }
     }
 
     /// Cycles that the next step will likely take.

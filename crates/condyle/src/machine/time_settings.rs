@@ -7,6 +7,9 @@ pub struct TimeSettings {
     pub increments: usize,
     /// Largest force left out of balance, N; for moments, this much on a lever of 10 mm.
     pub force_tolerance_n: f64,
+    /// Whether Newton's method may stop at a correction that leaves no more than that, as foreseen
+    /// from its convergence, and not look.
+    pub foresees: bool,
     /// A cycle counts once its end lies this near to its start, mm ...
     pub repeat_tolerance_mm: f64,
     /// ... and this near, rad.
@@ -34,6 +37,7 @@ impl Default for TimeSettings {
         Self {
             increments: 200,
             force_tolerance_n: 1e-2,
+            foresees: true,
             repeat_tolerance_mm: 1e-2,
             repeat_tolerance_rad: 0.01f64.to_radians(),
             most_cycles_to_repeat: 10,

@@ -87,6 +87,7 @@ impl Case {
         TimeSettings {
             increments: time.increments as usize,
             force_tolerance_n: time.force_tolerance_n,
+            foresees: true,
             repeat_tolerance_mm: time.repeat_tolerance_mm,
             repeat_tolerance_rad: time.repeat_tolerance_deg.to_radians(),
             most_cycles_to_repeat: time.most_cycles_to_repeat as usize,
