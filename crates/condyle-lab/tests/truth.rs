@@ -120,7 +120,6 @@ fn assert_settled(march: &March) {
     for freedom in FREEDOMS {
         let apart =
             settled[freedom as usize] - march.state().machine.now.positions[freedom as usize];
-        println!("  {freedom:?} settles {apart:.1e} away");
         assert!(apart.abs() < 1e-4, "{freedom:?}: {apart}");
     }
 }

@@ -14,8 +14,14 @@ use crate::{
     Vec3,
     contact::{ContactModel, Foundation},
     geometry::ArticulatingSurface,
-    machine::{Chain, Cycle, CycleRow, Effort, Freedom, MachineState, Simulator},
+    machine::{Chain, Cycle, CycleRow, Effort, Freedom, MachineState, Simulator, TimeSettings},
 };
+
+/// The first and the last cycle, whose motions are kept, repeat themselves within this part of the
+/// tolerances. Of the others only the wear counts, and it errs a hundred times less than motions.
+const KEPT: f64 = 0.1;
+/// An update that is to reach this part of the cycles is the last: intervals do not sum up exactly.
+const LAST: f64 = 1.0 - 1e-9;
 
 /// A wear test on its way.
 pub struct March {
@@ -245,7 +251,7 @@ impl March {
             machine: &self.test.machine,
             chain: &self.chain,
             contact,
-            time: &self.test.time,
+            time: &self.time(),
         };
         let increments = self.test.time.increments as f64;
         let (cycles, interval) = (self.cycles(), self.likely_interval());
@@ -265,6 +271,16 @@ impl March {
                 source,
             }),
         }
+    }
+
+    /// How nearly the next cycle repeats itself.
+    fn time(&self) -> TimeSettings {
+        let time = self.test.time;
+        let is_last = self.cycles() + self.likely_interval() >= LAST * self.test.schedule.cycles;
+        if self.state.updates.is_empty() || is_last {
+            return time.repeating_within(KEPT);
+        }
+        time
     }
 
     /// Cycles that the next step will likely take.

@@ -20,6 +20,17 @@ pub struct TimeSettings {
     pub integration: Integration,
 }
 
+impl TimeSettings {
+    /// The same with cycles that repeat themselves within a part of the tolerances.
+    pub fn repeating_within(self, part: f64) -> Self {
+        Self {
+            repeat_tolerance_mm: part * self.repeat_tolerance_mm,
+            repeat_tolerance_rad: part * self.repeat_tolerance_rad,
+            ..self
+        }
+    }
+}
+
 /// How an increment is stepped through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integration {
