@@ -375,3 +375,78 @@ fn verify_wrench_is_the_sum_of_the_nodes_forces() {
     assert!((sum - response).norm() < 1e-9 * sum.norm());
     assert!((confined_modulus(463.0, 0.46) - MODULUS_MPA).abs() < 2.0);
 }
+
+/// A femur's pose on the way through a gait, pressed on the insert by about a thousand newtons.
+fn on_the_way(part: f64, z_mm: f64, mut force_n: impl FnMut(&Pose) -> f64) -> Pose {
+    let angle = std::f64::consts::TAU * part;
+    let turn = Vec3::new(0.02 * angle.sin(), 0.06 * angle.cos(), 0.3 * angle.sin());
+    let lowered = |height_mm: f64| Pose {
+        rotation: rotation(&turn),
+        translation: Vec3::new(2.0 * angle.cos(), height_mm, z_mm + 0.5 * angle.sin()),
+    };
+    let (mut low_mm, mut high_mm) = (20.0, 30.0);
+    for _ in 0..20 {
+        let middle_mm = (low_mm + high_mm) / 2.0;
+        match force_n(&lowered(middle_mm)) > 1000.0 {
+            true => low_mm = middle_mm,
+            false => high_mm = middle_mm,
+        }
+    }
+    lowered(low_mm)
+}
+
+/// The pose that lies `step_mm` from another towards a third, by the way of a point on the surface.
+fn towards(from: &Pose, to: &Pose, step_mm: f64) -> Pose {
+    let turn = nalgebra::Rotation3::from_matrix_unchecked(to.rotation * from.rotation.transpose());
+    let shift = to.translation - from.translation;
+    let part = step_mm / (shift.norm() + 24.0 * turn.angle());
+    Pose {
+        rotation: rotation(&(turn.scaled_axis() * part)) * from.rotation,
+        translation: from.translation + shift * part,
+    }
+}
+
+/// Largest difference of the force of a foundation that walked to a pose from that of one made
+/// there, as a fraction of it, in small steps from many places of a gait.
+fn walked_astray(femur: &FemoralSurface, z_mm: f64) -> f64 {
+    let (insert, settings) = (default_insert(), linear());
+    let force = |wrench: &Vec6| Vec3::from(wrench.fixed_rows::<3>(3));
+    let fresh = |motion: &RelativeMotion| {
+        force(&Foundation::new(&settings, femur, &insert).respond(motion))
+    };
+    let still_n = |pose: &Pose| {
+        let twist = Vec6::zeros();
+        fresh(&RelativeMotion { pose: *pose, twist }).norm()
+    };
+    let mut walked = Foundation::new(&settings, femur, &insert);
+    let mut worst: f64 = 0.0;
+    for place in 0..10 {
+        let at = |part: f64| on_the_way(part / 10.0, z_mm, still_n);
+        let (mut pose, goal) = (at(f64::from(place)), at(f64::from(place) + 1.0));
+        for step_mm in [0.001, 0.003, 0.01, 0.02].repeat(8) {
+            pose = towards(&pose, &goal, step_mm);
+            let twist = Vec6::new(0.1, 0.2, 1.0, 20.0, 0.0, 1.0);
+            let motion = RelativeMotion { pose, twist };
+            let force_n = fresh(&motion);
+            assert!(force_n.norm() > 100.0, "{place}: {force_n}");
+            let apart = (force(&walked.respond(&motion)) - force_n).norm();
+            worst = worst.max(apart / force_n.norm());
+        }
+    }
+    worst
+}
+
+#[test]
+fn samples_moved_along_in_small_steps_change_the_force_by_a_hundred_thousandth() {
+    let insert = default_insert();
+    let generic = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    for (name, femur, z_mm) in [
+        ("generic", generic, 0.0),
+        ("ball", FemoralSurface::sphere(24.0), 23.0),
+        ("mesh", mesh_femur(&insert), 23.0),
+    ] {
+        let astray = walked_astray(&femur, z_mm);
+        println!("{name}: {astray:.1e}");
+        assert!(astray < 1e-5, "{name}: {astray:e}");
+    }
+}

@@ -87,3 +87,6 @@ impl Clearance {
             / (1.0 + half_mm * self.surroundings.sharpest_per_mm)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -77,3 +77,25 @@ pub trait ContactModel {
     /// contact: not below the largest mean over a node's share.
     fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64;
 }
+
+impl<C: ContactModel + ?Sized> ContactModel for Box<C> {
+    fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
+        (**self).respond(motion)
+    }
+
+    fn tangent(&self) -> Tangent {
+        (**self).tangent()
+    }
+
+    fn mean_slip(&self) -> [Vec3; 2] {
+        (**self).mean_slip()
+    }
+
+    fn node_count(&self) -> usize {
+        (**self).node_count()
+    }
+
+    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
+        (**self).touched(motion)
+    }
+}

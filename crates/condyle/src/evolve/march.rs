@@ -12,10 +12,16 @@ use super::{
 };
 use crate::{
     Vec3,
-    contact::Foundation,
+    contact::{ContactModel, Foundation},
     geometry::ArticulatingSurface,
-    machine::{Chain, Cycle, CycleError, CycleRow, Effort, Freedom, MachineState, Simulator},
+    machine::{Chain, Cycle, CycleRow, Effort, Freedom, MachineState, Simulator, TimeSettings},
 };
+
+/// The first and the last cycle, whose motions are kept, repeat themselves within this part of the
+/// tolerances. Of the others only the wear counts, and it errs a hundred times less than motions.
+const KEPT: f64 = 0.1;
+/// An update that is to reach this part of the cycles is the last: intervals do not sum up exactly.
+const LAST: f64 = 1.0 - 1e-9;
 
 /// A wear test on its way.
 pub struct March {
@@ -140,23 +146,42 @@ impl March {
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<&UpdateRecord, MarchError> {
+        let contact = Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert);
+        let mut effort = self.state.effort;
+        let (contact, cycle) = self.repeating_cycle(contact, &mut effort, watch)?;
+        self.wear(&contact.into_surface(), cycle, effort)
+    }
+
+    /// As [`March::update`], on another model of contact: the one made for the test as worn so far.
+    ///
+    /// # Errors
+    /// As [`March::update`].
+    pub fn update_on(
+        &mut self,
+        model: impl for<'a> Fn(&'a WearTest) -> Box<dyn ContactModel + 'a>,
+        watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<&UpdateRecord, MarchError> {
+        let mut effort = self.state.effort;
+        let (_, cycle) = self.repeating_cycle(model(&self.test), &mut effort, watch)?;
+        self.wear(&self.test.insert.surface(), cycle, effort)
+    }
+
+    /// Wears the insert by an interval of a solved cycle.
+    fn wear(
+        &mut self,
+        surface: &ArticulatingSurface,
+        cycle: Cycle,
+        effort: Effort,
+    ) -> Result<&UpdateRecord, MarchError> {
         let update = self.state.updates.len() + 1;
         let cycles = self.cycles();
-        let mut effort = self.state.effort;
-        let (surface, cycle) =
-            self.repeating_cycle(update, &mut effort, watch)
-                .map_err(|source| MarchError::Cycle {
-                    update,
-                    cycles,
-                    source,
-                })?;
         if cycle.rows.iter().all(|row| row.axial_force_n == 0.0) {
             let ap_mm = cycle.end.now.positions[Freedom::AnteroPosterior as usize];
             return Err(MarchError::LostContact { update, ap_mm });
         }
         let rates = Rates::of(
             &cycle,
-            &surface,
+            surface,
             self.test.wear.as_ref(),
             &self.test.contact,
             self.test.insert.thickness_mm(),
@@ -173,7 +198,7 @@ impl March {
         let settled_error = self.state.settled_error.after(before);
         let step_error = settled_error.with_last(before, &step);
         let (mesh_nodes, worn_mm) = (self.state.mesh_nodes.clone(), self.state.worn_mm.clone());
-        self.wear_down(&surface, &cycle, &rates, &step)?;
+        self.wear_down(surface, &cycle, &rates, &step)?;
         self.state.effort = effort;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
         let record = self.record(&cycle, &step, worn_mm3);
@@ -214,18 +239,19 @@ impl March {
         self.state.updates.last().map_or(0.0, |last| last.cycles)
     }
 
-    /// A cycle that repeats itself, the geometry held still, and the surface it pressed on.
-    fn repeating_cycle(
+    /// A cycle that repeats itself, the geometry held still, and the contact that it pressed on.
+    fn repeating_cycle<C: ContactModel>(
         &self,
-        update: usize,
+        contact: C,
         effort: &mut Effort,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(ArticulatingSurface, Cycle), CycleError> {
+    ) -> Result<(C, Cycle), MarchError> {
+        let update = self.state.updates.len() + 1;
         let mut simulator = Simulator {
             machine: &self.test.machine,
             chain: &self.chain,
-            contact: Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert),
-            time: &self.test.time,
+            contact,
+            time: &self.time(),
         };
         let increments = self.test.time.increments as f64;
         let (cycles, interval) = (self.cycles(), self.likely_interval());
@@ -237,8 +263,24 @@ impl March {
                 cycles: cycles + interval * cycles_solved.min(1.0),
             })
         };
-        let cycle = simulator.cycle(&self.state.machine, effort, &mut watch_cycle)?;
-        Ok((simulator.contact.into_surface(), cycle))
+        match simulator.cycle(&self.state.machine, effort, &mut watch_cycle) {
+            Ok(cycle) => Ok((simulator.contact, cycle)),
+            Err(source) => Err(MarchError::Cycle {
+                update,
+                cycles,
+                source,
+            }),
+        }
+    }
+
+    /// How nearly the next cycle repeats itself.
+    fn time(&self) -> TimeSettings {
+        let time = self.test.time;
+        let is_last = self.cycles() + self.likely_interval() >= LAST * self.test.schedule.cycles;
+        if self.state.updates.is_empty() || is_last {
+            return time.repeating_within(KEPT);
+        }
+        time
     }
 
     /// Cycles that the next step will likely take.

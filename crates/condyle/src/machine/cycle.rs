@@ -264,6 +264,7 @@ impl<C: ContactModel> Simulator<'_, C> {
             chain: self.chain,
             contact: &mut self.contact,
             force_tolerance_n: self.time.force_tolerance_n,
+            foresees: self.time.foresees,
             effort,
         };
         match integrator.step(state, to - state.phase) {

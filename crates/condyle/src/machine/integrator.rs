@@ -188,6 +188,8 @@ pub(super) struct Integrator<'a, C> {
     pub chain: &'a Chain,
     pub contact: &'a mut C,
     pub force_tolerance_n: f64,
+    /// Whether a residual that is foreseen counts as if it were computed.
+    pub foresees: bool,
     pub effort: &'a mut Effort,
 }
 
@@ -225,7 +227,7 @@ impl<C: ContactModel> Integrator<'_, C> {
                 break;
             }
             self.effort.newton_iterations += 1;
-            if attempt.foreseen_n <= FORESEEN * self.force_tolerance_n {
+            if self.foresees && attempt.foreseen_n <= FORESEEN * self.force_tolerance_n {
                 let positions = attempt.positions;
                 return Ok(landed(self.kinematics(
                     state,

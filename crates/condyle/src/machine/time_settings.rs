@@ -10,6 +10,9 @@ pub struct TimeSettings {
     pub increment_error_mm: f64,
     /// Largest force left out of balance, N; for moments, this much on a lever of 10 mm.
     pub force_tolerance_n: f64,
+    /// Whether Newton's method may stop at a correction that leaves no more than that, as foreseen
+    /// from its convergence, and not look.
+    pub foresees: bool,
     /// A cycle counts once its end lies this near to its start, mm ...
     pub repeat_tolerance_mm: f64,
     /// ... and this near, rad.
@@ -18,6 +21,17 @@ pub struct TimeSettings {
     pub most_cycles_to_repeat: usize,
     /// How one increment is stepped through.
     pub integration: Integration,
+}
+
+impl TimeSettings {
+    /// The same with cycles that repeat themselves within a part of the tolerances.
+    pub fn repeating_within(self, part: f64) -> Self {
+        Self {
+            repeat_tolerance_mm: part * self.repeat_tolerance_mm,
+            repeat_tolerance_rad: part * self.repeat_tolerance_rad,
+            ..self
+        }
+    }
 }
 
 /// How an increment is stepped through.
@@ -38,6 +52,7 @@ impl Default for TimeSettings {
             increments: 200,
             increment_error_mm: 0.0,
             force_tolerance_n: 1e-2,
+            foresees: true,
             repeat_tolerance_mm: 1e-2,
             repeat_tolerance_rad: 0.01f64.to_radians(),
             most_cycles_to_repeat: 10,
