@@ -16,6 +16,7 @@ use condyle::{
 use condyle_io::case::Case;
 
 use crate::{
+    budgets,
     cases::{self, GENERIC, REAL, built, marched},
     gait::{Asked, Gait},
 };
@@ -60,7 +61,7 @@ pub fn print(condyle: Option<&Path>) {
         beside_another(&generic),
         "times",
     );
-    println!();
+    println!("\n{WORK}");
     print_work(GENERIC, &generic);
     if let Some(real) = cases::read(REAL) {
         print_work(REAL, &real);
@@ -87,24 +88,24 @@ fn print_real(real: &Case, generic: &Case) {
         "s",
     );
     let march = March::start(built(real)).expect("a shipped case settles");
-    let [first_us, all_us] = evaluation_us(&Gait::under(&march, AXIAL_FORCE_N));
+    let under_2600_n = Evaluations::timed(&Gait::under(&march, AXIAL_FORCE_N));
     row(
         "one contact evaluation of it at 2600 N, as the march asks",
         15.0,
-        all_us,
+        under_2600_n.median_us(),
         "us",
     );
     row(
         "the same, first look at an increment's pose only",
         15.0,
-        first_us,
+        under_2600_n.median_of_firsts_us(),
         "us",
     );
-    let [_, all_us] = evaluation_us(&Gait::of(&march));
+    let of_gait = Evaluations::timed(&Gait::of(&march));
     row(
         "the same under the gait's own force, as the march asks",
         15.0,
-        all_us,
+        of_gait.median_us(),
         "us",
     );
 }
@@ -114,26 +115,35 @@ fn row(figure: &str, target: f64, measured: f64, unit: &str) {
     println!("| {figure} | {target} {unit} | {measured:.3} {unit} | {verdict} |");
 }
 
-/// How much work the march does, from which the time of a cycle comes.
+/// How much work the march of a case does, from which its time comes.
 fn print_work(name: &str, case: &Case) {
     let state = solved(case);
     let march = March::start(built(case)).expect("a shipped case settles");
-    let cycles: f64 = state
-        .updates
-        .iter()
-        .map(|update| update.cycles_solved)
-        .sum();
-    let effort = state.effort;
-    println!(
-        "`{name}`: {:.1} cycles solved, {:.0} Newton iterations and {:.0} contact evaluations each; {} articulating \
-         nodes, of which {:.0} press on average.",
-        cycles,
-        effort.newton_iterations as f64 / cycles,
-        effort.contact_evaluations as f64 / cycles,
-        march.test().insert.surface_nodes().len(),
-        mean_pressing(&Gait::of(&march)),
-    );
+    let gait = Gait::of(&march);
+    let updates = state.updates.iter();
+    let cycles: f64 = updates.map(|update| update.cycles_solved).sum();
+    let per_cycle = |work: u64| work as f64 / cycles;
+    let budgets = budgets::read();
+    let budget = |work: &str| budgets.get(name).and_then(|of_case| of_case.get(work));
+    let nodes = march.test().insert.surface_nodes().len();
+    let cells = [
+        format!("`{name}`"),
+        format!("{cycles:.1}"),
+        format!("{:.0}", per_cycle(state.effort.newton_iterations)),
+        format!("{:.0}", per_cycle(state.effort.contact_evaluations)),
+        format!("{nodes}"),
+        format!("{:.0}", mean_pressing(&gait)),
+        budget("contact_evaluation").map_or_else(String::new, u64::to_string),
+        format!("{:.1} us", Evaluations::timed(&gait).mean_us()),
+    ];
+    println!("| {} |", cells.join(" | "));
 }
+
+/// Columns of the table of work.
+const WORK: &str = "\
+| case | cycles solved | Newton iterations a cycle | contact evaluations a cycle | articulating nodes | \
+of them press, mean | instructions an evaluation | time of one, mean |
+| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |";
 
 /// Nodes that press, averaged over the evaluations of a cycle.
 fn mean_pressing(gait: &Gait<'_>) -> f64 {
@@ -197,19 +207,36 @@ fn beside_another(generic: &Case) -> f64 {
     beside_s / alone_s
 }
 
-/// Medians over the evaluations of a cycle: over those first in their increment, and over all.
-fn evaluation_us(gait: &Gait<'_>) -> [f64; 2] {
-    let asked = gait.asked();
-    let mut least = vec![Duration::MAX; asked.len()];
-    for _ in 0..EVALUATION_ROUNDS {
-        let mut contact = gait.contact();
-        for (asked, least) in asked.iter().zip(&mut least) {
-            *least = (*least).min(evaluation_time(&mut contact, asked));
+/// The least time of every evaluation of a cycle, and whether it is the first of its increment.
+struct Evaluations(Vec<(Duration, bool)>);
+
+impl Evaluations {
+    fn timed(gait: &Gait<'_>) -> Self {
+        let asked = gait.asked();
+        let mut least = vec![Duration::MAX; asked.len()];
+        for _ in 0..EVALUATION_ROUNDS {
+            let mut contact = gait.contact();
+            for (asked, least) in asked.iter().zip(&mut least) {
+                *least = (*least).min(evaluation_time(&mut contact, asked));
+            }
         }
+        let is_first = asked.iter().map(|asked| asked.is_first);
+        Self(least.into_iter().zip(is_first).collect())
     }
-    let firsts = asked.iter().zip(&least).filter(|(asked, _)| asked.is_first);
-    let firsts = firsts.map(|(_, least)| *least).collect();
-    [firsts, least].map(median_us)
+
+    fn median_us(&self) -> f64 {
+        median_us(self.0.iter().map(|(time, _)| *time).collect())
+    }
+
+    fn median_of_firsts_us(&self) -> f64 {
+        let firsts = self.0.iter().filter(|(_, is_first)| *is_first);
+        median_us(firsts.map(|(time, _)| *time).collect())
+    }
+
+    fn mean_us(&self) -> f64 {
+        let sum: Duration = self.0.iter().map(|(time, _)| *time).sum();
+        sum.as_secs_f64() * 1e6 / self.0.len() as f64
+    }
 }
 
 /// Wrench and tangent.
