@@ -63,3 +63,18 @@ need_results() {
     mkdir -p "$(dirname "$results")"
     "$condyle" run cases/stanmore-force.toml --out "$results"
 }
+
+# Builds the program that measures; sets $figures to its path.
+need_figures() {
+    need_command python3 python3
+    figures=$(cargo bench --locked --quiet -p condyle-lab --bench figures --no-run --message-format=json |
+        python3 -c 'import json, sys
+for line in map(json.loads, sys.stdin):
+    if line.get("target", {}).get("name") == "figures": print(line["executable"])')
+    [[ -x $figures ]] || { echo "cargo built no program called figures" >&2; return 1; }
+}
+
+# Runs a command before others that are running, where the system allows it.
+first() {
+    if chrt -f 50 true 2>/dev/null; then chrt -f 50 "$@"; else "$@"; fi
+}

@@ -8,6 +8,7 @@ mod converge;
 mod exit;
 mod export;
 mod new;
+mod processor;
 mod progress;
 mod report;
 mod run;
@@ -19,6 +20,15 @@ use clap::Parser;
 use arguments::{Arguments, Command};
 
 fn main() -> ExitCode {
+    match processor::check() {
+        Ok(()) => run_command(),
+        Err(code) => code,
+    }
+}
+
+/// Apart, so that no vector is used before the processor is looked at.
+#[inline(never)]
+fn run_command() -> ExitCode {
     match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),

@@ -170,7 +170,17 @@ fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
         ),
         (
             "Newton iterations",
-            format!("{}", summary.newton_iterations),
+            per_cycle(
+                summary.newton_iterations,
+                summary.newton_iterations_per_cycle,
+            ),
+        ),
+        (
+            "contact evaluations",
+            per_cycle(
+                summary.contact_evaluations,
+                summary.contact_evaluations_per_cycle,
+            ),
         ),
         (
             "hexahedra, worst quality",
@@ -182,6 +192,11 @@ fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
         rows.extend(rows_of_error(error));
     }
     rows
+}
+
+/// Work in all, and of a cycle solved.
+fn per_cycle(all: u64, per_cycle: f64) -> String {
+    format!("{all}, {per_cycle:.0} a cycle")
 }
 
 /// Where the discretisation error comes from: signed, what finer values would change.

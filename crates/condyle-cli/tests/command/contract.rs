@@ -22,6 +22,8 @@ const KEYS: &[&str] = &[
     "increments",
     "newton_iterations",
     "contact_evaluations",
+    "newton_iterations_per_cycle",
+    "contact_evaluations_per_cycle",
     "worst_quality",
     "wall_s",
 ];
@@ -132,6 +134,8 @@ fn the_summary_has_every_key_and_its_numbers_agree() {
     assert!((number("mass_loss_mg") / volume - 0.93).abs() < 1e-12);
     assert!(number("newton_iterations") >= 150.0);
     assert!(number("contact_evaluations") >= number("newton_iterations"));
+    let all = number("contact_evaluations_per_cycle") * number("cycles_solved");
+    assert!((all / number("contact_evaluations") - 1.0).abs() < 1e-12);
     assert!((0.0..=1.0).contains(&number("medial_load_share")));
     assert!(number("worst_quality") <= 1.0);
 }

@@ -41,7 +41,8 @@ fn the_table_at_the_end_is_short_and_has_units() {
         format!("{:.2} mg", summary.mass_loss_mg),
         format!("{:.4} mm", summary.max_depth_mm),
         "gait cycles                 5000000".to_owned(),
-        format!("{}", summary.newton_iterations),
+        format!("{}, ", summary.newton_iterations),
+        format!("{:.0} a cycle", summary.contact_evaluations_per_cycle),
         "results in out; open out/report.html".to_owned(),
     ];
     for words in expected {

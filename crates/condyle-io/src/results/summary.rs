@@ -66,6 +66,10 @@ pub struct Summary {
     pub newton_iterations: u64,
     /// Contact evaluations in all.
     pub contact_evaluations: u64,
+    /// Newton iterations of a cycle solved, on average.
+    pub newton_iterations_per_cycle: f64,
+    /// Contact evaluations of a cycle solved, on average.
+    pub contact_evaluations_per_cycle: f64,
     /// Steps that were halved.
     pub step_halvings: u64,
     /// Steps of the explicit integrator; none of the implicit one.
@@ -99,6 +103,8 @@ impl Summary {
         let last = updates.last()?;
         let first_cycle = &state.first_and_last.as_ref()?.0.rows;
         let explicit = Some(&state.effort).filter(|effort| effort.explicit_steps > 0);
+        let cycles_solved: f64 = updates.iter().map(|update| update.cycles_solved).sum();
+        let per_cycle = |work: u64| work as f64 / cycles_solved;
         let largest =
             |value: fn(&UpdateRecord) -> f64| updates.iter().map(value).fold(0.0, f64::max);
         Some(Self {
@@ -115,10 +121,12 @@ impl Summary {
             medial_load_share: medial_load_share(first_cycle),
             updates: updates.len(),
             increments: input.increments,
-            cycles_solved: updates.iter().map(|update| update.cycles_solved).sum(),
+            cycles_solved,
             cycles_not_repeating: updates.iter().filter(|update| !update.repeats).count(),
             newton_iterations: state.effort.newton_iterations,
             contact_evaluations: state.effort.contact_evaluations,
+            newton_iterations_per_cycle: per_cycle(state.effort.newton_iterations),
+            contact_evaluations_per_cycle: per_cycle(state.effort.contact_evaluations),
             step_halvings: state.effort.halvings,
             explicit_steps: explicit.map(|effort| effort.explicit_steps),
             added_inertia: explicit.map(|effort| effort.added_inertia),

@@ -155,6 +155,18 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "How often force, moment and tangent of the contact were computed.",
             ),
             known(
+                "newton_iterations_per_cycle",
+                "Newton iterations a cycle",
+                "",
+                "Of a cycle solved, on average.",
+            ),
+            known(
+                "contact_evaluations_per_cycle",
+                "Contact evaluations a cycle",
+                "",
+                "Of a cycle solved, on average.",
+            ),
+            known(
                 "explicit_steps",
                 "Explicit steps",
                 "",

@@ -1,0 +1,55 @@
+//! The cases that are measured.
+
+use std::{
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
+
+use condyle::evolve::{March, MarchState, WearTest};
+use condyle_io::case::{Case, Override};
+
+/// The generic implant: no file is needed.
+pub const GENERIC: &str = "stanmore-force";
+/// A real implant, whose meshes may not be there.
+pub const REAL: &str = "dm-knee";
+
+pub fn path(name: &str) -> PathBuf {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    cases.join(name).with_extension("toml")
+}
+
+/// The case of that name; none, and a word on why, where its data are not there.
+pub fn read(name: &str) -> Option<Case> {
+    match Case::read(&path(name)) {
+        Ok(case) => Some(case),
+        Err(error) => {
+            eprintln!("skipped: {name}: {error}");
+            assert!(
+                std::env::var("CI").as_deref() != Ok("true"),
+                "CI allows no skip"
+            );
+            None
+        }
+    }
+}
+
+/// The generic case with one number changed.
+pub fn generic_with(key: &str, value: f64) -> Case {
+    let changed = Override::new(key, &format!("{value:?}")).expect("a number");
+    Case::read_with(&path(GENERIC), &changed).expect("a shipped case is read")
+}
+
+pub fn built(case: &Case) -> WearTest {
+    case.build(1).expect("a shipped case builds").test
+}
+
+/// All updates of a test, from its bodies.
+pub fn marched(test: WearTest) -> MarchState {
+    let mut march = March::start(test).expect("a shipped case settles");
+    while !march.is_done() {
+        march
+            .update(&mut |_| ControlFlow::Continue(()))
+            .expect("a shipped case is solved");
+    }
+    march.state().clone()
+}

@@ -1,0 +1,60 @@
+//! The work whose instructions are counted, each in a function that is not inlined, so that its name
+//! is found in what callgrind writes.
+
+use std::hint::black_box;
+
+use condyle::{
+    contact::{ContactModel, Foundation},
+    evolve::March,
+};
+use condyle_io::case::Case;
+
+use crate::{
+    cases::{self, GENERIC},
+    gait::{Asked, Gait},
+};
+
+/// What is counted: its name in the budgets, and its function here.
+pub const COUNTED: [(&str, &str); 3] = [
+    ("contact_evaluation", "counted_contact_evaluations"),
+    ("increment", "counted_increments"),
+    ("whole_test", "counted_whole_test"),
+];
+
+/// Does the work on a case, and prints how many of each thing it did.
+pub fn run(name: &str) {
+    let case = cases::read(name).expect("looked for by who asks");
+    let march = March::start(cases::built(&case)).expect("a shipped case settles");
+    let gait = Gait::of(&march);
+    let asked = gait.asked();
+    counted_contact_evaluations(&mut gait.contact(), &asked);
+    println!("contact_evaluation {}", asked.len());
+    let increments = counted_increments(&gait, gait.contact());
+    println!("increment {increments}");
+    // The femur's preparation would take callgrind a minute, and is no part of the march.
+    if name == GENERIC {
+        counted_whole_test(&case);
+        println!("whole_test 1");
+    }
+}
+
+/// Wrench and tangent, as the first cycle asks for them.
+#[inline(never)]
+fn counted_contact_evaluations(contact: &mut Foundation<'_>, asked: &[Asked]) {
+    for asked in asked {
+        black_box(contact.respond(&asked.motion));
+        black_box(contact.tangent());
+    }
+}
+
+/// The first cycle.
+#[inline(never)]
+fn counted_increments(gait: &Gait<'_>, contact: Foundation<'_>) -> usize {
+    black_box(gait.solve(contact))
+}
+
+/// From the parsed case to the last update.
+#[inline(never)]
+fn counted_whole_test(case: &Case) {
+    black_box(cases::marched(cases::built(case)));
+}

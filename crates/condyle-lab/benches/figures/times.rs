@@ -1,0 +1,262 @@
+//! Times beside their targets.
+//!
+//! A time is the least of several: whatever else a machine does makes it longer, never shorter.
+
+use std::{
+    hint::black_box,
+    path::Path,
+    process::{Command, Stdio},
+    time::{Duration, Instant},
+};
+
+use condyle::{
+    contact::{ContactModel, Foundation},
+    evolve::{March, MarchState},
+};
+use condyle_io::case::Case;
+
+use crate::{
+    budgets,
+    cases::{self, GENERIC, REAL, built, marched},
+    gait::{Asked, Gait},
+};
+
+/// Of whole tests.
+const ROUNDS: usize = 9;
+/// Of every contact evaluation.
+const EVALUATION_ROUNDS: usize = 25;
+/// Axial force of the figure for one contact evaluation, N.
+const AXIAL_FORCE_N: f64 = 2600.0;
+
+/// Prints the table of figures; the whole command's only where its path is given.
+pub fn print(condyle: Option<&Path>) {
+    println!("| figure | at most | measured | |");
+    println!("| --- | ---: | ---: | --- |");
+    let generic = cases::read(GENERIC).expect("a shipped case is read");
+    let generic_s = least_s(ROUNDS, || solved(&generic));
+    row("`stanmore-force`, solver only", 0.10, generic_s, "s");
+    if let Some(condyle) = condyle {
+        let whole_s = least_s(ROUNDS, || run_command(condyle));
+        row(
+            "the whole command, files and report included",
+            0.5,
+            whole_s,
+            "s",
+        );
+    }
+    if let Some(real) = cases::read(REAL) {
+        print_real(&real, &generic);
+    }
+    let finer = finer(&generic);
+    let ratio = least_s(ROUNDS, || solved(&finer)) / generic_s;
+    row(
+        "four times the articulating nodes, of the time",
+        4.5,
+        ratio,
+        "times",
+    );
+    row(
+        "one of two runs at once, of the time alone",
+        1.1,
+        beside_another(&generic),
+        "times",
+    );
+    println!("\n{WORK}");
+    print_work(GENERIC, &generic);
+    if let Some(real) = cases::read(REAL) {
+        print_work(REAL, &real);
+    }
+}
+
+/// The figures of a real implant; those of the femur are told from the insert's by a test with the
+/// same femur and an insert that takes no time.
+fn print_real(real: &Case, generic: &Case) {
+    let mut femur_only = real.clone();
+    femur_only.insert = generic.insert.clone();
+    let preparation_s = least_s(ROUNDS, || built(&femur_only));
+    let whole_s = least_s(ROUNDS, || solved(real));
+    row(
+        "`dm-knee`, solver only, after the femur's preparation",
+        0.3,
+        whole_s - preparation_s,
+        "s",
+    );
+    row(
+        "preparation of its femur, 24,442 triangles",
+        0.2,
+        preparation_s,
+        "s",
+    );
+    let march = March::start(built(real)).expect("a shipped case settles");
+    let under_2600_n = Evaluations::timed(&Gait::under(&march, AXIAL_FORCE_N));
+    row(
+        "one contact evaluation of it at 2600 N, as the march asks",
+        15.0,
+        under_2600_n.median_us(),
+        "us",
+    );
+    row(
+        "the same, first look at an increment's pose only",
+        15.0,
+        under_2600_n.median_of_firsts_us(),
+        "us",
+    );
+    let of_gait = Evaluations::timed(&Gait::of(&march));
+    row(
+        "the same under the gait's own force, as the march asks",
+        15.0,
+        of_gait.median_us(),
+        "us",
+    );
+}
+
+fn row(figure: &str, target: f64, measured: f64, unit: &str) {
+    let verdict = if measured <= target { "met" } else { "not met" };
+    println!("| {figure} | {target} {unit} | {measured:.3} {unit} | {verdict} |");
+}
+
+/// How much work the march of a case does, from which its time comes.
+fn print_work(name: &str, case: &Case) {
+    let state = solved(case);
+    let march = March::start(built(case)).expect("a shipped case settles");
+    let gait = Gait::of(&march);
+    let updates = state.updates.iter();
+    let cycles: f64 = updates.map(|update| update.cycles_solved).sum();
+    let per_cycle = |work: u64| work as f64 / cycles;
+    let budgets = budgets::read();
+    let budget = |work: &str| budgets.get(name).and_then(|of_case| of_case.get(work));
+    let nodes = march.test().insert.surface_nodes().len();
+    let cells = [
+        format!("`{name}`"),
+        format!("{cycles:.1}"),
+        format!("{:.0}", per_cycle(state.effort.newton_iterations)),
+        format!("{:.0}", per_cycle(state.effort.contact_evaluations)),
+        format!("{nodes}"),
+        format!("{:.0}", mean_pressing(&gait)),
+        budget("contact_evaluation").map_or_else(String::new, u64::to_string),
+        format!("{:.1} us", Evaluations::timed(&gait).mean_us()),
+    ];
+    println!("| {} |", cells.join(" | "));
+}
+
+/// Columns of the table of work.
+const WORK: &str = "\
+| case | cycles solved | Newton iterations a cycle | contact evaluations a cycle | articulating nodes | \
+of them press, mean | instructions an evaluation | time of one, mean |
+| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |";
+
+/// Nodes that press, averaged over the evaluations of a cycle.
+fn mean_pressing(gait: &Gait<'_>) -> f64 {
+    let (asked, mut contact) = (gait.asked(), gait.contact());
+    let pressing = |asked: &Asked| {
+        contact.respond(&asked.motion);
+        contact.touched(&asked.motion).len()
+    };
+    asked.iter().map(pressing).sum::<usize>() as f64 / asked.len() as f64
+}
+
+/// Solves a case again and again, and says how long each took.
+pub fn solve(name: &str, times: usize) {
+    let case = cases::read(name).expect("the case is read");
+    for _ in 0..times {
+        println!("{:.4}", least_s(1, || solved(&case)));
+    }
+}
+
+/// From the parsed case to the last update.
+fn solved(case: &Case) -> MarchState {
+    marched(built(case))
+}
+
+/// The generic case with edges half as long.
+fn finer(generic: &Case) -> Case {
+    let condyle_io::case::Insert::Generic(insert) = &generic.insert else {
+        panic!("the generic case has a generic insert");
+    };
+    cases::generic_with("insert.edge_mm", insert.edge_mm / 2.0)
+}
+
+fn run_command(condyle: &Path) {
+    let folder = tempfile::tempdir().expect("a folder for results");
+    let done = Command::new(condyle)
+        .arg("run")
+        .arg(cases::path(GENERIC))
+        .arg("--out")
+        .arg(folder.path().join("results"))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .expect("the command runs");
+    assert!(done.success(), "the command fails: {done}");
+}
+
+/// The time of a whole test in this process while another solves the same, over that alone.
+fn beside_another(generic: &Case) -> f64 {
+    let alone_s = least_s(ROUNDS, || solved(generic));
+    let this = std::env::current_exe().expect("a program knows where it is");
+    let mut other = Command::new(this)
+        .args(["solve", GENERIC, "1000000"])
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("this program runs twice");
+    // The other must be at work before the first round.
+    std::thread::sleep(Duration::from_secs_f64(alone_s));
+    let beside_s = least_s(ROUNDS, || solved(generic));
+    other.kill().expect("the other run ends");
+    other.wait().expect("the other run ends");
+    beside_s / alone_s
+}
+
+/// The least time of every evaluation of a cycle, and whether it is the first of its increment.
+struct Evaluations(Vec<(Duration, bool)>);
+
+impl Evaluations {
+    fn timed(gait: &Gait<'_>) -> Self {
+        let asked = gait.asked();
+        let mut least = vec![Duration::MAX; asked.len()];
+        for _ in 0..EVALUATION_ROUNDS {
+            let mut contact = gait.contact();
+            for (asked, least) in asked.iter().zip(&mut least) {
+                *least = (*least).min(evaluation_time(&mut contact, asked));
+            }
+        }
+        let is_first = asked.iter().map(|asked| asked.is_first);
+        Self(least.into_iter().zip(is_first).collect())
+    }
+
+    fn median_us(&self) -> f64 {
+        median_us(self.0.iter().map(|(time, _)| *time).collect())
+    }
+
+    fn median_of_firsts_us(&self) -> f64 {
+        let firsts = self.0.iter().filter(|(_, is_first)| *is_first);
+        median_us(firsts.map(|(time, _)| *time).collect())
+    }
+
+    fn mean_us(&self) -> f64 {
+        let sum: Duration = self.0.iter().map(|(time, _)| *time).sum();
+        sum.as_secs_f64() * 1e6 / self.0.len() as f64
+    }
+}
+
+/// Wrench and tangent.
+fn evaluation_time(contact: &mut Foundation<'_>, asked: &Asked) -> Duration {
+    let start = Instant::now();
+    black_box(contact.respond(&asked.motion));
+    black_box(contact.tangent());
+    start.elapsed()
+}
+
+fn median_us(mut times: Vec<Duration>) -> f64 {
+    times.sort_unstable();
+    times[times.len() / 2].as_secs_f64() * 1e6
+}
+
+fn least_s<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
+    let mut time = || {
+        let start = Instant::now();
+        black_box(work());
+        start.elapsed().as_secs_f64()
+    };
+    (0..rounds).map(|_| time()).fold(f64::INFINITY, f64::min)
+}

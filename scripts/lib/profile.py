@@ -1,0 +1,85 @@
+"""Where the time of a whole test goes, by parts of the program: a table in Markdown.
+
+`perf` samples the program; `addr2line` says which functions were inlined where it was, and the first
+part whose pattern fits one of them gets the sample.
+"""
+
+import collections
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+# Where the kernel puts a program whose addresses are not randomised.
+BASE = 0x555555554000
+
+# Patterns fit "function file".
+PARTS = [
+    ("femur: its distance field, once", r"geometry/curved_mesh|(gaps_at_nodes|new|filtered) .*geometry/smooth_field"),
+    ("contact: which shares are due", r"(find_due|is_still_apart|travel) .*contact/nearness"),
+    ("contact: look at the femur", r"look .*contact/foundation|contact/seen|geometry/(smooth_field|generic_femur|torus|femoral_surface)"),
+    ("contact: press", r"press .*contact/foundation"),
+    ("contact: tangent", r"tangent .*contact/foundation"),
+    ("contact: pressure and sliding at the nodes", r"(touched|touch|landed) .*contact/foundation"),
+    ("contact: shares of the new surface", r"contact/(shares|nearness)|new .*contact/foundation"),
+    ("contact: rest", r"respond .*contact/foundation"),
+    ("histories and wear", r"contact/history|condyle/src/wear/|evolve/(rates|interval|step)|(gather|land) .*machine/cycle"),
+    ("surface: normals, areas and averages", r"geometry/articulating_surface"),
+    ("mesh: the inside follows", r"condyle-fem/src/follow"),
+    ("mesh: quality and volume", r"condyle-fem/src/"),
+    ("insert: made, worn, its thickness", r"geometry/|condyle-io/"),
+    ("Newton's method, machine and chain", r"condyle/src/machine/"),
+    ("placing and marching", r"evolve/"),
+]
+REST = "allocation, kernel and rest"
+TIMES = 12
+
+
+def sampled(program, case, folder):
+    """How often the program was seen at each address."""
+    data = folder / "perf.data"
+    run = ["setarch", "-R", "perf", "record", "-q", "-F", "4000", "-o", data, program, "solve", case, str(TIMES)]
+    subprocess.run(run, check=True, stdout=subprocess.DEVNULL)
+    told = subprocess.run(["perf", "script", "-i", data, "-F", "ip"], check=True, capture_output=True, text=True)
+    return collections.Counter(int(line, 16) - BASE for line in told.stdout.split())
+
+
+def frames(program, addresses):
+    """Of every address, the functions inlined there, each with its file."""
+    asked = "\n".join(hex(address) for address in addresses)
+    command = ["addr2line", "-a", "-f", "-i", "-C", "-e", program]
+    told = subprocess.run(command, input=asked, check=True, capture_output=True, text=True).stdout
+    found = {}
+    lines = iter(told.splitlines())
+    for line in lines:
+        if line.startswith("0x"):
+            here = found.setdefault(int(line, 16), [])
+        else:
+            here.append(f"{line} {next(lines, '')}")
+    return found
+
+
+def part_of(functions):
+    for part, pattern in PARTS:
+        if any(re.search(pattern, function) for function in functions):
+            return part
+    return REST
+
+
+def main():
+    program, case = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        samples = sampled(program, case, Path(folder))
+    inside = [address for address in samples if 0 <= address < 1 << 32]
+    found = frames(program, inside)
+    shares = collections.Counter()
+    for address, count in samples.items():
+        shares[part_of(found.get(address, []))] += count
+    print("| part | share |\n| --- | ---: |")
+    for part, count in shares.most_common():
+        print(f"| {part} | {100 * count / samples.total():.1f} % |")
+
+
+if __name__ == "__main__":
+    main()
