@@ -98,4 +98,8 @@ impl<C: ContactModel + ?Sized> ContactModel for Box<C> {
     fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
         (**self).touched(motion)
     }
+
+    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64 {
+        (**self).peak_pressure_mpa(motion, touched)
+    }
 }
