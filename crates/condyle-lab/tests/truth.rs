@@ -60,6 +60,10 @@ impl ContactModel for BruteForce<'_> {
         self.respond(motion);
         self.last.touched(motion)
     }
+
+    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64 {
+        self.last.peak_pressure_mpa(motion, touched)
+    }
 }
 
 /// A shipped case, built; none where its meshes are not there.
