@@ -7,9 +7,11 @@ use thiserror::Error;
 
 use super::{
     Chain, FREEDOMS, Freedom, Integration, Machine, TimeSettings,
-    balance::Kinematics,
+    balance::{Balance, Kinematics},
     explicit::{Explicit, NoStep},
-    integrator::{Effort, Integrator, MachineState, NotConverged, drive},
+    integrator::{
+        Effort, Integrator, MachineState, NotConverged, drive, loads_at, out_of_balance_n,
+    },
 };
 use crate::contact::{ContactModel, CycleHistory, Moment, TouchedNode};
 
@@ -179,7 +181,7 @@ impl<C: ContactModel> Simulator<'_, C> {
             let place = (first + solved) % count;
             let to = (place + 1) as f64 / count as f64;
             state = match self.time.integration {
-                Integration::Implicit => self.advance(&state, to, MOST_HALVINGS, effort)?,
+                Integration::Implicit => self.step(&state, to, effort, &mut |_| ())?,
                 Integration::Explicit { least_step_s } => Explicit {
                     machine: self.machine,
                     chain: self.chain,
@@ -251,6 +253,29 @@ impl<C: ContactModel> Simulator<'_, C> {
         1.0 / (self.machine.frequency_hz * self.time.increments as f64)
     }
 
+    /// The machine at the phase `to`, an increment after `state`, by the implicit integrator.
+    ///
+    /// `watch` is told the length of the residual at every iteration of Newton's method, N, moments
+    /// on a lever of 10 mm. A step that does not converge is taken in halves.
+    ///
+    /// # Errors
+    /// An increment that does not converge.
+    pub fn step(
+        &mut self,
+        state: &MachineState,
+        to: f64,
+        effort: &mut Effort,
+        watch: &mut dyn FnMut(f64),
+    ) -> Result<MachineState, CycleError> {
+        self.advance(state, to, MOST_HALVINGS, effort, watch)
+    }
+
+    /// Largest force out of balance at a state, N; for moments, on a lever of 10 mm.
+    pub fn out_of_balance_n(&mut self, state: &MachineState) -> f64 {
+        let balance = Balance::new(self.machine, self.chain, &mut self.contact, state.now);
+        out_of_balance_n(&balance.residual(&loads_at(self.machine, state.phase)))
+    }
+
     /// Steps to a phase, in halves where a step does not converge.
     fn advance(
         &mut self,
@@ -258,6 +283,7 @@ impl<C: ContactModel> Simulator<'_, C> {
         to: f64,
         halvings: u32,
         effort: &mut Effort,
+        watch: &mut dyn FnMut(f64),
     ) -> Result<MachineState, CycleError> {
         let mut integrator = Integrator {
             machine: self.machine,
@@ -267,13 +293,14 @@ impl<C: ContactModel> Simulator<'_, C> {
             foresees: self.time.foresees,
             effort,
         };
-        match integrator.step(state, to - state.phase) {
+        match integrator.step(state, to - state.phase, watch) {
             Ok(next) => Ok(MachineState { phase: to, ..next }),
             Err(failed) if halvings == 0 => Err(failed.into()),
             Err(_) => {
                 effort.halvings += 1;
-                let middle = self.advance(state, (state.phase + to) / 2.0, halvings - 1, effort)?;
-                self.advance(&middle, to, halvings - 1, effort)
+                let half = (state.phase + to) / 2.0;
+                let middle = self.advance(state, half, halvings - 1, effort, watch)?;
+                self.advance(&middle, to, halvings - 1, effort, watch)
             }
         }
     }
