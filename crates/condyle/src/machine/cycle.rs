@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::{
     Chain, FREEDOMS, Freedom, Integration, Machine, TimeSettings,
-    balance::Kinematics,
+    balance::{Balance, Kinematics},
     explicit::{Explicit, NoStep},
     integrator::{Effort, Integrator, MachineState, NotConverged, drive, step_error_mm},
 };
@@ -179,7 +179,7 @@ impl<C: ContactModel> Simulator<'_, C> {
             let place = (first + solved) % count;
             let to = (place + 1) as f64 / count as f64;
             state = match self.time.integration {
-                Integration::Implicit => self.advance(&state, to, MOST_HALVINGS, effort)?,
+                Integration::Implicit => self.step(&state, to, effort, &mut |_| ())?,
                 Integration::Explicit { least_step_s } => Explicit {
                     machine: self.machine,
                     chain: self.chain,
@@ -258,6 +258,7 @@ impl<C: ContactModel> Simulator<'_, C> {
         to: f64,
         halvings: u32,
         effort: &mut Effort,
+        watch: &mut dyn FnMut(f64),
     ) -> Result<MachineState, CycleError> {
         let mut integrator = Integrator {
             machine: self.machine,
@@ -267,15 +268,16 @@ impl<C: ContactModel> Simulator<'_, C> {
             foresees: self.time.foresees,
             effort,
         };
-        match integrator.step(state, to - state.phase) {
+        match integrator.step(state, to - state.phase, watch) {
             Ok(next) if halvings == 0 || self.is_exact_enough(state, &next) => {
                 Ok(MachineState { phase: to, ..next })
             }
             Err(failed) if halvings == 0 => Err(failed.into()),
             _ => {
                 effort.halvings += 1;
-                let middle = self.advance(state, (state.phase + to) / 2.0, halvings - 1, effort)?;
-                self.advance(&middle, to, halvings - 1, effort)
+                let half = (state.phase + to) / 2.0;
+                let middle = self.advance(state, half, halvings - 1, effort, watch)?;
+                self.advance(&middle, to, halvings - 1, effort, watch)
             }
         }
     }

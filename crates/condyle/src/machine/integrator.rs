@@ -197,8 +197,13 @@ impl<C: ContactModel> Integrator<'_, C> {
     /// The state a `step` of the cycle later.
     ///
     /// BDF2 is stable however stiff the contact, damps what a step cannot resolve, and its error
-    /// falls with the square of the step.
-    pub fn step(&mut self, state: &MachineState, step: f64) -> Result<MachineState, NotConverged> {
+    /// falls with the square of the step. `watch` is told the length of every residual, N.
+    pub fn step(
+        &mut self,
+        state: &MachineState,
+        step: f64,
+        watch: &mut dyn FnMut(f64),
+    ) -> Result<MachineState, NotConverged> {
         let phase = state.phase + step;
         let step_s = step / self.machine.frequency_hz;
         let ratio = state.before.map_or(0.0, |(_, last_s)| step_s / last_s);
@@ -219,6 +224,7 @@ impl<C: ContactModel> Integrator<'_, C> {
             let balance = Balance::new(self.machine, self.chain, self.contact, kinematics);
             self.effort.contact_evaluations += 1;
             let residual = balance.residual(&loads);
+            watch(length_n(&residual));
             if out_of_balance_n(&residual) <= self.force_tolerance_n {
                 return Ok(landed(kinematics));
             }

@@ -1,0 +1,139 @@
+//! Newton's method on the default case: it converges quadratically, and where it stops without
+//! looking, it might have looked.
+
+use std::path::Path;
+
+use condyle::{
+    contact::Foundation,
+    evolve::{March, WearTest},
+    machine::{Chain, Effort, MachineState, Simulator, TimeSettings},
+};
+use condyle_io::case::Case;
+
+/// How far the residuals are followed, N.
+const EXACT_N: f64 = 1e-7;
+/// Below this the solution is near: Newton's method has no corner of the contact's edge or of
+/// friction left on its way, N.
+const NEAR_N: f64 = 1.0;
+/// A residual r leaves at most this many times r^2, 1/N; the worst of a gait is 0.15.
+const QUADRATIC_PER_N: f64 = 0.3;
+/// The tangent is summed in single precision, and so off by some 1e-7 of itself: of a residual, a
+/// correction leaves about so much besides.
+const SINGLE: f64 = 3e-6;
+/// Rounding of forces of some thousand newtons, N.
+const ROUNDING_N: f64 = 2e-9;
+/// A state that is accepted by foresight may be so many tolerances out of balance: the foreseen
+/// residual takes the contraction to be that of the correction before.
+const FORESIGHT: f64 = 5.0;
+
+fn default_case() -> March {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let case = Case::read(&cases.join("stanmore-force.toml")).expect("a shipped case is good");
+    let test = case.build(1).expect("a shipped case builds").test;
+    March::start(test).expect("a shipped case settles")
+}
+
+fn chain(march: &March) -> Chain {
+    let test = march.test();
+    Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm)
+}
+
+fn simulator<'a>(
+    test: &'a WearTest,
+    chain: &'a Chain,
+    time: &'a TimeSettings,
+) -> Simulator<'a, Foundation<'a>> {
+    Simulator {
+        machine: &test.machine,
+        chain,
+        contact: Foundation::new(&test.contact, &test.femur, &test.insert),
+        time,
+    }
+}
+
+/// The instants at which the increments of a gait cycle end, from its start.
+fn ends(increments: usize) -> impl Iterator<Item = f64> {
+    (1..=increments).map(move |place| place as f64 / increments as f64)
+}
+
+/// At the start of a cycle, and in the middle of its motion.
+fn in_motion(march: &March) -> MachineState {
+    let (test, chain) = (march.test(), chain(march));
+    let mut simulator = simulator(test, &chain, &test.time);
+    let mut state = march.state().machine;
+    for to in ends(test.time.increments) {
+        let effort = &mut Effort::default();
+        state = simulator
+            .step(&state, to, effort, &mut |_| ())
+            .expect("a shipped case is solved");
+    }
+    MachineState {
+        phase: state.phase % 1.0,
+        ..state
+    }
+}
+
+#[test]
+fn near_the_solution_every_residual_is_the_square_of_the_one_before() {
+    let march = default_case();
+    let (test, chain) = (march.test(), chain(&march));
+    let time = TimeSettings {
+        force_tolerance_n: EXACT_N,
+        foresees: false,
+        ..test.time
+    };
+    let mut simulator = simulator(test, &chain, &time);
+    let mut state = in_motion(&march);
+    let (mut worst_per_n, mut pairs) = (0.0_f64, 0);
+    for to in ends(time.increments) {
+        let mut lengths_n = Vec::new();
+        let mut effort = Effort::default();
+        state = simulator
+            .step(&state, to, &mut effort, &mut |length_n| {
+                lengths_n.push(length_n);
+            })
+            .expect("it converges to the last digits");
+        assert_eq!(effort.halvings, 0, "at {to}: {lengths_n:?}");
+        for pair in lengths_n.windows(2).filter(|pair| pair[0] < NEAR_N) {
+            let [before, after] = [pair[0], pair[1]];
+            let left = after - SINGLE * before - ROUNDING_N;
+            let per_n = left / before.powi(2);
+            assert!(per_n <= QUADRATIC_PER_N, "at {to}: {lengths_n:?}");
+            (worst_per_n, pairs) = (worst_per_n.max(per_n), pairs + 1);
+        }
+    }
+    println!("{pairs} pairs, at worst {worst_per_n:.2} r^2");
+    assert!(pairs > time.increments);
+}
+
+#[test]
+fn a_state_accepted_by_foresight_is_nearly_in_balance() {
+    let march = default_case();
+    let (test, chain) = (march.test(), chain(&march));
+    let tolerance_n = test.time.force_tolerance_n;
+    let mut simulator = simulator(test, &chain, &test.time);
+    let mut state = in_motion(&march);
+    let mut left_n = Vec::new();
+    let mut effort = Effort::default();
+    for to in ends(test.time.increments) {
+        let (corrections, looks) = (effort.newton_iterations, effort.contact_evaluations);
+        state = simulator
+            .step(&state, to, &mut effort, &mut |_| ())
+            .expect("a shipped case is solved");
+        // One look more than corrections is a step that ended with a look.
+        let has_looked =
+            effort.contact_evaluations - looks > effort.newton_iterations - corrections;
+        if !has_looked {
+            left_n.push(simulator.out_of_balance_n(&state));
+        }
+    }
+    let above = left_n.iter().filter(|left| **left > tolerance_n).count();
+    let worst_n = left_n.iter().copied().fold(0.0, f64::max);
+    let all = left_n.len();
+    println!("{all} foreseen, {above} above {tolerance_n} N, at worst {worst_n:.3} N; {effort:?}");
+    assert!(worst_n <= FORESIGHT * tolerance_n, "{worst_n}");
+    assert!(
+        all > test.time.increments / 2 && 20 * above <= all,
+        "{above} of {all}"
+    );
+}
