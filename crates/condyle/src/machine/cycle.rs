@@ -9,7 +9,10 @@ use super::{
     Chain, FREEDOMS, Freedom, Integration, Machine, TimeSettings,
     balance::{Balance, Kinematics},
     explicit::{Explicit, NoStep},
-    integrator::{Effort, Integrator, MachineState, NotConverged, drive, step_error_mm},
+    integrator::{
+        Effort, Integrator, MachineState, NotConverged, drive, loads_at, out_of_balance_n,
+        step_error_mm,
+    },
 };
 use crate::contact::{ContactModel, CycleHistory, Moment, TouchedNode};
 
@@ -249,6 +252,29 @@ impl<C: ContactModel> Simulator<'_, C> {
 
     fn increment_s(&self) -> f64 {
         1.0 / (self.machine.frequency_hz * self.time.increments as f64)
+    }
+
+    /// The machine at the phase `to`, an increment after `state`, by the implicit integrator.
+    ///
+    /// `watch` is told the length of the residual at every iteration of Newton's method, N, moments
+    /// on a lever of 10 mm. A step that does not converge is taken in halves.
+    ///
+    /// # Errors
+    /// An increment that does not converge.
+    pub fn step(
+        &mut self,
+        state: &MachineState,
+        to: f64,
+        effort: &mut Effort,
+        watch: &mut dyn FnMut(f64),
+    ) -> Result<MachineState, CycleError> {
+        self.advance(state, to, MOST_HALVINGS, effort, watch)
+    }
+
+    /// Largest force out of balance at a state, N; for moments, on a lever of 10 mm.
+    pub fn out_of_balance_n(&mut self, state: &MachineState) -> f64 {
+        let balance = Balance::new(self.machine, self.chain, &mut self.contact, state.now);
+        out_of_balance_n(&balance.residual(&loads_at(self.machine, state.phase)))
     }
 
     /// Steps to a phase, in halves where a step does not converge or is not exact enough.
