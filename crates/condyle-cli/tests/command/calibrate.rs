@@ -147,3 +147,62 @@ fn what_cannot_be_calibrated_is_said() {
     let said = unworn.say(&["calibrate-wear", "out", "measured.toml"]);
     said.assert_refused(2, &["the run wears nothing", "give it one above 0"]);
 }
+
+/// Weighings of one specimen that loses this much in a million cycles.
+fn losing(bench: &Bench, mg_per_million_cycles: f64) {
+    let weighed = |millions: f64| 9e4 - mg_per_million_cycles * millions;
+    let rows = [0.0, 1.0, 2.0, 5.0].map(|m| format!("{},{}\n", 1e6 * m, weighed(m)));
+    bench.write("masses.csv", &format!("cycles,k_mg\n{}", rows.concat()));
+    bench.write("measured.toml", TABLE);
+}
+
+#[test]
+fn a_case_in_the_folder_that_is_none_any_more_is_refused_with_its_place() {
+    let bench = with_factor(ASSUMED);
+    losing(&bench, 25.0);
+    let case = std::fs::read_to_string(bench.path("out/case.toml")).unwrap();
+    let refuses = |was: &str, is: &str, expected: &[&str]| {
+        assert!(case.contains(was), "{was} is not in {case}");
+        bench.write("out/case.toml", &case.replace(was, is));
+        let said = bench.say(&["calibrate-wear", "out", "measured.toml"]);
+        said.assert_refused(2, expected);
+    };
+    refuses(
+        "increments = 100",
+        "incremints = 100",
+        &["`incremints`", "case.toml"],
+    );
+    refuses(
+        "shape = \"generic\"",
+        "shape = \"mesh\"\nfile = \"gone.stl\"",
+        &["gone.stl"],
+    );
+}
+
+#[test]
+fn a_rate_that_no_run_comes_near_is_said_with_what_is_left() {
+    let bench = with_factor(ASSUMED);
+    let run = std::fs::read_to_string(bench.path("out/wear.csv")).unwrap();
+    // A table that claims ten times the mass: the search takes the factor for large enough.
+    let claimed = |line: &str| {
+        let mut columns: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Ok(mass) = columns[1].parse::<f64>() {
+            columns[1] = (10.0 * mass).to_string();
+        }
+        columns.join(",") + "\n"
+    };
+    bench.write(
+        "out/wear.csv",
+        &run.lines().map(claimed).collect::<String>(),
+    );
+    losing(&bench, 60.0);
+    let said = bench.say(&["calibrate-wear", "out", "measured.toml"]);
+    said.assert_refused(
+        2,
+        &[
+            "after 12 runs the wear rate is still",
+            "% off the measured one",
+            "use more updates",
+        ],
+    );
+}

@@ -265,6 +265,22 @@ fn a_part_of_the_insert_is_compared_where_it_was_scanned() {
     assert!(svg.contains("Scanned") && !svg.contains("NaN") && !svg.contains("inf"));
 }
 
+#[test]
+fn a_scan_of_scars_deeper_than_is_looked_covers_nothing() {
+    let bench = measured_bench();
+    let surface = worn(&bench);
+    let depth = surface.field("wear_depth_mm").unwrap();
+    let points = nodes(&surface, 0.0, 0.0);
+    let deep = (0..points.len()).filter(|&node| depth[node] > 0.02);
+    bench.write("scan.csv", &csv(deep.map(|node| points[node])));
+    let table = "[surface]\nfile = \"scan.csv\"\nfit = \"all\"\nfarthest_mm = 0.01\n";
+    let expected = [
+        "covers no node of the insert within 0.01 mm",
+        "raise farthest_mm in [surface]",
+    ];
+    assert_refused(&bench, table, &expected);
+}
+
 fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap()
 }
