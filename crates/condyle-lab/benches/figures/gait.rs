@@ -50,6 +50,10 @@ impl ContactModel for Recorder<'_> {
         self.is_first = true;
         self.contact.touched(motion)
     }
+
+    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64 {
+        self.contact.peak_pressure_mpa(motion, touched)
+    }
 }
 
 /// A test on its unworn insert, about to solve its first cycle.
