@@ -9,6 +9,7 @@ use std::{
     thread,
 };
 
+use condyle_io::cache::Cache;
 use condyle_lab::{
     Happening,
     studies::{
@@ -31,6 +32,7 @@ pub fn converge(arguments: &Converge) -> ExitCode {
         out: arguments.out.clone(),
         threads: threads(arguments),
         resume: arguments.resume,
+        cache: Cache::of_user(),
     };
     let stop = stop_on_interrupt();
     let told = Mutex::new(BTreeSet::new());

@@ -10,6 +10,7 @@ use std::{
     },
 };
 
+use condyle_io::cache::Cache;
 use condyle_io::results::{ErrorEstimate, ErrorParts, Summary};
 use condyle_lab::{Outcome, RunOptions};
 
@@ -27,6 +28,7 @@ pub fn run(arguments: &Run) -> ExitCode {
             .unwrap_or_else(|| default_folder(arguments)),
         resume: arguments.resume,
         threads: usize::from(arguments.threads),
+        cache: Cache::of_user(),
     };
     let stop = stop_on_interrupt();
     let mut progress = Progress::new();

@@ -4,6 +4,7 @@
 //! line where the format is text, and what to do.
 
 pub mod abaqus;
+pub mod cache;
 pub mod case;
 pub mod measured;
 pub mod mesh;

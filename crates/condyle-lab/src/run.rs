@@ -12,6 +12,7 @@ use condyle::{
     machine::CycleError,
 };
 use condyle_io::{
+    cache::Cache,
     case::{BuildError, BuildWarning, Built, Case, CaseError},
     results::{ErrorEstimate, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
 };
@@ -28,6 +29,8 @@ pub struct RunOptions {
     pub resume: bool,
     /// Threads for the one-time work on a mesh; results do not depend on it.
     pub threads: usize,
+    /// Where the one-time work on a mesh is kept for the next run; results do not depend on it.
+    pub cache: Cache,
 }
 
 /// How far a run has come on the disk.
@@ -176,7 +179,7 @@ pub fn run_case(
         return Ok(Outcome::DoneBefore(summary));
     }
     let mut clock = Clock::default();
-    let built = clock.time(|| build(case, options.threads))?;
+    let built = clock.time(|| build(case, options.threads, &options.cache))?;
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
     for warning in &warnings {
         let _ = happening(Happening::Warning(warning.clone()));
@@ -255,16 +258,17 @@ fn found(case: &Case, options: &RunOptions, inputs_blake3: &str) -> Result<Found
 /// Those of a run that cannot start.
 pub fn check(case_path: &Path, threads: usize) -> Result<(Case, Vec<BuildWarning>), RunError> {
     let case = Case::read(case_path)?;
-    let built = build(&case, threads)?;
+    let built = build(&case, threads, &Cache::off())?;
     start(&case, built.test)?;
     Ok((case, built.warnings))
 }
 
-pub(crate) fn build(case: &Case, threads: usize) -> Result<Built, RunError> {
-    case.build(threads).map_err(|source| RunError::Build {
-        shown: case.at_its_key(&source),
-        source,
-    })
+pub(crate) fn build(case: &Case, threads: usize, cache: &Cache) -> Result<Built, RunError> {
+    case.build_kept(threads, cache)
+        .map_err(|source| RunError::Build {
+            shown: case.at_its_key(&source),
+            source,
+        })
 }
 
 pub(crate) fn start(case: &Case, test: WearTest) -> Result<March, RunError> {

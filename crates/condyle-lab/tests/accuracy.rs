@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use condyle_io::{
+    cache::Cache,
     case::{Case, Update},
     results::{ErrorParts, Summary},
 };
@@ -29,6 +30,7 @@ fn run(case: &Case) -> Summary {
         out,
         resume,
         threads,
+        cache: Cache::off(),
     };
     let outcome = run_case(case, &options, &mut |_| std::ops::ControlFlow::Continue(()));
     match outcome.unwrap_or_else(|error| panic!("{error}")) {

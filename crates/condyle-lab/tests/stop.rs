@@ -5,7 +5,7 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use condyle_io::results::Checkpoint;
+use condyle_io::{cache::Cache, results::Checkpoint};
 use condyle_lab::{Happening, Outcome, RunError, RunOptions, check, run};
 use tempfile::TempDir;
 
@@ -31,6 +31,7 @@ fn options(out: PathBuf, resume: bool) -> RunOptions {
         out,
         resume,
         threads: 1,
+        cache: Cache::off(),
     }
 }
 

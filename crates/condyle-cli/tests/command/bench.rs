@@ -56,6 +56,8 @@ impl Bench {
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_condyle"));
         command.args(arguments).current_dir(self.folder.path());
+        // Tests leave nothing in the user's folders.
+        command.env("CONDYLE_CACHE", "off");
         command.stdin(Stdio::null());
         command
     }

@@ -3,6 +3,7 @@
 mod bad_bodies;
 mod bad_case;
 mod bench;
+mod cache;
 mod calibrate;
 mod compare_kinematics;
 mod compare_surface;

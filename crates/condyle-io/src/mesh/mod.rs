@@ -32,5 +32,6 @@ pub use inp_writer::{
 pub use pvd::{pvd_text, read_pvd, write_pvd};
 pub use stl::write_stl;
 pub use surface::read_surface;
+pub(crate) use surface::{parse_surface, surface_bytes};
 pub use vtu::{VtuFile, read_vtu_points};
 pub use vtu_write::{PointArray, PointValues, vtu_bytes, write_vtu};

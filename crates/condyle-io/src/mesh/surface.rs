@@ -19,14 +19,31 @@ use super::{MeshFileError, obj, ply, stl, vtp};
 /// finite, a polygon that names a vertex that is not there.
 pub fn read_surface(path: impl AsRef<Path>) -> Result<TriangleMesh, MeshFileError> {
     let path = path.as_ref();
-    let parse = match ending(path).as_str() {
+    parse_surface(path, &surface_bytes(path)?)
+}
+
+/// The bytes of a surface's file, of one of the formats by its name.
+pub(crate) fn surface_bytes(path: &Path) -> Result<Vec<u8>, MeshFileError> {
+    parser(path)?;
+    read_bytes(path)
+}
+
+/// As [`read_surface`], from the bytes of the file.
+pub(crate) fn parse_surface(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
+    parser(path)?(path, bytes)
+}
+
+type Parser = fn(&Path, &[u8]) -> Result<TriangleMesh, MeshFileError>;
+
+/// What reads the format that the file's ending names.
+fn parser(path: &Path) -> Result<Parser, MeshFileError> {
+    Ok(match ending(path).as_str() {
         "stl" => stl::parse,
         "obj" => obj::parse,
         "ply" => ply::parse,
         "vtp" => vtp::parse,
         _ => return Err(unknown_ending(path, ".stl, .obj, .ply, .vtp")),
-    };
-    parse(path, &read_bytes(path)?)
+    })
 }
 
 /// The ending of a file's name in small letters, without the dot.

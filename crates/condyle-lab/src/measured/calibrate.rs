@@ -4,7 +4,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use condyle::evolve::{MarchError, Progress};
-use condyle_io::case::{Case, CaseError};
+use condyle_io::{
+    cache::Cache,
+    case::{Case, CaseError},
+};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -245,7 +248,7 @@ impl<'a> Search<'a> {
             factor_mm3_per_nm,
             source: Box::new(source),
         };
-        let built = build(&case, 1).map_err(failed)?;
+        let built = build(&case, 1, &Cache::off()).map_err(failed)?;
         let mut march = start(&case, built.test).map_err(failed)?;
         let mut go_on = |_: Progress| ControlFlow::Continue(());
         while !march.is_done() {

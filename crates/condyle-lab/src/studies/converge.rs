@@ -10,7 +10,7 @@ use std::{
     thread,
 };
 
-use condyle_io::results::Summary;
+use condyle_io::{cache::Cache, results::Summary};
 
 use super::converge_plan::{ConvergeError, ConvergePlan, Planned, check_free};
 use super::observed_order::{Extrapolation, extrapolate};
@@ -25,6 +25,8 @@ pub struct ConvergeOptions {
     pub threads: usize,
     /// Go on with the study that is in the folder.
     pub resume: bool,
+    /// Where the one-time work on a mesh is kept for the next run; results do not depend on it.
+    pub cache: Cache,
 }
 
 /// What happens while a study runs.
@@ -212,11 +214,11 @@ fn run_all(plan: &ConvergePlan, options: &ConvergeOptions, listener: &Listener<'
 fn run_one(run: &Planned, options: &ConvergeOptions, listener: &Listener<'_>) -> Ran {
     let out = options.out.join(folder_name(run));
     let resume = options.resume && holds_a_run(&out);
-    let threads = 1;
     let options = RunOptions {
         out,
         resume,
-        threads,
+        threads: 1,
+        cache: options.cache.clone(),
     };
     let mut tell = |what: Happening<'_>| listener(&ConvergeHappening::In(run, what));
     match run_case(&run.case, &options, &mut tell)? {

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Curvature, SmoothField, Surroundings};
 use crate::{
     Vec3, Vector,
@@ -22,7 +24,7 @@ const CELLS_AROUND: usize = 2;
 ///
 /// Deeper than contact goes, a femoral component has an inside with edges of its own; what bends
 /// there is not asked.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct BendMap {
     /// Number of each cell in `bends`.
     number: Vec<u32>,
@@ -31,7 +33,7 @@ pub(super) struct BendMap {
 }
 
 /// Extremes of the bending of a field, 1/mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Bends {
     sharpest: f64,
     hollow: f64,

@@ -6,6 +6,8 @@ mod edges;
 mod orientation;
 mod separation;
 
+use serde::{Deserialize, Serialize};
+
 use crate::Vec3;
 use crate::geometry::TriangleMesh;
 
@@ -13,7 +15,7 @@ pub use crossing::{Crossing, Crossings, crossings};
 pub use edges::{ShellReport, shell_report};
 
 /// A triangle mesh that has passed every check of [`checked_shell`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CheckedShell {
     /// The mesh: no degenerate triangles, neighbours turned alike, facing outwards if closed.
     pub mesh: TriangleMesh,

@@ -6,6 +6,8 @@
 //! quadratic surface). Then a quadratic B-spline through those gaps gives a value, a gradient and
 //! a Hessian anywhere between the nodes, the first two continuous, from 27 numbers.
 
+use serde::{Deserialize, Serialize};
+
 use super::{
     Curvature, SurfaceSample, Surroundings, TriangleMesh, bend_map::BendMap,
     curved_mesh::CurvedMesh, shell_report,
@@ -31,7 +33,7 @@ const FAR_MM: f64 = 1e3;
 const OUTSIDE_MM: f64 = BAND_MM + SPACING_MM;
 
 /// A smooth signed distance to a triangle mesh.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SmoothField {
     /// Position of grid node (0, 0, 0).
     origin: Vec3,

@@ -1,9 +1,11 @@
 //! A surface of triangles.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Vec3;
 
 /// A surface of triangles, each anticlockwise seen from outside.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TriangleMesh {
     /// Vertex positions, mm.
     pub vertices: Vec<Vec3>,

@@ -1,14 +1,18 @@
 //! The femoral component as the contact sees it.
 
+use std::path::Path;
+
 use condyle::Vec3;
 use condyle::geometry::{
-    Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, SmoothField, TriangleMesh,
+    CheckedShell, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, SmoothField,
+    TriangleMesh,
 };
+use serde::{Deserialize, Serialize};
 
 use super::super::{MeshFemur, Side};
 use super::error::{BuildError, BuildWarning};
-use super::meshes::{Faces, Placing, shell};
-use crate::case;
+use super::meshes::{Faces, Placing, parsed_shell, shell, warn};
+use crate::{cache::Cache, case, mesh::surface_bytes};
 
 /// A femoral surface, the axis it flexes about and where that starts over the insert.
 pub(super) struct BuiltFemur {
@@ -19,13 +23,20 @@ pub(super) struct BuiltFemur {
     pub start_mm: (f64, f64),
 }
 
+/// How the one-time work on a mesh is done.
+#[derive(Clone, Copy)]
+pub(super) struct Preparing<'a> {
+    pub threads: usize,
+    pub cache: &'a Cache,
+}
+
 impl case::Femur {
     /// The femur, which starts the cycle flexed by `flexion_rad`.
     pub(super) fn build(
         &self,
         side: Side,
         flexion_rad: f64,
-        threads: usize,
+        preparing: Preparing<'_>,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<BuiltFemur, BuildError> {
         let start = |start: Option<[f64; 2]>| start.map(|start| on_the_right(start, side));
@@ -56,7 +67,7 @@ impl case::Femur {
                 flexion_axis_mm: (0.0, 0.0),
                 start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
             },
-            Self::Mesh(femur) => from_mesh(femur, side, flexion_rad, threads, warnings)?,
+            Self::Mesh(femur) => from_mesh(femur, side, flexion_rad, preparing, warnings)?,
         })
     }
 }
@@ -90,20 +101,44 @@ fn from_mesh(
     femur: &MeshFemur,
     side: Side,
     flexion_rad: f64,
-    threads: usize,
+    preparing: Preparing<'_>,
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<BuiltFemur, BuildError> {
     let placing = Placing::new(femur.length_unit, &femur.axes, side)?;
-    let shell = shell(femur.file.path(), &placing, Faces::Down, warnings)?;
+    let PreparedFemur { shell, field } = prepared(femur.file.path(), &placing, preparing)?;
+    warn(femur.file.path(), &shell, warnings);
     let flexion_axis_mm = match femur.flexion_axis_mm {
         Some([x, y]) => (x, y),
         None => shell.mesh.posterior_arc_centre_mm(),
     };
     let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
     Ok(BuiltFemur {
-        surface: FemoralSurface::Mesh(SmoothField::new(&shell.mesh, threads)),
+        surface: FemoralSurface::Mesh(field),
         flexion_axis_mm,
         start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
+    })
+}
+
+/// The one-time work on a mesh femur.
+#[derive(Serialize, Deserialize)]
+struct PreparedFemur {
+    shell: CheckedShell,
+    field: SmoothField,
+}
+
+/// The shell in a file and its field, computed or kept from a run before.
+fn prepared(
+    file: &Path,
+    placing: &Placing,
+    preparing: Preparing<'_>,
+) -> Result<PreparedFemur, BuildError> {
+    let bytes = surface_bytes(file)?;
+    let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
+    let inputs = [ending.as_encoded_bytes(), &placing.bytes(), &bytes];
+    preparing.cache.kept("femur", &inputs, || {
+        let shell = parsed_shell(file, &bytes, placing, Faces::Down)?;
+        let field = SmoothField::new(&shell.mesh, preparing.threads);
+        Ok(PreparedFemur { shell, field })
     })
 }
 

@@ -7,7 +7,7 @@ use condyle::{Mat3, Vec3};
 
 use super::super::{Axes, LengthUnit, Side};
 use super::error::{BuildError, BuildWarning};
-use crate::mesh::read_surface;
+use crate::mesh::{parse_surface, surface_bytes};
 
 /// From the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.
 pub(super) struct Placing {
@@ -23,6 +23,14 @@ impl Placing {
         let mirror = Mat3::from_diagonal(&Vec3::new(1.0, 1.0, if mirrors { -1.0 } else { 1.0 }));
         let linear = mirror * turned;
         Ok(Self { linear, mirrors })
+    }
+
+    /// Its bytes, the same for the same placing.
+    pub(super) fn bytes(&self) -> Vec<u8> {
+        self.linear
+            .iter()
+            .flat_map(|entry| entry.to_le_bytes())
+            .collect()
     }
 
     pub(super) fn point(&self, point: &Vec3) -> Vec3 {
@@ -61,7 +69,19 @@ pub(super) fn shell(
     open_faces: Faces,
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<CheckedShell, BuildError> {
-    let mesh = placing.mesh(read_surface(file)?);
+    let shell = parsed_shell(file, &surface_bytes(file)?, placing, open_faces)?;
+    warn(file, &shell, warnings);
+    Ok(shell)
+}
+
+/// The same from the bytes of the file, without a word of what was put right.
+pub(super) fn parsed_shell(
+    file: &Path,
+    bytes: &[u8],
+    placing: &Placing,
+    open_faces: Faces,
+) -> Result<CheckedShell, BuildError> {
+    let mesh = placing.mesh(parse_surface(file, bytes)?);
     let mut shell = checked_shell(mesh).map_err(|source| BuildError::Shell {
         file: file.to_path_buf(),
         source,
@@ -70,11 +90,11 @@ pub(super) fn shell(
         turn_round(&mut shell.mesh);
         shell.turned_round = true;
     }
-    warn(file, &shell, warnings);
     Ok(shell)
 }
 
-fn warn(path: &Path, shell: &CheckedShell, warnings: &mut Vec<BuildWarning>) {
+/// Says what was put right in a file.
+pub(super) fn warn(path: &Path, shell: &CheckedShell, warnings: &mut Vec<BuildWarning>) {
     let file = || path.to_path_buf();
     if shell.turned_round {
         warnings.push(BuildWarning::TurnedRound { file: file() });

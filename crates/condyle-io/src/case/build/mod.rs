@@ -13,7 +13,11 @@ use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::machine::{Integration, TimeSettings};
 use condyle::wear::Archard;
 
+use femur::Preparing;
+
 pub use error::{BuildError, BuildWarning};
+
+use crate::cache::Cache;
 
 use super::{Case, IntegratorWord, PressureLawChoice, Update, WearLawWord};
 
@@ -32,13 +36,22 @@ impl Case {
     /// A mesh that cannot be read or is no shell, an open insert without a thickness, a surface
     /// that is not in its file, or an insert that cannot be meshed.
     pub fn build(&self, threads: usize) -> Result<Built, BuildError> {
+        self.build_kept(threads, &Cache::off())
+    }
+
+    /// As [`Case::build`], to the same bytes, with the preparation of a mesh femur kept in a cache
+    /// for the next time.
+    ///
+    /// # Errors
+    /// As [`Case::build`]; a cache that cannot be used is none.
+    pub fn build_kept(&self, threads: usize, cache: &Cache) -> Result<Built, BuildError> {
         let mut warnings = Vec::new();
         let insert = self.insert.build(self.heading.side, &mut warnings)?;
         let machine = self.machine.build(insert.dish_low_point_mm());
         let femur = self.femur.build(
             self.heading.side,
             machine::start_flexion_rad(&machine),
-            threads,
+            Preparing { threads, cache },
             &mut warnings,
         )?;
         let test = WearTest {

@@ -1,15 +1,18 @@
 //! Cases built, and what keeps them from it.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::path::Path;
 
 use condyle::Vec3;
 use condyle::evolve::Schedule;
-use condyle::geometry::{GenericFemur, GenericFemurShape, TriangleMesh};
+use condyle::geometry::{
+    FemoralSurface, GenericFemur, GenericFemurShape, SmoothField, TriangleMesh,
+};
 use tempfile::TempDir;
 
 use super::meshes::{Faces, Placing, shell};
 use super::{BuildError, Built};
+use crate::cache::Cache;
 use crate::case::tests::{cases, has_dm_data};
 use crate::case::{Case, Femur, Side};
 use crate::mesh::write_stl;
@@ -93,6 +96,50 @@ fn dm_cases_build_and_lie_the_right_way_round() {
     );
 }
 
+/// A case with a femur of triangles that came inside-out.
+fn with_mesh_femur(folder: &TempDir, side: &str) -> Case {
+    let mut mesh = GenericFemur::new(GenericFemurShape::default()).surface_mesh(3.0);
+    mesh.triangles
+        .iter_mut()
+        .for_each(|corners| corners.swap(0, 1));
+    write_stl(File::create(folder.path().join("f.stl")).unwrap(), &mesh).unwrap();
+    let femur = "[femur]\nshape = \"mesh\"\nfile = \"f.stl\"\n";
+    let text = format!("side = \"{side}\"\n{femur}");
+    Case::parse(&text, "case.toml", folder.path()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn field(built: &Built) -> &SmoothField {
+    match &built.test.femur {
+        FemoralSurface::Mesh(field) => field,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_femur_kept_is_the_one_computed_with_its_warnings() {
+    let (folder, kept) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let (case, cache) = (
+        with_mesh_femur(&folder, "right"),
+        Cache::in_folder(kept.path()),
+    );
+    let computed = case.build(1).unwrap();
+    assert_eq!(computed.warnings.len(), 1, "{:?}", computed.warnings);
+    for _ in 0..2 {
+        let built = case.build_kept(1, &cache).unwrap();
+        assert!(field(&built) == field(&computed));
+        assert_eq!(built.warnings, computed.warnings);
+        assert_eq!(built.test.start_mm, computed.test.start_mm);
+        assert_eq!(built.test.flexion_axis_mm, computed.test.flexion_axis_mm);
+    }
+    let count = || fs::read_dir(kept.path()).unwrap().count();
+    assert_eq!(count(), 1);
+    // The same file on the other side is another femur.
+    let left = with_mesh_femur(&folder, "left")
+        .build_kept(1, &cache)
+        .unwrap();
+    assert!(field(&left) != field(&computed) && count() == 2);
+}
+
 #[test]
 fn closed_mesh_in_another_unit_becomes_an_insert() {
     let small = block().mapped(|vertex| vertex / 1000.0);
@@ -155,7 +202,7 @@ fn mesh_that_is_no_shell_or_no_mesh_names_its_file() {
         "{shown}"
     );
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("a.stl"), "no mesh").unwrap();
+    fs::write(folder.path().join("a.stl"), "no mesh").unwrap();
     assert!(refusal(MESH_INSERT, folder.path()).contains("a.stl"));
 }
 
@@ -167,7 +214,7 @@ const HEX: &str = "*NODE\n1, 0, 0, 0\n2, 10, 0, 0\n3, 10, 0, -10\n4, 0, 0, -10\n
 #[test]
 fn hexahedra_give_the_named_surface_or_the_one_above() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("a.inp"), HEX).unwrap();
+    fs::write(folder.path().join("a.inp"), HEX).unwrap();
     let text = |rest: &str| format!("{rest}\n[insert]\nshape = \"hexahedra\"\nfile = \"a.inp\"\n");
     let named = |name: &str| format!("{}articulating_surface = \"{name}\"\n", text(""));
     let found = built(&text(""), folder.path()).unwrap().test.insert;
@@ -194,7 +241,7 @@ fn place(text: &str, folder: &Path) -> Option<(usize, usize)> {
 #[test]
 fn a_failed_build_points_to_the_key_behind_it() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("a.inp"), HEX).unwrap();
+    fs::write(folder.path().join("a.inp"), HEX).unwrap();
     let text = "[insert]\nshape = \"hexahedra\"\nfile = \"a.inp\"\n";
     for key in ["articulating_surface", "backside"] {
         let wrong = format!("{text}{key} = \"SIDE\"\n");
@@ -202,7 +249,7 @@ fn a_failed_build_points_to_the_key_behind_it() {
     }
     let upside_down = format!("{text}backside = \"TOP\"\n");
     assert_eq!(place(&upside_down, folder.path()), Some((4, 12)));
-    std::fs::write(folder.path().join("b.stl"), "no mesh").unwrap();
+    fs::write(folder.path().join("b.stl"), "no mesh").unwrap();
     let femur = format!("{text}[femur]\nshape = \"mesh\"\nfile = \"b.stl\"\n");
     assert_eq!(place(&femur, folder.path()), Some((6, 8)));
 }
@@ -210,7 +257,7 @@ fn a_failed_build_points_to_the_key_behind_it() {
 #[test]
 fn hexahedra_upside_down_make_no_insert() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("a.inp"), HEX).unwrap();
+    fs::write(folder.path().join("a.inp"), HEX).unwrap();
     let text = "[insert]\nshape = \"hexahedra\"\nfile = \"a.inp\"\nbackside = \"TOP\"\n";
     assert!(refusal(text, folder.path()).contains("the insert cannot be used: "));
 }

@@ -14,7 +14,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use condyle_io::results::Summary;
+use condyle_io::{cache::Cache, results::Summary};
 use condyle_report::{ReportError, Results};
 use serde::Serialize;
 use thiserror::Error;
@@ -158,6 +158,7 @@ fn run(
         // One at a time: their times are part of the table.
         threads: 1,
         resume: false,
+        cache: Cache::off(),
     };
     match converge(&plan, &options, listener)? {
         Converged::Done(convergence) => read_back(convergence, out),

@@ -1,0 +1,168 @@
+//! What takes long to compute and never changes, kept on the disk for the next run.
+
+use std::{
+    env,
+    ffi::OsString,
+    fs,
+    io::{self, Write},
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+
+use serde::{Serialize, de::DeserializeOwned};
+
+/// Version of how files are laid out.
+const FORMAT: &str = "1";
+/// Length of the hash that guards a file's content.
+const HASH_LENGTH: usize = 32;
+/// Ending of the files that are kept; no other is ever removed.
+const ENDING: &str = "kept";
+/// So many are kept, the newest: of a mesh femur each has about 3 MB, and a study over many
+/// femurs must not fill the disk.
+const MOST_FILES: usize = 20;
+
+/// A folder of results that are kept from run to run.
+///
+/// A file is found by the hash of all that its content follows from: the inputs, and the program.
+/// A cache is never the reason of an error: what cannot be read is computed, and what cannot be
+/// written is not kept.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Cache {
+    folder: Option<PathBuf>,
+}
+
+impl Cache {
+    /// A cache that keeps nothing.
+    pub fn off() -> Self {
+        Self::default()
+    }
+
+    /// A cache in a folder, which is made when it is needed.
+    pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
+        let folder = Some(folder.into());
+        Self { folder }
+    }
+
+    /// The user's: in the folder that `CONDYLE_CACHE` names, none if that is `off`; else in `condyle`
+    /// in the user's folder for such files.
+    pub fn of_user() -> Self {
+        Self::by_environment(|name| env::var_os(name))
+    }
+
+    fn by_environment(variable: impl Fn(&str) -> Option<OsString>) -> Self {
+        // The XDG specification has relative paths ignored.
+        let path = |name: &str| {
+            let path = PathBuf::from(variable(name)?);
+            path.is_absolute().then_some(path)
+        };
+        let own = variable("CONDYLE_CACHE").filter(|own| !own.is_empty());
+        let users = || {
+            let home = || path("HOME").map(|home| home.join(".cache"));
+            let all = path("XDG_CACHE_HOME").or_else(|| path("LOCALAPPDATA").or_else(home));
+            all.map(|all| all.join("condyle"))
+        };
+        let folder = match own {
+            Some(own) if own.eq_ignore_ascii_case("off") => None,
+            Some(own) => Some(own.into()),
+            None => users(),
+        };
+        Self { folder }
+    }
+
+    /// What `make` makes of `inputs`, or what it made of them before; `what` is its name.
+    ///
+    /// # Errors
+    /// Those of `make`.
+    pub(crate) fn kept<T: Serialize + DeserializeOwned, E>(
+        &self,
+        what: &str,
+        inputs: &[&[u8]],
+        make: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, E> {
+        let Some(folder) = &self.folder else {
+            return make();
+        };
+        let key = key(what, inputs);
+        let file = folder.join(format!("{what}-{key}.{ENDING}"));
+        if let Some(kept) = read(&file, &key) {
+            return Ok(kept);
+        }
+        let made = make()?;
+        // Nobody misses what is not kept.
+        let _ = write(folder, &file, &key, &made);
+        Ok(made)
+    }
+}
+
+/// Hash of all that a result follows from.
+fn key(what: &str, inputs: &[&[u8]]) -> blake3::Hash {
+    let mut hasher = blake3::Hasher::new();
+    let program = [FORMAT, env!("CARGO_PKG_VERSION"), what].map(str::as_bytes);
+    let stamp = program_stamp();
+    for part in program.iter().chain([&stamp.as_slice()]).chain(inputs) {
+        hasher.update(&part.len().to_le_bytes());
+        hasher.update(part);
+    }
+    hasher.finalize()
+}
+
+/// Size and date of the program's own file: built anew, it may compute something else under the
+/// same version.
+fn program_stamp() -> Vec<u8> {
+    let file = env::current_exe().and_then(fs::metadata);
+    let date = |file: &fs::Metadata| {
+        file.modified()
+            .ok()?
+            .duration_since(SystemTime::UNIX_EPOCH)
+            .ok()
+    };
+    let stamp = file.map(|file| (file.len(), date(&file).map_or(0, |date| date.as_nanos())));
+    let (length, date) = stamp.unwrap_or_default();
+    [length.to_le_bytes().as_slice(), &date.to_le_bytes()].concat()
+}
+
+/// The content of a file of that key; none if there is none, or a damaged one.
+fn read<T: DeserializeOwned>(file: &Path, key: &blake3::Hash) -> Option<T> {
+    let bytes = fs::read(file).ok()?;
+    let (hash, content) = bytes.split_at_checked(HASH_LENGTH)?;
+    let is_whole = blake3::keyed_hash(key.as_bytes(), content)
+        .as_bytes()
+        .as_slice()
+        == hash;
+    is_whole.then(|| postcard::from_bytes(content).ok())?
+}
+
+/// Writes a file beside its place, under a name of its own, and puts it there in one step: of two
+/// runs at once each writes it whole.
+fn write(folder: &Path, file: &Path, key: &blake3::Hash, value: &impl Serialize) -> io::Result<()> {
+    fs::create_dir_all(folder)?;
+    let content = postcard::to_stdvec(value).map_err(io::Error::other)?;
+    let mut beside = tempfile::NamedTempFile::new_in(folder)?;
+    beside.write_all(blake3::keyed_hash(key.as_bytes(), &content).as_bytes())?;
+    beside.write_all(&content)?;
+    beside.persist(file)?;
+    remove_old(folder)
+}
+
+/// Removes all but the newest of the files that are kept.
+fn remove_old(folder: &Path) -> io::Result<()> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry
+            .path()
+            .extension()
+            .is_some_and(|ending| ending == ENDING)
+        {
+            files.push((entry.metadata()?.modified()?, entry.path()));
+        }
+    }
+    files.sort();
+    let surplus = files.len().saturating_sub(MOST_FILES);
+    files[..surplus]
+        .iter()
+        .try_for_each(|(_, file)| fs::remove_file(file))
+}
+
+#[cfg(test)]
+mod tests;
