@@ -137,12 +137,12 @@ fn folder(variables: &[(&str, &str)]) -> Option<PathBuf> {
 #[test]
 fn the_environment_says_where_it_lies() {
     let at = |path: &str| Some(PathBuf::from(path));
-    let (home, xdg) = (("HOME", "/home/ann"), ("XDG_CACHE_HOME", "/fast"));
+    let (home, xdg) = (("HOME", "/users/ann"), ("XDG_CACHE_HOME", "/fast"));
     assert_eq!(folder(&[]), None);
-    assert_eq!(folder(&[home]), at("/home/ann/.cache/condyle"));
+    assert_eq!(folder(&[home]), at("/users/ann/.cache/condyle"));
     assert_eq!(folder(&[home, xdg]), at("/fast/condyle"));
     let relative = ("XDG_CACHE_HOME", "fast");
-    assert_eq!(folder(&[home, relative]), at("/home/ann/.cache/condyle"));
+    assert_eq!(folder(&[home, relative]), at("/users/ann/.cache/condyle"));
     assert_eq!(folder(&[home, xdg, ("CONDYLE_CACHE", "off")]), None);
     assert_eq!(folder(&[home, ("CONDYLE_CACHE", "kept")]), at("kept"));
     let empty = ("CONDYLE_CACHE", "");
