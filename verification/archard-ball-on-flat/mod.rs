@@ -127,12 +127,12 @@ fn rubbed_nmm(march: &March) -> f64 {
     let rubbed = RefCell::default();
     let foundation = Foundation::new(&test.contact, &test.femur, &test.insert);
     let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
-    let mut simulator = Simulator {
-        machine: &test.machine,
-        chain: &chain,
-        contact: Recorder::new(foundation, &test.contact, &rubbed),
-        time: &test.time,
-    };
+    let mut simulator = Simulator::new(
+        &test.machine,
+        &chain,
+        Recorder::new(foundation, &test.contact, &rubbed),
+        &test.time,
+    );
     let mut watch = |_| std::ops::ControlFlow::Continue(());
     let start = march.state().machine;
     simulator

@@ -59,12 +59,7 @@ impl DefaultCase {
             ..test.time
         };
         let seen = RefCell::new(Vec::new());
-        let mut simulator = Simulator {
-            machine: &test.machine,
-            chain: &chain,
-            contact: Witness::new(test, &seen),
-            time: &time,
-        };
+        let mut simulator = Simulator::new(&test.machine, &chain, Witness::new(test, &seen), &time);
         let mut effort = Effort::default();
         let mut watch = |_| ControlFlow::Continue(());
         let cycle = simulator

@@ -88,12 +88,7 @@ pub(crate) fn cycle(
     time: &TimeSettings,
 ) -> Cycle {
     let chain = Chain::new(machine, zero_mm, (0.0, 0.0));
-    let mut simulator = Simulator {
-        machine,
-        chain: &chain,
-        contact,
-        time,
-    };
+    let mut simulator = Simulator::new(machine, &chain, contact, time);
     let start = MachineState::at_rest(machine, [0.0; 6]);
     let mut watch = |_| ControlFlow::Continue(());
     simulator

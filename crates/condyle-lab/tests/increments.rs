@@ -18,12 +18,12 @@ fn cycle(march: &March, increments: usize, increment_error_mm: f64) -> Cycle {
         ..test.time
     };
     let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
-    let mut simulator = Simulator {
-        machine: &test.machine,
-        chain: &chain,
-        contact: Foundation::new(&test.contact, &test.femur, &test.insert),
-        time: &time,
-    };
+    let mut simulator = Simulator::new(
+        &test.machine,
+        &chain,
+        Foundation::new(&test.contact, &test.femur, &test.insert),
+        &time,
+    );
     let (mut effort, mut watch) = (Effort::default(), |_| ControlFlow::Continue(()));
     let solved = simulator.cycle(&march.state().machine, &mut effort, &mut watch);
     solved.expect("the default case is solved")

@@ -43,12 +43,12 @@ fn simulator<'a>(
     chain: &'a Chain,
     time: &'a TimeSettings,
 ) -> Simulator<'a, Foundation<'a>> {
-    Simulator {
-        machine: &test.machine,
+    Simulator::new(
+        &test.machine,
         chain,
-        contact: Foundation::new(&test.contact, &test.femur, &test.insert),
+        Foundation::new(&test.contact, &test.femur, &test.insert),
         time,
-    }
+    )
 }
 
 /// The instants at which the increments of a gait cycle end, from its start.
@@ -106,34 +106,62 @@ fn near_the_solution_every_residual_is_the_square_of_the_one_before() {
     assert!(pairs > time.increments);
 }
 
+/// A cycle as it was solved.
+#[derive(Default)]
+struct Solved {
+    /// What is left out of balance where that was foreseen and not looked at, N.
+    left_n: Vec<f64>,
+    /// Increments that took one look at the contact.
+    at_once: usize,
+}
+
+impl Solved {
+    /// A cycle from `state`, and where it ends.
+    fn cycle(
+        simulator: &mut Simulator<'_, Foundation<'_>>,
+        mut state: MachineState,
+    ) -> (Self, MachineState) {
+        let (mut solved, mut effort) = (Self::default(), Effort::default());
+        for to in ends(simulator.time.increments) {
+            let before = effort;
+            state = simulator
+                .step(&state, to, &mut effort, &mut |_| ())
+                .expect("a shipped case is solved");
+            let corrections = effort.newton_iterations - before.newton_iterations;
+            let looks = effort.contact_evaluations - before.contact_evaluations;
+            solved.at_once += usize::from(looks == 1);
+            // One look more than corrections is a step that ended with a look.
+            if looks == corrections {
+                solved.left_n.push(simulator.out_of_balance_n(&state));
+            }
+        }
+        state.phase %= 1.0;
+        (solved, state)
+    }
+
+    /// How many increments ended unseen; none far out of balance, and few at all.
+    fn unseen(&self, tolerance_n: f64) -> usize {
+        let all = self.left_n.len();
+        let above = self.left_n.iter().filter(|left| **left > tolerance_n);
+        let above = above.count();
+        let worst_n = self.left_n.iter().copied().fold(0.0, f64::max);
+        println!("{all} foreseen, {above} above {tolerance_n} N, at worst {worst_n:.3} N");
+        assert!(worst_n <= FORESIGHT * tolerance_n, "{worst_n}");
+        assert!(20 * above <= all, "{above} of {all}");
+        all
+    }
+}
+
 #[test]
 fn a_state_accepted_by_foresight_is_nearly_in_balance() {
     let march = default_case();
     let (test, chain) = (march.test(), chain(&march));
-    let tolerance_n = test.time.force_tolerance_n;
+    let (tolerance_n, increments) = (test.time.force_tolerance_n, test.time.increments);
     let mut simulator = simulator(test, &chain, &test.time);
-    let mut state = in_motion(&march);
-    let mut left_n = Vec::new();
-    let mut effort = Effort::default();
-    for to in ends(test.time.increments) {
-        let (corrections, looks) = (effort.newton_iterations, effort.contact_evaluations);
-        state = simulator
-            .step(&state, to, &mut effort, &mut |_| ())
-            .expect("a shipped case is solved");
-        // One look more than corrections is a step that ended with a look.
-        let has_looked =
-            effort.contact_evaluations - looks > effort.newton_iterations - corrections;
-        if !has_looked {
-            left_n.push(simulator.out_of_balance_n(&state));
-        }
-    }
-    let above = left_n.iter().filter(|left| **left > tolerance_n).count();
-    let worst_n = left_n.iter().copied().fold(0.0, f64::max);
-    let all = left_n.len();
-    println!("{all} foreseen, {above} above {tolerance_n} N, at worst {worst_n:.3} N; {effort:?}");
-    assert!(worst_n <= FORESIGHT * tolerance_n, "{worst_n}");
-    assert!(
-        all > test.time.increments / 2 && 20 * above <= all,
-        "{above} of {all}"
-    );
+    let (first, state) = Solved::cycle(&mut simulator, in_motion(&march));
+    assert!(first.unseen(tolerance_n) > increments / 2);
+    let (second, _) = Solved::cycle(&mut simulator, state);
+    second.unseen(tolerance_n);
+    println!("at once: {} and then {}", first.at_once, second.at_once);
+    assert!(2 * second.at_once > increments && 10 * first.at_once < increments);
 }

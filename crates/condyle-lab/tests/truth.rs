@@ -221,12 +221,7 @@ fn assert_small_steps_are_exact(name: &str) {
     let march = March::start(test).expect("a shipped case settles");
     let (test, state) = (march.test(), march.state());
     let chain = Chain::new(&test.machine, state.zero_mm, test.flexion_axis_mm);
-    let mut simulator = Simulator {
-        machine: &test.machine,
-        chain: &chain,
-        contact: anew(test),
-        time: &test.time,
-    };
+    let mut simulator = Simulator::new(&test.machine, &chain, anew(test), &test.time);
     let mut watch = |_| ControlFlow::Continue(());
     let rows = simulator
         .cycle(&state.machine, &mut Effort::default(), &mut watch)

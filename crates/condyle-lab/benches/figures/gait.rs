@@ -106,12 +106,7 @@ impl<'a> Gait<'a> {
     }
 
     fn solved<C: ContactModel>(&self, contact: C) -> (usize, C) {
-        let mut simulator = Simulator {
-            machine: &self.machine,
-            chain: &self.chain,
-            contact,
-            time: &self.test.time,
-        };
+        let mut simulator = Simulator::new(&self.machine, &self.chain, contact, &self.test.time);
         let watch = &mut |_| ControlFlow::Continue(());
         let cycle = simulator
             .cycle(&self.start, &mut Effort::default(), watch)

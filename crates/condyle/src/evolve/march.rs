@@ -247,12 +247,9 @@ impl March {
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(C, Cycle), MarchError> {
         let update = self.state.updates.len() + 1;
-        let mut simulator = Simulator {
-            machine: &self.test.machine,
-            chain: &self.chain,
-            contact,
-            time: &self.time(),
-        };
+        let time = self.time();
+        let mut simulator = Simulator::new(&self.test.machine, &self.chain, contact, &time);
+        simulator.precedents.clone_from(&self.state.precedents);
         let increments = self.test.time.increments as f64;
         let (cycles, interval) = (self.cycles(), self.likely_interval());
         let mut watch_cycle = |solved| {
@@ -324,6 +321,7 @@ impl March {
 
     fn keep(&mut self, cycle: Cycle, cycles: f64) {
         self.state.machine = cycle.end;
+        self.state.precedents = cycle.precedents;
         let last = CycleRecord {
             cycles,
             rows: cycle.rows,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{CycleRecord, StepError, UpdateRecord, step::StepRecord};
 use crate::{
     Vec3,
-    machine::{Effort, MachineState},
+    machine::{Effort, MachineState, Precedent},
 };
 
 /// Parts of the cycles at which two values stand for all: the mean of a cubic polynomial is that
@@ -36,6 +36,8 @@ pub struct MarchState {
     pub worn_mm: Vec<f64>,
     /// The machine at the end of the last cycle.
     pub machine: MachineState,
+    /// How the increments of the last cycle were solved.
+    pub precedents: Vec<Option<Precedent>>,
     /// Where the femoral frame's origin is in the insert frame at neutral, mm.
     pub zero_mm: Vec3,
     /// Work done.
@@ -80,6 +82,7 @@ impl MarchState {
             mesh_nodes,
             worn_mm,
             machine,
+            precedents: Vec::new(),
             zero_mm,
             effort: Effort::default(),
             first_and_last: None,

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 use super::{
-    Chain, FREEDOMS, Freedom, Integration, Machine, TimeSettings,
+    Chain, FREEDOMS, Freedom, Integration, Machine, Precedent, TimeSettings,
     balance::{Balance, Kinematics},
     explicit::{Explicit, NoStep},
     integrator::{
@@ -46,6 +46,8 @@ pub struct Cycle {
     pub history: CycleHistory,
     /// The machine when it was found to repeat itself.
     pub end: MachineState,
+    /// How every increment was solved, for a next cycle like it.
+    pub precedents: Vec<Option<Precedent>>,
     /// Increments solved until then.
     pub increments_solved: usize,
     /// Whether it did repeat itself, within the cycles that it was given.
@@ -121,6 +123,8 @@ pub struct Simulator<'a, C> {
     pub contact: C,
     /// How finely and exactly it is solved.
     pub time: &'a TimeSettings,
+    /// How the increments were solved the last time, by the phase they end at; empty before.
+    pub precedents: Vec<Option<Precedent>>,
 }
 
 impl MachineState {
@@ -156,7 +160,18 @@ impl MachineState {
     }
 }
 
-impl<C: ContactModel> Simulator<'_, C> {
+impl<'a, C: ContactModel> Simulator<'a, C> {
+    /// A machine on a contact that has not run yet.
+    pub fn new(machine: &'a Machine, chain: &'a Chain, contact: C, time: &'a TimeSettings) -> Self {
+        Self {
+            machine,
+            chain,
+            contact,
+            time,
+            precedents: Vec::new(),
+        }
+    }
+
     /// Solves increments from `start` until one lands where the machine was a cycle before: the
     /// increments since then are one cycle that repeats itself.
     ///
@@ -233,7 +248,7 @@ impl<C: ContactModel> Simulator<'_, C> {
     }
 
     fn gather(
-        &self,
+        &mut self,
         landed: Vec<Option<Landed>>,
         end: MachineState,
         solved: usize,
@@ -245,6 +260,7 @@ impl<C: ContactModel> Simulator<'_, C> {
             rows: landed.iter().map(|here| here.row).collect(),
             history: CycleHistory::from_records(self.contact.node_count(), records),
             end,
+            precedents: std::mem::take(&mut self.precedents),
             increments_solved: solved,
             repeats,
         }
@@ -257,7 +273,7 @@ impl<C: ContactModel> Simulator<'_, C> {
     /// The machine at the phase `to`, an increment after `state`, by the implicit integrator.
     ///
     /// `watch` is told the length of the residual at every iteration of Newton's method, N, moments
-    /// on a lever of 10 mm. A step that does not converge is taken in halves.
+    /// on a lever of 10 mm. A step that does not converge is taken in halves, and is no precedent.
     ///
     /// # Errors
     /// An increment that does not converge.
@@ -268,7 +284,14 @@ impl<C: ContactModel> Simulator<'_, C> {
         effort: &mut Effort,
         watch: &mut dyn FnMut(f64),
     ) -> Result<MachineState, CycleError> {
-        self.advance(state, to, MOST_HALVINGS, effort, watch)
+        let count = self.time.increments;
+        self.precedents.resize(count, None);
+        let place = (to * count as f64).round() as usize % count;
+        let last = self.precedents[place];
+        let (end, precedent) =
+            self.advance(state, to, last.as_ref(), MOST_HALVINGS, effort, watch)?;
+        self.precedents[place] = precedent;
+        Ok(end)
     }
 
     /// Largest force out of balance at a state, N; for moments, on a lever of 10 mm.
@@ -277,15 +300,17 @@ impl<C: ContactModel> Simulator<'_, C> {
         out_of_balance_n(&balance.residual(&loads_at(self.machine, state.phase)))
     }
 
-    /// Steps to a phase, in halves where a step does not converge or is not exact enough.
+    /// Steps to a phase, in halves where a step does not converge or is not exact enough; and what
+    /// is to be known of the step the next time, if it was one.
     fn advance(
         &mut self,
         state: &MachineState,
         to: f64,
+        precedent: Option<&Precedent>,
         halvings: u32,
         effort: &mut Effort,
         watch: &mut dyn FnMut(f64),
-    ) -> Result<MachineState, CycleError> {
+    ) -> Result<(MachineState, Option<Precedent>), CycleError> {
         let mut integrator = Integrator {
             machine: self.machine,
             chain: self.chain,
@@ -294,16 +319,17 @@ impl<C: ContactModel> Simulator<'_, C> {
             foresees: self.time.foresees,
             effort,
         };
-        match integrator.step(state, to - state.phase, watch) {
-            Ok(next) if halvings == 0 || self.is_exact_enough(state, &next) => {
-                Ok(MachineState { phase: to, ..next })
+        match integrator.step(state, to - state.phase, precedent, watch) {
+            Ok((next, precedent)) if halvings == 0 || self.is_exact_enough(state, &next) => {
+                Ok((MachineState { phase: to, ..next }, Some(precedent)))
             }
             Err(failed) if halvings == 0 => Err(failed.into()),
             _ => {
                 effort.halvings += 1;
                 let half = (state.phase + to) / 2.0;
-                let middle = self.advance(state, half, halvings - 1, effort, watch)?;
-                self.advance(&middle, to, halvings - 1, effort, watch)
+                let (middle, _) = self.advance(state, half, None, halvings - 1, effort, watch)?;
+                let (end, _) = self.advance(&middle, to, None, halvings - 1, effort, watch)?;
+                Ok((end, None))
             }
         }
     }

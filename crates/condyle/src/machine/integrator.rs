@@ -1,7 +1,7 @@
 //! One step of time: the second-order backward differences, solved by Newton's method.
 
 use super::{
-    Chain, Drive, FREEDOMS, Freedom, Machine,
+    Chain, Drive, FREEDOMS, Freedom, Machine, Precedent,
     balance::{Balance, Kinematics, StepSlopes},
 };
 use crate::{
@@ -20,6 +20,9 @@ const LEAST_PART_OF_CORRECTION: f64 = 0.1;
 const SHORTEST_CORRECTION_MM: f64 = 1e-9;
 /// A residual that is foreseen, and not computed, must be this part of the tolerance at most.
 const FORESEEN: f64 = 1.0;
+/// What a correction leaves of a residual is foreseen to be up to this many times what it left a
+/// cycle before.
+const CAUTION: f64 = 4.0;
 /// A whole correction that leaves more of the residual is none of the last, quadratic ones.
 const CONVERGING: f64 = 0.1;
 /// Farthest that one iteration may move, mm; on the lever, rad.
@@ -72,12 +75,20 @@ struct Attempt {
     is_whole: bool,
     /// Length of the residual where the attempt is now, as far as it can be foreseen, N.
     foreseen_n: f64,
+    /// What a whole correction leaves of a residual near the solution, over its square, as far as it
+    /// can be foreseen, 1/N.
+    contraction_per_n: f64,
+    /// The same as it was seen last.
+    seen_contraction_per_n: Option<f64>,
 }
 
 impl Attempt {
-    fn new(positions: [f64; 6]) -> Self {
+    fn new(positions: [f64; 6], precedent: Option<&Precedent>) -> Self {
+        let contraction_per_n = precedent.map_or(f64::INFINITY, |last| last.contraction_per_n);
         Self {
             positions,
+            contraction_per_n: CAUTION * contraction_per_n,
+            seen_contraction_per_n: None,
             residual_n: f64::INFINITY,
             taken: Vec6::zeros(),
             slips: [Vec3::zeros(); 2],
@@ -121,6 +132,12 @@ impl Attempt {
         true
     }
 
+    /// What the same increment of the next cycle may know, `last` being what this one knew.
+    fn precedent(&self, landed: &MachineState, last: Option<&Precedent>) -> Precedent {
+        let known = last.map_or(f64::INFINITY, |last| last.contraction_per_n);
+        Precedent::new(landed, self.seen_contraction_per_n.unwrap_or(known))
+    }
+
     /// Keeps a part of the last correction only.
     fn take_back(&mut self, keep: f64) {
         self.step(self.taken * (keep - 1.0));
@@ -130,13 +147,21 @@ impl Attempt {
 
     /// Foresees the residual after a correction from one of `residual_n`.
     ///
-    /// Near the solution each whole correction leaves c r^2 of a residual r. So two in a row that
-    /// shortened r0 to r1 say that r1^3/r0^2 is left.
+    /// Near the solution each whole correction leaves c r^2 of a residual r. One that shortened r0
+    /// to r1 says that c = r1/r0^2; before there is one, a cycle ago says it.
     fn foresee(&mut self, residual_n: f64, is_whole: bool) {
-        let contraction = residual_n / self.residual_n;
-        let converges = is_whole && self.is_whole && contraction <= CONVERGING;
-        self.foreseen_n = if converges {
-            residual_n * contraction * contraction
+        let left = residual_n / self.residual_n;
+        if self.is_whole {
+            let contraction_per_n = if left <= CONVERGING {
+                left / self.residual_n
+            } else {
+                f64::INFINITY
+            };
+            self.contraction_per_n = contraction_per_n;
+            self.seen_contraction_per_n = Some(contraction_per_n);
+        }
+        self.foreseen_n = if is_whole {
+            self.contraction_per_n * residual_n * residual_n
         } else {
             f64::INFINITY
         };
@@ -202,8 +227,9 @@ impl<C: ContactModel> Integrator<'_, C> {
         &mut self,
         state: &MachineState,
         step: f64,
+        precedent: Option<&Precedent>,
         watch: &mut dyn FnMut(f64),
-    ) -> Result<MachineState, NotConverged> {
+    ) -> Result<(MachineState, Precedent), NotConverged> {
         let phase = state.phase + step;
         let step_s = step / self.machine.frequency_hz;
         let ratio = state.before.map_or(0.0, |(_, last_s)| step_s / last_s);
@@ -213,12 +239,16 @@ impl<C: ContactModel> Integrator<'_, C> {
             acceleration: differences.slope.powi(2),
         };
         let loads = loads_at(self.machine, phase);
-        let landed = |now| MachineState {
-            phase,
-            now,
-            before: Some((state.now, step_s)),
+        let landed = |now: Kinematics, attempt: &Attempt| {
+            let state = MachineState {
+                phase,
+                now,
+                before: Some((state.now, step_s)),
+            };
+            (state, attempt.precedent(&state, precedent))
         };
-        let mut attempt = Attempt::new(self.predicted(state, phase, step_s, ratio));
+        let predicted = self.predicted(state, step_s, ratio, phase, precedent);
+        let mut attempt = Attempt::new(predicted, precedent);
         for _ in 0..MOST_ITERATIONS {
             let kinematics = self.kinematics(state, &differences, attempt.positions, phase);
             let balance = Balance::new(self.machine, self.chain, self.contact, kinematics);
@@ -226,7 +256,7 @@ impl<C: ContactModel> Integrator<'_, C> {
             let residual = balance.residual(&loads);
             watch(length_n(&residual));
             if out_of_balance_n(&residual) <= self.force_tolerance_n {
-                return Ok(landed(kinematics));
+                return Ok(landed(kinematics, &attempt));
             }
             let slips = balance.mean_slip();
             if !attempt.improve(&residual, slips, || balance.tangent(slopes)) {
@@ -234,13 +264,8 @@ impl<C: ContactModel> Integrator<'_, C> {
             }
             self.effort.newton_iterations += 1;
             if self.foresees && attempt.foreseen_n <= FORESEEN * self.force_tolerance_n {
-                let positions = attempt.positions;
-                return Ok(landed(self.kinematics(
-                    state,
-                    &differences,
-                    positions,
-                    phase,
-                )));
+                let kinematics = self.kinematics(state, &differences, attempt.positions, phase);
+                return Ok(landed(kinematics, &attempt));
             }
         }
         Err(NotConverged {
@@ -250,17 +275,20 @@ impl<C: ContactModel> Integrator<'_, C> {
         })
     }
 
-    /// Where the freedoms go if accelerations last; driven ones, where they are driven.
-    fn predicted(&self, state: &MachineState, phase: f64, step_s: f64, ratio: f64) -> [f64; 6] {
-        let lasting = if ratio > 0.0 {
-            0.5 * step_s * step_s
-        } else {
-            0.0
+    /// Where the freedoms will be, as a cycle before; without a precedent, if accelerations last.
+    /// Driven ones, where they are driven.
+    fn predicted(
+        &self,
+        state: &MachineState,
+        step_s: f64,
+        ratio: f64,
+        phase: f64,
+        precedent: Option<&Precedent>,
+    ) -> [f64; 6] {
+        let mut positions = match precedent {
+            Some(precedent) => precedent.followed_from(&state.now, step_s),
+            None => lasting(&state.now, step_s, ratio),
         };
-        let mut positions = state.now.positions;
-        for (j, q) in positions.iter_mut().enumerate() {
-            *q += step_s * state.now.rates[j] + lasting * state.now.accelerations[j];
-        }
         drive(self.machine, phase, &mut positions, &mut [0.0; 6]);
         positions
     }
@@ -292,6 +320,18 @@ impl<C: ContactModel> Integrator<'_, C> {
             accelerations,
         }
     }
+}
+
+/// Where the freedoms go if accelerations last; after a start, where there are none yet, if rates do.
+fn lasting(now: &Kinematics, step_s: f64, ratio: f64) -> [f64; 6] {
+    let half_s2 = if ratio > 0.0 {
+        0.5 * step_s * step_s
+    } else {
+        0.0
+    };
+    std::array::from_fn(|j| {
+        now.positions[j] + step_s * now.rates[j] + half_s2 * now.accelerations[j]
+    })
 }
 
 /// What the error of a step of backward differences is of that of a prediction with lasting
