@@ -2,7 +2,6 @@
 
 use super::{
     ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
-    faces_around::FacesAround,
     motion::{Pose4, Twist4, small_motion, twist_to_femur},
     nearness::Nearness,
     partial::{Rises, mean_overclosure},
@@ -14,7 +13,7 @@ use super::{
 };
 use crate::{
     Vec3, Vector,
-    geometry::{ArticulatingSurface, FemoralSurface, Insert},
+    geometry::{ArticulatingSurface, FacesAround, FemoralSurface, Insert},
     number::{LANES, Lanes, Number},
     products::{cross, dot, nowhere, scaled_plus, without_part_along},
 };
@@ -54,7 +53,7 @@ pub struct Foundation<'a> {
     shares: Vec<Shares4>,
     /// The surface's own directions at every four nodes.
     directions: Vec<[Vector<Lanes>; 2]>,
-    faces: FacesAround,
+    faces: &'a FacesAround,
     /// What every four of them saw of the femur.
     seen: Vec<Seen>,
     nearness: Nearness,
@@ -74,7 +73,7 @@ impl<'a> Foundation<'a> {
     pub fn new(
         settings: &'a FoundationSettings,
         femur: &'a FemoralSurface,
-        insert: &Insert,
+        insert: &'a Insert,
     ) -> Self {
         let surface = insert.surface();
         let shares = Shares4::of(&surface, insert.thickness_mm());
@@ -87,7 +86,7 @@ impl<'a> Foundation<'a> {
                 .collect(),
             nearness: Nearness::new(&shares),
             seen: vec![Seen::nothing(); shares.len()],
-            faces: FacesAround::new(surface.positions.len(), insert.surface_faces()),
+            faces: insert.faces_around(),
             shares,
             surface,
             due: Vec::new(),
@@ -242,7 +241,7 @@ impl ContactModel for Foundation<'_> {
             femur: self.femur,
             shares: &self.surface.shares,
             fours: &self.shares,
-            faces: &self.faces,
+            faces: self.faces,
             pose: Pose4::new(&motion.pose),
         };
         search.highest_mpa(touched)

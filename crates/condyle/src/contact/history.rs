@@ -1,5 +1,7 @@
 //! What the articulating surface went through in one cycle.
 
+use std::ops::Range;
+
 /// One instant of contact at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
@@ -29,24 +31,49 @@ pub struct NodeHistory<'a> {
 }
 
 /// The contact history of all nodes of an articulating surface over one cycle.
+///
+/// It is recorded instant by instant, and then sorted by node. A history takes some megabytes, and
+/// new memory costs more than to fill it: one that is cleared keeps its own.
 #[derive(Clone, Debug, Default)]
 pub struct CycleHistory {
+    /// Nodes and their moments as they were recorded.
+    records: Vec<(u32, Moment)>,
     /// Moments of node i are `moments[first[i]..first[i + 1]]`.
     first: Vec<usize>,
     moments: Vec<Moment>,
 }
 
 impl CycleHistory {
-    /// Sorts `records` of (node, moment), given in the order of time, by their nodes.
-    pub fn from_records<'a>(
-        node_count: usize,
-        records: impl Iterator<Item = &'a (u32, Moment)> + Clone,
-    ) -> Self {
-        let mut first = vec![0; node_count + 1];
-        for (node, _) in records.clone() {
-            first[*node as usize + 1] += 1;
+    /// Nothing happened yet.
+    pub fn clear(&mut self) {
+        self.records.clear();
+        self.moments.clear();
+        self.first.clear();
+    }
+
+    /// Records an instant: the nodes in contact then. Where it is kept, for
+    /// [`CycleHistory::sort`].
+    pub fn record(&mut self, instant: impl Iterator<Item = (u32, Moment)>) -> Range<usize> {
+        let start = self.records.len();
+        self.records.extend(instant);
+        start..self.records.len()
+    }
+
+    /// Sorts what was recorded by node; of all instants those that count, in the order of time.
+    pub fn sort(&mut self, node_count: usize, instants: &[Range<usize>]) {
+        let Self {
+            records,
+            first,
+            moments,
+        } = self;
+        let records = || instants.iter().flat_map(|span| &records[span.clone()]);
+        // Counted two places on: filling then moves every node's end on to where the next begins.
+        first.clear();
+        first.resize(node_count + 2, 0);
+        for (node, _) in records() {
+            first[*node as usize + 2] += 1;
         }
-        for i in 0..node_count {
+        for i in 0..=node_count {
             first[i + 1] += first[i];
         }
         let nowhere = Moment {
@@ -54,14 +81,13 @@ impl CycleHistory {
             pressure_mpa: 0.0,
             slip_mm: [0.0; 2],
         };
-        let mut moments = vec![nowhere; first[node_count]];
-        let mut next = first.clone();
-        for (node, moment) in records {
-            let place = &mut next[*node as usize];
+        moments.resize(first[node_count + 1], nowhere);
+        for (node, moment) in records() {
+            let place = &mut first[*node as usize + 1];
             moments[*place] = *moment;
             *place += 1;
         }
-        Self { first, moments }
+        first.truncate(node_count + 1);
     }
 
     /// How many nodes the surface has.
@@ -103,12 +129,22 @@ mod tests {
             pressure_mpa: percent,
             slip_mm: [1.0, 0.0],
         };
-        let records = [(2, moment(1.0)), (0, moment(1.0)), (2, moment(3.0))];
-        let history = CycleHistory::from_records(3, records.iter());
+        let mut history = CycleHistory::default();
+        let late = history.record([(2, moment(3.0))].into_iter());
+        let forgotten = history.record([(1, moment(9.0))].into_iter());
+        let early = history.record([(2, moment(1.0)), (0, moment(1.0))].into_iter());
+        history.sort(3, &[early, late]);
         assert_eq!(history.node_count(), 3);
         assert_eq!(history.node(2).moments, [moment(1.0), moment(3.0)]);
-        assert!(history.node(1).moments.is_empty());
+        assert!(history.node(1).moments.is_empty() && !forgotten.is_empty());
         assert_eq!(history.node(2).peak_pressure_mpa(), 3.0);
         assert_eq!(history.node(2).sliding_distance_mm(), 2.0);
+
+        history.clear();
+        let only = history.record([(1, moment(2.0))].into_iter());
+        history.sort(2, &[only]);
+        assert_eq!(history.node_count(), 2);
+        assert!(history.node(0).moments.is_empty());
+        assert_eq!(history.node(1).moments, [moment(2.0)]);
     }
 }

@@ -1,7 +1,6 @@
 //! Contact between femur and insert: one interface, several models.
 
 mod clearance;
-mod faces_around;
 mod foundation;
 mod history;
 mod law;

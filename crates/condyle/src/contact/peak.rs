@@ -1,12 +1,9 @@
 //! The highest pressure, which lies between the nodes.
 
-use super::{
-    PressureLaw, TouchedNode, faces_around::FacesAround, motion::Pose4, quadratic::Quadratic,
-    shares::Shares4,
-};
+use super::{PressureLaw, TouchedNode, motion::Pose4, quadratic::Quadratic, shares::Shares4};
 use crate::{
     Vector,
-    geometry::{FemoralSurface, Share},
+    geometry::{FacesAround, FemoralSurface, Share},
     number::{LANES, Lanes, Number},
 };
 

@@ -116,7 +116,7 @@ fn row(plane: &Plane, share: &Share, around: &Share) -> SVector<f64, 6> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::ArticulatingSurface;
+    use crate::geometry::{ArticulatingSurface, FacesAround};
 
     /// A skewed grid of 5 by 5 nodes in a plane that lies askew.
     fn skewed() -> ArticulatingSurface {
@@ -124,7 +124,7 @@ mod tests {
         let nodes = (0..5).flat_map(|i| (0..5).map(move |k| a * f64::from(i) + b * f64::from(k)));
         let cells = (0..4).flat_map(|i| (0..4).map(move |k| 5 * i + k));
         let faces: Vec<[u32; 4]> = cells.map(|n| [n, n + 1, n + 6, n + 5]).collect();
-        ArticulatingSurface::new(&nodes.collect::<Vec<_>>(), &faces)
+        ArticulatingSurface::new(nodes.collect(), &FacesAround::new(25, &faces))
     }
 
     /// A quadratic of the place, its second derivatives along `steep` and `flat`.

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     Vec3,
-    contact::{ContactModel, Foundation},
+    contact::{ContactModel, CycleHistory, Foundation},
     geometry::ArticulatingSurface,
     machine::{Chain, Cycle, CycleRow, Effort, Freedom, MachineState, Simulator, TimeSettings},
 };
@@ -31,6 +31,8 @@ pub struct March {
     unworn_volume_mm3: f64,
     state: MarchState,
     fields: NodeFields,
+    /// The last cycle's history, for its memory.
+    spent: CycleHistory,
 }
 
 impl March {
@@ -112,6 +114,7 @@ impl March {
             unworn_volume_mm3,
             state,
             fields,
+            spent: CycleHistory::default(),
         }
     }
 
@@ -146,9 +149,10 @@ impl March {
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<&UpdateRecord, MarchError> {
+        let spent = std::mem::take(&mut self.spent);
         let contact = Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert);
         let mut effort = self.state.effort;
-        let (contact, cycle) = self.repeating_cycle(contact, &mut effort, watch)?;
+        let (contact, cycle) = self.repeating_cycle(contact, spent, &mut effort, watch)?;
         self.wear(&contact.into_surface(), cycle, effort)
     }
 
@@ -161,8 +165,9 @@ impl March {
         model: impl for<'a> Fn(&'a WearTest) -> Box<dyn ContactModel + 'a>,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<&UpdateRecord, MarchError> {
+        let spent = std::mem::take(&mut self.spent);
         let mut effort = self.state.effort;
-        let (_, cycle) = self.repeating_cycle(model(&self.test), &mut effort, watch)?;
+        let (_, cycle) = self.repeating_cycle(model(&self.test), spent, &mut effort, watch)?;
         self.wear(&self.test.insert.surface(), cycle, effort)
     }
 
@@ -243,6 +248,7 @@ impl March {
     fn repeating_cycle<C: ContactModel>(
         &self,
         contact: C,
+        spent: CycleHistory,
         effort: &mut Effort,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(C, Cycle), MarchError> {
@@ -250,6 +256,7 @@ impl March {
         let time = self.time();
         let mut simulator = Simulator::new(&self.test.machine, &self.chain, contact, &time);
         simulator.precedents.clone_from(&self.state.precedents);
+        simulator.history = spent;
         let increments = self.test.time.increments as f64;
         let (cycles, interval) = (self.cycles(), self.likely_interval());
         let mut watch_cycle = |solved| {
@@ -322,6 +329,7 @@ impl March {
     fn keep(&mut self, cycle: Cycle, cycles: f64) {
         self.state.machine = cycle.end;
         self.state.precedents = cycle.precedents;
+        self.spent = cycle.history;
         let last = CycleRecord {
             cycles,
             rows: cycle.rows,

@@ -67,7 +67,7 @@ fn relaxation(
 ) -> f64 {
     let (mut slid, mut pressed) = (0.0, 0.0);
     for moment in history.moments {
-        let slip = moment.slip_mm[0].hypot(moment.slip_mm[1]);
+        let slip = moment.distance_mm();
         slid += slip;
         pressed += moment.pressure_mpa * slip;
     }

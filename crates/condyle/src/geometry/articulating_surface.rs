@@ -1,22 +1,10 @@
 //! The articulating surface as it is now: normals, areas, and each node's share of the surface.
 
-use crate::{Mat3, Vec3};
-
-/// A node's share of the articulating surface: a quarter of each face around it, taken together
-/// as the flat parallelogram with the same area, centroid and second moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Share {
-    /// Centroid, mm. Along the normal it is that of the smooth surface through the nodes.
-    pub centre: Vec3,
-    /// First edge of the parallelogram, mm.
-    pub edge_a: Vec3,
-    /// Second edge of the parallelogram, mm.
-    pub edge_b: Vec3,
-    /// Area, mm2.
-    pub area_mm2: f64,
-    /// A quarter of the trace of the second moment over the area, mm2: a 24th of a square's area.
-    pub spread_mm2: f64,
-}
+use super::{
+    FacesAround,
+    share::{Share, ShareSeeker},
+};
+use crate::{Vec3, number::LANES};
 
 /// The articulating surface of an insert; every array has one entry a surface node.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,64 +17,23 @@ pub struct ArticulatingSurface {
     pub shares: Vec<Share>,
 }
 
-/// A quarter of a face, at one corner of it.
-struct Quarter {
-    centre: Vec3,
-    edges: [Vec3; 2],
-    area_vector: Vec3,
-}
-
-impl Quarter {
-    /// The quarter of the bilinear face at `corner`, with the two corners beside and the one across.
-    fn new(corner: Vec3, next: Vec3, across: Vec3, before: Vec3) -> Self {
-        let edges = [
-            ((next - corner) * 3.0 + (across - before)) / 8.0,
-            ((before - corner) * 3.0 + (across - next)) / 8.0,
-        ];
-        Self {
-            centre: (corner * 9.0 + next * 3.0 + before * 3.0 + across) / 16.0,
-            edges,
-            area_vector: edges[0].cross(&edges[1]),
-        }
-    }
-}
-
 impl ArticulatingSurface {
-    /// The surface of `faces`, in numbers of `positions`, facing out.
-    pub fn new(positions: &[Vec3], faces: &[[u32; 4]]) -> Self {
-        let mut normals = vec![Vec3::zeros(); positions.len()];
-        let mut firsts = vec![FirstMoments::default(); positions.len()];
-        for face in faces {
-            let corners = face.map(|i| positions[i as usize]);
-            let [a, b, c, d] = corners;
-            let normal = (c - a)
-                .cross(&(d - b))
-                .try_normalize(0.0)
-                .unwrap_or_default();
-            for (turn, &node) in face.iter().enumerate() {
-                normals[node as usize] += normal;
-                firsts[node as usize].add(&positions[node as usize], &quarter(&corners, turn));
+    /// The surface of nodes at `positions` with faces around them that face out.
+    pub fn new(positions: Vec<Vec3>, around: &FacesAround) -> Self {
+        let count = positions.len();
+        let (mut normals, mut shares) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut seeker = ShareSeeker::new(&positions, around);
+        for first in (0..count).step_by(LANES) {
+            let found = seeker.find(&[0, 1, 2, 3].map(|lane| (first + lane).min(count - 1) as u32));
+            for lane in 0..LANES.min(count - first) {
+                normals.push(found.normal(lane));
+                shares.push(found.share(lane));
             }
         }
-        let flats: Vec<Flat> = firsts.iter().map(Flat::new).collect();
-        let mut seconds = vec![Mat3::zeros(); positions.len()];
-        for face in faces {
-            let corners = face.map(|i| positions[i as usize]);
-            for (turn, &node) in face.iter().enumerate() {
-                let (from, flat) = (positions[node as usize], &flats[node as usize]);
-                seconds[node as usize] += flat.second_moment(&from, &quarter(&corners, turn));
-            }
-        }
-        let nodes = positions.iter().zip(&flats).zip(&seconds);
         Self {
-            normals: normals
-                .iter()
-                .map(|n| n.try_normalize(0.0).unwrap_or_default())
-                .collect(),
-            shares: nodes
-                .map(|((node, flat), second)| flat.share(node, second))
-                .collect(),
-            positions: positions.to_vec(),
+            normals,
+            shares,
+            positions,
         }
     }
 
@@ -119,97 +66,6 @@ impl ArticulatingSurface {
             .unwrap_or_else(|| normal.cross(&Vec3::z()).normalize());
         [anterior, anterior.cross(&normal)]
     }
-}
-
-/// The quarter of a face at its corner number `turn`.
-fn quarter(corners: &[Vec3; 4], turn: usize) -> Quarter {
-    let at = |k: usize| corners[(turn + k) % 4];
-    Quarter::new(at(0), at(1), at(2), at(3))
-}
-
-/// Sums over the quarters of faces around a node.
-#[derive(Clone, Copy, Default)]
-struct FirstMoments {
-    area_mm2: f64,
-    area_vector: Vec3,
-    /// Offset of the centroids from the node, times the area.
-    offset: Vec3,
-    /// An edge of one of them, for a direction.
-    edge: Vec3,
-}
-
-impl FirstMoments {
-    fn add(&mut self, node: &Vec3, quarter: &Quarter) {
-        let area = quarter.area_vector.norm();
-        if self.area_mm2 == 0.0 {
-            self.edge = quarter.edges[0];
-        }
-        self.area_mm2 += area;
-        self.area_vector += quarter.area_vector;
-        self.offset += (quarter.centre - node) * area;
-    }
-}
-
-/// The plane of a node's share, and where its centroid lies.
-struct Flat {
-    area_mm2: f64,
-    normal: Vec3,
-    /// Offset of the centroid from the node along the plane.
-    offset: Vec3,
-    /// And along its normal.
-    rise: Vec3,
-    edge: Vec3,
-}
-
-impl Flat {
-    fn new(sums: &FirstMoments) -> Self {
-        let normal = sums.area_vector.normalize();
-        let offset = sums.offset / sums.area_mm2;
-        let rise = normal * offset.dot(&normal);
-        Self {
-            area_mm2: sums.area_mm2,
-            normal,
-            offset: offset - rise,
-            rise,
-            edge: sums.edge,
-        }
-    }
-
-    /// A quarter's part in the second moment over the area.
-    fn second_moment(&self, node: &Vec3, quarter: &Quarter) -> Mat3 {
-        let [a, b] = quarter.edges;
-        let lever = quarter.centre - node - self.offset;
-        let own = (a * a.transpose() + b * b.transpose()) / 12.0;
-        (own + lever * lever.transpose()) * (quarter.area_vector.norm() / self.area_mm2)
-    }
-
-    /// The node's share.
-    ///
-    /// Between nodes the true surface bulges away from the bilinear faces: the mean of a parabola
-    /// over a share is a third of what the bilinear faces say. So of the centroid's offset from the
-    /// node, the part along the normal counts a third.
-    fn share(&self, node: &Vec3, second_moment: &Mat3) -> Share {
-        let [edge_a, edge_b] = parallelogram(second_moment, &self.normal, &self.edge);
-        Share {
-            centre: node + self.offset + self.rise / 3.0,
-            edge_a,
-            edge_b,
-            area_mm2: self.area_mm2,
-            spread_mm2: (edge_a.norm_squared() + edge_b.norm_squared()) / 48.0,
-        }
-    }
-}
-
-/// Edges of the flat parallelogram with a given second moment over its area, the first along
-/// `along`: moment = (a a' + b b')/12.
-fn parallelogram(moment: &Mat3, normal: &Vec3, along: &Vec3) -> [Vec3; 2] {
-    let u = (along - normal * along.dot(normal)).normalize();
-    let v = normal.cross(&u);
-    let twelve = |p: &Vec3, q: &Vec3| 12.0 * p.dot(&(moment * q));
-    let (uu, uv, vv) = (twelve(&u, &u), twelve(&u, &v), twelve(&v, &v));
-    let edge_a = u * ((uu * vv - uv * uv).max(0.0) / vv).sqrt();
-    let edge_b = u * (uv / vv.sqrt()) + v * vv.sqrt();
-    [edge_a, edge_b]
 }
 
 #[cfg(test)]
@@ -248,7 +104,7 @@ mod tests {
             |i: u32, k: u32| Vec3::new(f64::from(i) + 0.4 * f64::from(k), 0.0, 0.8 * f64::from(k));
         let positions: Vec<Vec3> = (0..9).map(|n| place(n / 3, n % 3)).collect();
         let faces = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
-        let middle = ArticulatingSurface::new(&positions, &faces).shares[4];
+        let middle = ArticulatingSurface::new(positions, &FacesAround::new(9, &faces)).shares[4];
         assert!((middle.area_mm2 - 0.8).abs() < 1e-12);
         assert!((middle.edge_a.cross(&middle.edge_b).norm() - 0.8).abs() < 1e-12);
     }

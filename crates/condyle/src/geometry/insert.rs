@@ -3,7 +3,7 @@
 use condyle_fem::{HexMesh, InteriorFollower, volume_below};
 use thiserror::Error;
 
-use super::{ArticulatingSurface, thickness::thickness_at_nodes};
+use super::{ArticulatingSurface, FacesAround, thickness::thickness_at_nodes};
 use crate::Vec3;
 
 /// Why a mesh makes no insert.
@@ -49,6 +49,7 @@ pub struct Insert {
     nodes: Vec<u32>,
     /// Faces of the articulating surface, in numbers of surface nodes.
     faces: Vec<[u32; 4]>,
+    faces_around: FacesAround,
     unworn_thickness_mm: Vec<f64>,
     /// Depth worn so far: the thickness is computed from it anew, so that an insert worn step by
     /// step and one restored have the same to the last bit.
@@ -86,14 +87,16 @@ impl Insert {
             .iter()
             .map(|&node| mesh.nodes[node as usize])
             .collect();
-        let normals = ArticulatingSurface::new(&positions, &faces).normals;
-        let thickness_mm = thickness_at_nodes(&positions, &normals, &mesh, backside)?;
+        let faces_around = FacesAround::new(nodes.len(), &faces);
+        let surface = ArticulatingSurface::new(positions, &faces_around);
+        let thickness_mm = thickness_at_nodes(&surface, &mesh, backside)?;
         Ok(Self {
             unworn_nodes: mesh.nodes.clone(),
             boundary,
             mesh,
             nodes,
             faces,
+            faces_around,
             unworn_thickness_mm: thickness_mm.clone(),
             worn_mm: vec![0.0; thickness_mm.len()],
             thickness_mm,
@@ -125,6 +128,11 @@ impl Insert {
         &self.faces
     }
 
+    /// The faces of the articulating surface around each of its nodes.
+    pub fn faces_around(&self) -> &FacesAround {
+        &self.faces_around
+    }
+
     /// Thickness of the insert below each surface node along its normal, mm.
     pub fn thickness_mm(&self) -> &[f64] {
         &self.thickness_mm
@@ -137,7 +145,7 @@ impl Insert {
             .iter()
             .map(|&node| self.mesh.nodes[node as usize])
             .collect();
-        ArticulatingSurface::new(&positions, &self.faces)
+        ArticulatingSurface::new(positions, &self.faces_around)
     }
 
     /// Moves every surface node inwards along its normal, and the mesh below after it.

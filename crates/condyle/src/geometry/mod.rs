@@ -5,10 +5,12 @@ mod bend_map;
 mod columns;
 mod curved_mesh;
 mod cylinder;
+mod faces_around;
 mod femoral_surface;
 mod generic_femur;
 mod generic_insert;
 mod insert;
+mod share;
 mod shell;
 mod shell_insert;
 mod smooth_field;
@@ -16,14 +18,16 @@ mod thickness;
 mod torus;
 mod triangle_mesh;
 
-pub use articulating_surface::{ArticulatingSurface, Share};
+pub use articulating_surface::ArticulatingSurface;
 pub use columns::{Column, ColumnGrid, ColumnMesh};
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use cylinder::Cylinder;
+pub use faces_around::FacesAround;
 pub use femoral_surface::{Curvature, FemoralSurface, SurfaceSample, Surroundings};
 pub use generic_femur::{GenericFemur, GenericFemurShape};
 pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};
 pub use insert::{Insert, InsertError};
+pub use share::Share;
 pub use shell::{
     CheckedShell, Crossing, Crossings, ShellError, ShellReport, checked_shell, crossings,
     shell_report,

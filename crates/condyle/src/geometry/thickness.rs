@@ -2,7 +2,7 @@
 
 use condyle_fem::HexMesh;
 
-use super::InsertError;
+use super::{ArticulatingSurface, InsertError};
 use crate::Vec3;
 
 /// Edge of the bins that sort the backside over the transverse plane, mm.
@@ -17,13 +17,12 @@ struct Backside {
     bins: Vec<Vec<u32>>,
 }
 
-/// Distance from each position, against its normal, to the backside, mm.
+/// Distance from each node of a surface, against its normal, to the backside, mm.
 ///
 /// Where a normal misses the backside (at the rim), the distance straight down counts, and where
 /// that misses too, the nearest vertex of the backside.
 pub(super) fn thickness_at_nodes(
-    positions: &[Vec3],
-    normals: &[Vec3],
+    surface: &ArticulatingSurface,
     mesh: &HexMesh,
     backside: &[[u32; 4]],
 ) -> Result<Vec<f64>, InsertError> {
@@ -39,7 +38,8 @@ pub(super) fn thickness_at_nodes(
                 z: from.z,
             })
     };
-    positions.iter().zip(normals).map(thickness).collect()
+    let nodes = surface.positions.iter().zip(&surface.normals);
+    nodes.map(thickness).collect()
 }
 
 impl Backside {

@@ -1,7 +1,7 @@
 //! One gait cycle: motions, loads and contact at every increment.
 
 use serde::{Deserialize, Serialize};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use thiserror::Error;
 
@@ -59,7 +59,8 @@ pub struct Cycle {
 struct Landed {
     state: MachineState,
     row: CycleRow,
-    moments: Vec<(u32, Moment)>,
+    /// Where its moments are recorded.
+    moments: Range<usize>,
 }
 
 /// Why a cycle was not solved.
@@ -125,6 +126,8 @@ pub struct Simulator<'a, C> {
     pub time: &'a TimeSettings,
     /// How the increments were solved the last time, by the phase they end at; empty before.
     pub precedents: Vec<Option<Precedent>>,
+    /// The history of the cycle that runs; before, any that is no longer needed, for its memory.
+    pub history: CycleHistory,
 }
 
 impl MachineState {
@@ -169,6 +172,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
             contact,
             time,
             precedents: Vec::new(),
+            history: CycleHistory::default(),
         }
     }
 
@@ -191,6 +195,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         let first = (start.phase * count as f64).round() as usize;
         let mut state = *start;
         let mut landed: Vec<Option<Landed>> = vec![None; count];
+        self.history.clear();
         let mut repeats = false;
         let mut solved = 0;
         while !repeats && solved < count * self.time.most_cycles_to_repeat {
@@ -230,20 +235,17 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         let motion = configuration.motion(&state.now.rates);
         let touched = self.contact.touched(&motion);
         let peak_pressure_mpa = self.contact.peak_pressure_mpa(&motion, &touched);
+        let increment_s = self.increment_s();
         let moment = |node: &TouchedNode| Moment {
             percent,
             pressure_mpa: node.pressure_mpa,
-            slip_mm: node
-                .sliding_mm_per_s
-                .map(|speed| speed * self.increment_s()),
+            slip_mm: node.sliding_mm_per_s.map(|speed| speed * increment_s),
         };
+        let moments = touched.iter().map(|node| (node.node, moment(node)));
         Landed {
             state: *state,
             row: row(percent, state, &touched, peak_pressure_mpa),
-            moments: touched
-                .iter()
-                .map(|node| (node.node, moment(node)))
-                .collect(),
+            moments: self.history.record(moments),
         }
     }
 
@@ -254,11 +256,12 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         solved: usize,
         repeats: bool,
     ) -> Cycle {
-        let landed: Vec<Landed> = landed.into_iter().flatten().collect();
-        let records = landed.iter().flat_map(|here| &here.moments);
+        let landed = || landed.iter().flatten();
+        let instants: Vec<_> = landed().map(|here| here.moments.clone()).collect();
+        self.history.sort(self.contact.node_count(), &instants);
         Cycle {
-            rows: landed.iter().map(|here| here.row).collect(),
-            history: CycleHistory::from_records(self.contact.node_count(), records),
+            rows: landed().map(|here| here.row).collect(),
+            history: std::mem::take(&mut self.history),
             end,
             precedents: std::mem::take(&mut self.precedents),
             increments_solved: solved,

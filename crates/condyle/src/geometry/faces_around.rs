@@ -1,10 +1,11 @@
-//! Which nodes of a surface lie around a node.
+//! Which faces and nodes of a surface lie around a node.
 
 /// The faces around every node of a surface.
-pub(super) struct FacesAround {
+pub struct FacesAround {
     /// Those of node i are `faces[first[i]..first[i + 1]]`.
     first: Vec<usize>,
-    faces: Vec<[u32; 4]>,
+    /// The other corners of each, going on from the node.
+    faces: Vec<[u32; 3]>,
 }
 
 impl FacesAround {
@@ -18,10 +19,11 @@ impl FacesAround {
             first[node + 1] += first[node];
         }
         let mut next = first.clone();
-        let mut sorted = vec![[0; 4]; first[node_count]];
+        let mut sorted = vec![[0; 3]; first[node_count]];
         for face in faces {
-            for &node in face {
-                sorted[next[node as usize]] = *face;
+            for (corner, &node) in face.iter().enumerate() {
+                let others = [1, 2, 3].map(|turn| face[(corner + turn) % 4]);
+                sorted[next[node as usize]] = others;
                 next[node as usize] += 1;
             }
         }
@@ -29,6 +31,17 @@ impl FacesAround {
             first,
             faces: sorted,
         }
+    }
+
+    /// How many nodes the surface has.
+    pub fn node_count(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    /// The faces around a node, in the order they were given: of each the next corner, the one
+    /// across, and the one before.
+    pub fn of(&self, node: usize) -> &[[u32; 3]] {
+        &self.faces[self.first[node]..self.first[node + 1]]
     }
 
     /// A node, and then those around it: all that have a face in common with it and, if these are
@@ -46,9 +59,7 @@ impl FacesAround {
     }
 
     fn add_around(&self, node: u32, nodes: &mut Vec<u32>) {
-        let at = node as usize;
-        let faces = &self.faces[self.first[at]..self.first[at + 1]];
-        for other in faces.iter().flatten() {
+        for other in self.of(node as usize).iter().flatten() {
             if !nodes.contains(other) {
                 nodes.push(*other);
             }
