@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     Vec3,
-    contact::{ContactModel, Foundation},
+    contact::{ContactModel, Former, Foundation},
     geometry::ArticulatingSurface,
     machine::{Chain, Cycle, CycleRow, Effort, Freedom, MachineState, Simulator, TimeSettings},
 };
@@ -31,6 +31,8 @@ pub struct March {
     unworn_volume_mm3: f64,
     state: MarchState,
     fields: NodeFields,
+    /// What the contact of the last update knew, for the next one.
+    former: Option<Former>,
 }
 
 impl March {
@@ -112,6 +114,7 @@ impl March {
             unworn_volume_mm3,
             state,
             fields,
+            former: None,
         }
     }
 
@@ -146,10 +149,19 @@ impl March {
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<&UpdateRecord, MarchError> {
-        let contact = Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert);
+        let former = self.former.take();
+        let WearTest {
+            contact,
+            femur,
+            insert,
+            ..
+        } = &self.test;
+        let contact = Foundation::after(former, contact, femur, insert);
         let mut effort = self.state.effort;
         let (contact, cycle) = self.repeating_cycle(contact, &mut effort, watch)?;
-        self.wear(&contact.into_surface(), cycle, effort)
+        let (surface, former) = contact.into_parts();
+        self.former = Some(former);
+        self.wear(&surface, cycle, effort)
     }
 
     /// As [`March::update`], on another model of contact: the one made for the test as worn so far.
