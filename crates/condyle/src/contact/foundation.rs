@@ -72,8 +72,12 @@ pub struct Foundation<'a> {
     /// The surface's own directions at every four nodes.
     directions: Vec<[Vector<Lanes>; 2]>,
     faces: FacesAround,
-    /// What every four of them saw of the femur when they last touched it.
+    /// What every four of them saw of the femur, and the number of the response at which they
+    /// touched it last.
     seen: Vec<Seen>,
+    touched: Vec<u64>,
+    /// The number of the last response, from 1.
+    response: u64,
     nearness: Nearness,
     /// The fours that may touch, and the places of their centres in the femoral frame.
     due: Vec<(u32, Vector<Lanes>)>,
@@ -117,6 +121,8 @@ impl<'a> Foundation<'a> {
                 None => Nearness::new(&shares),
             },
             seen: vec![Seen::nothing(); shares.len()],
+            touched: vec![0; shares.len()],
+            response: 0,
             faces: FacesAround::new(surface.positions.len(), insert.surface_faces()),
             shares,
             surface,
@@ -145,17 +151,18 @@ impl<'a> Foundation<'a> {
 
     /// Looks from every four that may touch, and keeps those that do.
     ///
-    /// Only what touches is remembered: what is remembered then follows from the motion alone, and
-    /// not from what was found due.
+    /// Only what touches is remembered, and until it parts: what is remembered then follows from the
+    /// motion alone, and not from what was found due.
     fn look(&mut self, pose: &Pose4) {
         self.looks.clear();
+        self.response += 1;
         for &(four, place) in &self.due {
             let at = four as usize;
             let shares = &self.shares[at];
-            let before = &self.seen[at];
-            let reaches = before.reaches(&place);
+            let touched = self.touched[at] + 1 == self.response;
+            let reaches = touched && self.seen[at].reaches(&place);
             let seen = match reaches {
-                true => before.moved_to(place),
+                true => self.seen[at].moved_to(place),
                 false => Seen::anew(self.femur, place, shares.spread_mm2),
             };
             let normal = pose.turn_to_insert(&seen.sample.normal);
@@ -166,6 +173,7 @@ impl<'a> Foundation<'a> {
                 self.nearness.is_apart(at, shares, &seen, reach_mm, around);
             } else {
                 self.nearness.touches(at);
+                self.touched[at] = self.response;
                 if !reaches {
                     self.seen[at] = seen;
                 }
