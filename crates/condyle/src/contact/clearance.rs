@@ -60,6 +60,12 @@ impl Clearance {
         }
     }
 
+    /// How far from contact they were at least, mm.
+    #[inline(always)]
+    pub fn clear_mm(&self) -> f64 {
+        self.clear_mm.least()
+    }
+
     /// How far from contact the shares are at least, mm, at another place and turn; not above 0
     /// where that is not sure.
     #[inline(always)]

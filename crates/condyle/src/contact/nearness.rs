@@ -1,17 +1,19 @@
 //! Which shares may touch: four are looked at again only when they could have come near.
 
-use super::{Pose, clearance::Clearance, motion::Pose4, seen::Seen, shares::Shares4};
+use super::{
+    Pose,
+    clearance::Clearance,
+    motion::Pose4,
+    seen::Seen,
+    shares::Shares4,
+    standoff::{Bounds, GAP_PER_MOTION, Standoff},
+};
 use crate::{
-    Vec3, Vector,
+    Mat3, Vector,
     geometry::Surroundings,
     number::{Lanes, Number},
+    products::dot,
 };
-
-/// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.
-const GAP_PER_MOTION: f64 = 1.05;
-
-/// How far ahead the fours that are due soon are listed, mm of travel.
-const AHEAD_MM: f64 = 0.05;
 
 /// How far every four shares are from touching, at least.
 ///
@@ -19,52 +21,58 @@ const AHEAD_MM: f64 = 0.05;
 /// faster than the normal there turns. So four shares found `d` away from contact need no look
 /// before the femur has travelled by `d` since; and then a look at what was seen before is often
 /// enough. What is left is exactly what a search over all nodes would find.
+///
+/// Every increment of the cycle has its own account of that. A cycle after, the femur is within
+/// hundredths of a millimetre of where it was, and hardly any share is due but those that touch.
 pub(super) struct Nearness {
-    /// Travel at which each four are due for the next look, mm.
-    due_mm: Vec<f64>,
+    /// The accounts of the increments come to so far, but for the one that counts now.
+    standoffs: Vec<Option<Standoff>>,
+    now: Standoff,
+    increment: usize,
+    bounds: Bounds,
     clearances: Vec<Clearance>,
-    /// The fours that are due before the femur has travelled to `horizon_mm`.
-    near: Vec<u32>,
-    horizon_mm: f64,
-    /// Travel of the femur so far: a bound for every share, mm.
-    travelled_mm: f64,
     /// Turns of the femur so far, rad.
     turned_rad: f64,
-    at: Option<Pose>,
-    /// Corners of the box around all shares.
-    box_corners: [Vec3; 8],
-    longest_half_mm: f64,
+    rotation: Mat3,
+    listed: Vec<u32>,
 }
 
 impl Nearness {
     pub fn new(shares: &[Shares4]) -> Self {
         Self {
-            due_mm: vec![f64::NEG_INFINITY; shares.len()],
+            standoffs: Vec::new(),
+            now: Standoff::new(shares.len()),
+            increment: 0,
+            bounds: Bounds::of(shares),
             clearances: vec![Clearance::unknown(); shares.len()],
-            near: Vec::new(),
-            horizon_mm: f64::NEG_INFINITY,
-            travelled_mm: 0.0,
             turned_rad: 0.0,
-            at: None,
-            box_corners: box_corners(shares),
-            longest_half_mm: shares.iter().map(|four| four.half_mm).fold(0.0, f64::max),
+            rotation: Mat3::identity(),
+            listed: Vec::new(),
         }
     }
 
-    /// The femur moves on.
-    ///
-    /// The motion of a point is affine in its place, so it is longest at a corner of the box. A
-    /// turn of the femur lets the reach of a share grow by as much as it lifts its corners.
-    pub fn travel(&mut self, to: &Pose) {
-        if let Some(from) = self.at.replace(*to) {
-            let moved =
-                |corner: &Vec3| (to.to_femur(corner) - from.to_femur(corner)).norm_squared();
-            let corners = self.box_corners.iter().map(moved);
-            let farthest_mm = corners.fold(0.0, f64::max).sqrt();
-            let turn_rad = (to.rotation - from.rotation).norm();
-            self.turned_rad += turn_rad;
-            self.travelled_mm += GAP_PER_MOTION * farthest_mm + self.longest_half_mm * turn_rad;
+    /// From now on the account of another increment counts; of one never come to, it begins with
+    /// what is known now.
+    pub fn begin_increment(&mut self, increment: usize) {
+        if increment == self.increment {
+            return;
         }
+        let most = increment.max(self.increment);
+        if most >= self.standoffs.len() {
+            self.standoffs.resize(most + 1, None);
+        }
+        let kept = self.standoffs[increment].take();
+        let next = kept.unwrap_or_else(|| self.now.clone());
+        let left = std::mem::replace(&mut self.now, next);
+        self.standoffs[self.increment] = Some(left);
+        self.increment = increment;
+    }
+
+    /// The femur moves on.
+    pub fn travel(&mut self, to: &Pose) {
+        self.now.travel(to, &self.bounds);
+        self.turned_rad += (to.rotation - self.rotation).norm();
+        self.rotation = to.rotation;
     }
 
     /// Lists the fours that may touch at a pose, each with the places of its centres there.
@@ -77,57 +85,32 @@ impl Nearness {
         pose: &Pose4,
         due: &mut Vec<(u32, Vector<Lanes>)>,
     ) {
-        if self.travelled_mm > self.horizon_mm {
-            self.find_near(shares, pose);
-        }
         due.clear();
-        for &four in &self.near {
+        self.now.list_due(&mut self.listed);
+        for &four in &self.listed {
             let at = four as usize;
-            if self.due_mm[at] <= self.travelled_mm {
-                due.push((four, pose.to_femur(&shares[at].centre)));
+            let place = pose.to_femur(&shares[at].centre);
+            if !self.now.is_always_due(at) {
+                let clearance = &self.clearances[at];
+                let half_mm = shares[at].half_mm;
+                let clear_mm = clearance.least_mm(&place, half_mm, self.turned_rad);
+                if clear_mm > 0.0 {
+                    self.now.put_off(at, clearance.travel_mm(clear_mm, half_mm));
+                    continue;
+                }
             }
-        }
-    }
-
-    /// Lists the fours that are due soon.
-    ///
-    /// Newton's corrections are short: they go over this list, and not over all shares.
-    fn find_near(&mut self, shares: &[Shares4], pose: &Pose4) {
-        self.near.clear();
-        self.horizon_mm = self.travelled_mm + AHEAD_MM;
-        for (four, shares) in shares.iter().enumerate() {
-            if self.due_mm[four] > self.horizon_mm {
-                continue;
-            }
-            if self.due_mm[four] != f64::NEG_INFINITY {
-                self.put_off(four, shares.half_mm, &pose.to_femur(&shares.centre));
-            }
-            if self.due_mm[four] <= self.horizon_mm {
-                self.near.push(four as u32);
-            }
-        }
-    }
-
-    /// Puts the next look from four off if what was seen before says that they do not touch at
-    /// `place` either.
-    #[inline(always)]
-    fn put_off(&mut self, four: usize, half_mm: f64, place: &Vector<Lanes>) {
-        let clearance = &self.clearances[four];
-        let clear_mm = clearance.least_mm(place, half_mm, self.turned_rad);
-        if clear_mm > 0.0 {
-            self.due_mm[four] = self.travelled_mm + clearance.travel_mm(clear_mm, half_mm);
+            due.push((four, place));
         }
     }
 
     /// Four touch: they are always due.
     #[inline(always)]
     pub fn touches(&mut self, four: usize) {
-        self.due_mm[four] = f64::NEG_INFINITY;
+        self.now.touches(four);
         self.clearances[four].forget();
     }
 
-    /// Four were seen apart, their gap larger than their reach: notes when they are due
-    /// next.
+    /// Four were seen apart, their gap larger than their reach: notes when they are due next.
     ///
     /// Far off, where nothing is known of the surroundings, no reach is longer than half of both
     /// edges.
@@ -141,31 +124,39 @@ impl Nearness {
         surroundings: Surroundings,
     ) {
         let half_mm = shares.half_mm;
-        let gap_mm = seen.sample.gap_mm;
         let clearance = Clearance::new(seen, reach_mm, shares, surroundings, self.turned_rad);
-        let near_mm = clearance.travel_mm((gap_mm - reach_mm).least(), half_mm);
-        let far_mm = gap_mm.least() - half_mm;
-        self.due_mm[four] = self.travelled_mm + near_mm.max(far_mm);
+        let near_mm = clearance.travel_mm(clearance.clear_mm(), half_mm);
+        let far_mm = seen.sample.gap_mm.least() - half_mm;
+        self.now.put_off(four, near_mm.max(far_mm));
         self.clearances[four] = clearance;
+    }
+
+    /// What is still known when the shares have moved and changed a little.
+    pub fn worn(mut self, before: &[Shares4], shares: &[Shares4]) -> Self {
+        let fours = before.iter().zip(shares);
+        let nearer_mm: Vec<f64> = fours
+            .map(|(before, four)| nearer_mm(before, four))
+            .collect();
+        self.bounds = Bounds::of(shares);
+        self.clearances.iter_mut().for_each(Clearance::forget);
+        self.now.come_nearer(&nearer_mm);
+        for standoff in self.standoffs.iter_mut().flatten() {
+            standoff.come_nearer(&nearer_mm);
+        }
+        self
     }
 }
 
-fn box_corners(shares: &[Shares4]) -> [Vec3; 8] {
-    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-    let (low, high) = shares.iter().fold(none, |(low, high), four| {
-        (
-            low.inf(&four.centre.map(Lanes::least)),
-            high.sup(&four.centre.map(Lanes::greatest)),
-        )
-    });
-    [0, 1, 2, 3, 4, 5, 6, 7].map(|corner: usize| {
-        let pick = |axis: usize| {
-            if corner >> axis & 1 == 0 {
-                low[axis]
-            } else {
-                high[axis]
-            }
-        };
-        Vec3::new(pick(0), pick(1), pick(2))
-    })
+/// How much nearer four shares may have come by a change of them, as a travel of the femur, mm.
+///
+/// The centre's motion counts as one of the femur. The reach changes by no more than half of what
+/// the edges do; the other half is more than what the mean over the share does, and longer edges
+/// through a turn of the normal.
+fn nearer_mm(before: &Shares4, four: &Shares4) -> f64 {
+    let change = |of: fn(&Shares4) -> &Vector<Lanes>| {
+        let change = of(four) - of(before);
+        dot(&change, &change).sqrt()
+    };
+    let edges = change(|four| &four.edge_a) + change(|four| &four.edge_b);
+    (change(|four| &four.centre) * Lanes::splat(GAP_PER_MOTION) + edges).greatest()
 }

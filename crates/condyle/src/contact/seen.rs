@@ -31,23 +31,24 @@ impl Seen {
         }
     }
 
-    /// The femur as four shares see it at `place`; remembered if it was taken anew.
+    /// The femur as four shares see it at `place`.
     #[inline(always)]
-    pub fn look(
-        &mut self,
-        femur: &FemoralSurface,
-        place: Vector<Lanes>,
-        spread_mm2: Lanes,
-    ) -> Self {
+    pub fn anew(femur: &FemoralSurface, place: Vector<Lanes>, spread_mm2: Lanes) -> Self {
+        let sample = femur.sample(&place, spread_mm2);
+        Self { place, sample }
+    }
+
+    /// Whether `place` is so near that what was seen may be moved along there.
+    #[inline(always)]
+    pub fn reaches(&self, place: &Vector<Lanes>) -> bool {
         let motion = place - self.place;
-        if dot(&motion, &motion).greatest() <= MOVED_ALONG_MM * MOVED_ALONG_MM {
-            let sample = self.sample.moved(&motion);
-            return Self { place, sample };
-        }
-        *self = Self {
-            place,
-            sample: femur.sample(&place, spread_mm2),
-        };
-        *self
+        dot(&motion, &motion).greatest() <= MOVED_ALONG_MM * MOVED_ALONG_MM
+    }
+
+    /// What was seen moved along to `place`.
+    #[inline(always)]
+    pub fn moved_to(&self, place: Vector<Lanes>) -> Self {
+        let sample = self.sample.moved(&(place - self.place));
+        Self { place, sample }
     }
 }

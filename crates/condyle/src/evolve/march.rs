@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     Vec3,
-    contact::{ContactModel, CycleHistory, Foundation},
+    contact::{ContactModel, CycleHistory, Former, Foundation},
     geometry::ArticulatingSurface,
     machine::{Chain, Cycle, CycleRow, Effort, Freedom, MachineState, Simulator, TimeSettings},
 };
@@ -33,6 +33,8 @@ pub struct March {
     fields: NodeFields,
     /// The last cycle's history, for its memory.
     spent: CycleHistory,
+    /// What the contact of the last update knew, for the next one.
+    former: Option<Former>,
 }
 
 impl March {
@@ -115,6 +117,7 @@ impl March {
             state,
             fields,
             spent: CycleHistory::default(),
+            former: None,
         }
     }
 
@@ -150,10 +153,19 @@ impl March {
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<&UpdateRecord, MarchError> {
         let spent = std::mem::take(&mut self.spent);
-        let contact = Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert);
+        let former = self.former.take();
+        let WearTest {
+            contact,
+            femur,
+            insert,
+            ..
+        } = &self.test;
+        let contact = Foundation::after(former, contact, femur, insert);
         let mut effort = self.state.effort;
         let (contact, cycle) = self.repeating_cycle(contact, spent, &mut effort, watch)?;
-        self.wear(&contact.into_surface(), cycle, effort)
+        let (surface, former) = contact.into_parts();
+        self.former = Some(former);
+        self.wear(&surface, cycle, effort)
     }
 
     /// As [`March::update`], on another model of contact: the one made for the test as worn so far.

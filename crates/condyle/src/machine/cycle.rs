@@ -201,6 +201,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         while !repeats && solved < count * self.time.most_cycles_to_repeat {
             let place = (first + solved) % count;
             let to = (place + 1) as f64 / count as f64;
+            self.contact.begin_increment(place);
             state = match self.time.integration {
                 Integration::Implicit => self.step(&state, to, effort, &mut |_| ())?,
                 Integration::Explicit { least_step_s } => Explicit {

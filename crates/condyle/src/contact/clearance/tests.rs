@@ -62,7 +62,7 @@ fn bumpy() -> TriangleMesh {
 fn look(femur: &FemoralSurface, four: &Shares4, pose: &Pose) -> (Seen, Lanes, bool) {
     let pose = Pose4::new(pose);
     let place = pose.to_femur(&four.centre);
-    let seen = Seen::nothing().look(femur, place, four.spread_mm2);
+    let seen = Seen::anew(femur, place, four.spread_mm2);
     let normal = pose.turn_to_insert(&seen.sample.normal);
     let rises = Rises::new([dot(&normal, &four.edge_a), dot(&normal, &four.edge_b)]);
     let reach_mm = rises.reach_mm();
