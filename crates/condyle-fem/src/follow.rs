@@ -16,6 +16,16 @@ pub struct InteriorFollower {
     /// Neighbours of row k are `neighbours[first[k]..first[k + 1]]`.
     first: Vec<usize>,
     neighbours: Vec<u32>,
+    /// One over how many they are.
+    scale: Vec<f64>,
+}
+
+/// How large a residual is.
+#[derive(Clone, Copy)]
+struct Size {
+    length2: f64,
+    /// Times the preconditioner.
+    scaled2: f64,
 }
 
 impl InteriorFollower {
@@ -29,8 +39,12 @@ impl InteriorFollower {
             .filter(|&node| !is_held[node as usize])
             .collect();
         let (first, neighbours) = neighbours_of(&free, mesh);
+        let scale = first
+            .windows(2)
+            .map(|ends| 1.0 / (ends[1] - ends[0]) as f64);
         Self {
             free,
+            scale: scale.collect(),
             first,
             neighbours,
         }
@@ -43,42 +57,58 @@ impl InteriorFollower {
     pub fn follow(&self, displacement: &mut [Vec3]) {
         let enough2 = (RELATIVE_RESIDUAL * self.pull_of_held(displacement)).powi(2);
         let mut residual: Vec<Vec3> = self.pulls(displacement).collect();
+        let mut size = self.size(&residual);
         let mut direction = vec![Vec3::zeros(); displacement.len()];
+        self.turn(&mut direction, &residual, 0.0);
         let mut image = vec![Vec3::zeros(); residual.len()];
-        let mut rho = f64::INFINITY;
         for _ in 0..self.free.len() {
-            if dot(&residual, &residual) <= enough2 {
+            if size.length2 <= enough2 {
                 break;
             }
-            let next = self.turn(&mut direction, &residual, rho);
-            rho = next;
-            let mut resistance = 0.0;
-            for ((image, pull), &node) in
-                image.iter_mut().zip(self.pulls(&direction)).zip(&self.free)
-            {
-                *image = pull;
-                resistance -= pull.dot(&direction[node as usize]);
-            }
-            let step = rho / resistance;
+            let step = size.scaled2 / self.resistance(&direction, &mut image);
             for ((residual, image), &node) in residual.iter_mut().zip(&image).zip(&self.free) {
                 *residual += image * step;
                 displacement[node as usize] += direction[node as usize] * step;
             }
+            let before = size;
+            size = self.size(&residual);
+            self.turn(&mut direction, &residual, size.scaled2 / before.scaled2);
         }
     }
 
-    /// The next direction of search, from the last one and the scaled residual; returns their
-    /// product.
-    fn turn(&self, direction: &mut [Vec3], residual: &[Vec3], rho: f64) -> f64 {
-        let scale = |k: usize| 1.0 / (self.first[k + 1] - self.first[k]) as f64;
-        let rows = || residual.iter().enumerate();
-        let next: f64 = rows().map(|(k, r)| r.norm_squared() * scale(k)).sum();
-        let keep = next / rho;
-        for (k, r) in rows() {
-            let d = &mut direction[self.free[k] as usize];
-            *d = r * scale(k) + *d * keep;
+    /// Turns the direction of search to the scaled residual, and keeps some of the last one.
+    fn turn(&self, direction: &mut [Vec3], residual: &[Vec3], keep: f64) {
+        for ((r, scale), &node) in residual.iter().zip(&self.scale).zip(&self.free) {
+            let d = &mut direction[node as usize];
+            *d = r * *scale + *d * keep;
         }
-        next
+    }
+
+    /// The product of a direction with its image, which is found on the way, less its sign.
+    fn resistance(&self, direction: &[Vec3], image: &mut [Vec3]) -> f64 {
+        let mut resistance = 0.0;
+        for ((image, pull), &node) in image.iter_mut().zip(self.pulls(direction)).zip(&self.free) {
+            *image = pull;
+            resistance -= pull.dot(&direction[node as usize]);
+        }
+        resistance
+    }
+
+    fn size(&self, residual: &[Vec3]) -> Size {
+        let none = Size {
+            length2: 0.0,
+            scaled2: 0.0,
+        };
+        residual
+            .iter()
+            .zip(&self.scale)
+            .fold(none, |sum, (r, scale)| {
+                let length2 = r.norm_squared();
+                Size {
+                    length2: sum.length2 + length2,
+                    scaled2: sum.scaled2 + length2 * scale,
+                }
+            })
     }
 
     /// What the neighbours of every free node pull it by: sum of (u_j - u_i).
@@ -140,10 +170,6 @@ fn neighbours_of(free: &[u32], mesh: &HexMesh) -> (Vec<usize>, Vec<u32>) {
         first.push(neighbours.len());
     }
     (first, neighbours)
-}
-
-fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {
-    a.iter().zip(b).map(|(u, v)| u.dot(v)).sum()
 }
 
 #[cfg(test)]
