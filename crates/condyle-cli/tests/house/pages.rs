@@ -102,7 +102,10 @@ fn every_source_cited_is_in_the_references_and_the_other_way_round() {
     let entries = bibliography
         .lines()
         .filter_map(|line| line.strip_prefix('@')?.split_once('{')?.1.strip_suffix(','));
-    let entries: BTreeSet<String> = entries.map(str::to_owned).collect();
+    let entries: Vec<String> = entries.map(str::to_owned).collect();
+    let in_order = entries.is_sorted_by(|one, next| one < next);
+    assert!(in_order, "each once, by the alphabet: {entries:?}");
+    let entries = BTreeSet::from_iter(entries);
     let cited = cited();
     let missing: Vec<_> = cited.difference(&entries).collect();
     assert!(missing.is_empty(), "not in references.bib: {missing:?}");
