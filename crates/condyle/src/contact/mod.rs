@@ -3,6 +3,7 @@
 mod clearance;
 mod faces_around;
 mod foundation;
+mod ground;
 mod history;
 mod law;
 mod motion;
