@@ -268,3 +268,30 @@ fn the_default_case_is_within_a_thousandth_of_itself_without_shortcuts() {
 fn a_real_implant_is_within_a_thousandth_of_itself_without_shortcuts() {
     assert_exact("dm-knee.toml");
 }
+
+/// Asserts that what a march knows of the cycles before changes not a bit: it is given up and
+/// resumed at every update, which leaves of it what a checkpoint holds.
+fn assert_the_same_when_resumed(name: &str) {
+    let (Some(whole), Some(resumed)) = (built(name), built(name)) else {
+        return;
+    };
+    let [mut whole, mut resumed] =
+        [whole, resumed].map(|test| March::start(test).expect("a shipped case settles"));
+    for update in 1..=4 {
+        whole.update(&mut go_on).expect("a solved update");
+        let test = built(name).expect("it was built before");
+        resumed = March::resume(test, resumed.state().clone());
+        resumed.update(&mut go_on).expect("a solved update");
+        assert!(whole.state() == resumed.state(), "{name}: update {update}");
+    }
+}
+
+#[test]
+fn the_default_case_resumed_at_every_update_is_the_same_to_the_bit() {
+    assert_the_same_when_resumed("stanmore-force.toml");
+}
+
+#[test]
+fn a_real_implant_resumed_at_every_update_is_the_same_to_the_bit() {
+    assert_the_same_when_resumed("dm-knee.toml");
+}

@@ -4,7 +4,7 @@ use condyle::{
     Mat3, Vec3,
     contact::{
         ContactModel, Foundation, FoundationSettings, Mat6, Pose, PressureLaw, PressureTable,
-        RelativeMotion, Vec6, confined_modulus, cross_matrix,
+        RelativeMotion, Tangent, TouchedNode, Vec6, confined_modulus, cross_matrix,
     },
     geometry::{
         FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
@@ -349,6 +349,94 @@ fn what_was_far_away_is_found_when_it_comes_near() {
             assert_eq!(walked.respond(&motion), fresh, "step {i}");
         }
     }
+}
+
+/// Motions asked for at an increment of a gait, each with whether it is farther from the one before
+/// than a sample is moved along.
+fn asked(increment: u32, round: u32, z_mm: f64) -> Vec<(RelativeMotion, bool)> {
+    let angle = std::f64::consts::TAU * f64::from(increment) / 24.0;
+    let drift_mm = 0.05 * f64::from(round);
+    let place = Vec3::new(6.0 * angle.cos() - 4.0, 23.7 - drift_mm, z_mm + angle.sin());
+    let turn = Vec3::new(
+        0.02 * angle.sin(),
+        0.1 * angle.cos(),
+        -0.5 + 0.5 * angle.sin(),
+    );
+    let motion = |shift_mm: f64, lift_mm: f64| RelativeMotion {
+        pose: Pose {
+            rotation: rotation(&turn),
+            translation: place + Vec3::new(shift_mm, lift_mm, 0.0),
+        },
+        twist: Vec6::new(0.1, 0.2, 1.0, 20.0, 0.0, 1.0),
+    };
+    let mut asked = vec![
+        (motion(0.3, -0.1), true),
+        (motion(0.04, 0.0), true),
+        (motion(0.0, 0.0), true),
+        (motion(0.005, 0.001), false),
+    ];
+    if increment % 5 == 3 {
+        asked.insert(1 + increment as usize % 3, (motion(-3.0, 12.0), true));
+        asked.insert(1, (motion(9.0, 0.5), true));
+    }
+    asked
+}
+
+/// The last answer of a foundation, to the bit.
+fn answer(
+    contact: &mut Foundation<'_>,
+    motion: &RelativeMotion,
+) -> (Vec6, Tangent, Vec<TouchedNode>) {
+    let wrench = contact.respond(motion);
+    (wrench, contact.tangent(), contact.touched(motion))
+}
+
+#[test]
+fn what_is_known_of_the_cycle_before_changes_no_answer() {
+    let settings = linear();
+    let generic = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    for (femur, z_mm) in [(generic, 0.0), (mesh_femur(&default_insert()), 23.0)] {
+        let (mut insert, mut former, mut touched) = (default_insert(), None, 0);
+        for round in 0..4 {
+            let mut knowing = Foundation::after(former, &settings, &femur, &insert);
+            let mut untold = Foundation::new(&settings, &femur, &insert);
+            for increment in 0..24 {
+                knowing.begin_increment(increment as usize);
+                for (motion, is_far) in asked(increment, round, z_mm) {
+                    let found = answer(&mut knowing, &motion);
+                    assert_eq!(found, answer(&mut untold, &motion), "{round} {increment}");
+                    let mut fresh = Foundation::new(&settings, &femur, &insert);
+                    assert!(!is_far || found == answer(&mut fresh, &motion));
+                    touched += found.2.len();
+                }
+            }
+            let (surface, known) = knowing.into_parts();
+            let depth_mm = |place: &Vec3| 0.03 * (1.0 + (place.x / 3.0).sin());
+            // The third round finds the insert as the second left it.
+            if round != 1 {
+                let depth_mm: Vec<f64> = surface.positions.iter().map(depth_mm).collect();
+                insert.wear_down(&surface, &depth_mm);
+            }
+            former = Some(known);
+        }
+        assert!(touched > 10_000, "{touched}");
+    }
+}
+
+#[test]
+fn what_is_known_of_another_insert_is_forgotten() {
+    let (settings, femur) = (linear(), FemoralSurface::sphere(24.0));
+    let (insert, flat) = (
+        default_insert(),
+        flat_insert((24.0, 24.0), 9.0, one_millimetre()).unwrap(),
+    );
+    let mut contact = Foundation::new(&settings, &femur, &insert);
+    contact.respond(&at(Vec3::new(0.0, 60.0, 0.0)));
+    let (_, known) = contact.into_parts();
+    let motion = at(Vec3::new(0.0, 23.9, 0.0));
+    let fresh = Foundation::new(&settings, &femur, &flat).respond(&motion);
+    let mut contact = Foundation::after(Some(known), &settings, &femur, &flat);
+    assert_eq!(contact.respond(&motion), fresh);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::{
     ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
+    clearance::Clearance,
     motion::{Pose4, Twist4, small_motion, twist_to_femur},
     nearness::Nearness,
     partial::{Rises, mean_overclosure},
@@ -169,9 +170,10 @@ impl<'a> Foundation<'a> {
             let reach_mm = rises.reach_mm();
             if (seen.sample.gap_mm - reach_mm).least() > 0.0 {
                 let around = self.femur.surroundings(&place);
-                self.nearness.is_apart(at, shares, &seen, reach_mm, around);
+                let clearance = Clearance::new(&seen, reach_mm, shares, around);
+                self.nearness.is_apart(four, &clearance);
             } else {
-                self.nearness.touches(at);
+                self.nearness.touches(four);
                 self.touched[at] = self.response;
                 if !reaches {
                     self.seen[at] = seen;
@@ -250,8 +252,8 @@ impl ContactModel for Foundation<'_> {
         let to_femur = twist_to_femur(&self.pose);
         let pose = Pose4::new(&self.pose);
         let twist = Twist4::new(&(to_femur * motion.twist));
-        self.nearness.travel(&self.pose);
-        self.nearness.find_due(&self.shares, &pose, &mut self.due);
+        self.nearness
+            .find_due(&self.shares, &self.pose, &pose, &mut self.due);
         self.look(&pose);
         to_femur.tr_mul(&self.press(&pose, &twist))
     }

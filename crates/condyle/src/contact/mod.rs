@@ -2,6 +2,7 @@
 
 mod clearance;
 mod foundation;
+mod ground;
 mod history;
 mod law;
 mod motion;

@@ -1,139 +1,171 @@
-//! How far four shares each are from touching, counted from one place of the cycle.
+//! How far every four shares are from touching, carried along as the femur moves.
 
-use super::{Pose, shares::Shares4};
+use super::{
+    Pose,
+    clearance::Clearance,
+    ground::{Ground, Wear},
+};
 use crate::{
-    Vec3,
-    number::{Lanes, Number},
+    Mat3, Vec3, Vector,
+    number::{Number, SINGLES, Singles},
+    products::dot,
 };
 
-/// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.
-pub(super) const GAP_PER_MOTION: f64 = 1.05;
+/// More than is rounded off in a step, mm.
+const ROUNDED_OFF_MM: f64 = 2e-6;
 
-/// How many fours are compared at a time: the bits of a word.
-const BLOCK: usize = 32;
+/// Farther off a clearance counts as this much, mm: single precision then rounds less off than
+/// [`ROUNDED_OFF_MM`].
+const FARTHEST_MM: f64 = 16.0;
 
-/// What the femur travels past: the shares' bounds.
+/// Eight numbers as they lie in memory.
+type Eight = [f32; SINGLES];
+
+/// How far every four shares are from touching where the femur is.
 #[derive(Clone)]
-pub(super) struct Bounds {
-    /// Corners of the box around all centres.
-    corners: [Vec3; 8],
-    longest_half_mm: f64,
+pub(super) struct Standoff {
+    at: Option<Pose>,
+    clearances: Vec<Clearances>,
+    count: usize,
+    /// How often the shares had worn.
+    worn: u32,
 }
 
-impl Bounds {
-    pub fn of(shares: &[Shares4]) -> Self {
+/// Clearances of eight fours, see [`Clearance`].
+#[derive(Clone)]
+struct Clearances {
+    clear_mm: Eight,
+    slope: [Eight; 3],
+    loss: Eight,
+    radius_mm: Eight,
+}
+
+/// How points of the insert move in the femoral frame from one pose to another.
+struct Step {
+    /// Change of a place by its coordinates x, y and z.
+    turn: [Vector<Singles>; 3],
+    shift: Vector<Singles>,
+    turn_rad: Singles,
+}
+
+impl Step {
+    fn between(from: &Pose, to: &Pose) -> Self {
+        let turn: Mat3 = (to.rotation - from.rotation).transpose();
+        let shift = to.to_femur(&Vec3::zeros()) - from.to_femur(&Vec3::zeros());
         Self {
-            corners: box_corners(shares),
-            longest_half_mm: shares.iter().map(|four| four.half_mm).fold(0.0, f64::max),
+            turn: columns(&turn),
+            shift: shift.map(Singles::splat),
+            turn_rad: Singles::splat(turn.norm()),
         }
     }
 
-    /// How much nearer a motion of the femur can bring any share, mm.
-    ///
-    /// The motion of a point is affine in its place, so it is longest at a corner of the box. A
-    /// turn of the femur lets the reach of a share grow by as much as it lifts its corners.
-    fn travel_mm(&self, from: &Pose, to: &Pose) -> f64 {
-        let moved = |corner: &Vec3| (to.to_femur(corner) - from.to_femur(corner)).norm_squared();
-        let farthest_mm = self.corners.iter().map(moved).fold(0.0, f64::max).sqrt();
-        let turn_rad = (to.rotation - from.rotation).norm();
-        GAP_PER_MOTION * farthest_mm + self.longest_half_mm * turn_rad
+    #[inline(always)]
+    fn of(&self, place: &Vector<Singles>) -> Vector<Singles> {
+        let [x, y, z] = &self.turn;
+        let along = |axis: usize| {
+            let across = y[axis].times_plus(place.y, z[axis].times_plus(place.z, self.shift[axis]));
+            x[axis].times_plus(place.x, across)
+        };
+        Vector::new(along(0), along(1), along(2))
     }
 }
 
-/// When every four shares are to be looked at again.
-#[derive(Clone)]
-pub(super) struct Standoff {
-    /// Where the femur was last.
-    at: Option<Pose>,
-    /// Its travel so far: a bound for every share, mm.
-    travelled_mm: f64,
-    /// Travel at which each four are due for the next look, mm.
-    due_mm: Vec<f64>,
+fn columns(matrix: &Mat3) -> [Vector<Singles>; 3] {
+    [0, 1, 2].map(|axis| Vec3::from(matrix.column(axis)).map(Singles::splat))
+}
+
+impl Clearances {
+    /// Of shares that touch.
+    const NONE: Self = Self {
+        clear_mm: [f32::NEG_INFINITY; SINGLES],
+        slope: [[0.0; SINGLES]; 3],
+        loss: [0.0; SINGLES],
+        radius_mm: [f32::INFINITY; SINGLES],
+    };
+
+    /// Carries them along a motion of their middles in the femoral frame that may bring them nearer
+    /// by `lost_mm` beside; a bit for each that may touch after it.
+    #[inline(always)]
+    fn carry(&mut self, motion: &Vector<Singles>, lost_mm: Singles) -> u32 {
+        let [x, y, z] = self.slope;
+        let slope = Vector::new(Singles::new(x), Singles::new(y), Singles::new(z));
+        let motion_mm = dot(motion, motion).sqrt() + lost_mm;
+        let lost_mm = Singles::new(self.loss).times_plus(motion_mm, lost_mm);
+        let clear_mm = Singles::new(self.clear_mm) + (dot(&slope, motion) - lost_mm);
+        let radius_mm = Singles::new(self.radius_mm) - motion_mm;
+        self.clear_mm = clear_mm.to_array();
+        self.radius_mm = radius_mm.to_array();
+        clear_mm.not_above_zero() | radius_mm.not_above_zero()
+    }
 }
 
 impl Standoff {
-    /// All of `count` fours are due.
+    /// All of `count` fours may touch.
     pub fn new(count: usize) -> Self {
         Self {
             at: None,
-            travelled_mm: 0.0,
-            due_mm: vec![f64::NEG_INFINITY; count],
+            clearances: vec![Clearances::NONE; count.div_ceil(SINGLES)],
+            count,
+            worn: 0,
         }
     }
 
-    /// The femur moves on.
-    pub fn travel(&mut self, to: &Pose, bounds: &Bounds) {
-        if let Some(from) = self.at.replace(*to) {
-            self.travelled_mm += bounds.travel_mm(&from, to);
+    /// How often the shares had worn.
+    pub fn worn(&self) -> u32 {
+        self.worn
+    }
+
+    /// The shares wear once more.
+    pub fn wear(&mut self, wear: &[Wear]) {
+        self.worn += 1;
+        let Some(pose) = self.at else { return };
+        let [x, y, z] = columns(&pose.rotation);
+        for (clearances, Wear { moved, lost_mm }) in self.clearances.iter_mut().zip(wear) {
+            let motion = Vector::new(dot(&x, moved), dot(&y, moved), dot(&z, moved));
+            clearances.carry(&motion, *lost_mm);
         }
     }
 
-    /// Lists the fours that are due, ascending.
-    ///
-    /// Few are, so they are compared many at a time.
-    pub fn list_due(&self, due: &mut Vec<u32>) {
+    /// The femur moves on; lists the fours that may touch now, ascending.
+    pub fn follow(&mut self, to: &Pose, ground: &[Ground], due: &mut Vec<u32>) {
+        let from = self.at.replace(*to).unwrap_or(*to);
+        let step = Step::between(&from, to);
+        let rounded_off_mm = Singles::splat(ROUNDED_OFF_MM);
         due.clear();
-        for (block, due_mm) in self.due_mm.chunks(BLOCK).enumerate() {
-            let mut left = due_bits(due_mm, self.travelled_mm);
+        for (number, (clearances, ground)) in self.clearances.iter_mut().zip(ground).enumerate() {
+            let lost_mm = ground.levers_mm.times_plus(step.turn_rad, rounded_off_mm);
+            let mut left = clearances.carry(&step.of(&ground.middles), lost_mm);
             while left != 0 {
-                due.push((block * BLOCK) as u32 + left.trailing_zeros());
+                due.push((number * SINGLES) as u32 + left.trailing_zeros());
                 left &= left - 1;
             }
         }
+        // The last eight may not be full.
+        due.truncate(due.partition_point(|&four| (four as usize) < self.count));
     }
 
-    /// Whether four touched when they were looked at last, or never were.
+    /// Four were looked at where the femur is now.
     #[inline(always)]
-    pub fn is_always_due(&self, four: usize) -> bool {
-        self.due_mm[four] == f64::NEG_INFINITY
+    pub fn set(&mut self, four: u32, clearance: &Clearance) {
+        let four = four as usize;
+        let (clearances, i) = (&mut self.clearances[four / SINGLES], four % SINGLES);
+        clearances.clear_mm[i] = clearance.clear_mm.min(FARTHEST_MM) as f32;
+        clearances.slope[0][i] = clearance.slope.x as f32;
+        clearances.slope[1][i] = clearance.slope.y as f32;
+        clearances.slope[2][i] = clearance.slope.z as f32;
+        clearances.loss[i] = clearance.loss as f32;
+        clearances.radius_mm[i] = clearance.radius_mm as f32;
     }
 
-    /// Four touch: they are always due.
+    /// Four touch: they may go on touching wherever the femur moves.
     #[inline(always)]
-    pub fn touches(&mut self, four: usize) {
-        self.due_mm[four] = f64::NEG_INFINITY;
-    }
-
-    /// Four are due when the femur has travelled on by `ahead_mm`.
-    #[inline(always)]
-    pub fn put_off(&mut self, four: usize, ahead_mm: f64) {
-        self.due_mm[four] = self.travelled_mm + ahead_mm;
-    }
-
-    /// Every four have come nearer, each by so much.
-    pub fn come_nearer(&mut self, nearer_mm: &[f64]) {
-        for (due_mm, nearer_mm) in self.due_mm.iter_mut().zip(nearer_mm) {
-            *due_mm -= nearer_mm;
-        }
+    pub fn touches(&mut self, four: u32) {
+        let four = four as usize;
+        let (clearances, i) = (&mut self.clearances[four / SINGLES], four % SINGLES);
+        clearances.clear_mm[i] = f32::NEG_INFINITY;
+        clearances.radius_mm[i] = f32::INFINITY;
     }
 }
 
-/// A bit for each of at most [`BLOCK`] that is due.
-#[inline(always)]
-fn due_bits(due_mm: &[f64], travelled_mm: f64) -> u32 {
-    let mut bits = 0;
-    for (place, &due_mm) in due_mm.iter().enumerate() {
-        bits |= u32::from(due_mm <= travelled_mm) << place;
-    }
-    bits
-}
-
-fn box_corners(shares: &[Shares4]) -> [Vec3; 8] {
-    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-    let (low, high) = shares.iter().fold(none, |(low, high), four| {
-        (
-            low.inf(&four.centre.map(Lanes::least)),
-            high.sup(&four.centre.map(Lanes::greatest)),
-        )
-    });
-    [0, 1, 2, 3, 4, 5, 6, 7].map(|corner: usize| {
-        let pick = |axis: usize| {
-            if corner >> axis & 1 == 0 {
-                low[axis]
-            } else {
-                high[axis]
-            }
-        };
-        Vec3::new(pick(0), pick(1), pick(2))
-    })
-}
+#[cfg(test)]
+mod tests;

@@ -17,7 +17,7 @@ const NEAR_MM: Range<f64> = -0.6..2.0;
 const HALF_DIAGONAL: f64 = 0.9;
 
 /// How many cells around one are looked at.
-const CELLS_AROUND: usize = 2;
+const CELLS_AROUND: usize = 1;
 
 /// For every cell of a field's grid that the surface comes near, how it bends there and in the
 /// cells around: the extremes of eight samples a cell.
@@ -105,6 +105,7 @@ impl BendMap {
             radius_mm: self.radius_mm,
             sharpest_per_mm: bends.sharpest,
             hollow_per_mm: bends.hollow,
+            jump_per_mm: 0.0,
         })
     }
 }

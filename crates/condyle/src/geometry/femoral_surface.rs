@@ -93,6 +93,8 @@ pub struct Surroundings {
     pub sharpest_per_mm: f64,
     /// The gap bends back nowhere by more: no second derivative of it is below minus this, 1/mm.
     pub hollow_per_mm: f64,
+    /// No curvature jumps by more, 1/mm: with it the mean gap over a share jumps.
+    pub jump_per_mm: f64,
 }
 
 impl Surroundings {
@@ -101,6 +103,7 @@ impl Surroundings {
         radius_mm: -1.0,
         sharpest_per_mm: f64::INFINITY,
         hollow_per_mm: f64::INFINITY,
+        jump_per_mm: f64::INFINITY,
     };
 
     /// What holds around both of two points.
@@ -111,6 +114,7 @@ impl Surroundings {
             radius_mm: -larger(-self.radius_mm, -other.radius_mm),
             sharpest_per_mm: larger(self.sharpest_per_mm, other.sharpest_per_mm),
             hollow_per_mm: larger(self.hollow_per_mm, other.hollow_per_mm),
+            jump_per_mm: larger(self.jump_per_mm, other.jump_per_mm),
         }
     }
 
@@ -123,6 +127,7 @@ impl Surroundings {
             radius_mm,
             sharpest_per_mm: DEEPER * sharpest_per_mm,
             hollow_per_mm: 0.01 * sharpest_per_mm,
+            jump_per_mm: sharpest_per_mm,
         }
     }
 }

@@ -10,6 +10,9 @@ use super::Number;
 /// How many nodes go side by side.
 pub const LANES: usize = 4;
 
+/// How many numbers of single precision go side by side.
+pub const SINGLES: usize = 8;
+
 /// Four numbers side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
@@ -50,6 +53,24 @@ impl Lanes {
 }
 
 impl Singles {
+    /// Eight numbers.
+    #[inline(always)]
+    pub fn new(lanes: [f32; SINGLES]) -> Self {
+        Self(f32x8::new(lanes))
+    }
+
+    /// The eight numbers.
+    #[inline(always)]
+    pub fn to_array(self) -> [f32; SINGLES] {
+        self.0.to_array()
+    }
+
+    /// A bit for every lane that is not above zero.
+    #[inline(always)]
+    pub fn not_above_zero(self) -> u32 {
+        (1 << SINGLES) - 1 - self.0.simd_gt(f32x8::ZERO).to_bitmask()
+    }
+
     /// Twice four numbers.
     #[inline(always)]
     pub fn pair(one: Lanes, other: Lanes) -> Self {
@@ -65,7 +86,7 @@ impl Singles {
 }
 
 macro_rules! side_by_side {
-    ($name:ident, $wide:ident, $single:ident, $count:literal) => {
+    ($name:ident, $wide:ident, $single:ident, $count:ident) => {
         impl Number for $name {
             #[inline(always)]
             fn splat(value: f64) -> Self {
@@ -194,5 +215,5 @@ macro_rules! operators {
     )*};
 }
 
-side_by_side! {Lanes, f64x4, f64, 4}
-side_by_side! {Singles, f32x8, f32, 8}
+side_by_side! {Lanes, f64x4, f64, LANES}
+side_by_side! {Singles, f32x8, f32, SINGLES}

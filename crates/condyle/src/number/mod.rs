@@ -12,7 +12,7 @@ use num_traits::{One, Zero};
 
 mod lanes;
 
-pub use lanes::{LANES, Lanes, Singles};
+pub use lanes::{LANES, Lanes, SINGLES, Singles};
 
 /// A real number, or several side by side.
 pub trait Number:

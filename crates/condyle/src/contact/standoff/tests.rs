@@ -1,0 +1,188 @@
+//! What is not due is apart: held against a search over all shares, and the gaps at all their
+//! corners.
+
+use super::*;
+use crate::{
+    contact::{motion::Pose4, partial::Rises, seen::Seen, shares::Shares4},
+    geometry::{
+        FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
+        SmoothField, TriangleMesh, flat_insert,
+    },
+    number::{LANES, Lanes},
+};
+
+/// Farthest step of the femur, mm and rad.
+const FARTHEST: (f64, f64) = (3.0, 0.1);
+
+/// Repeatable numbers in -1..1.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self, size: f64) -> Vec3 {
+        Vec3::new(self.next(), self.next(), self.next()) * size
+    }
+
+    /// Two poses, `height_mm` over the insert or so, and not far from each other.
+    fn step(&mut self, height_mm: f64) -> (Pose, Pose) {
+        let from = Pose {
+            rotation: turned(&self.vector(0.1)),
+            translation: Vec3::y() * (height_mm + self.next()) + self.vector(2.0),
+        };
+        let turn = turned(&(self.vector(1.0).normalize() * self.size(FARTHEST.1)));
+        let shift = self.vector(1.0).normalize() * self.size(FARTHEST.0);
+        let to = Pose {
+            rotation: turn * from.rotation,
+            translation: from.translation + shift,
+        };
+        (from, to)
+    }
+
+    /// From a thousandth of `size` to all of it, every order of magnitude as often.
+    fn size(&mut self, size: f64) -> f64 {
+        size * 10f64.powf(1.5 * (self.next() - 1.0))
+    }
+}
+
+/// A surface that faces down, with bumps and hollows sharper than it is round.
+fn bumpy() -> TriangleMesh {
+    let (count, step_mm) = (41, 1.0);
+    let mut mesh = TriangleMesh::default();
+    for i in 0..count {
+        for j in 0..count {
+            let [x, z] = [i, j].map(|i| step_mm * (f64::from(i) - 20.0));
+            let bumps = 0.3 * (x / 3.0).sin() * (z / 4.0).cos();
+            mesh.vertices
+                .push(Vec3::new(x, x * x / 100.0 + z * z / 60.0 + bumps, z));
+        }
+    }
+    for i in 0..count as u32 - 1 {
+        for j in 0..count as u32 - 1 {
+            let (a, b) = (i * count as u32 + j, (i + 1) * count as u32 + j);
+            mesh.triangles.extend([[a, b, a + 1], [b, b + 1, a + 1]]);
+        }
+    }
+    mesh
+}
+
+/// Four shares as a search would find them: what they see, their reach, and whether they are apart.
+fn look(femur: &FemoralSurface, four: &Shares4, pose: &Pose) -> (Seen, Lanes, bool) {
+    let pose = Pose4::new(pose);
+    let place = pose.to_femur(&four.centre);
+    let seen = Seen::anew(femur, place, four.spread_mm2);
+    let normal = pose.turn_to_insert(&seen.sample.normal);
+    let rises = Rises::new([dot(&normal, &four.edge_a), dot(&normal, &four.edge_b)]);
+    let reach_mm = rises.reach_mm();
+    let is_apart = (seen.sample.gap_mm - reach_mm).least() > 0.0;
+    (seen, reach_mm, is_apart)
+}
+
+/// Smallest gap at the corners of four shares, less how much the mean over a share lies above the
+/// gap in its middle.
+fn least_corner_mm(femur: &FemoralSurface, four: &Shares4, pose: &Pose) -> f64 {
+    let pose4 = Pose4::new(pose);
+    let gap_at = |place: &Vector<Lanes>| femur.gap_mm(&pose4.to_femur(place));
+    let (seen, ..) = look(femur, four, pose);
+    let above_mm = seen.sample.gap_mm - gap_at(&four.centre);
+    let [half_a, half_b] = [&four.edge_a, &four.edge_b].map(|edge| edge * Lanes::splat(0.5));
+    let corners = [
+        four.centre + half_a + half_b,
+        four.centre + half_a - half_b,
+        four.centre - half_a + half_b,
+        four.centre - half_a - half_b,
+    ];
+    let least = |corner: &Vector<Lanes>| (gap_at(corner) + above_mm).least();
+    corners.iter().map(least).fold(f64::INFINITY, f64::min)
+}
+
+fn turned(turn: &Vec3) -> Mat3 {
+    nalgebra::Rotation3::new(*turn).into_inner()
+}
+
+/// What a search over all shares would know.
+fn searched(femur: &FemoralSurface, shares: &[Shares4], pose: &Pose) -> Standoff {
+    let mut standoff = Standoff::new(shares.len());
+    let mut due = Vec::new();
+    standoff.follow(pose, &Ground::of(shares), &mut due);
+    assert_eq!(due.len(), shares.len());
+    for (four, shares) in (0..).zip(shares) {
+        let (seen, reach_mm, is_apart) = look(femur, shares, pose);
+        if is_apart {
+            let around = femur.surroundings(&seen.place);
+            standoff.set(four, &Clearance::new(&seen, reach_mm, shares, around));
+        } else {
+            standoff.touches(four);
+        }
+    }
+    standoff
+}
+
+/// Steps the femur at random from about `height_mm` over the insert, which wears at every other
+/// step, and holds what is not due then against a search. Gives how many fours were not due.
+fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
+    let shares = |insert: &Insert| Shares4::of(&insert.surface(), insert.thickness_mm());
+    let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
+    let mut numbers = Numbers(17);
+    let mut sure = 0;
+    for step in 0..150 {
+        let (from, to) = numbers.step(height_mm);
+        let mut standoff = searched(femur, &unworn, &from);
+        let after = if step % 2 == 0 { &unworn } else { &worn };
+        standoff.wear(&Wear::between(&unworn, after));
+        let mut due = Vec::new();
+        // There by way of half of it, as over many steps.
+        let half = Pose {
+            rotation: from.rotation,
+            ..to
+        };
+        standoff.follow(&half, &Ground::of(after), &mut due);
+        standoff.follow(&to, &Ground::of(after), &mut due);
+        for (number, four) in (0..).zip(after) {
+            if !due.contains(&number) {
+                sure += 1;
+                assert!(look(femur, four, &to).2, "{:?} touch", four.nodes);
+                let corner_mm = least_corner_mm(femur, four, &to);
+                assert!(corner_mm > 0.0, "{:?}: {corner_mm}", four.nodes);
+            }
+        }
+    }
+    println!("{sure} of {}", 150 * unworn.len());
+    sure
+}
+
+/// The insert with worn spots, as deep as a few tenths of a millimetre.
+fn worn(mut insert: Insert) -> Insert {
+    let surface = insert.surface();
+    let depth_mm = |place: &Vec3| 0.15 * (1.0 + (place.x / 3.0).sin() * (place.z / 4.0).cos());
+    let depth_mm: Vec<f64> = surface.positions.iter().map(depth_mm).collect();
+    insert.wear_down(&surface, &depth_mm);
+    insert
+}
+
+#[test]
+fn what_is_not_due_is_apart() {
+    let dished = || {
+        let shape = GenericInsertShape::default();
+        shape.insert(Meshing::default()).expect("a dish")
+    };
+    let meshing = Meshing {
+        edge_mm: 1.0,
+        layers: 1,
+    };
+    let flat = || flat_insert((24.0, 24.0), 9.0, meshing).expect("a plate");
+    let spread_mm2 = flat().surface().mean_spread_mm2();
+    let bumpy = FemoralSurface::Mesh(SmoothField::new(&bumpy(), 1)).prepared_for(spread_mm2);
+    let generic = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    let ball = FemoralSurface::sphere(24.0);
+    // The lowest points of the femurs lie 22.96, 24 and 0.3 mm below their origins.
+    assert!(check(&generic, dished, 23.5) > 10 * LANES);
+    assert!(check(&ball, flat, 24.5) > 10 * LANES);
+    assert!(check(&bumpy, flat, 1.0) > 10 * LANES);
+}
