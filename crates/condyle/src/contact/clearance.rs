@@ -11,6 +11,12 @@ use crate::{
 /// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.
 pub(super) const GAP_PER_MOTION: f64 = 1.05;
 
+/// Where a gap is smaller something is known of the surroundings, mm; see [`Surroundings`].
+const KNOWN_MM: f64 = 1.5;
+
+/// As far as that holds at least, mm.
+const HOLDS_MM: f64 = 1.0;
+
 /// More than a sample moved along (see [`Seen`]) errs in gap and reach, mm.
 const ASTRAY_MM: f64 = 1e-4;
 
@@ -37,36 +43,43 @@ impl Clearance {
     /// What shares with a reach of `reach_mm` saw, their gap being larger than that.
     #[inline(always)]
     pub fn new(seen: &Seen, reach_mm: Lanes, shares: &Shares4, surroundings: Surroundings) -> Self {
-        let far_mm = seen.sample.gap_mm.least() - shares.half_mm;
-        if far_mm > surroundings.radius_mm {
-            return Self::far(far_mm);
-        }
         let Surroundings {
             radius_mm,
             sharpest_per_mm,
             hollow_per_mm,
             jump_per_mm,
         } = surroundings;
-        let jump_mm = shares.spread_mm2 * Lanes::splat(jump_per_mm);
+        let gap_mm = seen.sample.gap_mm;
+        let clear_mm = gap_mm - reach_mm - shares.spread_mm2 * Lanes::splat(jump_per_mm);
+        let by_turn = shares.half_mm * sharpest_per_mm;
+        if gap_mm.least() - shares.half_mm > radius_mm {
+            // Of these lanes something is known, but not of another.
+            let known_mm = if radius_mm < 0.0 { KNOWN_MM } else { 0.0 };
+            let is_known = gap_mm - Lanes::splat(known_mm);
+            let far_mm = gap_mm - Lanes::splat(shares.half_mm);
+            let near_mm = -Number::max(-clear_mm, Lanes::splat(-HOLDS_MM));
+            let clear_mm = is_known.below_zero(near_mm, far_mm).least();
+            return Self::far(clear_mm - ASTRAY_MM, GAP_PER_MOTION + by_turn);
+        }
         let gradient = &seen.sample.gap_gradient;
         let slope = gradient.map(|lanes| lanes.sum() / LANES as f64);
         let lean = gradient - slope.map(Lanes::splat);
         let leaning = dot(&lean, &lean).greatest().sqrt();
         Self {
-            clear_mm: (seen.sample.gap_mm - reach_mm - jump_mm).least() - ASTRAY_MM,
+            clear_mm: clear_mm.least() - ASTRAY_MM,
             slope,
-            loss: leaning + shares.half_mm * sharpest_per_mm + 0.5 * hollow_per_mm * radius_mm,
+            loss: leaning + by_turn + 0.5 * hollow_per_mm * radius_mm,
             radius_mm,
         }
     }
 
-    /// Far off, where nothing is known of the surroundings: no reach is longer than half of both
-    /// edges, and no gap changes faster than its point moves.
-    fn far(clear_mm: f64) -> Self {
+    /// Far off, or where little is known: no gap changes faster than its point moves, and where
+    /// nothing is known no reach is longer than half of both edges.
+    fn far(clear_mm: f64, loss: f64) -> Self {
         Self {
             clear_mm,
             slope: Vec3::zeros(),
-            loss: GAP_PER_MOTION,
+            loss,
             radius_mm: f64::INFINITY,
         }
     }

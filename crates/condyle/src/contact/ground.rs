@@ -73,7 +73,7 @@ fn middle(four: &Shares4) -> Vec3 {
 }
 
 fn lever_mm(four: &Shares4) -> f64 {
-    four.half_mm + longest_mm(&(four.centre - middle(four).map(Lanes::splat)))
+    four.half_mm + GAP_PER_MOTION * longest_mm(&(four.centre - middle(four).map(Lanes::splat)))
 }
 
 /// What wear of four shares whose middle moves by `moved` may take from their clearance beside, mm.

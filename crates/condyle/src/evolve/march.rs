@@ -74,7 +74,11 @@ impl March {
         change: impl FnOnce(WearTest) -> WearTest,
     ) -> Self {
         let (nodes, worn_mm) = (waypoint.mesh_nodes.clone(), waypoint.worn_mm.clone());
+        let increments = self.test.time.increments;
         self.test = change(self.test);
+        if self.test.time.increments != increments {
+            self.former = None;
+        }
         self.test.insert.restore(nodes.clone(), &worn_mm);
         self.fields = NodeFields::unworn(&self.test, &worn_mm);
         self.state = MarchState::at(nodes, worn_mm, waypoint.machine, self.state.zero_mm);

@@ -87,7 +87,8 @@ impl<T: Number> SurfaceSample<T> {
 /// Bounds on the femoral surface around a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surroundings {
-    /// How far from the point they hold, mm; less than 0 where nothing is known.
+    /// How far from the point they hold, mm; less than 0 where nothing is known, as may be 1.5 mm
+    /// from a mesh and farther.
     pub radius_mm: f64,
     /// No curvature is larger, 1/mm.
     pub sharpest_per_mm: f64,
@@ -100,13 +101,14 @@ pub struct Surroundings {
 impl Surroundings {
     /// Where nothing is known.
     pub const UNKNOWN: Self = Self {
-        radius_mm: -1.0,
-        sharpest_per_mm: f64::INFINITY,
-        hollow_per_mm: f64::INFINITY,
-        jump_per_mm: f64::INFINITY,
+        radius_mm: f64::NEG_INFINITY,
+        sharpest_per_mm: 0.0,
+        hollow_per_mm: 0.0,
+        jump_per_mm: 0.0,
     };
 
-    /// What holds around both of two points.
+    /// What holds around both of two points; if nothing is known of one, around the other,
+    /// but for the radius.
     #[inline(always)]
     pub fn joined(self, other: Self) -> Self {
         let larger = |a: f64, b: f64| if a > b { a } else { b };
