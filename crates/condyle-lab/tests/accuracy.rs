@@ -187,10 +187,12 @@ fn own_intervals_are_as_deep_as_forty_updates_of_a_real_knee_under_displacement(
 }
 
 #[test]
-fn a_tighter_tolerance_takes_more_intervals_and_errs_less() {
-    let many = losses(default_case(), |case| updated(case, 80));
-    let mut last = (0, f64::INFINITY);
-    for tolerance in [0.1, 0.01, 0.001] {
+fn a_tighter_tolerance_takes_more_intervals_and_is_held() {
+    let [forty, eighty] =
+        [40, 80].map(|updates| losses(default_case(), |case| updated(case, updates)));
+    let exact_mm = 2.0 * eighty[1] - forty[1];
+    let mut updates = 0;
+    for tolerance in [0.03, 0.01, 0.003, 0.001] {
         let mut case = auto_case();
         case.accuracy.estimate = false;
         match &mut case.march.update {
@@ -198,12 +200,10 @@ fn a_tighter_tolerance_takes_more_intervals_and_errs_less() {
             Update::Fixed(_) => panic!("this case finds its updates itself"),
         }
         let summary = run(&case);
-        let now = (
-            summary.updates,
-            (summary.max_depth_mm / many[1] - 1.0).abs(),
-        );
-        assert!(now.0 > last.0 && now.1 < last.1, "{now:?} after {last:?}");
-        last = now;
+        let off = summary.max_depth_mm / exact_mm - 1.0;
+        assert!(summary.updates > updates, "{tolerance}: {updates} before");
+        assert!(off.abs() < tolerance, "{tolerance}: {off}");
+        updates = summary.updates;
     }
 }
 
