@@ -19,9 +19,9 @@ const COUNTED: f64 = 0.5;
 ///
 /// depth = n (f r + (1 - f) s), f = (1 - exp(-k n)) / (k n).
 ///
-/// A node alone so relaxes whatever the interval, where extrapolating its rate (Adams and
-/// Bashforth's method, to which this tends for small k n) is unstable from k n = 1 on. The femur's
-/// part is scaled so that the volume is that of a volume per cycle that goes on changing as it did.
+/// For small k n this tends to extrapolating every rate (Adams and Bashforth's method), which is
+/// unstable from relaxation x interval = 1 on. The femur's part is scaled so that the volume is that
+/// of a volume per cycle that goes on changing as it did.
 pub(super) fn relaxing(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<f64> {
     let mut depth_mm = straight(rates, interval);
     let Some(last) = last else {

@@ -39,23 +39,29 @@ impl StepError {
 
     /// With the last step added: what is foreseen against what it takes.
     pub(super) fn with_last(self, before: Before<'_>, step: &Step) -> Self {
-        let nodes = 0..step.depth_mm.len();
-        let volume = |depth_mm: &[f64]| total(&before.rates.area_mm2, depth_mm);
-        let missed_mm: Vec<f64> = nodes
-            .clone()
-            .map(|node| {
-                let relaxed = counted(before.rates, node) * step.interval;
-                step.missed_mm[node] * (-relaxed).exp() + step.foreseen_mm[node]
-                    - step.depth_mm[node]
-            })
-            .collect();
-        let deep = |node: usize| (before.worn_mm[node] + step.depth_mm[node]).powi(DEEP_POWER);
-        let deep: Vec<f64> = nodes.map(deep).collect();
+        let area_mm2 = &before.rates.area_mm2;
+        let foreseen_mm3 = total(area_mm2, &step.foreseen_mm);
+        let missed_mm = missed_after(before, step);
         Self {
-            volume_mm3: self.volume_mm3 + volume(&step.foreseen_mm) - volume(&step.depth_mm),
-            max_depth_mm: mean(&before.rates.area_mm2, &deep, &missed_mm),
+            volume_mm3: self.volume_mm3 + foreseen_mm3 - total(area_mm2, &step.depth_mm),
+            max_depth_mm: mean(area_mm2, &deep(before.worn_mm, &step.depth_mm), &missed_mm),
         }
     }
+}
+
+/// How much deeper the exact march would be at every node after `step`, mm.
+fn missed_after(before: Before<'_>, step: &Step) -> Vec<f64> {
+    let after = |node: usize| {
+        let relaxed = counted(before.rates, node) * step.interval;
+        step.missed_mm[node] * (-relaxed).exp() + step.foreseen_mm[node] - step.depth_mm[node]
+    };
+    (0..step.depth_mm.len()).map(after).collect()
+}
+
+/// How much every node counts for the maximum depth.
+fn deep(worn_mm: &[f64], more_mm: &[f64]) -> Vec<f64> {
+    let depths = worn_mm.iter().zip(more_mm).map(|(worn, more)| worn + more);
+    depths.map(|depth| depth.powi(DEEP_POWER)).collect()
 }
 
 /// How much deeper the exact march would be at every node by now, mm.
@@ -63,16 +69,14 @@ impl StepError {
 /// What the last step should have worn follows from where the femur turned out to sink, by the
 /// equation of [`super::relaxing`]. By the same equation an error made earlier has faded.
 pub(super) fn missed(before: Before<'_>) -> Vec<f64> {
-    let nodes = 0..before.worn_mm.len();
-    match before.last {
-        None => vec![0.0; nodes.len()],
-        Some(last) => nodes
-            .map(|node| {
-                let rate = before.rates.depth_per_cycle_mm[node];
-                missed_at(last, node, rate, counted(before.rates, node))
-            })
-            .collect(),
-    }
+    let at = |node: usize| match before.last {
+        None => 0.0,
+        Some(last) => {
+            let rate = before.rates.depth_per_cycle_mm[node];
+            missed_at(last, node, rate, counted(before.rates, node))
+        }
+    };
+    (0..before.worn_mm.len()).map(at).collect()
 }
 
 /// The same at a node that relaxes by `counted` a cycle and now wears by `rate`.
