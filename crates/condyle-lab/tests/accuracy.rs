@@ -92,7 +92,8 @@ fn verify_the_estimated_errors_of_the_default_case() {
     let finer = |case: &mut Case| case.time.increments = 800;
     let increments = truth(default, 1.0, finer);
     assert_near("increments", part(|parts| parts.increments), increments);
-    let updates = truth(default, 1.0, |case| updated(case, 40));
+    // Depth is of first order in the updates: a seventh of the error is left with 80 instead of 10.
+    let updates = truth(default, 8.0 / 7.0, |case| updated(case, 80));
     assert_near("updates", part(|parts| parts.updates), updates);
     let sticking = |case: &mut Case| case.contact.friction.slip_tolerance_mm_per_s /= 2.0;
     let slip_tolerance = truth(default, 2.0, sticking);
@@ -121,24 +122,77 @@ fn the_default_case_states_half_a_percent_of_mass_and_one_of_depth() {
     assert!((error.mass_loss_mg.total / mass_mg - 1.0).abs() < 1e-9);
 }
 
-#[test]
-fn a_march_that_finds_its_own_intervals_is_as_deep_as_forty_updates() {
-    let many = losses(default_case(), |case| updated(case, 40));
-    let mut case = auto_case();
-    case.accuracy.estimate = false;
+/// A shipped case; none where its meshes are not there.
+fn case_with_data(name: &str) -> Option<Case> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    if name.starts_with("dm") && !root.join("../shared/data/dm-knee").is_dir() {
+        let in_ci = std::env::var("CI").is_ok_and(|value| value == "true");
+        assert!(!in_ci, "{name}: subject DM's data are needed under CI=true");
+        eprintln!("skipped: {name}: the data of subject DM are not there");
+        return None;
+    }
+    Some(case(name))
+}
+
+/// Holds a case with `update = "auto"` and the default tolerance to the same case with 40 updates,
+/// and what it states of the error of its depth to what that tends to.
+fn assert_as_deep_as_forty_updates(name: &str, most_cycles: f64, stated: fn(f64, f64) -> bool) {
+    let Some(case) = case_with_data(name) else {
+        return;
+    };
+    let [twenty, forty] =
+        [20, 40].map(|updates| losses(case.clone(), |case| updated(case, updates)));
+    let mut case = case;
+    case.march.update = auto_case().march.update;
     let few = run(&case);
-    assert!(few.cycles_solved <= 8.0, "{}", few.cycles_solved);
-    let off = few.max_depth_mm / many[1] - 1.0;
-    assert!(off.abs() < 0.01, "{off}");
-    let off = few.mass_loss_mg / many[0] - 1.0;
-    assert!(off.abs() < 0.005, "{off}");
+    assert!(few.cycles_solved <= most_cycles, "{}", few.cycles_solved);
+    let depth = few.max_depth_mm / forty[1] - 1.0;
+    assert!(depth.abs() < 0.01, "depth {depth}");
+    let mass = few.mass_loss_mg / forty[0] - 1.0;
+    assert!(mass.abs() < 0.005, "mass {mass}");
+    let error = few
+        .error
+        .expect("a case asks for it unless it says otherwise");
+    let found = error.max_depth_percent.updates.expect("it has updates");
+    let exact_mm = 2.0 * forty[1] - twenty[1];
+    let truth = 100.0 * (exact_mm / few.max_depth_mm - 1.0);
+    assert!(stated(found, truth), "stated {found} %, true {truth} %");
+}
+
+fn about_as_large(found: f64, truth: f64) -> bool {
+    let (large, small) = (found.abs().max(truth.abs()), found.abs().min(truth.abs()));
+    large <= 2.5 * small + NOISE_PERCENT
 }
 
 #[test]
-fn a_tighter_tolerance_takes_more_intervals_and_errs_less() {
-    let many = losses(default_case(), |case| updated(case, 80));
-    let mut last = (0, f64::INFINITY);
-    for tolerance in [0.1, 0.01, 0.001] {
+fn own_intervals_are_as_deep_as_forty_updates_under_force() {
+    // Six intervals are so long that the bottom is uneven; that the deepest node is right is luck.
+    let no_less = |found: f64, truth: f64| found.abs() + NOISE_PERCENT >= truth.abs();
+    assert_as_deep_as_forty_updates("stanmore-force.toml", 8.0, no_less);
+}
+
+#[test]
+fn own_intervals_are_as_deep_as_forty_updates_under_displacement() {
+    assert_as_deep_as_forty_updates("stanmore-displacement.toml", 7.0, about_as_large);
+}
+
+#[test]
+fn own_intervals_are_as_deep_as_forty_updates_of_a_real_knee_under_force() {
+    assert_as_deep_as_forty_updates("dm-knee.toml", 11.0, about_as_large);
+}
+
+#[test]
+fn own_intervals_are_as_deep_as_forty_updates_of_a_real_knee_under_displacement() {
+    assert_as_deep_as_forty_updates("dm-knee-displacement.toml", 7.0, about_as_large);
+}
+
+#[test]
+fn a_tighter_tolerance_takes_more_intervals_and_is_held() {
+    let [forty, eighty] =
+        [40, 80].map(|updates| losses(default_case(), |case| updated(case, updates)));
+    let exact_mm = 2.0 * eighty[1] - forty[1];
+    let mut updates = 0;
+    for tolerance in [0.03, 0.01, 0.003, 0.001] {
         let mut case = auto_case();
         case.accuracy.estimate = false;
         match &mut case.march.update {
@@ -146,12 +200,10 @@ fn a_tighter_tolerance_takes_more_intervals_and_errs_less() {
             Update::Fixed(_) => panic!("this case finds its updates itself"),
         }
         let summary = run(&case);
-        let now = (
-            summary.updates,
-            (summary.max_depth_mm / many[1] - 1.0).abs(),
-        );
-        assert!(now.0 > last.0 && now.1 < last.1, "{now:?} after {last:?}");
-        last = now;
+        let off = summary.max_depth_mm / exact_mm - 1.0;
+        assert!(summary.updates > updates, "{tolerance}: {updates} before");
+        assert!(off.abs() < tolerance, "{tolerance}: {off}");
+        updates = summary.updates;
     }
 }
 

@@ -6,6 +6,7 @@ mod march_error;
 mod placement;
 mod rates;
 mod records;
+mod relaxing;
 mod schedule;
 mod state;
 mod step;

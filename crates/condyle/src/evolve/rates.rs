@@ -13,7 +13,9 @@ pub(super) struct Rates {
     pub depth_per_cycle_mm: Vec<f64>,
     /// Area of every node's share of the surface, mm2.
     pub area_mm2: Vec<f64>,
-    /// How fast wear flattens the pressure, a cycle: see [`relaxation`].
+    /// How fast the pressure at every node falls as the node alone wears, a cycle: see [`relaxation`].
+    pub node_relaxation_per_cycle: Vec<f64>,
+    /// The mean of that over the worn volume: how fast wear flattens the pressure, a cycle.
     pub relaxation_per_cycle: f64,
 }
 
@@ -32,18 +34,17 @@ impl Rates {
             .map(|node| law.depth_per_cycle_mm(&cycle.history.node(node)))
             .collect();
         let area_mm2: Vec<f64> = surface.shares.iter().map(|share| share.area_mm2).collect();
-        let weighted = nodes.map(|node| {
+        let alone = |node: usize| {
             let stiffness = contact.law.pressure(0.0, thickness_mm[node]).1;
             let rate = depth_per_cycle_mm[node];
-            let volume = rate * area_mm2[node];
-            volume * relaxation(rate, stiffness, &cycle.history.node(node))
-        });
-        let volume = total(&area_mm2, &depth_per_cycle_mm);
-        let relaxation_per_cycle = weighted.sum::<f64>() / volume.max(f64::MIN_POSITIVE);
+            relaxation(rate, stiffness, &cycle.history.node(node))
+        };
+        let node_relaxation_per_cycle: Vec<f64> = nodes.map(alone).collect();
         Self {
+            relaxation_per_cycle: mean(&area_mm2, &depth_per_cycle_mm, &node_relaxation_per_cycle),
             depth_per_cycle_mm,
             area_mm2,
-            relaxation_per_cycle,
+            node_relaxation_per_cycle,
         }
     }
 
@@ -56,6 +57,13 @@ impl Rates {
 /// Sum of depth times area.
 pub(super) fn total(area_mm2: &[f64], depth_mm: &[f64]) -> f64 {
     area_mm2.iter().zip(depth_mm).map(|(a, d)| a * d).sum()
+}
+
+/// Mean of `values` over the volume that `depth_mm` makes; 0 where there is none.
+pub(super) fn mean(area_mm2: &[f64], depth_mm: &[f64], values: &[f64]) -> f64 {
+    let volumes = area_mm2.iter().zip(depth_mm).map(|(a, d)| a * d);
+    let sum: f64 = volumes.zip(values).map(|(v, value)| v * value).sum();
+    sum / total(area_mm2, depth_mm).max(f64::MIN_POSITIVE)
 }
 
 /// How fast a node's pressure falls as the node alone wears, a cycle: rate times the pressure

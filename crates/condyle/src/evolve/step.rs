@@ -4,8 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Schedule, Updates,
-    interval::{adaptive_interval, shared_out},
+    interval::{adaptive_interval, second_order, shared_out},
     rates::{Rates, total},
+    relaxing::relaxing,
+    step_error::missed,
 };
 
 /// A step of the march.
@@ -17,6 +19,10 @@ pub(super) struct Step {
     pub cycles_after: f64,
     /// What it wears at every surface node, mm.
     pub depth_mm: Vec<f64>,
+    /// What it wears by a rule of second order other than its own, mm.
+    pub foreseen_mm: Vec<f64>,
+    /// How much deeper the exact march would be at every surface node when it begins, mm.
+    pub missed_mm: Vec<f64>,
 }
 
 /// What the next step remembers of a step.
@@ -28,6 +34,8 @@ pub struct StepRecord {
     pub depth_per_cycle_mm: Vec<f64>,
     /// Depth that it took at every surface node, mm.
     pub depth_mm: Vec<f64>,
+    /// How much deeper the exact march would have been at every surface node when it began, mm.
+    pub missed_mm: Vec<f64>,
     /// Area of every surface node's share when it began, mm2.
     pub area_mm2: Vec<f64>,
     /// How fast wear flattened the pressure when it began, a cycle.
@@ -76,10 +84,13 @@ impl Step {
                 (interval, interval >= left)
             }
         };
+        let (depth_mm, foreseen_mm) = worn(before, schedule.updates, interval);
         Self {
             interval,
             cycles_after: after(before.cycles, interval, is_last, schedule),
-            depth_mm: extrapolated(before.rates, before.last, interval),
+            depth_mm,
+            foreseen_mm,
+            missed_mm: missed(before),
         }
     }
 
@@ -90,7 +101,21 @@ impl Step {
             relaxation_per_cycle: rates.relaxation_per_cycle,
             depth_per_cycle_mm: rates.depth_per_cycle_mm,
             depth_mm: self.depth_mm,
+            missed_mm: self.missed_mm,
             area_mm2: rates.area_mm2,
+        }
+    }
+}
+
+/// What an interval wears, mm, and what it wears by a second rule, which tells its error.
+fn worn(before: Before<'_>, updates: Updates, interval: f64) -> (Vec<f64>, Vec<f64>) {
+    let (rates, last) = (before.rates, before.last);
+    let relaxing = relaxing(rates, last, interval);
+    match updates {
+        Updates::Even(_) => (extrapolated(rates, last, interval), relaxing),
+        Updates::ByDepth { .. } => {
+            let each = |node| second_order(before, node, interval);
+            (relaxing, (0..before.worn_mm.len()).map(each).collect())
         }
     }
 }
@@ -104,7 +129,7 @@ fn after(cycles: f64, interval: f64, is_last: bool, schedule: &Schedule) -> f64 
 }
 
 /// Depth that an interval wears if every cycle wears as the one solved: Euler's method.
-fn straight(rates: &Rates, interval: f64) -> Vec<f64> {
+pub(super) fn straight(rates: &Rates, interval: f64) -> Vec<f64> {
     let depth = |rate: &f64| rate * interval;
     rates.depth_per_cycle_mm.iter().map(depth).collect()
 }
@@ -122,7 +147,7 @@ fn extrapolated(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<
         return depth_mm;
     };
     let change = rates.volume_per_cycle_mm3() - last.volume_per_cycle_mm3();
-    let added_mm3 = interval * interval / (2.0 * last.interval) * change;
+    let added_mm3 = added_mm3(rates, last, interval);
     let towards = |(now, before): (&f64, &f64)| (now - before).max(0.0) * change.signum();
     let pattern: Vec<f64> = match change >= 0.0 {
         true => rates
@@ -147,6 +172,13 @@ fn extrapolated(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<
     depth_mm
 }
 
+/// Volume that an interval wears more than if every cycle wore as the one solved, mm3, as the volume
+/// per cycle goes on changing as it did over the last one.
+pub(super) fn added_mm3(rates: &Rates, last: &StepRecord, interval: f64) -> f64 {
+    let change = rates.volume_per_cycle_mm3() - last.volume_per_cycle_mm3();
+    interval * interval / (2.0 * last.interval) * change
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,6 +187,7 @@ mod tests {
         Rates {
             depth_per_cycle_mm: depth_per_cycle_mm.to_vec(),
             area_mm2: vec![2.0; depth_per_cycle_mm.len()],
+            node_relaxation_per_cycle: vec![0.0; depth_per_cycle_mm.len()],
             relaxation_per_cycle: 0.0,
         }
     }
@@ -164,6 +197,8 @@ mod tests {
             interval,
             cycles_after: interval,
             depth_mm: straight(&rates(depth_per_cycle_mm), interval),
+            foreseen_mm: Vec::new(),
+            missed_mm: vec![0.0; depth_per_cycle_mm.len()],
         };
         step.remembered(rates(depth_per_cycle_mm))
     }

@@ -3,109 +3,163 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    interval::{deepest, second_order},
-    rates::total,
-    step::{Before, Step},
+    rates::{mean, total},
+    relaxing::{counted, left},
+    step::{Before, Step, StepRecord},
 };
+
+/// How much a node counts for the maximum depth: by this power of its depth, high enough to see the
+/// bottom of the scar alone, low enough to average over the nodes there.
+const DEEP_POWER: i32 = 8;
 
 /// Estimated error of a march from the length of its steps alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepError {
     /// Volume that the exact march would have worn more, mm3.
     pub volume_mm3: f64,
-    /// Error of the maximum depth, mm, 0 or more.
+    /// How much deeper the exact march would be where it is deepest, mm; known with the last step.
     pub max_depth_mm: f64,
 }
 
 impl StepError {
-    /// With the step that led to `before` added, now that what a cycle wears at its end is known.
-    ///
-    /// Volume: the trapezoidal rule against what the step took; errors add up. Depth: the same at
-    /// the deepest node; a node that is too deep wears less thereafter, so that an error made
-    /// earlier fades. Errors of depth change their sign from step to step, so that their squares
-    /// are added.
+    /// With the step that led to `before` added, now that what a cycle wears at its end is known:
+    /// the trapezoidal rule against what the step took.
     pub(super) fn after(self, before: Before<'_>) -> Self {
         let Some(last) = before.last else {
             return self;
         };
-        let now = before.rates;
-        let mean = (now.volume_per_cycle_mm3() + last.volume_per_cycle_mm3()) / 2.0;
-        let missed = |node: usize| {
-            let mean = (now.depth_per_cycle_mm[node] + last.depth_per_cycle_mm[node]) / 2.0;
-            mean * last.interval - last.depth_mm[node]
-        };
+        let rates = before.rates;
+        let mean = (rates.volume_per_cycle_mm3() + last.volume_per_cycle_mm3()) / 2.0;
+        let missed_mm3 = mean * last.interval - last.volume_mm3();
         Self {
-            volume_mm3: self.volume_mm3 + mean * last.interval - last.volume_mm3(),
-            max_depth_mm: faded(self.max_depth_mm, last.relaxation_per_cycle * last.interval)
-                .hypot(deepest(before, missed) - deepest(before, |_| 0.0)),
+            volume_mm3: self.volume_mm3 + missed_mm3,
+            ..self
         }
     }
 
-    /// With the last step added, foreseen from the rates so far.
+    /// With the last step added: what is foreseen against what it takes.
     pub(super) fn with_last(self, before: Before<'_>, step: &Step) -> Self {
-        let exact = |node| second_order(before, node, step.interval);
-        let exact_mm: Vec<f64> = (0..step.depth_mm.len()).map(exact).collect();
-        let volume = |depth_mm: &[f64]| total(&before.rates.area_mm2, depth_mm);
-        let missed_mm =
-            deepest(before, |node| exact_mm[node]) - deepest(before, |node| step.depth_mm[node]);
-        let relaxed = before.rates.relaxation_per_cycle * step.interval;
+        let area_mm2 = &before.rates.area_mm2;
+        let foreseen_mm3 = total(area_mm2, &step.foreseen_mm);
+        let missed_mm = missed_after(before, step);
         Self {
-            volume_mm3: self.volume_mm3 + volume(&exact_mm) - volume(&step.depth_mm),
-            max_depth_mm: faded(self.max_depth_mm, relaxed).hypot(missed_mm),
+            volume_mm3: self.volume_mm3 + foreseen_mm3 - total(area_mm2, &step.depth_mm),
+            max_depth_mm: mean(area_mm2, &deep(before.worn_mm, &step.depth_mm), &missed_mm),
         }
     }
 }
 
-/// What is left of an error after a step of `relaxed` = relaxation x interval: as much of it as
-/// Euler's method leaves, |1 - relaxed|, but no more than the exact march, 1 / (1 + relaxed), since
-/// what wears too little in one step wears more in the next, and never less than nothing.
-fn faded(error: f64, relaxed: f64) -> f64 {
-    error * (1.0 - relaxed).abs().min(1.0 / (1.0 + relaxed))
+/// How much deeper the exact march would be at every node after `step`, mm.
+fn missed_after(before: Before<'_>, step: &Step) -> Vec<f64> {
+    let after = |node: usize| {
+        let relaxed = counted(before.rates, node) * step.interval;
+        step.missed_mm[node] * (-relaxed).exp() + step.foreseen_mm[node] - step.depth_mm[node]
+    };
+    (0..step.depth_mm.len()).map(after).collect()
+}
+
+/// How much every node counts for the maximum depth.
+fn deep(worn_mm: &[f64], more_mm: &[f64]) -> Vec<f64> {
+    let depths = worn_mm.iter().zip(more_mm).map(|(worn, more)| worn + more);
+    depths.map(|depth| depth.powi(DEEP_POWER)).collect()
+}
+
+/// How much deeper the exact march would be at every node by now, mm.
+///
+/// What the last step should have worn follows from where the femur turned out to sink, by the
+/// equation of [`super::relaxing`]. By the same equation an error made earlier has faded.
+pub(super) fn missed(before: Before<'_>) -> Vec<f64> {
+    let at = |node: usize| match before.last {
+        None => 0.0,
+        Some(last) => {
+            let rate = before.rates.depth_per_cycle_mm[node];
+            missed_at(last, node, rate, counted(before.rates, node))
+        }
+    };
+    (0..before.worn_mm.len()).map(at).collect()
+}
+
+/// The same at a node that relaxes by `counted` a cycle and now wears by `rate`.
+fn missed_at(last: &StepRecord, node: usize, rate: f64, counted: f64) -> f64 {
+    let relaxed = counted * last.interval;
+    let left = left(relaxed);
+    let before = last.depth_per_cycle_mm[node];
+    // (1 - left) / relaxed, which is 1/2 where nothing relaxes.
+    let late = match relaxed > 0.0 {
+        true => (1.0 - left) / relaxed,
+        false => 0.5,
+    };
+    last.missed_mm[node] * (-relaxed).exp()
+        + left * (last.interval * before - last.depth_mm[node])
+        + late * last.interval * (rate - before)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{rates::Rates, step::StepRecord};
+    use crate::evolve::rates::Rates;
 
-    fn rates(depth_per_cycle_mm: f64) -> Rates {
+    fn rates(depth_per_cycle_mm: f64, relaxation: f64) -> Rates {
         Rates {
             depth_per_cycle_mm: vec![depth_per_cycle_mm],
             area_mm2: vec![2.0],
-            relaxation_per_cycle: 0.25,
+            node_relaxation_per_cycle: vec![relaxation],
+            relaxation_per_cycle: relaxation,
+        }
+    }
+
+    /// A step of 2 cycles that began with 3 mm a cycle and took `depth_mm`.
+    fn last(depth_mm: f64, missed_mm: f64) -> StepRecord {
+        let step = Step {
+            interval: 2.0,
+            cycles_after: 2.0,
+            depth_mm: vec![depth_mm],
+            foreseen_mm: Vec::new(),
+            missed_mm: vec![missed_mm],
+        };
+        step.remembered(rates(3.0, 0.0))
+    }
+
+    fn before<'a>(now: &'a Rates, last: &'a StepRecord) -> Before<'a> {
+        Before {
+            rates: now,
+            last: Some(last),
+            worn_mm: &[6.0],
+            cycles: 2.0,
+            updates: 1,
         }
     }
 
     #[test]
     fn verify_a_step_misses_the_trapezoidal_rule_less_what_it_took() {
-        let step = Step {
-            interval: 2.0,
-            cycles_after: 2.0,
-            depth_mm: vec![6.0],
-        };
-        let last: StepRecord = step.remembered(rates(3.0));
-        let now = rates(5.0);
-        let before = Before {
-            rates: &now,
-            last: Some(&last),
-            worn_mm: &[6.0],
-            cycles: 2.0,
-            updates: 1,
-        };
+        let (now, last) = (rates(5.0, 0.0), last(6.0, 1.5));
         let earlier = StepError {
             volume_mm3: 1.0,
-            max_depth_mm: 3.0,
+            ..StepError::default()
         };
-        // 2 cycles of (3 + 5)/2 mm, less 6 mm: 2 mm; of the 3 mm, 1 - 0.25 x 2 are left.
-        let after = earlier.after(before);
-        assert_eq!(after.volume_mm3, 1.0 + 2.0 * 2.0);
-        assert_eq!(after.max_depth_mm, 1.5_f64.hypot(2.0));
+        // 2 cycles of (3 + 5)/2 mm, less 6 mm: 2 mm, of 2 mm2; of depth 1.5 mm were missed before.
+        let before = before(&now, &last);
+        assert_eq!(earlier.after(before).volume_mm3, 1.0 + 2.0 * 2.0);
+        assert_eq!(missed(before), [1.5 + 2.0]);
     }
 
     #[test]
-    fn an_error_fades_and_never_grows() {
-        assert_eq!(faded(1.0, 0.0), 1.0);
-        assert_eq!(faded(1.0, 0.9), 1.0 - 0.9);
-        assert_eq!(faded(1.0, 3.0), 0.25);
+    fn verify_what_a_step_missed_where_the_rate_relaxes() {
+        // The femur does not sink, so the rate of 3 falls by k for every mm: after Euler's 6 mm to
+        // 3 - 6 k, where the exact depth is 3 (1 - exp(-2 k))/k.
+        let counted = 0.2_f64;
+        let last = last(6.0, 0.0);
+        let now = rates(3.0 - 6.0 * counted, 2.0 * counted);
+        let exact = 3.0 * (1.0 - (-2.0 * counted).exp()) / counted;
+        assert!((missed(before(&now, &last))[0] - (exact - 6.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_was_missed_fades_as_the_node_relaxes() {
+        // Nothing is missed by this step: the rate stays, and so the femur sinks as it wears.
+        let relaxation = 0.7;
+        let (now, last) = (rates(3.0, relaxation), last(6.0, 1.0));
+        let missed = missed(before(&now, &last))[0];
+        assert!((missed - (-2.0 * counted(&now, 0)).exp()).abs() < 1e-12);
     }
 }
