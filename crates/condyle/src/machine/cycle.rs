@@ -223,7 +223,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
                 return Err(CycleError::Interrupted);
             }
         }
-        Ok(self.gather(landed, state, solved, repeats))
+        Ok(self.gather(&landed, state, solved, repeats))
     }
 
     /// What is to be kept of the increment that has just been solved.
@@ -252,7 +252,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
 
     fn gather(
         &mut self,
-        landed: Vec<Option<Landed>>,
+        landed: &[Option<Landed>],
         end: MachineState,
         solved: usize,
         repeats: bool,
