@@ -42,6 +42,7 @@ pub fn run(name: &str) {
 #[inline(never)]
 fn counted_contact_evaluations(contact: &mut Foundation<'_>, asked: &[Asked]) {
     for asked in asked {
+        contact.begin_increment(asked.increment);
         black_box(contact.respond(&asked.motion));
         black_box(contact.tangent());
     }

@@ -13,6 +13,8 @@ use condyle::{
 #[derive(Clone, Copy)]
 pub struct Asked {
     pub motion: RelativeMotion,
+    /// Of which increment of the cycle it is.
+    pub increment: usize,
     /// Whether it is the first of its increment: the femur has moved on, and what has come near is
     /// looked for.
     pub is_first: bool,
@@ -22,13 +24,20 @@ pub struct Asked {
 struct Recorder<'a> {
     contact: Foundation<'a>,
     asked: Vec<Asked>,
+    increment: usize,
     is_first: bool,
 }
 
 impl ContactModel for Recorder<'_> {
+    fn begin_increment(&mut self, increment: usize) {
+        self.increment = increment;
+        self.contact.begin_increment(increment);
+    }
+
     fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
         self.asked.push(Asked {
             motion: *motion,
+            increment: self.increment,
             is_first: std::mem::take(&mut self.is_first),
         });
         self.contact.respond(motion)
@@ -119,6 +128,7 @@ impl<'a> Gait<'a> {
         let recorder = Recorder {
             contact: self.contact(),
             asked: Vec::new(),
+            increment: 0,
             is_first: true,
         };
         self.solved(recorder).1.asked

@@ -124,8 +124,9 @@ fn searched(femur: &FemoralSurface, shares: &[Shares4], pose: &Pose) -> Standoff
     standoff
 }
 
-/// Steps the femur at random from about `height_mm` over the insert, which wears at every other
-/// step, and holds what is not due then against a search. Gives how many fours were not due.
+/// Steps the femur at random from about `height_mm` over the insert, which wears or is restored at
+/// two of three steps, and holds what is not due then against a search. Gives how many fours were
+/// not due.
 fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
     let shares = |insert: &Insert| Shares4::of(&insert.surface(), insert.thickness_mm());
     let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
@@ -133,9 +134,13 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
     let mut sure = 0;
     for step in 0..150 {
         let (from, to) = numbers.step(height_mm);
-        let mut standoff = searched(femur, &unworn, &from);
-        let after = if step % 2 == 0 { &unworn } else { &worn };
-        standoff.wear(&Wear::between(&unworn, after));
+        let (before, after) = match step % 3 {
+            0 => (&unworn, &unworn),
+            1 => (&unworn, &worn),
+            _ => (&worn, &unworn),
+        };
+        let mut standoff = searched(femur, before, &from);
+        standoff.wear(&Wear::between(before, after));
         let mut due = Vec::new();
         // There by way of half of it, as over many steps.
         let half = Pose {
