@@ -1,4 +1,4 @@
-//! One trilinear hexahedron: its volume and its quality.
+//! One trilinear hexahedron: its edges and its volume.
 
 use crate::Vec3;
 
@@ -16,31 +16,6 @@ pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
     [1, 5],
     [2, 6],
     [3, 7],
-];
-
-/// Corner neighbours of each corner, ordered so that the triple product of the
-/// three edges is positive in a hexahedron of VTK's numbering.
-const CORNER_ENDS: [[usize; 3]; 8] = [
-    [1, 3, 4],
-    [2, 0, 5],
-    [3, 1, 6],
-    [0, 2, 7],
-    [7, 5, 0],
-    [4, 6, 1],
-    [5, 7, 2],
-    [6, 4, 3],
-];
-
-/// The edges from each corner to those.
-const CORNER_EDGES: [[usize; 3]; 8] = [
-    [0, 3, 8],
-    [1, 0, 9],
-    [2, 1, 10],
-    [3, 2, 11],
-    [7, 4, 8],
-    [4, 5, 9],
-    [5, 6, 10],
-    [6, 7, 11],
 ];
 
 /// Exact volume enclosed by a hexahedron with bilinear faces.
@@ -65,30 +40,6 @@ pub fn volume_below([a, b, c, d]: &[Vec3; 4]) -> f64 {
     (triple(a, b, c) + triple(a, c, d) + triple(a, b, d) + triple(b, c, d)) / 12.0
 }
 
-/// Smallest scaled Jacobian over the eight corners: 1 for a brick, 0 or less where the element
-/// is flat or inverted at a corner.
-///
-/// At each corner it is the triple product of the three edges over the product of their lengths.
-/// The smallest is found among signed squares, so that one root is enough.
-pub fn scaled_jacobian(corners: &[Vec3; 8]) -> f64 {
-    let edges = HEX_EDGES.map(|[from, to]| (corners[to] - corners[from]).norm_squared());
-    let signed_square = |corner: usize| {
-        let [u, v, w] = CORNER_ENDS[corner].map(|end| corners[end] - corners[corner]);
-        let lengths2: f64 = CORNER_EDGES[corner]
-            .map(|edge| edges[edge])
-            .iter()
-            .product();
-        let triple = u.cross(&v).dot(&w);
-        if lengths2 > 0.0 {
-            triple * triple.abs() / lengths2
-        } else {
-            0.0
-        }
-    };
-    let least = (0..8).map(signed_square).fold(f64::INFINITY, f64::min);
-    least.abs().sqrt().copysign(least)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,10 +59,9 @@ mod tests {
     }
 
     #[test]
-    fn verify_brick_volume_and_quality() {
+    fn verify_brick_volume() {
         let corners = brick([2.0, 3.0, 0.5]);
         assert!((trilinear_volume(&corners) - 3.0).abs() < 1e-14);
-        assert!((scaled_jacobian(&corners) - 1.0).abs() < 1e-14);
     }
 
     #[test]
@@ -136,12 +86,5 @@ mod tests {
             exact += jacobian.determinant() / 8.0;
         }
         assert!((volume - exact).abs() < 1e-13, "{volume} {exact}");
-    }
-
-    #[test]
-    fn inverted_element_has_negative_quality() {
-        let mut corners = brick([1.0, 1.0, 1.0]);
-        corners[4] = Vec3::new(0.0, 0.0, -0.2);
-        assert!(scaled_jacobian(&corners) < 0.0);
     }
 }

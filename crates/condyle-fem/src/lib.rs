@@ -5,9 +5,10 @@
 mod follow;
 mod hex;
 mod mesh;
+mod quality;
 
 pub use follow::InteriorFollower;
-pub use hex::{scaled_jacobian, trilinear_volume, volume_below};
+pub use hex::{trilinear_volume, volume_below};
 pub use mesh::{HEX_FACES, HexMesh};
 
 /// A point or a vector in space.

@@ -1,6 +1,6 @@
 //! A mesh of hexahedra: nodes, elements, boundary.
 
-use crate::{Vec3, scaled_jacobian, trilinear_volume};
+use crate::{Vec3, trilinear_volume};
 
 /// The six faces of a hexahedron as corners in VTK order, each anticlockwise seen from outside.
 pub const HEX_FACES: [[usize; 4]; 6] = [
@@ -32,13 +32,6 @@ impl HexMesh {
         (0..self.hexes.len())
             .map(|hex| trilinear_volume(&self.corners(hex)))
             .sum()
-    }
-
-    /// Smallest scaled Jacobian of all elements; 0 or less means that one is flat or inverted.
-    pub fn worst_quality(&self) -> f64 {
-        (0..self.hexes.len())
-            .map(|hex| scaled_jacobian(&self.corners(hex)))
-            .fold(f64::INFINITY, f64::min)
     }
 
     /// The quads that belong to one hexahedron only, anticlockwise seen from outside,

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use condyle::Vec3;
-use condyle_fem::{HEX_FACES, HexMesh, scaled_jacobian};
+use condyle_fem::{HEX_FACES, HexMesh};
 
 use super::error::{MeshFileError, Place};
 use super::hex_file::{HexFile, NamedNodes, NamedSurface};
@@ -173,8 +173,7 @@ impl<'a> HexDraft<'a> {
     }
 
     fn check_shapes(&self, mesh: &HexMesh) -> Result<(), MeshFileError> {
-        for (index, hex) in self.hexes.iter().enumerate() {
-            let quality = scaled_jacobian(&mesh.corners(index));
+        for (hex, quality) in self.hexes.iter().zip(mesh.qualities()) {
             if quality <= 0.0 {
                 let at = Place::new(self.path, hex.line);
                 return Err(MeshFileError::Inverted {

@@ -217,13 +217,11 @@ impl Insert {
 }
 
 fn check_elements(mesh: &HexMesh) -> Result<(), InsertError> {
-    for hex in 0..mesh.hexes.len() {
-        let quality = condyle_fem::scaled_jacobian(&mesh.corners(hex));
-        if quality <= 0.0 {
-            return Err(InsertError::BadElement { hex, quality });
-        }
+    let mut qualities = mesh.qualities().enumerate();
+    match qualities.find(|(_, quality)| *quality <= 0.0) {
+        Some((hex, quality)) => Err(InsertError::BadElement { hex, quality }),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// The nodes of some quads, ascending, and the quads in their numbers.

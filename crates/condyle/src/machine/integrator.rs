@@ -22,7 +22,7 @@ const SHORTEST_CORRECTION_MM: f64 = 1e-9;
 const FORESEEN: f64 = 1.0;
 /// What a correction leaves of a residual is foreseen to be up to this many times what it left a
 /// cycle before.
-const CAUTION: f64 = 4.0;
+const CAUTION: f64 = 2.0;
 /// A whole correction that leaves more of the residual is none of the last, quadratic ones.
 const CONVERGING: f64 = 0.1;
 /// Farthest that one iteration may move, mm; on the lever, rad.
