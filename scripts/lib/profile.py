@@ -17,15 +17,15 @@ BASE = 0x555555554000
 # Patterns fit "function file".
 PARTS = [
     ("femur: its distance field, once", r"geometry/curved_mesh|(gaps_at_nodes|new|filtered) .*geometry/smooth_field"),
-    ("contact: which shares are due", r"(find_due|is_still_apart|travel) .*contact/nearness"),
+    ("contact: which shares are due", r"(find_due|begin_increment|is_apart|touches|kept) .*contact/nearness|contact/(standoff|clearance|ground)"),
     ("contact: look at the femur", r"look .*contact/foundation|contact/seen|geometry/(smooth_field|generic_femur|torus|femoral_surface)"),
     ("contact: press", r"press .*contact/foundation"),
     ("contact: tangent", r"tangent .*contact/foundation"),
     ("contact: pressure and sliding at the nodes", r"(touched|touch|landed) .*contact/foundation"),
-    ("contact: shares of the new surface", r"contact/(shares|nearness)|new .*contact/foundation"),
+    ("contact: shares of the new surface", r"contact/(shares|nearness)|(new|after) .*contact/foundation"),
     ("contact: rest", r"respond .*contact/foundation"),
     ("histories and wear", r"contact/history|condyle/src/wear/|evolve/(rates|interval|step)|(gather|land) .*machine/cycle"),
-    ("surface: normals, areas and averages", r"geometry/articulating_surface"),
+    ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|faces_around)"),
     ("mesh: the inside follows", r"condyle-fem/src/follow"),
     ("mesh: quality and volume", r"condyle-fem/src/"),
     ("insert: made, worn, its thickness", r"geometry/|condyle-io/"),

@@ -143,26 +143,17 @@ impl InteriorFollower {
 /// An edge is met once in every hexahedron around it: all are put into their node's place first,
 /// and there are few enough of them to sort.
 fn neighbours_of(free: &[u32], mesh: &HexMesh) -> (Vec<usize>, Vec<u32>) {
-    let edges = || {
-        let both_ways =
-            |hex: &[u32; 8]| HEX_EDGES.map(|[a, b]| [(hex[a], hex[b]), (hex[b], hex[a])]);
-        mesh.hexes
-            .iter()
-            .flat_map(move |hex| both_ways(hex).into_iter().flatten())
-    };
     let mut place = vec![0; mesh.nodes.len() + 1];
-    for (from, _) in edges() {
-        place[from as usize + 1] += 1;
-    }
+    both_ways(mesh, |from, _| place[from as usize + 1] += 1);
     for node in 0..mesh.nodes.len() {
         place[node + 1] += place[node];
     }
     let start = place.clone();
     let mut met = vec![0; start[mesh.nodes.len()]];
-    for (from, to) in edges() {
+    both_ways(mesh, |from, to| {
         met[place[from as usize]] = to;
         place[from as usize] += 1;
-    }
+    });
     let (mut first, mut neighbours) = (vec![0], Vec::new());
     for &node in free {
         let around = &mut met[start[node as usize]..start[node as usize + 1]];
@@ -171,6 +162,16 @@ fn neighbours_of(free: &[u32], mesh: &HexMesh) -> (Vec<usize>, Vec<u32>) {
         first.push(neighbours.len());
     }
     (first, neighbours)
+}
+
+/// Tells every edge of every hexahedron both ways.
+fn both_ways(mesh: &HexMesh, mut tell: impl FnMut(u32, u32)) {
+    for hex in &mesh.hexes {
+        for &[a, b] in &HEX_EDGES {
+            tell(hex[a], hex[b]);
+            tell(hex[b], hex[a]);
+        }
+    }
 }
 
 #[cfg(test)]

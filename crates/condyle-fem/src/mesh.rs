@@ -38,36 +38,41 @@ impl HexMesh {
     /// in the order of the elements.
     pub fn boundary_quads(&self) -> Vec<[u32; 4]> {
         let shared = self.shared_quads();
-        let alone = self.quads().zip(shared).filter(|(_, is_shared)| !is_shared);
-        alone.map(|(quad, _)| quad).collect()
+        let alone = shared
+            .iter()
+            .enumerate()
+            .filter(|(_, is_shared)| !**is_shared);
+        alone.map(|(quad, _)| self.quad(quad)).collect()
     }
 
     /// Whether each quad belongs to another hexahedron too.
     ///
     /// Every quad is compared with those before it that have the same lowest node: a few.
     fn shared_quads(&self) -> Vec<bool> {
-        const NONE: usize = usize::MAX;
-        let quads: Vec<[u32; 4]> = self.quads().map(sorted).collect();
-        let mut is_shared = vec![false; quads.len()];
+        const NONE: u32 = u32::MAX;
+        let count = HEX_FACES.len() * self.hexes.len();
+        let mut is_shared = vec![false; count];
         let mut newest = vec![NONE; self.nodes.len()];
-        let mut older = vec![NONE; quads.len()];
-        for (here, quad) in quads.iter().enumerate() {
-            older[here] = std::mem::replace(&mut newest[quad[0] as usize], here);
+        let mut older = vec![NONE; count];
+        for here in 0..count {
+            let quad = sorted(self.quad(here));
+            older[here] = std::mem::replace(&mut newest[quad[0] as usize], here as u32);
             let mut other = older[here];
             while other != NONE {
-                if quads[other] == *quad {
-                    (is_shared[other], is_shared[here]) = (true, true);
+                let at = other as usize;
+                if sorted(self.quad(at)) == quad {
+                    (is_shared[at], is_shared[here]) = (true, true);
                 }
-                other = older[other];
+                other = older[at];
             }
         }
         is_shared
     }
 
-    fn quads(&self) -> impl Iterator<Item = [u32; 4]> + '_ {
-        self.hexes
-            .iter()
-            .flat_map(|hex| HEX_FACES.map(|face| face.map(|corner| hex[corner])))
+    /// A quad by its number: six to an element.
+    fn quad(&self, number: usize) -> [u32; 4] {
+        let (hex, face) = (number / HEX_FACES.len(), number % HEX_FACES.len());
+        HEX_FACES[face].map(|corner| self.hexes[hex][corner])
     }
 }
 

@@ -18,9 +18,9 @@ impl HexMesh {
     /// At each corner it is the triple product of the three edges over the product of their lengths.
     pub fn qualities(&self) -> impl Iterator<Item = f64> + '_ {
         self.hexes.chunks(LANES).flat_map(|hexes| {
-            let corners = |corner: usize| self.gathered(hexes, corner);
-            let squares =
-                least_signed_squares(&[0, 1, 2, 3].map(corners), &[4, 5, 6, 7].map(corners));
+            let at = |corner: usize| self.gathered(hexes, corner);
+            let (bottom, top) = ([at(0), at(1), at(2), at(3)], [at(4), at(5), at(6), at(7)]);
+            let squares = least_signed_squares(&bottom, &top);
             let quality = |square: f64| square.abs().sqrt().copysign(square);
             squares
                 .to_array()

@@ -47,14 +47,17 @@ struct Look {
 pub struct Former {
     shares: Vec<Shares4>,
     nearness: Nearness,
+    /// For its memory.
+    seen: Vec<Seen>,
 }
 
 impl Former {
-    fn worn(self, shares: &[Shares4]) -> Nearness {
-        match self.shares.len() == shares.len() {
+    fn worn(self, shares: &[Shares4]) -> (Nearness, Vec<Seen>) {
+        let nearness = match self.shares.len() == shares.len() {
             true => self.nearness.worn(&self.shares, shares),
             false => Nearness::new(shares),
-        }
+        };
+        (nearness, self.seen)
     }
 }
 
@@ -109,6 +112,11 @@ impl<'a> Foundation<'a> {
     ) -> Self {
         let surface = insert.surface();
         let shares = Shares4::of(&surface, insert.thickness_mm());
+        let (nearness, mut seen) = match former {
+            Some(former) => former.worn(&shares),
+            None => (Nearness::new(&shares), Vec::new()),
+        };
+        seen.resize(shares.len(), Seen::nothing());
         Self {
             settings,
             femur,
@@ -116,11 +124,8 @@ impl<'a> Foundation<'a> {
                 .iter()
                 .map(|four| directions(&surface, four))
                 .collect(),
-            nearness: match former {
-                Some(former) => former.worn(&shares),
-                None => Nearness::new(&shares),
-            },
-            seen: vec![Seen::nothing(); shares.len()],
+            nearness,
+            seen,
             faces: insert.faces_around(),
             touched: vec![0; shares.len()],
             response: 0,
@@ -145,6 +150,7 @@ impl<'a> Foundation<'a> {
         let former = Former {
             shares: self.shares,
             nearness: self.nearness,
+            seen: self.seen,
         };
         (self.surface, former)
     }

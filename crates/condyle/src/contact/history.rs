@@ -36,6 +36,8 @@ pub struct NodeHistory<'a> {
 /// new memory costs more than to fill it: one that is cleared keeps its own.
 #[derive(Clone, Debug, Default)]
 pub struct CycleHistory {
+    /// How many instants will likely be recorded.
+    expected: usize,
     /// Nodes and their moments as they were recorded.
     records: Vec<(u32, Moment)>,
     /// Moments of node i are `moments[first[i]..first[i + 1]]`.
@@ -44,8 +46,9 @@ pub struct CycleHistory {
 }
 
 impl CycleHistory {
-    /// Nothing happened yet.
-    pub fn clear(&mut self) {
+    /// Nothing happened yet; about so many instants are to come.
+    pub fn clear(&mut self, expected: usize) {
+        self.expected = expected;
         self.records.clear();
         self.moments.clear();
         self.first.clear();
@@ -56,6 +59,10 @@ impl CycleHistory {
     pub fn record(&mut self, instant: impl Iterator<Item = (u32, Moment)>) -> Range<usize> {
         let start = self.records.len();
         self.records.extend(instant);
+        if start == 0 {
+            // To grow would be to copy, and room that is never used costs nothing.
+            self.records.reserve(2 * self.expected * self.records.len());
+        }
         start..self.records.len()
     }
 
@@ -65,6 +72,7 @@ impl CycleHistory {
             records,
             first,
             moments,
+            ..
         } = self;
         let records = || instants.iter().flat_map(|span| &records[span.clone()]);
         // Counted two places on: filling then moves every node's end on to where the next begins.
@@ -140,7 +148,7 @@ mod tests {
         assert_eq!(history.node(2).peak_pressure_mpa(), 3.0);
         assert_eq!(history.node(2).sliding_distance_mm(), 2.0);
 
-        history.clear();
+        history.clear(1);
         let only = history.record([(1, moment(2.0))].into_iter());
         history.sort(2, &[only]);
         assert_eq!(history.node_count(), 2);

@@ -84,10 +84,14 @@ impl Backside {
             return None;
         }
         let end = from + direction * ((self.lowest - from.y) / direction.y).max(0.0);
-        self.bins_between(&from.inf(&end), &from.sup(&end))
-            .flat_map(|bin| &self.bins[bin])
-            .filter_map(|&index| hit(&self.triangles[index as usize], from, direction))
-            .min_by(f64::total_cmp)
+        let mut nearest: Option<f64> = None;
+        for bin in self.bins_between(&from.inf(&end), &from.sup(&end)) {
+            for &index in &self.bins[bin] {
+                let distance = hit(&self.triangles[index as usize], from, direction);
+                nearest = nearest.map_or(distance, |d| Some(distance.map_or(d, |e| d.min(e))));
+            }
+        }
+        nearest
     }
 
     fn distance_to_vertex(&self, from: &Vec3) -> Option<f64> {
@@ -124,8 +128,12 @@ fn hit([a, b, c]: &[Vec3; 3], from: &Vec3, direction: &Vec3) -> Option<f64> {
     }
     let offset = from - a;
     let u = offset.dot(&across) / determinant;
+    // Most triangles asked are missed, and most of these seen to be here.
+    if !(-EDGE..=1.0 + EDGE).contains(&u) {
+        return None;
+    }
     let turned = offset.cross(&ab);
     let v = direction.dot(&turned) / determinant;
     let distance = ac.dot(&turned) / determinant;
-    (u >= -EDGE && v >= -EDGE && u + v <= 1.0 + EDGE && distance > 0.0).then_some(distance)
+    (v >= -EDGE && u + v <= 1.0 + EDGE && distance > 0.0).then_some(distance)
 }

@@ -195,7 +195,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         let first = (start.phase * count as f64).round() as usize;
         let mut state = *start;
         let mut landed: Vec<Option<Landed>> = vec![None; count];
-        self.history.clear();
+        self.history.clear(count);
         let mut repeats = false;
         let mut solved = 0;
         while !repeats && solved < count * self.time.most_cycles_to_repeat {
@@ -372,16 +372,17 @@ fn row(
     touched: &[TouchedNode],
     peak_pressure_mpa: f64,
 ) -> CycleRow {
-    let side_n = |is_medial: bool| {
-        let on_side = touched.iter().filter(|node| node.is_medial == is_medial);
-        on_side.map(|node| -node.force_n.y).sum::<f64>()
-    };
-    let (medial_force_n, lateral_force_n) = (side_n(true), side_n(false));
+    let (mut side_n, mut contact_area_mm2) = ([0.0; 2], 0.0);
+    for node in touched {
+        side_n[usize::from(node.is_medial)] -= node.force_n.y;
+        contact_area_mm2 += node.covered_mm2;
+    }
+    let [lateral_force_n, medial_force_n] = side_n;
     CycleRow {
         percent,
         positions: state.now.positions,
         axial_force_n: medial_force_n + lateral_force_n,
-        contact_area_mm2: touched.iter().map(|node| node.covered_mm2).sum(),
+        contact_area_mm2,
         peak_pressure_mpa,
         medial_force_n,
         lateral_force_n,
