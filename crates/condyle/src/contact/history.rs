@@ -23,11 +23,44 @@ impl Moment {
     }
 }
 
-/// All instants at which one node was in contact, in the order of time.
+/// All instants at which one node was in contact, in the order of time, and their sums.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeHistory<'a> {
     /// The instants; none where the node was never touched.
     pub moments: &'a [Moment],
+    /// Highest mean pressure on the node's share in the cycle, MPa.
+    pub peak_pressure_mpa: f64,
+    /// Distance slid under pressure, S = sum of |ds|, mm.
+    pub sliding_distance_mm: f64,
+    /// Pressure times slip, sum of p |ds|, MPa mm.
+    pub pressure_slip_mpa_mm: f64,
+}
+
+/// What a node's moments come to.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    peak_pressure_mpa: f64,
+    sliding_distance_mm: f64,
+    pressure_slip_mpa_mm: f64,
+}
+
+impl Sums {
+    #[inline(always)]
+    fn add(&mut self, moment: &Moment) {
+        let distance_mm = moment.distance_mm();
+        self.peak_pressure_mpa = self.peak_pressure_mpa.max(moment.pressure_mpa);
+        self.sliding_distance_mm += distance_mm;
+        self.pressure_slip_mpa_mm += moment.pressure_mpa * distance_mm;
+    }
+
+    fn with(self, moments: &[Moment]) -> NodeHistory<'_> {
+        NodeHistory {
+            moments,
+            peak_pressure_mpa: self.peak_pressure_mpa,
+            sliding_distance_mm: self.sliding_distance_mm,
+            pressure_slip_mpa_mm: self.pressure_slip_mpa_mm,
+        }
+    }
 }
 
 /// The contact history of all nodes of an articulating surface over one cycle.
@@ -43,6 +76,8 @@ pub struct CycleHistory {
     /// Moments of node i are `moments[first[i]..first[i + 1]]`.
     first: Vec<usize>,
     moments: Vec<Moment>,
+    /// One a node: made as the moments are sorted, when they are at hand.
+    sums: Vec<Sums>,
 }
 
 impl CycleHistory {
@@ -52,6 +87,7 @@ impl CycleHistory {
         self.records.clear();
         self.moments.clear();
         self.first.clear();
+        self.sums.clear();
     }
 
     /// Records an instant: the nodes in contact then. Where it is kept, for
@@ -72,8 +108,11 @@ impl CycleHistory {
             records,
             first,
             moments,
+            sums,
             ..
         } = self;
+        sums.clear();
+        sums.resize(node_count, Sums::default());
         let records = || instants.iter().flat_map(|span| &records[span.clone()]);
         // Counted two places on: filling then moves every node's end on to where the next begins.
         first.clear();
@@ -94,6 +133,7 @@ impl CycleHistory {
             let place = &mut first[*node as usize + 1];
             moments[*place] = *moment;
             *place += 1;
+            sums[*node as usize].add(moment);
         }
         first.truncate(node_count + 1);
     }
@@ -105,24 +145,16 @@ impl CycleHistory {
 
     /// The history of node `node` of the articulating surface.
     pub fn node(&self, node: usize) -> NodeHistory<'_> {
-        NodeHistory {
-            moments: &self.moments[self.first[node]..self.first[node + 1]],
-        }
+        self.sums[node].with(&self.moments[self.first[node]..self.first[node + 1]])
     }
 }
 
-impl NodeHistory<'_> {
-    /// Highest mean pressure on the node's share in the cycle, MPa.
-    pub fn peak_pressure_mpa(&self) -> f64 {
-        self.moments
-            .iter()
-            .map(|moment| moment.pressure_mpa)
-            .fold(0.0, f64::max)
-    }
-
-    /// Distance slid under pressure, mm.
-    pub fn sliding_distance_mm(&self) -> f64 {
-        self.moments.iter().map(Moment::distance_mm).sum()
+impl<'a> NodeHistory<'a> {
+    /// Of the moments of one node.
+    pub fn of(moments: &'a [Moment]) -> Self {
+        let mut sums = Sums::default();
+        moments.iter().for_each(|moment| sums.add(moment));
+        sums.with(moments)
     }
 }
 
@@ -145,8 +177,8 @@ mod tests {
         assert_eq!(history.node_count(), 3);
         assert_eq!(history.node(2).moments, [moment(1.0), moment(3.0)]);
         assert!(history.node(1).moments.is_empty() && !forgotten.is_empty());
-        assert_eq!(history.node(2).peak_pressure_mpa(), 3.0);
-        assert_eq!(history.node(2).sliding_distance_mm(), 2.0);
+        assert_eq!(history.node(2).peak_pressure_mpa, 3.0);
+        assert_eq!(history.node(2).sliding_distance_mm, 2.0);
 
         history.clear(1);
         let only = history.record([(1, moment(2.0))].into_iter());

@@ -73,12 +73,7 @@ fn relaxation(
     stiffness_mpa_per_mm: f64,
     history: &NodeHistory<'_>,
 ) -> f64 {
-    let (mut slid, mut pressed) = (0.0, 0.0);
-    for moment in history.moments {
-        let slip = moment.distance_mm();
-        slid += slip;
-        pressed += moment.pressure_mpa * slip;
-    }
+    let (slid, pressed) = (history.sliding_distance_mm, history.pressure_slip_mpa_mm);
     match pressed > 0.0 {
         true => depth_per_cycle_mm * stiffness_mpa_per_mm * slid / pressed,
         false => 0.0,

@@ -84,8 +84,8 @@ impl NodeFields {
         Self {
             wear_depth_mm: worn_mm.to_vec(),
             depth_per_cycle_mm: rates.depth_per_cycle_mm.clone(),
-            peak_pressure_mpa: nodes().map(|node| node.peak_pressure_mpa()).collect(),
-            sliding_distance_mm: nodes().map(|node| node.sliding_distance_mm()).collect(),
+            peak_pressure_mpa: nodes().map(|node| node.peak_pressure_mpa).collect(),
+            sliding_distance_mm: nodes().map(|node| node.sliding_distance_mm).collect(),
             thickness_mm: thickness_mm.to_vec(),
         }
     }

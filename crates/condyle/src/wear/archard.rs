@@ -17,12 +17,7 @@ const MM_PER_M: f64 = 1000.0;
 
 impl WearLaw for Archard {
     fn depth_per_cycle_mm(&self, history: &NodeHistory<'_>) -> f64 {
-        let work: f64 = history
-            .moments
-            .iter()
-            .map(|moment| moment.pressure_mpa * moment.distance_mm())
-            .sum();
-        self.wear_factor_mm3_per_nm / MM_PER_M * work
+        self.wear_factor_mm3_per_nm / MM_PER_M * history.pressure_slip_mpa_mm
     }
 }
 
@@ -43,7 +38,7 @@ mod tests {
         };
         let moments = [moment([3.0, 4.0]), moment([-5.0, 0.0])];
         // 10 MPa over 10 mm is 0.1 N m on each square millimetre.
-        let depth = law.depth_per_cycle_mm(&NodeHistory { moments: &moments });
+        let depth = law.depth_per_cycle_mm(&NodeHistory::of(&moments));
         assert!((depth - 2.64e-7 * 0.1).abs() < 1e-20);
     }
 }
