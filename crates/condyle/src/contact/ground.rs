@@ -24,6 +24,13 @@ pub(super) struct Wear {
     pub lost_mm: Singles,
 }
 
+/// How all have worn last.
+pub(super) struct LastWear {
+    /// How often they have worn.
+    pub number: u32,
+    pub eights: Vec<Wear>,
+}
+
 impl Ground {
     /// All shares of a surface.
     pub fn of(shares: &[Shares4]) -> Vec<Self> {

@@ -3,7 +3,7 @@
 use super::{
     Pose,
     clearance::Clearance,
-    ground::{Ground, Wear},
+    ground::{Ground, LastWear, Wear},
     motion::Pose4,
     shares::Shares4,
     standoff::Standoff,
@@ -22,8 +22,7 @@ pub(super) struct Nearness {
     increment: usize,
     now: Standoff,
     ground: Vec<Ground>,
-    /// How it has worn last.
-    wear: Vec<Wear>,
+    last_wear: LastWear,
     /// The fours that may touch.
     due: Vec<u32>,
 }
@@ -36,7 +35,10 @@ impl Nearness {
             increment: 0,
             now: Standoff::new(shares.len()),
             ground: Ground::of(shares),
-            wear: Vec::new(),
+            last_wear: LastWear {
+                number: 0,
+                eights: Vec::new(),
+            },
             due: Vec::new(),
         }
     }
@@ -57,13 +59,10 @@ impl Nearness {
         self.increment = increment;
     }
 
-    /// What is known at an increment, brought up to the last wear; none if it is older.
+    /// What is known at an increment; none if it is older than the last wear but one.
     fn kept(&mut self, increment: usize) -> Option<Standoff> {
-        let mut standoff = self.standoffs[increment].take()?;
-        if standoff.worn() + 1 == self.now.worn() {
-            standoff.wear(&self.wear);
-        }
-        (standoff.worn() == self.now.worn()).then_some(standoff)
+        let standoff = self.standoffs[increment].take()?;
+        (standoff.worn() + 1 >= self.last_wear.number).then_some(standoff)
     }
 
     /// Lists the fours that may touch under a femur at a pose, each with the places of its centres
@@ -78,7 +77,8 @@ impl Nearness {
         pose: &Pose4,
         due: &mut Vec<(u32, Vector<Lanes>)>,
     ) {
-        self.now.follow(to, &self.ground, &mut self.due);
+        self.now
+            .follow(to, &self.ground, &self.last_wear, &mut self.due);
         due.clear();
         for &four in &self.due {
             due.push((four, pose.to_femur(&shares[four as usize].centre)));
@@ -99,8 +99,13 @@ impl Nearness {
 
     /// What is still known when the shares have worn from what they were before.
     pub fn worn(mut self, before: &[Shares4], shares: &[Shares4]) -> Self {
-        self.wear = Wear::between(before, shares);
-        self.now.wear(&self.wear);
+        if self.now.worn() < self.last_wear.number {
+            self.now = Standoff::new(shares.len());
+        }
+        self.last_wear = LastWear {
+            number: self.last_wear.number + 1,
+            eights: Wear::between(before, shares),
+        };
         self.ground = Ground::of(shares);
         self
     }

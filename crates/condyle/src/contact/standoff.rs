@@ -3,7 +3,7 @@
 use super::{
     Pose,
     clearance::Clearance,
-    ground::{Ground, Wear},
+    ground::{Ground, LastWear, Wear},
 };
 use crate::{
     Mat3, Vec3, Vector,
@@ -100,7 +100,7 @@ impl Clearances {
 }
 
 impl Standoff {
-    /// All of `count` fours may touch.
+    /// All of `count` fours may touch, however often they have worn.
     pub fn new(count: usize) -> Self {
         Self {
             at: None,
@@ -115,26 +115,28 @@ impl Standoff {
         self.worn
     }
 
-    /// The shares wear once more.
-    pub fn wear(&mut self, wear: &[Wear]) {
-        self.worn += 1;
-        let Some(pose) = self.at else { return };
-        let [x, y, z] = columns(&pose.rotation);
-        for (clearances, Wear { moved, lost_mm }) in self.clearances.iter_mut().zip(wear) {
-            let motion = Vector::new(dot(&x, moved), dot(&y, moved), dot(&z, moved));
-            clearances.carry(&motion, *lost_mm);
-        }
-    }
-
-    /// The femur moves on; lists the fours that may touch now, ascending.
-    pub fn follow(&mut self, to: &Pose, ground: &[Ground], due: &mut Vec<u32>) {
+    /// The femur moves on, and the shares have worn to `ground` if they had not yet; lists the fours
+    /// that may touch now, ascending.
+    pub fn follow(&mut self, to: &Pose, ground: &[Ground], last: &LastWear, due: &mut Vec<u32>) {
         let from = self.at.replace(*to).unwrap_or(*to);
         let step = Step::between(&from, to);
+        let [x, y, z] = columns(&from.rotation);
         let rounded_off_mm = Singles::splat(ROUNDED_OFF_MM);
+        let wear = (self.worn < last.number).then_some(&last.eights);
+        self.worn = last.number;
         due.clear();
         for (number, (clearances, ground)) in self.clearances.iter_mut().zip(ground).enumerate() {
-            let lost_mm = ground.levers_mm.times_plus(step.turn_rad, rounded_off_mm);
-            let mut left = clearances.carry(&step.of(&ground.middles), lost_mm);
+            let mut lost_mm = ground.levers_mm.times_plus(step.turn_rad, rounded_off_mm);
+            let mut motion = step.of(&ground.middles);
+            if let Some(Wear {
+                moved,
+                lost_mm: by_wear_mm,
+            }) = wear.map(|wear| &wear[number])
+            {
+                motion += Vector::new(dot(&x, moved), dot(&y, moved), dot(&z, moved));
+                lost_mm += *by_wear_mm;
+            }
+            let mut left = clearances.carry(&motion, lost_mm);
             while left != 0 {
                 due.push((number * SINGLES) as u32 + left.trailing_zeros());
                 left &= left - 1;

@@ -106,11 +106,18 @@ fn turned(turn: &Vec3) -> Mat3 {
     nalgebra::Rotation3::new(*turn).into_inner()
 }
 
+fn unworn() -> LastWear {
+    LastWear {
+        number: 0,
+        eights: Vec::new(),
+    }
+}
+
 /// What a search over all shares would know.
 fn searched(femur: &FemoralSurface, shares: &[Shares4], pose: &Pose) -> Standoff {
     let mut standoff = Standoff::new(shares.len());
     let mut due = Vec::new();
-    standoff.follow(pose, &Ground::of(shares), &mut due);
+    standoff.follow(pose, &Ground::of(shares), &unworn(), &mut due);
     assert_eq!(due.len(), shares.len());
     for (four, shares) in (0..).zip(shares) {
         let (seen, reach_mm, is_apart) = look(femur, shares, pose);
@@ -140,15 +147,18 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
             _ => (&worn, &unworn),
         };
         let mut standoff = searched(femur, before, &from);
-        standoff.wear(&Wear::between(before, after));
+        let wear = LastWear {
+            number: 1,
+            eights: Wear::between(before, after),
+        };
         let mut due = Vec::new();
         // There by way of half of it, as over many steps.
         let half = Pose {
             rotation: from.rotation,
             ..to
         };
-        standoff.follow(&half, &Ground::of(after), &mut due);
-        standoff.follow(&to, &Ground::of(after), &mut due);
+        standoff.follow(&half, &Ground::of(after), &wear, &mut due);
+        standoff.follow(&to, &Ground::of(after), &wear, &mut due);
         for (number, four) in (0..).zip(after) {
             if !due.contains(&number) {
                 sure += 1;
