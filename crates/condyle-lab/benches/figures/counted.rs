@@ -3,15 +3,12 @@
 
 use std::hint::black_box;
 
-use condyle::{
-    contact::{ContactModel, Foundation},
-    evolve::March,
-};
+use condyle::contact::{ContactModel, Foundation};
 use condyle_io::case::Case;
 
 use crate::{
     cases::{self, GENERIC},
-    gait::{Asked, Gait},
+    gait::{Asked, Gait, Updates},
 };
 
 /// What is counted: its name in the budgets, and its function here.
@@ -24,12 +21,12 @@ pub const COUNTED: [(&str, &str); 3] = [
 /// Does the work on a case, and prints how many of each thing it did.
 pub fn run(name: &str) {
     let case = cases::read(name).expect("looked for by who asks");
-    let march = March::start(cases::built(&case)).expect("a shipped case settles");
-    let gait = Gait::of(&march);
-    let asked = gait.asked();
-    counted_contact_evaluations(&mut gait.contact(), &asked);
+    let updates = Updates::of(&case, |_| ());
+    let (asked_first, asked) = (updates.first().asked(), updates.second().asked());
+    counted_contact_evaluations(&mut updates.second_contact(&asked_first), &asked);
     println!("contact_evaluation {}", asked.len());
-    let increments = counted_increments(&gait, gait.contact());
+    let contact = updates.second_contact(&asked_first);
+    let increments = counted_increments(&updates.second(), contact);
     println!("increment {increments}");
     // The femur's preparation would take callgrind a minute, and is no part of the march.
     if name == GENERIC {
@@ -38,7 +35,7 @@ pub fn run(name: &str) {
     }
 }
 
-/// Wrench and tangent, as the first cycle asks for them.
+/// Wrench and tangent, as the cycle of the second update asks for them.
 #[inline(never)]
 fn counted_contact_evaluations(contact: &mut Foundation<'_>, asked: &[Asked]) {
     for asked in asked {
@@ -48,7 +45,7 @@ fn counted_contact_evaluations(contact: &mut Foundation<'_>, asked: &[Asked]) {
     }
 }
 
-/// The first cycle.
+/// The cycle of the second update.
 #[inline(never)]
 fn counted_increments(gait: &Gait<'_>, contact: Foundation<'_>) -> usize {
     black_box(gait.solve(contact))

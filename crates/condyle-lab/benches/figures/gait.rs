@@ -4,10 +4,13 @@ use std::ops::ControlFlow;
 
 use condyle::{
     Vec3,
-    contact::{ContactModel, Foundation, RelativeMotion, Tangent, TouchedNode, Vec6},
+    contact::{ContactModel, Former, Foundation, RelativeMotion, Tangent, TouchedNode, Vec6},
     evolve::{March, WearTest},
-    machine::{Chain, Drive, Effort, Freedom, Machine, MachineState, Simulator, Waveform, settle},
+    machine::{Chain, Drive, Effort, Freedom, Simulator, Waveform},
 };
+use condyle_io::case::Case;
+
+use crate::cases;
 
 /// An evaluation that was asked for.
 #[derive(Clone, Copy)]
@@ -65,48 +68,29 @@ impl ContactModel for Recorder<'_> {
     }
 }
 
-/// A test on its unworn insert, about to solve its first cycle.
+/// A test about to solve the cycle of one of its updates.
 pub struct Gait<'a> {
-    test: &'a WearTest,
+    march: &'a March,
     chain: Chain,
-    machine: Machine,
-    start: MachineState,
 }
 
 impl<'a> Gait<'a> {
-    /// The gait of the case.
+    /// The next update of a march.
     pub fn of(march: &'a March) -> Self {
         let test = march.test();
-        Self {
-            test,
-            chain: Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm),
-            machine: test.machine.clone(),
-            start: march.state().machine,
-        }
-    }
-
-    /// The same with an axial force that stays.
-    pub fn under(march: &'a March, axial_force_n: f64) -> Self {
-        let mut gait = Self::of(march);
-        gait.machine.freedoms[Freedom::InferoSuperior as usize].drive =
-            Drive::Loaded(Waveform::constant(-axial_force_n));
-        let tolerance_n = gait.test.time.force_tolerance_n;
-        let effort = &mut Effort::default();
-        let settled = settle(
-            &gait.machine,
-            &gait.chain,
-            &mut gait.contact(),
-            tolerance_n,
-            effort,
-        )
-        .unwrap_or_else(|failed| panic!("under {axial_force_n} N: {failed:?}"));
-        gait.start = MachineState::at_rest(&gait.machine, settled);
-        gait
+        let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
+        Self { march, chain }
     }
 
     /// The contact, which has seen nothing yet.
     pub fn contact(&self) -> Foundation<'a> {
-        Foundation::new(&self.test.contact, &self.test.femur, &self.test.insert)
+        self.contact_after(None)
+    }
+
+    /// The contact, which knows what that of the update before knew.
+    pub fn contact_after(&self, former: Option<Former>) -> Foundation<'a> {
+        let test = self.march.test();
+        Foundation::after(former, &test.contact, &test.femur, &test.insert)
     }
 
     /// Solves increments until the motion repeats itself; gives how many.
@@ -115,10 +99,12 @@ impl<'a> Gait<'a> {
     }
 
     fn solved<C: ContactModel>(&self, contact: C) -> (usize, C) {
-        let mut simulator = Simulator::new(&self.machine, &self.chain, contact, &self.test.time);
+        let (test, state) = (self.march.test(), self.march.state());
+        let mut simulator = Simulator::new(&test.machine, &self.chain, contact, &test.time);
+        simulator.precedents.clone_from(&state.precedents);
         let watch = &mut |_| ControlFlow::Continue(());
         let cycle = simulator
-            .cycle(&self.start, &mut Effort::default(), watch)
+            .cycle(&state.machine, &mut Effort::default(), watch)
             .unwrap_or_else(|error| panic!("{error}"));
         (cycle.increments_solved, simulator.contact)
     }
@@ -133,4 +119,50 @@ impl<'a> Gait<'a> {
         };
         self.solved(recorder).1.asked
     }
+}
+
+/// The first update of a test and the second: ten of eleven are like the second.
+pub struct Updates {
+    unworn: March,
+    worn: March,
+}
+
+impl Updates {
+    /// Those of a case's test, changed.
+    pub fn of(case: &Case, change: impl Fn(&mut WearTest)) -> Self {
+        let start = || {
+            let mut test = cases::built(case);
+            change(&mut test);
+            March::start(test).expect("a shipped case settles")
+        };
+        let (unworn, mut worn) = (start(), start());
+        let watch = &mut |_| ControlFlow::Continue(());
+        worn.update(watch).expect("a shipped case is solved");
+        Self { unworn, worn }
+    }
+
+    pub fn first(&self) -> Gait<'_> {
+        Gait::of(&self.unworn)
+    }
+
+    pub fn second(&self) -> Gait<'_> {
+        Gait::of(&self.worn)
+    }
+
+    /// The contact of the second, after the first has asked for all this.
+    pub fn second_contact(&self, asked_first: &[Asked]) -> Foundation<'_> {
+        let mut contact = self.first().contact();
+        for asked in asked_first {
+            contact.begin_increment(asked.increment);
+            contact.respond(&asked.motion);
+        }
+        let (_, former) = contact.into_parts();
+        self.second().contact_after(Some(former))
+    }
+}
+
+/// Sets the axial force to one that stays.
+pub fn press(test: &mut WearTest, axial_force_n: f64) {
+    let axial = &mut test.machine.freedoms[Freedom::InferoSuperior as usize];
+    axial.drive = Drive::Loaded(Waveform::constant(-axial_force_n));
 }

@@ -11,14 +11,14 @@ use std::{
 
 use condyle::{
     contact::{ContactModel, Foundation},
-    evolve::{March, MarchState},
+    evolve::MarchState,
 };
 use condyle_io::{cache::Cache, case::Case};
 
 use crate::{
     budgets,
     cases::{self, GENERIC, REAL, built, marched},
-    gait::{Asked, Gait},
+    gait::{Asked, Gait, Updates, press},
 };
 
 /// Of whole tests.
@@ -93,25 +93,30 @@ fn print_real(real: &Case, generic: &Case) {
         kept_s(&femur_only),
         "s",
     );
-    let march = March::start(built(real)).expect("a shipped case settles");
-    let under_2600_n = Evaluations::timed(&Gait::under(&march, AXIAL_FORCE_N));
+    let under_2600_n = Updates::of(real, |test| press(test, AXIAL_FORCE_N));
+    let evaluations = Evaluations::of_second(&under_2600_n);
     row(
         "one contact evaluation of it at 2600 N, as the march asks",
         15.0,
-        under_2600_n.median_us(),
+        evaluations.median_us(),
         "us",
     );
     row(
         "the same, first look at an increment's pose only",
         15.0,
-        under_2600_n.median_of_firsts_us(),
+        evaluations.median_of_firsts_us(),
         "us",
     );
-    let of_gait = Evaluations::timed(&Gait::of(&march));
     row(
-        "the same under the gait's own force, as the march asks",
+        "the same in the very first cycle, of which nothing is known",
         15.0,
-        of_gait.median_us(),
+        Evaluations::of_first(&under_2600_n).median_of_firsts_us(),
+        "us",
+    );
+    row(
+        "one under the gait's own force, as the march asks",
+        15.0,
+        Evaluations::of_second(&Updates::of(real, |_| ())).median_us(),
         "us",
     );
 }
@@ -133,23 +138,23 @@ fn kept_s(case: &Case) -> f64 {
 /// How much work the march of a case does, from which its time comes.
 fn print_work(name: &str, case: &Case) {
     let state = solved(case);
-    let march = March::start(built(case)).expect("a shipped case settles");
-    let gait = Gait::of(&march);
-    let updates = state.updates.iter();
-    let cycles: f64 = updates.map(|update| update.cycles_solved).sum();
+    let updates = Updates::of(case, |_| ());
+    let second = updates.second();
+    let cycles_solved = state.updates.iter().map(|update| update.cycles_solved);
+    let cycles: f64 = cycles_solved.sum();
     let per_cycle = |work: u64| work as f64 / cycles;
     let budgets = budgets::read();
     let budget = |work: &str| budgets.get(name).and_then(|of_case| of_case.get(work));
-    let nodes = march.test().insert.surface_nodes().len();
+    let nodes = second.contact().node_count();
     let cells = [
         format!("`{name}`"),
         format!("{cycles:.1}"),
         format!("{:.0}", per_cycle(state.effort.newton_iterations)),
         format!("{:.0}", per_cycle(state.effort.contact_evaluations)),
         format!("{nodes}"),
-        format!("{:.0}", mean_pressing(&gait)),
+        format!("{:.0}", mean_pressing(&second)),
         budget("contact_evaluation").map_or_else(String::new, u64::to_string),
-        format!("{:.1} us", Evaluations::timed(&gait).mean_us()),
+        format!("{:.1} us", Evaluations::of_second(&updates).mean_us()),
     ];
     println!("| {} |", cells.join(" | "));
 }
@@ -226,11 +231,23 @@ fn beside_another(generic: &Case) -> f64 {
 struct Evaluations(Vec<(Duration, bool)>);
 
 impl Evaluations {
-    fn timed(gait: &Gait<'_>) -> Self {
-        let asked = gait.asked();
+    /// Of the first update's cycle.
+    fn of_first(updates: &Updates) -> Self {
+        let first = updates.first();
+        Self::timed(&first.asked(), || first.contact())
+    }
+
+    /// Of the second update's cycle.
+    fn of_second(updates: &Updates) -> Self {
+        let asked_first = updates.first().asked();
+        let contact = || updates.second_contact(&asked_first);
+        Self::timed(&updates.second().asked(), contact)
+    }
+
+    fn timed<'a>(asked: &[Asked], contact: impl Fn() -> Foundation<'a>) -> Self {
         let mut least = vec![Duration::MAX; asked.len()];
         for _ in 0..EVALUATION_ROUNDS {
-            let mut contact = gait.contact();
+            let mut contact = contact();
             for (asked, least) in asked.iter().zip(&mut least) {
                 *least = (*least).min(evaluation_time(&mut contact, asked));
             }
