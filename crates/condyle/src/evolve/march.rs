@@ -218,8 +218,7 @@ impl March {
         let worn_mm3 = total(&rates.area_mm2, &step.depth_mm);
         let settled_error = self.state.settled_error.after(before);
         let step_error = settled_error.with_last(before, &step);
-        let (mesh_nodes, worn_mm) = (self.state.mesh_nodes.clone(), self.state.worn_mm.clone());
-        self.wear_down(surface, &cycle, &rates, &step)?;
+        let (mesh_nodes, worn_mm) = self.wear_down(surface, &cycle, &rates, &step)?;
         self.state.effort = effort;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
         let record = self.record(&cycle, &step, worn_mm3);
@@ -231,7 +230,7 @@ impl March {
             machine: cycle.end,
         };
         let part = cycles / self.test.schedule.cycles;
-        self.state.pass(part, &waypoint);
+        self.state.pass(part, waypoint);
         self.keep(cycle, cycles);
         Ok(&self.state.updates[update - 1])
     }
@@ -314,14 +313,14 @@ impl March {
         }
     }
 
-    /// Wears the insert by a step.
+    /// Wears the insert by a step; the nodes of its mesh and the depth worn before it.
     fn wear_down(
         &mut self,
         surface: &ArticulatingSurface,
         cycle: &Cycle,
         rates: &Rates,
         step: &Step,
-    ) -> Result<(), MarchError> {
+    ) -> Result<(Vec<Vec3>, Vec<f64>), MarchError> {
         let thickness_mm = self.test.insert.thickness_mm();
         let mut nodes = step.depth_mm.iter().zip(thickness_mm);
         if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
@@ -333,13 +332,14 @@ impl March {
             });
         }
         self.test.insert.wear_down(surface, &step.depth_mm);
-        let worn = self.state.worn_mm.iter_mut().zip(&step.depth_mm);
-        worn.for_each(|(worn, step)| *worn += step);
-        let nodes = &self.test.insert.mesh().nodes;
-        self.state.mesh_nodes.clone_from(nodes);
+        let worn = self.state.worn_mm.iter().zip(&step.depth_mm);
+        let worn = worn.map(|(worn, step)| worn + step).collect();
+        let worn_before = std::mem::replace(&mut self.state.worn_mm, worn);
+        let nodes = self.test.insert.mesh().nodes.clone();
+        let nodes_before = std::mem::replace(&mut self.state.mesh_nodes, nodes);
         let thickness_mm = self.test.insert.thickness_mm();
         self.fields = NodeFields::of(cycle, rates, &self.state.worn_mm, thickness_mm);
-        Ok(())
+        Ok((nodes_before, worn_before))
     }
 
     fn keep(&mut self, cycle: Cycle, cycles: f64) {

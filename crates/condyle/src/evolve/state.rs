@@ -58,15 +58,17 @@ pub struct MarchState {
 
 impl MarchState {
     /// Remembers a step that began when this part of the cycles was done.
-    pub(super) fn pass(&mut self, part: f64, waypoint: &Waypoint) {
+    pub(super) fn pass(&mut self, part: f64, waypoint: Waypoint) {
         if self.first_step.is_none() {
             self.first_step = Some((waypoint.step.clone(), waypoint.machine));
         }
         self.last_step = Some(waypoint.step.clone());
-        for (at, kept) in WAYPOINTS.iter().zip(&mut self.waypoints) {
-            if part <= *at {
-                *kept = Some(waypoint.clone());
-            }
+        let [early, late] = WAYPOINTS;
+        if part <= early {
+            self.waypoints[0] = Some(waypoint.clone());
+        }
+        if part <= late {
+            self.waypoints[1] = Some(waypoint);
         }
     }
 
