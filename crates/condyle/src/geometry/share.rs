@@ -55,8 +55,8 @@ impl Quarter {
 
 /// Looks at the faces around four nodes at a time.
 pub(super) struct ShareSeeker<'a> {
-    pub positions: &'a [Vec3],
-    pub around: &'a FacesAround,
+    positions: &'a [Vec3],
+    around: &'a FacesAround,
     /// Those of the last four nodes.
     quarters: Vec<Quarter>,
 }

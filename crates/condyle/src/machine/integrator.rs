@@ -18,8 +18,6 @@ const MOST_ITERATIONS: usize = 12;
 const LEAST_PART_OF_CORRECTION: f64 = 0.1;
 /// A correction taken back to less than this has found no better place, mm.
 const SHORTEST_CORRECTION_MM: f64 = 1e-9;
-/// A residual that is foreseen, and not computed, must be this part of the tolerance at most.
-const FORESEEN: f64 = 1.0;
 /// What a correction leaves of a residual is foreseen to be up to this many times what it left a
 /// cycle before.
 const CAUTION: f64 = 2.0;
@@ -75,20 +73,19 @@ struct Attempt {
     is_whole: bool,
     /// Length of the residual where the attempt is now, as far as it can be foreseen, N.
     foreseen_n: f64,
-    /// What a whole correction leaves of a residual near the solution, over its square, as far as it
-    /// can be foreseen, 1/N.
+    /// What a whole correction left of a residual near the solution, over its square, when that was
+    /// seen last, 1/N.
     contraction_per_n: f64,
-    /// The same as it was seen last.
-    seen_contraction_per_n: Option<f64>,
+    /// How many times that it is foreseen to leave.
+    caution: f64,
 }
 
 impl Attempt {
     fn new(positions: [f64; 6], precedent: Option<&Precedent>) -> Self {
-        let contraction_per_n = precedent.map_or(f64::INFINITY, |last| last.contraction_per_n);
         Self {
             positions,
-            contraction_per_n: CAUTION * contraction_per_n,
-            seen_contraction_per_n: None,
+            contraction_per_n: precedent.map_or(f64::INFINITY, |last| last.contraction_per_n),
+            caution: CAUTION,
             residual_n: f64::INFINITY,
             taken: Vec6::zeros(),
             slips: [Vec3::zeros(); 2],
@@ -132,12 +129,6 @@ impl Attempt {
         true
     }
 
-    /// What the same increment of the next cycle may know, `last` being what this one knew.
-    fn precedent(&self, landed: &MachineState, last: Option<&Precedent>) -> Precedent {
-        let known = last.map_or(f64::INFINITY, |last| last.contraction_per_n);
-        Precedent::new(landed, self.seen_contraction_per_n.unwrap_or(known))
-    }
-
     /// Keeps a part of the last correction only.
     fn take_back(&mut self, keep: f64) {
         self.step(self.taken * (keep - 1.0));
@@ -152,16 +143,15 @@ impl Attempt {
     fn foresee(&mut self, residual_n: f64, is_whole: bool) {
         let left = residual_n / self.residual_n;
         if self.is_whole {
-            let contraction_per_n = if left <= CONVERGING {
+            self.contraction_per_n = if left <= CONVERGING {
                 left / self.residual_n
             } else {
                 f64::INFINITY
             };
-            self.contraction_per_n = contraction_per_n;
-            self.seen_contraction_per_n = Some(contraction_per_n);
+            self.caution = 1.0;
         }
         self.foreseen_n = if is_whole {
-            self.contraction_per_n * residual_n * residual_n
+            self.caution * self.contraction_per_n * residual_n * residual_n
         } else {
             f64::INFINITY
         };
@@ -245,9 +235,9 @@ impl<C: ContactModel> Integrator<'_, C> {
                 now,
                 before: Some((state.now, step_s)),
             };
-            (state, attempt.precedent(&state, precedent))
+            (state, Precedent::new(&state, attempt.contraction_per_n))
         };
-        let predicted = self.predicted(state, step_s, ratio, phase, precedent);
+        let predicted = self.predicted(state, step_s, phase, precedent);
         let mut attempt = Attempt::new(predicted, precedent);
         for _ in 0..MOST_ITERATIONS {
             let kinematics = self.kinematics(state, &differences, attempt.positions, phase);
@@ -263,7 +253,7 @@ impl<C: ContactModel> Integrator<'_, C> {
                 break;
             }
             self.effort.newton_iterations += 1;
-            if self.foresees && attempt.foreseen_n <= FORESEEN * self.force_tolerance_n {
+            if self.foresees && attempt.foreseen_n <= self.force_tolerance_n {
                 let kinematics = self.kinematics(state, &differences, attempt.positions, phase);
                 return Ok(landed(kinematics, &attempt));
             }
@@ -281,13 +271,12 @@ impl<C: ContactModel> Integrator<'_, C> {
         &self,
         state: &MachineState,
         step_s: f64,
-        ratio: f64,
         phase: f64,
         precedent: Option<&Precedent>,
     ) -> [f64; 6] {
         let mut positions = match precedent {
             Some(precedent) => precedent.followed_from(&state.now, step_s),
-            None => lasting(&state.now, step_s, ratio),
+            None => lasting(state, step_s),
         };
         drive(self.machine, phase, &mut positions, &mut [0.0; 6]);
         positions
@@ -323,11 +312,11 @@ impl<C: ContactModel> Integrator<'_, C> {
 }
 
 /// Where the freedoms go if accelerations last; after a start, where there are none yet, if rates do.
-fn lasting(now: &Kinematics, step_s: f64, ratio: f64) -> [f64; 6] {
-    let half_s2 = if ratio > 0.0 {
-        0.5 * step_s * step_s
-    } else {
-        0.0
+fn lasting(state: &MachineState, step_s: f64) -> [f64; 6] {
+    let now = &state.now;
+    let half_s2 = match state.before {
+        Some(_) => 0.5 * step_s * step_s,
+        None => 0.0,
     };
     std::array::from_fn(|j| {
         now.positions[j] + step_s * now.rates[j] + half_s2 * now.accelerations[j]
@@ -342,16 +331,11 @@ const STEP_ERROR_PER_PREDICTION: f64 = 4.0 / 9.0;
 /// Estimated error that a step makes in the positions of the loaded freedoms, mm; rotations on
 /// their lever.
 pub(super) fn step_error_mm(machine: &Machine, from: &MachineState, to: &MachineState) -> f64 {
-    let Kinematics {
-        positions,
-        rates,
-        accelerations,
-    } = &from.now;
     let step_s = to.before.map_or(0.0, |(_, step_s)| step_s);
+    let predicted = lasting(from, step_s);
     let surprise_mm = |freedom: &Freedom| {
         let j = *freedom as usize;
-        let predicted = positions[j] + step_s * (rates[j] + 0.5 * step_s * accelerations[j]);
-        (to.now.positions[j] - predicted).abs() * lever_mm(j)
+        (to.now.positions[j] - predicted[j]).abs() * lever_mm(j)
     };
     let loaded = |freedom: &&Freedom| matches!(machine.row(**freedom).drive, Drive::Loaded(_));
     let surprises = FREEDOMS.iter().filter(loaded).map(surprise_mm);
