@@ -5,8 +5,6 @@ use std::ops::Range;
 /// One instant of contact at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// Place in the cycle, %.
-    pub percent: f64,
     /// Mean pressure on the node's share of the surface, MPa.
     pub pressure_mpa: f64,
     /// Slip of the femur past the insert that this instant stands for, mm, in the surface's own
@@ -23,11 +21,12 @@ impl Moment {
     }
 }
 
-/// All instants at which one node was in contact, in the order of time, and their sums.
+/// All instants at which one node was in contact, and their sums.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeHistory<'a> {
-    /// The instants; none where the node was never touched.
-    pub moments: &'a [Moment],
+    records: &'a [(u32, Moment)],
+    /// Which of them are the node's, in the order of time.
+    own: &'a [u32],
     /// Highest mean pressure on the node's share in the cycle, MPa.
     pub peak_pressure_mpa: f64,
     /// Distance slid under pressure, S = sum of |ds|, mm.
@@ -52,31 +51,31 @@ impl Sums {
         self.sliding_distance_mm += distance_mm;
         self.pressure_slip_mpa_mm += moment.pressure_mpa * distance_mm;
     }
+}
 
-    fn with(self, moments: &[Moment]) -> NodeHistory<'_> {
-        NodeHistory {
-            moments,
-            peak_pressure_mpa: self.peak_pressure_mpa,
-            sliding_distance_mm: self.sliding_distance_mm,
-            pressure_slip_mpa_mm: self.pressure_slip_mpa_mm,
-        }
+impl<'a> NodeHistory<'a> {
+    /// The instants in the order of time; none where the node was never touched.
+    pub fn moments(&self) -> impl Iterator<Item = &'a Moment> {
+        let records = self.records;
+        self.own.iter().map(|&record| &records[record as usize].1)
     }
 }
 
 /// The contact history of all nodes of an articulating surface over one cycle.
 ///
-/// It is recorded instant by instant, and then sorted by node. A history takes some megabytes, and
-/// new memory costs more than to fill it: one that is cleared keeps its own.
+/// It is recorded instant by instant, and then sorted by node: moments stay where they are, and
+/// every node knows which are its own. A history takes a megabyte or more, and new memory costs more
+/// than to fill it: one that is cleared keeps its own.
 #[derive(Clone, Debug, Default)]
 pub struct CycleHistory {
     /// How many instants will likely be recorded.
     expected: usize,
     /// Nodes and their moments as they were recorded.
     records: Vec<(u32, Moment)>,
-    /// Moments of node i are `moments[first[i]..first[i + 1]]`.
+    /// Records of node i are those numbered `sorted[first[i]..first[i + 1]]`.
     first: Vec<usize>,
-    moments: Vec<Moment>,
-    /// One a node: made as the moments are sorted, when they are at hand.
+    sorted: Vec<u32>,
+    /// One a node: made as the records are sorted, when they are at hand.
     sums: Vec<Sums>,
 }
 
@@ -85,7 +84,7 @@ impl CycleHistory {
     pub fn clear(&mut self, expected: usize) {
         self.expected = expected;
         self.records.clear();
-        self.moments.clear();
+        self.sorted.clear();
         self.first.clear();
         self.sums.clear();
     }
@@ -107,31 +106,29 @@ impl CycleHistory {
         let Self {
             records,
             first,
-            moments,
+            sorted,
             sums,
             ..
         } = self;
         sums.clear();
         sums.resize(node_count, Sums::default());
-        let records = || instants.iter().flat_map(|span| &records[span.clone()]);
+        let records = || {
+            let counting = instants.iter().flat_map(Range::clone);
+            counting.map(|record| (record as u32, &records[record]))
+        };
         // Counted two places on: filling then moves every node's end on to where the next begins.
         first.clear();
         first.resize(node_count + 2, 0);
-        for (node, _) in records() {
+        for (_, (node, _)) in records() {
             first[*node as usize + 2] += 1;
         }
         for i in 0..=node_count {
             first[i + 1] += first[i];
         }
-        let nowhere = Moment {
-            percent: 0.0,
-            pressure_mpa: 0.0,
-            slip_mm: [0.0; 2],
-        };
-        moments.resize(first[node_count + 1], nowhere);
-        for (node, moment) in records() {
+        sorted.resize(first[node_count + 1], 0);
+        for (record, (node, moment)) in records() {
             let place = &mut first[*node as usize + 1];
-            moments[*place] = *moment;
+            sorted[*place] = record;
             *place += 1;
             sums[*node as usize].add(moment);
         }
@@ -145,16 +142,18 @@ impl CycleHistory {
 
     /// The history of node `node` of the articulating surface.
     pub fn node(&self, node: usize) -> NodeHistory<'_> {
-        self.sums[node].with(&self.moments[self.first[node]..self.first[node + 1]])
-    }
-}
-
-impl<'a> NodeHistory<'a> {
-    /// Of the moments of one node.
-    pub fn of(moments: &'a [Moment]) -> Self {
-        let mut sums = Sums::default();
-        moments.iter().for_each(|moment| sums.add(moment));
-        sums.with(moments)
+        let Sums {
+            peak_pressure_mpa,
+            sliding_distance_mm,
+            pressure_slip_mpa_mm,
+        } = self.sums[node];
+        NodeHistory {
+            records: &self.records,
+            own: &self.sorted[self.first[node]..self.first[node + 1]],
+            peak_pressure_mpa,
+            sliding_distance_mm,
+            pressure_slip_mpa_mm,
+        }
     }
 }
 
@@ -164,9 +163,8 @@ mod tests {
 
     #[test]
     fn records_are_sorted_by_node_and_keep_their_order_in_time() {
-        let moment = |percent| Moment {
-            percent,
-            pressure_mpa: percent,
+        let moment = |pressure_mpa| Moment {
+            pressure_mpa,
             slip_mm: [1.0, 0.0],
         };
         let mut history = CycleHistory::default();
@@ -175,8 +173,11 @@ mod tests {
         let early = history.record([(2, moment(1.0)), (0, moment(1.0))].into_iter());
         history.sort(3, &[early, late]);
         assert_eq!(history.node_count(), 3);
-        assert_eq!(history.node(2).moments, [moment(1.0), moment(3.0)]);
-        assert!(history.node(1).moments.is_empty() && !forgotten.is_empty());
+        let moments = |history: &CycleHistory, node| -> Vec<Moment> {
+            history.node(node).moments().copied().collect()
+        };
+        assert_eq!(moments(&history, 2), [moment(1.0), moment(3.0)]);
+        assert!(moments(&history, 1).is_empty() && !forgotten.is_empty());
         assert_eq!(history.node(2).peak_pressure_mpa, 3.0);
         assert_eq!(history.node(2).sliding_distance_mm, 2.0);
 
@@ -184,7 +185,7 @@ mod tests {
         let only = history.record([(1, moment(2.0))].into_iter());
         history.sort(2, &[only]);
         assert_eq!(history.node_count(), 2);
-        assert!(history.node(0).moments.is_empty());
-        assert_eq!(history.node(1).moments, [moment(2.0)]);
+        assert!(moments(&history, 0).is_empty());
+        assert_eq!(moments(&history, 1), [moment(2.0)]);
     }
 }

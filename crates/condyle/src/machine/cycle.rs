@@ -238,7 +238,6 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         let peak_pressure_mpa = self.contact.peak_pressure_mpa(&motion, &touched);
         let increment_s = self.increment_s();
         let moment = |node: &TouchedNode| Moment {
-            percent,
             pressure_mpa: node.pressure_mpa,
             slip_mm: node.sliding_mm_per_s.map(|speed| speed * increment_s),
         };

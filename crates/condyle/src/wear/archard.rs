@@ -24,7 +24,7 @@ impl WearLaw for Archard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Moment;
+    use crate::contact::{CycleHistory, Moment};
 
     #[test]
     fn verify_flat_pin_depth_is_kw_p_s() {
@@ -32,13 +32,15 @@ mod tests {
             wear_factor_mm3_per_nm: 2.64e-7,
         };
         let moment = |slip_mm| Moment {
-            percent: 0.0,
             pressure_mpa: 10.0,
             slip_mm,
         };
-        let moments = [moment([3.0, 4.0]), moment([-5.0, 0.0])];
+        let mut history = CycleHistory::default();
+        let slips = [[3.0, 4.0], [-5.0, 0.0]];
+        let instants = slips.map(|slip_mm| history.record([(0, moment(slip_mm))].into_iter()));
+        history.sort(1, &instants);
         // 10 MPa over 10 mm is 0.1 N m on each square millimetre.
-        let depth = law.depth_per_cycle_mm(&NodeHistory::of(&moments));
+        let depth = law.depth_per_cycle_mm(&history.node(0));
         assert!((depth - 2.64e-7 * 0.1).abs() < 1e-20);
     }
 }
