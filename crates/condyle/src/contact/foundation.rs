@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     Vec3, Vector,
-    geometry::{ArticulatingSurface, FacesAround, FemoralSurface, Insert},
+    geometry::{ArticulatingSurface, FemoralSurface, Insert},
     number::{LANES, Lanes, Number},
     products::{cross, dot, nowhere, scaled_plus, without_part_along},
 };
@@ -74,7 +74,7 @@ pub struct Foundation<'a> {
     shares: Vec<Shares4>,
     /// The surface's own directions at every four nodes.
     directions: Vec<[Vector<Lanes>; 2]>,
-    faces: &'a FacesAround,
+    insert: &'a Insert,
     /// What every four of them saw of the femur, and the number of the response at which they
     /// touched it last.
     seen: Vec<Seen>,
@@ -111,7 +111,7 @@ impl<'a> Foundation<'a> {
         insert: &'a Insert,
     ) -> Self {
         let surface = insert.surface();
-        let shares = Shares4::of(&surface, insert.thickness_mm());
+        let shares = Shares4::of(insert, &surface);
         let (nearness, mut seen) = match former {
             Some(former) => former.worn(&shares),
             None => (Nearness::new(&shares), Vec::new()),
@@ -126,7 +126,7 @@ impl<'a> Foundation<'a> {
                 .collect(),
             nearness,
             seen,
-            faces: insert.faces_around(),
+            insert,
             touched: vec![0; shares.len()],
             response: 0,
             shares,
@@ -306,8 +306,8 @@ impl ContactModel for Foundation<'_> {
             law: &self.settings.law,
             femur: self.femur,
             shares: &self.surface.shares,
-            fours: &self.shares,
-            faces: self.faces,
+            thickness_mm: self.insert.thickness_mm(),
+            faces: self.insert.faces_around(),
             pose: Pose4::new(&motion.pose),
         };
         search.highest_mpa(touched)

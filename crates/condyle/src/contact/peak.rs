@@ -1,6 +1,6 @@
 //! The highest pressure, which lies between the nodes.
 
-use super::{PressureLaw, TouchedNode, motion::Pose4, quadratic::Quadratic, shares::Shares4};
+use super::{PressureLaw, TouchedNode, motion::Pose4, quadratic::Quadratic};
 use crate::{
     Vector,
     geometry::{FacesAround, FemoralSurface, Share},
@@ -33,7 +33,7 @@ pub(super) struct PeakSearch<'a> {
     pub law: &'a PressureLaw,
     pub femur: &'a FemoralSurface,
     pub shares: &'a [Share],
-    pub fours: &'a [Shares4],
+    pub thickness_mm: &'a [f64],
     pub faces: &'a FacesAround,
     pub pose: Pose4,
 }
@@ -78,8 +78,7 @@ impl PeakSearch<'_> {
             let gaps_mm = self.gaps_mm(nodes);
             let look = |(lane, &node): (usize, &u32)| {
                 let gap_mm = gaps_mm.lane(lane);
-                let per_thickness = self.fours[node as usize / LANES].per_thickness;
-                let per_thickness = per_thickness.lane(node as usize % LANES);
+                let per_thickness = 1.0 / self.thickness_mm[node as usize];
                 Look {
                     node,
                     gap_mm,

@@ -2,7 +2,7 @@
 
 use crate::{
     Vec3, Vector,
-    geometry::{ArticulatingSurface, Share},
+    geometry::{ArticulatingSurface, Four, Insert, Share},
     number::{LANES, Lanes, Number},
 };
 
@@ -17,26 +17,23 @@ pub(super) struct Shares4 {
     pub spread_mm2: Lanes,
     /// One over the thickness below, 1/mm.
     pub per_thickness: Lanes,
-    /// Half of both edges of the largest: how far its corners can lie from its centre, mm.
+    /// How far corners lie from their centre at most, mm.
     pub half_mm: f64,
 }
 
 impl Shares4 {
-    /// All shares of a surface, four at a time in the order of the nodes.
-    pub fn of(surface: &ArticulatingSurface, thickness_mm: &[f64]) -> Vec<Self> {
-        let count = surface.shares.len() as u32;
-        let first = (0..count).step_by(LANES);
-        first
-            .map(|first| Self::new(first, surface, thickness_mm))
+    /// All shares of an insert's surface, in its fours.
+    pub fn of(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
+        let thickness_mm = insert.thickness_mm();
+        let fours = insert.fours().iter();
+        fours
+            .map(|four| Self::new(four, surface, thickness_mm))
             .collect()
     }
 
-    fn new(first: u32, surface: &ArticulatingSurface, thickness_mm: &[f64]) -> Self {
-        let shares = &surface.shares;
-        let last = shares.len() as u32 - 1;
-        let nodes: [u32; LANES] = std::array::from_fn(|lane| (first + lane as u32).min(last));
-        let share = |lane: usize| &shares[nodes[lane] as usize];
-        let is_surplus = |lane: usize| first + lane as u32 > last;
+    fn new(four: &Four, surface: &ArticulatingSurface, thickness_mm: &[f64]) -> Self {
+        let Four { nodes, count } = *four;
+        let share = |lane: usize| &surface.shares[nodes[lane] as usize];
         let vector = |of: fn(&Share) -> &Vec3| {
             Vector::from([0, 1, 2].map(|axis| Lanes::from_lanes(|lane| of(share(lane))[axis])))
         };
@@ -47,10 +44,10 @@ impl Shares4 {
             edge_a: vector(|share| &share.edge_a),
             edge_b: vector(|share| &share.edge_b),
             area_mm2: Lanes::from_lanes(|lane| {
-                if is_surplus(lane) {
-                    0.0
-                } else {
+                if lane < count {
                     share(lane).area_mm2
+                } else {
+                    0.0
                 }
             }),
             spread_mm2: Lanes::from_lanes(|lane| share(lane).spread_mm2),
@@ -60,7 +57,8 @@ impl Shares4 {
     }
 }
 
-/// Half of both edges of a share: how far its corners can lie from its centre.
+/// Half of a share's longer diagonal: how far its corners lie from its centre at most.
 fn half_mm(share: &Share) -> f64 {
-    (share.edge_a.norm() + share.edge_b.norm()) / 2.0
+    let diagonal = |to: Vec3| to.norm() / 2.0;
+    diagonal(share.edge_a + share.edge_b).max(diagonal(share.edge_a - share.edge_b))
 }

@@ -26,8 +26,7 @@ const CELLS_AROUND: usize = 1;
 /// there is not asked.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct BendMap {
-    /// Number of each cell in `bends`.
-    number: Vec<u32>,
+    /// Those of every cell, of most of them unknown: one look in memory finds them.
     bends: Vec<Bends>,
     radius_mm: f64,
 }
@@ -35,11 +34,17 @@ pub(super) struct BendMap {
 /// Extremes of the bending of a field, 1/mm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Bends {
-    sharpest: f64,
-    hollow: f64,
+    sharpest: f32,
+    hollow: f32,
 }
 
 impl Bends {
+    /// Where the surface is not near.
+    const UNKNOWN: Self = Self {
+        sharpest: -1.0,
+        hollow: 0.0,
+    };
+
     /// Of nothing.
     const NONE: Self = Self {
         sharpest: 0.0,
@@ -63,13 +68,15 @@ impl Bends {
         let spread2 = (square - trace * trace / 3.0).max(0.0);
         let lowest = trace / 3.0 - (spread2 * 2.0 / 3.0).sqrt();
         Self {
-            sharpest: square.sqrt(),
-            hollow: (-lowest).max(0.0) * slope,
+            sharpest: rounded_up(square.sqrt()),
+            hollow: rounded_up((-lowest).max(0.0) * slope),
         }
     }
 }
 
-const NOT_NEAR: u32 = u32::MAX;
+fn rounded_up(value: f64) -> f32 {
+    (value as f32).next_up()
+}
 
 impl BendMap {
     /// The map of a field whose cells lie around the nodes of its grid.
@@ -78,20 +85,18 @@ impl BendMap {
         let edge_mm = field.spacing_mm();
         let margin_mm = HALF_DIAGONAL * edge_mm;
         let near = NEAR_MM.start - margin_mm..NEAR_MM.end + margin_mm;
-        let mut number = vec![NOT_NEAR; field.node_count()];
-        let (mut cells, mut bends) = (Vec::new(), Vec::new());
+        let mut bends = vec![Bends::UNKNOWN; field.node_count()];
+        let mut cells = Vec::new();
         for (node, place) in field.inner_nodes() {
             if near.contains(&field.gap_mm(&place)) {
-                number[node] = bends.len() as u32;
                 cells.push(node);
-                bends.push(in_cell(field, &place, edge_mm));
+                bends[node] = in_cell(field, &place, edge_mm);
             }
         }
         for _ in 0..CELLS_AROUND {
-            bends = with_cells_beside(&bends, &cells, &number, [sx, sy, sz]);
+            bends = with_cells_beside(&bends, &cells, [sx, sy, sz]);
         }
         Self {
-            number,
             bends,
             radius_mm: CELLS_AROUND as f64 * edge_mm,
         }
@@ -100,36 +105,34 @@ impl BendMap {
     /// Bounds around any point of the cell around a grid node.
     #[inline]
     pub fn around(&self, node: usize) -> Surroundings {
-        let bends = self.bends.get(self.number[node] as usize);
-        bends.map_or(Surroundings::UNKNOWN, |bends| Surroundings {
+        let Bends { sharpest, hollow } = self.bends[node];
+        if sharpest < 0.0 {
+            return Surroundings::UNKNOWN;
+        }
+        Surroundings {
             radius_mm: self.radius_mm,
-            sharpest_per_mm: bends.sharpest,
-            hollow_per_mm: bends.hollow,
+            sharpest_per_mm: sharpest.into(),
+            hollow_per_mm: hollow.into(),
             jump_per_mm: 0.0,
-        })
+        }
     }
 }
 
 /// Every cell's bends joined with those of the 26 cells around it.
-fn with_cells_beside(
-    bends: &[Bends],
-    cells: &[usize],
-    number: &[u32],
-    [sx, sy, sz]: [usize; 3],
-) -> Vec<Bends> {
-    let around = |&cell: &usize| {
+fn with_cells_beside(bends: &[Bends], cells: &[usize], [sx, sy, sz]: [usize; 3]) -> Vec<Bends> {
+    let mut joined = bends.to_vec();
+    for &cell in cells {
         let mut all = Bends::NONE;
         for z in [cell - sz, cell, cell + sz] {
             for y in [z - sy, z, z + sy] {
                 for x in [y - sx, y, y + sx] {
-                    let other = number.get(x).and_then(|&number| bends.get(number as usize));
-                    all = other.map_or(all, |other| all.joined(*other));
+                    all = all.joined(bends[x]);
                 }
             }
         }
-        all
-    };
-    cells.iter().map(around).collect()
+        joined[cell] = all;
+    }
+    joined
 }
 
 /// Extremes at eight points of a cell, those left out where nothing touches.
@@ -182,8 +185,8 @@ mod tests {
             let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
             let values = SymmetricEigen::new(matrix).eigenvalues;
             let bends = Bends::at(1.0, [xx, yy, zz, xy, xz, yz]);
-            assert!(values.amax() <= bends.sharpest + 1e-15);
-            assert!(values.min() >= -bends.hollow - 1e-15);
+            assert!(values.amax() <= bends.sharpest.into());
+            assert!(values.min() >= -f64::from(bends.hollow));
         }
         // Two equal curvatures: the bound is the third, along the normal.
         assert!(Bends::at(1.0, [0.05, 0.0, 0.05, 0.0, 0.0, 0.0]).hollow < 1e-9);

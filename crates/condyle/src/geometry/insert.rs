@@ -3,7 +3,7 @@
 use condyle_fem::{HexMesh, InteriorFollower, volume_below};
 use thiserror::Error;
 
-use super::{ArticulatingSurface, FacesAround, thickness::thickness_at_nodes};
+use super::{ArticulatingSurface, FacesAround, Four, fours::fours, thickness::thickness_at_nodes};
 use crate::Vec3;
 
 /// Why a mesh makes no insert.
@@ -50,6 +50,7 @@ pub struct Insert {
     /// Faces of the articulating surface, in numbers of surface nodes.
     faces: Vec<[u32; 4]>,
     faces_around: FacesAround,
+    fours: Vec<Four>,
     unworn_thickness_mm: Vec<f64>,
     /// Depth worn so far: the thickness is computed from it anew, so that an insert worn step by
     /// step and one restored have the same to the last bit.
@@ -95,6 +96,7 @@ impl Insert {
             boundary,
             mesh,
             nodes,
+            fours: fours(&faces, &faces_around),
             faces,
             faces_around,
             unworn_thickness_mm: thickness_mm.clone(),
@@ -131,6 +133,11 @@ impl Insert {
     /// The faces of the articulating surface around each of its nodes.
     pub fn faces_around(&self) -> &FacesAround {
         &self.faces_around
+    }
+
+    /// The surface nodes, four by four: each once, those of a four near one another.
+    pub fn fours(&self) -> &[Four] {
+        &self.fours
     }
 
     /// Thickness of the insert below each surface node along its normal, mm.

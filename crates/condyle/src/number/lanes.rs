@@ -36,6 +36,14 @@ impl Lanes {
         self.0.to_array()
     }
 
+    /// The columns of a matrix of four rows.
+    #[inline(always)]
+    pub fn transposed(rows: [Self; LANES]) -> [Self; LANES] {
+        let [a, b, c, d] = rows;
+        let [a, b, c, d] = f64x4::transpose([a.0, b.0, c.0, d.0]);
+        [Self(a), Self(b), Self(c), Self(d)]
+    }
+
     /// The sum over the lanes, always in the same order.
     #[inline]
     pub fn sum(self) -> f64 {

@@ -44,8 +44,9 @@ pub trait Number:
     /// The first three columns of a matrix that has a row of four numbers for every lane.
     #[inline(always)]
     fn columns(rows: &[Lanes; LANES]) -> [Self; 3] {
-        let column = |i: usize| Self::from_lanes(|lane| rows[lane].lane(i));
-        [column(0), column(1), column(2)]
+        let [a, b, c, _] = Lanes::transposed(*rows);
+        let lanes = |column: Lanes| Self::from_lanes(|lane| column.lane(lane));
+        [lanes(a), lanes(b), lanes(c)]
     }
 
     /// Square root.

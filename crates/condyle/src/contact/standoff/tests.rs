@@ -135,7 +135,7 @@ fn searched(femur: &FemoralSurface, shares: &[Shares4], pose: &Pose) -> Standoff
 /// two of three steps, and holds what is not due then against a search. Gives how many fours were
 /// not due.
 fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
-    let shares = |insert: &Insert| Shares4::of(&insert.surface(), insert.thickness_mm());
+    let shares = |insert: &Insert| Shares4::of(insert, &insert.surface());
     let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
     let mut numbers = Numbers(17);
     let mut sure = 0;

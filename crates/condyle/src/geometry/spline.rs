@@ -1,0 +1,148 @@
+//! A quadratic B-spline of three variables at a point, from the 27 coefficients that reach it.
+
+use crate::number::{LANES, Lanes, Number};
+
+/// Values and first derivatives of the three B-splines that reach a point along one axis.
+#[derive(Clone, Copy)]
+struct Basis<T> {
+    value: [T; 3],
+    slope: [T; 3],
+}
+
+impl<T: Number> Basis<T> {
+    #[inline(always)]
+    fn at(t: T) -> Self {
+        let half = T::splat(0.5);
+        let (left, right) = (half - t, half + t);
+        Self {
+            value: [
+                half * left * left,
+                T::splat(0.75) - t * t,
+                half * right * right,
+            ],
+            slope: [-left, -(t + t), right],
+        }
+    }
+}
+
+/// The B-splines that reach a point in every lane.
+pub(super) struct Bases<T> {
+    x: Basis<T>,
+    y: Basis<[f64; LANES]>,
+    z: Basis<[f64; LANES]>,
+}
+
+/// A spline and its derivatives by the grid's places.
+pub(super) struct Derivatives<T> {
+    pub value: T,
+    pub gradient: [T; 3],
+    /// Second ones: xx, yy, zz, xy, xz, yz.
+    pub bend: [T; 6],
+}
+
+impl<T: Number> Bases<T> {
+    /// Each of `places` in \[-1/2, 1/2\]: distance from the middle node, in spacings.
+    #[inline(always)]
+    pub fn at([x, y, z]: [T; 3]) -> Self {
+        let (y, z) = (Basis::at(y), Basis::at(z));
+        Self {
+            x: Basis::at(x),
+            y: laid_out(&y),
+            z: laid_out(&z),
+        }
+    }
+
+    /// The spline where `rows` gives the coefficients around every lane's point: of layer k the row
+    /// j along x, and one number more.
+    ///
+    /// The tensor product is contracted an axis at a time: 165 multiplications instead of 810.
+    #[inline(always)]
+    pub fn spline<R: Fn(usize, usize) -> Lanes>(
+        &self,
+        rows: impl Fn(usize) -> R,
+    ) -> Derivatives<T> {
+        let none = [Lanes::splat(0.0); LANES];
+        let (mut f, mut fz, mut fzz) = (none, none, none);
+        let (mut fy, mut fyz, mut fyy) = (none, none, none);
+        for lane in 0..T::COUNT {
+            let across = self.across_x(lane, rows(lane));
+            f[lane] = across[0];
+            fz[lane] = across[1];
+            fzz[lane] = across[2];
+            fy[lane] = across[3];
+            fyz[lane] = across[4];
+            fyy[lane] = across[5];
+        }
+        let (f, fz, fzz) = (T::columns(&f), T::columns(&fz), T::columns(&fzz));
+        let (fy, fyz, fyy) = (T::columns(&fy), T::columns(&fyz), T::columns(&fyy));
+        let Basis { value, slope } = &self.x;
+        Derivatives {
+            value: sum(value, &f),
+            gradient: [sum(slope, &f), sum(value, &fy), sum(value, &fz)],
+            bend: [
+                bent(&f),
+                sum(value, &fyy),
+                sum(value, &fzz),
+                sum(slope, &fy),
+                sum(slope, &fz),
+                sum(value, &fyz),
+            ],
+        }
+    }
+
+    /// The 27 coefficients around one lane's point contracted along y and z, side by side along x:
+    /// their values, and derivatives by z, zz, y, yz and yy.
+    #[inline(always)]
+    fn across_x(&self, lane: usize, row: impl Fn(usize, usize) -> Lanes) -> [Lanes; 6] {
+        let weights = |of: &[[f64; LANES]; 3]| {
+            let weight = |i: usize| Lanes::splat(of[i][lane]);
+            [weight(0), weight(1), weight(2)]
+        };
+        let (y, y_slope) = (weights(&self.y.value), weights(&self.y.slope));
+        let (z, z_slope) = (weights(&self.z.value), weights(&self.z.slope));
+        let layer = |k: usize| {
+            let rows = [row(0, k), row(1, k), row(2, k)];
+            (sum(&y, &rows), sum(&y_slope, &rows), bent(&rows))
+        };
+        let (low, middle, high) = (layer(0), layer(1), layer(2));
+        let f = [low.0, middle.0, high.0];
+        let fy = [low.1, middle.1, high.1];
+        let fyy = [low.2, middle.2, high.2];
+        [
+            sum(&z, &f),
+            sum(&z_slope, &f),
+            bent(&f),
+            sum(&z, &fy),
+            sum(&z_slope, &fy),
+            sum(&z, &fyy),
+        ]
+    }
+}
+
+/// A basis as it lies in memory, from where the number of any lane is read four times at once.
+#[inline(always)]
+fn laid_out<T: Number>(basis: &Basis<T>) -> Basis<[f64; LANES]> {
+    let lanes = |number: T| {
+        let mut lanes = [0.0; LANES];
+        for (lane, value) in lanes.iter_mut().enumerate().take(T::COUNT) {
+            *value = number.lane(lane);
+        }
+        lanes
+    };
+    Basis {
+        value: basis.value.map(lanes),
+        slope: basis.slope.map(lanes),
+    }
+}
+
+#[inline(always)]
+fn sum<T: Number>(weights: &[T; 3], of: &[T; 3]) -> T {
+    let [a, b, c] = weights;
+    a.times_plus(of[0], b.times_plus(of[1], *c * of[2]))
+}
+
+/// The second difference: second derivatives of the three B-splines are 1, -2, 1 everywhere.
+#[inline(always)]
+fn bent<T: Number>(of: &[T; 3]) -> T {
+    of[0] - (of[1] + of[1]) + of[2]
+}
