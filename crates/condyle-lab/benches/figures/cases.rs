@@ -45,11 +45,16 @@ pub fn built(case: &Case) -> WearTest {
 
 /// All updates of a test, from its bodies.
 pub fn marched(test: WearTest) -> MarchState {
+    updated(test, usize::MAX).state().clone()
+}
+
+/// Its first `updates`, or all if there are fewer.
+pub fn updated(test: WearTest, updates: usize) -> March {
     let mut march = March::start(test).expect("a shipped case settles");
-    while !march.is_done() {
+    while !march.is_done() && march.state().updates.len() < updates {
         march
             .update(&mut |_| ControlFlow::Continue(()))
             .expect("a shipped case is solved");
     }
-    march.state().clone()
+    march
 }

@@ -8,7 +8,7 @@ use condyle_io::case::Case;
 
 use crate::{
     cases::{self, GENERIC},
-    gait::{Asked, Gait, Updates},
+    gait::{Asked, Gait, SECOND, Updates},
 };
 
 /// What is counted: its name in the budgets, and its function here.
@@ -21,12 +21,11 @@ pub const COUNTED: [(&str, &str); 3] = [
 /// Does the work on a case, and prints how many of each thing it did.
 pub fn run(name: &str) {
     let case = cases::read(name).expect("looked for by who asks");
-    let updates = Updates::of(&case, |_| ());
-    let (asked_first, asked) = (updates.first().asked(), updates.second().asked());
-    counted_contact_evaluations(&mut updates.second_contact(&asked_first), &asked);
+    let updates = Updates::of(&case, SECOND + 1, |_| ());
+    let asked = updates.asked(SECOND);
+    counted_contact_evaluations(&mut updates.contact(SECOND), asked);
     println!("contact_evaluation {}", asked.len());
-    let contact = updates.second_contact(&asked_first);
-    let increments = counted_increments(&updates.second(), contact);
+    let increments = counted_increments(&updates.gait(SECOND), updates.contact(SECOND));
     println!("increment {increments}");
     // The femur's preparation would take callgrind a minute, and is no part of the march.
     if name == GENERIC {

@@ -121,43 +121,55 @@ impl<'a> Gait<'a> {
     }
 }
 
-/// The first update of a test and the second: ten of eleven are like the second.
+/// The first updates of a test.
 pub struct Updates {
-    unworn: March,
-    worn: March,
+    /// About to solve each of them.
+    marches: Vec<March>,
+    /// What each of them asks for.
+    asked: Vec<Vec<Asked>>,
 }
 
+/// The update whose evaluations are timed and counted: the first that goes on from another.
+pub const SECOND: usize = 1;
+
 impl Updates {
-    /// Those of a case's test, changed.
-    pub fn of(case: &Case, change: impl Fn(&mut WearTest)) -> Self {
-        let start = || {
+    /// `count` of those of a case's test, changed.
+    pub fn of(case: &Case, count: usize, change: impl Fn(&mut WearTest)) -> Self {
+        let march = |updates| {
             let mut test = cases::built(case);
             change(&mut test);
-            March::start(test).expect("a shipped case settles")
+            cases::updated(test, updates)
         };
-        let (unworn, mut worn) = (start(), start());
-        let watch = &mut |_| ControlFlow::Continue(());
-        worn.update(watch).expect("a shipped case is solved");
-        Self { unworn, worn }
-    }
-
-    pub fn first(&self) -> Gait<'_> {
-        Gait::of(&self.unworn)
-    }
-
-    pub fn second(&self) -> Gait<'_> {
-        Gait::of(&self.worn)
-    }
-
-    /// The contact of the second, after the first has asked for all this.
-    pub fn second_contact(&self, asked_first: &[Asked]) -> Foundation<'_> {
-        let mut contact = self.first().contact();
-        for asked in asked_first {
-            contact.begin_increment(asked.increment);
-            contact.respond(&asked.motion);
+        let marches: Vec<March> = (0..count).map(march).collect();
+        let asked = marches.iter().map(|march| Gait::of(march).asked());
+        Self {
+            asked: asked.collect(),
+            marches,
         }
-        let (_, former) = contact.into_parts();
-        self.second().contact_after(Some(former))
+    }
+
+    /// The update number `update`, from 0.
+    pub fn gait(&self, update: usize) -> Gait<'_> {
+        Gait::of(&self.marches[update])
+    }
+
+    /// What it asks for.
+    pub fn asked(&self, update: usize) -> &[Asked] {
+        &self.asked[update]
+    }
+
+    /// Its contact, after all those before have asked for theirs.
+    pub fn contact(&self, update: usize) -> Foundation<'_> {
+        let mut former = None;
+        for (before, asked) in self.asked[..update].iter().enumerate() {
+            let mut contact = self.gait(before).contact_after(former);
+            for asked in asked {
+                contact.begin_increment(asked.increment);
+                contact.respond(&asked.motion);
+            }
+            former = Some(contact.into_parts().1);
+        }
+        self.gait(update).contact_after(former)
     }
 }
 

@@ -18,7 +18,7 @@ use condyle_io::{cache::Cache, case::Case};
 use crate::{
     budgets,
     cases::{self, GENERIC, REAL, built, marched},
-    gait::{Asked, Gait, Updates, press},
+    gait::{Asked, Gait, SECOND, Updates, press},
 };
 
 /// Of whole tests.
@@ -27,6 +27,9 @@ const ROUNDS: usize = 9;
 const EVALUATION_ROUNDS: usize = 25;
 /// Axial force of the figure for one contact evaluation, N.
 const AXIAL_FORCE_N: f64 = 2600.0;
+
+/// The last of ten updates, from 0.
+const LAST: usize = 9;
 
 /// Prints the table of figures; the whole command's only where its path is given.
 pub fn print(condyle: Option<&Path>) {
@@ -93,8 +96,8 @@ fn print_real(real: &Case, generic: &Case) {
         kept_s(&femur_only),
         "s",
     );
-    let under_2600_n = Updates::of(real, |test| press(test, AXIAL_FORCE_N));
-    let evaluations = Evaluations::of_second(&under_2600_n);
+    let under_2600_n = Updates::of(real, SECOND + 1, |test| press(test, AXIAL_FORCE_N));
+    let evaluations = Evaluations::of(&under_2600_n, SECOND);
     row(
         "one contact evaluation of it at 2600 N, as the march asks",
         15.0,
@@ -110,13 +113,20 @@ fn print_real(real: &Case, generic: &Case) {
     row(
         "the same in the very first cycle, of which nothing is known",
         15.0,
-        Evaluations::of_first(&under_2600_n).median_of_firsts_us(),
+        Evaluations::of(&under_2600_n, 0).median_of_firsts_us(),
         "us",
     );
+    let in_gait = Updates::of(real, LAST + 1, |_| ());
     row(
         "one under the gait's own force, as the march asks",
         15.0,
-        Evaluations::of_second(&Updates::of(real, |_| ())).median_us(),
+        Evaluations::of(&in_gait, SECOND).median_us(),
+        "us",
+    );
+    row(
+        "the same in the last update, the insert worn",
+        15.0,
+        Evaluations::of(&in_gait, LAST).median_us(),
         "us",
     );
 }
@@ -138,8 +148,8 @@ fn kept_s(case: &Case) -> f64 {
 /// How much work the march of a case does, from which its time comes.
 fn print_work(name: &str, case: &Case) {
     let state = solved(case);
-    let updates = Updates::of(case, |_| ());
-    let second = updates.second();
+    let updates = Updates::of(case, SECOND + 1, |_| ());
+    let second = updates.gait(SECOND);
     let cycles_solved = state.updates.iter().map(|update| update.cycles_solved);
     let cycles: f64 = cycles_solved.sum();
     let per_cycle = |work: u64| work as f64 / cycles;
@@ -154,7 +164,7 @@ fn print_work(name: &str, case: &Case) {
         format!("{nodes}"),
         format!("{:.0}", mean_pressing(&second)),
         budget("contact_evaluation").map_or_else(String::new, u64::to_string),
-        format!("{:.1} us", Evaluations::of_second(&updates).mean_us()),
+        format!("{:.1} us", Evaluations::of(&updates, SECOND).mean_us()),
     ];
     println!("| {} |", cells.join(" | "));
 }
@@ -231,23 +241,12 @@ fn beside_another(generic: &Case) -> f64 {
 struct Evaluations(Vec<(Duration, bool)>);
 
 impl Evaluations {
-    /// Of the first update's cycle.
-    fn of_first(updates: &Updates) -> Self {
-        let first = updates.first();
-        Self::timed(&first.asked(), || first.contact())
-    }
-
-    /// Of the second update's cycle.
-    fn of_second(updates: &Updates) -> Self {
-        let asked_first = updates.first().asked();
-        let contact = || updates.second_contact(&asked_first);
-        Self::timed(&updates.second().asked(), contact)
-    }
-
-    fn timed<'a>(asked: &[Asked], contact: impl Fn() -> Foundation<'a>) -> Self {
+    /// Of an update's cycle.
+    fn of(updates: &Updates, update: usize) -> Self {
+        let asked = updates.asked(update);
         let mut least = vec![Duration::MAX; asked.len()];
         for _ in 0..EVALUATION_ROUNDS {
-            let mut contact = contact();
+            let mut contact = updates.contact(update);
             for (asked, least) in asked.iter().zip(&mut least) {
                 *least = (*least).min(evaluation_time(&mut contact, asked));
             }

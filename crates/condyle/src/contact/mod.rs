@@ -76,8 +76,9 @@ pub trait ContactModel {
     /// How many surface nodes there are.
     fn node_count(&self) -> usize;
 
-    /// The nodes in contact at a motion, ascending: that of the last [`ContactModel::respond`], or one
-    /// so near that loads and speeds may be taken along to first order.
+    /// The nodes in contact at a motion, each once and always in the same order: that of the last
+    /// [`ContactModel::respond`], or one so near that loads and speeds may be taken along to first
+    /// order.
     fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode>;
 
     /// Highest pressure at a motion, MPa, at nodes and between them, where `touched` are the nodes in
