@@ -15,11 +15,14 @@ use crate::{Vector, number::Lanes};
 /// Four shares that were seen apart need no look before the femur has come near enough. What is left
 /// is exactly what a search over all nodes would find. A cycle after, and with a little wear, the
 /// femur is within tenths of a millimetre of where it was, and so every increment goes on from what
-/// was known there: hardly any share is looked at but those that touch.
+/// was known there; where that is not enough, from what the increment before has just found. Hardly
+/// any share is looked at but those that touch.
 pub(super) struct Nearness {
     /// What is known at the increments come to so far, but for the one that it is now.
     standoffs: Vec<Option<Standoff>>,
     increment: usize,
+    /// The increment before, until the first find at this one.
+    beside: Option<usize>,
     now: Standoff,
     ground: Vec<Ground>,
     last_wear: LastWear,
@@ -33,6 +36,7 @@ impl Nearness {
         Self {
             standoffs: Vec::new(),
             increment: 0,
+            beside: None,
             now: Standoff::new(shares.len()),
             ground: Ground::of(shares),
             last_wear: LastWear {
@@ -53,7 +57,9 @@ impl Nearness {
         if most >= self.standoffs.len() {
             self.standoffs.resize(most + 1, None);
         }
-        let next = self.kept(increment).unwrap_or_else(|| self.now.clone());
+        let kept = self.kept(increment);
+        self.beside = kept.is_some().then_some(self.increment);
+        let next = kept.unwrap_or_else(|| self.now.clone());
         let left = std::mem::replace(&mut self.now, next);
         self.standoffs[self.increment] = Some(left);
         self.increment = increment;
@@ -77,8 +83,10 @@ impl Nearness {
         pose: &Pose4,
         due: &mut Vec<(u32, Vector<Lanes>)>,
     ) {
+        let beside = self.beside.take();
+        let beside = beside.and_then(|beside| self.standoffs[beside].as_ref());
         self.now
-            .follow(to, &self.ground, &self.last_wear, &mut self.due);
+            .follow(to, &self.ground, &self.last_wear, beside, &mut self.due);
         due.clear();
         for &four in &self.due {
             due.push((four, pose.to_femur(&shares[four as usize].centre)));

@@ -97,6 +97,20 @@ impl Clearances {
         self.radius_mm = radius_mm.to_array();
         clear_mm.not_above_zero() | radius_mm.not_above_zero()
     }
+
+    /// Takes over those of others that have a bit.
+    fn take_over(&mut self, mut which: u32, others: &Self) {
+        while which != 0 {
+            let i = which.trailing_zeros() as usize;
+            self.clear_mm[i] = others.clear_mm[i];
+            for axis in 0..3 {
+                self.slope[axis][i] = others.slope[axis][i];
+            }
+            self.loss[i] = others.loss[i];
+            self.radius_mm[i] = others.radius_mm[i];
+            which &= which - 1;
+        }
+    }
 }
 
 impl Standoff {
@@ -117,7 +131,20 @@ impl Standoff {
 
     /// The femur moves on, and the shares have worn to `ground` if they had not yet; lists the fours
     /// that may touch now, ascending.
-    pub fn follow(&mut self, to: &Pose, ground: &[Ground], last: &LastWear, due: &mut Vec<u32>) {
+    ///
+    /// Fours that `beside` knows better, from where the femur was then, are taken over from it, if
+    /// it is of the shares as they have worn.
+    pub fn follow(
+        &mut self,
+        to: &Pose,
+        ground: &[Ground],
+        last: &LastWear,
+        beside: Option<&Self>,
+        due: &mut Vec<u32>,
+    ) {
+        let beside = beside.filter(|beside| beside.worn == last.number);
+        let beside =
+            beside.and_then(|beside| Some((beside, Step::between(beside.at.as_ref()?, to))));
         let from = self.at.replace(*to).unwrap_or(*to);
         let step = Step::between(&from, to);
         let [x, y, z] = columns(&from.rotation);
@@ -137,6 +164,15 @@ impl Standoff {
                 lost_mm += *by_wear_mm;
             }
             let mut left = clearances.carry(&motion, lost_mm);
+            if let Some((beside, step)) = &beside
+                && left != 0
+            {
+                let mut beside = beside.clearances[number].clone();
+                let lost_mm = ground.levers_mm.times_plus(step.turn_rad, rounded_off_mm);
+                let apart = left & !beside.carry(&step.of(&ground.middles), lost_mm);
+                clearances.take_over(apart, &beside);
+                left &= !apart;
+            }
             while left != 0 {
                 due.push((number * SINGLES) as u32 + left.trailing_zeros());
                 left &= left - 1;

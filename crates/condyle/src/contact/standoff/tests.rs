@@ -117,7 +117,7 @@ fn unworn() -> LastWear {
 fn searched(femur: &FemoralSurface, shares: &[Shares4], pose: &Pose) -> Standoff {
     let mut standoff = Standoff::new(shares.len());
     let mut due = Vec::new();
-    standoff.follow(pose, &Ground::of(shares), &unworn(), &mut due);
+    standoff.follow(pose, &Ground::of(shares), &unworn(), None, &mut due);
     assert_eq!(due.len(), shares.len());
     for (four, shares) in (0..).zip(shares) {
         let (seen, reach_mm, is_apart) = look(femur, shares, pose);
@@ -132,13 +132,13 @@ fn searched(femur: &FemoralSurface, shares: &[Shares4], pose: &Pose) -> Standoff
 }
 
 /// Steps the femur at random from about `height_mm` over the insert, which wears or is restored at
-/// two of three steps, and holds what is not due then against a search. Gives how many fours were
-/// not due.
+/// two of three steps, and holds what is not due then against a search, with the help of what is
+/// known near by. Gives how many fours were not due.
 fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
     let shares = |insert: &Insert| Shares4::of(insert, &insert.surface());
     let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
     let mut numbers = Numbers(17);
-    let mut sure = 0;
+    let (mut sure, mut taken_over) = (0, 0);
     for step in 0..150 {
         let (from, to) = numbers.step(height_mm);
         let (before, after) = match step % 3 {
@@ -157,8 +157,18 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
             rotation: from.rotation,
             ..to
         };
-        standoff.follow(&half, &Ground::of(after), &wear, &mut due);
-        standoff.follow(&to, &Ground::of(after), &wear, &mut due);
+        standoff.follow(&half, &Ground::of(after), &wear, None, &mut due);
+        let mut alone = standoff.clone();
+        alone.follow(&to, &Ground::of(after), &wear, None, &mut due);
+        let due_alone = due.len();
+        let beside = Pose {
+            translation: to.translation + numbers.vector(0.2),
+            ..to
+        };
+        let mut beside = searched(femur, after, &beside);
+        beside.worn = wear.number;
+        standoff.follow(&to, &Ground::of(after), &wear, Some(&beside), &mut due);
+        taken_over += due_alone - due.len();
         for (number, four) in (0..).zip(after) {
             if !due.contains(&number) {
                 sure += 1;
@@ -168,7 +178,8 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
             }
         }
     }
-    println!("{sure} of {}", 150 * unworn.len());
+    println!("{sure} of {}, {taken_over} taken over", 150 * unworn.len());
+    assert!(taken_over > LANES);
     sure
 }
 
