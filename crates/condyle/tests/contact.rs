@@ -424,6 +424,24 @@ fn what_is_known_of_the_cycle_before_changes_no_answer() {
 }
 
 #[test]
+fn what_was_seen_before_the_wear_is_not_moved_along() {
+    let settings = linear();
+    let mut insert = default_insert();
+    let femur = mesh_femur(&insert);
+    let place = |shift_mm: f64| at(Vec3::new(shift_mm, 23.8, 23.0));
+    let mut contact = Foundation::new(&settings, &femur, &insert);
+    contact.respond(&place(0.0));
+    let (surface, known) = contact.into_parts();
+    insert.wear_down(&surface, &vec![0.001; surface.positions.len()]);
+    let near = place(0.01);
+    let mut knowing = Foundation::after(Some(known), &settings, &femur, &insert);
+    let mut fresh = Foundation::new(&settings, &femur, &insert);
+    let found = answer(&mut knowing, &near);
+    assert!(found.2.len() > 20);
+    assert_eq!(found, answer(&mut fresh, &near));
+}
+
+#[test]
 fn what_is_known_of_another_insert_is_forgotten() {
     let (settings, femur) = (linear(), FemoralSurface::sphere(24.0));
     let (insert, flat) = (

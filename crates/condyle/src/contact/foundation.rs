@@ -79,7 +79,7 @@ pub struct Foundation<'a> {
     /// touched it last.
     seen: Vec<Seen>,
     touched: Vec<u64>,
-    /// The number of the last response, from 1.
+    /// The number of the last response: the first is 2, and none has touched at the one before it.
     response: u64,
     nearness: Nearness,
     /// The fours that may touch, and the places of their centres in the femoral frame.
@@ -128,7 +128,7 @@ impl<'a> Foundation<'a> {
             seen,
             insert,
             touched: vec![0; shares.len()],
-            response: 0,
+            response: 1,
             shares,
             surface,
             due: Vec::new(),
