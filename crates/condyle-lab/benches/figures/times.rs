@@ -18,7 +18,7 @@ use condyle_io::{cache::Cache, case::Case};
 use crate::{
     budgets,
     cases::{self, GENERIC, REAL, built, marched},
-    gait::{Asked, Gait, SECOND, Updates, press},
+    gait::{Asked, SECOND, Updates, press},
 };
 
 /// Of whole tests.
@@ -162,7 +162,7 @@ fn print_work(name: &str, case: &Case) {
         format!("{:.0}", per_cycle(state.effort.newton_iterations)),
         format!("{:.0}", per_cycle(state.effort.contact_evaluations)),
         format!("{nodes}"),
-        format!("{:.0}", mean_pressing(&second)),
+        format!("{:.0}", mean_pressing(&updates)),
         budget("contact_evaluation").map_or_else(String::new, u64::to_string),
         format!("{:.1} us", Evaluations::of(&updates, SECOND).mean_us()),
     ];
@@ -176,8 +176,8 @@ of them press, mean | instructions an evaluation | time of one, mean |
 | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |";
 
 /// Nodes that press, averaged over the evaluations of a cycle.
-fn mean_pressing(gait: &Gait<'_>) -> f64 {
-    let (asked, mut contact) = (gait.asked(), gait.contact());
+fn mean_pressing(updates: &Updates) -> f64 {
+    let (asked, mut contact) = (updates.asked(SECOND), updates.contact(SECOND));
     let pressing = |asked: &Asked| {
         contact.respond(&asked.motion);
         contact.touched(&asked.motion).len()

@@ -48,6 +48,24 @@ struct Step {
     turn_rad: Singles,
 }
 
+/// What is known where the femur was at another time, and the way from there.
+struct Neighbour<'a> {
+    clearances: &'a [Clearances],
+    step: Step,
+}
+
+impl Neighbour<'_> {
+    /// Gives eight fours what it knows of those that are `due`; which of them still are.
+    #[inline(always)]
+    fn help(&self, eight: usize, ground: &Ground, clearances: &mut Clearances, due: u32) -> u32 {
+        let mut known = self.clearances[eight].clone();
+        let motion = self.step.of(&ground.middles);
+        let apart = due & !known.carry(&motion, self.step.lost_mm(ground));
+        clearances.take_over(apart, &known);
+        due & !apart
+    }
+}
+
 impl Step {
     fn between(from: &Pose, to: &Pose) -> Self {
         let turn: Mat3 = (to.rotation - from.rotation).transpose();
@@ -57,6 +75,13 @@ impl Step {
             shift: shift.map(Singles::splat),
             turn_rad: Singles::splat(turn.norm()),
         }
+    }
+
+    /// What eight fours may lose beside their motion, mm.
+    #[inline(always)]
+    fn lost_mm(&self, ground: &Ground) -> Singles {
+        let rounded_off_mm = Singles::splat(ROUNDED_OFF_MM);
+        ground.levers_mm.times_plus(self.turn_rad, rounded_off_mm)
     }
 
     #[inline(always)]
@@ -142,18 +167,15 @@ impl Standoff {
         beside: Option<&Self>,
         due: &mut Vec<u32>,
     ) {
-        let beside = beside.filter(|beside| beside.worn == last.number);
-        let beside =
-            beside.and_then(|beside| Some((beside, Step::between(beside.at.as_ref()?, to))));
+        let beside = beside.and_then(|beside| beside.neighbour(to, last));
         let from = self.at.replace(*to).unwrap_or(*to);
         let step = Step::between(&from, to);
         let [x, y, z] = columns(&from.rotation);
-        let rounded_off_mm = Singles::splat(ROUNDED_OFF_MM);
         let wear = (self.worn < last.number).then_some(&last.eights);
         self.worn = last.number;
         due.clear();
         for (number, (clearances, ground)) in self.clearances.iter_mut().zip(ground).enumerate() {
-            let mut lost_mm = ground.levers_mm.times_plus(step.turn_rad, rounded_off_mm);
+            let mut lost_mm = step.lost_mm(ground);
             let mut motion = step.of(&ground.middles);
             if let Some(Wear {
                 moved,
@@ -164,14 +186,10 @@ impl Standoff {
                 lost_mm += *by_wear_mm;
             }
             let mut left = clearances.carry(&motion, lost_mm);
-            if let Some((beside, step)) = &beside
+            if let Some(beside) = &beside
                 && left != 0
             {
-                let mut beside = beside.clearances[number].clone();
-                let lost_mm = ground.levers_mm.times_plus(step.turn_rad, rounded_off_mm);
-                let apart = left & !beside.carry(&step.of(&ground.middles), lost_mm);
-                clearances.take_over(apart, &beside);
-                left &= !apart;
+                left = beside.help(number, ground, clearances, left);
             }
             while left != 0 {
                 due.push((number * SINGLES) as u32 + left.trailing_zeros());
@@ -180,6 +198,15 @@ impl Standoff {
         }
         // The last eight may not be full.
         due.truncate(due.partition_point(|&four| (four as usize) < self.count));
+    }
+
+    /// What this knows where the femur is to go, if it is of the shares as they have worn last.
+    fn neighbour(&self, to: &Pose, last: &LastWear) -> Option<Neighbour<'_>> {
+        let at = self.at.as_ref().filter(|_| self.worn == last.number)?;
+        Some(Neighbour {
+            clearances: &self.clearances,
+            step: Step::between(at, to),
+        })
     }
 
     /// Four were looked at where the femur is now.

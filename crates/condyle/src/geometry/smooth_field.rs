@@ -9,8 +9,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Curvature, SurfaceSample, Surroundings, TriangleMesh, bend_map::BendMap,
-    curved_mesh::CurvedMesh, shell_report, spline::Bases,
+    Curvature, SurfaceSample, Surroundings, TriangleMesh,
+    bend_map::BendMap,
+    curved_mesh::CurvedMesh,
+    shell_report,
+    spline::{Bases, Derivatives},
 };
 use crate::{
     Vec3, Vector,
@@ -143,18 +146,24 @@ impl SmoothField {
     /// Gap at a point, mm.
     #[inline(always)]
     pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
-        let here = self.locate(point);
-        let spline = here.bases.spline(|lane| self.rows(here.corner[lane]));
-        here.inside.below_zero(T::splat(OUTSIDE_MM), spline.value)
+        self.spline(point).value
     }
 
     /// Gap, normal and curvature at a point.
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>) -> SurfaceSample<T> {
+        sample_from(&self.spline(point))
+    }
+
+    /// The spline and its derivatives at a point; outside the grid its value is a bound.
+    #[inline(always)]
+    fn spline<T: Number>(&self, point: &Vector<T>) -> Derivatives<T> {
         let here = self.locate(point);
         let spline = here.bases.spline(|lane| self.rows(here.corner[lane]));
-        let gap_mm = here.inside.below_zero(T::splat(OUTSIDE_MM), spline.value);
-        sample_from(gap_mm, spline.gradient, spline.bend)
+        Derivatives {
+            value: here.inside.below_zero(T::splat(OUTSIDE_MM), spline.value),
+            ..spline
+        }
     }
 
     /// The coefficients that reach a point, and the bases there.
@@ -185,7 +194,8 @@ impl SmoothField {
 
     /// The coefficients from a corner on: row `j` of layer `k`, and one number more.
     ///
-    /// One look at the last says that all are there.
+    /// One look at the last says that all are there: strides of 32 bits cannot overflow their sum, so
+    /// that the compiler leaves out the nine looks at each row.
     #[inline(always)]
     fn rows(&self, corner: u32) -> impl Fn(usize, usize) -> Lanes {
         let [_, sy, sz] = self.strides().map(|stride| stride as u32 as usize);
@@ -314,10 +324,14 @@ impl SmoothField {
     }
 }
 
-/// Gap, unit normal and curvature from the derivatives of the spline by the grid's places; `bend`
-/// holds xx, yy, zz, xy, xz, yz.
+/// Gap, unit normal and curvature from the spline.
 #[inline(always)]
-fn sample_from<T: Number>(gap_mm: T, gradient: [T; 3], bend: [T; 6]) -> SurfaceSample<T> {
+fn sample_from<T: Number>(spline: &Derivatives<T>) -> SurfaceSample<T> {
+    let Derivatives {
+        value: gap_mm,
+        gradient,
+        bend,
+    } = *spline;
     let gap_gradient = Vector::from(gradient.map(|slope| slope * T::splat(1.0 / SPACING_MM)));
     // Far from the surface the gap is constant and the normal none, rather than not a number.
     let length = Number::max(

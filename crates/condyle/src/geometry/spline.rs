@@ -41,7 +41,7 @@ pub(super) struct Derivatives<T> {
 }
 
 impl<T: Number> Bases<T> {
-    /// Each of `places` in \[-1/2, 1/2\]: distance from the middle node, in spacings.
+    /// Each of x, y and z in \[-1/2, 1/2\]: distance from the middle node, in spacings.
     #[inline(always)]
     pub fn at([x, y, z]: [T; 3]) -> Self {
         let (y, z) = (Basis::at(y), Basis::at(z));
