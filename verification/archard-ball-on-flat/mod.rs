@@ -6,7 +6,7 @@ use condyle::{
     contact::Foundation,
     evolve::{March, WearTest},
     geometry::FemoralSurface,
-    machine::{Chain, Effort, Simulator},
+    machine::{Chain, Simulator, SolverCounters},
 };
 
 use crate::{
@@ -136,7 +136,7 @@ fn rubbed_nmm(march: &March) -> f64 {
     let mut watch = |_| std::ops::ControlFlow::Continue(());
     let start = march.state().machine;
     simulator
-        .cycle(&start, &mut Effort::default(), &mut watch)
+        .cycle(&start, &mut SolverCounters::default(), &mut watch)
         .expect("a solved cycle");
     let rubbed = rubbed.into_inner();
     let step_s = 1.0 / (test.machine.frequency_hz * test.time.increments as f64);

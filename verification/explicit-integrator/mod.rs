@@ -39,7 +39,7 @@ fn rows() -> Vec<Row> {
     let from_implicit = |increments| apart(&exact, &case.solved(increments, Integration::Implicit));
     let [coarse, middle, fine] = [200, 1600, 3200].map(from_implicit);
     let heavy = explicit(LONG_STEP_S);
-    let added = 100.0 * heavy.effort.added_inertia;
+    let added = 100.0 * heavy.counters.added_inertia;
     let heavy_steps = format!("explicit steps of 6 us with up to {added:.0} % more inertia");
     let [mm, deg] = held(fine, "3200 increments", NEAR);
     let mut rows = Vec::new();

@@ -4,7 +4,7 @@ use std::{cell::RefCell, ops::ControlFlow};
 
 use condyle::{
     evolve::{March, WearTest},
-    machine::{Chain, CycleRow, Effort, Integration, Simulator, TimeSettings},
+    machine::{Chain, CycleRow, Integration, Simulator, SolverCounters, TimeSettings},
 };
 
 use crate::{
@@ -28,7 +28,7 @@ pub(crate) struct Solved {
     pub rows: Vec<CycleRow>,
     /// The contact at the end of every increment.
     pub contact: Vec<Instant>,
-    pub effort: Effort,
+    pub counters: SolverCounters,
 }
 
 impl DefaultCase {
@@ -60,16 +60,16 @@ impl DefaultCase {
         };
         let seen = RefCell::new(Vec::new());
         let mut simulator = Simulator::new(&test.machine, &chain, Witness::new(test, &seen), &time);
-        let mut effort = Effort::default();
+        let mut counters = SolverCounters::default();
         let mut watch = |_| ControlFlow::Continue(());
         let cycle = simulator
-            .cycle(&self.march.state().machine, &mut effort, &mut watch)
+            .cycle(&self.march.state().machine, &mut counters, &mut watch)
             .expect("a shipped case is solved");
         assert!(cycle.repeats, "no cycle repeats itself");
         Solved {
             rows: cycle.rows,
             contact: last_of_each_place(&seen.into_inner(), increments),
-            effort,
+            counters,
         }
     }
 }

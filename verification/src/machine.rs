@@ -4,8 +4,8 @@ use condyle::{
     Vec3,
     contact::{ContactModel, Mat6, RelativeMotion, Tangent, TouchedNode, Vec6},
     machine::{
-        ApSpring, Chain, Cycle, Drive, Effort, FreedomSettings, Machine, MachineState, Simulator,
-        TimeSettings,
+        ApSpring, Chain, Cycle, Drive, FreedomSettings, Machine, MachineState, Simulator,
+        SolverCounters, TimeSettings,
     },
 };
 use std::ops::ControlFlow;
@@ -92,6 +92,6 @@ pub(crate) fn cycle(
     let start = MachineState::at_rest(machine, [0.0; 6]);
     let mut watch = |_| ControlFlow::Continue(());
     simulator
-        .cycle(&start, &mut Effort::default(), &mut watch)
+        .cycle(&start, &mut SolverCounters::default(), &mut watch)
         .expect("a solved cycle")
 }

@@ -50,7 +50,7 @@ impl Rub {
             }),
             density_mg_per_mm3: 0.93,
             time,
-            schedule: Schedule::evenly(self.cycles, self.updates),
+            schedule: Schedule::fixed(self.cycles, self.updates),
         }
     }
 }

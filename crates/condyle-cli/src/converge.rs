@@ -11,7 +11,7 @@ use std::{
 
 use condyle_io::cache::Cache;
 use condyle_lab::{
-    Happening,
+    RunEvent,
     studies::{
         ConvergeError, ConvergeHappening, ConvergeOptions, ConvergePlan, Converged, Convergence,
         Extrapolation, QUANTITIES, Quantity, converge as study,
@@ -36,8 +36,8 @@ pub fn converge(arguments: &Converge) -> ExitCode {
     };
     let stop = stop_on_interrupt();
     let told = Mutex::new(BTreeSet::new());
-    let outcome = study(&plan, &options, &|happening| {
-        show(happening, &told);
+    let outcome = study(&plan, &options, &|on_event| {
+        show(on_event, &told);
         match stop.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
@@ -72,8 +72,8 @@ fn fail(error: &ConvergeError) -> ExitCode {
 }
 
 /// A line a run, and every warning once.
-fn show(happening: &ConvergeHappening<'_>, told: &Mutex<BTreeSet<String>>) {
-    match happening {
+fn show(on_event: &ConvergeHappening<'_>, told: &Mutex<BTreeSet<String>>) {
+    match on_event {
         ConvergeHappening::Ran(run, summary) => eprintln!(
             "{} = {}: {:.3} mg worn, {:.4} mm deep",
             run.number.path(),
@@ -81,7 +81,7 @@ fn show(happening: &ConvergeHappening<'_>, told: &Mutex<BTreeSet<String>>) {
             summary.mass_loss_mg,
             summary.max_depth_mm
         ),
-        ConvergeHappening::In(_, Happening::Warning(warning)) => {
+        ConvergeHappening::In(_, RunEvent::Warning(warning)) => {
             let mut told = told.lock().expect("no thread panics with it");
             if told.insert(warning.clone()) {
                 eprintln!("warning: {warning}");

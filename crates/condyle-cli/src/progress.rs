@@ -2,7 +2,7 @@
 
 use std::io::{IsTerminal, stderr};
 
-use condyle_lab::{Happening, Reached};
+use condyle_lab::{Reached, RunEvent};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Ticks of the bar for the whole test.
@@ -22,22 +22,22 @@ impl Progress {
         }
     }
 
-    pub fn show(&mut self, happening: &Happening<'_>) {
-        match happening {
-            Happening::Warning(warning) => eprintln!("warning: {warning}"),
-            Happening::Started(reached) => self.start(*reached),
-            Happening::Solved(progress) => {
+    pub fn show(&mut self, on_event: &RunEvent<'_>) {
+        match on_event {
+            RunEvent::Warning(warning) => eprintln!("warning: {warning}"),
+            RunEvent::Started(reached) => self.start(*reached),
+            RunEvent::Solved(progress) => {
                 if let Some(bar) = &self.bar {
                     bar.set_position(self.ticks(progress.cycles));
                     bar.set_message(format!("update {}", progress.update));
                 }
             }
-            Happening::Estimating => {
+            RunEvent::Estimating => {
                 if let Some(bar) = &self.bar {
                     bar.set_message("estimating the error");
                 }
             }
-            Happening::Updated(update) => {
+            RunEvent::Updated(update) => {
                 if self.bar.is_none() {
                     eprintln!(
                         "{:.0} cycles: {:.3} mg worn, {:.4} mm deep",

@@ -32,8 +32,8 @@ pub fn run(arguments: &Run) -> ExitCode {
     };
     let stop = stop_on_interrupt();
     let mut progress = Progress::new();
-    let outcome = condyle_lab::run(&arguments.case, &options, &mut |happening| {
-        progress.show(&happening);
+    let outcome = condyle_lab::run(&arguments.case, &options, &mut |on_event| {
+        progress.show(&on_event);
         match stop.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),

@@ -35,8 +35,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn tell(happening: &ConvergeHappening<'_>) -> ControlFlow<()> {
-    if let ConvergeHappening::Ran(run, summary) = happening {
+fn tell(on_event: &ConvergeHappening<'_>) -> ControlFlow<()> {
+    if let ConvergeHappening::Ran(run, summary) = on_event {
         let (path, text) = (run.number.path(), run.number.text());
         eprintln!("{path} = {text}: {:.3} mg worn", summary.mass_loss_mg);
     }

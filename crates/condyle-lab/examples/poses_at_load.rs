@@ -11,7 +11,7 @@ use std::error::Error;
 use condyle::{
     contact::{Foundation, Pose},
     evolve::{March, WearTest},
-    machine::{Chain, Drive, Effort, Freedom, Waveform, settle},
+    machine::{Chain, Drive, Freedom, SolverCounters, Waveform, settle},
 };
 use condyle_io::case::Case;
 
@@ -46,7 +46,7 @@ fn balanced(march: &March, phase: f64, force_n: f64) -> Result<Pose, String> {
         &chain,
         &mut contact,
         TOLERANCE_N,
-        &mut Effort::default(),
+        &mut SolverCounters::default(),
     )
     .map(|positions| chain.at(&positions).pose)
     .map_err(|failed| format!("no balance at {:.0} %: {failed:?}", 100.0 * phase))

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use condyle::{
     contact::FoundationSettings,
     evolve::{
-        March, MarchError, MarchState, PlacementError, Schedule, StepRecord, Waypoint, WearTest,
+        March, MarchError, MarchState, PlacementError, Schedule, Snapshot, StepRecord, WearTest,
     },
     geometry::Insert,
     machine::{CycleError, MachineState, TimeSettings},
@@ -104,7 +104,7 @@ struct Again<'a> {
     /// What the run's first cycle wore, and the motion it ended with.
     first: (StepRecord, MachineState),
     /// Cycles on the way, which stand for all, one if both are the same.
-    waypoints: Vec<Waypoint>,
+    snapshots: Vec<Snapshot>,
     scar: Scar,
     /// By what power of the rates volume loss and maximum depth grow.
     growth: [f64; 2],
@@ -119,7 +119,7 @@ impl<'a> Again<'a> {
             time: march.test().time,
             contact: march.test().contact.clone(),
             first: state.first_step.clone()?,
-            waypoints: waypoints(state),
+            snapshots: snapshots(state),
             growth: growth(state, &scar)?,
             scar,
             march: Some(march),
@@ -128,41 +128,41 @@ impl<'a> Again<'a> {
     }
 
     /// Errors of mass loss and maximum depth in %: `factor` times what a change makes on the way,
-    /// the mean of the waypoints.
+    /// the mean of the snapshots.
     fn on_the_way(
         &mut self,
         factor: f64,
         change: impl Fn(WearTest) -> WearTest,
     ) -> Result<[f64; 2], Without> {
-        let count = self.waypoints.len();
+        let count = self.snapshots.len();
         let mut mean = [0.0; 2];
-        for waypoint in 0..count {
-            let here = self.at(waypoint, factor, &change)?;
+        for snapshot in 0..count {
+            let here = self.at(snapshot, factor, &change)?;
             mean = [0, 1].map(|i| mean[i] + here[i] / count as f64);
         }
         Ok(mean)
     }
 
-    /// The same at the last waypoint alone, for a change that makes much the same all the way.
+    /// The same at the last snapshot alone, for a change that makes much the same all the way.
     fn once(
         &mut self,
         factor: f64,
         change: impl Fn(WearTest) -> WearTest,
     ) -> Result<[f64; 2], Without> {
-        self.at(self.waypoints.len() - 1, factor, &change)
+        self.at(self.snapshots.len() - 1, factor, &change)
     }
 
     fn at(
         &mut self,
-        waypoint: usize,
+        snapshot: usize,
         factor: f64,
         change: &impl Fn(WearTest) -> WearTest,
     ) -> Result<[f64; 2], Without> {
         let (march, as_run) = (self.taken()?, self.as_run());
-        let waypoint = &self.waypoints[waypoint];
-        let march = march.returned_to(waypoint, |test| change(as_run(test)));
+        let snapshot = &self.snapshots[snapshot];
+        let march = march.returned_to(snapshot, |test| change(as_run(test)));
         let weights = self.scar.weights();
-        let reference = worn(&waypoint.step, &weights);
+        let reference = worn(&snapshot.step, &weights);
         self.solved(march, &weights, reference, factor)
     }
 
@@ -187,7 +187,7 @@ impl<'a> Again<'a> {
         move |test| WearTest {
             time,
             contact,
-            schedule: Schedule::evenly(1.0, 1),
+            schedule: Schedule::fixed(1.0, 1),
             ..test
         }
     }
@@ -210,10 +210,10 @@ impl<'a> Again<'a> {
     }
 }
 
-fn waypoints(state: &MarchState) -> Vec<Waypoint> {
-    let mut waypoints: Vec<Waypoint> = state.waypoints.iter().flatten().cloned().collect();
-    waypoints.dedup_by(|a, b| a.worn_mm == b.worn_mm);
-    waypoints
+fn snapshots(state: &MarchState) -> Vec<Snapshot> {
+    let mut snapshots: Vec<Snapshot> = state.snapshots.iter().flatten().cloned().collect();
+    snapshots.dedup_by(|a, b| a.worn_mm == b.worn_mm);
+    snapshots
 }
 
 /// The volume that a cycle wore, and the mean of its depth by `weights`.

@@ -5,4 +5,4 @@ pub mod measured;
 mod run;
 pub mod studies;
 
-pub use run::{Happening, Outcome, Reached, RunError, RunOptions, check, run, run_case};
+pub use run::{Outcome, Reached, RunError, RunEvent, RunOptions, check, run, run_case};

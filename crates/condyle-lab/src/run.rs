@@ -56,7 +56,7 @@ impl Reached {
 
 /// What happens while a case runs.
 #[derive(Clone, Debug)]
-pub enum Happening<'a> {
+pub enum RunEvent<'a> {
     /// Something was put right or looks doubtful.
     Warning(String),
     /// The bodies are placed, or the checkpoint is read.
@@ -147,7 +147,7 @@ impl RunError {
 
 /// Runs the case at `case_path`.
 ///
-/// `happening` hears of everything and may stop the run by breaking; the updates done are then on
+/// `on_event` hears of everything and may stop the run by breaking; the updates done are then on
 /// the disk, and a run with `resume` goes on to the same bytes as one never stopped. A run that
 /// cannot start makes no folder, and one that is done is left as it is.
 ///
@@ -156,9 +156,9 @@ impl RunError {
 pub fn run(
     case_path: &Path,
     options: &RunOptions,
-    happening: &mut dyn FnMut(Happening<'_>) -> ControlFlow<()>,
+    on_event: &mut dyn FnMut(RunEvent<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, RunError> {
-    run_case(&Case::read(case_path)?, options, happening)
+    run_case(&Case::read(case_path)?, options, on_event)
 }
 
 /// Runs a case that is read already, as [`run`] does.
@@ -168,7 +168,7 @@ pub fn run(
 pub fn run_case(
     case: &Case,
     options: &RunOptions,
-    happening: &mut dyn FnMut(Happening<'_>) -> ControlFlow<()>,
+    on_event: &mut dyn FnMut(RunEvent<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, RunError> {
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
     let found = found(case, options, &inputs_blake3)?;
@@ -182,7 +182,7 @@ pub fn run_case(
     let built = clock.time(|| build(case, options.threads, &options.cache))?;
     let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
     for warning in &warnings {
-        let _ = happening(Happening::Warning(warning.clone()));
+        let _ = on_event(RunEvent::Warning(warning.clone()));
     }
     let side = case.heading.side;
     let (folder, mut march) = match found {
@@ -200,17 +200,17 @@ pub fn run_case(
             (folder, march)
         }
     };
-    let mut stop = happening(Happening::Started(Reached::by(&march)));
+    let mut stop = on_event(RunEvent::Started(Reached::by(&march)));
     while !march.is_done() {
         if stop.is_break() {
             return Ok(Outcome::Interrupted(Reached::by(&march)));
         }
-        let mut watch = |progress| happening(Happening::Solved(progress));
+        let mut watch = |progress| on_event(RunEvent::Solved(progress));
         match clock.time(|| march.update(&mut watch).cloned()) {
             Ok(update) => {
                 folder.write_update(&march, side, &inputs_blake3)?;
                 folder.write_time_spent(clock.spent.as_secs_f64())?;
-                stop = happening(Happening::Updated(&update));
+                stop = on_event(RunEvent::Updated(&update));
             }
             Err(MarchError::Cycle {
                 source: CycleError::Interrupted,
@@ -227,7 +227,7 @@ pub fn run_case(
     let mut summary = summary(&march, clock.spent, inputs_blake3, warnings);
     if case.accuracy.estimate {
         let reached = Reached::by(&march);
-        let mut watch = || happening(Happening::Estimating);
+        let mut watch = || on_event(RunEvent::Estimating);
         let mut clock = Clock::default();
         let Ok(error) = clock.time(|| accuracy::estimate(case, march, &mut watch)) else {
             return Ok(Outcome::Interrupted(reached));

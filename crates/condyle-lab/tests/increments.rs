@@ -5,7 +5,7 @@ use std::{ops::ControlFlow, path::Path};
 use condyle::{
     contact::Foundation,
     evolve::March,
-    machine::{Chain, Cycle, Effort, Simulator, TimeSettings},
+    machine::{Chain, Cycle, Simulator, SolverCounters, TimeSettings},
 };
 use condyle_io::case::Case;
 
@@ -24,8 +24,8 @@ fn cycle(march: &March, increments: usize, increment_error_mm: f64) -> Cycle {
         Foundation::new(&test.contact, &test.femur, &test.insert),
         &time,
     );
-    let (mut effort, mut watch) = (Effort::default(), |_| ControlFlow::Continue(()));
-    let solved = simulator.cycle(&march.state().machine, &mut effort, &mut watch);
+    let (mut counters, mut watch) = (SolverCounters::default(), |_| ControlFlow::Continue(()));
+    let solved = simulator.cycle(&march.state().machine, &mut counters, &mut watch);
     solved.expect("the default case is solved")
 }
 

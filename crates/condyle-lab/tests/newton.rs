@@ -6,7 +6,7 @@ use std::path::Path;
 use condyle::{
     contact::Foundation,
     evolve::{March, WearTest},
-    machine::{Chain, Effort, MachineState, Simulator, TimeSettings},
+    machine::{Chain, MachineState, Simulator, SolverCounters, TimeSettings},
 };
 use condyle_io::case::Case;
 
@@ -62,9 +62,9 @@ fn in_motion(march: &March) -> MachineState {
     let mut simulator = simulator(test, &chain, &test.time);
     let mut state = march.state().machine;
     for to in ends(test.time.increments) {
-        let effort = &mut Effort::default();
+        let counters = &mut SolverCounters::default();
         state = simulator
-            .step(&state, to, effort, &mut |_| ())
+            .step(&state, to, counters, &mut |_| ())
             .expect("a shipped case is solved");
     }
     MachineState {
@@ -87,13 +87,13 @@ fn near_the_solution_every_residual_is_the_square_of_the_one_before() {
     let (mut worst_per_n, mut pairs) = (0.0_f64, 0);
     for to in ends(time.increments) {
         let mut lengths_n = Vec::new();
-        let mut effort = Effort::default();
+        let mut counters = SolverCounters::default();
         state = simulator
-            .step(&state, to, &mut effort, &mut |length_n| {
+            .step(&state, to, &mut counters, &mut |length_n| {
                 lengths_n.push(length_n);
             })
             .expect("it converges to the last digits");
-        assert_eq!(effort.halvings, 0, "at {to}: {lengths_n:?}");
+        assert_eq!(counters.halvings, 0, "at {to}: {lengths_n:?}");
         for pair in lengths_n.windows(2).filter(|pair| pair[0] < NEAR_N) {
             let [before, after] = [pair[0], pair[1]];
             let left = after - SINGLE * before - ROUNDING_N;
@@ -121,14 +121,14 @@ impl Solved {
         simulator: &mut Simulator<'_, Foundation<'_>>,
         mut state: MachineState,
     ) -> (Self, MachineState) {
-        let (mut solved, mut effort) = (Self::default(), Effort::default());
+        let (mut solved, mut counters) = (Self::default(), SolverCounters::default());
         for to in ends(simulator.time.increments) {
-            let before = effort;
+            let before = counters;
             state = simulator
-                .step(&state, to, &mut effort, &mut |_| ())
+                .step(&state, to, &mut counters, &mut |_| ())
                 .expect("a shipped case is solved");
-            let corrections = effort.newton_iterations - before.newton_iterations;
-            let looks = effort.contact_evaluations - before.contact_evaluations;
+            let corrections = counters.newton_iterations - before.newton_iterations;
+            let looks = counters.contact_evaluations - before.contact_evaluations;
             solved.at_once += usize::from(looks == 1);
             // One look more than corrections is a step that ended with a look.
             if looks == corrections {

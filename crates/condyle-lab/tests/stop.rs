@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use condyle_io::{cache::Cache, results::Checkpoint};
-use condyle_lab::{Happening, Outcome, RunError, RunOptions, check, run};
+use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, check, run};
 use tempfile::TempDir;
 
 const CASE: &str = "\
@@ -39,13 +39,13 @@ fn options(out: PathBuf, resume: bool) -> RunOptions {
 fn run_until(
     case: &Path,
     options: &RunOptions,
-    mut stops: impl FnMut(&Happening<'_>) -> bool,
+    mut stops: impl FnMut(&RunEvent<'_>) -> bool,
 ) -> Outcome {
-    let mut happening = |happening: Happening<'_>| match stops(&happening) {
+    let mut on_event = |on_event: RunEvent<'_>| match stops(&on_event) {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    run(case, options, &mut happening).unwrap_or_else(|error| panic!("{error}"))
+    run(case, options, &mut on_event).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Every file but the summary, which alone has the wall time.
@@ -78,8 +78,8 @@ fn assert_same_bytes_however_stopped(case: &str) {
     let (folder, case) = bench(case);
     let whole = folder.path().join("whole");
     let mut increments = 0;
-    run_until(&case, &options(whole.clone(), false), |happening| {
-        increments += usize::from(matches!(happening, Happening::Solved(_)));
+    run_until(&case, &options(whole.clone(), false), |on_event| {
+        increments += usize::from(matches!(on_event, RunEvent::Solved(_)));
         false
     });
     let expected = files(&whole);
@@ -89,8 +89,8 @@ fn assert_same_bytes_however_stopped(case: &str) {
         // An update takes a few cycles, so that a stop must not come before its end for ever.
         for part in 1.. {
             let mut left = stop_after * part;
-            let outcome = run_until(&case, &options(out.clone(), resume), |happening| {
-                left -= usize::from(left > 0 && matches!(happening, Happening::Solved(_)));
+            let outcome = run_until(&case, &options(out.clone(), resume), |on_event| {
+                left -= usize::from(left > 0 && matches!(on_event, RunEvent::Solved(_)));
                 left == 0
             });
             resume = true;
@@ -137,7 +137,7 @@ fn a_run_of_another_version_is_not_gone_on_with() {
     let mut checkpoint = Checkpoint::from_bytes(&fs::read(&file).unwrap()).unwrap();
     checkpoint.version = "0.0.1".to_owned();
     fs::write(&file, checkpoint.to_bytes()).unwrap();
-    let mut go_on = |_: Happening<'_>| ControlFlow::Continue(());
+    let mut go_on = |_: RunEvent<'_>| ControlFlow::Continue(());
     let error = run(&case, &options(out, true), &mut go_on).unwrap_err();
     let said = error.to_string();
     assert!(

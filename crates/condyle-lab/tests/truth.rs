@@ -12,7 +12,7 @@ use condyle::{
     contact::{ContactModel, Foundation, RelativeMotion, Tangent, TouchedNode, Vec6},
     evolve::{CycleRecord, March, MarchError, Progress, WearTest},
     geometry::FemoralSurface,
-    machine::{Chain, Effort, FREEDOMS, Simulator, settle},
+    machine::{Chain, FREEDOMS, Simulator, SolverCounters, settle},
 };
 use condyle_io::case::Case;
 
@@ -113,13 +113,13 @@ fn assert_settled(march: &March) {
     let (test, zero_mm) = (march.test(), march.state().zero_mm);
     let chain = Chain::new(&test.machine, zero_mm, test.flexion_axis_mm);
     let tolerance_n = test.time.force_tolerance_n;
-    let (mut contact, mut effort) = (BruteForce::new(test), Effort::default());
+    let (mut contact, mut counters) = (BruteForce::new(test), SolverCounters::default());
     let settled = settle(
         &test.machine,
         &chain,
         &mut contact,
         tolerance_n,
-        &mut effort,
+        &mut counters,
     )
     .expect("it has settled before");
     for freedom in FREEDOMS {
@@ -171,7 +171,7 @@ fn assert_exact(name: &str) {
             apart.push((format!("{freedom:?} in the {which} cycle"), off));
         }
     }
-    println!("{name}: {:?} exact {:?}", now.effort, truth.effort);
+    println!("{name}: {:?} exact {:?}", now.counters, truth.counters);
     for (what, off) in &apart {
         println!("  {what}: {:.5} %", 100.0 * off);
     }
@@ -224,7 +224,7 @@ fn assert_small_steps_are_exact(name: &str) {
     let mut simulator = Simulator::new(&test.machine, &chain, anew(test), &test.time);
     let mut watch = |_| ControlFlow::Continue(());
     let rows = simulator
-        .cycle(&state.machine, &mut Effort::default(), &mut watch)
+        .cycle(&state.machine, &mut SolverCounters::default(), &mut watch)
         .expect("a solved cycle")
         .rows;
     let mut walked = anew(test);

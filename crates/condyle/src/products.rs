@@ -4,40 +4,40 @@ use crate::{Vector, number::Number};
 
 /// Zero, written out: the compiler does not take nalgebra's repetition of it apart.
 #[inline(always)]
-pub fn nowhere<T: Number>() -> Vector<T> {
+pub fn zero_vector<T: Number>() -> Vector<T> {
     Vector::new(T::zero(), T::zero(), T::zero())
 }
 
 /// a . b
 #[inline(always)]
 pub fn dot<T: Number>(a: &Vector<T>, b: &Vector<T>) -> T {
-    a.x.times_plus(b.x, a.y.times_plus(b.y, a.z * b.z))
+    a.x.mul_add(b.x, a.y.mul_add(b.y, a.z * b.z))
 }
 
 /// a x b
 #[inline(always)]
 pub fn cross<T: Number>(a: &Vector<T>, b: &Vector<T>) -> Vector<T> {
     Vector::new(
-        a.y.times_minus(b.z, a.z * b.y),
-        a.z.times_minus(b.x, a.x * b.z),
-        a.x.times_minus(b.y, a.y * b.x),
+        a.y.mul_sub(b.z, a.z * b.y),
+        a.z.mul_sub(b.x, a.x * b.z),
+        a.x.mul_sub(b.y, a.y * b.x),
     )
 }
 
 /// v f + w
 #[inline(always)]
-pub fn scaled_plus<T: Number>(v: &Vector<T>, f: T, w: &Vector<T>) -> Vector<T> {
+pub fn scale_add<T: Number>(v: &Vector<T>, f: T, w: &Vector<T>) -> Vector<T> {
     Vector::new(
-        v.x.times_plus(f, w.x),
-        v.y.times_plus(f, w.y),
-        v.z.times_plus(f, w.z),
+        v.x.mul_add(f, w.x),
+        v.y.mul_add(f, w.y),
+        v.z.mul_add(f, w.z),
     )
 }
 
 /// v without its part along a unit vector n: v - n (n . v)
 #[inline(always)]
-pub fn without_part_along<T: Number>(v: &Vector<T>, n: &Vector<T>) -> Vector<T> {
-    scaled_plus(n, -dot(n, v), v)
+pub fn tangential_part<T: Number>(v: &Vector<T>, n: &Vector<T>) -> Vector<T> {
+    scale_add(n, -dot(n, v), v)
 }
 
 #[cfg(test)]
@@ -50,8 +50,8 @@ mod tests {
         let (a, b) = (Vec3::new(1.5, -2.0, 0.7), Vec3::new(-0.3, 4.0, 2.5));
         assert!((dot(&a, &b) - a.dot(&b)).abs() < 1e-14);
         assert!((cross(&a, &b) - a.cross(&b)).norm() < 1e-14);
-        assert!((scaled_plus(&a, 3.0, &b) - (a * 3.0 + b)).norm() < 1e-14);
+        assert!((scale_add(&a, 3.0, &b) - (a * 3.0 + b)).norm() < 1e-14);
         let n = b.normalize();
-        assert!(dot(&without_part_along(&a, &n), &n).abs() < 1e-14);
+        assert!(dot(&tangential_part(&a, &n), &n).abs() < 1e-14);
     }
 }

@@ -302,7 +302,7 @@ settings! {
     }
 
     /// Updates of the worn shape as the depth asks for them.
-    ByDepthUpdates {
+    AutoUpdates {
         /// Error of the maximum depth that one interval may make, as a fraction of the depth expected at the end; it mostly wears away in those that follow.
         depth_tolerance_fraction: f64 = 0.05, in within(1e-5, 0.5);
     }

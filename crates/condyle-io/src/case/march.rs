@@ -1,6 +1,6 @@
 //! The march over the life of the insert.
 
-use super::declared::{ByDepthUpdates, FixedUpdates, UpdateWord, WholeTest};
+use super::declared::{AutoUpdates, FixedUpdates, UpdateWord, WholeTest};
 use super::keys::{Key, Settings};
 use super::parse::{Log, Others, Section, names};
 use super::setting::Setting;
@@ -21,7 +21,7 @@ pub enum Update {
     /// So many times, evenly over the cycles.
     Fixed(FixedUpdates),
     /// As seldom as a tolerance on the maximum depth allows.
-    Auto(ByDepthUpdates),
+    Auto(AutoUpdates),
 }
 
 /// The key that chooses when the shape is updated.
@@ -35,10 +35,8 @@ pub(super) const UPDATE: Key = Key {
 
 impl March {
     /// Words for `update` and the keys each brings.
-    pub(super) const UPDATES: &'static [(&'static str, &'static [Key])] = &[
-        ("fixed", FixedUpdates::KEYS),
-        ("auto", ByDepthUpdates::KEYS),
-    ];
+    pub(super) const UPDATES: &'static [(&'static str, &'static [Key])] =
+        &[("fixed", FixedUpdates::KEYS), ("auto", AutoUpdates::KEYS)];
 
     pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let word = section.setting(&UPDATE, Some(UpdateWord::Fixed), log)?;
@@ -46,7 +44,7 @@ impl March {
         let test = WholeTest::read(section, log);
         let update = match word {
             UpdateWord::Fixed => Update::Fixed(FixedUpdates::read(section, log)?),
-            UpdateWord::Auto => Update::Auto(ByDepthUpdates::read(section, log)?),
+            UpdateWord::Auto => Update::Auto(AutoUpdates::read(section, log)?),
         };
         Some(Self {
             cycles: test?.cycles,

@@ -39,7 +39,7 @@ pub use build::{BuildError, BuildWarning, Built};
 pub use channel::Channel;
 pub use contact::{Contact, PressureLawChoice};
 pub use declared::{
-    Accuracy, ByDepthUpdates, CylinderFemur, DriveWord, FixedUpdates, FlatInsert, Friction,
+    Accuracy, AutoUpdates, CylinderFemur, DriveWord, FixedUpdates, FlatInsert, Friction,
     GenericFemur, GenericInsert, Heading, HexahedralInsert, IntegratorWord, LengthUnit,
     MachineSettings, Material, MeshFemur, MeshInsert, Preset, PressureForm, Rotation, Side, Sign,
     SphereFemur, Springs, StiffnessOf, Time, Translation, Wear, WearLawWord,

@@ -102,7 +102,7 @@ impl Summary {
         let updates = &state.updates;
         let last = updates.last()?;
         let first_cycle = &state.first_and_last.as_ref()?.0.rows;
-        let explicit = Some(&state.effort).filter(|effort| effort.explicit_steps > 0);
+        let explicit = Some(&state.counters).filter(|counters| counters.explicit_steps > 0);
         let cycles_solved: f64 = updates.iter().map(|update| update.cycles_solved).sum();
         let per_cycle = |work: u64| work as f64 / cycles_solved;
         let largest =
@@ -123,13 +123,13 @@ impl Summary {
             increments: input.increments,
             cycles_solved,
             cycles_not_repeating: updates.iter().filter(|update| !update.repeats).count(),
-            newton_iterations: state.effort.newton_iterations,
-            contact_evaluations: state.effort.contact_evaluations,
-            newton_iterations_per_cycle: per_cycle(state.effort.newton_iterations),
-            contact_evaluations_per_cycle: per_cycle(state.effort.contact_evaluations),
-            step_halvings: state.effort.halvings,
-            explicit_steps: explicit.map(|effort| effort.explicit_steps),
-            added_inertia: explicit.map(|effort| effort.added_inertia),
+            newton_iterations: state.counters.newton_iterations,
+            contact_evaluations: state.counters.contact_evaluations,
+            newton_iterations_per_cycle: per_cycle(state.counters.newton_iterations),
+            contact_evaluations_per_cycle: per_cycle(state.counters.contact_evaluations),
+            step_halvings: state.counters.halvings,
+            explicit_steps: explicit.map(|counters| counters.explicit_steps),
+            added_inertia: explicit.map(|counters| counters.added_inertia),
             hexahedra: input.hexahedra,
             articulating_nodes: input.articulating_nodes,
             worst_quality: updates

@@ -6,7 +6,7 @@ use condyle::{
     Vec3,
     contact::{ContactModel, Former, Foundation, RelativeMotion, Tangent, TouchedNode, Vec6},
     evolve::{March, WearTest},
-    machine::{Chain, Drive, Effort, Freedom, Simulator, Waveform},
+    machine::{Chain, Drive, Freedom, Simulator, SolverCounters, Waveform},
 };
 use condyle_io::case::Case;
 
@@ -101,10 +101,10 @@ impl<'a> Gait<'a> {
     fn solved<C: ContactModel>(&self, contact: C) -> (usize, C) {
         let (test, state) = (self.march.test(), self.march.state());
         let mut simulator = Simulator::new(&test.machine, &self.chain, contact, &test.time);
-        simulator.precedents.clone_from(&state.precedents);
+        simulator.warm_starts.clone_from(&state.warm_starts);
         let watch = &mut |_| ControlFlow::Continue(());
         let cycle = simulator
-            .cycle(&state.machine, &mut Effort::default(), watch)
+            .cycle(&state.machine, &mut SolverCounters::default(), watch)
             .unwrap_or_else(|error| panic!("{error}"));
         (cycle.increments_solved, simulator.contact)
     }

@@ -159,8 +159,8 @@ fn print_work(name: &str, case: &Case) {
     let cells = [
         format!("`{name}`"),
         format!("{cycles:.1}"),
-        format!("{:.0}", per_cycle(state.effort.newton_iterations)),
-        format!("{:.0}", per_cycle(state.effort.contact_evaluations)),
+        format!("{:.0}", per_cycle(state.counters.newton_iterations)),
+        format!("{:.0}", per_cycle(state.counters.contact_evaluations)),
         format!("{nodes}"),
         format!("{:.0}", mean_pressing(&updates)),
         budget("contact_evaluation").map_or_else(String::new, u64::to_string),

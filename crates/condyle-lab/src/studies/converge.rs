@@ -14,7 +14,7 @@ use condyle_io::{cache::Cache, results::Summary};
 
 use super::converge_plan::{ConvergeError, ConvergePlan, Planned, check_free};
 use super::observed_order::{Extrapolation, extrapolate};
-use crate::{Happening, Outcome, RunError, RunOptions, run_case};
+use crate::{Outcome, RunError, RunEvent, RunOptions, run_case};
 
 /// How a study of convergence is run.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ pub struct ConvergeOptions {
 #[derive(Clone, Debug)]
 pub enum ConvergeHappening<'a> {
     /// In a run with this number.
-    In(&'a Planned, Happening<'a>),
+    In(&'a Planned, RunEvent<'a>),
     /// A run is done.
     Ran(&'a Planned, &'a Summary),
 }
@@ -220,7 +220,7 @@ fn run_one(run: &Planned, options: &ConvergeOptions, listener: &Listener<'_>) ->
         threads: 1,
         cache: options.cache.clone(),
     };
-    let mut tell = |what: Happening<'_>| listener(&ConvergeHappening::In(run, what));
+    let mut tell = |what: RunEvent<'_>| listener(&ConvergeHappening::In(run, what));
     match run_case(&run.case, &options, &mut tell)? {
         Outcome::Done(summary) | Outcome::DoneBefore(summary) => {
             let _ = listener(&ConvergeHappening::Ran(run, &summary));

@@ -1,17 +1,17 @@
 //! How far four shares are from touching, and how a motion of the femur brings them nearer.
 
-use super::{seen::Seen, shares::Shares4};
+use super::{seen::Seen, shares::ShareBlock};
 use crate::{
     Vec3,
-    geometry::Surroundings,
-    number::{LANES, Lanes, Number},
+    geometry::CurvatureBounds,
+    number::{F64x4, LANES, Number},
     products::dot,
 };
 
 /// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.
 pub(super) const GAP_PER_MOTION: f64 = 1.05;
 
-/// Where a gap is smaller something is known of the surroundings, mm; see [`Surroundings`].
+/// Where a gap is smaller something is known of the curvature_bounds, mm; see [`CurvatureBounds`].
 const KNOWN_MM: f64 = 1.5;
 
 /// As far as that holds at least, mm.
@@ -20,7 +20,7 @@ const HOLDS_MM: f64 = 1.0;
 /// More than a sample moved along (see [`Seen`]) errs in gap and reach, mm.
 const ASTRAY_MM: f64 = 1e-4;
 
-/// Four shares that were seen apart: a bound on how far they are from touching, as a function of
+/// NodeBlock shares that were seen apart: a bound on how far they are from touching, as a function of
 /// how the femur moves on.
 ///
 /// A gap g with gradient G and no second derivative below -h is, a motion d on, at least
@@ -42,33 +42,38 @@ pub(super) struct Clearance {
 impl Clearance {
     /// What shares with a reach of `reach_mm` saw, their gap being larger than that.
     #[inline(always)]
-    pub fn new(seen: &Seen, reach_mm: Lanes, shares: &Shares4, surroundings: Surroundings) -> Self {
-        let Surroundings {
+    pub fn new(
+        seen: &Seen,
+        reach_mm: F64x4,
+        shares: &ShareBlock,
+        curvature_bounds: CurvatureBounds,
+    ) -> Self {
+        let CurvatureBounds {
             radius_mm,
-            sharpest_per_mm,
-            hollow_per_mm,
-            jump_per_mm,
-        } = surroundings;
+            max_curvature_per_mm,
+            concavity_per_mm,
+            curvature_jump_per_mm,
+        } = curvature_bounds;
         let gap_mm = seen.sample.gap_mm;
-        let clear_mm = gap_mm - reach_mm - shares.spread_mm2 * Lanes::splat(jump_per_mm);
-        let by_turn = shares.half_mm * sharpest_per_mm;
+        let clear_mm = gap_mm - reach_mm - shares.spread_mm2 * F64x4::splat(curvature_jump_per_mm);
+        let by_turn = shares.half_mm * max_curvature_per_mm;
         if gap_mm.least() - shares.half_mm > radius_mm {
             // Of these lanes something is known, but not of another.
             let known_mm = if radius_mm < 0.0 { KNOWN_MM } else { 0.0 };
-            let is_known = gap_mm - Lanes::splat(known_mm);
-            let far_mm = gap_mm - Lanes::splat(shares.half_mm);
-            let near_mm = -Number::max(-clear_mm, Lanes::splat(-HOLDS_MM));
+            let is_known = gap_mm - F64x4::splat(known_mm);
+            let far_mm = gap_mm - F64x4::splat(shares.half_mm);
+            let near_mm = -Number::max(-clear_mm, F64x4::splat(-HOLDS_MM));
             let clear_mm = is_known.below_zero(near_mm, far_mm).least();
             return Self::far(clear_mm - ASTRAY_MM, GAP_PER_MOTION + by_turn);
         }
         let gradient = &seen.sample.gap_gradient;
         let slope = gradient.map(|lanes| lanes.sum() / LANES as f64);
-        let lean = gradient - slope.map(Lanes::splat);
+        let lean = gradient - slope.map(F64x4::splat);
         let leaning = dot(&lean, &lean).greatest().sqrt();
         Self {
             clear_mm: clear_mm.least() - ASTRAY_MM,
             slope,
-            loss: leaning + by_turn + 0.5 * hollow_per_mm * radius_mm,
+            loss: leaning + by_turn + 0.5 * concavity_per_mm * radius_mm,
             radius_mm,
         }
     }

@@ -8,15 +8,15 @@ use super::{
     partial::{Rises, mean_overclosure},
     peak::PeakSearch,
     seen::Seen,
-    shares::Shares4,
+    shares::ShareBlock,
     tangent::TangentSum,
     traction::{Sliding, SlipSums, Tractions4, WrenchSum},
 };
 use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
-    number::{LANES, Lanes, Number},
-    products::{cross, dot, nowhere, scaled_plus, without_part_along},
+    number::{F64x4, LANES, Number},
+    products::{cross, dot, scale_add, tangential_part, zero_vector},
 };
 
 /// How the foundation presses and rubs.
@@ -33,26 +33,26 @@ pub struct FoundationSettings {
     pub slip_tolerance_mm_per_s: f64,
 }
 
-/// Four shares that touch, as they see the femur.
+/// NodeBlock shares that touch, as they see the femur.
 struct Look {
     four: u32,
     seen: Seen,
     /// How the overclosure rises along the shares' edges.
-    rises: Rises<Lanes>,
+    rises: Rises<F64x4>,
 }
 
 /// What one foundation knew of which shares come near, and when.
 ///
 /// It makes the foundation after it quicker, and changes none of its answers.
 pub struct Former {
-    shares: Vec<Shares4>,
+    shares: Vec<ShareBlock>,
     nearness: Nearness,
     /// For its memory.
     seen: Vec<Seen>,
 }
 
 impl Former {
-    fn worn(self, shares: &[Shares4]) -> (Nearness, Vec<Seen>) {
+    fn worn(self, shares: &[ShareBlock]) -> (Nearness, Vec<Seen>) {
         let nearness = match self.shares.len() == shares.len() {
             true => self.nearness.worn(&self.shares, shares),
             false => Nearness::new(shares),
@@ -71,9 +71,9 @@ pub struct Foundation<'a> {
     settings: &'a FoundationSettings,
     femur: &'a FemoralSurface,
     surface: ArticulatingSurface,
-    shares: Vec<Shares4>,
+    shares: Vec<ShareBlock>,
     /// The surface's own directions at every four nodes.
-    directions: Vec<[Vector<Lanes>; 2]>,
+    directions: Vec<[Vector<F64x4>; 2]>,
     insert: &'a Insert,
     /// What every four of them saw of the femur, and the number of the response at which they
     /// touched it last.
@@ -82,9 +82,9 @@ pub struct Foundation<'a> {
     /// The number of the last response: the first is 2, and none has touched at the one before it.
     response: u64,
     nearness: Nearness,
-    /// The fours that may touch, and the places of their centres in the femoral frame.
-    due: Vec<(u32, Vector<Lanes>)>,
-    /// The fours that touched at the last response, and what pressed them.
+    /// The node_blocks that may touch, and the places of their centres in the femoral frame.
+    due: Vec<(u32, Vector<F64x4>)>,
+    /// The node_blocks that touched at the last response, and what pressed them.
     looks: Vec<Look>,
     tractions: Vec<Tractions4>,
     /// How the two sides slid.
@@ -111,7 +111,7 @@ impl<'a> Foundation<'a> {
         insert: &'a Insert,
     ) -> Self {
         let surface = insert.surface();
-        let shares = Shares4::of(insert, &surface);
+        let shares = ShareBlock::of(insert, &surface);
         let (nearness, mut seen) = match former {
             Some(former) => former.worn(&shares),
             None => (Nearness::new(&shares), Vec::new()),
@@ -175,7 +175,7 @@ impl<'a> Foundation<'a> {
             let rises = Rises::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
             let reach_mm = rises.reach_mm();
             if (seen.sample.gap_mm - reach_mm).least() > 0.0 {
-                let around = self.femur.surroundings(&place);
+                let around = self.femur.curvature_bounds(&place);
                 let clearance = Clearance::new(&seen, reach_mm, shares, around);
                 self.nearness.is_apart(four, &clearance);
             } else {
@@ -215,7 +215,7 @@ impl<'a> Foundation<'a> {
 #[inline(always)]
 fn press(
     settings: &FoundationSettings,
-    shares: &Shares4,
+    shares: &ShareBlock,
     look: &Look,
     pose: &Pose4,
     twist: &Twist4,
@@ -225,12 +225,12 @@ fn press(
     let (pressure_mpa, slope) = settings.law.pressures(mean.mm, shares.per_thickness);
     let stiffness = slope * shares.area_mm2;
     let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
-    let mut load_by_turn = nowhere();
+    let mut load_by_turn = zero_vector();
     if let Some(by_rise) = mean.by_rise {
         let (by_a, by_b) = (by_rise[0] * stiffness, by_rise[1] * stiffness);
-        let by_normal = scaled_plus(&shares.edge_a, by_a, &(shares.edge_b * by_b));
+        let by_normal = scale_add(&shares.edge_a, by_a, &(shares.edge_b * by_b));
         let by_normal = pose.turn_to_femur(&by_normal);
-        let along_surface = without_part_along(&by_normal, &sample.normal);
+        let along_surface = tangential_part(&by_normal, &sample.normal);
         load_by_motion -= sample.curvature.times(&along_surface);
         load_by_turn = cross(&sample.normal, &by_normal);
     }
@@ -315,25 +315,25 @@ impl ContactModel for Foundation<'_> {
 }
 
 /// The surface's own directions at four nodes.
-fn directions(surface: &ArticulatingSurface, four: &Shares4) -> [Vector<Lanes>; 2] {
+fn directions(surface: &ArticulatingSurface, four: &ShareBlock) -> [Vector<F64x4>; 2] {
     let at = |lane: usize| surface.directions(four.nodes[lane] as usize);
     [0, 1].map(|which| {
-        Vector::from([0, 1, 2].map(|axis| Lanes::from_lanes(|lane| at(lane)[which][axis])))
+        Vector::from([0, 1, 2].map(|axis| F64x4::from_lanes(|lane| at(lane)[which][axis])))
     })
 }
 
-/// Four shares at the end of an increment.
+/// NodeBlock shares at the end of an increment.
 struct Landed4 {
-    pressure_mpa: Lanes,
-    covered_mm2: Lanes,
+    pressure_mpa: F64x4,
+    covered_mm2: F64x4,
     /// In the insert frame.
-    force_n: Vector<Lanes>,
+    force_n: Vector<F64x4>,
     /// In the surface's own directions.
-    sliding_mm_per_s: [Lanes; 2],
+    sliding_mm_per_s: [F64x4; 2],
 }
 
 impl Foundation<'_> {
-    /// Four shares after a short motion of the femur, turn and shift in its frame, to first order,
+    /// NodeBlock shares after a short motion of the femur, turn and shift in its frame, to first order,
     /// and with the speeds of `twist`; the covered area stays.
     #[inline(always)]
     fn landed(
@@ -347,10 +347,10 @@ impl Foundation<'_> {
         let Seen { place, sample } = &look.seen;
         let shares = &self.shares[look.four as usize];
         let rise_n = tractions.load_rise_n(place, motion);
-        let area_mm2 = Number::max(shares.area_mm2, Lanes::splat(f64::MIN_POSITIVE));
+        let area_mm2 = Number::max(shares.area_mm2, F64x4::splat(f64::MIN_POSITIVE));
         let pressure_mpa = tractions.pressure_mpa + rise_n / area_mm2;
         let landed = Tractions4 {
-            pressure_mpa: Number::max(pressure_mpa, Lanes::splat(0.0)),
+            pressure_mpa: Number::max(pressure_mpa, F64x4::splat(0.0)),
             sliding: Sliding::new(
                 &twist.velocity(place),
                 &sample.normal,
@@ -373,7 +373,7 @@ impl Foundation<'_> {
 impl Landed4 {
     /// Adds those of four shares that press.
     #[inline(always)]
-    fn touch(&self, shares: &Shares4, touched: &mut Vec<TouchedNode>) {
+    fn touch(&self, shares: &ShareBlock, touched: &mut Vec<TouchedNode>) {
         for (lane, &node) in shares.nodes.iter().enumerate() {
             let pressure_mpa = self.pressure_mpa.lane(lane);
             if pressure_mpa * shares.area_mm2.lane(lane) > 0.0 {

@@ -2,8 +2,8 @@
 
 use crate::{
     Mat3, Vec3, Vector,
-    number::{Lanes, Number},
-    products::{dot, scaled_plus},
+    number::{F64x4, Number},
+    products::{dot, scale_add},
 };
 
 /// A wrench as (moment, force) or a twist as (angular, linear); N mm and N, rad and mm.
@@ -44,49 +44,49 @@ impl Pose {
 /// A pose for four points at a time.
 pub(super) struct Pose4 {
     /// Columns of R.
-    columns: [Vector<Lanes>; 3],
-    translation: Vector<Lanes>,
+    columns: [Vector<F64x4>; 3],
+    translation: Vector<F64x4>,
 }
 
 impl Pose4 {
     pub fn new(pose: &Pose) -> Self {
-        let column = |axis: usize| Vec3::from(pose.rotation.column(axis)).map(Lanes::splat);
+        let column = |axis: usize| Vec3::from(pose.rotation.column(axis)).map(F64x4::splat);
         Self {
             columns: [column(0), column(1), column(2)],
-            translation: pose.translation.map(Lanes::splat),
+            translation: pose.translation.map(F64x4::splat),
         }
     }
 
     /// Points of the insert frame seen from the femoral frame.
     #[inline(always)]
-    pub fn to_femur(&self, point: &Vector<Lanes>) -> Vector<Lanes> {
+    pub fn to_femur(&self, point: &Vector<F64x4>) -> Vector<F64x4> {
         self.turn_to_femur(&(point - self.translation))
     }
 
     /// Vectors of the insert frame seen from the femoral frame.
     #[inline(always)]
-    pub fn turn_to_femur(&self, vector: &Vector<Lanes>) -> Vector<Lanes> {
+    pub fn turn_to_femur(&self, vector: &Vector<F64x4>) -> Vector<F64x4> {
         let [x, y, z] = &self.columns;
         Vector::new(dot(x, vector), dot(y, vector), dot(z, vector))
     }
 
     /// Vectors of the femoral frame seen from the insert frame.
     #[inline(always)]
-    pub fn turn_to_insert(&self, vector: &Vector<Lanes>) -> Vector<Lanes> {
+    pub fn turn_to_insert(&self, vector: &Vector<F64x4>) -> Vector<F64x4> {
         let [x, y, z] = &self.columns;
-        scaled_plus(x, vector.x, &scaled_plus(y, vector.y, &(z * vector.z)))
+        scale_add(x, vector.x, &scale_add(y, vector.y, &(z * vector.z)))
     }
 }
 
 /// A twist for four points at a time.
 pub(super) struct Twist4 {
-    angular: Vector<Lanes>,
-    linear: Vector<Lanes>,
+    angular: Vector<F64x4>,
+    linear: Vector<F64x4>,
 }
 
 impl Twist4 {
     pub fn new(twist: &Vec6) -> Self {
-        let twist = twist.map(Lanes::splat);
+        let twist = twist.map(F64x4::splat);
         Self {
             angular: twist.fixed_rows::<3>(0).into(),
             linear: twist.fixed_rows::<3>(3).into(),
@@ -94,18 +94,18 @@ impl Twist4 {
     }
 
     /// The angular velocity.
-    pub fn angular(&self) -> &Vector<Lanes> {
+    pub fn angular(&self) -> &Vector<F64x4> {
         &self.angular
     }
 
     /// Velocities of points.
     #[inline(always)]
-    pub fn velocity(&self, place: &Vector<Lanes>) -> Vector<Lanes> {
+    pub fn velocity(&self, place: &Vector<F64x4>) -> Vector<F64x4> {
         let (w, p, v) = (&self.angular, place, &self.linear);
         Vector::new(
-            w.y.times_plus(p.z, v.x - w.z * p.y),
-            w.z.times_plus(p.x, v.y - w.x * p.z),
-            w.x.times_plus(p.y, v.z - w.y * p.x),
+            w.y.mul_add(p.z, v.x - w.z * p.y),
+            w.z.mul_add(p.x, v.y - w.x * p.z),
+            w.x.mul_add(p.y, v.z - w.y * p.x),
         )
     }
 }

@@ -5,14 +5,14 @@ use super::{
     clearance::Clearance,
     ground::{Ground, LastWear, Wear},
     motion::Pose4,
-    shares::Shares4,
+    shares::ShareBlock,
     standoff::Standoff,
 };
-use crate::{Vector, number::Lanes};
+use crate::{Vector, number::F64x4};
 
 /// How far every four shares are from touching, at least, at every increment of the cycle.
 ///
-/// Four shares that were seen apart need no look before the femur has come near enough. What is left
+/// NodeBlock shares that were seen apart need no look before the femur has come near enough. What is left
 /// is exactly what a search over all nodes would find. A cycle after, and with a little wear, the
 /// femur is within tenths of a millimetre of where it was, and so every increment goes on from what
 /// was known there; where that is not enough, from what the increment before has just found. Hardly
@@ -26,13 +26,13 @@ pub(super) struct Nearness {
     now: Standoff,
     ground: Vec<Ground>,
     last_wear: LastWear,
-    /// The fours that may touch.
+    /// The node_blocks that may touch.
     due: Vec<u32>,
 }
 
 impl Nearness {
     /// Nothing is known.
-    pub fn new(shares: &[Shares4]) -> Self {
+    pub fn new(shares: &[ShareBlock]) -> Self {
         Self {
             standoffs: Vec::new(),
             increment: 0,
@@ -71,17 +71,17 @@ impl Nearness {
         (standoff.worn() + 1 >= self.last_wear.number).then_some(standoff)
     }
 
-    /// Lists the fours that may touch under a femur at a pose, each with the places of its centres
+    /// Lists the node_blocks that may touch under a femur at a pose, each with the places of its centres
     /// there.
     ///
     /// They are found first and looked at after: the processor goes through two short loops faster
     /// than through a long one, where every step waits for the one before.
     pub fn find_due(
         &mut self,
-        shares: &[Shares4],
+        shares: &[ShareBlock],
         to: &Pose,
         pose: &Pose4,
-        due: &mut Vec<(u32, Vector<Lanes>)>,
+        due: &mut Vec<(u32, Vector<F64x4>)>,
     ) {
         let beside = self.beside.take();
         let beside = beside.and_then(|beside| self.standoffs[beside].as_ref());
@@ -93,20 +93,20 @@ impl Nearness {
         }
     }
 
-    /// Four touch: they are always due.
+    /// NodeBlock touch: they are always due.
     #[inline(always)]
     pub fn touches(&mut self, four: u32) {
         self.now.touches(four);
     }
 
-    /// Four were seen apart.
+    /// NodeBlock were seen apart.
     #[inline(always)]
     pub fn is_apart(&mut self, four: u32, clearance: &Clearance) {
         self.now.set(four, clearance);
     }
 
     /// What is still known when the shares have worn from what they were before.
-    pub fn worn(mut self, before: &[Shares4], shares: &[Shares4]) -> Self {
+    pub fn worn(mut self, before: &[ShareBlock], shares: &[ShareBlock]) -> Self {
         if self.now.worn() < self.last_wear.number {
             self.now = Standoff::new(shares.len());
         }

@@ -19,7 +19,7 @@ impl<T: Number> Rises<T> {
     #[inline(always)]
     pub fn new(signed_mm: [T; 2]) -> Self {
         let least2 = T::splat(LEAST_RISE_MM * LEAST_RISE_MM);
-        let size = |rise: T| rise.times_plus(rise, least2).sqrt();
+        let size = |rise: T| rise.mul_add(rise, least2).sqrt();
         let [a, b] = signed_mm;
         Self {
             signed_mm,

@@ -4,7 +4,7 @@ use super::{PressureLaw, TouchedNode, motion::Pose4, quadratic::Quadratic};
 use crate::{
     Vector,
     geometry::{FacesAround, FemoralSurface, Share},
-    number::{LANES, Lanes, Number},
+    number::{F64x4, LANES, Number},
 };
 
 /// Nodes whose pressures differ by no more than this part press equally: which of them leads is a
@@ -91,11 +91,11 @@ impl PeakSearch<'_> {
     }
 
     /// Mean gaps over the shares of up to four nodes, mm.
-    fn gaps_mm(&self, nodes: &[u32]) -> Lanes {
+    fn gaps_mm(&self, nodes: &[u32]) -> F64x4 {
         let share = |lane: usize| &self.shares[nodes[lane.min(nodes.len() - 1)] as usize];
-        let axis = |axis: usize| Lanes::from_lanes(|lane| share(lane).centre[axis]);
+        let axis = |axis: usize| F64x4::from_lanes(|lane| share(lane).centre[axis]);
         let place = self.pose.to_femur(&Vector::new(axis(0), axis(1), axis(2)));
-        let spread_mm2 = Lanes::from_lanes(|lane| share(lane).spread_mm2);
+        let spread_mm2 = F64x4::from_lanes(|lane| share(lane).spread_mm2);
         self.femur.sample(&place, spread_mm2).gap_mm
     }
 }

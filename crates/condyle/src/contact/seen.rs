@@ -3,7 +3,7 @@
 use crate::{
     Vector,
     geometry::{FemoralSurface, SurfaceSample},
-    number::{Lanes, Number},
+    number::{F64x4, Number},
     products::dot,
 };
 
@@ -18,36 +18,36 @@ pub(super) const MOVED_ALONG_MM: f64 = 0.02;
 #[derive(Clone, Copy)]
 pub(super) struct Seen {
     /// Places of the shares' centres, p, mm.
-    pub place: Vector<Lanes>,
-    pub sample: SurfaceSample<Lanes>,
+    pub place: Vector<F64x4>,
+    pub sample: SurfaceSample<F64x4>,
 }
 
 impl Seen {
     /// Nothing yet: farther away than any motion.
     pub fn nothing() -> Self {
         Self {
-            place: Vector::repeat(Lanes::splat(f64::INFINITY)),
+            place: Vector::repeat(F64x4::splat(f64::INFINITY)),
             sample: SurfaceSample::far(),
         }
     }
 
     /// The femur as four shares see it at `place`.
     #[inline(always)]
-    pub fn anew(femur: &FemoralSurface, place: Vector<Lanes>, spread_mm2: Lanes) -> Self {
+    pub fn anew(femur: &FemoralSurface, place: Vector<F64x4>, spread_mm2: F64x4) -> Self {
         let sample = femur.sample(&place, spread_mm2);
         Self { place, sample }
     }
 
     /// Whether `place` is so near that what was seen may be moved along there.
     #[inline(always)]
-    pub fn reaches(&self, place: &Vector<Lanes>) -> bool {
+    pub fn reaches(&self, place: &Vector<F64x4>) -> bool {
         let motion = place - self.place;
         dot(&motion, &motion).greatest() <= MOVED_ALONG_MM * MOVED_ALONG_MM
     }
 
     /// What was seen moved along to `place`.
     #[inline(always)]
-    pub fn moved_to(&self, place: Vector<Lanes>) -> Self {
+    pub fn moved_to(&self, place: Vector<F64x4>) -> Self {
         let sample = self.sample.moved(&(place - self.place));
         Self { place, sample }
     }

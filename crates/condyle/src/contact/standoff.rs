@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     Mat3, Vec3, Vector,
-    number::{Number, SINGLES, Singles},
+    number::{F32x8, LANES_F32, Number},
     products::dot,
 };
 
@@ -19,7 +19,7 @@ const ROUNDED_OFF_MM: f64 = 2e-6;
 const FARTHEST_MM: f64 = 16.0;
 
 /// Eight numbers as they lie in memory.
-type Eight = [f32; SINGLES];
+type Eight = [f32; LANES_F32];
 
 /// How far every four shares are from touching where the femur is.
 #[derive(Clone)]
@@ -31,7 +31,7 @@ pub(super) struct Standoff {
     worn: u32,
 }
 
-/// Clearances of eight fours, see [`Clearance`].
+/// Clearances of eight node_blocks, see [`Clearance`].
 #[derive(Clone)]
 struct Clearances {
     clear_mm: Eight,
@@ -43,9 +43,9 @@ struct Clearances {
 /// How points of the insert move in the femoral frame from one pose to another.
 struct Step {
     /// Change of a place by its coordinates x, y and z.
-    turn: [Vector<Singles>; 3],
-    shift: Vector<Singles>,
-    turn_rad: Singles,
+    turn: [Vector<F32x8>; 3],
+    shift: Vector<F32x8>,
+    turn_rad: F32x8,
 }
 
 /// What is known where the femur was at another time, and the way from there.
@@ -55,7 +55,7 @@ struct Neighbour<'a> {
 }
 
 impl Neighbour<'_> {
-    /// Gives eight fours what it knows of those that are `due`; which of them still are.
+    /// Gives eight node_blocks what it knows of those that are `due`; which of them still are.
     #[inline(always)]
     fn help(&self, eight: usize, ground: &Ground, clearances: &mut Clearances, due: u32) -> u32 {
         let mut known = self.clearances[eight].clone();
@@ -72,52 +72,52 @@ impl Step {
         let shift = to.to_femur(&Vec3::zeros()) - from.to_femur(&Vec3::zeros());
         Self {
             turn: columns(&turn),
-            shift: shift.map(Singles::splat),
-            turn_rad: Singles::splat(turn.norm()),
+            shift: shift.map(F32x8::splat),
+            turn_rad: F32x8::splat(turn.norm()),
         }
     }
 
-    /// What eight fours may lose beside their motion, mm.
+    /// What eight node_blocks may lose beside their motion, mm.
     #[inline(always)]
-    fn lost_mm(&self, ground: &Ground) -> Singles {
-        let rounded_off_mm = Singles::splat(ROUNDED_OFF_MM);
-        ground.levers_mm.times_plus(self.turn_rad, rounded_off_mm)
+    fn lost_mm(&self, ground: &Ground) -> F32x8 {
+        let rounded_off_mm = F32x8::splat(ROUNDED_OFF_MM);
+        ground.levers_mm.mul_add(self.turn_rad, rounded_off_mm)
     }
 
     #[inline(always)]
-    fn of(&self, place: &Vector<Singles>) -> Vector<Singles> {
+    fn of(&self, place: &Vector<F32x8>) -> Vector<F32x8> {
         let [x, y, z] = &self.turn;
         let along = |axis: usize| {
-            let across = y[axis].times_plus(place.y, z[axis].times_plus(place.z, self.shift[axis]));
-            x[axis].times_plus(place.x, across)
+            let across = y[axis].mul_add(place.y, z[axis].mul_add(place.z, self.shift[axis]));
+            x[axis].mul_add(place.x, across)
         };
         Vector::new(along(0), along(1), along(2))
     }
 }
 
-fn columns(matrix: &Mat3) -> [Vector<Singles>; 3] {
-    [0, 1, 2].map(|axis| Vec3::from(matrix.column(axis)).map(Singles::splat))
+fn columns(matrix: &Mat3) -> [Vector<F32x8>; 3] {
+    [0, 1, 2].map(|axis| Vec3::from(matrix.column(axis)).map(F32x8::splat))
 }
 
 impl Clearances {
     /// Of shares that touch.
     const NONE: Self = Self {
-        clear_mm: [f32::NEG_INFINITY; SINGLES],
-        slope: [[0.0; SINGLES]; 3],
-        loss: [0.0; SINGLES],
-        radius_mm: [f32::INFINITY; SINGLES],
+        clear_mm: [f32::NEG_INFINITY; LANES_F32],
+        slope: [[0.0; LANES_F32]; 3],
+        loss: [0.0; LANES_F32],
+        radius_mm: [f32::INFINITY; LANES_F32],
     };
 
     /// Carries them along a motion of their middles in the femoral frame that may bring them nearer
     /// by `lost_mm` beside; a bit for each that may touch after it.
     #[inline(always)]
-    fn carry(&mut self, motion: &Vector<Singles>, lost_mm: Singles) -> u32 {
+    fn carry(&mut self, motion: &Vector<F32x8>, lost_mm: F32x8) -> u32 {
         let [x, y, z] = self.slope;
-        let slope = Vector::new(Singles::new(x), Singles::new(y), Singles::new(z));
+        let slope = Vector::new(F32x8::new(x), F32x8::new(y), F32x8::new(z));
         let motion_mm = dot(motion, motion).sqrt() + lost_mm;
-        let lost_mm = Singles::new(self.loss).times_plus(motion_mm, lost_mm);
-        let clear_mm = Singles::new(self.clear_mm) + (dot(&slope, motion) - lost_mm);
-        let radius_mm = Singles::new(self.radius_mm) - motion_mm;
+        let lost_mm = F32x8::new(self.loss).mul_add(motion_mm, lost_mm);
+        let clear_mm = F32x8::new(self.clear_mm) + (dot(&slope, motion) - lost_mm);
+        let radius_mm = F32x8::new(self.radius_mm) - motion_mm;
         self.clear_mm = clear_mm.to_array();
         self.radius_mm = radius_mm.to_array();
         clear_mm.not_above_zero() | radius_mm.not_above_zero()
@@ -139,11 +139,11 @@ impl Clearances {
 }
 
 impl Standoff {
-    /// All of `count` fours may touch, however often they have worn.
+    /// All of `count` node_blocks may touch, however often they have worn.
     pub fn new(count: usize) -> Self {
         Self {
             at: None,
-            clearances: vec![Clearances::NONE; count.div_ceil(SINGLES)],
+            clearances: vec![Clearances::NONE; count.div_ceil(LANES_F32)],
             count,
             worn: 0,
         }
@@ -154,7 +154,7 @@ impl Standoff {
         self.worn
     }
 
-    /// The femur moves on, and the shares have worn to `ground` if they had not yet; lists the fours
+    /// The femur moves on, and the shares have worn to `ground` if they had not yet; lists the node_blocks
     /// that may touch now, ascending.
     ///
     /// Fours that `beside` knows better, from where the femur was then, are taken over from it, if
@@ -192,7 +192,7 @@ impl Standoff {
                 left = beside.help(number, ground, clearances, left);
             }
             while left != 0 {
-                due.push((number * SINGLES) as u32 + left.trailing_zeros());
+                due.push((number * LANES_F32) as u32 + left.trailing_zeros());
                 left &= left - 1;
             }
         }
@@ -209,11 +209,11 @@ impl Standoff {
         })
     }
 
-    /// Four were looked at where the femur is now.
+    /// NodeBlock were looked at where the femur is now.
     #[inline(always)]
     pub fn set(&mut self, four: u32, clearance: &Clearance) {
         let four = four as usize;
-        let (clearances, i) = (&mut self.clearances[four / SINGLES], four % SINGLES);
+        let (clearances, i) = (&mut self.clearances[four / LANES_F32], four % LANES_F32);
         clearances.clear_mm[i] = clearance.clear_mm.min(FARTHEST_MM) as f32;
         clearances.slope[0][i] = clearance.slope.x as f32;
         clearances.slope[1][i] = clearance.slope.y as f32;
@@ -222,11 +222,11 @@ impl Standoff {
         clearances.radius_mm[i] = clearance.radius_mm as f32;
     }
 
-    /// Four touch: they may go on touching wherever the femur moves.
+    /// NodeBlock touch: they may go on touching wherever the femur moves.
     #[inline(always)]
     pub fn touches(&mut self, four: u32) {
         let four = four as usize;
-        let (clearances, i) = (&mut self.clearances[four / SINGLES], four % SINGLES);
+        let (clearances, i) = (&mut self.clearances[four / LANES_F32], four % LANES_F32);
         clearances.clear_mm[i] = f32::NEG_INFINITY;
         clearances.radius_mm[i] = f32::INFINITY;
     }

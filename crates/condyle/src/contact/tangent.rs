@@ -4,7 +4,7 @@ use super::{Mat6, seen::Seen, traction::Tractions4};
 use crate::{
     Vector,
     geometry::Curvature,
-    number::{Lanes, Number, Singles},
+    number::{F32x8, F64x4, Number},
     products::{cross, dot},
 };
 
@@ -18,8 +18,8 @@ type Six<T> = [T; 6];
 /// In single precision, eight shares at a time: a correction of Newton's method that is right to
 /// six digits leaves a millionth of the residual, and halves what is the dearest part of the sum.
 pub(super) struct TangentSum {
-    by_pose: [Six<Singles>; 6],
-    by_twist: [Six<Singles>; 6],
+    by_pose: [Six<F32x8>; 6],
+    by_twist: [Six<F32x8>; 6],
 }
 
 /// What the tangent asks of shares under pressure; see [`Tractions4`].
@@ -35,15 +35,15 @@ struct Facets<T> {
     per_regular: T,
 }
 
-impl Facets<Singles> {
+impl Facets<F32x8> {
     /// Twice four shares.
     #[inline(always)]
     fn pair(one: (&Seen, &Tractions4), other: (&Seen, &Tractions4)) -> Self {
-        let of = |value: fn(&Seen, &Tractions4) -> Lanes| {
-            Singles::pair(value(one.0, one.1), value(other.0, other.1))
+        let of = |value: fn(&Seen, &Tractions4) -> F64x4| {
+            F32x8::pair(value(one.0, one.1), value(other.0, other.1))
         };
-        let vector = |value: fn(&Seen, &Tractions4) -> Vector<Lanes>| {
-            value(one.0, one.1).zip_map(&value(other.0, other.1), Singles::pair)
+        let vector = |value: fn(&Seen, &Tractions4) -> Vector<F64x4>| {
+            value(one.0, one.1).zip_map(&value(other.0, other.1), F32x8::pair)
         };
         Self {
             place: vector(|seen, _| seen.place),
@@ -68,7 +68,7 @@ impl Facets<Singles> {
 
 impl TangentSum {
     pub fn new() -> Self {
-        let zero = [[Singles::splat(0.0); 6]; 6];
+        let zero = [[F32x8::splat(0.0); 6]; 6];
         Self {
             by_pose: zero,
             by_twist: zero,
@@ -79,7 +79,7 @@ impl TangentSum {
     /// twist.
     #[inline(always)]
     pub fn add(&mut self, one: (&Seen, &Tractions4), other: (&Seen, &Tractions4), friction: f64) {
-        self.add_facets(&Facets::pair(one, other), Singles::splat(friction));
+        self.add_facets(&Facets::pair(one, other), F32x8::splat(friction));
     }
 
     /// A motion xi = (w, v) of the femur moves its material at the share by a = v + w x p and turns
@@ -91,23 +91,23 @@ impl TangentSum {
     ///
     /// and a change of twist tau: dW = L mu/w ((1 - s^2) T1 T1' + T2 T2') tau.
     #[inline(always)]
-    fn add_facets(&mut self, facets: &Facets<Singles>, friction: Singles) {
+    fn add_facets(&mut self, facets: &Facets<F32x8>, friction: F32x8) {
         let Facets {
             place: p,
             normal: n,
             load_n: load,
             ..
         } = facets;
-        let one = Singles::splat(1.0);
+        let one = F32x8::splat(1.0);
         let speed2 = dot(&facets.velocity, &facets.velocity);
-        let speed = Number::max(speed2, Singles::splat(LEAST_SPEED2)).sqrt();
+        let speed = Number::max(speed2, F32x8::splat(LEAST_SPEED2)).sqrt();
         let t1 = facets.velocity * (one / speed);
         let t2 = cross(n, &t1);
         let wrench_n = joined(&cross(p, n), n);
         let wrench_1 = joined(&cross(p, &t1), &t1);
         let wrench_2 = joined(&cross(p, &t2), &t2);
         // n x t1 = t2 and n x t2 = -t1.
-        let row = |t: &Vector<Singles>, across: &Vector<Singles>| {
+        let row = |t: &Vector<F32x8>, across: &Vector<F32x8>| {
             let bend = facets.curvature.times(t);
             joined(&(cross(p, &bend) - across), &bend)
         };
@@ -121,14 +121,14 @@ impl TangentSum {
         let per_speed = friction * facets.per_regular;
         let turn = facets.closing * per_speed;
         let (q1, q2) = (*load * (one - turn * stuck), *load * (one - turn));
-        let whole = six(|i| rub.times_plus(wrench_1[i], wrench_n[i]));
-        let first = six(|i| (*load * rub).times_minus(wrench_n[i], q1 * wrench_1[i]));
+        let whole = six(|i| rub.mul_add(wrench_1[i], wrench_n[i]));
+        let first = six(|i| (*load * rub).mul_sub(wrench_n[i], q1 * wrench_1[i]));
         let second = six(|i| -(q2 * wrench_2[i]));
         for (column, entries) in self.by_pose.iter_mut().enumerate() {
             for (i, entry) in entries.iter_mut().enumerate() {
-                let by_load = whole[i].times_plus(load_row[column], *entry);
-                let by_first = first[i].times_plus(row_1[column], by_load);
-                *entry = second[i].times_plus(row_2[column], by_first);
+                let by_load = whole[i].mul_add(load_row[column], *entry);
+                let by_first = first[i].mul_add(row_1[column], by_load);
+                *entry = second[i].mul_add(row_2[column], by_first);
             }
         }
         let (drag_1, drag_2) = (*load * per_speed * stuck, *load * per_speed);
@@ -136,8 +136,8 @@ impl TangentSum {
         for (column, entries) in self.by_twist.iter_mut().enumerate() {
             let (weight_1, weight_2) = (drag_1 * wrench_1[column], drag_2 * wrench_2[column]);
             for (i, entry) in entries.iter_mut().enumerate().take(column + 1) {
-                let by_first = wrench_1[i].times_plus(weight_1, *entry);
-                *entry = wrench_2[i].times_plus(weight_2, by_first);
+                let by_first = wrench_1[i].mul_add(weight_1, *entry);
+                *entry = wrench_2[i].mul_add(weight_2, by_first);
             }
         }
     }

@@ -3,27 +3,27 @@
 use super::{Vec6, motion::Twist4};
 use crate::{
     Vec3, Vector,
-    number::{Lanes, Number},
-    products::{cross, dot, nowhere, scaled_plus},
+    number::{F64x4, Number},
+    products::{cross, dot, scale_add, zero_vector},
 };
 
 /// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
 const STANDSTILL_MM_PER_S: f64 = 1e-9;
 
-/// Four shares under pressure and rubbed; all vectors in the femoral frame.
+/// NodeBlock shares under pressure and rubbed; all vectors in the femoral frame.
 ///
 /// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
 /// of sliding, s = v_t/w and w = sqrt(v_t^2 + v0^2).
 pub(super) struct Tractions4 {
-    pub pressure_mpa: Lanes,
+    pub pressure_mpa: F64x4,
     /// Areas of the shares, mm2; their product with the pressure is the load L, N.
-    pub area_mm2: Lanes,
+    pub area_mm2: F64x4,
     /// Areas of the parts of the shares that press, mm2.
-    pub covered_mm2: Lanes,
+    pub covered_mm2: F64x4,
     /// Derivatives of the loads by the motion of the femur's material there, N/mm.
-    pub load_by_motion: Vector<Lanes>,
+    pub load_by_motion: Vector<F64x4>,
     /// Derivatives of the loads by a turn of the femur about the share, N/rad.
-    pub load_by_turn: Vector<Lanes>,
+    pub load_by_turn: Vector<F64x4>,
     pub sliding: Sliding,
 }
 
@@ -31,27 +31,27 @@ pub(super) struct Tractions4 {
 pub(super) struct Sliding {
     /// Velocity along the surface, mm/s; where nothing slides, a lean so slight that it only gives
     /// a direction.
-    pub velocity_mm_per_s: Vector<Lanes>,
+    pub velocity_mm_per_s: Vector<F64x4>,
     /// Velocity of the femur's material out of the femur, c = n . v, mm/s.
-    pub closing_mm_per_s: Lanes,
+    pub closing_mm_per_s: F64x4,
     /// One over the speed with the tolerance, 1/w, s/mm.
-    pub per_regular: Lanes,
+    pub per_regular: F64x4,
 }
 
 impl Sliding {
     /// Takes a velocity apart along a surface with normal `normal`.
     #[inline(always)]
-    pub fn new(velocity: &Vector<Lanes>, normal: &Vector<Lanes>, tolerance_mm_per_s: f64) -> Self {
+    pub fn new(velocity: &Vector<F64x4>, normal: &Vector<F64x4>, tolerance_mm_per_s: f64) -> Self {
         let closing = dot(normal, velocity);
-        let lean = Lanes::splat(STANDSTILL_MM_PER_S);
-        let leaning = Vector::new(-(normal.y * lean), normal.x * lean, Lanes::splat(0.0));
-        let tangential = scaled_plus(normal, -closing, &(velocity + leaning));
+        let lean = F64x4::splat(STANDSTILL_MM_PER_S);
+        let leaning = Vector::new(-(normal.y * lean), normal.x * lean, F64x4::splat(0.0));
+        let tangential = scale_add(normal, -closing, &(velocity + leaning));
         let speed2 = dot(&tangential, &tangential);
-        let regular2 = speed2 + Lanes::splat(tolerance_mm_per_s * tolerance_mm_per_s);
+        let regular2 = speed2 + F64x4::splat(tolerance_mm_per_s * tolerance_mm_per_s);
         Self {
             velocity_mm_per_s: tangential,
             closing_mm_per_s: closing,
-            per_regular: Lanes::splat(1.0) / regular2.sqrt(),
+            per_regular: F64x4::splat(1.0) / regular2.sqrt(),
         }
     }
 }
@@ -59,15 +59,15 @@ impl Sliding {
 impl Tractions4 {
     /// Shares that nothing presses.
     pub fn none() -> Self {
-        let zero = Lanes::splat(0.0);
+        let zero = F64x4::splat(0.0);
         Self {
             pressure_mpa: zero,
             area_mm2: zero,
             covered_mm2: zero,
-            load_by_motion: nowhere(),
-            load_by_turn: nowhere(),
+            load_by_motion: zero_vector(),
+            load_by_turn: zero_vector(),
             sliding: Sliding {
-                velocity_mm_per_s: nowhere(),
+                velocity_mm_per_s: zero_vector(),
                 closing_mm_per_s: zero,
                 per_regular: zero,
             },
@@ -77,31 +77,31 @@ impl Tractions4 {
     /// Rises of the loads of shares at `place` by a short motion of the femur, turn and shift in
     /// its frame, N.
     #[inline(always)]
-    pub fn load_rise_n(&self, place: &Vector<Lanes>, motion: &Twist4) -> Lanes {
+    pub fn load_rise_n(&self, place: &Vector<F64x4>, motion: &Twist4) -> F64x4 {
         dot(&self.load_by_motion, &motion.velocity(place))
             + dot(&self.load_by_turn, motion.angular())
     }
 
     /// Forces on the insert under a femur with `normal`, N.
     #[inline(always)]
-    pub fn force_n(&self, normal: &Vector<Lanes>, friction: f64) -> Vector<Lanes> {
-        let rub = Lanes::splat(friction) * self.sliding.per_regular;
-        let traction = scaled_plus(&self.sliding.velocity_mm_per_s, rub, normal);
+    pub fn force_n(&self, normal: &Vector<F64x4>, friction: f64) -> Vector<F64x4> {
+        let rub = F64x4::splat(friction) * self.sliding.per_regular;
+        let traction = scale_add(&self.sliding.velocity_mm_per_s, rub, normal);
         traction * (self.pressure_mpa * self.area_mm2)
     }
 }
 
 /// The wrench of many forces.
-pub(super) struct WrenchSum([Lanes; 6]);
+pub(super) struct WrenchSum([F64x4; 6]);
 
 impl WrenchSum {
     pub fn new() -> Self {
-        Self([Lanes::splat(0.0); 6])
+        Self([F64x4::splat(0.0); 6])
     }
 
     /// Adds forces at places, about the origin.
     #[inline(always)]
-    pub fn add(&mut self, place: &Vector<Lanes>, force: &Vector<Lanes>) {
+    pub fn add(&mut self, place: &Vector<F64x4>, force: &Vector<F64x4>) {
         let moment = cross(place, force);
         let wrench = [moment.x, moment.y, moment.z, force.x, force.y, force.z];
         for (sum, part) in self.0.iter_mut().zip(&wrench) {
@@ -111,27 +111,27 @@ impl WrenchSum {
 
     /// The sum.
     pub fn total(&self) -> Vec6 {
-        Vec6::from(self.0.map(Lanes::sum))
+        Vec6::from(self.0.map(F64x4::sum))
     }
 }
 
 /// Slip of many shares weighted by their loads, on the medial and on the lateral side.
-pub(super) struct SlipSums([(Lanes, Vector<Lanes>); 2]);
+pub(super) struct SlipSums([(F64x4, Vector<F64x4>); 2]);
 
 impl SlipSums {
     pub fn new() -> Self {
-        Self([(Lanes::splat(0.0), nowhere()); 2])
+        Self([(F64x4::splat(0.0), zero_vector()); 2])
     }
 
     /// Adds shares at `z`; the medial side is where it is negative.
     #[inline(always)]
-    pub fn add(&mut self, z: Lanes, pressed: &Tractions4) {
-        let (zero, load) = (Lanes::splat(0.0), pressed.pressure_mpa * pressed.area_mm2);
+    pub fn add(&mut self, z: F64x4, pressed: &Tractions4) {
+        let (zero, load) = (F64x4::splat(0.0), pressed.pressure_mpa * pressed.area_mm2);
         let velocity = &pressed.sliding.velocity_mm_per_s;
-        let mut add = |side: usize, load: Lanes| {
+        let mut add = |side: usize, load: F64x4| {
             let (loads, slips) = &mut self.0[side];
             *loads += load;
-            *slips = scaled_plus(velocity, load, slips);
+            *slips = scale_add(velocity, load, slips);
         };
         add(0, z.below_zero(load, zero));
         add(1, z.below_zero(zero, load));
@@ -141,7 +141,7 @@ impl SlipSums {
     pub fn means(&self) -> [Vec3; 2] {
         let mean = |side: usize| {
             let (loads, slips) = &self.0[side];
-            slips.map(Lanes::sum) / loads.sum().max(f64::MIN_POSITIVE)
+            slips.map(F64x4::sum) / loads.sum().max(f64::MIN_POSITIVE)
         };
         [mean(0), mean(1)]
     }

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use super::{
-    CycleRecord, MarchError, MarchState, NodeFields, PlacementError, Progress, UpdateRecord,
-    Updates, Waypoint, WearTest,
+    CycleRecord, MarchError, MarchState, NodeFields, PlacementError, Progress, Snapshot,
+    UpdateRecord, Updates, WearTest,
     interval::shared_out,
     placement::place,
     rates::{Rates, total},
@@ -14,7 +14,9 @@ use crate::{
     Vec3,
     contact::{ContactModel, CycleHistory, Former, Foundation},
     geometry::ArticulatingSurface,
-    machine::{Chain, Cycle, CycleRow, Effort, Freedom, MachineState, Simulator, TimeSettings},
+    machine::{
+        Chain, Cycle, CycleRow, Freedom, MachineState, Simulator, SolverCounters, TimeSettings,
+    },
 };
 
 /// The first and the last cycle, whose motions are kept, repeat themselves within this part of the
@@ -70,10 +72,10 @@ impl March {
     /// The same bodies in a test changed otherwise, from a step on the way as if it were the first.
     pub fn returned_to(
         mut self,
-        waypoint: &Waypoint,
+        snapshot: &Snapshot,
         change: impl FnOnce(WearTest) -> WearTest,
     ) -> Self {
-        let (nodes, worn_mm) = (waypoint.mesh_nodes.clone(), waypoint.worn_mm.clone());
+        let (nodes, worn_mm) = (snapshot.mesh_nodes.clone(), snapshot.worn_mm.clone());
         let increments = self.test.time.increments;
         self.test = change(self.test);
         if self.test.time.increments != increments {
@@ -81,15 +83,15 @@ impl March {
         }
         self.test.insert.restore(nodes.clone(), &worn_mm);
         self.fields = NodeFields::unworn(&self.test, &worn_mm);
-        self.state = MarchState::at(nodes, worn_mm, waypoint.machine, self.state.zero_mm);
+        self.state = MarchState::at(nodes, worn_mm, snapshot.machine, self.state.zero_mm);
         self
     }
 
     fn placed(test: WearTest) -> Result<Self, PlacementError> {
-        let mut effort = Effort::default();
-        let (chain, settled) = place(&test, &mut effort)?;
+        let mut counters = SolverCounters::default();
+        let (chain, settled) = place(&test, &mut counters)?;
         let state = MarchState {
-            effort,
+            counters,
             ..MarchState::at(
                 test.insert.mesh().nodes.clone(),
                 vec![0.0; test.insert.surface_nodes().len()],
@@ -165,11 +167,11 @@ impl March {
             ..
         } = &self.test;
         let contact = Foundation::after(former, contact, femur, insert);
-        let mut effort = self.state.effort;
-        let (contact, cycle) = self.repeating_cycle(contact, spent, &mut effort, watch)?;
+        let mut counters = self.state.counters;
+        let (contact, cycle) = self.repeating_cycle(contact, spent, &mut counters, watch)?;
         let (surface, former) = contact.into_parts();
         self.former = Some(former);
-        self.wear(&surface, cycle, effort)
+        self.wear(&surface, cycle, counters)
     }
 
     /// As [`March::update`], on another model of contact: the one made for the test as worn so far.
@@ -182,9 +184,9 @@ impl March {
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<&UpdateRecord, MarchError> {
         let spent = std::mem::take(&mut self.spent);
-        let mut effort = self.state.effort;
-        let (_, cycle) = self.repeating_cycle(model(&self.test), spent, &mut effort, watch)?;
-        self.wear(&self.test.insert.surface(), cycle, effort)
+        let mut counters = self.state.counters;
+        let (_, cycle) = self.repeating_cycle(model(&self.test), spent, &mut counters, watch)?;
+        self.wear(&self.test.insert.surface(), cycle, counters)
     }
 
     /// Wears the insert by an interval of a solved cycle.
@@ -192,7 +194,7 @@ impl March {
         &mut self,
         surface: &ArticulatingSurface,
         cycle: Cycle,
-        effort: Effort,
+        counters: SolverCounters,
     ) -> Result<&UpdateRecord, MarchError> {
         let update = self.state.updates.len() + 1;
         let cycles = self.cycles();
@@ -219,18 +221,18 @@ impl March {
         let settled_error = self.state.settled_error.after(before);
         let step_error = settled_error.with_last(before, &step);
         let (mesh_nodes, worn_mm) = self.wear_down(surface, &cycle, &rates, &step)?;
-        self.state.effort = effort;
+        self.state.counters = counters;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
         let record = self.record(&cycle, &step, worn_mm3);
         self.state.updates.push(record);
-        let waypoint = Waypoint {
+        let snapshot = Snapshot {
             step: step.remembered(rates),
             mesh_nodes,
             worn_mm,
             machine: cycle.end,
         };
         let part = cycles / self.test.schedule.cycles;
-        self.state.pass(part, waypoint);
+        self.state.pass(part, snapshot);
         self.keep(cycle, cycles);
         Ok(&self.state.updates[update - 1])
     }
@@ -264,13 +266,13 @@ impl March {
         &self,
         contact: C,
         spent: CycleHistory,
-        effort: &mut Effort,
+        counters: &mut SolverCounters,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(C, Cycle), MarchError> {
         let update = self.state.updates.len() + 1;
         let time = self.time();
         let mut simulator = Simulator::new(&self.test.machine, &self.chain, contact, &time);
-        simulator.precedents.clone_from(&self.state.precedents);
+        simulator.warm_starts.clone_from(&self.state.warm_starts);
         simulator.history = spent;
         let increments = self.test.time.increments as f64;
         let (cycles, interval) = (self.cycles(), self.likely_interval());
@@ -282,7 +284,7 @@ impl March {
                 cycles: cycles + interval * cycles_solved.min(1.0),
             })
         };
-        match simulator.cycle(&self.state.machine, effort, &mut watch_cycle) {
+        match simulator.cycle(&self.state.machine, counters, &mut watch_cycle) {
             Ok(cycle) => Ok((simulator.contact, cycle)),
             Err(source) => Err(MarchError::Cycle {
                 update,
@@ -308,8 +310,8 @@ impl March {
         let last = self.state.last_step.as_ref().map(|last| last.interval);
         let left = schedule.cycles - self.cycles();
         match schedule.updates {
-            Updates::Even(updates) => schedule.cycles / updates as f64,
-            Updates::ByDepth { .. } => last.map_or(0.0, |last| shared_out(left, last)),
+            Updates::Fixed(updates) => schedule.cycles / updates as f64,
+            Updates::Auto { .. } => last.map_or(0.0, |last| shared_out(left, last)),
         }
     }
 
@@ -344,7 +346,7 @@ impl March {
 
     fn keep(&mut self, cycle: Cycle, cycles: f64) {
         self.state.machine = cycle.end;
-        self.state.precedents = cycle.precedents;
+        self.state.warm_starts = cycle.warm_starts;
         self.spent = cycle.history;
         let last = CycleRecord {
             cycles,

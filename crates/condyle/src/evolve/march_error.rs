@@ -23,7 +23,7 @@ pub enum MarchError {
     },
     /// The femur fell off the insert.
     #[error(
-        "update {update}: the femur touches the insert nowhere in the whole cycle, and ends it at AP {ap_mm:.1} mm; \
+        "update {update}: the femur touches the insert zero_vector in the whole cycle, and ends it at AP {ap_mm:.1} mm; \
          check loads, springs, axes and start_mm"
     )]
     LostContact {

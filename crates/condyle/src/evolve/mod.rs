@@ -18,7 +18,7 @@ pub use march_error::MarchError;
 pub use placement::PlacementError;
 pub use records::{CycleRecord, NodeFields, Progress, UpdateRecord};
 pub use schedule::{Schedule, Updates};
-pub use state::{MarchState, WAYPOINTS, Waypoint};
+pub use state::{MarchState, SNAPSHOT_PARTS, Snapshot};
 pub use step::StepRecord;
 pub use step_error::StepError;
 pub use wear_test::WearTest;

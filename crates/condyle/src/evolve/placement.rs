@@ -7,7 +7,7 @@ use crate::{
     Vec3,
     contact::{ContactModel, Foundation, Pose, RelativeMotion, Vec6},
     geometry::{ArticulatingSurface, FemoralSurface},
-    machine::{Chain, Effort, Freedom, NotSettled, settle},
+    machine::{Chain, Freedom, NotSettled, SolverCounters, settle},
 };
 
 /// How deep the first touch is, mm.
@@ -74,7 +74,7 @@ impl From<NotSettled> for PlacementError {
 /// The machine's chain, zeroed where the femur settles, and the settled positions.
 pub(super) fn place(
     test: &WearTest,
-    effort: &mut Effort,
+    counters: &mut SolverCounters,
 ) -> Result<(Chain, [f64; 6]), PlacementError> {
     let surface = test.insert.surface();
     let (axis_x, axis_y) = test.flexion_axis_mm;
@@ -98,7 +98,7 @@ pub(super) fn place(
         &chain,
         &mut contact,
         test.time.force_tolerance_n,
-        effort,
+        counters,
     )?;
     check_depth(test, &surface, &mut contact, &chain.at(&positions).pose)?;
     let zeroed = chain.zeroed_at(&test.machine, &positions);

@@ -13,9 +13,9 @@ pub struct Schedule {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Updates {
     /// So many times, each after the same number of cycles, as Knight 2007 does it.
-    Even(usize),
+    Fixed(usize),
     /// As seldom as the depth of wear allows.
-    ByDepth {
+    Auto {
         /// Largest error of the maximum depth that one interval may make, as a fraction of the
         /// depth expected at the end; greater than 0.
         tolerance: f64,
@@ -24,8 +24,8 @@ pub enum Updates {
 
 impl Schedule {
     /// `updates` of the geometry, each after the same number of `cycles`.
-    pub fn evenly(cycles: f64, updates: usize) -> Self {
-        let updates = Updates::Even(updates);
+    pub fn fixed(cycles: f64, updates: usize) -> Self {
+        let updates = Updates::Fixed(updates);
         Self { cycles, updates }
     }
 }

@@ -74,11 +74,11 @@ impl Step {
     pub fn next(before: Before<'_>, schedule: &Schedule) -> Self {
         let left = schedule.cycles - before.cycles;
         let (interval, is_last) = match schedule.updates {
-            Updates::Even(updates) => {
+            Updates::Fixed(updates) => {
                 let interval = schedule.cycles / updates as f64;
                 (interval, before.updates + 1 >= updates)
             }
-            Updates::ByDepth { tolerance } => {
+            Updates::Auto { tolerance } => {
                 let wished = adaptive_interval(before, schedule.cycles, tolerance);
                 let interval = shared_out(left, wished);
                 (interval, interval >= left)
@@ -112,8 +112,8 @@ fn worn(before: Before<'_>, updates: Updates, interval: f64) -> (Vec<f64>, Vec<f
     let (rates, last) = (before.rates, before.last);
     let relaxing = relaxing(rates, last, interval);
     match updates {
-        Updates::Even(_) => (extrapolated(rates, last, interval), relaxing),
-        Updates::ByDepth { .. } => {
+        Updates::Fixed(_) => (extrapolated(rates, last, interval), relaxing),
+        Updates::Auto { .. } => {
             let each = |node| second_order(before, node, interval);
             (relaxing, (0..before.worn_mm.len()).map(each).collect())
         }
@@ -226,7 +226,7 @@ mod tests {
 
     #[test]
     fn the_last_even_step_lands_on_the_last_cycle() {
-        let schedule = Schedule::evenly(5e6, 3);
+        let schedule = Schedule::fixed(5e6, 3);
         let now = rates(&[1e-8]);
         let mut cycles = 0.0;
         for updates in 0..3 {

@@ -4,7 +4,7 @@ use super::{Cylinder, GenericFemur, SmoothField, Torus};
 use crate::{
     Vec3, Vector,
     number::Number,
-    products::{dot, scaled_plus, without_part_along},
+    products::{dot, scale_add, tangential_part},
 };
 
 /// A symmetric 3 by 3 matrix, 1/mm.
@@ -74,11 +74,11 @@ impl<T: Number> SurfaceSample<T> {
     #[inline(always)]
     pub fn moved(&self, motion: &Vector<T>) -> Self {
         let bend = self.curvature.times(motion);
-        let slope = scaled_plus(&bend, T::splat(0.5), &self.gap_gradient);
+        let slope = scale_add(&bend, T::splat(0.5), &self.gap_gradient);
         Self {
             gap_mm: self.gap_mm + dot(&slope, motion),
             gap_gradient: self.gap_gradient + bend,
-            normal: self.normal + without_part_along(&bend, &self.normal),
+            normal: self.normal + tangential_part(&bend, &self.normal),
             curvature: self.curvature,
         }
     }
@@ -86,25 +86,25 @@ impl<T: Number> SurfaceSample<T> {
 
 /// Bounds on the femoral surface around a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surroundings {
+pub struct CurvatureBounds {
     /// How far from the point they hold, mm; less than 0 where nothing is known, as may be 1.5 mm
     /// from a mesh and farther.
     pub radius_mm: f64,
     /// No curvature is larger, 1/mm.
-    pub sharpest_per_mm: f64,
-    /// The gap bends back nowhere by more: no second derivative of it is below minus this, 1/mm.
-    pub hollow_per_mm: f64,
+    pub max_curvature_per_mm: f64,
+    /// The gap bends back zero_vector by more: no second derivative of it is below minus this, 1/mm.
+    pub concavity_per_mm: f64,
     /// No curvature jumps by more, 1/mm: with it the mean gap over a share jumps.
-    pub jump_per_mm: f64,
+    pub curvature_jump_per_mm: f64,
 }
 
-impl Surroundings {
+impl CurvatureBounds {
     /// Where nothing is known.
     pub const UNKNOWN: Self = Self {
         radius_mm: f64::NEG_INFINITY,
-        sharpest_per_mm: 0.0,
-        hollow_per_mm: 0.0,
-        jump_per_mm: 0.0,
+        max_curvature_per_mm: 0.0,
+        concavity_per_mm: 0.0,
+        curvature_jump_per_mm: 0.0,
     };
 
     /// What holds around both of two points; if nothing is known of one, around the other,
@@ -114,22 +114,22 @@ impl Surroundings {
         let larger = |a: f64, b: f64| if a > b { a } else { b };
         Self {
             radius_mm: -larger(-self.radius_mm, -other.radius_mm),
-            sharpest_per_mm: larger(self.sharpest_per_mm, other.sharpest_per_mm),
-            hollow_per_mm: larger(self.hollow_per_mm, other.hollow_per_mm),
-            jump_per_mm: larger(self.jump_per_mm, other.jump_per_mm),
+            max_curvature_per_mm: larger(self.max_curvature_per_mm, other.max_curvature_per_mm),
+            concavity_per_mm: larger(self.concavity_per_mm, other.concavity_per_mm),
+            curvature_jump_per_mm: larger(self.curvature_jump_per_mm, other.curvature_jump_per_mm),
         }
     }
 
-    /// Those of a convex surface nowhere sharper than `sharpest_per_mm`.
+    /// Those of a convex surface zero_vector sharper than `max_curvature_per_mm`.
     ///
     /// The distance from a convex body is convex. Its mean over a share is nearly so: it bends back
     /// by 6 spread K^3 at most, a few thousandths of K for shares of 2 mm on a ball of 20 mm.
-    pub fn convex(sharpest_per_mm: f64, radius_mm: f64) -> Self {
+    pub fn convex(max_curvature_per_mm: f64, radius_mm: f64) -> Self {
         Self {
             radius_mm,
-            sharpest_per_mm: DEEPER * sharpest_per_mm,
-            hollow_per_mm: 0.01 * sharpest_per_mm,
-            jump_per_mm: sharpest_per_mm,
+            max_curvature_per_mm: DEEPER * max_curvature_per_mm,
+            concavity_per_mm: 0.01 * max_curvature_per_mm,
+            curvature_jump_per_mm: max_curvature_per_mm,
         }
     }
 }
@@ -193,12 +193,12 @@ impl FemoralSurface {
 
     /// Bounds on the surface around points, in every lane.
     #[inline(always)]
-    pub fn surroundings<T: Number>(&self, points: &Vector<T>) -> Surroundings {
+    pub fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
         match self {
-            Self::Generic(femur) => femur.surroundings(points),
-            Self::Sphere(ball) => Surroundings::convex(1.0 / ball.tube_radius_mm, FAR_MM),
-            Self::Cylinder(cylinder) => Surroundings::convex(1.0 / cylinder.radius_mm, FAR_MM),
-            Self::Mesh(field) => field.surroundings(points),
+            Self::Generic(femur) => femur.curvature_bounds(points),
+            Self::Sphere(ball) => CurvatureBounds::convex(1.0 / ball.tube_radius_mm, FAR_MM),
+            Self::Cylinder(cylinder) => CurvatureBounds::convex(1.0 / cylinder.radius_mm, FAR_MM),
+            Self::Mesh(field) => field.curvature_bounds(points),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The generic femoral component: two condyles, each of two pieces of torus.
 
-use super::{SurfaceSample, Surroundings, Torus, TriangleMesh, femoral_surface::FAR_MM};
+use super::{CurvatureBounds, SurfaceSample, Torus, TriangleMesh, femoral_surface::FAR_MM};
 use crate::{Vec3, Vector, number::Number};
 
 /// Measures of the generic femoral component, mm and degrees.
@@ -71,7 +71,7 @@ impl GenericFemur {
     }
 
     /// Largest curvature of the surface, 1/mm.
-    pub fn sharpest_per_mm(&self) -> f64 {
+    pub fn max_curvature_per_mm(&self) -> f64 {
         let shape = &self.shape;
         1.0 / shape
             .coronal_radius_mm
@@ -82,9 +82,9 @@ impl GenericFemur {
     /// Bounds around points: each condyle is convex, so they hold as far as the plane half-way to
     /// the other one.
     #[inline(always)]
-    pub fn surroundings<T: Number>(&self, points: &Vector<T>) -> Surroundings {
+    pub fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
         let radius_mm = points.z.abs().least().min(FAR_MM);
-        Surroundings::convex(self.sharpest_per_mm(), radius_mm)
+        CurvatureBounds::convex(self.max_curvature_per_mm(), radius_mm)
     }
 
     /// How far from the origin the component reaches at most, mm.

@@ -3,7 +3,10 @@
 use condyle_fem::{HexMesh, InteriorFollower, volume_below};
 use thiserror::Error;
 
-use super::{ArticulatingSurface, FacesAround, Four, fours::fours, thickness::thickness_at_nodes};
+use super::{
+    ArticulatingSurface, FacesAround, NodeBlock, node_blocks::node_blocks,
+    thickness::thickness_at_nodes,
+};
 use crate::Vec3;
 
 /// Why a mesh makes no insert.
@@ -27,7 +30,7 @@ pub enum InsertError {
     },
     /// A node with no insert below it.
     #[error(
-        "the backside lies nowhere below the articulating surface at ({x:.2}, {y:.2}, {z:.2}) mm; check which surface is the backside"
+        "the backside lies zero_vector below the articulating surface at ({x:.2}, {y:.2}, {z:.2}) mm; check which surface is the backside"
     )]
     NoThickness {
         /// Place of the node, mm.
@@ -50,7 +53,7 @@ pub struct Insert {
     /// Faces of the articulating surface, in numbers of surface nodes.
     faces: Vec<[u32; 4]>,
     faces_around: FacesAround,
-    fours: Vec<Four>,
+    node_blocks: Vec<NodeBlock>,
     unworn_thickness_mm: Vec<f64>,
     /// Depth worn so far: the thickness is computed from it anew, so that an insert worn step by
     /// step and one restored have the same to the last bit.
@@ -96,7 +99,7 @@ impl Insert {
             boundary,
             mesh,
             nodes,
-            fours: fours(&faces, &faces_around),
+            node_blocks: node_blocks(&faces, &faces_around),
             faces,
             faces_around,
             unworn_thickness_mm: thickness_mm.clone(),
@@ -136,8 +139,8 @@ impl Insert {
     }
 
     /// The surface nodes, four by four: each once, those of a four near one another.
-    pub fn fours(&self) -> &[Four] {
-        &self.fours
+    pub fn node_blocks(&self) -> &[NodeBlock] {
+        &self.node_blocks
     }
 
     /// Thickness of the insert below each surface node along its normal, mm.

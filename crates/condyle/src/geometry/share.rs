@@ -3,8 +3,8 @@
 use super::FacesAround;
 use crate::{
     Vec3, Vector,
-    number::{LANES, Lanes, Number},
-    products::{cross, dot, nowhere, scaled_plus, without_part_along},
+    number::{F64x4, LANES, Number},
+    products::{cross, dot, scale_add, tangential_part, zero_vector},
 };
 
 /// A node's share of the articulating surface: a quarter of each face around it, taken together
@@ -26,26 +26,26 @@ pub struct Share {
 /// A face around each of four nodes, and the quarter of it at the node; as seen from the node.
 struct Quarter {
     /// Unit normal of the face; zero where there is no face.
-    normal: Vector<Lanes>,
-    centre: Vector<Lanes>,
-    edges: [Vector<Lanes>; 2],
-    area_vector: Vector<Lanes>,
-    area_mm2: Lanes,
+    normal: Vector<F64x4>,
+    centre: Vector<F64x4>,
+    edges: [Vector<F64x4>; 2],
+    area_vector: Vector<F64x4>,
+    area_mm2: F64x4,
 }
 
 impl Quarter {
     /// The quarters of bilinear faces with the next corner, the one across and the one before.
     #[inline(always)]
-    fn new(next: &Vector<Lanes>, across: &Vector<Lanes>, before: &Vector<Lanes>) -> Self {
-        let (three, eighth) = (Lanes::splat(3.0), Lanes::splat(0.125));
+    fn new(next: &Vector<F64x4>, across: &Vector<F64x4>, before: &Vector<F64x4>) -> Self {
+        let (three, eighth) = (F64x4::splat(3.0), F64x4::splat(0.125));
         let edges = [
-            scaled_plus(next, three, &(across - before)) * eighth,
-            scaled_plus(before, three, &(across - next)) * eighth,
+            scale_add(next, three, &(across - before)) * eighth,
+            scale_add(before, three, &(across - next)) * eighth,
         ];
         let area_vector = cross(&edges[0], &edges[1]);
         Self {
             normal: unit(&cross(across, &(before - next))),
-            centre: scaled_plus(&(next + before), three, across) * Lanes::splat(1.0 / 16.0),
+            centre: scale_add(&(next + before), three, across) * F64x4::splat(1.0 / 16.0),
             edges,
             area_vector,
             area_mm2: length(&area_vector),
@@ -64,12 +64,12 @@ pub(super) struct ShareSeeker<'a> {
 /// What four nodes find around them.
 pub(super) struct Found {
     /// Average of the unit normals of the faces around.
-    normal: Vector<Lanes>,
-    centre: Vector<Lanes>,
-    edge_a: Vector<Lanes>,
-    edge_b: Vector<Lanes>,
-    area_mm2: Lanes,
-    spread_mm2: Lanes,
+    normal: Vector<F64x4>,
+    centre: Vector<F64x4>,
+    edge_a: Vector<F64x4>,
+    edge_b: Vector<F64x4>,
+    area_mm2: F64x4,
+    spread_mm2: F64x4,
 }
 
 impl<'a> ShareSeeker<'a> {
@@ -94,8 +94,8 @@ impl<'a> ShareSeeker<'a> {
         let [edge_a, edge_b] = flat.parallelogram(&self.quarters);
         let spread_mm2 = dot(&edge_a, &edge_a) + dot(&edge_b, &edge_b);
         let own = self.places(nodes);
-        let third = Lanes::splat(1.0 / 3.0);
-        let mut normal = nowhere();
+        let third = F64x4::splat(1.0 / 3.0);
+        let mut normal = zero_vector();
         for quarter in &self.quarters {
             normal += quarter.normal;
         }
@@ -104,11 +104,11 @@ impl<'a> ShareSeeker<'a> {
             // Between nodes the true surface bulges away from the bilinear faces: the mean of a
             // parabola over a share is a third of what the bilinear faces say. So of the
             // centroid's offset from the node, the part along the normal counts a third.
-            centre: scaled_plus(&flat.rise, third, &(own + flat.offset)),
+            centre: scale_add(&flat.rise, third, &(own + flat.offset)),
             edge_a,
             edge_b,
             area_mm2: flat.area_mm2,
-            spread_mm2: spread_mm2 * Lanes::splat(1.0 / 48.0),
+            spread_mm2: spread_mm2 * F64x4::splat(1.0 / 48.0),
         }
     }
 
@@ -132,10 +132,10 @@ impl<'a> ShareSeeker<'a> {
     }
 
     #[inline(always)]
-    fn places(&self, nodes: &[u32; LANES]) -> Vector<Lanes> {
+    fn places(&self, nodes: &[u32; LANES]) -> Vector<F64x4> {
         let at = |lane: usize| &self.positions[nodes[lane] as usize];
         let [a, b, c, d] = [at(0), at(1), at(2), at(3)];
-        let lanes = |axis: usize| Lanes::new([a[axis], b[axis], c[axis], d[axis]]);
+        let lanes = |axis: usize| F64x4::new([a[axis], b[axis], c[axis], d[axis]]);
         Vector::new(lanes(0), lanes(1), lanes(2))
     }
 }
@@ -160,26 +160,27 @@ impl Found {
 
 /// The plane of a share, and where its centroid lies from the node.
 struct Flat {
-    area_mm2: Lanes,
-    normal: Vector<Lanes>,
+    area_mm2: F64x4,
+    normal: Vector<F64x4>,
     /// Offset of the centroid from the node along the plane.
-    offset: Vector<Lanes>,
+    offset: Vector<F64x4>,
     /// And along its normal.
-    rise: Vector<Lanes>,
+    rise: Vector<F64x4>,
 }
 
 impl Flat {
     #[inline(always)]
     fn new(quarters: &[Quarter]) -> Self {
-        let (mut area_mm2, mut area_vector, mut moment) = (Lanes::splat(0.0), nowhere(), nowhere());
+        let (mut area_mm2, mut area_vector, mut moment) =
+            (F64x4::splat(0.0), zero_vector(), zero_vector());
         for quarter in quarters {
             area_mm2 += quarter.area_mm2;
             area_vector += quarter.area_vector;
-            moment = scaled_plus(&quarter.centre, quarter.area_mm2, &moment);
+            moment = scale_add(&quarter.centre, quarter.area_mm2, &moment);
         }
         let normal = unit(&area_vector);
-        let centroid = moment * (Lanes::splat(1.0) / area_mm2);
-        let offset = without_part_along(&centroid, &normal);
+        let centroid = moment * (F64x4::splat(1.0) / area_mm2);
+        let offset = tangential_part(&centroid, &normal);
         Self {
             area_mm2,
             normal,
@@ -191,8 +192,8 @@ impl Flat {
     /// Edges of the flat parallelogram with the quarters' second moment over its area, the first
     /// along an edge of the first quarter: moment = (a a' + b b')/12.
     #[inline(always)]
-    fn parallelogram(&self, quarters: &[Quarter]) -> [Vector<Lanes>; 2] {
-        let u = unit(&without_part_along(&quarters[0].edges[0], &self.normal));
+    fn parallelogram(&self, quarters: &[Quarter]) -> [Vector<F64x4>; 2] {
+        let u = unit(&tangential_part(&quarters[0].edges[0], &self.normal));
         let v = cross(&self.normal, &u);
         let mut sums = Moments::none();
         for quarter in quarters {
@@ -200,26 +201,26 @@ impl Flat {
             sums.add(&quarter.edges[0], part, &u, &v);
             sums.add(&quarter.edges[1], part, &u, &v);
             let lever = quarter.centre - self.offset;
-            sums.add(&lever, part * Lanes::splat(12.0), &u, &v);
+            sums.add(&lever, part * F64x4::splat(12.0), &u, &v);
         }
         let Moments { uu, uv, vv } = sums;
-        let determinant = Number::max(uu.times_minus(vv, uv * uv), Lanes::splat(0.0));
+        let determinant = Number::max(uu.mul_sub(vv, uv * uv), F64x4::splat(0.0));
         let edge_a = u * (determinant / vv).sqrt();
         let root = vv.sqrt();
-        [edge_a, scaled_plus(&u, uv / root, &(v * root))]
+        [edge_a, scale_add(&u, uv / root, &(v * root))]
     }
 }
 
 /// Second moments in the plane of a share.
 struct Moments {
-    uu: Lanes,
-    uv: Lanes,
-    vv: Lanes,
+    uu: F64x4,
+    uv: F64x4,
+    vv: F64x4,
 }
 
 impl Moments {
     fn none() -> Self {
-        let zero = Lanes::splat(0.0);
+        let zero = F64x4::splat(0.0);
         Self {
             uu: zero,
             uv: zero,
@@ -228,26 +229,26 @@ impl Moments {
     }
 
     #[inline(always)]
-    fn add(&mut self, arm: &Vector<Lanes>, weight: Lanes, u: &Vector<Lanes>, v: &Vector<Lanes>) {
+    fn add(&mut self, arm: &Vector<F64x4>, weight: F64x4, u: &Vector<F64x4>, v: &Vector<F64x4>) {
         let (along, across) = (dot(arm, u), dot(arm, v));
         let weighted = weight * along;
-        self.uu = weighted.times_plus(along, self.uu);
-        self.uv = weighted.times_plus(across, self.uv);
-        self.vv = (weight * across).times_plus(across, self.vv);
+        self.uu = weighted.mul_add(along, self.uu);
+        self.uv = weighted.mul_add(across, self.uv);
+        self.vv = (weight * across).mul_add(across, self.vv);
     }
 }
 
 #[inline(always)]
-fn length(v: &Vector<Lanes>) -> Lanes {
+fn length(v: &Vector<F64x4>) -> F64x4 {
     dot(v, v).sqrt()
 }
 
 /// A vector in units of its length; zero stays zero.
 #[inline(always)]
-fn unit(v: &Vector<Lanes>) -> Vector<Lanes> {
-    v * (Lanes::splat(1.0) / Number::max(length(v), Lanes::splat(f64::MIN_POSITIVE)))
+fn unit(v: &Vector<F64x4>) -> Vector<F64x4> {
+    v * (F64x4::splat(1.0) / Number::max(length(v), F64x4::splat(f64::MIN_POSITIVE)))
 }
 
-fn one(v: &Vector<Lanes>, lane: usize) -> Vec3 {
+fn one(v: &Vector<F64x4>, lane: usize) -> Vec3 {
     Vec3::new(v.x.lane(lane), v.y.lane(lane), v.z.lane(lane))
 }

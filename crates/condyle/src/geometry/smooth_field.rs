@@ -9,15 +9,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Curvature, SurfaceSample, Surroundings, TriangleMesh,
-    bend_map::BendMap,
+    Curvature, CurvatureBounds, SurfaceSample, TriangleMesh,
+    curvature_grid::CurvatureGrid,
     curved_mesh::CurvedMesh,
     shell_report,
     spline::{Bases, Derivatives},
 };
 use crate::{
     Vec3, Vector,
-    number::{LANES, Lanes, Number},
+    number::{F64x4, LANES, Number},
 };
 
 /// Distance between grid nodes, mm: the spline's error on a ball of radius 20 mm is then below
@@ -47,7 +47,7 @@ pub struct SmoothField {
     /// Nodes beyond the band: their gap is a bound.
     is_far: Vec<bool>,
     /// How the field bends around any point.
-    bends: BendMap,
+    bends: CurvatureGrid,
 }
 
 #[inline(always)]
@@ -79,7 +79,7 @@ impl SmoothField {
             dims,
             coefficients: Vec::new(),
             is_far: Vec::new(),
-            bends: BendMap::default(),
+            bends: CurvatureGrid::default(),
         };
         field.coefficients = field.gaps_at_nodes(&CurvedMesh::new(mesh), threads.max(1));
         field.bound_far_gaps(shell_report(mesh).is_closed());
@@ -89,7 +89,7 @@ impl SmoothField {
         }
         // A row is read as four coefficients, of which it uses three.
         field.coefficients.push(0.0);
-        field.bends = BendMap::new(&field);
+        field.bends = CurvatureGrid::new(&field);
         field
     }
 
@@ -107,14 +107,14 @@ impl SmoothField {
 
     /// Bounds on the surface around points, in every lane.
     #[inline(always)]
-    pub fn surroundings<T: Number>(&self, points: &Vector<T>) -> Surroundings {
+    pub fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
         let corners = self.locate(points).corner;
         let [sx, sy, sz] = self.strides();
         let around = |&corner: &u32| self.bends.around(corner as usize + sx + sy + sz);
         let lanes = corners[..T::COUNT].iter().map(around);
         lanes
-            .reduce(Surroundings::joined)
-            .unwrap_or(Surroundings::UNKNOWN)
+            .reduce(CurvatureBounds::joined)
+            .unwrap_or(CurvatureBounds::UNKNOWN)
     }
 
     /// Distance between the nodes of the grid, mm.
@@ -197,7 +197,7 @@ impl SmoothField {
     /// One look at the last says that all are there: strides of 32 bits cannot overflow their sum, so
     /// that the compiler leaves out the nine looks at each row.
     #[inline(always)]
-    fn rows(&self, corner: u32) -> impl Fn(usize, usize) -> Lanes {
+    fn rows(&self, corner: u32) -> impl Fn(usize, usize) -> F64x4 {
         let [_, sy, sz] = self.strides().map(|stride| stride as u32 as usize);
         let (corner, all) = (corner as usize, &self.coefficients[..]);
         assert!(
@@ -206,7 +206,7 @@ impl SmoothField {
         );
         move |j, k| {
             let from = corner + j * sy + k * sz;
-            Lanes::new([all[from], all[from + 1], all[from + 2], all[from + 3]])
+            F64x4::new([all[from], all[from + 1], all[from + 2], all[from + 3]])
         }
     }
 

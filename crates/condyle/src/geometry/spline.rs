@@ -1,6 +1,6 @@
 //! A quadratic B-spline of three variables at a point, from the 27 coefficients that reach it.
 
-use crate::number::{LANES, Lanes, Number};
+use crate::number::{F64x4, LANES, Number};
 
 /// Values and first derivatives of the three B-splines that reach a point along one axis.
 #[derive(Clone, Copy)]
@@ -57,11 +57,11 @@ impl<T: Number> Bases<T> {
     ///
     /// The tensor product is contracted an axis at a time: 165 multiplications instead of 810.
     #[inline(always)]
-    pub fn spline<R: Fn(usize, usize) -> Lanes>(
+    pub fn spline<R: Fn(usize, usize) -> F64x4>(
         &self,
         rows: impl Fn(usize) -> R,
     ) -> Derivatives<T> {
-        let none = [Lanes::splat(0.0); LANES];
+        let none = [F64x4::splat(0.0); LANES];
         let (mut f, mut fz, mut fzz) = (none, none, none);
         let (mut fy, mut fyz, mut fyy) = (none, none, none);
         for lane in 0..T::COUNT {
@@ -93,9 +93,9 @@ impl<T: Number> Bases<T> {
     /// The 27 coefficients around one lane's point contracted along y and z, side by side along x:
     /// their values, and derivatives by z, zz, y, yz and yy.
     #[inline(always)]
-    fn across_x(&self, lane: usize, row: impl Fn(usize, usize) -> Lanes) -> [Lanes; 6] {
+    fn across_x(&self, lane: usize, row: impl Fn(usize, usize) -> F64x4) -> [F64x4; 6] {
         let weights = |of: &[[f64; LANES]; 3]| {
-            let weight = |i: usize| Lanes::splat(of[i][lane]);
+            let weight = |i: usize| F64x4::splat(of[i][lane]);
             [weight(0), weight(1), weight(2)]
         };
         let (y, y_slope) = (weights(&self.y.value), weights(&self.y.slope));
@@ -138,7 +138,7 @@ fn laid_out<T: Number>(basis: &Basis<T>) -> Basis<[f64; LANES]> {
 #[inline(always)]
 fn sum<T: Number>(weights: &[T; 3], of: &[T; 3]) -> T {
     let [a, b, c] = weights;
-    a.times_plus(of[0], b.times_plus(of[1], *c * of[2]))
+    a.mul_add(of[0], b.mul_add(of[1], *c * of[2]))
 }
 
 /// The second difference: second derivatives of the three B-splines are 1, -2, 1 everywhere.

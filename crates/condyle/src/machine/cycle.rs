@@ -6,11 +6,11 @@ use std::ops::{ControlFlow, Range};
 use thiserror::Error;
 
 use super::{
-    Chain, FREEDOMS, Freedom, Integration, Machine, Precedent, TimeSettings,
+    Chain, FREEDOMS, Freedom, Integration, Machine, TimeSettings, WarmStart,
     balance::{Balance, Kinematics},
     explicit::{Explicit, NoStep},
     integrator::{
-        Effort, Integrator, MachineState, NotConverged, drive, loads_at, out_of_balance_n,
+        Integrator, MachineState, NotConverged, SolverCounters, drive, loads_at, out_of_balance_n,
         step_error_mm,
     },
 };
@@ -47,7 +47,7 @@ pub struct Cycle {
     /// The machine when it was found to repeat itself.
     pub end: MachineState,
     /// How every increment was solved, for a next cycle like it.
-    pub precedents: Vec<Option<Precedent>>,
+    pub warm_starts: Vec<Option<WarmStart>>,
     /// Increments solved until then.
     pub increments_solved: usize,
     /// Whether it did repeat itself, within the cycles that it was given.
@@ -125,7 +125,7 @@ pub struct Simulator<'a, C> {
     /// How finely and exactly it is solved.
     pub time: &'a TimeSettings,
     /// How the increments were solved the last time, by the phase they end at; empty before.
-    pub precedents: Vec<Option<Precedent>>,
+    pub warm_starts: Vec<Option<WarmStart>>,
     /// The history of the cycle that runs; before, any that is no longer needed, for its memory.
     pub history: CycleHistory,
 }
@@ -171,7 +171,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
             chain,
             contact,
             time,
-            precedents: Vec::new(),
+            warm_starts: Vec::new(),
             history: CycleHistory::default(),
         }
     }
@@ -188,7 +188,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
     pub fn cycle(
         &mut self,
         start: &MachineState,
-        effort: &mut Effort,
+        counters: &mut SolverCounters,
         watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
     ) -> Result<Cycle, CycleError> {
         let count = self.time.increments;
@@ -203,13 +203,13 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
             let to = (place + 1) as f64 / count as f64;
             self.contact.begin_increment(place);
             state = match self.time.integration {
-                Integration::Implicit => self.step(&state, to, effort, &mut |_| ())?,
+                Integration::Implicit => self.step(&state, to, counters, &mut |_| ())?,
                 Integration::Explicit { least_step_s } => Explicit {
                     machine: self.machine,
                     chain: self.chain,
                     contact: &mut self.contact,
                     least_step_s,
-                    effort,
+                    counters,
                 }
                 .advance(&state, to)?,
             };
@@ -263,7 +263,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
             rows: landed().map(|here| here.row).collect(),
             history: std::mem::take(&mut self.history),
             end,
-            precedents: std::mem::take(&mut self.precedents),
+            warm_starts: std::mem::take(&mut self.warm_starts),
             increments_solved: solved,
             repeats,
         }
@@ -276,7 +276,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
     /// The machine at the phase `to`, an increment after `state`, by the implicit integrator.
     ///
     /// `watch` is told the length of the residual at every iteration of Newton's method, N, moments
-    /// on a lever of 10 mm. A step that does not converge is taken in halves, and is no precedent.
+    /// on a lever of 10 mm. A step that does not converge is taken in halves, and is no warm_start.
     ///
     /// # Errors
     /// An increment that does not converge.
@@ -284,16 +284,16 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         &mut self,
         state: &MachineState,
         to: f64,
-        effort: &mut Effort,
+        counters: &mut SolverCounters,
         watch: &mut dyn FnMut(f64),
     ) -> Result<MachineState, CycleError> {
         let count = self.time.increments;
-        self.precedents.resize(count, None);
+        self.warm_starts.resize(count, None);
         let place = (to * count as f64).round() as usize % count;
-        let last = self.precedents[place];
-        let (end, precedent) =
-            self.advance(state, to, last.as_ref(), MOST_HALVINGS, effort, watch)?;
-        self.precedents[place] = precedent;
+        let last = self.warm_starts[place];
+        let (end, warm_start) =
+            self.advance(state, to, last.as_ref(), MOST_HALVINGS, counters, watch)?;
+        self.warm_starts[place] = warm_start;
         Ok(end)
     }
 
@@ -309,29 +309,29 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         &mut self,
         state: &MachineState,
         to: f64,
-        precedent: Option<&Precedent>,
+        warm_start: Option<&WarmStart>,
         halvings: u32,
-        effort: &mut Effort,
+        counters: &mut SolverCounters,
         watch: &mut dyn FnMut(f64),
-    ) -> Result<(MachineState, Option<Precedent>), CycleError> {
+    ) -> Result<(MachineState, Option<WarmStart>), CycleError> {
         let mut integrator = Integrator {
             machine: self.machine,
             chain: self.chain,
             contact: &mut self.contact,
             force_tolerance_n: self.time.force_tolerance_n,
             foresees: self.time.foresees,
-            effort,
+            counters,
         };
-        match integrator.step(state, to - state.phase, precedent, watch) {
-            Ok((next, precedent)) if halvings == 0 || self.is_exact_enough(state, &next) => {
-                Ok((MachineState { phase: to, ..next }, Some(precedent)))
+        match integrator.step(state, to - state.phase, warm_start, watch) {
+            Ok((next, warm_start)) if halvings == 0 || self.is_exact_enough(state, &next) => {
+                Ok((MachineState { phase: to, ..next }, Some(warm_start)))
             }
             Err(failed) if halvings == 0 => Err(failed.into()),
             _ => {
-                effort.halvings += 1;
+                counters.halvings += 1;
                 let half = (state.phase + to) / 2.0;
-                let (middle, _) = self.advance(state, half, None, halvings - 1, effort, watch)?;
-                let (end, _) = self.advance(&middle, to, None, halvings - 1, effort, watch)?;
+                let (middle, _) = self.advance(state, half, None, halvings - 1, counters, watch)?;
+                let (end, _) = self.advance(&middle, to, None, halvings - 1, counters, watch)?;
                 Ok((end, None))
             }
         }

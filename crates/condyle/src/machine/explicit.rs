@@ -3,7 +3,7 @@
 use super::{
     Chain, Drive, FREEDOMS, Freedom, Machine,
     balance::{Balance, Kinematics, StepSlopes},
-    integrator::{Effort, MachineState, drive, loads_at},
+    integrator::{MachineState, SolverCounters, drive, loads_at},
 };
 use crate::contact::{ContactModel, Mat6, Vec6};
 
@@ -71,7 +71,7 @@ pub(super) struct Explicit<'a, C> {
     pub contact: &'a mut C,
     /// Inertia is added where the stable step is shorter, s; 0 adds none.
     pub least_step_s: f64,
-    pub effort: &'a mut Effort,
+    pub counters: &'a mut SolverCounters,
 }
 
 impl<C: ContactModel> Explicit<'_, C> {
@@ -83,8 +83,8 @@ impl<C: ContactModel> Explicit<'_, C> {
         let mut left = usize::MAX;
         while left > 0 {
             let stable = self.quickness(&now).stable_step(self.least_step_s);
-            self.effort.added_inertia =
-                (stable.inertia_factor - 1.0).max(self.effort.added_inertia);
+            self.counters.added_inertia =
+                (stable.inertia_factor - 1.0).max(self.counters.added_inertia);
             let rest_s = (to - phase) / self.machine.frequency_hz;
             left = ((rest_s / stable.step_s).ceil() as usize).max(1);
             let step = (to - phase) / left as f64;
@@ -130,7 +130,7 @@ impl<C: ContactModel> Explicit<'_, C> {
             next.accelerations[j] = -residual[j] / inertia;
             next.rates[j] = now.rates[j] + half_s * (now.accelerations[j] + next.accelerations[j]);
         }
-        self.effort.explicit_steps += 1;
+        self.counters.explicit_steps += 1;
         let is_kept = |rate: &f64| rate.abs() <= FASTEST;
         if !next.rates.iter().all(is_kept) {
             let positions = now.positions;
@@ -140,7 +140,7 @@ impl<C: ContactModel> Explicit<'_, C> {
     }
 
     fn balance(&mut self, kinematics: Kinematics) -> Balance<'_, C> {
-        self.effort.contact_evaluations += 1;
+        self.counters.contact_evaluations += 1;
         Balance::new(self.machine, self.chain, self.contact, kinematics)
     }
 
@@ -269,7 +269,7 @@ mod tests {
         support: Support,
         inertia: f64,
         least_step_s: f64,
-        effort: &mut Effort,
+        counters: &mut SolverCounters,
     ) -> Result<MachineState, NoStep> {
         let machine = machine(inertia);
         let mut start = MachineState::at_rest(&machine, [0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
@@ -280,7 +280,7 @@ mod tests {
             chain: &Chain::new(&machine, Vec3::zeros(), (0.0, 0.0)),
             contact: &mut contact,
             least_step_s,
-            effort,
+            counters,
         };
         explicit.advance(&start, 0.1)
     }
@@ -297,7 +297,7 @@ mod tests {
                 chain: &Chain::new(&machine, Vec3::zeros(), (0.0, 0.0)),
                 contact: &mut Support { stiffness, drag },
                 least_step_s: 0.0,
-                effort: &mut Effort::default(),
+                counters: &mut SolverCounters::default(),
             };
             for _ in 0..steps {
                 now = explicit
@@ -325,7 +325,7 @@ mod tests {
             (1e3, 200.0),
         ] {
             let support = Support { stiffness, drag };
-            let end = released(support, MASS, 0.0, &mut Effort::default()).unwrap();
+            let end = released(support, MASS, 0.0, &mut SolverCounters::default()).unwrap();
             let amplitude = end.now.positions[IS].abs();
             assert!(
                 amplitude < 1.2,
@@ -336,14 +336,14 @@ mod tests {
 
     #[test]
     fn inertia_is_added_until_the_asked_step_is_stable() {
-        let mut effort = Effort::default();
+        let mut counters = SolverCounters::default();
         let support = Support {
             stiffness: 1e5,
             drag: 60.0,
         };
-        let end = released(support, MASS, 1e-3, &mut effort).unwrap();
-        assert_eq!(effort.explicit_steps, 100);
-        assert!(effort.added_inertia > 10.0, "{effort:?}");
+        let end = released(support, MASS, 1e-3, &mut counters).unwrap();
+        assert_eq!(counters.explicit_steps, 100);
+        assert!(counters.added_inertia > 10.0, "{counters:?}");
         assert!(end.now.positions[IS].abs() < 1.2, "{end:?}");
         let quickness = Quickness {
             frequency_per_s: 4000.0,
@@ -363,7 +363,7 @@ mod tests {
             stiffness: 1.0,
             drag: 0.0,
         };
-        let refused = released(support, 0.0, 0.0, &mut Effort::default());
+        let refused = released(support, 0.0, 0.0, &mut SolverCounters::default());
         assert_eq!(
             CycleError::from(refused.unwrap_err()).to_string(),
             "the explicit integrator needs inertia on every loaded freedom, and InferoSuperior has none; give it \
@@ -377,7 +377,7 @@ mod tests {
             stiffness: -1e4,
             drag: 0.0,
         };
-        let lost = released(support, 1e-5, 0.0, &mut Effort::default());
+        let lost = released(support, 1e-5, 0.0, &mut SolverCounters::default());
         let message = CycleError::from(lost.unwrap_err()).to_string();
         assert!(
             message.starts_with("explicit steps leave all bounds at "),

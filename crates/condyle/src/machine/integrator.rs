@@ -1,7 +1,7 @@
 //! One step of time: the second-order backward differences, solved by Newton's method.
 
 use super::{
-    Chain, Drive, FREEDOMS, Freedom, Machine, Precedent,
+    Chain, Drive, FREEDOMS, Freedom, Machine, WarmStart,
     balance::{Balance, Kinematics, StepSlopes},
 };
 use crate::{
@@ -39,7 +39,7 @@ pub struct MachineState {
 
 /// Work done so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Effort {
+pub struct SolverCounters {
     /// Newton iterations: corrections of the positions.
     pub newton_iterations: u64,
     /// Contact evaluations, each with its tangent but for explicit steps.
@@ -81,10 +81,10 @@ struct Attempt {
 }
 
 impl Attempt {
-    fn new(positions: [f64; 6], precedent: Option<&Precedent>) -> Self {
+    fn new(positions: [f64; 6], warm_start: Option<&WarmStart>) -> Self {
         Self {
             positions,
-            contraction_per_n: precedent.map_or(f64::INFINITY, |last| last.contraction_per_n),
+            contraction_per_n: warm_start.map_or(f64::INFINITY, |last| last.contraction_per_n),
             caution: CAUTION,
             residual_n: f64::INFINITY,
             taken: Vec6::zeros(),
@@ -205,7 +205,7 @@ pub(super) struct Integrator<'a, C> {
     pub force_tolerance_n: f64,
     /// Whether a residual that is foreseen counts as if it were computed.
     pub foresees: bool,
-    pub effort: &'a mut Effort,
+    pub counters: &'a mut SolverCounters,
 }
 
 impl<C: ContactModel> Integrator<'_, C> {
@@ -217,9 +217,9 @@ impl<C: ContactModel> Integrator<'_, C> {
         &mut self,
         state: &MachineState,
         step: f64,
-        precedent: Option<&Precedent>,
+        warm_start: Option<&WarmStart>,
         watch: &mut dyn FnMut(f64),
-    ) -> Result<(MachineState, Precedent), NotConverged> {
+    ) -> Result<(MachineState, WarmStart), NotConverged> {
         let phase = state.phase + step;
         let step_s = step / self.machine.frequency_hz;
         let ratio = state.before.map_or(0.0, |(_, last_s)| step_s / last_s);
@@ -235,14 +235,14 @@ impl<C: ContactModel> Integrator<'_, C> {
                 now,
                 before: Some((state.now, step_s)),
             };
-            (state, Precedent::new(&state, attempt.contraction_per_n))
+            (state, WarmStart::new(&state, attempt.contraction_per_n))
         };
-        let predicted = self.predicted(state, step_s, phase, precedent);
-        let mut attempt = Attempt::new(predicted, precedent);
+        let predicted = self.predicted(state, step_s, phase, warm_start);
+        let mut attempt = Attempt::new(predicted, warm_start);
         for _ in 0..MOST_ITERATIONS {
             let kinematics = self.kinematics(state, &differences, attempt.positions, phase);
             let balance = Balance::new(self.machine, self.chain, self.contact, kinematics);
-            self.effort.contact_evaluations += 1;
+            self.counters.contact_evaluations += 1;
             let residual = balance.residual(&loads);
             watch(length_n(&residual));
             if out_of_balance_n(&residual) <= self.force_tolerance_n {
@@ -252,7 +252,7 @@ impl<C: ContactModel> Integrator<'_, C> {
             if !attempt.improve(&residual, slips, || balance.tangent(slopes)) {
                 break;
             }
-            self.effort.newton_iterations += 1;
+            self.counters.newton_iterations += 1;
             if self.foresees && attempt.foreseen_n <= self.force_tolerance_n {
                 let kinematics = self.kinematics(state, &differences, attempt.positions, phase);
                 return Ok(landed(kinematics, &attempt));
@@ -265,17 +265,17 @@ impl<C: ContactModel> Integrator<'_, C> {
         })
     }
 
-    /// Where the freedoms will be, as a cycle before; without a precedent, if accelerations last.
+    /// Where the freedoms will be, as a cycle before; without a warm_start, if accelerations last.
     /// Driven ones, where they are driven.
     fn predicted(
         &self,
         state: &MachineState,
         step_s: f64,
         phase: f64,
-        precedent: Option<&Precedent>,
+        warm_start: Option<&WarmStart>,
     ) -> [f64; 6] {
-        let mut positions = match precedent {
-            Some(precedent) => precedent.followed_from(&state.now, step_s),
+        let mut positions = match warm_start {
+            Some(warm_start) => warm_start.followed_from(&state.now, step_s),
             None => lasting(state, step_s),
         };
         drive(self.machine, phase, &mut positions, &mut [0.0; 6]);

@@ -2,7 +2,7 @@
 
 /// A spring along the AP axis with free play, fixed to the insert at a lateral offset.
 ///
-/// It slackens nowhere inside the free play and is linear beyond it, with one stiffness against
+/// It slackens zero_vector inside the free play and is linear beyond it, with one stiffness against
 /// posterior and another against anterior motion of the insert.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ApSpring {

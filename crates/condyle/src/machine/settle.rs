@@ -3,7 +3,7 @@
 use super::{
     Chain, Drive, Freedom, Machine, Waveform,
     balance::{Balance, Kinematics, StepSlopes},
-    integrator::{Effort, drive, loads_at, longest_mm, out_of_balance_n},
+    integrator::{SolverCounters, drive, loads_at, longest_mm, out_of_balance_n},
 };
 use crate::contact::{ContactModel, Mat6};
 
@@ -37,7 +37,7 @@ pub fn settle(
     chain: &Chain,
     contact: &mut impl ContactModel,
     force_tolerance_n: f64,
-    effort: &mut Effort,
+    counters: &mut SolverCounters,
 ) -> Result<[f64; 6], NotSettled> {
     let machine = settling(machine);
     let loads = loads_at(&machine, 0.0);
@@ -58,7 +58,7 @@ pub fn settle(
         };
         let balance = Balance::new(&machine, chain, contact, kinematics);
         let residual = balance.residual(&loads);
-        effort.contact_evaluations += 1;
+        counters.contact_evaluations += 1;
         let residual_n = out_of_balance_n(&residual);
         if residual_n <= force_tolerance_n {
             return Ok(positions);
@@ -71,7 +71,7 @@ pub fn settle(
         let Some(correction) = damped.lu().solve(&residual) else {
             break;
         };
-        effort.newton_iterations += 1;
+        counters.newton_iterations += 1;
         let limit = (LONGEST_CORRECTION_MM / longest_mm(&correction)).min(1.0);
         positions
             .iter_mut()

@@ -11,20 +11,20 @@ use super::Number;
 pub const LANES: usize = 4;
 
 /// How many numbers of single precision go side by side.
-pub const SINGLES: usize = 8;
+pub const LANES_F32: usize = 8;
 
-/// Four numbers side by side.
+/// NodeBlock numbers side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
-pub struct Lanes(f64x4);
+pub struct F64x4(f64x4);
 
 /// Eight numbers of single precision side by side: twice as many, where six digits are enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
-pub struct Singles(f32x8);
+pub struct F32x8(f32x8);
 
-impl Lanes {
-    /// Four numbers.
+impl F64x4 {
+    /// NodeBlock numbers.
     #[inline(always)]
     pub fn new(lanes: [f64; LANES]) -> Self {
         Self(f64x4::new(lanes))
@@ -60,28 +60,28 @@ impl Lanes {
     }
 }
 
-impl Singles {
+impl F32x8 {
     /// Eight numbers.
     #[inline(always)]
-    pub fn new(lanes: [f32; SINGLES]) -> Self {
+    pub fn new(lanes: [f32; LANES_F32]) -> Self {
         Self(f32x8::new(lanes))
     }
 
     /// The eight numbers.
     #[inline(always)]
-    pub fn to_array(self) -> [f32; SINGLES] {
+    pub fn to_array(self) -> [f32; LANES_F32] {
         self.0.to_array()
     }
 
     /// A bit for every lane that is not above zero.
     #[inline(always)]
     pub fn not_above_zero(self) -> u32 {
-        (1 << SINGLES) - 1 - self.0.simd_gt(f32x8::ZERO).to_bitmask()
+        (1 << LANES_F32) - 1 - self.0.simd_gt(f32x8::ZERO).to_bitmask()
     }
 
     /// Twice four numbers.
     #[inline(always)]
-    pub fn pair(one: Lanes, other: Lanes) -> Self {
+    pub fn pair(one: F64x4, other: F64x4) -> Self {
         let ([a, b, c, d], [e, f, g, h]) = (one.to_array(), other.to_array());
         Self(f32x8::new([a, b, c, d, e, f, g, h].map(|x| x as f32)))
     }
@@ -133,12 +133,12 @@ macro_rules! side_by_side {
             }
 
             #[inline(always)]
-            fn times_plus(self, factor: Self, addend: Self) -> Self {
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
                 Self(self.0.mul_add(factor.0, addend.0))
             }
 
             #[inline(always)]
-            fn times_minus(self, factor: Self, subtrahend: Self) -> Self {
+            fn mul_sub(self, factor: Self, subtrahend: Self) -> Self {
                 Self(self.0.mul_sub(factor.0, subtrahend.0))
             }
 
@@ -223,5 +223,5 @@ macro_rules! operators {
     )*};
 }
 
-side_by_side! {Lanes, f64x4, f64, LANES}
-side_by_side! {Singles, f32x8, f32, SINGLES}
+side_by_side! {F64x4, f64x4, f64, LANES}
+side_by_side! {F32x8, f32x8, f32, LANES_F32}

@@ -1,6 +1,6 @@
 //! One number, or several at a time.
 //!
-//! The formulas of the hot loop are written once, for any [`Number`]. With [`Lanes`] they work on
+//! The formulas of the hot loop are written once, for any [`Number`]. With [`F64x4`] they work on
 //! four nodes at a time, which the compiler turns into vector instructions on any machine; every
 //! lane does the same operations in the same order as a single number would, so the results do not
 //! depend on how wide the machine's vectors are.
@@ -12,7 +12,7 @@ use num_traits::{One, Zero};
 
 mod lanes;
 
-pub use lanes::{LANES, Lanes, SINGLES, Singles};
+pub use lanes::{F32x8, F64x4, LANES, LANES_F32};
 
 /// A real number, or several side by side.
 pub trait Number:
@@ -43,9 +43,9 @@ pub trait Number:
 
     /// The first three columns of a matrix that has a row of four numbers for every lane.
     #[inline(always)]
-    fn columns(rows: &[Lanes; LANES]) -> [Self; 3] {
-        let [a, b, c, _] = Lanes::transposed(*rows);
-        let lanes = |column: Lanes| Self::from_lanes(|lane| column.lane(lane));
+    fn columns(rows: &[F64x4; LANES]) -> [Self; 3] {
+        let [a, b, c, _] = F64x4::transposed(*rows);
+        let lanes = |column: F64x4| Self::from_lanes(|lane| column.lane(lane));
         [lanes(a), lanes(b), lanes(c)]
     }
 
@@ -56,9 +56,9 @@ pub trait Number:
     /// The largest whole number that is not larger.
     fn floor(self) -> Self;
     /// `self` times `factor` plus `addend`, rounded once.
-    fn times_plus(self, factor: Self, addend: Self) -> Self;
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// `self` times `factor` less `subtrahend`, rounded once.
-    fn times_minus(self, factor: Self, subtrahend: Self) -> Self;
+    fn mul_sub(self, factor: Self, subtrahend: Self) -> Self;
     /// The larger of two.
     fn max(self, other: Self) -> Self;
     /// The smallest lane.
@@ -101,12 +101,12 @@ impl Number for f64 {
     }
 
     #[inline(always)]
-    fn times_plus(self, factor: Self, addend: Self) -> Self {
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
         self.mul_add(factor, addend)
     }
 
     #[inline(always)]
-    fn times_minus(self, factor: Self, subtrahend: Self) -> Self {
+    fn mul_sub(self, factor: Self, subtrahend: Self) -> Self {
         self.mul_add(factor, -subtrahend)
     }
 
@@ -134,8 +134,8 @@ mod tests {
     fn every_lane_does_as_a_single_number_does() {
         let (a, b) = ([1.5, -2.0, 0.3, 7.0], [0.1, 3.0, -0.7, 7.0]);
         let formula = |x: f64, y: f64| ((x * y - x / y).abs() + y).sqrt().max(x);
-        let lanes = Lanes::new(a);
-        let other = Lanes::new(b);
+        let lanes = F64x4::new(a);
+        let other = F64x4::new(b);
         let together = Number::max(
             Number::sqrt(Number::abs(lanes * other - lanes / other) + other),
             lanes,
@@ -146,7 +146,7 @@ mod tests {
                 together.lane(lane) == single || (together.lane(lane).is_nan() && single.is_nan())
             );
         }
-        let chosen = lanes.below_zero(Lanes::zero(), Lanes::one());
+        let chosen = lanes.below_zero(F64x4::zero(), F64x4::one());
         assert_eq!(chosen.to_array(), [1.0, 0.0, 1.0, 1.0]);
         assert_eq!(lanes.sum(), (1.5 - 2.0) + (0.3 + 7.0));
     }
@@ -154,16 +154,16 @@ mod tests {
     #[test]
     fn singles_are_two_lanes_rounded() {
         let (a, b) = (
-            Lanes::new([1.5, -2.0, 0.1, 7.0]),
-            Lanes::new([3.0, 4.0, 5.0, 6.0]),
+            F64x4::new([1.5, -2.0, 0.1, 7.0]),
+            F64x4::new([3.0, 4.0, 5.0, 6.0]),
         );
-        let singles = Singles::pair(a, b);
+        let singles = F32x8::pair(a, b);
         assert_eq!(singles.lane(1), -2.0);
         assert_eq!(singles.lane(2), f64::from(0.1_f32));
         assert_eq!(singles.lane(4), 3.0);
         assert_eq!(singles.least(), -2.0);
         assert!((singles.sum() - 24.6).abs() < 1e-6);
-        let product = singles.times_plus(Singles::splat(2.0), -singles);
+        let product = singles.mul_add(F32x8::splat(2.0), -singles);
         assert!((0..8).all(|lane| product.lane(lane) == singles.lane(lane)));
     }
 }

@@ -71,8 +71,8 @@ impl Case {
             schedule: Schedule {
                 cycles: self.march.cycles as f64,
                 updates: match &self.march.update {
-                    Update::Fixed(fixed) => Updates::Even(fixed.updates as usize),
-                    Update::Auto(by_depth) => Updates::ByDepth {
+                    Update::Fixed(fixed) => Updates::Fixed(fixed.updates as usize),
+                    Update::Auto(by_depth) => Updates::Auto {
                         tolerance: by_depth.depth_tolerance_fraction,
                     },
                 },

@@ -64,7 +64,7 @@ fn shipped_generic_cases_build() {
         let built = Case::read(&cases().join(name)).unwrap().build(1).unwrap();
         assert!(built.warnings.is_empty());
         assert!((8_900..9_300).contains(&built.test.insert.mesh().hexes.len()));
-        assert_eq!(built.test.schedule, Schedule::evenly(5e6, 10));
+        assert_eq!(built.test.schedule, Schedule::fixed(5e6, 10));
     }
 }
 

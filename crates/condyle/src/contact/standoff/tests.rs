@@ -3,12 +3,12 @@
 
 use super::*;
 use crate::{
-    contact::{motion::Pose4, partial::Rises, seen::Seen, shares::Shares4},
+    contact::{motion::Pose4, partial::Rises, seen::Seen, shares::ShareBlock},
     geometry::{
         FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
         SmoothField, TriangleMesh, flat_insert,
     },
-    number::{LANES, Lanes},
+    number::{F64x4, LANES},
 };
 
 /// Farthest step of the femur, mm and rad.
@@ -72,8 +72,8 @@ fn bumpy() -> TriangleMesh {
     mesh
 }
 
-/// Four shares as a search would find them: what they see, their reach, and whether they are apart.
-fn look(femur: &FemoralSurface, four: &Shares4, pose: &Pose) -> (Seen, Lanes, bool) {
+/// NodeBlock shares as a search would find them: what they see, their reach, and whether they are apart.
+fn look(femur: &FemoralSurface, four: &ShareBlock, pose: &Pose) -> (Seen, F64x4, bool) {
     let pose = Pose4::new(pose);
     let place = pose.to_femur(&four.centre);
     let seen = Seen::anew(femur, place, four.spread_mm2);
@@ -86,19 +86,19 @@ fn look(femur: &FemoralSurface, four: &Shares4, pose: &Pose) -> (Seen, Lanes, bo
 
 /// Smallest gap at the corners of four shares, less how much the mean over a share lies above the
 /// gap in its middle.
-fn least_corner_mm(femur: &FemoralSurface, four: &Shares4, pose: &Pose) -> f64 {
+fn least_corner_mm(femur: &FemoralSurface, four: &ShareBlock, pose: &Pose) -> f64 {
     let pose4 = Pose4::new(pose);
-    let gap_at = |place: &Vector<Lanes>| femur.gap_mm(&pose4.to_femur(place));
+    let gap_at = |place: &Vector<F64x4>| femur.gap_mm(&pose4.to_femur(place));
     let (seen, ..) = look(femur, four, pose);
     let above_mm = seen.sample.gap_mm - gap_at(&four.centre);
-    let [half_a, half_b] = [&four.edge_a, &four.edge_b].map(|edge| edge * Lanes::splat(0.5));
+    let [half_a, half_b] = [&four.edge_a, &four.edge_b].map(|edge| edge * F64x4::splat(0.5));
     let corners = [
         four.centre + half_a + half_b,
         four.centre + half_a - half_b,
         four.centre - half_a + half_b,
         four.centre - half_a - half_b,
     ];
-    let least = |corner: &Vector<Lanes>| (gap_at(corner) + above_mm).least();
+    let least = |corner: &Vector<F64x4>| (gap_at(corner) + above_mm).least();
     corners.iter().map(least).fold(f64::INFINITY, f64::min)
 }
 
@@ -114,7 +114,7 @@ fn unworn() -> LastWear {
 }
 
 /// What a search over all shares would know.
-fn searched(femur: &FemoralSurface, shares: &[Shares4], pose: &Pose) -> Standoff {
+fn searched(femur: &FemoralSurface, shares: &[ShareBlock], pose: &Pose) -> Standoff {
     let mut standoff = Standoff::new(shares.len());
     let mut due = Vec::new();
     standoff.follow(pose, &Ground::of(shares), &unworn(), None, &mut due);
@@ -122,7 +122,7 @@ fn searched(femur: &FemoralSurface, shares: &[Shares4], pose: &Pose) -> Standoff
     for (four, shares) in (0..).zip(shares) {
         let (seen, reach_mm, is_apart) = look(femur, shares, pose);
         if is_apart {
-            let around = femur.surroundings(&seen.place);
+            let around = femur.curvature_bounds(&seen.place);
             standoff.set(four, &Clearance::new(&seen, reach_mm, shares, around));
         } else {
             standoff.touches(four);
@@ -133,9 +133,9 @@ fn searched(femur: &FemoralSurface, shares: &[Shares4], pose: &Pose) -> Standoff
 
 /// Steps the femur at random from about `height_mm` over the insert, which wears or is restored at
 /// two of three steps, and holds what is not due then against a search, with the help of what is
-/// known near by. Gives how many fours were not due.
+/// known near by. Gives how many node_blocks were not due.
 fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
-    let shares = |insert: &Insert| Shares4::of(insert, &insert.surface());
+    let shares = |insert: &Insert| ShareBlock::of(insert, &insert.surface());
     let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
     let mut numbers = Numbers(17);
     let (mut sure, mut taken_over) = (0, 0);

@@ -49,7 +49,7 @@ impl Crossings {
 ///
 /// Two triangles cross if only a shift of more than [`Crossings::LEAST_DEPTH`] parts them. Those
 /// that share an edge or overlap in one plane do not; those that share a corner are compared
-/// without the surroundings of that corner. A pair is a wrinkle if a corner of one is a corner of
+/// without the curvature_bounds of that corner. A pair is a wrinkle if a corner of one is a corner of
 /// the other or joined to one by an edge, and it is no deeper than [`Crossings::WRINKLE_DEPTH`]:
 /// two sheets that cross are never such neighbours all along.
 pub fn crossings(mesh: &TriangleMesh) -> Crossings {

@@ -15,14 +15,14 @@ const COASTING: f64 = 0.5;
 /// A cycle nearly repeats the one before. So an increment starts nearer to its end, and knows how
 /// much of a residual a correction leaves before it has made one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Precedent {
+pub struct WarmStart {
     /// How far the machine went beyond half of where its rates lead, mm or rad.
     lead: [f64; 6],
     /// What the last whole correction left of a residual, over its square, 1/N.
     pub contraction_per_n: f64,
 }
 
-impl Precedent {
+impl WarmStart {
     /// That of a step that has just landed.
     pub(super) fn new(landed: &MachineState, contraction_per_n: f64) -> Self {
         let lead = landed.before.map_or([0.0; 6], |(from, step_s)| {

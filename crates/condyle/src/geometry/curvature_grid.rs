@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Curvature, SmoothField, Surroundings};
+use super::{Curvature, CurvatureBounds, SmoothField};
 use crate::{
     Vec3, Vector,
-    number::{LANES, Lanes, Number},
+    number::{F64x4, LANES, Number},
 };
 
 /// Gaps at which a surface touches or nearly does, mm.
@@ -25,7 +25,7 @@ const CELLS_AROUND: usize = 1;
 /// Deeper than contact goes, a femoral component has an inside with edges of its own; what bends
 /// there is not asked.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct BendMap {
+pub(super) struct CurvatureGrid {
     /// Those of every cell, of most of them unknown: one look in memory finds them.
     bends: Vec<Bends>,
     radius_mm: f64,
@@ -78,7 +78,7 @@ fn rounded_up(value: f64) -> f32 {
     (value as f32).next_up()
 }
 
-impl BendMap {
+impl CurvatureGrid {
     /// The map of a field whose cells lie around the nodes of its grid.
     pub fn new(field: &SmoothField) -> Self {
         let [sx, sy, sz] = field.strides();
@@ -104,16 +104,16 @@ impl BendMap {
 
     /// Bounds around any point of the cell around a grid node.
     #[inline]
-    pub fn around(&self, node: usize) -> Surroundings {
+    pub fn around(&self, node: usize) -> CurvatureBounds {
         let Bends { sharpest, hollow } = self.bends[node];
         if sharpest < 0.0 {
-            return Surroundings::UNKNOWN;
+            return CurvatureBounds::UNKNOWN;
         }
-        Surroundings {
+        CurvatureBounds {
             radius_mm: self.radius_mm,
-            sharpest_per_mm: sharpest.into(),
-            hollow_per_mm: hollow.into(),
-            jump_per_mm: 0.0,
+            max_curvature_per_mm: sharpest.into(),
+            concavity_per_mm: hollow.into(),
+            curvature_jump_per_mm: 0.0,
         }
     }
 }
@@ -141,9 +141,9 @@ fn in_cell(field: &SmoothField, middle: &Vec3, edge_mm: f64) -> Bends {
     let quarter = |bit: bool| if bit { edge_mm / 4.0 } else { -edge_mm / 4.0 };
     for half in [false, true] {
         let points = Vector::new(
-            Lanes::from_lanes(|lane| middle.x + quarter(lane & 1 == 0)),
-            Lanes::from_lanes(|lane| middle.y + quarter(lane & 2 == 0)),
-            Lanes::splat(middle.z + quarter(half)),
+            F64x4::from_lanes(|lane| middle.x + quarter(lane & 1 == 0)),
+            F64x4::from_lanes(|lane| middle.y + quarter(lane & 2 == 0)),
+            F64x4::splat(middle.z + quarter(half)),
         );
         let sample = field.sample(&points);
         let slopes = sample.gap_gradient.dot(&sample.gap_gradient).sqrt();
@@ -157,7 +157,7 @@ fn in_cell(field: &SmoothField, middle: &Vec3, edge_mm: f64) -> Bends {
     all
 }
 
-fn entries(curvature: &Curvature<Lanes>, lane: usize) -> [f64; 6] {
+fn entries(curvature: &Curvature<F64x4>, lane: usize) -> [f64; 6] {
     let Curvature {
         xx,
         yy,

@@ -5,14 +5,14 @@ use crate::number::LANES;
 
 /// Up to four nodes that lie together: what is near one is near all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Four {
+pub struct NodeBlock {
     /// The nodes, ascending; the last of them again where there are fewer than four.
     pub nodes: [u32; LANES],
     /// How many there are.
     pub count: usize,
 }
 
-impl Four {
+impl NodeBlock {
     fn new(nodes: &mut [u32]) -> Self {
         nodes.sort_unstable();
         let last = nodes.len() - 1;
@@ -29,22 +29,22 @@ impl Four {
 /// A grid falls into blocks of two by two, whatever its outline. They touch, or not, sooner all
 /// together than four nodes in a row would, and do not reach from one end of a row to the start of
 /// the next.
-pub(super) fn fours(faces: &[[u32; 4]], around: &FacesAround) -> Vec<Four> {
+pub(super) fn node_blocks(faces: &[[u32; 4]], around: &FacesAround) -> Vec<NodeBlock> {
     let mut left = Left {
         around,
         is_taken: vec![false; around.node_count()],
     };
-    let mut fours = Vec::with_capacity(around.node_count().div_ceil(LANES));
+    let mut node_blocks = Vec::with_capacity(around.node_count().div_ceil(LANES));
     for &face in faces {
-        left.take_blocks(face, &mut fours);
+        left.take_blocks(face, &mut node_blocks);
     }
     for node in 0..around.node_count() as u32 {
         if let Some(chain) = left.take_chain(node) {
-            fours.push(chain);
+            node_blocks.push(chain);
         }
     }
-    fours.sort_unstable_by_key(|four| four.nodes[0]);
-    fours
+    node_blocks.sort_unstable_by_key(|four| four.nodes[0]);
+    node_blocks
 }
 
 /// The nodes that are in no four yet.
@@ -65,7 +65,7 @@ impl Left<'_> {
     }
 
     /// Takes a face's corners, those of the faces next but one on all its sides, and so on.
-    fn take_blocks(&mut self, face: [u32; 4], fours: &mut Vec<Four>) {
+    fn take_blocks(&mut self, face: [u32; 4], node_blocks: &mut Vec<NodeBlock>) {
         let mut blocks = vec![face];
         while let Some(mut block) = blocks.pop() {
             if self.take(&block) {
@@ -75,7 +75,7 @@ impl Left<'_> {
                     self.face_beyond([from, to])
                 };
                 blocks.extend(sides.into_iter().filter_map(beyond));
-                fours.push(Four::new(&mut block));
+                node_blocks.push(NodeBlock::new(&mut block));
             }
         }
     }
@@ -88,7 +88,7 @@ impl Left<'_> {
     }
 
     /// Takes a free node with up to three others, each beside one before it.
-    fn take_chain(&mut self, node: u32) -> Option<Four> {
+    fn take_chain(&mut self, node: u32) -> Option<NodeBlock> {
         let mut nodes = Vec::with_capacity(LANES);
         if self.take(&[node]) {
             nodes.push(node);
@@ -102,7 +102,7 @@ impl Left<'_> {
             }
             end += 1;
         }
-        (!nodes.is_empty()).then(|| Four::new(&mut nodes))
+        (!nodes.is_empty()).then(|| NodeBlock::new(&mut nodes))
     }
 }
 
@@ -110,17 +110,20 @@ impl Left<'_> {
 mod tests {
     use super::*;
 
-    /// The fours of a grid of `columns` by `rows` nodes.
-    fn of_grid(columns: u32, rows: u32) -> Vec<Four> {
+    /// The node_blocks of a grid of `columns` by `rows` nodes.
+    fn of_grid(columns: u32, rows: u32) -> Vec<NodeBlock> {
         let first = (0..rows - 1).flat_map(|j| (0..columns - 1).map(move |i| i + j * columns));
         let faces: Vec<[u32; 4]> = first
             .map(|n| [n, n + 1, n + columns + 1, n + columns])
             .collect();
-        fours(&faces, &FacesAround::new((columns * rows) as usize, &faces))
+        node_blocks(&faces, &FacesAround::new((columns * rows) as usize, &faces))
     }
 
-    fn numbers(fours: &[Four]) -> Vec<&[u32]> {
-        fours.iter().map(|four| &four.nodes[..four.count]).collect()
+    fn numbers(node_blocks: &[NodeBlock]) -> Vec<&[u32]> {
+        node_blocks
+            .iter()
+            .map(|four| &four.nodes[..four.count])
+            .collect()
     }
 
     #[test]
@@ -155,9 +158,13 @@ mod tests {
         let number = |(i, k): (i32, i32)| places.binary_search(&(k, i)).unwrap() as u32;
         let face = |&(i, k): &(i32, i32)| corners.map(|(di, dk)| number((i + di, k + dk)));
         let faces: Vec<[u32; 4]> = cells.iter().map(face).collect();
-        let fours = fours(&faces, &FacesAround::new(places.len(), &faces));
-        assert!(fours.len() * 4 < places.len() * 11 / 10, "{}", fours.len());
-        let mut nodes = numbers(&fours).concat();
+        let node_blocks = node_blocks(&faces, &FacesAround::new(places.len(), &faces));
+        assert!(
+            node_blocks.len() * 4 < places.len() * 11 / 10,
+            "{}",
+            node_blocks.len()
+        );
+        let mut nodes = numbers(&node_blocks).concat();
         nodes.sort_unstable();
         assert!(nodes.into_iter().eq(0..places.len() as u32));
     }
