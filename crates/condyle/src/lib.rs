@@ -9,6 +9,7 @@ pub mod geometry;
 pub mod machine;
 pub mod number;
 mod products;
+pub mod spatial;
 pub mod wear;
 
 /// A point or a vector in space, mm unless said otherwise.

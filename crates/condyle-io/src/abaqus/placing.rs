@@ -1,9 +1,9 @@
 //! Where both bodies stand in the simulator's frame when the file begins.
 
 use condyle::Vec3;
-use condyle::contact::Pose;
 use condyle::evolve::{March, WearTest};
 use condyle::machine::{Chain, Drive, Freedom};
+use condyle::spatial::Pose;
 
 /// Freedoms that move the insert, and not the femur.
 const OF_THE_INSERT: [Freedom; 4] = [

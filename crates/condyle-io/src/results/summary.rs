@@ -150,7 +150,7 @@ fn range(rows: &[CycleRow], freedom: Freedom) -> f64 {
 }
 
 fn medial_load_share(rows: &[CycleRow]) -> f64 {
-    let medial: f64 = rows.iter().map(|row| row.medial_force_n).sum();
+    let medial: f64 = rows.iter().map(|row| row.region_force_n[0]).sum();
     let whole: f64 = rows.iter().map(|row| row.axial_force_n).sum();
     medial / whole
 }

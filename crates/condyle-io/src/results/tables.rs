@@ -57,8 +57,7 @@ fn add_cycle(text: &mut String, record: &CycleRecord) {
             axial_force_n,
             contact_area_mm2,
             peak_pressure_mpa,
-            medial_force_n,
-            lateral_force_n,
+            region_force_n: [medial_force_n, lateral_force_n],
             ..
         } = row;
         writeln!(

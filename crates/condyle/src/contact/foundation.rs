@@ -1,9 +1,8 @@
 //! The elastic foundation: rigid bodies, and pressure from local overclosure.
 
 use super::{
-    ContactModel, Pose, PressureLaw, RelativeMotion, Tangent, TouchedNode, Vec6,
+    ContactModel, Landing, Linearization, PressureLaw, Response, Tangent, TouchedNode,
     clearance::Clearance,
-    motion::{Pose4, Twist4, small_motion, twist_to_femur},
     nearness::Nearness,
     partial::{Rises, mean_overclosure},
     peak::PeakSearch,
@@ -17,6 +16,9 @@ use crate::{
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     number::{F64x4, LANES, Number},
     products::{cross, dot, scale_add, tangential_part, zero_vector},
+    spatial::{
+        FrameChange, Pose, Pose4, RelativeMotion, Twist, Twist4, Wrench, WrenchByTwist, body,
+    },
 };
 
 /// How the foundation presses and rubs.
@@ -190,7 +192,7 @@ impl<'a> Foundation<'a> {
     }
 
     /// Presses all that touch; the wrench on the insert at the femur's origin.
-    fn press(&mut self, pose: &Pose4, twist: &Twist4) -> Vec6 {
+    fn press(&mut self, pose: &Pose4, twist: &Twist4) -> Wrench<body::Insert, body::Femur> {
         self.tractions.clear();
         let mut total = WrenchSum::new();
         let mut slips = SlipSums::new();
@@ -248,22 +250,7 @@ fn press(
     }
 }
 
-impl ContactModel for Foundation<'_> {
-    fn begin_increment(&mut self, increment: usize) {
-        self.nearness.begin_increment(increment);
-    }
-
-    fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
-        self.pose = motion.pose;
-        let to_femur = twist_to_femur(&self.pose);
-        let pose = Pose4::new(&self.pose);
-        let twist = Twist4::new(&(to_femur * motion.twist));
-        self.nearness
-            .find_due(&self.shares, &self.pose, &pose, &mut self.due);
-        self.look(&pose);
-        to_femur.tr_mul(&self.press(&pose, &twist))
-    }
-
+impl Linearization for Foundation<'_> {
     fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
         for (looks, tractions) in self.looks.chunks(2).zip(self.tractions.chunks(2)) {
@@ -273,25 +260,52 @@ impl ContactModel for Foundation<'_> {
             sum.add(one, other.unwrap_or(nothing), self.settings.friction);
         }
         let (by_pose, by_twist) = sum.total();
-        let to_femur = twist_to_femur(&self.pose);
+        let change = FrameChange::to_femur(&self.pose);
         Tangent {
-            by_pose: to_femur.tr_mul(&by_pose) * to_femur,
-            by_twist: to_femur.tr_mul(&by_twist) * to_femur,
+            by_pose: change.derivative_back(&WrenchByTwist::new(by_pose)),
+            by_twist: change.derivative_back(&WrenchByTwist::new(by_twist)),
         }
     }
+}
 
-    fn mean_slip(&self) -> [Vec3; 2] {
-        self.mean_slip
-    }
-
+impl ContactModel for Foundation<'_> {
     fn node_count(&self) -> usize {
         self.surface.positions.len()
     }
 
-    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
-        let to_femur = twist_to_femur(&self.pose);
-        let moved = Twist4::new(&(to_femur * small_motion(&self.pose, &motion.pose)));
-        let twist = Twist4::new(&(to_femur * motion.twist));
+    fn begin_increment(&mut self, increment: usize) {
+        self.nearness.begin_increment(increment);
+    }
+
+    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
+        self.pose = motion.pose;
+        let change = FrameChange::to_femur(&self.pose);
+        let pose = Pose4::new(&self.pose);
+        let twist = Twist4::new(&change.twist(&motion.twist));
+        self.nearness
+            .find_due(&self.shares, &self.pose, &pose, &mut self.due);
+        self.look(&pose);
+        let wrench = change.wrench_back(&self.press(&pose, &twist));
+        Response::new(wrench, self.mean_slip, self)
+    }
+
+    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+        let touched = self.touched(motion);
+        let peak_pressure_mpa = self.peak_pressure_mpa(motion, &touched);
+        Landing {
+            touched,
+            peak_pressure_mpa,
+        }
+    }
+}
+
+impl Foundation<'_> {
+    /// The nodes in contact at a motion near that of the last response, to first order.
+    fn touched(&self, motion: &RelativeMotion) -> Vec<TouchedNode> {
+        let change = FrameChange::to_femur(&self.pose);
+        let moved = Twist::between(&self.pose, &motion.pose);
+        let moved = Twist4::new(&change.twist(&moved));
+        let twist = Twist4::new(&change.twist(&motion.twist));
         let pose = Pose4::new(&self.pose);
         let mut touched = Vec::with_capacity(LANES * self.looks.len());
         for (look, tractions) in self.looks.iter().zip(&self.tractions) {
@@ -381,7 +395,7 @@ impl Landed4 {
                 let [anterior, lateral] = &self.sliding_mm_per_s;
                 touched.push(TouchedNode {
                     node,
-                    is_medial: shares.is_medial[lane],
+                    region: shares.regions[lane],
                     pressure_mpa,
                     covered_mm2: self.covered_mm2.lane(lane),
                     force_n: Vec3::new(force.x.lane(lane), force.y.lane(lane), force.z.lane(lane)),

@@ -1,14 +1,16 @@
 //! Which shares may touch: four are looked at again only when they could have come near.
 
 use super::{
-    Pose,
     clearance::Clearance,
     ground::{Ground, LastWear, Wear},
-    motion::Pose4,
     shares::ShareBlock,
     standoff::Standoff,
 };
-use crate::{Vector, number::F64x4};
+use crate::{
+    Vector,
+    number::F64x4,
+    spatial::{Pose, Pose4},
+};
 
 /// How far every four shares are from touching, at least, at every increment of the cycle.
 ///

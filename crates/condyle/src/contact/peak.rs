@@ -1,10 +1,11 @@
 //! The highest pressure, which lies between the nodes.
 
-use super::{PressureLaw, TouchedNode, motion::Pose4, quadratic::Quadratic};
+use super::{MOST_REGIONS, PressureLaw, TouchedNode, quadratic::Quadratic};
 use crate::{
     Vector,
     geometry::{FacesAround, FemoralSurface, Share},
     number::{F64x4, LANES, Number},
+    spatial::Pose4,
 };
 
 /// Nodes whose pressures differ by no more than this part press equally: which of them leads is a
@@ -47,14 +48,14 @@ struct Look {
 }
 
 impl PeakSearch<'_> {
-    /// Highest pressure at or around the nodes that touch, MPa; either side may have it.
+    /// Highest pressure at or around the nodes that touch, MPa; any region may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
-        let highest = highest_of_sides(touched);
+        let highest = highest_of_regions(touched);
         let leads = highest.map(|highest| highest * (1.0 - EQUAL));
-        let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.is_medial)];
+        let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.region)];
         let tops = touched.iter().filter(leads);
         tops.map(|top| self.highest_around(top.node))
-            .fold(highest[0].max(highest[1]), f64::max)
+            .fold(highest.into_iter().fold(0.0, f64::max), f64::max)
     }
 
     /// Highest pressure within the share of a node, MPa.
@@ -100,11 +101,11 @@ impl PeakSearch<'_> {
     }
 }
 
-/// Highest mean over a share on the lateral and on the medial side, MPa.
-fn highest_of_sides(touched: &[TouchedNode]) -> [f64; 2] {
-    let mut highest = [0.0; 2];
+/// Highest mean over a share in every region, MPa.
+fn highest_of_regions(touched: &[TouchedNode]) -> [f64; MOST_REGIONS] {
+    let mut highest = [0.0; MOST_REGIONS];
     for node in touched {
-        let highest = &mut highest[usize::from(node.is_medial)];
+        let highest = &mut highest[usize::from(node.region)];
         // A jump that is seldom taken is faster than a maximum that waits for the one before.
         if node.pressure_mpa > *highest {
             *highest = node.pressure_mpa;

@@ -9,7 +9,8 @@ use crate::{
 /// NodeBlock nodes' shares, side by side; a lane too many repeats the last node without area.
 pub(super) struct ShareBlock {
     pub nodes: [u32; LANES],
-    pub is_medial: [bool; LANES],
+    /// Which region each node belongs to.
+    pub regions: [u8; LANES],
     pub centre: Vector<F64x4>,
     pub edge_a: Vector<F64x4>,
     pub edge_b: Vector<F64x4>,
@@ -39,7 +40,7 @@ impl ShareBlock {
         };
         Self {
             nodes,
-            is_medial: nodes.map(|node| surface.positions[node as usize].z < 0.0),
+            regions: nodes.map(|node| u8::from(surface.positions[node as usize].z >= 0.0)),
             centre: vector(|share| &share.centre),
             edge_a: vector(|share| &share.edge_a),
             edge_b: vector(|share| &share.edge_b),

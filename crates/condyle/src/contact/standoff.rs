@@ -1,7 +1,6 @@
 //! How far every four shares are from touching, carried along as the femur moves.
 
 use super::{
-    Pose,
     clearance::Clearance,
     ground::{Ground, LastWear, Wear},
 };
@@ -9,6 +8,7 @@ use crate::{
     Mat3, Vec3, Vector,
     number::{F32x8, LANES_F32, Number},
     products::dot,
+    spatial::Pose,
 };
 
 /// More than is rounded off in a step, mm.

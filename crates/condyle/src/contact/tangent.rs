@@ -1,11 +1,12 @@
 //! The tangent of many shares under pressure, as a sum of rank-one terms.
 
-use super::{Mat6, seen::Seen, traction::Tractions4};
+use super::{seen::Seen, traction::Tractions4};
 use crate::{
     Vector,
     geometry::Curvature,
     number::{F32x8, F64x4, Number},
     products::{cross, dot},
+    spatial::Mat6,
 };
 
 /// Square of the least speed of sliding that gives a direction, mm2/s2; below any that occurs.

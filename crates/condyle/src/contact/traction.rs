@@ -1,10 +1,10 @@
 //! Forces of four shares under pressure.
 
-use super::{Vec6, motion::Twist4};
 use crate::{
     Vec3, Vector,
     number::{F64x4, Number},
     products::{cross, dot, scale_add, zero_vector},
+    spatial::{Twist4, Wrench, body},
 };
 
 /// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
@@ -110,8 +110,9 @@ impl WrenchSum {
     }
 
     /// The sum.
-    pub fn total(&self) -> Vec6 {
-        Vec6::from(self.0.map(F64x4::sum))
+    pub fn total(&self) -> Wrench<body::Insert, body::Femur> {
+        let [mx, my, mz, fx, fy, fz] = self.0.map(F64x4::sum);
+        Wrench::new(Vec3::new(mx, my, mz), Vec3::new(fx, fy, fz))
     }
 }
 

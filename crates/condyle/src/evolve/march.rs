@@ -166,9 +166,9 @@ impl March {
             insert,
             ..
         } = &self.test;
-        let contact = Foundation::after(former, contact, femur, insert);
+        let mut contact = Foundation::after(former, contact, femur, insert);
         let mut counters = self.state.counters;
-        let (contact, cycle) = self.repeating_cycle(contact, spent, &mut counters, watch)?;
+        let cycle = self.repeating_cycle(&mut contact, spent, &mut counters, watch)?;
         let (surface, former) = contact.into_parts();
         self.former = Some(former);
         self.wear(&surface, cycle, counters)
@@ -185,7 +185,9 @@ impl March {
     ) -> Result<&UpdateRecord, MarchError> {
         let spent = std::mem::take(&mut self.spent);
         let mut counters = self.state.counters;
-        let (_, cycle) = self.repeating_cycle(model(&self.test), spent, &mut counters, watch)?;
+        let mut contact = model(&self.test);
+        let cycle = self.repeating_cycle(contact.as_mut(), spent, &mut counters, watch)?;
+        drop(contact);
         self.wear(&self.test.insert.surface(), cycle, counters)
     }
 
@@ -262,13 +264,13 @@ impl March {
     }
 
     /// A cycle that repeats itself, the geometry held still, and the contact that it pressed on.
-    fn repeating_cycle<C: ContactModel>(
+    fn repeating_cycle(
         &self,
-        contact: C,
+        contact: &mut dyn ContactModel,
         spent: CycleHistory,
         counters: &mut SolverCounters,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(C, Cycle), MarchError> {
+    ) -> Result<Cycle, MarchError> {
         let update = self.state.updates.len() + 1;
         let time = self.time();
         let mut simulator = Simulator::new(&self.test.machine, &self.chain, contact, &time);
@@ -285,7 +287,7 @@ impl March {
             })
         };
         match simulator.cycle(&self.state.machine, counters, &mut watch_cycle) {
-            Ok(cycle) => Ok((simulator.contact, cycle)),
+            Ok(cycle) => Ok(cycle),
             Err(source) => Err(MarchError::Cycle {
                 update,
                 cycles,

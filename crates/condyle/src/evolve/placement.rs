@@ -5,9 +5,10 @@ use thiserror::Error;
 use super::WearTest;
 use crate::{
     Vec3,
-    contact::{ContactModel, Foundation, Pose, RelativeMotion, Vec6},
+    contact::{ContactModel, Foundation},
     geometry::{ArticulatingSurface, FemoralSurface},
     machine::{Chain, Freedom, NotSettled, SolverCounters, settle},
+    spatial::{Pose, RelativeMotion},
 };
 
 /// How deep the first touch is, mm.
@@ -152,12 +153,9 @@ fn check_depth(
     contact: &mut Foundation<'_>,
     pose: &Pose,
 ) -> Result<(), PlacementError> {
-    let motion = RelativeMotion {
-        pose: *pose,
-        twist: Vec6::zeros(),
-    };
+    let motion = RelativeMotion::at_rest(*pose);
     contact.respond(&motion);
-    for touched in contact.touched(&motion) {
+    for touched in contact.land(&motion).touched {
         let node = touched.node as usize;
         let overclosure_mm = -test.femur.gap_mm(&pose.to_femur(&surface.positions[node]));
         let thickness_mm = test.insert.thickness_mm()[node];

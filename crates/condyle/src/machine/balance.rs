@@ -1,10 +1,10 @@
 //! The balance of forces on every freedom, and its tangent.
 
-use super::{ApSpring, Chain, Configuration, Drive, Freedom, Machine};
-use crate::{
-    Vec3,
-    contact::{ContactModel, Mat6, Vec6},
+use super::{
+    ApSpring, Chain, Configuration, Drive, Freedom, Machine,
+    joint_numbers::{Mat6, Vec6},
 };
+use crate::contact::{ContactModel, Response};
 use serde::{Deserialize, Serialize};
 
 /// Positions, rates and accelerations of the six freedoms, mm and rad and s.
@@ -26,44 +26,43 @@ pub(super) struct StepSlopes {
 }
 
 /// A machine and its contact at one instant.
-pub(super) struct Balance<'a, C> {
+pub(super) struct Balance<'a> {
     machine: &'a Machine,
-    contact: &'a C,
     configuration: Configuration,
     kinematics: Kinematics,
-    wrench: Vec6,
+    response: Response<'a>,
 }
 
-impl<'a, C: ContactModel> Balance<'a, C> {
+impl<'a> Balance<'a> {
     /// Lets the contact respond to the motion.
     pub fn new(
         machine: &'a Machine,
         chain: &Chain,
-        contact: &'a mut C,
+        contact: &'a mut dyn ContactModel,
         kinematics: Kinematics,
     ) -> Self {
         let configuration = chain.at(&kinematics.positions);
-        let wrench = contact.respond(&configuration.motion(&kinematics.rates));
+        let response = contact.respond(&configuration.motion(&kinematics.rates));
         Self {
             machine,
-            contact,
             configuration,
             kinematics,
-            wrench,
+            response,
         }
     }
 
     /// The residual r = M a + C v + springs - contact - load of every loaded freedom, N or N mm;
     /// 0 on the others.
     ///
-    /// A contact wrench W on the insert does work on freedom j through its screw s_j, the motion of
-    /// the femur relative to the insert, so the contact's force on that freedom is -W . s_j.
+    /// The contact does work on freedom j through its screw s_j, the motion of the femur past the
+    /// insert: its load there is W . s_j, W the wrench on the femur.
     pub fn residual(&self, loads: &[f64; 6]) -> Vec6 {
+        let on_femur = self.response.wrench.reaction();
         let mut residual = Vec6::zeros();
         for (j, row) in self.machine.freedoms.iter().enumerate() {
             residual[j] = row.inertia * self.kinematics.accelerations[j]
                 + row.damping * self.kinematics.rates[j]
-                + self.configuration.screws[j].dot(&self.wrench)
+                - on_femur.power(&self.configuration.screws[j])
                 - loads[j];
         }
         for spring in &self.machine.ap_springs {
@@ -75,17 +74,18 @@ impl<'a, C: ContactModel> Balance<'a, C> {
         residual
     }
 
-    /// How the two sides slip; see [`ContactModel::mean_slip`].
-    pub fn mean_slip(&self) -> [Vec3; 2] {
-        self.contact.mean_slip()
+    /// How the contact answers.
+    pub fn response(&self) -> &Response<'a> {
+        &self.response
     }
 
     /// Derivative of the residual by the positions; the identity on rows that are not loaded.
     ///
-    /// That of -W . s_j by q_k has four parts: the wrench changes with the pose, with the twist
+    /// That of W . s_j by q_k has four parts: the wrench changes with the pose, with the twist
     /// that q_k's rate adds, with the turning of the other screws' twist, and s_j itself turns.
     pub fn tangent(&self, slopes: StepSlopes) -> Mat6 {
-        let contact = self.contact.tangent();
+        let contact = self.response.tangent();
+        let on_femur = self.response.wrench.reaction();
         let screws = &self.configuration.screws;
         let mut tangent = Mat6::zeros();
         for k in 0..6 {
@@ -94,10 +94,11 @@ impl<'a, C: ContactModel> Balance<'a, C> {
                 twist_change +=
                     self.configuration.screw_derivative(i, k) * self.kinematics.rates[i];
             }
-            let wrench_change = contact.by_pose * screws[k] + contact.by_twist * twist_change;
+            let by_pose = &contact.by_pose * &screws[k];
+            let change = (by_pose + &contact.by_twist * &twist_change).reaction();
             for j in 0..6 {
-                tangent[(j, k)] = screws[j].dot(&wrench_change)
-                    + self.configuration.screw_derivative(j, k).dot(&self.wrench);
+                tangent[(j, k)] = -change.power(&screws[j])
+                    - on_femur.power(&self.configuration.screw_derivative(j, k));
             }
         }
         for (j, row) in self.machine.freedoms.iter().enumerate() {

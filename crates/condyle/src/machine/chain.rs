@@ -3,7 +3,7 @@
 use super::{FREEDOMS, Freedom, Machine};
 use crate::{
     Vec3,
-    contact::{Pose, RelativeMotion, Vec6},
+    spatial::{Pose, RelativeMotion, Twist},
 };
 
 /// The kinematics of the machine.
@@ -13,7 +13,7 @@ use crate::{
 /// motions come first and with a minus sign, since they move the insert and not the femur.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    axes: [Vec6; 6],
+    axes: [Twist; 6],
     /// Where the femoral frame's origin is in the insert frame with all freedoms at zero, mm.
     zero_mm: Vec3,
     flexion_axis_mm: (f64, f64),
@@ -25,7 +25,7 @@ pub struct Configuration {
     /// The femur in the insert frame.
     pub pose: Pose,
     /// How each freedom moves the femur relative to the insert: twist a unit of rate.
-    pub screws: [Vec6; 6],
+    pub screws: [Twist; 6],
 }
 
 impl Chain {
@@ -36,12 +36,12 @@ impl Chain {
         let vv_centre = Vec3::new(0.0, machine.vv_axis_mm.0, machine.vv_axis_mm.1);
         let ie_centre = Vec3::new(machine.ie_axis_mm.0, 0.0, machine.ie_axis_mm.1);
         let axis = |freedom| match freedom {
-            Freedom::VarusValgus => turning(-Vec3::x(), vv_centre),
-            Freedom::InternalExternal => turning(-Vec3::y(), ie_centre),
-            Freedom::MedioLateral => sliding(-Vec3::z()),
-            Freedom::AnteroPosterior => sliding(-Vec3::x()),
-            Freedom::InferoSuperior => sliding(Vec3::y()),
-            Freedom::Flexion => turning(Vec3::z(), flexion_centre),
+            Freedom::VarusValgus => Twist::about(-Vec3::x(), vv_centre),
+            Freedom::InternalExternal => Twist::about(-Vec3::y(), ie_centre),
+            Freedom::MedioLateral => Twist::along(-Vec3::z()),
+            Freedom::AnteroPosterior => Twist::along(-Vec3::x()),
+            Freedom::InferoSuperior => Twist::along(Vec3::y()),
+            Freedom::Flexion => Twist::about(Vec3::z(), flexion_centre),
         };
         Self {
             axes: FREEDOMS.map(axis),
@@ -65,10 +65,10 @@ impl Chain {
     /// Pose and screws at positions, mm and rad, in the order of [`FREEDOMS`].
     pub fn at(&self, positions: &[f64; 6]) -> Configuration {
         let mut pose = Pose::identity();
-        let mut screws = [Vec6::zeros(); 6];
+        let mut screws = [Twist::zero(); 6];
         for ((screw, axis), &position) in screws.iter_mut().zip(&self.axes).zip(positions) {
-            *screw = carried(&pose, axis);
-            pose = compose(&pose, &exponential(axis, position));
+            *screw = axis.carried(&pose);
+            pose = pose.then(&axis.exponential(position));
         }
         pose.translation += pose.rotation * self.zero_mm;
         Configuration { pose, screws }
@@ -85,86 +85,23 @@ impl Configuration {
     }
 
     /// Twist of the femur relative to the insert at given rates, in the insert frame.
-    pub fn twist(&self, rates: &[f64; 6]) -> Vec6 {
+    pub fn twist(&self, rates: &[f64; 6]) -> Twist {
         self.screws
             .iter()
             .zip(rates)
-            .map(|(screw, &rate)| screw * rate)
+            .map(|(screw, &rate)| *screw * rate)
             .sum()
     }
 
     /// Derivative of screw `of` by the position of freedom `by`: their Lie bracket where `by`
     /// carries `of`, that is where it is nearer to the insert, and nothing elsewhere.
-    pub fn screw_derivative(&self, of: usize, by: usize) -> Vec6 {
+    pub fn screw_derivative(&self, of: usize, by: usize) -> Twist {
         if by < of {
-            bracket(&self.screws[by], &self.screws[of])
+            self.screws[by].bracket(&self.screws[of])
         } else {
-            Vec6::zeros()
+            Twist::zero()
         }
     }
-}
-
-/// Unit twist about an axis through `centre`.
-fn turning(direction: Vec3, centre: Vec3) -> Vec6 {
-    joined(&direction, &centre.cross(&direction))
-}
-
-/// Unit twist along a direction.
-fn sliding(direction: Vec3) -> Vec6 {
-    joined(&Vec3::zeros(), &direction)
-}
-
-fn joined(angular: &Vec3, linear: &Vec3) -> Vec6 {
-    Vec6::new(
-        angular.x, angular.y, angular.z, linear.x, linear.y, linear.z,
-    )
-}
-
-fn split(twist: &Vec6) -> (Vec3, Vec3) {
-    (
-        twist.fixed_rows::<3>(0).into(),
-        twist.fixed_rows::<3>(3).into(),
-    )
-}
-
-/// The motion of a joint by `position` about or along its axis.
-fn exponential(axis: &Vec6, position: f64) -> Pose {
-    let (angular, linear) = split(axis);
-    if angular == Vec3::zeros() {
-        return Pose {
-            translation: linear * position,
-            ..Pose::identity()
-        };
-    }
-    let rotation = nalgebra::Rotation3::new(angular * position).into_inner();
-    let centre = angular.cross(&linear);
-    Pose {
-        rotation,
-        translation: centre - rotation * centre,
-    }
-}
-
-fn compose(outer: &Pose, inner: &Pose) -> Pose {
-    Pose {
-        rotation: outer.rotation * inner.rotation,
-        translation: outer.to_insert(&inner.translation),
-    }
-}
-
-/// A twist carried along by a pose.
-fn carried(pose: &Pose, twist: &Vec6) -> Vec6 {
-    let (angular, linear) = split(twist);
-    let turned = pose.rotation * angular;
-    joined(
-        &turned,
-        &(pose.rotation * linear + pose.translation.cross(&turned)),
-    )
-}
-
-/// Lie bracket of two twists.
-fn bracket(a: &Vec6, b: &Vec6) -> Vec6 {
-    let ((wa, va), (wb, vb)) = (split(a), split(b));
-    joined(&wa.cross(&wb), &(wa.cross(&vb) - wb.cross(&va)))
 }
 
 #[cfg(test)]
@@ -235,7 +172,9 @@ mod tests {
                 .for_each(|(q, rate)| *q += rate * time);
             chain().at(&positions)
         };
-        let (angular, linear) = split(&at(0.0).twist(&rates));
+        let Twist {
+            angular, linear, ..
+        } = at(0.0).twist(&rates);
         for point in [Vec3::new(1.0, -20.0, 23.0), Vec3::zeros()] {
             let place = |time| at(time).pose.to_insert(&point);
             let velocity = (place(step) - place(-step)) / (2.0 * step);
@@ -254,8 +193,9 @@ mod tests {
             };
             let (fore, back, here) = (moved(1.0), moved(-1.0), chain().at(&SOMEWHERE));
             for of in 0..6 {
-                let difference = (fore[of] - back[of]) / (2.0 * step);
-                assert!((difference - here.screw_derivative(of, by)).norm() < 1e-7);
+                let difference = (fore[of].numbers() - back[of].numbers()) / (2.0 * step);
+                let derivative = here.screw_derivative(of, by).numbers();
+                assert!((difference - derivative).norm() < 1e-7);
             }
         }
     }

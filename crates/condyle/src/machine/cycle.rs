@@ -14,7 +14,7 @@ use super::{
         step_error_mm,
     },
 };
-use crate::contact::{ContactModel, CycleHistory, Moment, TouchedNode};
+use crate::contact::{ContactModel, CycleHistory, Landing, MOST_REGIONS, Moment, TouchedNode};
 
 /// How often a step may be halved before it is given up.
 const MOST_HALVINGS: u32 = 8;
@@ -32,10 +32,8 @@ pub struct CycleRow {
     pub contact_area_mm2: f64,
     /// Highest pressure anywhere, at a node or between nodes, MPa.
     pub peak_pressure_mpa: f64,
-    /// Part of the axial force on the medial side, N.
-    pub medial_force_n: f64,
-    /// Part of the axial force on the lateral side, N.
-    pub lateral_force_n: f64,
+    /// Part of the axial force on every region of the surface, N.
+    pub region_force_n: [f64; MOST_REGIONS],
 }
 
 /// A solved cycle.
@@ -115,13 +113,13 @@ fn places(positions: &[f64; 6]) -> String {
 }
 
 /// A machine ready to run cycles on a contact.
-pub struct Simulator<'a, C> {
+pub struct Simulator<'a> {
     /// The machine.
     pub machine: &'a Machine,
     /// Its kinematics, zeroed at the neutral position.
     pub chain: &'a Chain,
     /// The contact between its parts.
-    pub contact: C,
+    pub contact: &'a mut dyn ContactModel,
     /// How finely and exactly it is solved.
     pub time: &'a TimeSettings,
     /// How the increments were solved the last time, by the phase they end at; empty before.
@@ -163,9 +161,14 @@ impl MachineState {
     }
 }
 
-impl<'a, C: ContactModel> Simulator<'a, C> {
+impl<'a> Simulator<'a> {
     /// A machine on a contact that has not run yet.
-    pub fn new(machine: &'a Machine, chain: &'a Chain, contact: C, time: &'a TimeSettings) -> Self {
+    pub fn new(
+        machine: &'a Machine,
+        chain: &'a Chain,
+        contact: &'a mut dyn ContactModel,
+        time: &'a TimeSettings,
+    ) -> Self {
         Self {
             machine,
             chain,
@@ -207,7 +210,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
                 Integration::Explicit { least_step_s } => Explicit {
                     machine: self.machine,
                     chain: self.chain,
-                    contact: &mut self.contact,
+                    contact: self.contact,
                     least_step_s,
                     counters,
                 }
@@ -234,17 +237,16 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         let percent = 100.0 * (place + 1) as f64 / self.time.increments as f64;
         let configuration = self.chain.at(&state.now.positions);
         let motion = configuration.motion(&state.now.rates);
-        let touched = self.contact.touched(&motion);
-        let peak_pressure_mpa = self.contact.peak_pressure_mpa(&motion, &touched);
+        let landing = self.contact.land(&motion);
         let increment_s = self.increment_s();
         let moment = |node: &TouchedNode| Moment {
             pressure_mpa: node.pressure_mpa,
             slip_mm: node.sliding_mm_per_s.map(|speed| speed * increment_s),
         };
-        let moments = touched.iter().map(|node| (node.node, moment(node)));
+        let moments = landing.touched.iter().map(|node| (node.node, moment(node)));
         Landed {
             state: *state,
-            row: row(percent, state, &touched, peak_pressure_mpa),
+            row: row(percent, state, &landing),
             moments: self.history.record(moments),
         }
     }
@@ -299,7 +301,7 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
 
     /// Largest force out of balance at a state, N; for moments, on a lever of 10 mm.
     pub fn out_of_balance_n(&mut self, state: &MachineState) -> f64 {
-        let balance = Balance::new(self.machine, self.chain, &mut self.contact, state.now);
+        let balance = Balance::new(self.machine, self.chain, self.contact, state.now);
         out_of_balance_n(&balance.residual(&loads_at(self.machine, state.phase)))
     }
 
@@ -317,13 +319,15 @@ impl<'a, C: ContactModel> Simulator<'a, C> {
         let mut integrator = Integrator {
             machine: self.machine,
             chain: self.chain,
-            contact: &mut self.contact,
+            contact: self.contact,
             force_tolerance_n: self.time.force_tolerance_n,
             foresees: self.time.foresees,
             counters,
         };
         match integrator.step(state, to - state.phase, warm_start, watch) {
             Ok((next, warm_start)) if halvings == 0 || self.is_exact_enough(state, &next) => {
+                let ended = self.chain.at(&next.now.positions).motion(&next.now.rates);
+                self.contact.accept(&ended);
                 Ok((MachineState { phase: to, ..next }, Some(warm_start)))
             }
             Err(failed) if halvings == 0 => Err(failed.into()),
@@ -365,25 +369,18 @@ impl From<NoStep> for CycleError {
     }
 }
 
-fn row(
-    percent: f64,
-    state: &MachineState,
-    touched: &[TouchedNode],
-    peak_pressure_mpa: f64,
-) -> CycleRow {
-    let (mut side_n, mut contact_area_mm2) = ([0.0; 2], 0.0);
-    for node in touched {
-        side_n[usize::from(node.is_medial)] -= node.force_n.y;
+fn row(percent: f64, state: &MachineState, landing: &Landing) -> CycleRow {
+    let (mut region_force_n, mut contact_area_mm2) = ([0.0; MOST_REGIONS], 0.0);
+    for node in &landing.touched {
+        region_force_n[usize::from(node.region)] -= node.force_n.y;
         contact_area_mm2 += node.covered_mm2;
     }
-    let [lateral_force_n, medial_force_n] = side_n;
     CycleRow {
         percent,
         positions: state.now.positions,
-        axial_force_n: medial_force_n + lateral_force_n,
+        axial_force_n: region_force_n.iter().sum(),
         contact_area_mm2,
-        peak_pressure_mpa,
-        medial_force_n,
-        lateral_force_n,
+        peak_pressure_mpa: landing.peak_pressure_mpa,
+        region_force_n,
     }
 }

@@ -1,11 +1,12 @@
 //! Steps of time by central differences: the balance of the implicit method with nothing to solve.
 
+use super::joint_numbers::{Mat6, Vec6};
 use super::{
     Chain, Drive, FREEDOMS, Freedom, Machine,
     balance::{Balance, Kinematics, StepSlopes},
     integrator::{MachineState, SolverCounters, drive, loads_at},
 };
-use crate::contact::{ContactModel, Mat6, Vec6};
+use crate::contact::ContactModel;
 
 /// Part of the stable step that is taken: the load may grow between two looks at it.
 const SAFETY: f64 = 0.8;
@@ -65,16 +66,16 @@ impl Quickness {
 }
 
 /// Everything that explicit steps need beside the state.
-pub(super) struct Explicit<'a, C> {
+pub(super) struct Explicit<'a> {
     pub machine: &'a Machine,
     pub chain: &'a Chain,
-    pub contact: &'a mut C,
+    pub contact: &'a mut dyn ContactModel,
     /// Inertia is added where the stable step is shorter, s; 0 adds none.
     pub least_step_s: f64,
     pub counters: &'a mut SolverCounters,
 }
 
-impl<C: ContactModel> Explicit<'_, C> {
+impl Explicit<'_> {
     /// The state at the phase `to`, in as many equal steps as it takes, looked at again after every
     /// few of them. The last contact evaluation is that of the state returned.
     pub fn advance(&mut self, state: &MachineState, to: f64) -> Result<MachineState, NoStep> {
@@ -139,7 +140,7 @@ impl<C: ContactModel> Explicit<'_, C> {
         Ok(next)
     }
 
-    fn balance(&mut self, kinematics: Kinematics) -> Balance<'_, C> {
+    fn balance(&mut self, kinematics: Kinematics) -> Balance<'_> {
         self.counters.contact_evaluations += 1;
         Balance::new(self.machine, self.chain, self.contact, kinematics)
     }

@@ -3,11 +3,9 @@
 use super::{
     Chain, Drive, FREEDOMS, Freedom, Machine, WarmStart,
     balance::{Balance, Kinematics, StepSlopes},
+    joint_numbers::{Mat6, Vec6},
 };
-use crate::{
-    Vec3,
-    contact::{ContactModel, Mat6, Vec6},
-};
+use crate::{Vec3, contact::ContactModel};
 use serde::{Deserialize, Serialize};
 
 /// Lever on which a moment out of balance counts as a force, mm.
@@ -198,17 +196,17 @@ impl Differences {
 }
 
 /// Everything one step needs beside the state.
-pub(super) struct Integrator<'a, C> {
+pub(super) struct Integrator<'a> {
     pub machine: &'a Machine,
     pub chain: &'a Chain,
-    pub contact: &'a mut C,
+    pub contact: &'a mut dyn ContactModel,
     pub force_tolerance_n: f64,
     /// Whether a residual that is foreseen counts as if it were computed.
     pub foresees: bool,
     pub counters: &'a mut SolverCounters,
 }
 
-impl<C: ContactModel> Integrator<'_, C> {
+impl Integrator<'_> {
     /// The state a `step` of the cycle later.
     ///
     /// BDF2 is stable however stiff the contact, damps what a step cannot resolve, and its error
@@ -248,7 +246,7 @@ impl<C: ContactModel> Integrator<'_, C> {
             if out_of_balance_n(&residual) <= self.force_tolerance_n {
                 return Ok(landed(kinematics, &attempt));
             }
-            let slips = balance.mean_slip();
+            let slips = balance.response().mean_slip;
             if !attempt.improve(&residual, slips, || balance.tangent(slopes)) {
                 break;
             }

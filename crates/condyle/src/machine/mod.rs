@@ -8,6 +8,7 @@ mod cycle;
 mod explicit;
 mod freedom;
 mod integrator;
+mod joint_numbers;
 mod restraint;
 mod settle;
 mod time_settings;

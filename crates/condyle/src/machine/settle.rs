@@ -1,11 +1,12 @@
 //! Where the extended femur settles under the vertical load: the machine's neutral position.
 
+use super::joint_numbers::Mat6;
 use super::{
     Chain, Drive, Freedom, Machine, Waveform,
     balance::{Balance, Kinematics, StepSlopes},
     integrator::{SolverCounters, drive, loads_at, longest_mm, out_of_balance_n},
 };
-use crate::contact::{ContactModel, Mat6};
+use crate::contact::ContactModel;
 
 /// Iterations after which settling is given up.
 const MOST_ITERATIONS: usize = 2000;
@@ -35,7 +36,7 @@ pub struct NotSettled {
 pub fn settle(
     machine: &Machine,
     chain: &Chain,
-    contact: &mut impl ContactModel,
+    contact: &mut dyn ContactModel,
     force_tolerance_n: f64,
     counters: &mut SolverCounters,
 ) -> Result<[f64; 6], NotSettled> {

@@ -1,9 +1,9 @@
 //! The mechanism of the file moves as condyle's chain does.
 
 use condyle::Vec3;
-use condyle::contact::Pose;
 use condyle::evolve::March;
 use condyle::machine::{Chain, FREEDOMS};
+use condyle::spatial::Pose;
 
 use super::super::{AbaqusOptions, model::Model};
 use super::reader::Deck;

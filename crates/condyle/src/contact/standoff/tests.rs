@@ -3,12 +3,13 @@
 
 use super::*;
 use crate::{
-    contact::{motion::Pose4, partial::Rises, seen::Seen, shares::ShareBlock},
+    contact::{partial::Rises, seen::Seen, shares::ShareBlock},
     geometry::{
         FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
         SmoothField, TriangleMesh, flat_insert,
     },
     number::{F64x4, LANES},
+    spatial::Pose4,
 };
 
 /// Farthest step of the femur, mm and rad.
@@ -32,16 +33,13 @@ impl Numbers {
 
     /// Two poses, `height_mm` over the insert or so, and not far from each other.
     fn step(&mut self, height_mm: f64) -> (Pose, Pose) {
-        let from = Pose {
-            rotation: turned(&self.vector(0.1)),
-            translation: Vec3::y() * (height_mm + self.next()) + self.vector(2.0),
-        };
+        let from = Pose::new(
+            turned(&self.vector(0.1)),
+            Vec3::y() * (height_mm + self.next()) + self.vector(2.0),
+        );
         let turn = turned(&(self.vector(1.0).normalize() * self.size(FARTHEST.1)));
         let shift = self.vector(1.0).normalize() * self.size(FARTHEST.0);
-        let to = Pose {
-            rotation: turn * from.rotation,
-            translation: from.translation + shift,
-        };
+        let to = Pose::new(turn * from.rotation, from.translation + shift);
         (from, to)
     }
 

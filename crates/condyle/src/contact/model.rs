@@ -1,0 +1,124 @@
+//! What the machine sees of a contact.
+
+use std::fmt;
+
+use crate::{
+    Vec3,
+    spatial::{RelativeMotion, Wrench, WrenchByTwist},
+};
+
+/// How many regions of an articulating surface loads and slips are told apart by: the two sides of a knee.
+pub const MOST_REGIONS: usize = 2;
+
+/// How the wrench of the contact changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangent {
+    /// Derivative of the wrench on the insert by a short motion of the femur.
+    pub by_pose: WrenchByTwist,
+    /// Derivative of the wrench on the insert by the femur's twist.
+    pub by_twist: WrenchByTwist,
+}
+
+/// Gives the derivatives of a response, which are dear and not always asked for.
+pub trait Linearization {
+    /// The derivatives of the wrench at the response.
+    fn tangent(&self) -> Tangent;
+}
+
+/// How a contact answers a motion.
+pub struct Response<'a> {
+    /// Wrench on the insert about its origin, in the insert frame.
+    pub wrench: Wrench,
+    /// Velocity of the femur's surface past the insert's in each region, the mean weighted by load,
+    /// mm/s; in the femoral frame.
+    pub mean_slip: [Vec3; MOST_REGIONS],
+    linearization: &'a dyn Linearization,
+}
+
+impl<'a> Response<'a> {
+    /// A response whose derivatives `linearization` gives when they are asked for.
+    pub fn new(
+        wrench: Wrench,
+        mean_slip: [Vec3; MOST_REGIONS],
+        linearization: &'a dyn Linearization,
+    ) -> Self {
+        Self {
+            wrench,
+            mean_slip,
+            linearization,
+        }
+    }
+
+    /// How the wrench changes from here.
+    pub fn tangent(&self) -> Tangent {
+        self.linearization.tangent()
+    }
+}
+
+impl fmt::Debug for Response<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Response")
+            .field("wrench", &self.wrench)
+            .field("mean_slip", &self.mean_slip)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A surface node in contact; vectors in the insert frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchedNode {
+    /// Number of the surface node.
+    pub node: u32,
+    /// Which region of the surface it belongs to.
+    pub region: u8,
+    /// Mean pressure on the node's share of the surface, MPa.
+    pub pressure_mpa: f64,
+    /// Area of the part of the share that presses, mm2.
+    pub covered_mm2: f64,
+    /// Force on the insert there, N.
+    pub force_n: Vec3,
+    /// Velocity of the femur's surface past the insert's in the surface's own directions, anterior
+    /// along the surface, then lateral, mm/s.
+    pub sliding_mm_per_s: [f64; 2],
+}
+
+/// Where an increment landed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Landing {
+    /// The nodes in contact, each once and always in the same order.
+    pub touched: Vec<TouchedNode>,
+    /// Highest pressure anywhere, at nodes and between them, MPa: not below the largest mean over a
+    /// node's share.
+    pub peak_pressure_mpa: f64,
+}
+
+/// A contact between femur and insert: the machine sees this, never a mesh.
+///
+/// The machine asks [`respond`](Self::respond) as often as it needs to find an increment's end, says
+/// [`accept`](Self::accept) once for every step that it goes on from, and [`land`](Self::land) where an
+/// increment ends.
+pub trait ContactModel {
+    /// How many surface nodes there are.
+    fn node_count(&self) -> usize;
+
+    /// The next motions are of this increment of the cycle, much like those of the same increment a
+    /// cycle before.
+    ///
+    /// A hint that makes a model quicker, and changes none of its answers.
+    fn begin_increment(&mut self, _increment: usize) {}
+
+    /// How the contact answers a relative motion.
+    ///
+    /// The answer depends on the motion and on what was accepted, not on the responses before, but
+    /// for what a model says it rounds.
+    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_>;
+
+    /// A step has ended at a motion, and the machine goes on from there: a model with a history adds
+    /// the step to it. The motion is that of the last response, or so near that the model may take the
+    /// difference to first order.
+    fn accept(&mut self, _motion: &RelativeMotion) {}
+
+    /// The nodes in contact and the highest pressure at a motion: that of the last response, or one so
+    /// near that loads and speeds may be taken along to first order.
+    fn land(&mut self, motion: &RelativeMotion) -> Landing;
+}
