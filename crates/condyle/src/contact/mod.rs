@@ -1,24 +1,31 @@
-//! Contact between femur and insert: one interface, several models.
+//! Contact between femur and insert: one interface, several laws.
+//!
+//! | file or folder | what |
+//! | --- | --- |
+//! | [`ContactModel`] (`model`) | what the machine asks of a contact, and its answers |
+//! | [`ContactLaw`] (`contact_law`) | what a test says of contact: it makes the contact of two bodies |
+//! | `memory` | what a contact hands on to the next one: its history, and what makes that quicker |
+//! | `history` | what every surface node went through in a cycle |
+//! | `foundation` | the elastic foundation: rigid bodies, and pressure from local overclosure |
+//! | `broad_phase` | which blocks of nodes may touch, by brute force or coherently |
 
-mod clearance;
+mod broad_phase;
+mod contact_law;
 mod foundation;
-mod ground;
 mod history;
-mod law;
+mod memory;
 mod model;
-mod nearness;
-mod partial;
-mod peak;
-mod quadratic;
-mod seen;
-mod shares;
-mod standoff;
-mod tangent;
-mod traction;
+mod pressure_law;
+mod pressure_table;
+mod share_block;
 
-pub use foundation::{Former, Foundation, FoundationSettings};
+pub use broad_phase::Search;
+pub use contact_law::{Bodies, ContactLaw};
+pub use foundation::{Foundation, FoundationContact};
 pub use history::{CycleHistory, Moment, NodeHistory};
-pub use law::{PressureLaw, PressureTable, PressureTableError, confined_modulus};
+pub use memory::{ContactCache, ContactMemory, ContactState, StateField};
 pub use model::{
     ContactModel, Landing, Linearization, MOST_REGIONS, Response, Tangent, TouchedNode,
 };
+pub use pressure_law::{PressureLaw, confined_modulus};
+pub use pressure_table::{PressureTable, PressureTableError};

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::memory::ContactMemory;
 use crate::{
     Vec3,
     spatial::{RelativeMotion, Wrench, WrenchByTwist},
@@ -121,4 +122,9 @@ pub trait ContactModel {
     /// The nodes in contact and the highest pressure at a motion: that of the last response, or one so
     /// near that loads and speeds may be taken along to first order.
     fn land(&mut self, motion: &RelativeMotion) -> Landing;
+
+    /// What the contact after this one is to know, now that this one is no longer needed.
+    fn into_memory(self: Box<Self>) -> ContactMemory {
+        ContactMemory::default()
+    }
 }

@@ -1,44 +1,47 @@
-//! Where shares of the insert are, and how they wear, in eights of node_blocks.
+//! Where blocks of shares are, and how they wear, eight side by side.
 
-use super::{clearance::GAP_PER_MOTION, shares::ShareBlock};
 use crate::{
     Vec3, Vector,
+    contact::share_block::ShareBlock,
+    geometry::MOST_GAP_SLOPE,
     number::{F32x8, F64x4, LANES, LANES_F32, Number},
     products::dot,
 };
 
-/// Eight node_blocks: what a clearance from a femur changes with, as that moves.
-pub(super) struct Ground {
-    /// The means of the four centres, mm.
+/// Eight blocks: where they are, as far as a separation from the femur changes with its motion.
+pub(super) struct BlockPlaces {
+    /// The means of each block's four centres, mm.
     pub middles: Vector<F32x8>,
-    /// How much nearer a turn of the femur brings them beside, mm/rad: by how far a centre is from
-    /// the middle, and the half edges.
+    /// How much nearer a turn of the femur brings a block besides, mm/rad: the distance of a centre
+    /// from the middle, and the half edges.
     pub levers_mm: F32x8,
 }
 
-/// How eight node_blocks have worn.
-pub(super) struct Wear {
+/// How eight blocks have worn.
+pub(super) struct BlockWear {
     /// Motion of their middles, mm.
     pub moved: Vector<F32x8>,
-    /// Loss of clearance beside, mm.
+    /// Loss of separation besides, mm.
     pub lost_mm: F32x8,
 }
 
-/// How all have worn last.
+/// How all blocks have worn last.
+#[derive(Default)]
 pub(super) struct LastWear {
     /// How often they have worn.
     pub number: u32,
-    pub eights: Vec<Wear>,
+    /// The last time, eight blocks at a time.
+    pub eights: Vec<BlockWear>,
 }
 
-impl Ground {
-    /// All shares of a surface.
-    pub fn of(shares: &[ShareBlock]) -> Vec<Self> {
-        shares.chunks(LANES_F32).map(Self::new).collect()
+impl BlockPlaces {
+    /// All blocks of a surface.
+    pub fn of(blocks: &[ShareBlock]) -> Vec<Self> {
+        blocks.chunks(LANES_F32).map(Self::new).collect()
     }
 
-    fn new(node_blocks: &[ShareBlock]) -> Self {
-        let at = |i: usize| &node_blocks[i.min(node_blocks.len() - 1)];
+    fn new(blocks: &[ShareBlock]) -> Self {
+        let at = |i: usize| &blocks[i.min(blocks.len() - 1)];
         let axis = |axis: usize| F32x8::from_lanes(|i| middle(at(i))[axis]);
         Self {
             middles: Vector::new(axis(0), axis(1), axis(2)),
@@ -47,8 +50,8 @@ impl Ground {
     }
 }
 
-impl Wear {
-    /// All shares of a surface, from those before.
+impl BlockWear {
+    /// All blocks of a surface, from those before.
     pub fn between(before: &[ShareBlock], after: &[ShareBlock]) -> Vec<Self> {
         let eights = before.chunks(LANES_F32).zip(after.chunks(LANES_F32));
         eights
@@ -75,23 +78,24 @@ impl Wear {
     }
 }
 
-fn middle(four: &ShareBlock) -> Vec3 {
-    four.centre.map(|lanes| lanes.sum() / LANES as f64)
+fn middle(block: &ShareBlock) -> Vec3 {
+    block.centre.map(|lanes| lanes.sum() / LANES as f64)
 }
 
-fn lever_mm(four: &ShareBlock) -> f64 {
-    four.half_mm + GAP_PER_MOTION * longest_mm(&(four.centre - middle(four).map(F64x4::splat)))
+fn lever_mm(block: &ShareBlock) -> f64 {
+    let from_middle = block.centre - middle(block).map(F64x4::splat);
+    block.half_mm + MOST_GAP_SLOPE * longest_mm(&from_middle)
 }
 
-/// What wear of four shares whose middle moves by `moved` may take from their clearance beside, mm.
+/// What wear of a block whose middle moves by `moved` may take from its separation besides, mm.
 ///
-/// Each centre may move otherwise than the middle. The reach changes by no more than half of what
-/// the edges do; a fifth of that is more than what the mean over the share does, and longer edges
-/// through a turn of the normal.
+/// Each centre may move otherwise than the middle. The reach of a share changes by no more than half
+/// of what its edges do. A fifth of that again is more than the mean over the share changes, and than
+/// longer edges gain through a turn of the normal.
 fn lost_mm(before: &ShareBlock, after: &ShareBlock, moved: &Vec3) -> f64 {
     let astray = after.centre - before.centre - moved.map(F64x4::splat);
     let [by_a, by_b] = [after.edge_a - before.edge_a, after.edge_b - before.edge_b];
-    GAP_PER_MOTION * longest_mm(&astray) + 0.6 * (longest_mm(&by_a) + longest_mm(&by_b))
+    MOST_GAP_SLOPE * longest_mm(&astray) + 0.6 * (longest_mm(&by_a) + longest_mm(&by_b))
 }
 
 fn longest_mm(vectors: &Vector<F64x4>) -> f64 {

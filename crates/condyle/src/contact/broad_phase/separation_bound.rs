@@ -1,46 +1,44 @@
-//! How far four shares are from touching, and how a motion of the femur brings them nearer.
+//! How far a block of shares is from touching, and how a motion of the femur brings it nearer.
 
-use super::{seen::Seen, shares::ShareBlock};
 use crate::{
     Vec3,
-    geometry::CurvatureBounds,
+    contact::share_block::ShareBlock,
+    geometry::{CurvatureBounds, MOST_GAP_SLOPE, SurfaceSample},
     number::{F64x4, LANES, Number},
     products::dot,
 };
 
-/// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.
-pub(super) const GAP_PER_MOTION: f64 = 1.05;
-
-/// Where a gap is smaller something is known of the curvature_bounds, mm; see [`CurvatureBounds`].
+/// Where a gap is smaller the curvature of the femur is known, mm; see [`CurvatureBounds`].
 const KNOWN_MM: f64 = 1.5;
 
-/// As far as that holds at least, mm.
+/// Those bounds hold at least this far around, mm.
 const HOLDS_MM: f64 = 1.0;
 
-/// More than a sample moved along (see [`Seen`]) errs in gap and reach, mm.
-const ASTRAY_MM: f64 = 1e-4;
+/// More than an extrapolated sample errs in gap and reach, mm.
+const EXTRAPOLATED_MM: f64 = 1e-4;
 
-/// NodeBlock shares that were seen apart: a bound on how far they are from touching, as a function of
-/// how the femur moves on.
+/// A bound on how far a block of shares is from touching, as a function of how the femur moves on.
 ///
 /// A gap g with gradient G and no second derivative below -h is, a motion d on, at least
-/// g + G . d - h d^2/2. The reach of a share grows by its half edges times the turn of the normal:
-/// K d on the femur, and the femur's own turn. What four shares have in common is taken for all:
-/// the mean of their gradients, for the motion of their middle.
+/// g + G . d - h d^2/2. The reach of a share, the overclosure that its highest corner has above its
+/// middle, grows by its half edges times the turn of the normal: K d on the femur, and the femur's own
+/// turn. What the four shares have in common is taken for all of them: the mean of their gradients, for
+/// the motion of their middle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clearance {
+pub(in crate::contact) struct SeparationBound {
     /// Gap less reach, and less how much the mean over a share may jump between two arcs, mm.
     pub clear_mm: f64,
     /// Gradient of the gap by the middle's place in the femoral frame.
     pub slope: Vec3,
-    /// What may be lost beside with each millimetre of motion.
+    /// What may be lost besides with each millimetre of motion.
     pub loss: f64,
     /// The motion that all this holds for, mm.
     pub radius_mm: f64,
 }
 
-impl Clearance {
-    /// What shares with a reach of `reach_mm` saw, their gap being larger than that.
+impl SeparationBound {
+    /// That of shares with a reach of `reach_mm` under a femur sampled as `sample`, whose gaps are
+    /// larger than the reach.
     #[inline(always)]
     pub fn new(
         seen: &Seen,
@@ -53,25 +51,26 @@ impl Clearance {
             max_curvature_per_mm,
             concavity_per_mm,
             curvature_jump_per_mm,
-        } = curvature_bounds;
-        let gap_mm = seen.sample.gap_mm;
+        } = curvature;
+        let gap_mm = sample.gap_mm;
         let clear_mm = gap_mm - reach_mm - shares.spread_mm2 * F64x4::splat(curvature_jump_per_mm);
         let by_turn = shares.half_mm * max_curvature_per_mm;
         if gap_mm.least() - shares.half_mm > radius_mm {
-            // Of these lanes something is known, but not of another.
+            // Where the curvature of one lane is not known, what all may lose is bounded by slopes
+            // alone. A lane whose gap is small is known itself, and its own reach counts.
             let known_mm = if radius_mm < 0.0 { KNOWN_MM } else { 0.0 };
             let is_known = gap_mm - F64x4::splat(known_mm);
             let far_mm = gap_mm - F64x4::splat(shares.half_mm);
             let near_mm = -Number::max(-clear_mm, F64x4::splat(-HOLDS_MM));
             let clear_mm = is_known.below_zero(near_mm, far_mm).least();
-            return Self::far(clear_mm - ASTRAY_MM, GAP_PER_MOTION + by_turn);
+            return Self::far(clear_mm - EXTRAPOLATED_MM, MOST_GAP_SLOPE + by_turn);
         }
-        let gradient = &seen.sample.gap_gradient;
+        let gradient = &sample.gap_gradient;
         let slope = gradient.map(|lanes| lanes.sum() / LANES as f64);
         let lean = gradient - slope.map(F64x4::splat);
         let leaning = dot(&lean, &lean).greatest().sqrt();
         Self {
-            clear_mm: clear_mm.least() - ASTRAY_MM,
+            clear_mm: clear_mm.least() - EXTRAPOLATED_MM,
             slope,
             loss: leaning + by_turn + 0.5 * concavity_per_mm * radius_mm,
             radius_mm,

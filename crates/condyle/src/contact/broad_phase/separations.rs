@@ -1,8 +1,8 @@
-//! How far every four shares are from touching, carried along as the femur moves.
+//! How far every block is from touching, carried along as the femur moves.
 
 use super::{
-    clearance::Clearance,
-    ground::{Ground, LastWear, Wear},
+    block_places::{BlockPlaces, BlockWear, LastWear},
+    separation_bound::SeparationBound,
 };
 use crate::{
     Mat3, Vec3, Vector,
@@ -14,34 +14,34 @@ use crate::{
 /// More than is rounded off in a step, mm.
 const ROUNDED_OFF_MM: f64 = 2e-6;
 
-/// Farther off a clearance counts as this much, mm: single precision then rounds less off than
+/// A larger separation counts as this much, mm: single precision then rounds less off than
 /// [`ROUNDED_OFF_MM`].
 const FARTHEST_MM: f64 = 16.0;
 
 /// Eight numbers as they lie in memory.
-type Eight = [f32; LANES_F32];
+type Numbers = [f32; LANES_F32];
 
-/// How far every four shares are from touching where the femur is.
+/// How far every block is from touching where the femur is.
 #[derive(Clone)]
-pub(super) struct Standoff {
+pub(super) struct Separations {
     at: Option<Pose>,
-    clearances: Vec<Clearances>,
+    eights: Vec<Eight>,
     count: usize,
-    /// How often the shares had worn.
+    /// How often the blocks had worn.
     worn: u32,
 }
 
-/// Clearances of eight node_blocks, see [`Clearance`].
+/// The [bounds](SeparationBound) of eight blocks.
 #[derive(Clone)]
-struct Clearances {
-    clear_mm: Eight,
-    slope: [Eight; 3],
-    loss: Eight,
-    radius_mm: Eight,
+struct Eight {
+    clear_mm: Numbers,
+    slope: [Numbers; 3],
+    loss: Numbers,
+    radius_mm: Numbers,
 }
 
 /// How points of the insert move in the femoral frame from one pose to another.
-struct Step {
+struct FemurStep {
     /// Change of a place by its coordinates x, y and z.
     turn: [Vector<F32x8>; 3],
     shift: Vector<F32x8>,
@@ -50,23 +50,23 @@ struct Step {
 
 /// What is known where the femur was at another time, and the way from there.
 struct Neighbour<'a> {
-    clearances: &'a [Clearances],
-    step: Step,
+    eights: &'a [Eight],
+    step: FemurStep,
 }
 
 impl Neighbour<'_> {
-    /// Gives eight node_blocks what it knows of those that are `due`; which of them still are.
+    /// Gives eight blocks what it knows of those that are `due`; which of them still are.
     #[inline(always)]
-    fn help(&self, eight: usize, ground: &Ground, clearances: &mut Clearances, due: u32) -> u32 {
+    fn help(&self, eight: usize, places: &BlockPlaces, bounds: &mut Eight, due: u32) -> u32 {
         let mut known = self.clearances[eight].clone();
-        let motion = self.step.of(&ground.middles);
-        let apart = due & !known.carry(&motion, self.step.lost_mm(ground));
+        let motion = self.step.of(&places.middles);
+        let apart = due & !known.carry(&motion, self.step.lost_mm(places));
         clearances.take_over(apart, &known);
         due & !apart
     }
 }
 
-impl Step {
+impl FemurStep {
     fn between(from: &Pose, to: &Pose) -> Self {
         let turn: Mat3 = (to.rotation - from.rotation).transpose();
         let shift = to.to_femur(&Vec3::zeros()) - from.to_femur(&Vec3::zeros());
@@ -77,11 +77,11 @@ impl Step {
         }
     }
 
-    /// What eight node_blocks may lose beside their motion, mm.
+    /// What eight blocks may lose beside their motion, mm.
     #[inline(always)]
-    fn lost_mm(&self, ground: &Ground) -> F32x8 {
+    fn lost_mm(&self, places: &BlockPlaces) -> F32x8 {
         let rounded_off_mm = F32x8::splat(ROUNDED_OFF_MM);
-        ground.levers_mm.mul_add(self.turn_rad, rounded_off_mm)
+        places.levers_mm.mul_add(self.turn_rad, rounded_off_mm)
     }
 
     #[inline(always)]
@@ -99,9 +99,9 @@ fn columns(matrix: &Mat3) -> [Vector<F32x8>; 3] {
     [0, 1, 2].map(|axis| Vec3::from(matrix.column(axis)).map(F32x8::splat))
 }
 
-impl Clearances {
-    /// Of shares that touch.
-    const NONE: Self = Self {
+impl Eight {
+    /// Of blocks that touch.
+    const TOUCHING: Self = Self {
         clear_mm: [f32::NEG_INFINITY; LANES_F32],
         slope: [[0.0; LANES_F32]; 3],
         loss: [0.0; LANES_F32],
@@ -138,12 +138,12 @@ impl Clearances {
     }
 }
 
-impl Standoff {
-    /// All of `count` node_blocks may touch, however often they have worn.
+impl Separations {
+    /// All of `count` blocks may touch, however often they have worn.
     pub fn new(count: usize) -> Self {
         Self {
             at: None,
-            clearances: vec![Clearances::NONE; count.div_ceil(LANES_F32)],
+            clearances: vec![Eight::TOUCHING; count.div_ceil(LANES_F32)],
             count,
             worn: 0,
         }
@@ -154,7 +154,7 @@ impl Standoff {
         self.worn
     }
 
-    /// The femur moves on, and the shares have worn to `ground` if they had not yet; lists the node_blocks
+    /// The femur moves on, and the shares have worn to `places` if they had not yet; lists the blocks
     /// that may touch now, ascending.
     ///
     /// Fours that `beside` knows better, from where the femur was then, are taken over from it, if
@@ -162,22 +162,22 @@ impl Standoff {
     pub fn follow(
         &mut self,
         to: &Pose,
-        ground: &[Ground],
+        places: &[BlockPlaces],
         last: &LastWear,
         beside: Option<&Self>,
         due: &mut Vec<u32>,
     ) {
         let beside = beside.and_then(|beside| beside.neighbour(to, last));
         let from = self.at.replace(*to).unwrap_or(*to);
-        let step = Step::between(&from, to);
+        let step = FemurStep::between(&from, to);
         let [x, y, z] = columns(&from.rotation);
         let wear = (self.worn < last.number).then_some(&last.eights);
         self.worn = last.number;
         due.clear();
-        for (number, (clearances, ground)) in self.clearances.iter_mut().zip(ground).enumerate() {
-            let mut lost_mm = step.lost_mm(ground);
-            let mut motion = step.of(&ground.middles);
-            if let Some(Wear {
+        for (number, (clearances, places)) in self.clearances.iter_mut().zip(places).enumerate() {
+            let mut lost_mm = step.lost_mm(places);
+            let mut motion = step.of(&places.middles);
+            if let Some(BlockWear {
                 moved,
                 lost_mm: by_wear_mm,
             }) = wear.map(|wear| &wear[number])
@@ -189,7 +189,7 @@ impl Standoff {
             if let Some(beside) = &beside
                 && left != 0
             {
-                left = beside.help(number, ground, clearances, left);
+                left = beside.help(number, places, clearances, left);
             }
             while left != 0 {
                 due.push((number * LANES_F32) as u32 + left.trailing_zeros());
@@ -205,13 +205,13 @@ impl Standoff {
         let at = self.at.as_ref().filter(|_| self.worn == last.number)?;
         Some(Neighbour {
             clearances: &self.clearances,
-            step: Step::between(at, to),
+            step: FemurStep::between(at, to),
         })
     }
 
     /// NodeBlock were looked at where the femur is now.
     #[inline(always)]
-    pub fn set(&mut self, four: u32, clearance: &Clearance) {
+    pub fn set(&mut self, four: u32, clearance: &SeparationBound) {
         let four = four as usize;
         let (clearances, i) = (&mut self.clearances[four / LANES_F32], four % LANES_F32);
         clearances.clear_mm[i] = clearance.clear_mm.min(FARTHEST_MM) as f32;

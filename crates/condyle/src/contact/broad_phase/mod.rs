@@ -1,0 +1,16 @@
+//! Which blocks of nodes may touch: what is left is looked at by the contact.
+
+mod block_places;
+mod brute_force;
+mod coherent;
+mod interface;
+mod separation_bound;
+mod separations;
+#[cfg(test)]
+mod tests;
+
+pub(super) use brute_force::BruteForce;
+pub(super) use coherent::Coherent;
+pub(super) use interface::BroadPhase;
+pub use interface::Search;
+pub(super) use separation_bound::SeparationBound;

@@ -1,0 +1,32 @@
+//! What a test says of contact.
+
+use std::fmt::Debug;
+
+use super::{memory::ContactMemory, model::ContactModel};
+use crate::geometry::{ArticulatingSurface, FemoralSurface, Insert};
+
+/// The bodies of a contact as they are now.
+#[derive(Clone, Copy)]
+pub struct Bodies<'a> {
+    /// The femoral surface, made ready for the insert's shares.
+    pub femur: &'a FemoralSurface,
+    /// The insert, worn or not.
+    pub insert: &'a Insert,
+    /// The insert's articulating surface.
+    pub surface: &'a ArticulatingSurface,
+}
+
+/// A law of contact: it belongs to a test, and makes the contact of its bodies.
+pub trait ContactLaw: Debug + Send + Sync {
+    /// The contact of bodies that goes on from what the contact before left; from nothing, with the
+    /// default memory.
+    fn contact<'a>(
+        &'a self,
+        bodies: Bodies<'a>,
+        memory: ContactMemory,
+    ) -> Box<dyn ContactModel + 'a>;
+
+    /// By how much the pressure at a surface node falls as the node alone is worn by a millimetre,
+    /// MPa/mm: how fast wear flattens the pressure follows from it.
+    fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64;
+}
