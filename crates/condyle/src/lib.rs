@@ -8,7 +8,6 @@ pub mod evolve;
 pub mod geometry;
 pub mod machine;
 pub mod number;
-mod products;
 pub mod wear;
 
 /// A point or a vector in space, mm unless said otherwise.

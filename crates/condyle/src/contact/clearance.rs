@@ -4,8 +4,8 @@ use super::{seen::Seen, shares::ShareBlock};
 use crate::{
     Vec3,
     geometry::CurvatureBounds,
+    number::vector::dot,
     number::{F64x4, LANES, Number},
-    products::dot,
 };
 
 /// What the slope of a gap may exceed 1 by, where a distance field is only nearly one.

@@ -15,8 +15,8 @@ use super::{
 use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
+    number::vector::{cross, dot, scale_add, tangential_part, zero_vector},
     number::{F64x4, LANES, Number},
-    products::{cross, dot, scale_add, tangential_part, zero_vector},
 };
 
 /// How the foundation presses and rubs.

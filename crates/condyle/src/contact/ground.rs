@@ -3,8 +3,8 @@
 use super::{clearance::GAP_PER_MOTION, shares::ShareBlock};
 use crate::{
     Vec3, Vector,
+    number::vector::dot,
     number::{F32x8, F64x4, LANES, LANES_F32, Number},
-    products::dot,
 };
 
 /// Eight node_blocks: what a clearance from a femur changes with, as that moves.

@@ -2,8 +2,8 @@
 
 use crate::{
     Mat3, Vec3, Vector,
+    number::vector::{dot, scale_add},
     number::{F64x4, Number},
-    products::{dot, scale_add},
 };
 
 /// A wrench as (moment, force) or a twist as (angular, linear); N mm and N, rad and mm.

@@ -7,8 +7,8 @@ use super::{
 };
 use crate::{
     Mat3, Vec3, Vector,
+    number::vector::dot,
     number::{F32x8, LANES_F32, Number},
-    products::dot,
 };
 
 /// More than is rounded off in a step, mm.

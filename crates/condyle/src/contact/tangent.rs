@@ -4,8 +4,8 @@ use super::{Mat6, seen::Seen, traction::Tractions4};
 use crate::{
     Vector,
     geometry::Curvature,
+    number::vector::{cross, dot},
     number::{F32x8, F64x4, Number},
-    products::{cross, dot},
 };
 
 /// Square of the least speed of sliding that gives a direction, mm2/s2; below any that occurs.

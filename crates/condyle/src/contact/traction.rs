@@ -3,8 +3,8 @@
 use super::{Vec6, motion::Twist4};
 use crate::{
     Vec3, Vector,
+    number::vector::{cross, dot, scale_add, zero_vector},
     number::{F64x4, Number},
-    products::{cross, dot, scale_add, zero_vector},
 };
 
 /// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.

@@ -4,7 +4,7 @@ use super::{Cylinder, GenericFemur, SmoothField, Torus};
 use crate::{
     Vec3, Vector,
     number::Number,
-    products::{dot, scale_add, tangential_part},
+    number::vector::{dot, scale_add, tangential_part},
 };
 
 /// A symmetric 3 by 3 matrix, 1/mm.

@@ -3,8 +3,8 @@
 use super::FacesAround;
 use crate::{
     Vec3, Vector,
+    number::vector::{cross, dot, scale_add, tangential_part, zero_vector},
     number::{F64x4, LANES, Number},
-    products::{cross, dot, scale_add, tangential_part, zero_vector},
 };
 
 /// A node's share of the articulating surface: a quarter of each face around it, taken together

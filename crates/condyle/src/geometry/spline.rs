@@ -73,8 +73,8 @@ impl<T: Number> Bases<T> {
             fyz[lane] = across[4];
             fyy[lane] = across[5];
         }
-        let (f, fz, fzz) = (T::columns(&f), T::columns(&fz), T::columns(&fzz));
-        let (fy, fyz, fyy) = (T::columns(&fy), T::columns(&fyz), T::columns(&fyy));
+        let (f, fz, fzz) = (columns::<T>(&f), columns::<T>(&fz), columns::<T>(&fzz));
+        let (fy, fyz, fyy) = (columns::<T>(&fy), columns::<T>(&fyz), columns::<T>(&fyy));
         let Basis { value, slope } = &self.x;
         Derivatives {
             value: sum(value, &f),
@@ -133,6 +133,14 @@ fn laid_out<T: Number>(basis: &Basis<T>) -> Basis<[f64; LANES]> {
         value: basis.value.map(lanes),
         slope: basis.slope.map(lanes),
     }
+}
+
+/// The first three columns of a matrix that has a row of four numbers for every lane.
+#[inline(always)]
+fn columns<T: Number>(rows: &[F64x4; LANES]) -> [T; 3] {
+    let [a, b, c, _] = F64x4::transposed(*rows);
+    let lanes = |column: F64x4| T::from_lanes(|lane| column.lane(lane));
+    [lanes(a), lanes(b), lanes(c)]
 }
 
 #[inline(always)]
