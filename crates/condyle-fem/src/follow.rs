@@ -1,6 +1,6 @@
 //! The inside of a mesh follows its moved surface.
 
-use crate::{HexMesh, Vec3, hex::HEX_EDGES};
+use crate::{hex::HEX_EDGES, mesh::HexMesh, vector::Vec3};
 
 /// Relative residual at which the following is taken as solved: a hundredth of what one wear step moves, some tenths of a
 /// micrometre, is far below what the shape of an element can feel.
@@ -166,7 +166,7 @@ fn neighbours_of(free: &[u32], mesh: &HexMesh) -> (Vec<usize>, Vec<u32>) {
 
 /// Tells every edge of every hexahedron both ways.
 fn both_ways(mesh: &HexMesh, mut tell: impl FnMut(u32, u32)) {
-    for hex in &mesh.hexes {
+    for hex in mesh.hexes.iter() {
         for &[a, b] in &HEX_EDGES {
             tell(hex[a], hex[b]);
             tell(hex[b], hex[a]);

@@ -1,6 +1,16 @@
-//! One trilinear hexahedron: its edges and its volume.
+//! One trilinear hexahedron: its edges, its faces and its volume.
 
-use crate::Vec3;
+use crate::vector::Vec3;
+
+/// The six faces of a hexahedron as corners in VTK order, each anticlockwise seen from outside.
+pub const HEX_FACES: [[usize; 4]; 6] = [
+    [0, 3, 2, 1],
+    [4, 5, 6, 7],
+    [0, 1, 5, 4],
+    [1, 2, 6, 5],
+    [2, 3, 7, 6],
+    [3, 0, 4, 7],
+];
 
 /// Edges of a hexahedron in VTK's numbering.
 pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
@@ -26,7 +36,7 @@ pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
 /// tetrahedral splits of a face, weighted one half, gives it exactly.
 pub fn trilinear_volume(corners: &[Vec3; 8]) -> f64 {
     let origin = corners[0];
-    crate::HEX_FACES
+    HEX_FACES
         .iter()
         .map(|face| volume_below(&face.map(|i| corners[i] - origin)))
         .sum()

@@ -6,10 +6,9 @@ mod follow;
 mod hex;
 mod mesh;
 mod quality;
+mod vector;
 
 pub use follow::InteriorFollower;
-pub use hex::{trilinear_volume, volume_below};
-pub use mesh::{HEX_FACES, HexMesh};
-
-/// A point or a vector in space.
-pub type Vec3 = nalgebra::Vector3<f64>;
+pub use hex::{HEX_FACES, trilinear_volume, volume_below};
+pub use mesh::HexMesh;
+pub use vector::Vec3;

@@ -1,30 +1,32 @@
 //! A mesh of hexahedra: nodes, elements, boundary.
 
-use crate::{Vec3, trilinear_volume};
+use std::sync::Arc;
 
-/// The six faces of a hexahedron as corners in VTK order, each anticlockwise seen from outside.
-pub const HEX_FACES: [[usize; 4]; 6] = [
-    [0, 3, 2, 1],
-    [4, 5, 6, 7],
-    [0, 1, 5, 4],
-    [1, 2, 6, 5],
-    [2, 3, 7, 6],
-    [3, 0, 4, 7],
-];
+use crate::{
+    hex::{HEX_FACES, trilinear_volume},
+    vector::Vec3,
+};
 
 /// A mesh of 8-node hexahedra.
+///
+/// Clones share the numbers of the nodes, which stay when nodes move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HexMesh {
     /// Node positions.
     pub nodes: Vec<Vec3>,
     /// Node numbers of each hexahedron, from 0, in VTK order.
-    pub hexes: Vec<[u32; 8]>,
+    pub hexes: Arc<[[u32; 8]]>,
 }
 
 impl HexMesh {
     /// Positions of the eight corners of hexahedron `hex`.
     pub fn corners(&self, hex: usize) -> [Vec3; 8] {
         self.hexes[hex].map(|node| self.nodes[node as usize])
+    }
+
+    /// Positions of some nodes.
+    pub fn positions(&self, nodes: &[u32]) -> impl Iterator<Item = Vec3> {
+        nodes.iter().map(|&node| self.nodes[node as usize])
     }
 
     /// Volume of the whole mesh, each element with bilinear faces.
@@ -113,7 +115,10 @@ pub(crate) mod tests {
                 }
             }
         }
-        HexMesh { nodes, hexes }
+        HexMesh {
+            nodes,
+            hexes: hexes.into(),
+        }
     }
 
     #[test]

@@ -3,13 +3,13 @@
 use nalgebra::Vector3;
 use wide::f64x4;
 
-use crate::{HexMesh, Vec3};
+use crate::{mesh::HexMesh, vector::Vec3};
 
 /// How many are looked at in one go.
 const LANES: usize = 4;
 
 /// A vector of each of four hexahedra.
-type Four = Vector3<f64x4>;
+type Vec3x4 = Vector3<f64x4>;
 
 impl HexMesh {
     /// The scaled Jacobian of every element, the smallest over its eight corners: 1 for a brick, 0 or
@@ -37,7 +37,7 @@ impl HexMesh {
 
     /// One corner of up to four hexahedra; the last stands in for those that are missing.
     #[inline(always)]
-    fn gathered(&self, hexes: &[[u32; 8]], corner: usize) -> Four {
+    fn gathered(&self, hexes: &[[u32; 8]], corner: usize) -> Vec3x4 {
         let at = |lane: usize| &self.nodes[hexes[lane.min(hexes.len() - 1)][corner] as usize];
         let [a, b, c, d]: [&Vec3; LANES] = [at(0), at(1), at(2), at(3)];
         let lanes = |axis: usize| f64x4::new([a[axis], b[axis], c[axis], d[axis]]);
@@ -49,7 +49,7 @@ impl HexMesh {
 ///
 /// The corners of the bottom and of the top are anticlockwise seen from the top.
 #[inline(always)]
-fn least_signed_squares(bottom: &[Four; 4], top: &[Four; 4]) -> f64x4 {
+fn least_signed_squares(bottom: &[Vec3x4; 4], top: &[Vec3x4; 4]) -> f64x4 {
     let upright = |i: usize| top[i] - bottom[i];
     let upright = [upright(0), upright(1), upright(2), upright(3)];
     around(bottom, &upright).min(around(top, &upright))
@@ -60,7 +60,7 @@ fn least_signed_squares(bottom: &[Four; 4], top: &[Four; 4]) -> f64x4 {
 /// With e and f the edges that lead to a corner and on from it, and h the upright one, the triple
 /// product is e x f . h, at the bottom as at the top.
 #[inline(always)]
-fn around(ring: &[Four; 4], upright: &[Four; 4]) -> f64x4 {
+fn around(ring: &[Vec3x4; 4], upright: &[Vec3x4; 4]) -> f64x4 {
     let edge = |i: usize| ring[(i + 1) % 4] - ring[i];
     let edges = [edge(0), edge(1), edge(2), edge(3)];
     let length2 = |i: usize| dot(&edges[i], &edges[i]);
@@ -76,12 +76,12 @@ fn around(ring: &[Four; 4], upright: &[Four; 4]) -> f64x4 {
 }
 
 #[inline(always)]
-fn dot(a: &Four, b: &Four) -> f64x4 {
+fn dot(a: &Vec3x4, b: &Vec3x4) -> f64x4 {
     a.x * b.x + a.y * b.y + a.z * b.z
 }
 
 #[inline(always)]
-fn cross(a: &Four, b: &Four) -> Four {
+fn cross(a: &Vec3x4, b: &Vec3x4) -> Vec3x4 {
     Vector3::new(
         a.y * b.z - a.z * b.y,
         a.z * b.x - a.x * b.z,

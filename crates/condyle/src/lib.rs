@@ -8,7 +8,6 @@ pub mod evolve;
 pub mod geometry;
 pub mod machine;
 pub mod number;
-mod products;
 pub mod spatial;
 pub mod wear;
 

@@ -1,8 +1,8 @@
 //! The articulating surface as it is now: normals, areas, and each node's share of the surface.
 
 use super::{
-    FacesAround,
-    share::{Share, ShareSeeker},
+    faces_around::FacesAround,
+    share::{Share, builder::ShareBuilder},
 };
 use crate::{Vec3, number::LANES};
 
@@ -22,12 +22,13 @@ impl ArticulatingSurface {
     pub fn new(positions: Vec<Vec3>, around: &FacesAround) -> Self {
         let count = positions.len();
         let (mut normals, mut shares) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        let mut seeker = ShareSeeker::new(&positions, around);
+        let mut builder = ShareBuilder::new(&positions, around);
         for first in (0..count).step_by(LANES) {
-            let found = seeker.find(&[0, 1, 2, 3].map(|lane| (first + lane).min(count - 1) as u32));
+            let nodes = [0, 1, 2, 3].map(|lane| (first + lane).min(count - 1) as u32);
+            let four = builder.build(&nodes);
             for lane in 0..LANES.min(count - first) {
-                normals.push(found.normal(lane));
-                shares.push(found.share(lane));
+                normals.push(four.normal(lane));
+                shares.push(four.share(lane));
             }
         }
         Self {

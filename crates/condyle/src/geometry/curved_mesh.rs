@@ -1,6 +1,9 @@
 //! The curved surface that a triangle mesh samples.
 
-use super::TriangleMesh;
+use super::{
+    triangle::{closest_point, weighted},
+    triangle_mesh::TriangleMesh,
+};
 use crate::Vec3;
 
 /// Vertex normals that lean further from their triangle's than 30 degrees mark a sharp edge.
@@ -61,7 +64,7 @@ impl<'a> CurvedMesh<'a> {
 
     /// Squared distance from a point to a flat triangle, mm2.
     pub fn distance2_to_triangle(corners: &[Vec3; 3], point: &Vec3) -> f64 {
-        (weighted(corners, closest_on_triangle(corners, point)) - point).norm_squared()
+        (weighted(corners, closest_point(corners, point)) - point).norm_squared()
     }
 
     /// Height of the curved surface over the triangle at a place (x, z), if the triangle covers it.
@@ -107,7 +110,7 @@ impl<'a> CurvedMesh<'a> {
     pub fn foot(&self, triangle: usize, point: &Vec3) -> Foot {
         let corners = self.corners(triangle);
         let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
-        let weights = closest_on_triangle(&corners, point);
+        let weights = closest_point(&corners, point);
         let flat = weighted(&corners, weights);
         let normal = weighted(&normals, weights);
         Foot {
@@ -133,74 +136,4 @@ pub struct Foot {
 fn lift(corners: &[Vec3; 3], normals: &[Vec3; 3], weights: [f64; 3], flat: &Vec3) -> Vec3 {
     let half = |i: usize| normals[i] * (weights[i] / 2.0 * (corners[i] - flat).dot(&normals[i]));
     half(0) + half(1) + half(2)
-}
-
-fn weighted(vectors: &[Vec3; 3], weights: [f64; 3]) -> Vec3 {
-    vectors[0] * weights[0] + vectors[1] * weights[1] + vectors[2] * weights[2]
-}
-
-/// Barycentric coordinates of the point of a triangle closest to `point`.
-///
-/// By the regions of the triangle, as in Ericson, Real-Time Collision Detection, 5.1.5.
-fn closest_on_triangle(corners: &[Vec3; 3], point: &Vec3) -> [f64; 3] {
-    let [a, b, c] = corners;
-    let (ab, ac) = (b - a, c - a);
-    let from_a = point - a;
-    let (d1, d2) = (ab.dot(&from_a), ac.dot(&from_a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0];
-    }
-    let from_b = point - b;
-    let (d3, d4) = (ab.dot(&from_b), ac.dot(&from_b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0];
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let along = d1 / (d1 - d3);
-        return [1.0 - along, along, 0.0];
-    }
-    let from_c = point - c;
-    let (d5, d6) = (ab.dot(&from_c), ac.dot(&from_c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0];
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let along = d2 / (d2 - d6);
-        return [1.0 - along, 0.0, along];
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let along = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return [0.0, 1.0 - along, along];
-    }
-    let all = va + vb + vc;
-    [va / all, vb / all, vc / all]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn closest_point_is_no_further_than_any_sample_of_the_triangle() {
-        let corners = [[0., 0., 0.], [2., 0.1, 0.], [0.4, 1.5, 0.3]].map(Vec3::from);
-        for i in 0..200 {
-            let angle = f64::from(i);
-            let point = Vec3::new(
-                3.0 * angle.sin(),
-                3.0 * (1.7 * angle).cos(),
-                (0.3 * angle).sin(),
-            );
-            let best = (weighted(&corners, closest_on_triangle(&corners, &point)) - point).norm();
-            for a in 0..=20 {
-                for b in 0..=(20 - a) {
-                    let (u, v) = (f64::from(a) / 20.0, f64::from(b) / 20.0);
-                    let there = weighted(&corners, [1.0 - u - v, u, v]);
-                    assert!(best <= (there - point).norm() + 1e-12);
-                }
-            }
-        }
-    }
 }

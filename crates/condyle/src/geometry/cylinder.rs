@@ -1,6 +1,6 @@
 //! A cylinder about the z axis.
 
-use super::{Curvature, SurfaceSample};
+use super::surface_sample::{Curvature, SurfaceSample};
 use crate::{Vector, number::Number};
 
 /// An endless cylinder about the z axis of the femoral frame.
@@ -47,7 +47,7 @@ impl Cylinder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Vec3, geometry::torus::tests::check_derivatives};
+    use crate::{Vec3, geometry::surface_sample::tests::check_derivatives};
 
     #[test]
     fn gradient_and_curvature_are_derivatives() {

@@ -1,6 +1,9 @@
 //! The generic tibial insert: two dishes beside an eminence.
 
-use super::{ColumnGrid, Insert, InsertError};
+use super::{
+    columns::ColumnGrid,
+    insert::{Insert, error::InsertError},
+};
 
 /// Measures of the generic insert, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]

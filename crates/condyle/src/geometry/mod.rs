@@ -1,8 +1,26 @@
 //! Shapes, meshes, and the distance to a surface.
+//!
+//! In the order of the data's path:
+//!
+//! 1. **A shape or a triangle mesh comes in.** [`TriangleMesh`] is what a file holds;
+//!    [`checked_shell`] finds out whether it is a surface at all, and turns it the right way.
+//!    [`CurvedMesh`] reads its facets as samples of a curved surface.
+//! 2. **The femur becomes a surface** that gives gap, normal and curvature at any point, a
+//!    [`SurfaceSample`], and [`CurvatureBounds`] around it. [`FemoralSurface`] is one of several:
+//!    [`GenericFemur`] of pieces of [`Torus`], one ball, one [`Cylinder`], or the [`SmoothField`] of
+//!    a mesh, which is gaps at the nodes of a grid and a spline through them.
+//! 3. **The insert becomes hexahedra**: of measures ([`GenericInsertShape`]), of a shell
+//!    ([`insert_from_shell`]), both in the columns of a [`ColumnGrid`], or read from a file.
+//!    [`Insert`] holds them, worn or not, with what does not wear: [`SurfaceRegions`],
+//!    [`FacesAround`] its nodes, and the nodes in [`NodeBlock`]s.
+//! 4. **The contact asks for the surface as it is now**: [`ArticulatingSurface`], with the
+//!    [`Share`] of it that each node stands for.
+//!
+//! Bodies are cheap to clone, and what is large is shared between clones and threads.
 
 mod articulating_surface;
 mod columns;
-mod curvature_grid;
+mod curvature_bounds;
 mod curved_mesh;
 mod cylinder;
 mod faces_around;
@@ -15,20 +33,22 @@ mod share;
 mod shell;
 mod shell_insert;
 mod smooth_field;
-mod spline;
-mod thickness;
+mod surface_regions;
+mod surface_sample;
 mod torus;
+mod triangle;
 mod triangle_mesh;
 
 pub use articulating_surface::ArticulatingSurface;
 pub use columns::{Column, ColumnGrid, ColumnMesh};
+pub use curvature_bounds::{CurvatureBounds, MOST_GAP_SLOPE};
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use cylinder::Cylinder;
 pub use faces_around::FacesAround;
-pub use femoral_surface::{Curvature, CurvatureBounds, FemoralSurface, SurfaceSample};
+pub use femoral_surface::FemoralSurface;
 pub use generic_femur::{GenericFemur, GenericFemurShape};
 pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};
-pub use insert::{Insert, InsertError};
+pub use insert::{Insert, error::InsertError};
 pub use node_blocks::NodeBlock;
 pub use share::Share;
 pub use shell::{
@@ -37,5 +57,7 @@ pub use shell::{
 };
 pub use shell_insert::{ShellInsertError, insert_from_shell};
 pub use smooth_field::SmoothField;
+pub use surface_regions::SurfaceRegions;
+pub use surface_sample::{Curvature, SurfaceSample};
 pub use torus::Torus;
 pub use triangle_mesh::TriangleMesh;

@@ -1,6 +1,6 @@
 //! The nodes of a surface, four by four.
 
-use super::FacesAround;
+use super::faces_around::FacesAround;
 use crate::number::LANES;
 
 /// Up to four nodes that lie together: what is near one is near all of them.
@@ -13,7 +13,8 @@ pub struct NodeBlock {
 }
 
 impl NodeBlock {
-    fn new(nodes: &mut [u32]) -> Self {
+    /// The block of up to four nodes, which are put into order.
+    fn of(nodes: &mut [u32]) -> Self {
         nodes.sort_unstable();
         let last = nodes.len() - 1;
         Self {
@@ -23,37 +24,37 @@ impl NodeBlock {
     }
 }
 
-/// Every node once: the corners of every other face along rows and columns, and then what is left in
+/// The blocks of a surface, every node once: the corners of every other face along rows and columns, and then what is left in
 /// chains; ascending by their first nodes.
 ///
 /// A grid falls into blocks of two by two, whatever its outline. They touch, or not, sooner all
 /// together than four nodes in a row would, and do not reach from one end of a row to the start of
 /// the next.
 pub(super) fn node_blocks(faces: &[[u32; 4]], around: &FacesAround) -> Vec<NodeBlock> {
-    let mut left = Left {
+    let mut free = FreeNodes {
         around,
         is_taken: vec![false; around.node_count()],
     };
-    let mut node_blocks = Vec::with_capacity(around.node_count().div_ceil(LANES));
+    let mut blocks = Vec::with_capacity(around.node_count().div_ceil(LANES));
     for &face in faces {
-        left.take_blocks(face, &mut node_blocks);
+        free.take_blocks(face, &mut blocks);
     }
     for node in 0..around.node_count() as u32 {
-        if let Some(chain) = left.take_chain(node) {
-            node_blocks.push(chain);
+        if let Some(chain) = free.take_chain(node) {
+            blocks.push(chain);
         }
     }
-    node_blocks.sort_unstable_by_key(|four| four.nodes[0]);
-    node_blocks
+    blocks.sort_unstable_by_key(|block| block.nodes[0]);
+    blocks
 }
 
-/// The nodes that are in no four yet.
-struct Left<'a> {
+/// The nodes that are in no block yet.
+struct FreeNodes<'a> {
     around: &'a FacesAround,
     is_taken: Vec<bool>,
 }
 
-impl Left<'_> {
+impl FreeNodes<'_> {
     fn take(&mut self, nodes: &[u32]) -> bool {
         let is_free = !nodes.iter().any(|&node| self.is_taken[node as usize]);
         if is_free {
@@ -65,17 +66,17 @@ impl Left<'_> {
     }
 
     /// Takes a face's corners, those of the faces next but one on all its sides, and so on.
-    fn take_blocks(&mut self, face: [u32; 4], node_blocks: &mut Vec<NodeBlock>) {
-        let mut blocks = vec![face];
-        while let Some(mut block) = blocks.pop() {
-            if self.take(&block) {
-                let sides = [0, 1, 2, 3].map(|side| [block[side], block[(side + 1) % 4]]);
+    fn take_blocks(&mut self, face: [u32; 4], blocks: &mut Vec<NodeBlock>) {
+        let mut open = vec![face];
+        while let Some(mut face) = open.pop() {
+            if self.take(&face) {
+                let sides = [0, 1, 2, 3].map(|side| [face[side], face[(side + 1) % 4]]);
                 let beyond = |side| {
                     let [_, _, from, to] = self.face_beyond(side)?;
                     self.face_beyond([from, to])
                 };
-                blocks.extend(sides.into_iter().filter_map(beyond));
-                node_blocks.push(NodeBlock::new(&mut block));
+                open.extend(sides.into_iter().filter_map(beyond));
+                blocks.push(NodeBlock::of(&mut face));
             }
         }
     }
@@ -102,7 +103,7 @@ impl Left<'_> {
             }
             end += 1;
         }
-        (!nodes.is_empty()).then(|| NodeBlock::new(&mut nodes))
+        (!nodes.is_empty()).then(|| NodeBlock::of(&mut nodes))
     }
 }
 
@@ -110,7 +111,7 @@ impl Left<'_> {
 mod tests {
     use super::*;
 
-    /// The node_blocks of a grid of `columns` by `rows` nodes.
+    /// The blocks of a grid of `columns` by `rows` nodes.
     fn of_grid(columns: u32, rows: u32) -> Vec<NodeBlock> {
         let first = (0..rows - 1).flat_map(|j| (0..columns - 1).map(move |i| i + j * columns));
         let faces: Vec<[u32; 4]> = first
@@ -119,10 +120,10 @@ mod tests {
         node_blocks(&faces, &FacesAround::new((columns * rows) as usize, &faces))
     }
 
-    fn numbers(node_blocks: &[NodeBlock]) -> Vec<&[u32]> {
-        node_blocks
+    fn numbers(blocks: &[NodeBlock]) -> Vec<&[u32]> {
+        blocks
             .iter()
-            .map(|four| &four.nodes[..four.count])
+            .map(|block| &block.nodes[..block.count])
             .collect()
     }
 
@@ -158,13 +159,13 @@ mod tests {
         let number = |(i, k): (i32, i32)| places.binary_search(&(k, i)).unwrap() as u32;
         let face = |&(i, k): &(i32, i32)| corners.map(|(di, dk)| number((i + di, k + dk)));
         let faces: Vec<[u32; 4]> = cells.iter().map(face).collect();
-        let node_blocks = node_blocks(&faces, &FacesAround::new(places.len(), &faces));
+        let blocks = node_blocks(&faces, &FacesAround::new(places.len(), &faces));
         assert!(
-            node_blocks.len() * 4 < places.len() * 11 / 10,
+            blocks.len() * 4 < places.len() * 11 / 10,
             "{}",
-            node_blocks.len()
+            blocks.len()
         );
-        let mut nodes = numbers(&node_blocks).concat();
+        let mut nodes = numbers(&blocks).concat();
         nodes.sort_unstable();
         assert!(nodes.into_iter().eq(0..places.len() as u32));
     }

@@ -1,9 +1,19 @@
 //! An insert from a triangle mesh: hexahedra in columns along y.
 
+mod rim;
+mod through;
+
 use thiserror::Error;
 
+use self::{
+    rim::{drop_steep, drop_thin},
+    through::columns_through,
+};
 use super::{
-    Column, ColumnGrid, Insert, InsertError, Meshing, TriangleMesh, curved_mesh::CurvedMesh,
+    columns::{Column, ColumnGrid},
+    generic_insert::Meshing,
+    insert::{Insert, error::InsertError},
+    triangle_mesh::TriangleMesh,
 };
 
 /// Why a shell makes no insert.
@@ -27,11 +37,6 @@ pub enum ShellInsertError {
     Insert(#[from] InsertError),
 }
 
-/// Columns thinner than this share of the median are rim, and left out.
-const THINNEST_SHARE: f64 = 0.4;
-/// Cells whose surface rises by more than this many edges are side wall, and left out.
-const STEEPEST_RISE: f64 = 1.5;
-
 /// Hexahedra between the top and the bottom of a shell, or below an open surface.
 ///
 /// A vertical line through every grid point meets the shell; its highest and its lowest point
@@ -50,13 +55,13 @@ pub fn insert_from_shell(
     let edge_mm = meshing.edge_mm;
     let (low, high) = shell.bounds();
     let grid = ColumnGrid::filling((low.x, low.z), (high.x, high.z), edge_mm);
-    let mut columns = crossings(shell, &grid);
+    let mut columns = columns_through(shell, &grid);
     if !is_closed {
         let thickness_mm = thickness_mm.ok_or(ShellInsertError::OpenWithoutThickness)?;
         put_on_flat_backside(&mut columns, thickness_mm);
     }
     drop_thin(&mut columns);
-    drop_steep(&grid, &mut columns, STEEPEST_RISE * edge_mm);
+    drop_steep(&grid, &mut columns, edge_mm);
     let built = grid.hexahedra(&columns, meshing.layers);
     if built.mesh.hexes.is_empty() {
         return Err(ShellInsertError::NoColumns { edge_mm });
@@ -68,56 +73,7 @@ pub fn insert_from_shell(
     )?)
 }
 
-/// Lowest and highest crossing of the vertical line through every grid point.
-fn crossings(shell: &TriangleMesh, grid: &ColumnGrid) -> Vec<Column> {
-    let curved = CurvedMesh::new(shell);
-    let mut columns: Vec<Column> = vec![None; grid.point_count()];
-    for triangle in 0..shell.triangles.len() {
-        let [a, b, c] = shell.corners(triangle);
-        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-        for i in grid_points(
-            low.x,
-            high.x,
-            grid.origin_mm.0,
-            grid.step_mm.0,
-            grid.cells.0,
-        ) {
-            for k in grid_points(
-                low.z,
-                high.z,
-                grid.origin_mm.1,
-                grid.step_mm.1,
-                grid.cells.1,
-            ) {
-                if let Some(height) = curved.height_over(triangle, grid.place_mm(i, k)) {
-                    let column = &mut columns[grid.number(i, k)];
-                    let (bottom, top) = column.unwrap_or((height, height));
-                    *column = Some((bottom.min(height), top.max(height)));
-                }
-            }
-        }
-    }
-    columns
-}
-
-/// Part of a cell within which a grid point lies on an edge.
-const ON_EDGE: f64 = 1e-9;
-
-/// Grid points between two places along one axis.
-fn grid_points(
-    low: f64,
-    high: f64,
-    origin: f64,
-    step: f64,
-    cells: usize,
-) -> std::ops::RangeInclusive<usize> {
-    // A grid point on the very edge of the shell counts as inside, whatever way it is rounded.
-    let place = |value: f64| (value - origin) / step;
-    let first = (place(low) - ON_EDGE).ceil().max(0.0) as usize;
-    let last = ((place(high) + ON_EDGE).floor().max(0.0) as usize).min(cells);
-    first..=last
-}
-
+/// Ends every column at a plane below the lowest point.
 fn put_on_flat_backside(columns: &mut [Column], thickness_mm: f64) {
     let lowest = columns
         .iter()
@@ -129,47 +85,13 @@ fn put_on_flat_backside(columns: &mut [Column], thickness_mm: f64) {
     }
 }
 
-fn drop_thin(columns: &mut [Column]) {
-    let mut thickness: Vec<f64> = columns
-        .iter()
-        .flatten()
-        .map(|(bottom, top)| top - bottom)
-        .collect();
-    thickness.sort_unstable_by(f64::total_cmp);
-    let Some(median) = thickness.get(thickness.len() / 2) else {
-        return;
-    };
-    for column in columns {
-        *column = column.filter(|(bottom, top)| top - bottom >= THINNEST_SHARE * median);
-    }
-}
-
-/// Drops the lower end of every steep edge of the grid.
-fn drop_steep(grid: &ColumnGrid, columns: &mut [Column], most_rise_mm: f64) {
-    let before = columns.to_vec();
-    let mut check = |here: usize, there: usize| {
-        if let (Some((_, one)), Some((_, other))) = (before[here], before[there])
-            && (one - other).abs() > most_rise_mm
-        {
-            columns[if one < other { here } else { there }] = None;
-        }
-    };
-    for i in 0..=grid.cells.0 {
-        for k in 0..=grid.cells.1 {
-            if i < grid.cells.0 {
-                check(grid.number(i, k), grid.number(i + 1, k));
-            }
-            if k < grid.cells.1 {
-                check(grid.number(i, k), grid.number(i, k + 1));
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Vec3, geometry::GenericInsertShape};
+    use crate::{
+        Vec3,
+        geometry::{GenericInsertShape, shell::fixtures::block},
+    };
 
     /// The generic dish as an open surface of triangles, fine or coarse.
     fn dish(edge_mm: f64) -> TriangleMesh {
@@ -188,37 +110,9 @@ mod tests {
         }
     }
 
-    /// A closed box with its corners at `low` and `high`.
-    fn closed_box(low: Vec3, high: Vec3) -> TriangleMesh {
-        let corner = |i: usize| {
-            Vec3::from([0, 1, 2].map(|axis| {
-                if i >> axis & 1 == 0 {
-                    low[axis]
-                } else {
-                    high[axis]
-                }
-            }))
-        };
-        let quads = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
-        TriangleMesh {
-            vertices: (0..8).map(corner).collect(),
-            triangles: quads
-                .iter()
-                .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-                .collect(),
-        }
-    }
-
     #[test]
     fn verify_volume_of_a_box() {
-        let shell = closed_box(Vec3::new(-10.0, 0.0, -15.0), Vec3::new(10.0, 8.0, 15.0));
+        let shell = block(Vec3::new(-10.0, 0.0, -15.0), Vec3::new(10.0, 8.0, 15.0));
         assert!((shell.signed_volume() - 4800.0).abs() < 1e-9);
         let insert = insert_from_shell(
             &shell,
@@ -269,8 +163,8 @@ mod tests {
             .err()
             .unwrap();
         assert!(open.to_string().contains("give thickness_mm"));
-        let tiny = closed_box(Vec3::zeros(), Vec3::new(0.02, 0.01, 0.03))
-            .mapped(|v| v + Vec3::repeat(5.0));
+        let tiny =
+            block(Vec3::zeros(), Vec3::new(0.02, 0.01, 0.03)).mapped(|v| v + Vec3::repeat(5.0));
         let huge = Meshing {
             edge_mm: 100.0,
             layers: 1,

@@ -1,6 +1,6 @@
 //! A torus about an axis along z.
 
-use super::{Curvature, SurfaceSample};
+use super::surface_sample::{Curvature, SurfaceSample};
 use crate::{Vec3, Vector, number::Number};
 
 /// The outer side of a torus about an axis along z; with a tube circle about the axis, a ball.
@@ -82,32 +82,9 @@ impl<T: Number> Torus<T> {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
-
-    /// Holds gap gradient and curvature of a surface against central differences at `point`.
-    pub(crate) fn check_derivatives(
-        sample: impl Fn(&Vec3) -> SurfaceSample<f64>,
-        point: Vec3,
-        tolerance: f64,
-    ) {
-        let step = 1e-5;
-        let here = sample(&point);
-        for axis in 0..3 {
-            let shift = Vec3::ith(axis, step);
-            let (fore, back) = (sample(&(point + shift)), sample(&(point - shift)));
-            let slope = (fore.gap_mm - back.gap_mm) / (2.0 * step);
-            assert!(
-                (slope - here.gap_gradient[axis]).abs() < tolerance,
-                "{slope} {here:?}"
-            );
-            let turn = (fore.normal - back.normal) / (2.0 * step);
-            let bend = here.curvature.times(&Vec3::ith(axis, 1.0));
-            let along_surface = bend - here.normal * here.normal.dot(&bend);
-            assert!((turn - along_surface).norm() < tolerance, "{turn} {here:?}");
-        }
-        assert!((here.normal.norm() - 1.0).abs() < 1e-12);
-    }
+    use crate::geometry::surface_sample::tests::check_derivatives;
 
     #[test]
     fn gradient_and_curvature_are_derivatives() {

@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 use num_traits::{One, Zero};
 use wide::{f32x8, f64x4};
 
-use super::Number;
+use super::real::Number;
 
 /// How many nodes go side by side.
 pub const LANES: usize = 4;
@@ -13,7 +13,7 @@ pub const LANES: usize = 4;
 /// How many numbers of single precision go side by side.
 pub const LANES_F32: usize = 8;
 
-/// NodeBlock numbers side by side.
+/// Four numbers side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
 pub struct F64x4(f64x4);
@@ -24,7 +24,7 @@ pub struct F64x4(f64x4);
 pub struct F32x8(f32x8);
 
 impl F64x4 {
-    /// NodeBlock numbers.
+    /// Four numbers.
     #[inline(always)]
     pub fn new(lanes: [f64; LANES]) -> Self {
         Self(f64x4::new(lanes))
@@ -225,3 +225,45 @@ macro_rules! operators {
 
 side_by_side! {F64x4, f64x4, f64, LANES}
 side_by_side! {F32x8, f32x8, f32, LANES_F32}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_lane_does_as_a_single_number_does() {
+        let (a, b) = ([1.5, -2.0, 0.3, 7.0], [0.1, 3.0, -0.7, 7.0]);
+        let formula = |x: f64, y: f64| ((x * y - x / y).abs() + y).sqrt().max(x);
+        let lanes = F64x4::new(a);
+        let other = F64x4::new(b);
+        let together = Number::max(
+            Number::sqrt(Number::abs(lanes * other - lanes / other) + other),
+            lanes,
+        );
+        for lane in 0..LANES {
+            let single = Number::max(formula(a[lane], b[lane]), a[lane]);
+            assert!(
+                together.lane(lane) == single || (together.lane(lane).is_nan() && single.is_nan())
+            );
+        }
+        let chosen = lanes.below_zero(F64x4::zero(), F64x4::one());
+        assert_eq!(chosen.to_array(), [1.0, 0.0, 1.0, 1.0]);
+        assert_eq!(lanes.sum(), (1.5 - 2.0) + (0.3 + 7.0));
+    }
+
+    #[test]
+    fn singles_are_two_lanes_rounded() {
+        let (a, b) = (
+            F64x4::new([1.5, -2.0, 0.1, 7.0]),
+            F64x4::new([3.0, 4.0, 5.0, 6.0]),
+        );
+        let singles = F32x8::pair(a, b);
+        assert_eq!(singles.lane(1), -2.0);
+        assert_eq!(singles.lane(2), f64::from(0.1_f32));
+        assert_eq!(singles.lane(4), 3.0);
+        assert_eq!(singles.least(), -2.0);
+        assert!((singles.sum() - 24.6).abs() < 1e-6);
+        let product = singles.mul_add(F32x8::splat(2.0), -singles);
+        assert!((0..8).all(|lane| product.lane(lane) == singles.lane(lane)));
+    }
+}

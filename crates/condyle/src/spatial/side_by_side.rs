@@ -4,7 +4,7 @@ use super::{Pose, Twist, body::Femur};
 use crate::{
     Vec3, Vector,
     number::{F64x4, Number},
-    products::{dot, scale_add},
+    number::vector::{dot, scale_add},
 };
 
 /// A pose of the femur in the insert for four points at a time.

@@ -5,7 +5,7 @@ use crate::{
     contact::share_block::ShareBlock,
     geometry::MOST_GAP_SLOPE,
     number::{F32x8, F64x4, LANES, LANES_F32, Number},
-    products::dot,
+    number::vector::dot,
 };
 
 /// Eight blocks: where they are, as far as a separation from the femur changes with its motion.

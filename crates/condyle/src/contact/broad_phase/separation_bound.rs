@@ -5,7 +5,7 @@ use crate::{
     contact::share_block::ShareBlock,
     geometry::{CurvatureBounds, MOST_GAP_SLOPE, SurfaceSample},
     number::{F64x4, LANES, Number},
-    products::dot,
+    number::vector::dot,
 };
 
 /// Where a gap is smaller the curvature of the femur is known, mm; see [`CurvatureBounds`].

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     Mat3, Vec3, Vector,
     number::{F32x8, LANES_F32, Number},
-    products::dot,
+    number::vector::dot,
     spatial::Pose,
 };
 

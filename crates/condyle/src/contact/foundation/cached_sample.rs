@@ -3,8 +3,8 @@
 use crate::{
     Vector,
     geometry::{FemoralSurface, SurfaceSample},
+    number::vector::dot,
     number::{F64x4, Number},
-    products::dot,
 };
 
 /// Motion up to which a sample is moved along to second order rather than taken anew, mm.

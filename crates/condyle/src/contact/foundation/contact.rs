@@ -15,7 +15,7 @@ use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     number::{F64x4, LANES, Number},
-    products::{cross, dot, scale_add, tangential_part, zero_vector},
+    number::vector::{cross, dot, scale_add, tangential_part, zero_vector},
     spatial::{
         FrameChange, Pose, Pose4, RelativeMotion, Twist, Twist4, Wrench, WrenchByTwist, body,
     },

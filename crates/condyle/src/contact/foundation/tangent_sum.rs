@@ -5,7 +5,7 @@ use crate::{
     Vector,
     geometry::Curvature,
     number::{F32x8, F64x4, Number},
-    products::{cross, dot},
+    number::vector::{cross, dot},
     spatial::Mat6,
 };
 

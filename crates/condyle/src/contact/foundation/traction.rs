@@ -3,7 +3,7 @@
 use crate::{
     Vec3, Vector,
     number::{F64x4, Number},
-    products::{cross, dot, scale_add, zero_vector},
+    number::vector::{cross, dot, scale_add, zero_vector},
     spatial::{Twist4, Wrench, body},
 };
 

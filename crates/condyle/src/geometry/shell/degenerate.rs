@@ -1,6 +1,6 @@
 //! Triangles without area, taken out so that no gap is left.
 
-use crate::geometry::TriangleMesh;
+use crate::geometry::triangle_mesh::TriangleMesh;
 
 /// Height over longest edge below which a triangle has no area: rounding of double precision.
 const FLAT: f64 = 1e-12;
@@ -105,7 +105,7 @@ fn longest_edge_last(mesh: &TriangleMesh, triangle: usize) -> [u32; 3] {
 #[cfg(test)]
 mod tests {
     use crate::Vec3;
-    use crate::geometry::shell::{checked_shell, tests::unit_block};
+    use crate::geometry::shell::{checked_shell, fixtures::unit_block};
 
     #[test]
     fn a_triangle_of_two_equal_corners_goes_without_a_gap() {

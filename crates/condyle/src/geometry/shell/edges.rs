@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::ShellError;
-use crate::geometry::TriangleMesh;
+use super::error::ShellError;
+use crate::geometry::triangle_mesh::TriangleMesh;
 
 /// One side of one triangle.
 #[derive(Clone, Copy)]
@@ -117,7 +117,7 @@ fn step(next: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::shell::tests::unit_block;
+    use crate::geometry::shell::fixtures::unit_block;
 
     #[test]
     fn a_closed_block_has_nothing_to_report() {

@@ -1,9 +1,9 @@
 //! Which side is out: neighbours are made to agree, closed bodies to face outwards.
 
-use super::ShellError;
 use super::edges::{EdgeUse, by_edge};
+use super::error::ShellError;
 use crate::Vec3;
-use crate::geometry::TriangleMesh;
+use crate::geometry::triangle_mesh::TriangleMesh;
 
 /// What was found and done.
 pub(super) struct Oriented {

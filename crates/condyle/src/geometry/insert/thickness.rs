@@ -2,8 +2,11 @@
 
 use condyle_fem::HexMesh;
 
-use super::{ArticulatingSurface, InsertError};
-use crate::Vec3;
+use super::error::InsertError;
+use crate::{
+    Vec3,
+    geometry::{articulating_surface::ArticulatingSurface, triangle},
+};
 
 /// Edge of the bins that sort the backside over the transverse plane, mm.
 const BIN_MM: f64 = 2.0;
@@ -21,7 +24,7 @@ struct Backside {
 ///
 /// Where a normal misses the backside (at the rim), the distance straight down counts, and where
 /// that misses too, the nearest vertex of the backside.
-pub(super) fn thickness_at_nodes(
+pub fn thickness_at_nodes(
     surface: &ArticulatingSurface,
     mesh: &HexMesh,
     backside: &[[u32; 4]],
@@ -87,7 +90,7 @@ impl Backside {
         let mut nearest: Option<f64> = None;
         for bin in self.bins_between(&from.inf(&end), &from.sup(&end)) {
             for &index in &self.bins[bin] {
-                let distance = hit(&self.triangles[index as usize], from, direction);
+                let distance = triangle::hit(&self.triangles[index as usize], from, direction);
                 nearest = nearest.map_or(distance, |d| Some(distance.map_or(d, |e| d.min(e))));
             }
         }
@@ -114,26 +117,4 @@ impl Backside {
         );
         x.flat_map(move |i| z.clone().map(move |k| i * nz + k))
     }
-}
-
-/// Distance along a ray to a triangle, if it hits (Moller & Trumbore 1997, a little generous at
-/// the edges so that no ray slips between two triangles).
-fn hit([a, b, c]: &[Vec3; 3], from: &Vec3, direction: &Vec3) -> Option<f64> {
-    const EDGE: f64 = 1e-9;
-    let (ab, ac) = (b - a, c - a);
-    let across = direction.cross(&ac);
-    let determinant = ab.dot(&across);
-    if determinant == 0.0 {
-        return None;
-    }
-    let offset = from - a;
-    let u = offset.dot(&across) / determinant;
-    // Most triangles asked are missed, and most of these seen to be here.
-    if !(-EDGE..=1.0 + EDGE).contains(&u) {
-        return None;
-    }
-    let turned = offset.cross(&ab);
-    let v = direction.dot(&turned) / determinant;
-    let distance = ac.dot(&turned) / determinant;
-    (v >= -EDGE && u + v <= 1.0 + EDGE && distance > 0.0).then_some(distance)
 }

@@ -1,6 +1,7 @@
 //! Products of vectors whose sums are rounded once: half the instructions of products and sums.
 
-use crate::{Vector, number::Number};
+use super::real::Number;
+use crate::Vector;
 
 /// Zero, written out: the compiler does not take nalgebra's repetition of it apart.
 #[inline(always)]

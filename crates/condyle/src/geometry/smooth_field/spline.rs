@@ -26,18 +26,18 @@ impl<T: Number> Basis<T> {
 }
 
 /// The B-splines that reach a point in every lane.
-pub(super) struct Bases<T> {
+pub struct Bases<T> {
     x: Basis<T>,
     y: Basis<[f64; LANES]>,
     z: Basis<[f64; LANES]>,
 }
 
 /// A spline and its derivatives by the grid's places.
-pub(super) struct Derivatives<T> {
+pub struct Derivatives<T> {
     pub value: T,
     pub gradient: [T; 3],
     /// Second ones: xx, yy, zz, xy, xz, yz.
-    pub bend: [T; 6],
+    pub hessian: [T; 6],
 }
 
 impl<T: Number> Bases<T> {
@@ -54,13 +54,15 @@ impl<T: Number> Bases<T> {
 
     /// The spline where `rows` gives the coefficients around every lane's point: of layer k the row
     /// j along x, and one number more.
-    ///
-    /// The tensor product is contracted an axis at a time: 165 multiplications instead of 810.
     #[inline(always)]
     pub fn spline<R: Fn(usize, usize) -> F64x4>(
         &self,
         rows: impl Fn(usize) -> R,
     ) -> Derivatives<T> {
+        // The spline is the sum of b_i(x) b_j(y) b_k(z) c_ijk over 27 coefficients, and a derivative
+        // is the same sum with slopes in place of values. It is contracted an axis at a time, y and
+        // z of one lane first: 165 multiplications for all ten sums, instead of 810. What is left
+        // of each lane are three numbers along x, which go side by side for all lanes at once.
         let none = [F64x4::splat(0.0); LANES];
         let (mut f, mut fz, mut fzz) = (none, none, none);
         let (mut fy, mut fyz, mut fyy) = (none, none, none);
@@ -73,14 +75,14 @@ impl<T: Number> Bases<T> {
             fyz[lane] = across[4];
             fyy[lane] = across[5];
         }
-        let (f, fz, fzz) = (T::columns(&f), T::columns(&fz), T::columns(&fzz));
-        let (fy, fyz, fyy) = (T::columns(&fy), T::columns(&fyz), T::columns(&fyy));
+        let (f, fz, fzz) = (columns::<T>(&f), columns::<T>(&fz), columns::<T>(&fzz));
+        let (fy, fyz, fyy) = (columns::<T>(&fy), columns::<T>(&fyz), columns::<T>(&fyy));
         let Basis { value, slope } = &self.x;
         Derivatives {
             value: sum(value, &f),
             gradient: [sum(slope, &f), sum(value, &fy), sum(value, &fz)],
-            bend: [
-                bent(&f),
+            hessian: [
+                second_difference(&f),
                 sum(value, &fyy),
                 sum(value, &fzz),
                 sum(slope, &fy),
@@ -102,7 +104,11 @@ impl<T: Number> Bases<T> {
         let (z, z_slope) = (weights(&self.z.value), weights(&self.z.slope));
         let layer = |k: usize| {
             let rows = [row(0, k), row(1, k), row(2, k)];
-            (sum(&y, &rows), sum(&y_slope, &rows), bent(&rows))
+            (
+                sum(&y, &rows),
+                sum(&y_slope, &rows),
+                second_difference(&rows),
+            )
         };
         let (low, middle, high) = (layer(0), layer(1), layer(2));
         let f = [low.0, middle.0, high.0];
@@ -111,7 +117,7 @@ impl<T: Number> Bases<T> {
         [
             sum(&z, &f),
             sum(&z_slope, &f),
-            bent(&f),
+            second_difference(&f),
             sum(&z, &fy),
             sum(&z_slope, &fy),
             sum(&z, &fyy),
@@ -135,6 +141,14 @@ fn laid_out<T: Number>(basis: &Basis<T>) -> Basis<[f64; LANES]> {
     }
 }
 
+/// The first three columns of a matrix that has a row of four numbers for every lane.
+#[inline(always)]
+fn columns<T: Number>(rows: &[F64x4; LANES]) -> [T; 3] {
+    let [a, b, c, _] = F64x4::transposed(*rows);
+    let lanes = |column: F64x4| T::from_lanes(|lane| column.lane(lane));
+    [lanes(a), lanes(b), lanes(c)]
+}
+
 #[inline(always)]
 fn sum<T: Number>(weights: &[T; 3], of: &[T; 3]) -> T {
     let [a, b, c] = weights;
@@ -143,6 +157,6 @@ fn sum<T: Number>(weights: &[T; 3], of: &[T; 3]) -> T {
 
 /// The second difference: second derivatives of the three B-splines are 1, -2, 1 everywhere.
 #[inline(always)]
-fn bent<T: Number>(of: &[T; 3]) -> T {
+fn second_difference<T: Number>(of: &[T; 3]) -> T {
     of[0] - (of[1] + of[1]) + of[2]
 }

@@ -1,0 +1,58 @@
+//! Blocks of triangles for tests.
+
+use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
+
+/// A block from `low` to `high`, twelve triangles, facing outwards.
+pub(crate) fn block(low: Vec3, high: Vec3) -> TriangleMesh {
+    let corner = |i: u32| {
+        let pick = |axis: u32| if i >> axis & 1 == 0 { low } else { high }[axis as usize];
+        Vec3::new(pick(0), pick(1), pick(2))
+    };
+    let quads = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let triangles = quads
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+        .collect();
+    let vertices = (0..8).map(corner).collect();
+    TriangleMesh {
+        vertices,
+        triangles,
+    }
+}
+
+pub(crate) fn unit_block() -> TriangleMesh {
+    block(Vec3::zeros(), Vec3::repeat(1.0))
+}
+
+pub(crate) fn joined(mut a: TriangleMesh, b: TriangleMesh) -> TriangleMesh {
+    let shift = a.vertices.len() as u32;
+    a.vertices.extend(b.vertices);
+    a.triangles
+        .extend(b.triangles.iter().map(|t| t.map(|vertex| vertex + shift)));
+    a
+}
+
+/// A rolling strip of squares from `from` along x, at a height that falls by `fall` a step.
+pub(crate) fn strip(steps: u32, fall: f64) -> TriangleMesh {
+    let place = |i: u32| {
+        let (x, y) = (f64::from(i / 2), f64::from(i % 2));
+        Vec3::new(x, y, -fall * x)
+    };
+    let pair = |i: u32| {
+        [
+            [2 * i, 2 * i + 2, 2 * i + 1],
+            [2 * i + 1, 2 * i + 2, 2 * i + 3],
+        ]
+    };
+    TriangleMesh {
+        vertices: (0..2 * steps + 2).map(place).collect(),
+        triangles: (0..steps).flat_map(pair).collect(),
+    }
+}

@@ -1,0 +1,206 @@
+//! Bounds on the curvature of a field around any point near its surface.
+
+use std::{ops::Range, sync::Arc};
+
+use serde::{Deserialize, Serialize};
+
+use super::{gap_spline::GapSpline, node_grid::SPACING_MM};
+use crate::{
+    Vec3, Vector,
+    geometry::{curvature_bounds::CurvatureBounds, surface_sample::Curvature},
+    number::{F64x4, LANES, Number},
+};
+
+/// Gaps at which a surface touches or nearly does, mm.
+const NEAR_MM: Range<f64> = -0.6..2.0;
+
+const _: () = assert!(
+    CurvatureBounds::KNOWN_GAP_MM < NEAR_MM.end,
+    "a point that near lies in a cell that has bounds"
+);
+
+/// Half the diagonal of a cell and a little, in edges of it.
+const HALF_DIAGONAL: f64 = 0.9;
+
+/// How many cells around one its bounds hold in.
+const CELLS_AROUND: usize = 1;
+
+/// For every cell of a field's grid that the surface comes near, bounds on the curvature there and
+/// in the cells around: the extremes of eight samples a cell.
+///
+/// A cell lies around a node of the grid. Deeper than contact goes, a femoral component has an
+/// inside with edges of its own; the curvature there is not asked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurvatureGrid {
+    /// Those of every cell, of most of them unknown: one access to memory finds them.
+    cells: Arc<[CellBounds]>,
+    /// How far from a point of a cell its bounds hold, mm.
+    radius_mm: f64,
+}
+
+/// Bounds on the second derivatives of a field, 1/mm, rounded away from zero.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct CellBounds {
+    max_curvature_per_mm: f32,
+    concavity_per_mm: f32,
+}
+
+impl CellBounds {
+    /// Where the surface is not near.
+    const UNKNOWN: Self = Self {
+        max_curvature_per_mm: -1.0,
+        concavity_per_mm: 0.0,
+    };
+
+    /// Of no point at all.
+    const NONE: Self = Self {
+        max_curvature_per_mm: 0.0,
+        concavity_per_mm: 0.0,
+    };
+
+    fn joined(self, other: Self) -> Self {
+        Self {
+            max_curvature_per_mm: self.max_curvature_per_mm.max(other.max_curvature_per_mm),
+            concavity_per_mm: self.concavity_per_mm.max(other.concavity_per_mm),
+        }
+    }
+
+    /// At one point, from the field's slope and curvature K there.
+    fn at(slope: f64, [xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Self {
+        let trace = xx + yy + zz;
+        let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
+        // No eigenvalue of a symmetric matrix is larger than its Frobenius norm, sqrt(K:K). From
+        // their mean, tr K/3, the three differ by numbers whose sum is 0 and whose squares have the
+        // sum q = K:K - tr^2/3. One lies farthest below the mean where the other two are equal:
+        // sqrt(2 q/3) below.
+        let deviation2 = (square - trace * trace / 3.0).max(0.0);
+        let lowest = trace / 3.0 - (deviation2 * 2.0 / 3.0).sqrt();
+        Self {
+            max_curvature_per_mm: rounded_up(square.sqrt()),
+            // K is the Hessian of the gap over its slope.
+            concavity_per_mm: rounded_up((-lowest).max(0.0) * slope),
+        }
+    }
+}
+
+fn rounded_up(value: f64) -> f32 {
+    (value as f32).next_up()
+}
+
+impl CurvatureGrid {
+    /// The bounds of a field whose cells lie around the nodes of its grid.
+    pub fn new(gap: &GapSpline) -> Self {
+        let margin_mm = HALF_DIAGONAL * SPACING_MM;
+        let near = NEAR_MM.start - margin_mm..NEAR_MM.end + margin_mm;
+        let mut cells = vec![CellBounds::UNKNOWN; gap.grid().node_count()];
+        let mut known = Vec::new();
+        for (node, middle) in gap.grid().inner_nodes() {
+            if near.contains(&gap.gap_mm(&middle)) {
+                known.push(node);
+                cells[node] = in_cell(gap, &middle);
+            }
+        }
+        for _ in 0..CELLS_AROUND {
+            cells = with_cells_beside(&cells, &known, gap.grid().strides());
+        }
+        Self {
+            cells: cells.into(),
+            radius_mm: CELLS_AROUND as f64 * SPACING_MM,
+        }
+    }
+
+    /// Bounds around any point of the cell around a grid node.
+    #[inline]
+    pub fn around(&self, node: usize) -> CurvatureBounds {
+        let cell = self.cells[node];
+        if cell.max_curvature_per_mm < 0.0 {
+            return CurvatureBounds::UNKNOWN;
+        }
+        CurvatureBounds {
+            radius_mm: self.radius_mm,
+            max_curvature_per_mm: cell.max_curvature_per_mm.into(),
+            concavity_per_mm: cell.concavity_per_mm.into(),
+            curvature_jump_per_mm: 0.0,
+        }
+    }
+}
+
+/// The bounds of every known cell joined with those of the 26 cells around it.
+fn with_cells_beside(
+    cells: &[CellBounds],
+    known: &[usize],
+    [sx, sy, sz]: [usize; 3],
+) -> Vec<CellBounds> {
+    let mut joined = cells.to_vec();
+    for &cell in known {
+        let mut all = CellBounds::NONE;
+        for z in [cell - sz, cell, cell + sz] {
+            for y in [z - sy, z, z + sy] {
+                for x in [y - sx, y, y + sx] {
+                    all = all.joined(cells[x]);
+                }
+            }
+        }
+        joined[cell] = all;
+    }
+    joined
+}
+
+/// Bounds at eight points of a cell, those left out where nothing touches.
+fn in_cell(gap: &GapSpline, middle: &Vec3) -> CellBounds {
+    const OFFSET_MM: f64 = SPACING_MM / 4.0;
+    let mut all = CellBounds::NONE;
+    let offset = |is_up: bool| if is_up { OFFSET_MM } else { -OFFSET_MM };
+    for is_up in [false, true] {
+        let points = Vector::new(
+            F64x4::from_lanes(|lane| middle.x + offset(lane & 1 == 0)),
+            F64x4::from_lanes(|lane| middle.y + offset(lane & 2 == 0)),
+            F64x4::splat(middle.z + offset(is_up)),
+        );
+        let sample = gap.sample(&points);
+        let slopes = sample.gap_gradient.dot(&sample.gap_gradient).sqrt();
+        for lane in 0..LANES {
+            if NEAR_MM.contains(&sample.gap_mm.lane(lane)) {
+                let curvature = entries(&sample.curvature, lane);
+                all = all.joined(CellBounds::at(slopes.lane(lane), curvature));
+            }
+        }
+    }
+    all
+}
+
+fn entries(curvature: &Curvature<F64x4>, lane: usize) -> [f64; 6] {
+    let Curvature {
+        xx,
+        yy,
+        zz,
+        xy,
+        xz,
+        yz,
+    } = curvature;
+    [xx, yy, zz, xy, xz, yz].map(|entry| entry.lane(lane))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, SymmetricEigen};
+
+    #[test]
+    fn cell_bounds_hold_the_eigenvalues() {
+        let curvatures = [
+            [0.05, 0.0, 0.03, 0.0, 0.0, 0.0],
+            [0.05, -0.02, 0.03, 0.01, 0.02, -0.04],
+            [-0.01, -0.02, 0.0, 0.005, 0.0, 0.0],
+        ];
+        for [xx, yy, zz, xy, xz, yz] in curvatures {
+            let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+            let values = SymmetricEigen::new(matrix).eigenvalues;
+            let bounds = CellBounds::at(1.0, [xx, yy, zz, xy, xz, yz]);
+            assert!(values.amax() <= bounds.max_curvature_per_mm.into());
+            assert!(values.min() >= -f64::from(bounds.concavity_per_mm));
+        }
+        // Two equal curvatures: the bound is the third, along the normal.
+        assert!(CellBounds::at(1.0, [0.05, 0.0, 0.05, 0.0, 0.0, 0.0]).concavity_per_mm < 1e-9);
+    }
+}
