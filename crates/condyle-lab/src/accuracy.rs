@@ -5,15 +5,16 @@
 //! tells the error of the run, from the order at which it falls. What the length of the march's
 //! steps costs is known from the march itself.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, sync::Arc};
 
 use condyle::{
-    contact::FoundationSettings,
+    contact::ContactLaw,
     evolve::{
         March, MarchError, MarchState, PlacementError, Schedule, Snapshot, StepRecord, WearTest,
+        mean_over_volume, weight_of_depth,
     },
     geometry::Insert,
-    machine::{CycleError, MachineState, TimeSettings},
+    machine::MachineState,
 };
 use condyle_io::{
     case::Case,
@@ -27,60 +28,72 @@ const LOOSER_SLIP: f64 = -1.0;
 /// From the change that twice the edge makes: second order.
 const COARSER_MESH: f64 = -1.0 / 3.0;
 
-/// What a cycle wears counts for the maximum depth by this power of the final depth at its place:
-/// high enough to see the bottom of the scar alone, low enough to average over the nodes there.
-const DEEP_POWER: i32 = 8;
-
-/// Somebody asked to stop.
-pub(crate) struct Interrupted;
-
 /// Why a part has no estimate.
 enum Without {
-    Interrupted,
+    /// Somebody asked to stop.
+    Stopped,
+    /// A test changed so could not be solved.
     Reason(String),
 }
 
-/// The estimated error of a march that is done; the march is given up.
+/// What a changed test finds of volume loss and maximum depth, %; or why nothing.
+type Found = Result<[f64; 2], Without>;
+
+/// The estimated error of a march that is done, none of one that did nothing; a break if `watch` asks to
+/// stop.
 pub(crate) fn estimate(
     case: &Case,
-    march: March,
+    march: &March,
     watch: &mut dyn FnMut() -> ControlFlow<()>,
-) -> Result<Option<ErrorEstimate>, Interrupted> {
-    let Some(last) = march.state().updates.last() else {
-        return Ok(None);
+) -> ControlFlow<(), Option<ErrorEstimate>> {
+    let (Some(last), Some(mut again)) = (march.state().updates.last(), Again::of(march, watch))
+    else {
+        return ControlFlow::Continue(None);
     };
-    let (mass_loss_mg, max_depth_mm) = (last.mass_loss_mg, last.max_depth_mm);
-    let updates = of_updates(march.state());
-    let Some(mut again) = Again::of(march, watch) else {
-        return Ok(None);
-    };
-    let finer = known(again.on_the_way(FINER_INCREMENTS, |mut test| {
-        test.time.increments *= 2;
-        test
-    }))?;
-    let looser = known(again.once(LOOSER_SLIP, |mut test| {
-        test.contact.slip_tolerance_mm_per_s *= 2.0;
-        test
-    }))?;
+    let test = again.as_run();
+    let finer = stated(again.on_the_way(FINER_INCREMENTS, &finer(test.clone())))?;
+    let looser = stated(again.once(LOOSER_SLIP, &with_contact(test.clone(), looser(case))))?;
     let coarser = match case.coarser_insert() {
-        Ok(insert) => known(again.unworn(COARSER_MESH, insert))?,
+        Ok(insert) => stated(again.unworn(COARSER_MESH, with_insert(test, insert)))?,
         Err(why) => Err(why),
     };
     let parts = [
         (Part::Increments, finer),
-        (Part::Updates, updates),
+        (Part::Updates, of_updates(march.state())),
         (Part::Mesh, coarser),
         (Part::SlipTolerance, looser),
     ];
-    Ok(Some(ErrorEstimate::of(mass_loss_mg, max_depth_mm, parts)))
+    let estimate = ErrorEstimate::of(last.mass_loss_mg, last.max_depth_mm, parts);
+    ControlFlow::Continue(Some(estimate))
 }
 
-fn known(found: Result<[f64; 2], Without>) -> Result<Result<[f64; 2], String>, Interrupted> {
+/// What was found, or why not in words.
+fn stated(found: Found) -> ControlFlow<(), Result<[f64; 2], String>> {
     match found {
-        Ok(percent) => Ok(Ok(percent)),
-        Err(Without::Reason(why)) => Ok(Err(why)),
-        Err(Without::Interrupted) => Err(Interrupted),
+        Ok(percent) => ControlFlow::Continue(Ok(percent)),
+        Err(Without::Reason(why)) => ControlFlow::Continue(Err(why)),
+        Err(Without::Stopped) => ControlFlow::Break(()),
     }
+}
+
+fn finer(mut test: WearTest) -> WearTest {
+    test.time.increments *= 2;
+    test
+}
+
+fn looser(case: &Case) -> Arc<dyn ContactLaw> {
+    let mut law = case.foundation();
+    law.slip_tolerance_mm_per_s *= 2.0;
+    Arc::new(law)
+}
+
+fn with_contact(test: WearTest, contact: Arc<dyn ContactLaw>) -> WearTest {
+    WearTest { contact, ..test }
+}
+
+fn with_insert(test: WearTest, insert: Insert) -> WearTest {
+    let insert = Arc::new(insert);
+    WearTest { insert, ..test }
 }
 
 /// What the march knows of the error of its own steps, % of volume loss and of maximum depth.
@@ -97,99 +110,72 @@ fn of_updates(state: &MarchState) -> Result<[f64; 2], String> {
 
 /// Cycles of a run, solved again.
 struct Again<'a> {
-    /// Nothing once it has been lost to a test that could not start.
-    march: Option<March>,
-    time: TimeSettings,
-    contact: FoundationSettings,
-    /// What the run's first cycle wore, and the motion it ended with.
-    first: (StepRecord, MachineState),
-    /// Cycles on the way, which stand for all, one if both are the same.
-    snapshots: Vec<Snapshot>,
-    scar: Scar,
+    march: &'a March,
+    /// What the run's first cycles wore, and the motions that they ended with.
+    first: &'a (StepRecord, Vec<MachineState>),
+    /// Steps on the way, which stand for all, one if both are the same.
+    snapshots: Vec<&'a Snapshot>,
+    worn: WornSurface,
     /// By what power of the rates volume loss and maximum depth grow.
     growth: [f64; 2],
     watch: &'a mut dyn FnMut() -> ControlFlow<()>,
 }
 
 impl<'a> Again<'a> {
-    fn of(march: March, watch: &'a mut dyn FnMut() -> ControlFlow<()>) -> Option<Self> {
+    fn of(march: &'a March, watch: &'a mut dyn FnMut() -> ControlFlow<()>) -> Option<Self> {
         let state = march.state();
-        let scar = Scar::of(&march);
+        let worn = WornSurface::of(march);
         Some(Self {
-            time: march.test().time,
-            contact: march.test().contact.clone(),
-            first: state.first_step.clone()?,
+            first: state.first_step.as_ref()?,
             snapshots: snapshots(state),
-            growth: growth(state, &scar)?,
-            scar,
-            march: Some(march),
+            growth: growth(state, &worn)?,
+            worn,
+            march,
             watch,
         })
     }
 
-    /// Errors of mass loss and maximum depth in %: `factor` times what a change makes on the way,
+    /// The test of the run again, but so short that nothing to speak of is worn.
+    fn as_run(&self) -> WearTest {
+        WearTest {
+            schedule: Schedule::fixed(1.0, 1),
+            ..self.march.test().clone()
+        }
+    }
+
+    /// Errors of mass loss and maximum depth in %: `factor` times what a changed test makes on the way,
     /// the mean of the snapshots.
-    fn on_the_way(
-        &mut self,
-        factor: f64,
-        change: impl Fn(WearTest) -> WearTest,
-    ) -> Result<[f64; 2], Without> {
+    fn on_the_way(&mut self, factor: f64, changed: &WearTest) -> Found {
         let count = self.snapshots.len();
         let mut mean = [0.0; 2];
         for snapshot in 0..count {
-            let here = self.at(snapshot, factor, &change)?;
+            let here = self.at(snapshot, factor, changed)?;
             mean = [0, 1].map(|i| mean[i] + here[i] / count as f64);
         }
         Ok(mean)
     }
 
     /// The same at the last snapshot alone, for a change that makes much the same all the way.
-    fn once(
-        &mut self,
-        factor: f64,
-        change: impl Fn(WearTest) -> WearTest,
-    ) -> Result<[f64; 2], Without> {
-        self.at(self.snapshots.len() - 1, factor, &change)
+    fn once(&mut self, factor: f64, changed: &WearTest) -> Found {
+        self.at(self.snapshots.len() - 1, factor, changed)
     }
 
-    fn at(
-        &mut self,
-        snapshot: usize,
-        factor: f64,
-        change: &impl Fn(WearTest) -> WearTest,
-    ) -> Result<[f64; 2], Without> {
-        let (march, as_run) = (self.taken()?, self.as_run());
-        let snapshot = &self.snapshots[snapshot];
-        let march = march.returned_to(snapshot, |test| change(as_run(test)));
-        let weights = self.scar.weights();
+    fn at(&mut self, snapshot: usize, factor: f64, changed: &WearTest) -> Found {
+        let snapshot = self.snapshots[snapshot];
+        let zero_mm = self.march.state().zero_mm;
+        let march = March::from_snapshot(changed.clone(), snapshot, zero_mm);
+        let weights = self.worn.weights();
         let reference = worn(&snapshot.step, &weights);
         self.solved(march, &weights, reference, factor)
     }
 
     /// The same of another mesh, unworn.
-    fn unworn(&mut self, factor: f64, insert: Insert) -> Result<[f64; 2], Without> {
-        let as_run = self.as_run();
-        let march = self.taken()?;
-        let march = march.restarted(|test| as_run(WearTest { insert, ..test }))?;
-        let reference = worn(&self.first.0, &self.scar.weights());
-        let weights = self.scar.weights_on(&march);
-        self.solved(march.in_motion(self.first.1), &weights, reference, factor)
-    }
-
-    fn taken(&mut self) -> Result<March, Without> {
-        let lost = || Without::Reason("the part before it could not be solved".to_owned());
-        self.march.take().ok_or_else(lost)
-    }
-
-    /// What makes a test that of the run again, but so short that nothing to speak of is worn.
-    fn as_run(&self) -> impl FnOnce(WearTest) -> WearTest + use<> {
-        let (time, contact) = (self.time, self.contact.clone());
-        move |test| WearTest {
-            time,
-            contact,
-            schedule: Schedule::fixed(1.0, 1),
-            ..test
-        }
+    fn unworn(&mut self, factor: f64, changed: WearTest) -> Found {
+        let march = March::start(changed)?;
+        let (step, machines) = self.first;
+        let reference = worn(step, &self.worn.weights());
+        let weights = self.worn.weights_on(&march);
+        self.solved(march.in_motion(machines), &weights, reference, factor)
     }
 
     fn solved(
@@ -198,21 +184,21 @@ impl<'a> Again<'a> {
         weights: &[f64],
         reference: [f64; 2],
         factor: f64,
-    ) -> Result<[f64; 2], Without> {
-        let solved = march.update(&mut |_| (self.watch)()).map(|_| ());
+    ) -> Found {
+        if march.update(&mut |_| (self.watch)())?.is_break() {
+            return Err(Without::Stopped);
+        }
         let now = match &march.state().first_step {
             Some((step, _)) => worn(step, weights),
             None => [0.0; 2],
         };
-        self.march = Some(march);
-        solved?;
         Ok([0, 1].map(|i| self.growth[i] * 100.0 * factor * (now[i] / reference[i] - 1.0)))
     }
 }
 
-fn snapshots(state: &MarchState) -> Vec<Snapshot> {
-    let mut snapshots: Vec<Snapshot> = state.snapshots.iter().flatten().cloned().collect();
-    snapshots.dedup_by(|a, b| a.worn_mm == b.worn_mm);
+fn snapshots(state: &MarchState) -> Vec<&Snapshot> {
+    let mut snapshots: Vec<&Snapshot> = state.snapshots.iter().flatten().collect();
+    snapshots.dedup_by(|a, b| a.depths == b.depths);
     snapshots
 }
 
@@ -220,18 +206,8 @@ fn snapshots(state: &MarchState) -> Vec<Snapshot> {
 fn worn(step: &StepRecord, weights: &[f64]) -> [f64; 2] {
     [
         step.volume_per_cycle_mm3(),
-        mean(step, weights, &step.depth_per_cycle_mm),
+        mean_over_volume(&step.area_mm2, weights, &step.depth_per_cycle_mm),
     ]
-}
-
-/// Mean over the surface by `weights`.
-fn mean(step: &StepRecord, weights: &[f64], values: &[f64]) -> f64 {
-    let [mut sum, mut all] = [0.0; 2];
-    for ((area, weight), value) in step.area_mm2.iter().zip(weights).zip(values) {
-        sum += area * weight * value;
-        all += area * weight;
-    }
-    sum / all
 }
 
 impl From<PlacementError> for Without {
@@ -242,13 +218,7 @@ impl From<PlacementError> for Without {
 
 impl From<MarchError> for Without {
     fn from(why: MarchError) -> Self {
-        match why {
-            MarchError::Cycle {
-                source: CycleError::Interrupted,
-                ..
-            } => Self::Interrupted,
-            why => Self::Reason(why.to_string()),
-        }
+        Self::Reason(why.to_string())
     }
 }
 
@@ -257,11 +227,11 @@ impl From<MarchError> for Without {
 /// Rates that are 1 % higher all along are a test that is 1 % longer: volume and depth grow by
 /// rate x cycles / (all so far) of that, with the rate of the end. A scar that spreads deepens
 /// more slowly in the end than on the average, and so forgives.
-fn growth(state: &MarchState, scar: &Scar) -> Option<[f64; 2]> {
+fn growth(state: &MarchState, worn_surface: &WornSurface) -> Option<[f64; 2]> {
     let (last, step) = (state.updates.last()?, state.last_step.as_ref()?);
-    let weights = scar.weights();
+    let weights = worn_surface.weights();
     let [volume_mm3, depth_mm] = worn(step, &weights);
-    let so_far_mm = mean(step, &weights, &state.worn_mm);
+    let so_far_mm = mean_over_volume(&step.area_mm2, &weights, state.depths.wear_mm());
     Some([
         volume_mm3 * last.cycles / last.volume_loss_mm3,
         depth_mm * last.cycles / so_far_mm,
@@ -269,11 +239,11 @@ fn growth(state: &MarchState, scar: &Scar) -> Option<[f64; 2]> {
 }
 
 /// Where the insert is worn in the end: (x, z) of its nodes, and their depth as a part of the largest.
-struct Scar(Vec<([f64; 2], f64)>);
+struct WornSurface(Vec<([f64; 2], f64)>);
 
-impl Scar {
+impl WornSurface {
     fn of(march: &March) -> Self {
-        let worn_mm = &march.state().worn_mm;
+        let worn_mm = march.state().depths.wear_mm();
         let deepest = worn_mm.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let depths = worn_mm.iter().map(|depth| depth / deepest);
         Self(places(march).zip(depths).collect())
@@ -282,7 +252,7 @@ impl Scar {
     /// How much every node counts for the maximum depth.
     fn weights(&self) -> Vec<f64> {
         let depths = self.0.iter().map(|(_, depth)| depth);
-        depths.map(|depth| depth.powi(DEEP_POWER)).collect()
+        depths.map(|depth| weight_of_depth(*depth)).collect()
     }
 
     /// The same on another mesh, whose nodes are as deep as the nearest one here.
@@ -294,14 +264,14 @@ impl Scar {
             nearest.map_or(0.0, |(_, depth)| depth)
         };
         places(march)
-            .map(|place| depth(place).powi(DEEP_POWER))
+            .map(|place| weight_of_depth(depth(place)))
             .collect()
     }
 }
 
 /// (x, z) of the nodes of the articulating surface.
 fn places(march: &March) -> impl Iterator<Item = [f64; 2]> {
-    let insert = &march.test().insert;
+    let insert = march.insert();
     let nodes = insert.surface_nodes().iter();
     nodes.map(|&node| {
         let node = insert.mesh().nodes[node as usize];

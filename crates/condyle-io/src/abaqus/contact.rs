@@ -19,7 +19,7 @@ const TABLE_ENDS_AT: f64 = 0.9;
 const ROWS: usize = 60;
 
 pub(super) fn write<W: Write>(model: &Model<'_>, inp: &mut InpWriter<W>) -> io::Result<()> {
-    let contact = &model.test.contact;
+    let contact = model.case.foundation();
     inp.comment(&format!(
         "\nCONTACT. Overclosure > 0 is overlap, mm; pressure >= 0, MPa; friction {}.",
         contact.friction
@@ -32,8 +32,8 @@ pub(super) fn write<W: Write>(model: &Model<'_>, inp: &mut InpWriter<W>) -> io::
         inp.reals(&[contact.friction])?;
     } else {
         let thickness_mm = median_thickness_mm(model.test, &model.placing);
-        inp.comment(&law_comment(&contact.law, thickness_mm))?;
-        let law = law_table(&contact.law, thickness_mm);
+        inp.comment(&law_comment(&contact.pressure, thickness_mm))?;
+        let law = law_table(&contact.pressure, thickness_mm);
         let slip = elastic_slip_mm(model);
         inp.surface_interaction(names::BEARING, &law, contact.friction, slip)?;
     }
@@ -55,7 +55,7 @@ fn friction_keyword(model: &Model<'_>) -> String {
 
 /// The slip of one increment at the speed where condyle's friction is 71 % of its full value.
 fn elastic_slip_mm(model: &Model<'_>) -> Option<f64> {
-    let slip = model.test.contact.slip_tolerance_mm_per_s * model.increment_s();
+    let slip = model.case.foundation().slip_tolerance_mm_per_s * model.increment_s();
     let rounded = (slip * 1e9).round() / 1e9;
     (!model.options.explicit).then_some(rounded.max(1e-9))
 }

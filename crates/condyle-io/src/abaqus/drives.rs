@@ -31,7 +31,7 @@ const STAY: Command = Command::Lead {
 /// Settling, as condyle settles: axial force alone, AP free, IE held, the rest as it is driven.
 pub(super) fn settle(model: &Model<'_>) -> Commands {
     FREEDOMS.map(
-        |freedom| match (freedom, &model.test.machine.row(freedom).drive) {
+        |freedom| match (freedom, &model.test.machine().row(freedom).drive) {
             (Freedom::AnteroPosterior, _) => Command::Free,
             (Freedom::InternalExternal, _) => STAY,
             (Freedom::InferoSuperior | Freedom::Flexion, Drive::Loaded(load)) => Command::Push {
@@ -46,7 +46,7 @@ pub(super) fn settle(model: &Model<'_>) -> Commands {
 
 /// From where it settled to where the cycle begins; none where that is the same.
 pub(super) fn start(model: &Model<'_>) -> Option<Commands> {
-    let begin = |freedom: Freedom| match &model.test.machine.row(freedom).drive {
+    let begin = |freedom: Freedom| match &model.test.machine().row(freedom).drive {
         Drive::Loaded(load) if freedom == Freedom::InferoSuperior => Command::Push {
             by: load.at(0.0).0,
             along: names::HOLD,
@@ -67,7 +67,7 @@ pub(super) fn start(model: &Model<'_>) -> Option<Commands> {
 pub(super) fn gait(model: &Model<'_>) -> Commands {
     FREEDOMS.map(|freedom| {
         let named = wave(model, freedom).map(|(name, _)| name);
-        match (&model.test.machine.row(freedom).drive, named) {
+        match (&model.test.machine().row(freedom).drive, named) {
             (Drive::Prescribed(_), Some(along)) => Command::Lead { by: 1.0, along },
             (Drive::Loaded(_), Some(along)) => Command::Push { by: 1.0, along },
             (Drive::Loaded(_), None) => Command::Free,

@@ -13,7 +13,7 @@ const HALVINGS: usize = 5;
 
 /// The femur's surface in the femoral frame, triangles anticlockwise seen from outside.
 pub(super) fn triangles(case: &Case, test: &WearTest) -> Result<TriangleMesh, BuildError> {
-    match (&case.femur, &test.femur) {
+    match (&case.femur, test.femur.as_ref()) {
         (Femur::Mesh(femur), _) => femur.triangles(case.heading.side),
         (_, FemoralSurface::Generic(femur)) => Ok(generic(femur)),
         (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm)),

@@ -49,7 +49,7 @@ fn nodes<W: Write>(model: &Model<'_>, inp: &mut InpWriter<W>) -> io::Result<()> 
     inp.nodes(labels.hinge, &[model.vv_centre()], names::CARRIAGE_NODES)?;
     inp.nodes(labels.insert_ref, &[model.vv_centre()], names::INSERT_REF)?;
     let held = |spring: &ApSpring| model.ie_centre() + Vec3::z() * spring.lateral_offset_mm;
-    let held: Vec<Vec3> = model.test.machine.ap_springs.iter().map(held).collect();
+    let held: Vec<Vec3> = model.test.machine().ap_springs.iter().map(held).collect();
     if held.is_empty() {
         return Ok(());
     }
@@ -81,7 +81,7 @@ fn joints<W: Write>(
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
     let labels = &model.labels;
-    let damping = |freedom| model.test.machine.row(freedom).damping;
+    let damping = |freedom| model.test.machine().row(freedom).damping;
     let frame = Some(names::FRAME);
     inp.orientation(names::FRAME, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
     inp.comment("Carriage: damping of AP (1), ML (3) and IE (5), N s/mm and N mm s/rad.")?;
@@ -123,7 +123,7 @@ fn springs<W: Write>(
     element: &mut u32,
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
-    let springs = &model.test.machine.ap_springs;
+    let springs = &model.test.machine().ap_springs;
     inp.comment(
         "Springs from the frame to points of the carriage, along x whatever the carriage turns.\n\
          Rows: force on the frame, N; anterior motion of the point, mm. No force within the free play.",
@@ -159,7 +159,7 @@ fn inertias<W: Write>(
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
     let labels = &model.labels;
-    let inertia = |freedom| model.test.machine.row(freedom).inertia;
+    let inertia = |freedom| model.test.machine().row(freedom).inertia;
     let (ap, ml) = (
         inertia(Freedom::AnteroPosterior),
         inertia(Freedom::MedioLateral),

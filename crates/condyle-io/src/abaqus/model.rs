@@ -61,7 +61,7 @@ impl<'a> Model<'a> {
             test,
             options,
             placing,
-            cycle_start: march.state().machine.now.positions,
+            cycle_start: march.state().activities[0].machine.now.positions,
             insert,
             femur,
             labels,
@@ -86,13 +86,13 @@ impl<'a> Model<'a> {
 
     /// A point of the VV axis, beside the IE axis.
     pub fn vv_centre(&self) -> Vec3 {
-        let (y, z) = self.test.machine.vv_axis_mm;
-        Vec3::new(self.test.machine.ie_axis_mm.0, y, z)
+        let (y, z) = self.test.machine().vv_axis_mm;
+        Vec3::new(self.test.machine().ie_axis_mm.0, y, z)
     }
 
     /// Length of a cycle, s.
     pub fn cycle_s(&self) -> f64 {
-        1.0 / self.test.machine.frequency_hz
+        1.0 / self.test.machine().frequency_hz
     }
 
     /// Length of one of condyle's increments, s.

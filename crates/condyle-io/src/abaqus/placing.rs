@@ -29,10 +29,10 @@ impl Placing {
     /// Where condyle finds the femur settled; with `apart`, lifted until nothing touches.
     pub fn new(march: &March, apart: bool) -> Self {
         let test = march.test();
-        let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
+        let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
         let mut positions = settled(march);
         let is_loaded = matches!(
-            test.machine.row(Freedom::InferoSuperior).drive,
+            test.machine().row(Freedom::InferoSuperior).drive,
             Drive::Loaded(_)
         );
         if apart && is_loaded {
@@ -64,7 +64,7 @@ impl Placing {
 
 /// Positions after settling: IE, ML, AP and IS at zero, and not yet where a cycle leads them.
 fn settled(march: &March) -> [f64; 6] {
-    let mut positions = march.state().machine.now.positions;
+    let mut positions = march.state().activities[0].machine.now.positions;
     for freedom in [
         Freedom::InternalExternal,
         Freedom::MedioLateral,

@@ -39,7 +39,7 @@ pub(super) fn write<W: Write>(model: &Model<'_>, inp: &mut InpWriter<W>) -> io::
     }
     inp.comment(&format!(
         "\nSTEP GAIT: one gait cycle at {} Hz. condyle repeats the cycle until it ends where it began.",
-        model.test.machine.frequency_hz
+        model.test.machine().frequency_hz
     ))?;
     let gait = drives::gait(model);
     let application = Application::ModerateDissipation;

@@ -42,7 +42,7 @@ fn smooth_step<W: Write>(inp: &mut InpWriter<W>, name: &str, seconds: f64) -> io
 /// Name and table of what drives a freedom; none where it is locked or nothing pushes it.
 pub(super) fn wave(model: &Model<'_>, freedom: Freedom) -> Option<(&'static str, Vec<(f64, f64)>)> {
     let from = model.placing.positions[freedom as usize];
-    match &model.test.machine.row(freedom).drive {
+    match &model.test.machine().row(freedom).drive {
         Drive::Locked(_) => None,
         Drive::Prescribed(motion) => Some((motion_name(freedom), sampled(model, motion, from))),
         Drive::Loaded(load) => {

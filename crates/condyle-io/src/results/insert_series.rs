@@ -18,7 +18,7 @@ pub fn insert_file_name(update: usize) -> String {
 
 /// The insert as worn so far, with the results of its last update at the nodes.
 pub(super) fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
-    let insert = &march.test().insert;
+    let insert = march.insert();
     let mesh = on_side(insert.mesh(), side);
     let spread = |values: &[f64]| {
         let mut all = vec![0.0; mesh.nodes.len()];

@@ -101,7 +101,7 @@ impl Summary {
         let state = input.state;
         let updates = &state.updates;
         let last = updates.last()?;
-        let first_cycle = &state.first_and_last.as_ref()?.0.rows;
+        let first_cycle = &state.activities.first()?.first_and_last.as_ref()?.0.rows;
         let explicit = Some(&state.counters).filter(|counters| counters.explicit_steps > 0);
         let cycles_solved: f64 = updates.iter().map(|update| update.cycles_solved).sum();
         let per_cycle = |work: u64| work as f64 / cycles_solved;

@@ -1,16 +1,19 @@
-//! The insert's side of the contact: nodes' shares of its surface, four side by side.
+//! The insert's side of the contact: nodes' shares of its surface, a block of four side by side.
 
+use super::model::MOST_REGIONS;
 use crate::{
     Vec3, Vector,
-    geometry::{ArticulatingSurface, Insert, NodeBlock, Share},
+    geometry::{ArticulatingSurface, Insert, NodeBlock, Share, SurfaceRegions},
     number::{F64x4, LANES, Number},
 };
 
-/// NodeBlock nodes' shares, side by side; a lane too many repeats the last node without area.
+/// The shares of a block of four nodes; a lane too many repeats the last node without area.
 pub(super) struct ShareBlock {
     pub nodes: [u32; LANES],
-    /// Which region each node belongs to.
+    /// Which region of the surface each node belongs to.
     pub regions: [u8; LANES],
+    /// 1 in the lanes that belong to a region, 0 in the others.
+    pub in_region: [F64x4; MOST_REGIONS],
     pub centre: Vector<F64x4>,
     pub edge_a: Vector<F64x4>,
     pub edge_b: Vector<F64x4>,
@@ -23,24 +26,29 @@ pub(super) struct ShareBlock {
 }
 
 impl ShareBlock {
-    /// All shares of an insert's surface, in its node_blocks.
+    /// All shares of an insert's surface, in its blocks of nodes.
     pub fn of(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
-        let thickness_mm = insert.thickness_mm();
-        let node_blocks = insert.node_blocks().iter();
-        node_blocks
-            .map(|four| Self::new(four, surface, thickness_mm))
+        let blocks = insert.node_blocks().iter();
+        blocks
+            .map(|block| Self::new(block, surface, insert))
             .collect()
     }
 
-    fn new(four: &NodeBlock, surface: &ArticulatingSurface, thickness_mm: &[f64]) -> Self {
-        let NodeBlock { nodes, count } = *four;
+    fn new(block: &NodeBlock, surface: &ArticulatingSurface, insert: &Insert) -> Self {
+        let NodeBlock { nodes, count } = *block;
+        let thickness_mm = insert.thickness_mm();
         let share = |lane: usize| &surface.shares[nodes[lane] as usize];
         let vector = |of: fn(&Share) -> &Vec3| {
             Vector::from([0, 1, 2].map(|axis| F64x4::from_lanes(|lane| of(share(lane))[axis])))
         };
+        let regions = nodes.map(|node| region_of(insert.regions(), node));
+        let is_in = |region: usize, lane: usize| usize::from(regions[lane]) == region;
         Self {
             nodes,
-            regions: nodes.map(|node| u8::from(surface.positions[node as usize].z >= 0.0)),
+            regions,
+            in_region: std::array::from_fn(|region| {
+                F64x4::from_lanes(|lane| f64::from(u8::from(is_in(region, lane))))
+            }),
             centre: vector(|share| &share.centre),
             edge_a: vector(|share| &share.edge_a),
             edge_b: vector(|share| &share.edge_b),
@@ -56,6 +64,11 @@ impl ShareBlock {
             half_mm: F64x4::from_lanes(|lane| half_mm(share(lane))).greatest(),
         }
     }
+}
+
+/// The region of a node; whatever is beyond the last that loads are told apart by counts to that.
+fn region_of(regions: &SurfaceRegions, node: u32) -> u8 {
+    regions.of_node(node as usize).min(MOST_REGIONS - 1) as u8
 }
 
 /// Half of a share's longer diagonal: how far its corners lie from its centre at most.

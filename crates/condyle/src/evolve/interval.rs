@@ -1,6 +1,6 @@
 //! How many cycles a step may take before the depth of wear is in error.
 
-use super::step::{Before, StepRecord};
+use super::step_record::{Standing, StepRecord};
 
 /// The first step takes this share of the test at most, since nothing is known yet of how rates
 /// change, ...
@@ -13,24 +13,26 @@ const MOST_GROWTH: f64 = 1.5;
 /// ... and at least this many times.
 const LEAST_GROWTH: f64 = 0.25;
 /// Longest step in units of 1 / relaxation. A node that lies too deep alone comes back ever further
-/// on the other side from 2 on: see [`super::relaxing`].
+/// on the other side from 2 on: see [`super::exponential_step`].
 const LONGEST: f64 = 1.8;
 /// A step in error is shortened by this factor until it is not.
 const SHORTER: f64 = 0.9;
 
 /// The longest interval whose estimated error of the maximum depth is within `tolerance` times
 /// the depth expected at the end, and that is stable.
-pub(super) fn adaptive_interval(before: Before<'_>, all_cycles: f64, tolerance: f64) -> f64 {
-    let left = all_cycles - before.cycles;
-    let stable = LONGEST / before.rates.relaxation_per_cycle.max(f64::MIN_POSITIVE);
-    let Some(last) = before.last else {
+pub(super) fn adaptive_interval(standing: Standing<'_>, all_cycles: f64, tolerance: f64) -> f64 {
+    let left = all_cycles - standing.cycles;
+    let stable = LONGEST / standing.rates.relaxation_per_cycle.max(f64::MIN_POSITIVE);
+    let Some(last) = standing.last else {
         let share = FIRST_SHARE * (tolerance / FIRST_TOLERANCE).sqrt().min(1.0);
         return stable.min(share * all_cycles);
     };
-    let expected_mm = deepest(before, |node| before.rates.depth_per_cycle_mm[node] * left);
+    let expected_mm = deepest(standing, |node| {
+        standing.rates.depth_per_cycle_mm[node] * left
+    });
     let shortest = LEAST_GROWTH * last.interval;
     let mut interval = stable.min(MOST_GROWTH * last.interval);
-    while interval > shortest && foreseen_error_mm(before, interval) > tolerance * expected_mm {
+    while interval > shortest && predicted_error_mm(standing, interval) > tolerance * expected_mm {
         interval *= SHORTER;
     }
     interval.max(shortest)
@@ -38,18 +40,18 @@ pub(super) fn adaptive_interval(before: Before<'_>, all_cycles: f64, tolerance: 
 
 /// By how much the maximum depth after `interval` cycles differs between the first order and the
 /// second, mm: every node's rate taken as the last one, or extrapolated from the last two.
-fn foreseen_error_mm(before: Before<'_>, interval: f64) -> f64 {
-    let rates = &before.rates.depth_per_cycle_mm;
-    let first = deepest(before, |node| rates[node] * interval);
-    let second = deepest(before, |node| second_order(before, node, interval));
+fn predicted_error_mm(standing: Standing<'_>, interval: f64) -> f64 {
+    let rates = &standing.rates.depth_per_cycle_mm;
+    let first = deepest(standing, |node| rates[node] * interval);
+    let second = deepest(standing, |node| second_order(standing, node, interval));
     (second - first).abs()
 }
 
 /// What a node wears in `interval` cycles, mm, its rate extrapolated from the last two.
-pub(super) fn second_order(before: Before<'_>, node: usize, interval: f64) -> f64 {
-    let rate = before.rates.depth_per_cycle_mm[node];
+pub(super) fn second_order(standing: Standing<'_>, node: usize, interval: f64) -> f64 {
+    let rate = standing.rates.depth_per_cycle_mm[node];
     let change = |last: &StepRecord| (rate - last.depth_per_cycle_mm[node]) / last.interval;
-    rate * interval + before.last.map_or(0.0, change) * interval * interval / 2.0
+    rate * interval + standing.last.map_or(0.0, change) * interval * interval / 2.0
 }
 
 /// The cycles that are left in equal intervals, none longer than `wished`: so the last is no stump.
@@ -60,8 +62,8 @@ pub(super) fn shared_out(left: f64, wished: f64) -> f64 {
 }
 
 /// The deepest node after `more` at every node.
-fn deepest(before: Before<'_>, more: impl Fn(usize) -> f64) -> f64 {
-    let worn = before.worn_mm.iter().enumerate();
+fn deepest(standing: Standing<'_>, more: impl Fn(usize) -> f64) -> f64 {
+    let worn = standing.worn_mm.iter().enumerate();
     worn.map(|(node, worn)| worn + more(node))
         .fold(0.0, f64::max)
 }
@@ -85,21 +87,21 @@ mod tests {
             interval,
             depth_per_cycle_mm: vec![depth_per_cycle_mm],
             depth_mm: vec![depth_per_cycle_mm * interval],
-            missed_mm: vec![0.0],
+            error_mm: vec![0.0],
             area_mm2: vec![1.0],
             relaxation_per_cycle: 0.0,
         }
     }
 
     fn interval(now: &Rates, last: Option<&StepRecord>) -> f64 {
-        let before = Before {
+        let standing = Standing {
             rates: now,
             last,
             worn_mm: &[0.1],
             cycles: 1e6,
             updates: 2,
         };
-        adaptive_interval(before, 5e6, 0.01)
+        adaptive_interval(standing, 5e6, 0.01)
     }
 
     #[test]
@@ -112,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn verify_the_error_foreseen_is_held_to_the_tolerance() {
+    fn verify_the_predicted_error_is_held_to_the_tolerance() {
         // 0.1 mm and 4e6 cycles of 1e-7 mm: 0.5 mm are expected, 0.005 mm may be wrong.
         let (now, before) = (rates(1e-7, 0.0), last(1.1e-7, 1e6));
         let exact = (0.005 * 2.0 * 1e6 / 1e-8_f64).sqrt();

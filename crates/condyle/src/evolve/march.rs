@@ -1,19 +1,23 @@
-//! The march over millions of cycles: one solved cycle, its wear, the new surface, and again.
+//! The march over millions of cycles: one solved cycle of every activity, its wear, the new surface, and
+//! again.
 
 use std::ops::ControlFlow;
 
 use super::{
-    CycleRecord, MarchError, MarchState, NodeFields, PlacementError, Progress, Snapshot,
-    UpdateRecord, Updates, WearTest,
+    Activity, CycleRecord, DepthField, DepthFields, MarchError, MarchState, NodeFields,
+    PlacementError, Progress, Snapshot, UpdateRecord, Updates, WearTest,
+    depth::{lost_mm, total_mm},
     interval::shared_out,
+    mean_over_wear::volume_mm3,
     placement::place,
-    rates::{Rates, total},
-    step::{Before, Step},
+    rates::{Rates, Wearing},
+    step::next_step,
+    step_record::Standing,
 };
 use crate::{
     Vec3,
-    contact::{ContactModel, CycleHistory, Former, Foundation},
-    geometry::ArticulatingSurface,
+    contact::{Bodies, ContactCache, ContactMemory, ContactModel, ContactState, CycleHistory},
+    geometry::{ArticulatingSurface, FemoralSurface, Insert},
     machine::{
         Chain, Cycle, CycleRow, Freedom, MachineState, Simulator, SolverCounters, TimeSettings,
     },
@@ -26,17 +30,31 @@ const KEPT: f64 = 0.1;
 const LAST: f64 = 1.0 - 1e-9;
 
 /// A wear test on its way.
+///
+/// The test stays as it is; what wears is the march's own insert.
 pub struct March {
     test: WearTest,
-    chain: Chain,
-    unworn_nodes: Vec<Vec3>,
-    unworn_volume_mm3: f64,
+    /// The femur made ready for the shares of the insert.
+    femur: FemoralSurface,
+    /// The insert as worn so far.
+    insert: Insert,
+    /// One an activity.
+    chains: Vec<Chain>,
     state: MarchState,
     fields: NodeFields,
-    /// The last cycle's history, for its memory.
-    spent: CycleHistory,
-    /// What the contact of the last update knew, for the next one.
-    former: Option<Former>,
+    /// The histories of the last cycles, for their memory.
+    spent: Vec<CycleHistory>,
+    /// What makes the contact of the next update quicker.
+    cache: ContactCache,
+}
+
+/// One solved cycle of every activity, and the surface that it pressed on.
+struct Solved {
+    surface: ArticulatingSurface,
+    cycles: Vec<Cycle>,
+    counters: SolverCounters,
+    /// What the contact knew after them.
+    memory: ContactMemory,
 }
 
 impl March {
@@ -45,91 +63,91 @@ impl March {
     /// # Errors
     /// Bodies that do not meet, overlap deeply, or do not come to rest.
     pub fn start(test: WearTest) -> Result<Self, PlacementError> {
-        Self::placed(prepared(test, 0.0))
-    }
-
-    /// The same test changed, from its start; this march is given up.
-    ///
-    /// # Errors
-    /// As [`March::start`].
-    pub fn restarted(
-        mut self,
-        change: impl FnOnce(WearTest) -> WearTest,
-    ) -> Result<Self, PlacementError> {
-        let none = vec![0.0; self.state.worn_mm.len()];
-        self.test.insert.restore(self.unworn_nodes, &none);
-        let averaged_mm2 = self.test.insert.surface().mean_spread_mm2();
-        Self::placed(prepared(change(self.test), averaged_mm2))
-    }
-
-    /// The same march with its machine in the middle of a motion, such as that of another march;
-    /// the next cycle repeats itself sooner, the nearer that is to its own.
-    pub fn in_motion(mut self, machine: MachineState) -> Self {
-        self.state.machine = machine;
-        self
-    }
-
-    /// The same bodies in a test changed otherwise, from a step on the way as if it were the first.
-    pub fn returned_to(
-        mut self,
-        snapshot: &Snapshot,
-        change: impl FnOnce(WearTest) -> WearTest,
-    ) -> Self {
-        let (nodes, worn_mm) = (snapshot.mesh_nodes.clone(), snapshot.worn_mm.clone());
-        let increments = self.test.time.increments;
-        self.test = change(self.test);
-        if self.test.time.increments != increments {
-            self.former = None;
-        }
-        self.test.insert.restore(nodes.clone(), &worn_mm);
-        self.fields = NodeFields::unworn(&self.test, &worn_mm);
-        self.state = MarchState::at(nodes, worn_mm, snapshot.machine, self.state.zero_mm);
-        self
-    }
-
-    fn placed(test: WearTest) -> Result<Self, PlacementError> {
+        let (femur, surface) = (prepared(&test), test.insert.surface());
         let mut counters = SolverCounters::default();
-        let (chain, settled) = place(&test, &mut counters)?;
+        let bodies = Bodies {
+            femur: &femur,
+            insert: &test.insert,
+            surface: &surface,
+        };
+        let (chain, settled) = place(&test, bodies, &mut counters)?;
+        let at_rest = |activity: &Activity| MachineState::at_rest(&activity.machine, settled);
         let state = MarchState {
             counters,
-            ..MarchState::at(
+            ..MarchState::before(
                 test.insert.mesh().nodes.clone(),
-                vec![0.0; test.insert.surface_nodes().len()],
-                MachineState::at_rest(&test.machine, settled),
+                DepthFields::none(test.insert.surface_nodes().len()),
+                ContactState::default(),
+                test.activities.iter().map(at_rest),
                 chain.zero_mm(),
             )
         };
-        Ok(Self::from_parts(test, chain, state))
+        Ok(Self::from_parts(test, femur, state))
     }
 
     /// Goes on from a state of the same test.
     pub fn resume(test: WearTest, state: MarchState) -> Self {
-        let test = prepared(test, 0.0);
-        let chain = Chain::new(&test.machine, state.zero_mm, test.flexion_axis_mm);
-        Self::from_parts(test, chain, state)
+        let femur = prepared(&test);
+        Self::from_parts(test, femur, state)
     }
 
-    fn from_parts(mut test: WearTest, chain: Chain, state: MarchState) -> Self {
-        let unworn_volume_mm3 = test.insert.volume_mm3();
-        let unworn_nodes = test.insert.mesh().nodes.clone();
-        test.insert
-            .restore(state.mesh_nodes.clone(), &state.worn_mm);
-        let fields = NodeFields::unworn(&test, &state.worn_mm);
+    /// A test of the same bodies and as many activities as that of a march, from a step on that march's way
+    /// as if it were the first.
+    pub fn from_snapshot(test: WearTest, snapshot: &Snapshot, zero_mm: Vec3) -> Self {
+        let state = MarchState::before(
+            snapshot.mesh_nodes.clone(),
+            snapshot.depths.clone(),
+            snapshot.contact.clone(),
+            snapshot.machines.iter().copied(),
+            zero_mm,
+        );
+        Self::resume(test, state)
+    }
+
+    /// The same march with its machines in the middle of a motion, such as that of another march;
+    /// the next cycles repeat themselves sooner, the nearer that is to their own.
+    pub fn in_motion(mut self, machines: &[MachineState]) -> Self {
+        for (activity, machine) in self.state.activities.iter_mut().zip(machines) {
+            activity.machine = *machine;
+        }
+        self
+    }
+
+    fn from_parts(test: WearTest, femur: FemoralSurface, state: MarchState) -> Self {
+        let mut insert = Insert::clone(&test.insert);
+        insert.restore(state.mesh_nodes.clone(), &state.depths.total_mm());
+        let chain = |activity: &Activity| {
+            Chain::new(&activity.machine, state.zero_mm, test.flexion_axis_mm)
+        };
         Self {
-            test,
-            chain,
-            unworn_nodes,
-            unworn_volume_mm3,
+            chains: test.activities.iter().map(chain).collect(),
+            fields: NodeFields::unworn(&insert, &state.depths),
+            spent: test
+                .activities
+                .iter()
+                .map(|_| CycleHistory::default())
+                .collect(),
+            cache: ContactCache::default(),
+            femur,
+            insert,
             state,
-            fields,
-            spent: CycleHistory::default(),
-            former: None,
+            test,
         }
     }
 
-    /// The test, its insert as worn.
+    /// The test, its insert unworn.
     pub fn test(&self) -> &WearTest {
         &self.test
+    }
+
+    /// The insert as worn so far.
+    pub fn insert(&self) -> &Insert {
+        &self.insert
+    }
+
+    /// The femoral surface made ready for the shares of the insert.
+    pub fn femur(&self) -> &FemoralSurface {
+        &self.femur
     }
 
     /// All that is needed to go on.
@@ -142,157 +160,216 @@ impl March {
         &self.fields
     }
 
-    /// Whether all cycles are done.
-    pub fn is_done(&self) -> bool {
-        self.cycles() >= self.test.schedule.cycles
-    }
-
-    /// Solves the next cycle that repeats itself, and wears the insert by an interval of it.
-    ///
-    /// `watch` is told of every increment, and may stop the march; an update begun is then lost,
-    /// those before are kept.
-    ///
-    /// # Errors
-    /// A cycle that cannot be solved, an insert worn through, or a stop asked for.
-    pub fn update(
-        &mut self,
-        watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<&UpdateRecord, MarchError> {
-        let spent = std::mem::take(&mut self.spent);
-        let former = self.former.take();
-        let WearTest {
-            contact,
-            femur,
-            insert,
-            ..
-        } = &self.test;
-        let mut contact = Foundation::after(former, contact, femur, insert);
-        let mut counters = self.state.counters;
-        let cycle = self.repeating_cycle(&mut contact, spent, &mut counters, watch)?;
-        let (surface, former) = contact.into_parts();
-        self.former = Some(former);
-        self.wear(&surface, cycle, counters)
-    }
-
-    /// As [`March::update`], on another model of contact: the one made for the test as worn so far.
-    ///
-    /// # Errors
-    /// As [`March::update`].
-    pub fn update_on(
-        &mut self,
-        model: impl for<'a> Fn(&'a WearTest) -> Box<dyn ContactModel + 'a>,
-        watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<&UpdateRecord, MarchError> {
-        let spent = std::mem::take(&mut self.spent);
-        let mut counters = self.state.counters;
-        let mut contact = model(&self.test);
-        let cycle = self.repeating_cycle(contact.as_mut(), spent, &mut counters, watch)?;
-        drop(contact);
-        self.wear(&self.test.insert.surface(), cycle, counters)
-    }
-
-    /// Wears the insert by an interval of a solved cycle.
-    fn wear(
-        &mut self,
-        surface: &ArticulatingSurface,
-        cycle: Cycle,
-        counters: SolverCounters,
-    ) -> Result<&UpdateRecord, MarchError> {
-        let update = self.state.updates.len() + 1;
-        let cycles = self.cycles();
-        if cycle.rows.iter().all(|row| row.axial_force_n == 0.0) {
-            let ap_mm = cycle.end.now.positions[Freedom::AnteroPosterior as usize];
-            return Err(MarchError::LostContact { update, ap_mm });
-        }
-        let rates = Rates::of(
-            &cycle,
-            surface,
-            self.test.wear.as_ref(),
-            &self.test.contact,
-            self.test.insert.thickness_mm(),
-        );
-        let before = Before {
-            rates: &rates,
-            last: self.state.last_step.as_ref(),
-            worn_mm: &self.state.worn_mm,
-            cycles,
-            updates: update - 1,
-        };
-        let step = Step::next(before, &self.test.schedule);
-        let worn_mm3 = total(&rates.area_mm2, &step.depth_mm);
-        let settled_error = self.state.settled_error.after(before);
-        let step_error = settled_error.with_last(before, &step);
-        let (mesh_nodes, worn_mm) = self.wear_down(surface, &cycle, &rates, &step)?;
-        self.state.counters = counters;
-        (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
-        let record = self.record(&cycle, &step, worn_mm3);
-        self.state.updates.push(record);
-        let snapshot = Snapshot {
-            step: step.remembered(rates),
-            mesh_nodes,
-            worn_mm,
-            machine: cycle.end,
-        };
-        let part = cycles / self.test.schedule.cycles;
-        self.state.pass(part, snapshot);
-        self.keep(cycle, cycles);
-        Ok(&self.state.updates[update - 1])
-    }
-
-    /// What the update that has just worn the insert by `worn_mm3` found.
-    fn record(&self, cycle: &Cycle, step: &Step, worn_mm3: f64) -> UpdateRecord {
-        let last = self.state.updates.last();
-        let volume_loss_mm3 = worn_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
-        let most = |value: fn(&CycleRow) -> f64| cycle.rows.iter().map(value).fold(0.0, f64::max);
-        UpdateRecord {
-            cycles: step.cycles_after,
-            volume_loss_mm3,
-            volume_loss_mesh_mm3: self.unworn_volume_mm3 - self.test.insert.volume_mm3(),
-            mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
-            max_depth_mm: largest(&self.state.worn_mm),
-            peak_pressure_mpa: most(|row| row.peak_pressure_mpa),
-            peak_contact_area_mm2: most(|row| row.contact_area_mm2),
-            cycles_solved: cycle.increments_solved as f64 / self.test.time.increments as f64,
-            repeats: cycle.repeats,
-            worst_quality: self.test.insert.mesh().worst_quality(),
-        }
-    }
-
     /// Cycles done so far.
     pub fn cycles(&self) -> f64 {
         self.state.updates.last().map_or(0.0, |last| last.cycles)
     }
 
-    /// A cycle that repeats itself, the geometry held still, and the contact that it pressed on.
-    fn repeating_cycle(
+    /// Whether all cycles are done.
+    pub fn is_done(&self) -> bool {
+        self.cycles() >= self.test.schedule.cycles
+    }
+
+    /// Solves the next cycle of every activity that repeats itself, and wears the insert by an interval of
+    /// them.
+    ///
+    /// `watch` is told of every increment, and may stop the march; then the answer is a break, the update
+    /// begun is lost, and those before are kept.
+    ///
+    /// # Errors
+    /// A cycle that cannot be solved, or an insert worn through.
+    pub fn update(
+        &mut self,
+        watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<(), &UpdateRecord>, MarchError> {
+        let spent = std::mem::take(&mut self.spent);
+        let cache = std::mem::take(&mut self.cache);
+        match self.solve(spent, cache, watch)? {
+            ControlFlow::Break(()) => Ok(ControlFlow::Break(())),
+            ControlFlow::Continue(solved) => self.wear(solved).map(ControlFlow::Continue),
+        }
+    }
+
+    /// One cycle of every activity that repeats itself, the geometry held still.
+    fn solve(
         &self,
+        spent: Vec<CycleHistory>,
+        cache: ContactCache,
+        watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<ControlFlow<(), Solved>, MarchError> {
+        let surface = self.insert.surface();
+        let bodies = Bodies {
+            femur: &self.femur,
+            insert: &self.insert,
+            surface: &surface,
+        };
+        let state = self.state.contact.clone();
+        let memory = ContactMemory { state, cache };
+        let mut contact = self.test.contact.contact(bodies, memory);
+        let mut counters = self.state.counters;
+        let mut cycles = Vec::with_capacity(self.test.activities.len());
+        for (number, spent) in spent.into_iter().enumerate() {
+            let solved =
+                self.solve_activity(number, contact.as_mut(), spent, &mut counters, watch)?;
+            let ControlFlow::Continue(cycle) = solved else {
+                return Ok(ControlFlow::Break(()));
+            };
+            cycles.push(cycle);
+        }
+        let memory = contact.into_memory();
+        Ok(ControlFlow::Continue(Solved {
+            surface,
+            cycles,
+            counters,
+            memory,
+        }))
+    }
+
+    /// A cycle of one activity that repeats itself, on a contact that the others share.
+    fn solve_activity(
+        &self,
+        number: usize,
         contact: &mut dyn ContactModel,
         spent: CycleHistory,
         counters: &mut SolverCounters,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<Cycle, MarchError> {
+    ) -> Result<ControlFlow<(), Cycle>, MarchError> {
         let update = self.state.updates.len() + 1;
-        let time = self.time();
-        let mut simulator = Simulator::new(&self.test.machine, &self.chain, contact, &time);
-        simulator.warm_starts.clone_from(&self.state.warm_starts);
+        let (cycles, time) = (self.cycles(), self.time());
+        let machine = &self.test.activities[number].machine;
+        let own = &self.state.activities[number];
+        let mut simulator = Simulator::new(machine, &self.chains[number], contact, &time);
+        simulator.warm_starts.clone_from(&own.warm_starts);
         simulator.history = spent;
-        let increments = self.test.time.increments as f64;
-        let (cycles, interval) = (self.cycles(), self.likely_interval());
+        let (increments, interval) = (time.increments as f64, self.likely_interval());
+        let activities = self.test.activities.len() as f64;
         let mut watch_cycle = |solved| {
             let cycles_solved = solved as f64 / increments;
+            let part = (number as f64 + cycles_solved.min(1.0)) / activities;
             watch(Progress {
                 update,
                 cycles_solved,
-                cycles: cycles + interval * cycles_solved.min(1.0),
+                cycles: cycles + interval * part,
             })
         };
-        match simulator.cycle(&self.state.machine, counters, &mut watch_cycle) {
-            Ok(cycle) => Ok(cycle),
-            Err(source) => Err(MarchError::Cycle {
-                update,
-                cycles,
-                source,
-            }),
+        let solved = simulator.cycle(&own.machine, counters, &mut watch_cycle);
+        solved.map_err(|source| MarchError::Cycle {
+            update,
+            cycles,
+            source,
+        })
+    }
+
+    /// Wears the insert by an interval of solved cycles.
+    fn wear(&mut self, solved: Solved) -> Result<&UpdateRecord, MarchError> {
+        self.check_contact(&solved)?;
+        let cycles_before = self.cycles();
+        let rates = self.rates(&solved);
+        let standing = Standing {
+            rates: &rates,
+            last: self.state.last_step.as_ref(),
+            worn_mm: self.state.depths.wear_mm(),
+            cycles: cycles_before,
+            updates: self.state.updates.len(),
+        };
+        let step = next_step(standing, &self.test.schedule);
+        let settled_error = self.state.settled_error.after(standing);
+        let step_error = settled_error.with_last(standing, &step);
+        let taken = [DepthField::wear(step.depth_mm.clone())];
+        let before = self.lower(&solved.surface, &taken)?;
+        (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
+        let lost_mm3 = volume_mm3(&rates.area_mm2, &lost_mm(&taken, rates.area_mm2.len()));
+        let record = self.record(&solved.cycles, step.cycles_after, lost_mm3);
+        self.state.updates.push(record);
+        self.state.counters = solved.counters;
+        self.fields = NodeFields::of(
+            &with_activities(&self.test, &solved.cycles),
+            &rates,
+            &self.insert,
+            &self.state.depths,
+        );
+        let snapshot = Snapshot {
+            step: step.record(rates),
+            mesh_nodes: before.mesh_nodes,
+            depths: before.depths,
+            contact: std::mem::replace(&mut self.state.contact, solved.memory.state),
+            machines: solved.cycles.iter().map(|cycle| cycle.end).collect(),
+        };
+        let part = cycles_before / self.test.schedule.cycles;
+        self.state.pass(part, snapshot);
+        self.cache = solved.memory.cache;
+        self.keep(solved.cycles, cycles_before);
+        let last = self.state.updates.len() - 1;
+        Ok(&self.state.updates[last])
+    }
+
+    /// An error where no activity brings the bodies together.
+    fn check_contact(&self, solved: &Solved) -> Result<(), MarchError> {
+        let rows = || solved.cycles.iter().flat_map(|cycle| &cycle.rows);
+        if rows().any(|row| row.axial_force_n != 0.0) {
+            return Ok(());
+        }
+        let positions = solved.cycles.last().map(|cycle| cycle.end.now.positions);
+        Err(MarchError::LostContact {
+            update: self.state.updates.len() + 1,
+            ap_mm: positions.map_or(0.0, |at| at[Freedom::AnteroPosterior as usize]),
+        })
+    }
+
+    fn rates(&self, solved: &Solved) -> Rates {
+        let wearing = Wearing {
+            wear: self.test.wear.as_ref(),
+            contact: self.test.contact.as_ref(),
+            insert: &self.insert,
+            surface: &solved.surface,
+        };
+        Rates::of(&wearing, &with_activities(&self.test, &solved.cycles))
+    }
+
+    /// Takes the surface down by what a step takes; how it was before.
+    fn lower(
+        &mut self,
+        surface: &ArticulatingSurface,
+        taken: &[DepthField],
+    ) -> Result<Before, MarchError> {
+        let down_mm = total_mm(taken, surface.positions.len());
+        let mut nodes = down_mm.iter().zip(self.insert.thickness_mm());
+        if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
+            let place = surface.positions[node];
+            return Err(MarchError::WornThrough {
+                update: self.state.updates.len() + 1,
+                x: place.x,
+                z: place.z,
+            });
+        }
+        self.insert.wear_down(surface, &down_mm);
+        let depths = self.state.depths.clone();
+        self.state.depths.add(taken);
+        let nodes = self.insert.mesh().nodes.clone();
+        Ok(Before {
+            mesh_nodes: std::mem::replace(&mut self.state.mesh_nodes, nodes),
+            depths,
+        })
+    }
+
+    /// What the update that has just taken `lost_mm3` off the insert found.
+    fn record(&self, cycles: &[Cycle], cycles_after: f64, lost_mm3: f64) -> UpdateRecord {
+        let last = self.state.updates.last();
+        let volume_loss_mm3 = lost_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
+        let rows = || cycles.iter().flat_map(|cycle| &cycle.rows);
+        let most = |value: fn(&CycleRow) -> f64| rows().map(value).fold(0.0, f64::max);
+        let solved: usize = cycles.iter().map(|cycle| cycle.increments_solved).sum();
+        UpdateRecord {
+            cycles: cycles_after,
+            volume_loss_mm3,
+            volume_loss_mesh_mm3: self.test.insert.volume_mm3() - self.insert.volume_mm3(),
+            mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
+            max_depth_mm: largest(self.state.depths.wear_mm()),
+            peak_pressure_mpa: most(|row| row.peak_pressure_mpa),
+            peak_contact_area_mm2: most(|row| row.contact_area_mm2),
+            cycles_solved: solved as f64 / self.test.time.increments as f64,
+            repeats: cycles.iter().all(|cycle| cycle.repeats),
+            worst_quality: self.insert.mesh().worst_quality(),
         }
     }
 
@@ -317,60 +394,48 @@ impl March {
         }
     }
 
-    /// Wears the insert by a step; the nodes of its mesh and the depth worn before it.
-    fn wear_down(
-        &mut self,
-        surface: &ArticulatingSurface,
-        cycle: &Cycle,
-        rates: &Rates,
-        step: &Step,
-    ) -> Result<(Vec<Vec3>, Vec<f64>), MarchError> {
-        let thickness_mm = self.test.insert.thickness_mm();
-        let mut nodes = step.depth_mm.iter().zip(thickness_mm);
-        if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
-            let place = surface.positions[node];
-            return Err(MarchError::WornThrough {
-                update: self.state.updates.len() + 1,
-                x: place.x,
-                z: place.z,
-            });
-        }
-        self.test.insert.wear_down(surface, &step.depth_mm);
-        let worn = self.state.worn_mm.iter().zip(&step.depth_mm);
-        let worn = worn.map(|(worn, step)| worn + step).collect();
-        let worn_before = std::mem::replace(&mut self.state.worn_mm, worn);
-        let nodes = self.test.insert.mesh().nodes.clone();
-        let nodes_before = std::mem::replace(&mut self.state.mesh_nodes, nodes);
-        let thickness_mm = self.test.insert.thickness_mm();
-        self.fields = NodeFields::of(cycle, rates, &self.state.worn_mm, thickness_mm);
-        Ok((nodes_before, worn_before))
-    }
-
-    fn keep(&mut self, cycle: Cycle, cycles: f64) {
-        self.state.machine = cycle.end;
-        self.state.warm_starts = cycle.warm_starts;
-        self.spent = cycle.history;
-        let last = CycleRecord {
-            cycles,
-            rows: cycle.rows,
-        };
-        let first = self
-            .state
-            .first_and_last
-            .take()
-            .map_or_else(|| last.clone(), |(first, _)| first);
-        self.state.first_and_last = Some((first, last));
+    fn keep(&mut self, solved: Vec<Cycle>, cycles: f64) {
+        let activities = self.state.activities.iter_mut();
+        let kept = activities.zip(solved).map(|(activity, cycle)| {
+            activity.machine = cycle.end;
+            activity.warm_starts = cycle.warm_starts;
+            remember(&mut activity.first_and_last, cycles, cycle.rows);
+            cycle.history
+        });
+        self.spent = kept.collect();
     }
 }
 
-/// The test with its femur made ready for the shares of its insert; it may have been for shares
-/// that spread over `averaged_mm2`.
-fn prepared(test: WearTest, averaged_mm2: f64) -> WearTest {
+/// What a step began with.
+struct Before {
+    mesh_nodes: Vec<Vec3>,
+    depths: DepthFields,
+}
+
+/// Remembers the motions of a cycle as the last ones, and as the first ones too if they are.
+fn remember(
+    first_and_last: &mut Option<(CycleRecord, CycleRecord)>,
+    cycles: f64,
+    rows: Vec<CycleRow>,
+) {
+    let last = CycleRecord { cycles, rows };
+    let first = first_and_last.take().map(|(first, _)| first);
+    *first_and_last = Some((first.unwrap_or_else(|| last.clone()), last));
+}
+
+/// The history of one cycle of every activity.
+fn with_activities<'a>(
+    test: &'a WearTest,
+    cycles: &'a [Cycle],
+) -> Vec<(&'a Activity, &'a CycleHistory)> {
+    let histories = cycles.iter().map(|cycle| &cycle.history);
+    test.activities.iter().zip(histories).collect()
+}
+
+/// The femur of a test made ready for the shares of its insert.
+fn prepared(test: &WearTest) -> FemoralSurface {
     let spread_mm2 = test.insert.surface().mean_spread_mm2();
-    WearTest {
-        femur: test.femur.prepared_for(spread_mm2 - averaged_mm2),
-        ..test
-    }
+    test.femur.prepared_for(spread_mm2)
 }
 
 fn largest(values: &[f64]) -> f64 {

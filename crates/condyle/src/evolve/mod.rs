@@ -1,24 +1,45 @@
 //! From depth to new shape: the march over millions of cycles.
+//!
+//! | file | what |
+//! | --- | --- |
+//! | `wear_test` | a whole test: bodies, laws, activities, schedule |
+//! | `placement` | the femur is lowered onto the insert, and settles |
+//! | `march` | the loop over updates: cycles solved, rates, a step, the new surface |
+//! | `rates` | what a cycle wears, and how soon wear changes that |
+//! | `step`, `interval` | the next step: how long it is, and by which rule it wears |
+//! | `extrapolated_step`, `exponential_step` | the rules |
+//! | `accumulated_error` | what the length of the steps costs in accuracy |
+//! | `depth` | how deep the surface has gone down, by what, and what of it is mass lost |
+//! | `records`, `node_fields`, `state` | what is told, and what is remembered |
 
+mod accumulated_error;
+mod depth;
+mod exponential_step;
+mod extrapolated_step;
 mod interval;
 mod march;
 mod march_error;
+mod mean_over_wear;
+mod node_fields;
 mod placement;
+mod placement_error;
 mod rates;
 mod records;
-mod relaxing;
 mod schedule;
 mod state;
 mod step;
-mod step_error;
+mod step_record;
 mod wear_test;
 
+pub use accumulated_error::AccumulatedError;
+pub use depth::{DepthField, DepthFields};
 pub use march::March;
 pub use march_error::MarchError;
-pub use placement::PlacementError;
-pub use records::{CycleRecord, NodeFields, Progress, UpdateRecord};
+pub use mean_over_wear::{mean_over_volume, weight_of_depth};
+pub use node_fields::NodeFields;
+pub use placement_error::PlacementError;
+pub use records::{CycleRecord, Progress, UpdateRecord};
 pub use schedule::{Schedule, Updates};
-pub use state::{MarchState, SNAPSHOT_PARTS, Snapshot};
-pub use step::StepRecord;
-pub use step_error::StepError;
-pub use wear_test::WearTest;
+pub use state::{ActivityState, MarchState, SNAPSHOT_PARTS, Snapshot};
+pub use step_record::StepRecord;
+pub use wear_test::{Activity, WearTest};

@@ -1,13 +1,11 @@
 //! The femur is lowered onto the insert, and settles.
 
-use thiserror::Error;
-
-use super::WearTest;
+use super::{PlacementError, WearTest};
 use crate::{
     Vec3,
-    contact::{ContactModel, Foundation},
+    contact::{Bodies, ContactMemory, ContactModel},
     geometry::{ArticulatingSurface, FemoralSurface},
-    machine::{Chain, Freedom, NotSettled, SolverCounters, settle},
+    machine::{Chain, Drive, Freedom, SolverCounters, settle},
     spatial::{Pose, RelativeMotion},
 };
 
@@ -18,91 +16,34 @@ const LONGEST_STEP_MM: f64 = 1.5;
 /// A settled femur may be this deep in the insert, as a share of the thickness there.
 const DEEPEST_SHARE: f64 = 0.5;
 
-/// Why two bodies make no knee.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum PlacementError {
-    /// Nothing of the insert lies below the femur.
-    #[error(
-        "femur and insert are apart: lowered at x {x_mm:.1}, z {z_mm:.1} mm the femur passes the insert without \
-         touching it; check length_unit, axes and start_mm"
-    )]
-    Apart {
-        /// Where the femur was lowered.
-        x_mm: f64,
-        /// Where the femur was lowered.
-        z_mm: f64,
-    },
-    /// The settled femur lies too deep in the insert.
-    #[error(
-        "femur and insert overlap by {overclosure_mm:.2} mm at the start, more than half the insert's thickness \
-         of {thickness_mm:.2} mm there; check length_unit, axes, start_mm and the material"
-    )]
-    DeepOverlap {
-        /// Deepest overclosure.
-        overclosure_mm: f64,
-        /// Thickness there.
-        thickness_mm: f64,
-    },
-    /// The femur slides off or tips over.
-    #[error(
-        "the femur does not settle on the insert under the axial load: {residual_n:.3e} N are left over at \
-         AP {ap_mm:.2}, ML {ml_mm:.2}, IS {is_mm:.2} mm; check axes and start_mm"
-    )]
-    NotSettled {
-        /// Force left out of balance.
-        residual_n: f64,
-        /// Where it got to.
-        ap_mm: f64,
-        /// Where it got to.
-        ml_mm: f64,
-        /// Where it got to.
-        is_mm: f64,
-    },
-}
-
-impl From<NotSettled> for PlacementError {
-    fn from(failed: NotSettled) -> Self {
-        let at = |freedom: Freedom| failed.positions[freedom as usize];
-        Self::NotSettled {
-            residual_n: failed.residual_n,
-            ap_mm: at(Freedom::AnteroPosterior),
-            ml_mm: at(Freedom::MedioLateral),
-            is_mm: at(Freedom::InferoSuperior),
-        }
-    }
-}
-
 /// The machine's chain, zeroed where the femur settles, and the settled positions.
 pub(super) fn place(
     test: &WearTest,
+    bodies: Bodies<'_>,
     counters: &mut SolverCounters,
 ) -> Result<(Chain, [f64; 6]), PlacementError> {
-    let surface = test.insert.surface();
+    let machine = test.machine();
     let (axis_x, axis_y) = test.flexion_axis_mm;
     let start = Vec3::new(test.start_mm.0 - axis_x, -axis_y, test.start_mm.1);
-    let flexed = Chain::new(&test.machine, start, test.flexion_axis_mm)
+    let flexed = Chain::new(machine, start, test.flexion_axis_mm)
         .at(&driven(test))
         .pose;
-    let lowered = lowered(&test.femur, &surface, flexed).ok_or(PlacementError::Apart {
+    let lowered = lowered(bodies.femur, bodies.surface, flexed).ok_or(PlacementError::Apart {
         x_mm: test.start_mm.0,
         z_mm: test.start_mm.1,
     })?;
     let down = lowered.translation.y - flexed.translation.y - FIRST_OVERCLOSURE_MM;
-    let chain = Chain::new(
-        &test.machine,
-        start + Vec3::y() * down,
-        test.flexion_axis_mm,
-    );
-    let mut contact = Foundation::new(&test.contact, &test.femur, &test.insert);
+    let chain = Chain::new(machine, start + Vec3::y() * down, test.flexion_axis_mm);
+    let mut contact = test.contact.contact(bodies, ContactMemory::default());
     let mut positions = settle(
-        &test.machine,
+        machine,
         &chain,
-        &mut contact,
+        contact.as_mut(),
         test.time.force_tolerance_n,
         counters,
     )?;
-    check_depth(test, &surface, &mut contact, &chain.at(&positions).pose)?;
-    let zeroed = chain.zeroed_at(&test.machine, &positions);
+    check_depth(bodies, contact.as_mut(), &chain.at(&positions).pose)?;
+    let zeroed = chain.zeroed_at(machine, &positions);
     for freedom in [
         Freedom::MedioLateral,
         Freedom::AnteroPosterior,
@@ -116,7 +57,7 @@ pub(super) fn place(
 /// Positions with the femur flexed as at the start of the cycle and all else at zero.
 fn driven(test: &WearTest) -> [f64; 6] {
     let mut positions = [0.0; 6];
-    if let crate::machine::Drive::Prescribed(flexion) = &test.machine.row(Freedom::Flexion).drive {
+    if let Drive::Prescribed(flexion) = &test.machine().row(Freedom::Flexion).drive {
         positions[Freedom::Flexion as usize] = flexion.at(0.0).0;
     }
     positions
@@ -148,17 +89,18 @@ fn lowered(femur: &FemoralSurface, surface: &ArticulatingSurface, pose: Pose) ->
 }
 
 fn check_depth(
-    test: &WearTest,
-    surface: &ArticulatingSurface,
-    contact: &mut Foundation<'_>,
+    bodies: Bodies<'_>,
+    contact: &mut dyn ContactModel,
     pose: &Pose,
 ) -> Result<(), PlacementError> {
     let motion = RelativeMotion::at_rest(*pose);
     contact.respond(&motion);
     for touched in contact.land(&motion).touched {
         let node = touched.node as usize;
-        let overclosure_mm = -test.femur.gap_mm(&pose.to_femur(&surface.positions[node]));
-        let thickness_mm = test.insert.thickness_mm()[node];
+        let overclosure_mm = -bodies
+            .femur
+            .gap_mm(&pose.to_femur(&bodies.surface.positions[node]));
+        let thickness_mm = bodies.insert.thickness_mm()[node];
         if overclosure_mm > DEEPEST_SHARE * thickness_mm {
             return Err(PlacementError::DeepOverlap {
                 overclosure_mm,

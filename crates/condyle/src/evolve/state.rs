@@ -2,9 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{CycleRecord, StepError, UpdateRecord, step::StepRecord};
+use super::{
+    CycleRecord, DepthFields, UpdateRecord, accumulated_error::AccumulatedError,
+    step_record::StepRecord,
+};
 use crate::{
     Vec3,
+    contact::ContactState,
     machine::{MachineState, SolverCounters, WarmStart},
 };
 
@@ -12,17 +16,41 @@ use crate::{
 /// of its values here, (1 -+ 1/sqrt 3) / 2 (Gauss's rule of two points).
 pub const SNAPSHOT_PARTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
-/// A step on the way, and the insert and the motion that it began with.
+/// A step on the way, and what it began with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     /// The step.
     pub step: StepRecord,
     /// Nodes of the mesh before it.
     pub mesh_nodes: Vec<Vec3>,
-    /// Depth worn at each surface node before it, mm.
-    pub worn_mm: Vec<f64>,
-    /// The machine at the end of its cycle.
+    /// Depth of the surface before it.
+    pub depths: DepthFields,
+    /// The history of the contact before it.
+    pub contact: ContactState,
+    /// The machine of every activity at the end of its cycle.
+    pub machines: Vec<MachineState>,
+}
+
+/// The machine of an activity, and what it did.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ActivityState {
+    /// The machine at the end of the last cycle.
     pub machine: MachineState,
+    /// How the increments of the last cycle were solved.
+    pub warm_starts: Vec<Option<WarmStart>>,
+    /// The first cycle and the last one solved.
+    pub first_and_last: Option<(CycleRecord, CycleRecord)>,
+}
+
+impl ActivityState {
+    /// A machine that has not run yet.
+    pub(super) fn before(machine: MachineState) -> Self {
+        Self {
+            machine,
+            warm_starts: Vec::new(),
+            first_and_last: None,
+        }
+    }
 }
 
 /// All that a march must remember to go on from an update, to the same bytes.
@@ -32,35 +60,57 @@ pub struct MarchState {
     pub updates: Vec<UpdateRecord>,
     /// Nodes of the mesh as worn.
     pub mesh_nodes: Vec<Vec3>,
-    /// Depth worn at each surface node, mm.
-    pub worn_mm: Vec<f64>,
-    /// The machine at the end of the last cycle.
-    pub machine: MachineState,
-    /// How the increments of the last cycle were solved.
-    pub warm_starts: Vec<Option<WarmStart>>,
+    /// How deep the surface has gone down, and by what.
+    pub depths: DepthFields,
+    /// The history of the contact.
+    pub contact: ContactState,
+    /// One an activity.
+    pub activities: Vec<ActivityState>,
     /// Where the femoral frame's origin is in the insert frame at neutral, mm.
     pub zero_mm: Vec3,
     /// Work done.
     pub counters: SolverCounters,
-    /// The first cycle and the last one solved.
-    pub first_and_last: Option<(CycleRecord, CycleRecord)>,
-    /// The first step, on the unworn insert, and the machine at the end of its cycle.
-    pub first_step: Option<(StepRecord, MachineState)>,
+    /// The first step, on the unworn insert, and the machines at the end of its cycles.
+    pub first_step: Option<(StepRecord, Vec<MachineState>)>,
     /// The last steps that began before each of [`SNAPSHOT_PARTS`]; none before the first.
     pub snapshots: [Option<Snapshot>; 2],
     /// The step before, which the next one is extrapolated from.
     pub last_step: Option<StepRecord>,
     /// What the steps but the last have cost in accuracy.
-    pub settled_error: StepError,
-    /// What all steps have cost in accuracy, that of the last foreseen.
-    pub step_error: StepError,
+    pub settled_error: AccumulatedError,
+    /// What all steps have cost in accuracy, that of the last predicted.
+    pub step_error: AccumulatedError,
 }
 
 impl MarchState {
+    /// Before the first update.
+    pub(super) fn before(
+        mesh_nodes: Vec<Vec3>,
+        depths: DepthFields,
+        contact: ContactState,
+        machines: impl IntoIterator<Item = MachineState>,
+        zero_mm: Vec3,
+    ) -> Self {
+        Self {
+            updates: Vec::new(),
+            mesh_nodes,
+            depths,
+            contact,
+            activities: machines.into_iter().map(ActivityState::before).collect(),
+            zero_mm,
+            counters: SolverCounters::default(),
+            first_step: None,
+            snapshots: [None, None],
+            last_step: None,
+            settled_error: AccumulatedError::default(),
+            step_error: AccumulatedError::default(),
+        }
+    }
+
     /// Remembers a step that began when this part of the cycles was done.
     pub(super) fn pass(&mut self, part: f64, snapshot: Snapshot) {
         if self.first_step.is_none() {
-            self.first_step = Some((snapshot.step.clone(), snapshot.machine));
+            self.first_step = Some((snapshot.step.clone(), snapshot.machines.clone()));
         }
         self.last_step = Some(snapshot.step.clone());
         let [early, late] = SNAPSHOT_PARTS;
@@ -69,30 +119,6 @@ impl MarchState {
         }
         if part <= late {
             self.snapshots[1] = Some(snapshot);
-        }
-    }
-
-    /// Before the first update, on an insert worn by `worn_mm`.
-    pub(super) fn at(
-        mesh_nodes: Vec<Vec3>,
-        worn_mm: Vec<f64>,
-        machine: MachineState,
-        zero_mm: Vec3,
-    ) -> Self {
-        Self {
-            updates: Vec::new(),
-            mesh_nodes,
-            worn_mm,
-            machine,
-            warm_starts: Vec::new(),
-            zero_mm,
-            counters: SolverCounters::default(),
-            first_and_last: None,
-            first_step: None,
-            snapshots: [None, None],
-            last_step: None,
-            settled_error: StepError::default(),
-            step_error: StepError::default(),
         }
     }
 }

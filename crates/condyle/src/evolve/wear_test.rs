@@ -1,33 +1,86 @@
 //! A whole wear test, as the solver sees it.
 
+use std::sync::Arc;
+
 use super::Schedule;
 use crate::{
-    contact::FoundationSettings,
+    contact::ContactLaw,
     geometry::{FemoralSurface, Insert},
     machine::{Machine, TimeSettings},
     wear::WearLaw,
 };
 
-/// Bodies, machine and laws of a wear test; a right knee, mm N s MPa tonne rad.
+/// Bodies, activities and laws of a wear test; a right knee, mm N s MPa tonne rad.
+///
+/// It is a value: to change one, clone it, change the clone and march with that. Bodies and laws are shared
+/// between clones, and a march leaves them as they are. Tests can be sent to other threads and run side by
+/// side.
+#[derive(Clone, Debug)]
 pub struct WearTest {
     /// The femoral component.
-    pub femur: FemoralSurface,
+    pub femur: Arc<FemoralSurface>,
     /// Axis about which the femur flexes, (x, y) in the femoral frame, mm.
     pub flexion_axis_mm: (f64, f64),
     /// Where the flexion axis starts over the insert before it settles, (x, z), mm.
     pub start_mm: (f64, f64),
     /// The unworn insert.
-    pub insert: Insert,
-    /// The simulator.
-    pub machine: Machine,
-    /// Contact between femur and insert.
-    pub contact: FoundationSettings,
+    pub insert: Arc<Insert>,
+    /// The law of contact between femur and insert.
+    pub contact: Arc<dyn ContactLaw>,
+    /// What the machine does, one or more; the femur settles in the machine of the first.
+    pub activities: Vec<Activity>,
     /// The law of wear.
-    pub wear: Box<dyn WearLaw>,
+    pub wear: Arc<dyn WearLaw>,
     /// Density of the insert, mg/mm3.
     pub density_mg_per_mm3: f64,
     /// How finely and exactly a cycle is solved.
     pub time: TimeSettings,
     /// How the cycles are shared out.
     pub schedule: Schedule,
+}
+
+/// What the machine does over and over: walking, for instance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Activity {
+    /// Its name.
+    pub name: String,
+    /// The simulator with its inputs.
+    pub machine: Machine,
+    /// Its part of all cycles, 0 to 1; those of a test sum up to 1.
+    pub share: f64,
+}
+
+impl Activity {
+    /// The only activity of a test.
+    pub fn only(name: &str, machine: Machine) -> Self {
+        Self {
+            name: name.to_owned(),
+            machine,
+            share: 1.0,
+        }
+    }
+}
+
+impl WearTest {
+    /// The machine in which the femur settles: that of the first activity.
+    ///
+    /// # Panics
+    /// A test without an activity.
+    pub fn machine(&self) -> &Machine {
+        &self.activities[0].machine
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::March;
+
+    #[test]
+    fn tests_and_marches_go_to_other_threads() {
+        fn shared<T: Clone + Send + Sync>() {}
+        fn sent<T: Send + Sync>() {}
+        shared::<WearTest>();
+        sent::<March>();
+    }
 }

@@ -4,7 +4,7 @@ pub(super) mod error;
 mod thickness;
 mod unworn;
 
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 use condyle_fem::{HexMesh, volume_below};
 
@@ -28,6 +28,15 @@ pub struct Insert {
     /// step and one restored have the same to the last bit.
     worn_mm: Vec<f64>,
     thickness_mm: Vec<f64>,
+}
+
+impl fmt::Debug for Insert {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Insert")
+            .field("hexahedra", &self.mesh.hexes.len())
+            .field("surface_nodes", &self.worn_mm.len())
+            .finish_non_exhaustive()
+    }
 }
 
 impl Insert {

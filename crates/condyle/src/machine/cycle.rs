@@ -99,9 +99,6 @@ pub enum CycleError {
         /// Which freedom.
         freedom: Freedom,
     },
-    /// Somebody asked to stop.
-    #[error("interrupted")]
-    Interrupted,
 }
 
 fn places(positions: &[f64; 6]) -> String {
@@ -193,7 +190,7 @@ impl<'a> Simulator<'a> {
         start: &MachineState,
         counters: &mut SolverCounters,
         watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
-    ) -> Result<Cycle, CycleError> {
+    ) -> Result<ControlFlow<(), Cycle>, CycleError> {
         let count = self.time.increments;
         let first = (start.phase * count as f64).round() as usize;
         let mut state = *start;
@@ -223,10 +220,11 @@ impl<'a> Simulator<'a> {
             state.phase %= 1.0;
             solved += 1;
             if watch(solved).is_break() {
-                return Err(CycleError::Interrupted);
+                return Ok(ControlFlow::Break(()));
             }
         }
-        Ok(self.gather(&landed, state, solved, repeats))
+        let cycle = self.gather(&landed, state, solved, repeats);
+        Ok(ControlFlow::Continue(cycle))
     }
 
     /// What is to be kept of the increment that has just been solved.

@@ -3,8 +3,8 @@
 use super::{Pose, Twist, body::Femur};
 use crate::{
     Vec3, Vector,
-    number::{F64x4, Number},
     number::vector::{dot, scale_add},
+    number::{F64x4, Number},
 };
 
 /// A pose of the femur in the insert for four points at a time.

@@ -8,8 +8,10 @@ mod meshes;
 #[cfg(test)]
 mod tests;
 
-use condyle::contact::{FoundationSettings, PressureLaw, confined_modulus};
-use condyle::evolve::{Schedule, Updates, WearTest};
+use std::sync::Arc;
+
+use condyle::contact::{Foundation, PressureLaw, confined_modulus};
+use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::machine::{Integration, TimeSettings};
 use condyle::wear::Archard;
 
@@ -55,14 +57,14 @@ impl Case {
             &mut warnings,
         )?;
         let test = WearTest {
-            femur: femur.surface,
+            femur: Arc::new(femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
-            insert,
-            machine,
-            contact: self.foundation(),
+            insert: Arc::new(insert),
+            activities: vec![Activity::only("gait", machine)],
+            contact: Arc::new(self.foundation()),
             wear: match self.wear.law {
-                WearLawWord::Archard => Box::new(Archard {
+                WearLawWord::Archard => Arc::new(Archard {
                     wear_factor_mm3_per_nm: self.wear.wear_factor_mm3_per_nm,
                 }),
             },
@@ -81,18 +83,21 @@ impl Case {
         Ok(Built { test, warnings })
     }
 
-    fn foundation(&self) -> FoundationSettings {
+    /// The law of contact of this case.
+    pub fn foundation(&self) -> Foundation {
         let material = &self.material;
         let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
-        FoundationSettings {
-            law: match &self.contact.law {
-                PressureLawChoice::Linear => PressureLaw::Linear { modulus_mpa },
-                PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },
-                PressureLawChoice::Tabulated(table) => PressureLaw::Tabulated(table.clone()),
-            },
-            friction: self.contact.friction.friction,
-            slip_tolerance_mm_per_s: self.contact.friction.slip_tolerance_mm_per_s,
-        }
+        let friction = &self.contact.friction;
+        let pressure = match &self.contact.law {
+            PressureLawChoice::Linear => PressureLaw::Linear { modulus_mpa },
+            PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },
+            PressureLawChoice::Tabulated(table) => PressureLaw::Tabulated(table.clone()),
+        };
+        Foundation::new(
+            pressure,
+            friction.friction,
+            friction.slip_tolerance_mm_per_s,
+        )
     }
 
     fn time_settings(&self) -> TimeSettings {

@@ -4,8 +4,8 @@ use crate::{
     Vec3, Vector,
     contact::share_block::ShareBlock,
     geometry::MOST_GAP_SLOPE,
-    number::{F32x8, F64x4, LANES, LANES_F32, Number},
     number::vector::dot,
+    number::{F32x8, F64x4, LANES, LANES_F32, Number},
 };
 
 /// Eight blocks: where they are, as far as a separation from the femur changes with its motion.
@@ -51,6 +51,13 @@ impl BlockPlaces {
 }
 
 impl BlockWear {
+    /// The motion along three axes.
+    #[inline(always)]
+    pub fn seen_along(&self, [x, y, z]: &[Vector<F32x8>; 3]) -> Vector<F32x8> {
+        let moved = &self.moved;
+        Vector::new(dot(x, moved), dot(y, moved), dot(z, moved))
+    }
+
     /// All blocks of a surface, from those before.
     pub fn between(before: &[ShareBlock], after: &[ShareBlock]) -> Vec<Self> {
         let eights = before.chunks(LANES_F32).zip(after.chunks(LANES_F32));

@@ -4,8 +4,8 @@ use crate::{
     Vec3,
     contact::share_block::ShareBlock,
     geometry::{CurvatureBounds, MOST_GAP_SLOPE, SurfaceSample},
-    number::{F64x4, LANES, Number},
     number::vector::dot,
+    number::{F64x4, LANES, Number},
 };
 
 /// Where a gap is smaller the curvature of the femur is known, mm; see [`CurvatureBounds`].
@@ -41,10 +41,10 @@ impl SeparationBound {
     /// larger than the reach.
     #[inline(always)]
     pub fn new(
-        seen: &Seen,
+        sample: &SurfaceSample<F64x4>,
         reach_mm: F64x4,
         shares: &ShareBlock,
-        curvature_bounds: CurvatureBounds,
+        curvature: CurvatureBounds,
     ) -> Self {
         let CurvatureBounds {
             radius_mm,

@@ -1,13 +1,13 @@
 //! How far every block is from touching, carried along as the femur moves.
 
 use super::{
-    block_places::{BlockPlaces, BlockWear, LastWear},
+    block_places::{BlockPlaces, LastWear},
     separation_bound::SeparationBound,
 };
 use crate::{
     Mat3, Vec3, Vector,
-    number::{F32x8, LANES_F32, Number},
     number::vector::dot,
+    number::{F32x8, LANES_F32, Number},
     spatial::Pose,
 };
 
@@ -55,14 +55,15 @@ struct Neighbour<'a> {
 }
 
 impl Neighbour<'_> {
-    /// Gives eight blocks what it knows of those that are `due`; which of them still are.
+    /// Gives the bounds that it knows better to those of eight blocks that may touch, a bit each;
+    /// which of them still may.
     #[inline(always)]
-    fn help(&self, eight: usize, places: &BlockPlaces, bounds: &mut Eight, due: u32) -> u32 {
-        let mut known = self.clearances[eight].clone();
+    fn help(&self, number: usize, places: &BlockPlaces, bounds: &mut Eight, may_touch: u32) -> u32 {
+        let mut known = self.eights[number].clone();
         let motion = self.step.of(&places.middles);
-        let apart = due & !known.carry(&motion, self.step.lost_mm(places));
-        clearances.take_over(apart, &known);
-        due & !apart
+        let apart = may_touch & !known.carry(&motion, self.step.lost_mm(places));
+        bounds.take_over(apart, &known);
+        may_touch & !apart
     }
 }
 
@@ -77,13 +78,14 @@ impl FemurStep {
         }
     }
 
-    /// What eight blocks may lose beside their motion, mm.
+    /// What eight blocks may lose besides their motion, mm.
     #[inline(always)]
     fn lost_mm(&self, places: &BlockPlaces) -> F32x8 {
         let rounded_off_mm = F32x8::splat(ROUNDED_OFF_MM);
         places.levers_mm.mul_add(self.turn_rad, rounded_off_mm)
     }
 
+    /// The motion of places.
     #[inline(always)]
     fn of(&self, place: &Vector<F32x8>) -> Vector<F32x8> {
         let [x, y, z] = &self.turn;
@@ -108,10 +110,13 @@ impl Eight {
         radius_mm: [f32::INFINITY; LANES_F32],
     };
 
-    /// Carries them along a motion of their middles in the femoral frame that may bring them nearer
-    /// by `lost_mm` beside; a bit for each that may touch after it.
+    /// Carries the bounds along a motion of the blocks' middles in the femoral frame that may bring them
+    /// nearer by `lost_mm` besides; a bit for each block that may touch after it.
     #[inline(always)]
     fn carry(&mut self, motion: &Vector<F32x8>, lost_mm: F32x8) -> u32 {
+        // The separation changes by slope . d, and by no more than loss |d| besides. A bound holds within a
+        // radius of where its block was looked at, and every step takes its length away from that: a
+        // block whose radius is used up is looked at again.
         let [x, y, z] = self.slope;
         let slope = Vector::new(F32x8::new(x), F32x8::new(y), F32x8::new(z));
         let motion_mm = dot(motion, motion).sqrt() + lost_mm;
@@ -123,7 +128,7 @@ impl Eight {
         clear_mm.not_above_zero() | radius_mm.not_above_zero()
     }
 
-    /// Takes over those of others that have a bit.
+    /// Takes over the bounds of others that have a bit.
     fn take_over(&mut self, mut which: u32, others: &Self) {
         while which != 0 {
             let i = which.trailing_zeros() as usize;
@@ -143,94 +148,91 @@ impl Separations {
     pub fn new(count: usize) -> Self {
         Self {
             at: None,
-            clearances: vec![Eight::TOUCHING; count.div_ceil(LANES_F32)],
+            eights: vec![Eight::TOUCHING; count.div_ceil(LANES_F32)],
             count,
             worn: 0,
         }
     }
 
-    /// How often the shares had worn.
+    /// How often the blocks had worn.
     pub fn worn(&self) -> u32 {
         self.worn
     }
 
-    /// The femur moves on, and the shares have worn to `places` if they had not yet; lists the blocks
+    /// The femur moves on, and the blocks have worn to `places` if they had not yet; lists the blocks
     /// that may touch now, ascending.
     ///
-    /// Fours that `beside` knows better, from where the femur was then, are taken over from it, if
-    /// it is of the shares as they have worn.
+    /// What `beside` knows better, from where the femur was then, is taken over from it, if it is of
+    /// the blocks as they have worn.
     pub fn follow(
         &mut self,
         to: &Pose,
         places: &[BlockPlaces],
         last: &LastWear,
         beside: Option<&Self>,
-        due: &mut Vec<u32>,
+        candidates: &mut Vec<u32>,
     ) {
         let beside = beside.and_then(|beside| beside.neighbour(to, last));
         let from = self.at.replace(*to).unwrap_or(*to);
         let step = FemurStep::between(&from, to);
-        let [x, y, z] = columns(&from.rotation);
+        let axes = columns(&from.rotation);
         let wear = (self.worn < last.number).then_some(&last.eights);
         self.worn = last.number;
-        due.clear();
-        for (number, (clearances, places)) in self.clearances.iter_mut().zip(places).enumerate() {
+        candidates.clear();
+        for (number, (bounds, places)) in self.eights.iter_mut().zip(places).enumerate() {
             let mut lost_mm = step.lost_mm(places);
             let mut motion = step.of(&places.middles);
-            if let Some(BlockWear {
-                moved,
-                lost_mm: by_wear_mm,
-            }) = wear.map(|wear| &wear[number])
-            {
-                motion += Vector::new(dot(&x, moved), dot(&y, moved), dot(&z, moved));
-                lost_mm += *by_wear_mm;
+            if let Some(wear) = wear.map(|wear| &wear[number]) {
+                motion += wear.seen_along(&axes);
+                lost_mm += wear.lost_mm;
             }
-            let mut left = clearances.carry(&motion, lost_mm);
+            let mut may_touch = bounds.carry(&motion, lost_mm);
             if let Some(beside) = &beside
-                && left != 0
+                && may_touch != 0
             {
-                left = beside.help(number, places, clearances, left);
+                may_touch = beside.help(number, places, bounds, may_touch);
             }
-            while left != 0 {
-                due.push((number * LANES_F32) as u32 + left.trailing_zeros());
-                left &= left - 1;
+            while may_touch != 0 {
+                candidates.push((number * LANES_F32) as u32 + may_touch.trailing_zeros());
+                may_touch &= may_touch - 1;
             }
         }
         // The last eight may not be full.
-        due.truncate(due.partition_point(|&four| (four as usize) < self.count));
+        candidates.truncate(candidates.partition_point(|&block| (block as usize) < self.count));
     }
 
-    /// What this knows where the femur is to go, if it is of the shares as they have worn last.
+    /// What this knows where the femur is to go, if it is of the blocks as they have worn last.
     fn neighbour(&self, to: &Pose, last: &LastWear) -> Option<Neighbour<'_>> {
         let at = self.at.as_ref().filter(|_| self.worn == last.number)?;
         Some(Neighbour {
-            clearances: &self.clearances,
+            eights: &self.eights,
             step: FemurStep::between(at, to),
         })
     }
 
-    /// NodeBlock were looked at where the femur is now.
+    /// A block was looked at where the femur is now.
     #[inline(always)]
-    pub fn set(&mut self, four: u32, clearance: &SeparationBound) {
-        let four = four as usize;
-        let (clearances, i) = (&mut self.clearances[four / LANES_F32], four % LANES_F32);
-        clearances.clear_mm[i] = clearance.clear_mm.min(FARTHEST_MM) as f32;
-        clearances.slope[0][i] = clearance.slope.x as f32;
-        clearances.slope[1][i] = clearance.slope.y as f32;
-        clearances.slope[2][i] = clearance.slope.z as f32;
-        clearances.loss[i] = clearance.loss as f32;
-        clearances.radius_mm[i] = clearance.radius_mm as f32;
+    pub fn set(&mut self, block: u32, bound: &SeparationBound) {
+        let (eight, i) = self.place_of(block);
+        eight.clear_mm[i] = bound.clear_mm.min(FARTHEST_MM) as f32;
+        eight.slope[0][i] = bound.slope.x as f32;
+        eight.slope[1][i] = bound.slope.y as f32;
+        eight.slope[2][i] = bound.slope.z as f32;
+        eight.loss[i] = bound.loss as f32;
+        eight.radius_mm[i] = bound.radius_mm as f32;
     }
 
-    /// NodeBlock touch: they may go on touching wherever the femur moves.
+    /// A block touches: it may go on touching wherever the femur moves.
     #[inline(always)]
-    pub fn touches(&mut self, four: u32) {
-        let four = four as usize;
-        let (clearances, i) = (&mut self.clearances[four / LANES_F32], four % LANES_F32);
-        clearances.clear_mm[i] = f32::NEG_INFINITY;
-        clearances.radius_mm[i] = f32::INFINITY;
+    pub fn touches(&mut self, block: u32) {
+        let (eight, i) = self.place_of(block);
+        eight.clear_mm[i] = f32::NEG_INFINITY;
+        eight.radius_mm[i] = f32::INFINITY;
+    }
+
+    #[inline(always)]
+    fn place_of(&mut self, block: u32) -> (&mut Eight, usize) {
+        let block = block as usize;
+        (&mut self.eights[block / LANES_F32], block % LANES_F32)
     }
 }
-
-#[cfg(test)]
-mod tests;

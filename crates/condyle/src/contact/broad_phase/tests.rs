@@ -1,4 +1,4 @@
-//! What is not due is apart: held against a search over all shares, and the gaps at all their
+//! What is not candidates is apart: held against a search over all shares, and the gaps at all their
 //! corners.
 
 use super::*;
@@ -70,31 +70,31 @@ fn bumpy() -> TriangleMesh {
     mesh
 }
 
-/// NodeBlock shares as a search would find them: what they see, their reach, and whether they are apart.
-fn look(femur: &FemoralSurface, four: &ShareBlock, pose: &Pose) -> (Seen, F64x4, bool) {
+/// A block as a search would find it: its sample, its reach, and whether it is apart.
+fn look(femur: &FemoralSurface, block: &ShareBlock, pose: &Pose) -> (CachedSample, F64x4, bool) {
     let pose = Pose4::new(pose);
-    let place = pose.to_femur(&four.centre);
-    let seen = Seen::anew(femur, place, four.spread_mm2);
+    let place = pose.to_femur(&block.centre);
+    let seen = CachedSample::at(femur, place, block.spread_mm2);
     let normal = pose.turn_to_insert(&seen.sample.normal);
-    let rises = Rises::new([dot(&normal, &four.edge_a), dot(&normal, &four.edge_b)]);
-    let reach_mm = rises.reach_mm();
+    let slopes = EdgeSlopes::new([dot(&normal, &block.edge_a), dot(&normal, &block.edge_b)]);
+    let reach_mm = slopes.reach_mm();
     let is_apart = (seen.sample.gap_mm - reach_mm).least() > 0.0;
     (seen, reach_mm, is_apart)
 }
 
 /// Smallest gap at the corners of four shares, less how much the mean over a share lies above the
 /// gap in its middle.
-fn least_corner_mm(femur: &FemoralSurface, four: &ShareBlock, pose: &Pose) -> f64 {
+fn least_corner_mm(femur: &FemoralSurface, block: &ShareBlock, pose: &Pose) -> f64 {
     let pose4 = Pose4::new(pose);
     let gap_at = |place: &Vector<F64x4>| femur.gap_mm(&pose4.to_femur(place));
-    let (seen, ..) = look(femur, four, pose);
-    let above_mm = seen.sample.gap_mm - gap_at(&four.centre);
-    let [half_a, half_b] = [&four.edge_a, &four.edge_b].map(|edge| edge * F64x4::splat(0.5));
+    let (seen, ..) = look(femur, block, pose);
+    let above_mm = seen.sample.gap_mm - gap_at(&block.centre);
+    let [half_a, half_b] = [&block.edge_a, &block.edge_b].map(|edge| edge * F64x4::splat(0.5));
     let corners = [
-        four.centre + half_a + half_b,
-        four.centre + half_a - half_b,
-        four.centre - half_a + half_b,
-        four.centre - half_a - half_b,
+        block.centre + half_a + half_b,
+        block.centre + half_a - half_b,
+        block.centre - half_a + half_b,
+        block.centre - half_a - half_b,
     ];
     let least = |corner: &Vector<F64x4>| (gap_at(corner) + above_mm).least();
     corners.iter().map(least).fold(f64::INFINITY, f64::min)
@@ -104,34 +104,36 @@ fn turned(turn: &Vec3) -> Mat3 {
     nalgebra::Rotation3::new(*turn).into_inner()
 }
 
-fn unworn() -> LastWear {
-    LastWear {
-        number: 0,
-        eights: Vec::new(),
-    }
-}
-
 /// What a search over all shares would know.
-fn searched(femur: &FemoralSurface, shares: &[ShareBlock], pose: &Pose) -> Standoff {
-    let mut standoff = Standoff::new(shares.len());
-    let mut due = Vec::new();
-    standoff.follow(pose, &Ground::of(shares), &unworn(), None, &mut due);
-    assert_eq!(due.len(), shares.len());
-    for (four, shares) in (0..).zip(shares) {
+fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separations {
+    let mut separations = Separations::new(blocks.len());
+    let mut candidates = Vec::new();
+    separations.follow(
+        pose,
+        &BlockPlaces::of(blocks),
+        &LastWear::default(),
+        None,
+        &mut candidates,
+    );
+    assert_eq!(candidates.len(), blocks.len());
+    for (number, shares) in (0..).zip(blocks) {
         let (seen, reach_mm, is_apart) = look(femur, shares, pose);
         if is_apart {
             let around = femur.curvature_bounds(&seen.place);
-            standoff.set(four, &Clearance::new(&seen, reach_mm, shares, around));
+            separations.set(
+                number,
+                &SeparationBound::new(&seen.sample, reach_mm, shares, around),
+            );
         } else {
-            standoff.touches(four);
+            separations.touches(number);
         }
     }
-    standoff
+    separations
 }
 
 /// Steps the femur at random from about `height_mm` over the insert, which wears or is restored at
-/// two of three steps, and holds what is not due then against a search, with the help of what is
-/// known near by. Gives how many node_blocks were not due.
+/// two of three steps, and holds what is no candidate then against a search, with the help of what is
+/// known near by. Gives how many blocks were no candidates.
 fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
     let shares = |insert: &Insert| ShareBlock::of(insert, &insert.surface());
     let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
@@ -144,35 +146,41 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
             1 => (&unworn, &worn),
             _ => (&worn, &unworn),
         };
-        let mut standoff = searched(femur, before, &from);
+        let mut separations = searched(femur, before, &from);
         let wear = LastWear {
             number: 1,
-            eights: Wear::between(before, after),
+            eights: BlockWear::between(before, after),
         };
-        let mut due = Vec::new();
+        let mut candidates = Vec::new();
         // There by way of half of it, as over many steps.
         let half = Pose {
             rotation: from.rotation,
             ..to
         };
-        standoff.follow(&half, &Ground::of(after), &wear, None, &mut due);
-        let mut alone = standoff.clone();
-        alone.follow(&to, &Ground::of(after), &wear, None, &mut due);
-        let due_alone = due.len();
+        separations.follow(&half, &BlockPlaces::of(after), &wear, None, &mut candidates);
+        let mut alone = separations.clone();
+        alone.follow(&to, &BlockPlaces::of(after), &wear, None, &mut candidates);
+        let candidates_alone = candidates.len();
         let beside = Pose {
             translation: to.translation + numbers.vector(0.2),
             ..to
         };
         let mut beside = searched(femur, after, &beside);
         beside.worn = wear.number;
-        standoff.follow(&to, &Ground::of(after), &wear, Some(&beside), &mut due);
-        taken_over += due_alone - due.len();
-        for (number, four) in (0..).zip(after) {
-            if !due.contains(&number) {
+        separations.follow(
+            &to,
+            &BlockPlaces::of(after),
+            &wear,
+            Some(&beside),
+            &mut candidates,
+        );
+        taken_over += candidates_alone - candidates.len();
+        for (number, block) in (0..).zip(after) {
+            if !candidates.contains(&number) {
                 sure += 1;
-                assert!(look(femur, four, &to).2, "{:?} touch", four.nodes);
-                let corner_mm = least_corner_mm(femur, four, &to);
-                assert!(corner_mm > 0.0, "{:?}: {corner_mm}", four.nodes);
+                assert!(look(femur, block, &to).2, "{:?} touch", block.nodes);
+                let corner_mm = least_corner_mm(femur, block, &to);
+                assert!(corner_mm > 0.0, "{:?}: {corner_mm}", block.nodes);
             }
         }
     }
@@ -191,7 +199,7 @@ fn worn(mut insert: Insert) -> Insert {
 }
 
 #[test]
-fn what_is_not_due_is_apart() {
+fn what_is_no_candidate_is_apart() {
     let dished = || {
         let shape = GenericInsertShape::default();
         shape.insert(Meshing::default()).expect("a dish")

@@ -1,263 +1,201 @@
-//! The elastic foundation: rigid bodies, and pressure from local overclosure.
+//! The contact of a rigid femur with an elastic foundation.
 
 use super::{
-    ContactModel, Landing, Linearization, PressureLaw, Response, Tangent, TouchedNode,
-    clearance::Clearance,
-    nearness::Nearness,
-    partial::{Rises, mean_overclosure},
+    active_block::ActiveBlock,
+    cached_sample::CachedSample,
+    landing::{Directions4, ShortWay},
+    mean_overclosure::EdgeSlopes,
     peak::PeakSearch,
-    seen::Seen,
-    shares::ShareBlock,
-    tangent::TangentSum,
-    traction::{Sliding, SlipSums, Tractions4, WrenchSum},
+    settings::Foundation,
+    sums::{RegionSlips, WrenchSum},
+    tangent_sum::TangentSum,
+    traction::Tractions4,
 };
 use crate::{
     Vec3, Vector,
-    geometry::{ArticulatingSurface, FemoralSurface, Insert},
-    number::{F64x4, LANES, Number},
-    number::vector::{cross, dot, scale_add, tangential_part, zero_vector},
-    spatial::{
-        FrameChange, Pose, Pose4, RelativeMotion, Twist, Twist4, Wrench, WrenchByTwist, body,
+    contact::{
+        broad_phase::{BroadPhase, SeparationBound},
+        contact_law::Bodies,
+        memory::{ContactCache, ContactMemory, ContactState},
+        model::{
+            ContactModel, Landing, Linearization, MOST_REGIONS, Response, Tangent, TouchedNode,
+        },
+        share_block::ShareBlock,
     },
+    number::{F64x4, LANES, Number, vector::dot},
+    spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist4, Wrench, WrenchByTwist, body},
 };
 
-/// How the foundation presses and rubs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FoundationSettings {
-    /// Pressure from overclosure.
-    pub law: PressureLaw,
-    /// Coulomb's coefficient of friction.
-    pub friction: f64,
-    /// Speed at which friction has reached 71 % of its full value, mm/s, > 0.
-    ///
-    /// Friction is mu p v/sqrt(v^2 + v0^2) with this v0. Smaller is nearer to Coulomb's stick and
-    /// slip; larger lets parts that should stick creep, and is easier to solve.
-    pub slip_tolerance_mm_per_s: f64,
+/// What one contact knew of which blocks come near, and when; it makes the contact after it quicker.
+struct Cache<B> {
+    blocks: Vec<ShareBlock>,
+    search: B,
 }
 
-/// NodeBlock shares that touch, as they see the femur.
-struct Look {
-    four: u32,
-    seen: Seen,
-    /// How the overclosure rises along the shares' edges.
-    rises: Rises<F64x4>,
-}
-
-/// What one foundation knew of which shares come near, and when.
+/// The contact of a femur with an insert as it is now, by a [`Foundation`], with a broad phase `B`.
 ///
-/// It makes the foundation after it quicker, and changes none of its answers.
-pub struct Former {
-    shares: Vec<ShareBlock>,
-    nearness: Nearness,
-    /// For its memory.
-    seen: Vec<Seen>,
-}
-
-impl Former {
-    fn worn(self, shares: &[ShareBlock]) -> (Nearness, Vec<Seen>) {
-        let nearness = match self.shares.len() == shares.len() {
-            true => self.nearness.worn(&self.shares, shares),
-            false => Nearness::new(shares),
-        };
-        (nearness, self.seen)
-    }
-}
-
-/// Contact of a rigid femur with an elastic layer on a rigid base.
-///
-/// Every node's share of the articulating surface presses with the law's pressure at its mean
-/// overclosure, along the femur's normal there. Shares at the edge of contact count with the part
-/// of them that presses. Limits: neighbours do not feel each other, so a foundation does not match
-/// Hertz, and edge loading is over-estimated (Halloran 2005).
-pub struct Foundation<'a> {
-    settings: &'a FoundationSettings,
-    femur: &'a FemoralSurface,
-    surface: ArticulatingSurface,
-    shares: Vec<ShareBlock>,
-    /// The surface's own directions at every four nodes.
-    directions: Vec<[Vector<F64x4>; 2]>,
-    insert: &'a Insert,
-    /// What every four of them saw of the femur, and the number of the response at which they
-    /// touched it last.
-    seen: Vec<Seen>,
-    touched: Vec<u64>,
+/// What holds: a response depends on the motion alone, but for samples that are extrapolated
+/// ([`Foundation::sample_reuse_mm`]), which change the force by less than a hundred-thousandth. The tangent is the
+/// derivative of the response, summed up in single precision: right to six digits.
+pub(super) struct FoundationContact<'a, B> {
+    law: &'a Foundation,
+    bodies: Bodies<'a>,
+    blocks: Vec<ShareBlock>,
+    directions: Vec<Directions4>,
+    search: B,
+    /// What every block saw of the femur when it was last sampled, and the number of the response at
+    /// which it touched last.
+    seen: Vec<CachedSample>,
+    touched_at: Vec<u64>,
     /// The number of the last response: the first is 2, and none has touched at the one before it.
     response: u64,
-    nearness: Nearness,
-    /// The node_blocks that may touch, and the places of their centres in the femoral frame.
-    due: Vec<(u32, Vector<F64x4>)>,
-    /// The node_blocks that touched at the last response, and what pressed them.
-    looks: Vec<Look>,
+    /// The blocks that may touch, and the places of their centres in the femoral frame.
+    candidates: Vec<(u32, Vector<F64x4>)>,
+    /// The blocks that touched at the last response, and what pressed them.
+    active: Vec<ActiveBlock>,
     tractions: Vec<Tractions4>,
-    /// How the two sides slid.
-    mean_slip: [Vec3; 2],
     /// Where the femur was then.
     pose: Pose,
 }
 
-impl<'a> Foundation<'a> {
-    /// The foundation of an insert as it is now, under a femur.
-    pub fn new(
-        settings: &'a FoundationSettings,
-        femur: &'a FemoralSurface,
-        insert: &'a Insert,
-    ) -> Self {
-        Self::after(None, settings, femur, insert)
-    }
-
-    /// The same, quicker where another was made for the insert less worn, under the same femur.
-    pub fn after(
-        former: Option<Former>,
-        settings: &'a FoundationSettings,
-        femur: &'a FemoralSurface,
-        insert: &'a Insert,
-    ) -> Self {
-        let surface = insert.surface();
-        let shares = ShareBlock::of(insert, &surface);
-        let (nearness, mut seen) = match former {
-            Some(former) => former.worn(&shares),
-            None => (Nearness::new(&shares), Vec::new()),
-        };
-        seen.resize(shares.len(), Seen::nothing());
+impl<'a, B: BroadPhase> FoundationContact<'a, B> {
+    /// The contact of bodies, quicker where another left its cache for the insert less worn, under the
+    /// same femur.
+    pub fn after(cache: ContactCache, law: &'a Foundation, bodies: Bodies<'a>) -> Self {
+        let blocks = ShareBlock::of(bodies.insert, bodies.surface);
+        let directions = blocks
+            .iter()
+            .map(|block| Directions4::new(bodies.surface, block));
         Self {
-            settings,
-            femur,
-            directions: shares
-                .iter()
-                .map(|four| directions(&surface, four))
-                .collect(),
-            nearness,
-            seen,
-            insert,
-            touched: vec![0; shares.len()],
+            law,
+            bodies,
+            directions: directions.collect(),
+            search: match cache.into_inner::<Cache<B>>() {
+                Some(cache) => cache.search.worn(&cache.blocks, &blocks),
+                None => B::new(&blocks),
+            },
+            seen: vec![CachedSample::nothing(); blocks.len()],
+            touched_at: vec![0; blocks.len()],
             response: 1,
-            shares,
-            surface,
-            due: Vec::new(),
-            looks: Vec::new(),
+            blocks,
+            candidates: Vec::new(),
+            active: Vec::new(),
             tractions: Vec::new(),
-            mean_slip: [Vec3::zeros(); 2],
             pose: Pose::identity(),
         }
     }
 
-    /// The articulating surface that it presses on.
-    pub fn surface(&self) -> &ArticulatingSurface {
-        &self.surface
+    /// Lists the blocks that may touch.
+    ///
+    /// They are found first and sampled after: the processor goes through two short loops faster than
+    /// through a long one, where every step waits for the one before.
+    fn find_candidates(&mut self, pose: &Pose4) {
+        self.candidates.clear();
+        for &block in self.search.candidates(&self.pose) {
+            let centre = &self.blocks[block as usize].centre;
+            self.candidates.push((block, pose.to_femur(centre)));
+        }
     }
 
-    /// The articulating surface, and what helps the foundation after this one, when this is no
-    /// longer needed.
-    pub fn into_parts(self) -> (ArticulatingSurface, Former) {
-        let former = Former {
-            shares: self.shares,
-            nearness: self.nearness,
-            seen: self.seen,
-        };
-        (self.surface, former)
-    }
-
-    /// Looks from every four that may touch, and keeps those that do.
+    /// Samples the femur under every candidate, and keeps those that touch.
     ///
     /// Only what touches is remembered, and until it parts: what is remembered then follows from the
-    /// motion alone, and not from what was found due.
-    fn look(&mut self, pose: &Pose4) {
-        self.looks.clear();
+    /// motion alone, and not from what the search named.
+    fn sample_candidates(&mut self, pose: &Pose4) {
+        let reuse_mm = self.law.sample_reuse_mm;
+        self.active.clear();
         self.response += 1;
-        for &(four, place) in &self.due {
-            let at = four as usize;
-            let shares = &self.shares[at];
-            let touched = self.touched[at] + 1 == self.response;
-            let reaches = touched && self.seen[at].reaches(&place);
-            let seen = match reaches {
-                true => self.seen[at].moved_to(place),
-                false => Seen::anew(self.femur, place, shares.spread_mm2),
+        for &(block, place) in &self.candidates {
+            let at = block as usize;
+            let shares = &self.blocks[at];
+            let touched = self.touched_at[at] + 1 == self.response;
+            let reuses = touched && self.seen[at].reaches(&place, reuse_mm);
+            let seen = if reuses {
+                self.seen[at].extrapolated(place)
+            } else {
+                CachedSample::at(self.bodies.femur, place, shares.spread_mm2)
             };
             let normal = pose.turn_to_insert(&seen.sample.normal);
-            let rises = Rises::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
-            let reach_mm = rises.reach_mm();
+            let slopes =
+                EdgeSlopes::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
+            let reach_mm = slopes.reach_mm();
             if (seen.sample.gap_mm - reach_mm).least() > 0.0 {
-                let around = self.femur.curvature_bounds(&place);
-                let clearance = Clearance::new(&seen, reach_mm, shares, around);
-                self.nearness.is_apart(four, &clearance);
+                self.search.is_apart(block, || {
+                    let curvature = self.bodies.femur.curvature_bounds(&place);
+                    SeparationBound::new(&seen.sample, reach_mm, shares, curvature)
+                });
             } else {
-                self.nearness.touches(four);
-                self.touched[at] = self.response;
-                if !reaches {
+                self.search.touches(block);
+                self.touched_at[at] = self.response;
+                if !reuses {
                     self.seen[at] = seen;
                 }
-                self.looks.push(Look { four, seen, rises });
+                self.active.push(ActiveBlock {
+                    block,
+                    seen,
+                    slopes,
+                });
             }
         }
     }
 
-    /// Presses all that touch; the wrench on the insert at the femur's origin.
-    fn press(&mut self, pose: &Pose4, twist: &Twist4) -> Wrench<body::Insert, body::Femur> {
+    /// Presses all that touch; the wrench on the insert in the femoral frame, and how regions slip.
+    fn press(
+        &mut self,
+        pose: &Pose4,
+        twist: &Twist4,
+    ) -> (Wrench<body::Insert, body::Femur>, [Vec3; MOST_REGIONS]) {
         self.tractions.clear();
         let mut total = WrenchSum::new();
-        let mut slips = SlipSums::new();
-        for look in &self.looks {
-            let shares = &self.shares[look.four as usize];
-            let pressed = press(self.settings, shares, look, pose, twist);
-            let force_n = pressed.force_n(&look.seen.sample.normal, self.settings.friction);
-            total.add(&look.seen.place, &force_n);
-            slips.add(shares.centre.z, &pressed);
+        let mut slips = RegionSlips::new();
+        for active in &self.active {
+            let shares = &self.blocks[active.block as usize];
+            let pressed = active.press(self.law, shares, pose, twist);
+            let force_n = pressed.force_n(&active.seen.sample.normal, self.law.friction);
+            total.add(&active.seen.place, &force_n);
+            slips.add(&shares.in_region, &pressed);
             self.tractions.push(pressed);
         }
-        self.mean_slip = slips.means();
-        total.total()
+        (total.total(), slips.means())
+    }
+
+    /// The nodes in contact at a motion near that of the last response.
+    fn touched(&self, motion: &RelativeMotion) -> Vec<TouchedNode> {
+        let way = ShortWay::between(&self.pose, motion);
+        let mut touched = Vec::with_capacity(LANES * self.active.len());
+        for pressed in self.active.iter().zip(&self.tractions) {
+            let block = pressed.0.block as usize;
+            let place = (&self.blocks[block], &self.directions[block]);
+            way.land(self.law, pressed, place, &mut touched);
+        }
+        touched
+    }
+
+    fn peak_search(&self, pose: &Pose) -> PeakSearch<'_> {
+        let Bodies {
+            femur,
+            insert,
+            surface,
+        } = self.bodies;
+        PeakSearch {
+            law: &self.law.pressure,
+            femur,
+            shares: &surface.shares,
+            thickness_mm: insert.thickness_mm(),
+            faces: insert.faces_around(),
+            pose: Pose4::new(pose),
+        }
     }
 }
 
-/// Pressure and rubbing on four shares.
-///
-/// With n the femur's normal, K its curvature, e_k the share's edges and W the mean overclosure of
-/// the share, a motion a and a turn w of the femur change the middle's overclosure by G . a, the
-/// normal by w x n - K a, and each rise n . e_k with the normal.
-#[inline(always)]
-fn press(
-    settings: &FoundationSettings,
-    shares: &ShareBlock,
-    look: &Look,
-    pose: &Pose4,
-    twist: &Twist4,
-) -> Tractions4 {
-    let Seen { place, sample } = &look.seen;
-    let mean = mean_overclosure(-sample.gap_mm, &look.rises);
-    let (pressure_mpa, slope) = settings.law.pressures(mean.mm, shares.per_thickness);
-    let stiffness = slope * shares.area_mm2;
-    let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
-    let mut load_by_turn = zero_vector();
-    if let Some(by_rise) = mean.by_rise {
-        let (by_a, by_b) = (by_rise[0] * stiffness, by_rise[1] * stiffness);
-        let by_normal = scale_add(&shares.edge_a, by_a, &(shares.edge_b * by_b));
-        let by_normal = pose.turn_to_femur(&by_normal);
-        let along_surface = tangential_part(&by_normal, &sample.normal);
-        load_by_motion -= sample.curvature.times(&along_surface);
-        load_by_turn = cross(&sample.normal, &by_normal);
-    }
-    Tractions4 {
-        pressure_mpa,
-        area_mm2: shares.area_mm2,
-        covered_mm2: mean.by_middle * shares.area_mm2,
-        load_by_motion,
-        load_by_turn,
-        sliding: Sliding::new(
-            &twist.velocity(place),
-            &sample.normal,
-            settings.slip_tolerance_mm_per_s,
-        ),
-    }
-}
-
-impl Linearization for Foundation<'_> {
+impl<B: BroadPhase> Linearization for FoundationContact<'_, B> {
     fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
-        for (looks, tractions) in self.looks.chunks(2).zip(self.tractions.chunks(2)) {
-            let one = (&looks[0].seen, &tractions[0]);
+        for (active, tractions) in self.active.chunks(2).zip(self.tractions.chunks(2)) {
+            let one = (&active[0].seen, &tractions[0]);
             let nothing = (one.0, &Tractions4::none());
-            let other = looks.get(1).map(|look| (&look.seen, &tractions[1]));
-            sum.add(one, other.unwrap_or(nothing), self.settings.friction);
+            let other = active.get(1).map(|active| (&active.seen, &tractions[1]));
+            sum.add(one, other.unwrap_or(nothing), self.law.friction);
         }
         let (by_pose, by_twist) = sum.total();
         let change = FrameChange::to_femur(&self.pose);
@@ -268,13 +206,13 @@ impl Linearization for Foundation<'_> {
     }
 }
 
-impl ContactModel for Foundation<'_> {
+impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
     fn node_count(&self) -> usize {
-        self.surface.positions.len()
+        self.bodies.surface.positions.len()
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.nearness.begin_increment(increment);
+        self.search.begin_increment(increment);
     }
 
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
@@ -282,126 +220,25 @@ impl ContactModel for Foundation<'_> {
         let change = FrameChange::to_femur(&self.pose);
         let pose = Pose4::new(&self.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
-        self.nearness
-            .find_due(&self.shares, &self.pose, &pose, &mut self.due);
-        self.look(&pose);
-        let wrench = change.wrench_back(&self.press(&pose, &twist));
-        Response::new(wrench, self.mean_slip, self)
+        self.find_candidates(&pose);
+        self.sample_candidates(&pose);
+        let (wrench, mean_slip) = self.press(&pose, &twist);
+        Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
     fn land(&mut self, motion: &RelativeMotion) -> Landing {
         let touched = self.touched(motion);
-        let peak_pressure_mpa = self.peak_pressure_mpa(motion, &touched);
         Landing {
+            peak_pressure_mpa: self.peak_search(&motion.pose).highest_mpa(&touched),
             touched,
-            peak_pressure_mpa,
         }
     }
-}
 
-impl Foundation<'_> {
-    /// The nodes in contact at a motion near that of the last response, to first order.
-    fn touched(&self, motion: &RelativeMotion) -> Vec<TouchedNode> {
-        let change = FrameChange::to_femur(&self.pose);
-        let moved = Twist::between(&self.pose, &motion.pose);
-        let moved = Twist4::new(&change.twist(&moved));
-        let twist = Twist4::new(&change.twist(&motion.twist));
-        let pose = Pose4::new(&self.pose);
-        let mut touched = Vec::with_capacity(LANES * self.looks.len());
-        for (look, tractions) in self.looks.iter().zip(&self.tractions) {
-            let landed = self.landed(look, tractions, &moved, &twist, &pose);
-            landed.touch(&self.shares[look.four as usize], &mut touched);
-        }
-        touched
-    }
-
-    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64 {
-        let search = PeakSearch {
-            law: &self.settings.law,
-            femur: self.femur,
-            shares: &self.surface.shares,
-            thickness_mm: self.insert.thickness_mm(),
-            faces: self.insert.faces_around(),
-            pose: Pose4::new(&motion.pose),
-        };
-        search.highest_mpa(touched)
-    }
-}
-
-/// The surface's own directions at four nodes.
-fn directions(surface: &ArticulatingSurface, four: &ShareBlock) -> [Vector<F64x4>; 2] {
-    let at = |lane: usize| surface.directions(four.nodes[lane] as usize);
-    [0, 1].map(|which| {
-        Vector::from([0, 1, 2].map(|axis| F64x4::from_lanes(|lane| at(lane)[which][axis])))
-    })
-}
-
-/// NodeBlock shares at the end of an increment.
-struct Landed4 {
-    pressure_mpa: F64x4,
-    covered_mm2: F64x4,
-    /// In the insert frame.
-    force_n: Vector<F64x4>,
-    /// In the surface's own directions.
-    sliding_mm_per_s: [F64x4; 2],
-}
-
-impl Foundation<'_> {
-    /// NodeBlock shares after a short motion of the femur, turn and shift in its frame, to first order,
-    /// and with the speeds of `twist`; the covered area stays.
-    #[inline(always)]
-    fn landed(
-        &self,
-        look: &Look,
-        tractions: &Tractions4,
-        motion: &Twist4,
-        twist: &Twist4,
-        pose: &Pose4,
-    ) -> Landed4 {
-        let Seen { place, sample } = &look.seen;
-        let shares = &self.shares[look.four as usize];
-        let rise_n = tractions.load_rise_n(place, motion);
-        let area_mm2 = Number::max(shares.area_mm2, F64x4::splat(f64::MIN_POSITIVE));
-        let pressure_mpa = tractions.pressure_mpa + rise_n / area_mm2;
-        let landed = Tractions4 {
-            pressure_mpa: Number::max(pressure_mpa, F64x4::splat(0.0)),
-            sliding: Sliding::new(
-                &twist.velocity(place),
-                &sample.normal,
-                self.settings.slip_tolerance_mm_per_s,
-            ),
-            ..*tractions
-        };
-        let force_n = landed.force_n(&sample.normal, self.settings.friction);
-        let sliding = pose.turn_to_insert(&landed.sliding.velocity_mm_per_s);
-        let [anterior, lateral] = &self.directions[look.four as usize];
-        Landed4 {
-            pressure_mpa: landed.pressure_mpa,
-            covered_mm2: landed.covered_mm2,
-            force_n: pose.turn_to_insert(&force_n),
-            sliding_mm_per_s: [dot(&sliding, anterior), dot(&sliding, lateral)],
-        }
-    }
-}
-
-impl Landed4 {
-    /// Adds those of four shares that press.
-    #[inline(always)]
-    fn touch(&self, shares: &ShareBlock, touched: &mut Vec<TouchedNode>) {
-        for (lane, &node) in shares.nodes.iter().enumerate() {
-            let pressure_mpa = self.pressure_mpa.lane(lane);
-            if pressure_mpa * shares.area_mm2.lane(lane) > 0.0 {
-                let force = &self.force_n;
-                let [anterior, lateral] = &self.sliding_mm_per_s;
-                touched.push(TouchedNode {
-                    node,
-                    region: shares.regions[lane],
-                    pressure_mpa,
-                    covered_mm2: self.covered_mm2.lane(lane),
-                    force_n: Vec3::new(force.x.lane(lane), force.y.lane(lane), force.z.lane(lane)),
-                    sliding_mm_per_s: [anterior.lane(lane), lateral.lane(lane)],
-                });
-            }
+    fn into_memory(self: Box<Self>) -> ContactMemory {
+        let (blocks, search) = (self.blocks, self.search);
+        ContactMemory {
+            state: ContactState::default(),
+            cache: ContactCache::of(Cache { blocks, search }),
         }
     }
 }

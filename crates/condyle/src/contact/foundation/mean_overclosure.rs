@@ -8,13 +8,13 @@ const LEAST_RISE_MM: f64 = 1e-3;
 
 /// How much the overclosure rises along each edge of a share.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rises<T> {
+pub(in crate::contact) struct EdgeSlopes<T> {
     signed_mm: [T; 2],
     /// Without sign, and never quite zero.
     size_mm: [T; 2],
 }
 
-impl<T: Number> Rises<T> {
+impl<T: Number> EdgeSlopes<T> {
     /// From the rises along both edges, mm.
     #[inline(always)]
     pub fn new(signed_mm: [T; 2]) -> Self {
@@ -52,8 +52,11 @@ pub(super) struct MeanOverclosure<T> {
 /// It is twice continuously differentiable, so force and tangent are smooth as nodes come into
 /// contact; where all corners press it is d.
 #[inline(always)]
-pub(super) fn mean_overclosure<T: Number>(middle_mm: T, rises: &Rises<T>) -> MeanOverclosure<T> {
-    let in_part = middle_mm - rises.reach_mm();
+pub(super) fn mean_overclosure<T: Number>(
+    middle_mm: T,
+    slopes: &EdgeSlopes<T>,
+) -> MeanOverclosure<T> {
+    let in_part = middle_mm - slopes.reach_mm();
     if in_part.least() >= 0.0 {
         return MeanOverclosure {
             mm: middle_mm,
@@ -61,7 +64,7 @@ pub(super) fn mean_overclosure<T: Number>(middle_mm: T, rises: &Rises<T>) -> Mea
             by_rise: None,
         };
     }
-    let part = mean_in_part(middle_mm, rises);
+    let part = mean_in_part(middle_mm, slopes);
     let none_or = |by: T| in_part.below_zero(by, T::zero());
     // Where all corners press, the closed form is right but loses digits.
     MeanOverclosure {
@@ -74,10 +77,10 @@ pub(super) fn mean_overclosure<T: Number>(middle_mm: T, rises: &Rises<T>) -> Mea
 /// With r and s the two rises, the mean is (c1^3 - c2^3 - c3^3 + c4^3)/(6 r s) over the positive
 /// parts of the four corners c = d +- r/2 +- s/2.
 #[inline(always)]
-fn mean_in_part<T: Number>(middle_mm: T, rises: &Rises<T>) -> MeanOverclosure<T> {
+fn mean_in_part<T: Number>(middle_mm: T, slopes: &EdgeSlopes<T>) -> MeanOverclosure<T> {
     let (zero, half) = (T::zero(), T::splat(0.5));
-    let [r, s] = rises.size_mm;
-    let (sum, difference) = (rises.reach_mm(), (r - s) * half);
+    let [r, s] = slopes.size_mm;
+    let (sum, difference) = (slopes.reach_mm(), (r - s) * half);
     let corner = |rise: T| Number::max(middle_mm + rise, zero);
     let (c1, c2) = (corner(sum), corner(difference));
     let (c3, c4) = (corner(-difference), corner(-sum));
@@ -87,7 +90,7 @@ fn mean_in_part<T: Number>(middle_mm: T, rises: &Rises<T>) -> MeanOverclosure<T>
     let mm = (c1 * q1 - c2 * q2 - c3 * q3 + c4 * q4) * per_area * T::splat(1.0 / 6.0);
     let by_r = (q1 - q2 + q3 - q4) * per_area * T::splat(0.25) - mm * per_r;
     let by_s = (q1 + q2 - q3 - q4) * per_area * T::splat(0.25) - mm * per_s;
-    let (sign_r, sign_s) = (rises.signed_mm[0] * per_r, rises.signed_mm[1] * per_s);
+    let (sign_r, sign_s) = (slopes.signed_mm[0] * per_r, slopes.signed_mm[1] * per_s);
     MeanOverclosure {
         mm,
         by_middle: (q1 - q2 - q3 + q4) * per_area * half,
@@ -115,7 +118,7 @@ mod tests {
     fn verify_mean_against_sampling() {
         for rises in [[0.2, 0.1], [0.05, -0.2], [0.1, 0.1]] {
             for middle in [-0.12, -0.05, 0.0, 0.03, 0.1, 0.2] {
-                let mean = mean_overclosure(middle, &Rises::new(rises)).mm;
+                let mean = mean_overclosure(middle, &EdgeSlopes::new(rises)).mm;
                 assert!(
                     (mean - sampled(middle, rises)).abs() < 2e-6,
                     "{middle} {rises:?} {mean}"
@@ -126,7 +129,7 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_mean() {
-        let mean = |middle: f64, rises: [f64; 2]| mean_overclosure(middle, &Rises::new(rises));
+        let mean = |middle: f64, rises: [f64; 2]| mean_overclosure(middle, &EdgeSlopes::new(rises));
         let step = 1e-6;
         for rises in [[0.2, 0.1], [0.05, -0.2], [0.1, 0.1], [1e-4, 0.15]] {
             for middle in [-0.04, 0.0, 0.03, 0.07, 0.2] {

@@ -1,9 +1,13 @@
 //! The highest pressure, which lies between the nodes.
 
-use super::{MOST_REGIONS, PressureLaw, TouchedNode, quadratic::Quadratic};
+use super::quadratic::Quadratic;
 use crate::{
     Vector,
-    geometry::{FacesAround, FemoralSurface, Share},
+    contact::{
+        model::{MOST_REGIONS, TouchedNode},
+        pressure_law::PressureLaw,
+    },
+    geometry::{FacesAround, FemoralSurface, MOST_GAP_SLOPE, Share},
     number::{F64x4, LANES, Number},
     spatial::Pose4,
 };
@@ -11,10 +15,6 @@ use crate::{
 /// Nodes whose pressures differ by no more than this part press equally: which of them leads is a
 /// matter of round-off, and of which way round the knee is told.
 const EQUAL: f64 = 1e-9;
-
-/// What a gap may change by from point to point, as a part of their distance, where a distance
-/// field is only nearly one. More than that has no surface behind it.
-const GAP_PER_DISTANCE: f64 = 1.05;
 
 /// Around any node inside a surface there are as many, and they determine a quadratic; at its rim
 /// there are fewer, and farther ones must help.
@@ -40,7 +40,7 @@ pub(super) struct PeakSearch<'a> {
 }
 
 /// The overclosure of a share whether it touches or not.
-struct Look {
+struct PatchNode {
     node: u32,
     gap_mm: f64,
     /// In the law's measure.
@@ -60,35 +60,36 @@ impl PeakSearch<'_> {
 
     /// Highest pressure within the share of a node, MPa.
     fn highest_around(&self, node: u32) -> f64 {
-        let looks = self.look(&self.faces.patch(node, LEAST_NODES));
-        let share = |look: &Look| &self.shares[look.node as usize];
-        let top = &looks[0];
-        let is_surface = |look: &&Look| {
-            let distance2_mm2 = (share(look).centre - share(top).centre).norm_squared();
-            let change = (look.gap_mm - top.gap_mm) / GAP_PER_DISTANCE;
+        let patch = self.sampled(&self.faces.patch(node, LEAST_NODES));
+        let share = |at: &PatchNode| &self.shares[at.node as usize];
+        let top = &patch[0];
+        let is_surface = |at: &&PatchNode| {
+            let distance2_mm2 = (share(at).centre - share(top).centre).norm_squared();
+            // What changes faster from point to point than a gap can has no surface behind it.
+            let change = (at.gap_mm - top.gap_mm) / MOST_GAP_SLOPE;
             change * change <= distance2_mm2
         };
-        let means = looks.iter().filter(is_surface);
-        Quadratic::fit(share(top), means.map(|look| (share(look), look.mean)))
+        let means = patch.iter().filter(is_surface);
+        Quadratic::fit(share(top), means.map(|at| (share(at), at.mean)))
             .map_or(0.0, |fit| self.law.pressure(fit.highest().max(0.0), 1.0).0)
     }
 
-    fn look(&self, nodes: &[u32]) -> Vec<Look> {
-        let mut looks = Vec::with_capacity(nodes.len() + LANES);
+    fn sampled(&self, nodes: &[u32]) -> Vec<PatchNode> {
+        let mut patch = Vec::with_capacity(nodes.len() + LANES);
         for nodes in nodes.chunks(LANES) {
             let gaps_mm = self.gaps_mm(nodes);
-            let look = |(lane, &node): (usize, &u32)| {
+            let at = |(lane, &node): (usize, &u32)| {
                 let gap_mm = gaps_mm.lane(lane);
                 let per_thickness = 1.0 / self.thickness_mm[node as usize];
-                Look {
+                PatchNode {
                     node,
                     gap_mm,
                     mean: self.law.measure(-gap_mm, per_thickness),
                 }
             };
-            looks.extend(nodes.iter().enumerate().map(look));
+            patch.extend(nodes.iter().enumerate().map(at));
         }
-        looks
+        patch
     }
 
     /// Mean gaps over the shares of up to four nodes, mm.

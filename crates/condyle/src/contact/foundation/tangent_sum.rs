@@ -1,11 +1,11 @@
 //! The tangent of many shares under pressure, as a sum of rank-one terms.
 
-use super::{seen::Seen, traction::Tractions4};
+use super::{cached_sample::CachedSample, traction::Tractions4};
 use crate::{
     Vector,
     geometry::Curvature,
-    number::{F32x8, F64x4, Number},
     number::vector::{cross, dot},
+    number::{F32x8, F64x4, Number},
     spatial::Mat6,
 };
 
@@ -39,11 +39,11 @@ struct Facets<T> {
 impl Facets<F32x8> {
     /// Twice four shares.
     #[inline(always)]
-    fn pair(one: (&Seen, &Tractions4), other: (&Seen, &Tractions4)) -> Self {
-        let of = |value: fn(&Seen, &Tractions4) -> F64x4| {
+    fn pair(one: (&CachedSample, &Tractions4), other: (&CachedSample, &Tractions4)) -> Self {
+        let of = |value: fn(&CachedSample, &Tractions4) -> F64x4| {
             F32x8::pair(value(one.0, one.1), value(other.0, other.1))
         };
-        let vector = |value: fn(&Seen, &Tractions4) -> Vector<F64x4>| {
+        let vector = |value: fn(&CachedSample, &Tractions4) -> Vector<F64x4>| {
             value(one.0, one.1).zip_map(&value(other.0, other.1), F32x8::pair)
         };
         Self {
@@ -79,7 +79,12 @@ impl TangentSum {
     /// Adds twice four shares; the derivatives of the wrench at the femur's origin by pose and by
     /// twist.
     #[inline(always)]
-    pub fn add(&mut self, one: (&Seen, &Tractions4), other: (&Seen, &Tractions4), friction: f64) {
+    pub fn add(
+        &mut self,
+        one: (&CachedSample, &Tractions4),
+        other: (&CachedSample, &Tractions4),
+        friction: f64,
+    ) {
         self.add_facets(&Facets::pair(one, other), F32x8::splat(friction));
     }
 

@@ -1,10 +1,12 @@
 //! Forces of four shares under pressure.
 
 use crate::{
-    Vec3, Vector,
-    number::{F64x4, Number},
-    number::vector::{cross, dot, scale_add, zero_vector},
-    spatial::{Twist4, Wrench, body},
+    Vector,
+    number::{
+        F64x4, Number,
+        vector::{dot, scale_add, zero_vector},
+    },
+    spatial::Twist4,
 };
 
 /// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
@@ -88,62 +90,5 @@ impl Tractions4 {
         let rub = F64x4::splat(friction) * self.sliding.per_regular;
         let traction = scale_add(&self.sliding.velocity_mm_per_s, rub, normal);
         traction * (self.pressure_mpa * self.area_mm2)
-    }
-}
-
-/// The wrench of many forces.
-pub(super) struct WrenchSum([F64x4; 6]);
-
-impl WrenchSum {
-    pub fn new() -> Self {
-        Self([F64x4::splat(0.0); 6])
-    }
-
-    /// Adds forces at places, about the origin.
-    #[inline(always)]
-    pub fn add(&mut self, place: &Vector<F64x4>, force: &Vector<F64x4>) {
-        let moment = cross(place, force);
-        let wrench = [moment.x, moment.y, moment.z, force.x, force.y, force.z];
-        for (sum, part) in self.0.iter_mut().zip(&wrench) {
-            *sum += *part;
-        }
-    }
-
-    /// The sum.
-    pub fn total(&self) -> Wrench<body::Insert, body::Femur> {
-        let [mx, my, mz, fx, fy, fz] = self.0.map(F64x4::sum);
-        Wrench::new(Vec3::new(mx, my, mz), Vec3::new(fx, fy, fz))
-    }
-}
-
-/// Slip of many shares weighted by their loads, on the medial and on the lateral side.
-pub(super) struct SlipSums([(F64x4, Vector<F64x4>); 2]);
-
-impl SlipSums {
-    pub fn new() -> Self {
-        Self([(F64x4::splat(0.0), zero_vector()); 2])
-    }
-
-    /// Adds shares at `z`; the medial side is where it is negative.
-    #[inline(always)]
-    pub fn add(&mut self, z: F64x4, pressed: &Tractions4) {
-        let (zero, load) = (F64x4::splat(0.0), pressed.pressure_mpa * pressed.area_mm2);
-        let velocity = &pressed.sliding.velocity_mm_per_s;
-        let mut add = |side: usize, load: F64x4| {
-            let (loads, slips) = &mut self.0[side];
-            *loads += load;
-            *slips = scale_add(velocity, load, slips);
-        };
-        add(0, z.below_zero(load, zero));
-        add(1, z.below_zero(zero, load));
-    }
-
-    /// The mean of each side, mm/s; none where nothing is loaded.
-    pub fn means(&self) -> [Vec3; 2] {
-        let mean = |side: usize| {
-            let (loads, slips) = &self.0[side];
-            slips.map(F64x4::sum) / loads.sum().max(f64::MIN_POSITIVE)
-        };
-        [mean(0), mean(1)]
     }
 }

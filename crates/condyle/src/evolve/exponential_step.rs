@@ -1,8 +1,10 @@
 //! Depth that an interval wears at nodes that share a load: second order, and yet stable.
 
 use super::{
-    rates::{Rates, total},
-    step::{StepRecord, added_mm3, straight},
+    extrapolated_step::{added_mm3, straight},
+    mean_over_wear::volume_mm3,
+    rates::Rates,
+    step_record::StepRecord,
 };
 
 /// Part of the relaxation of a node alone that is counted on. With less of it, a node that lies too
@@ -22,21 +24,23 @@ const COUNTED: f64 = 0.5;
 /// For small k n this tends to extrapolating every rate (Adams and Bashforth's method), which is
 /// unstable from relaxation x interval = 1 on. The femur's part is scaled so that the volume is that
 /// of a volume per cycle that goes on changing as it did.
-pub(super) fn relaxing(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<f64> {
+pub(super) fn exponential(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<f64> {
     let mut depth_mm = straight(rates, interval);
     let Some(last) = last else {
         return depth_mm;
     };
-    let volume = |depth_mm: &[f64]| total(&rates.area_mm2, depth_mm);
+    let volume = |depth_mm: &[f64]| volume_mm3(&rates.area_mm2, depth_mm);
     let asked_mm3 = volume(&depth_mm) + added_mm3(rates, last, interval);
     let sunk = |node| by_sinking(rates, last, node, interval);
     let sunk_mm: Vec<f64> = (0..depth_mm.len()).map(sunk).collect();
     for (node, depth) in depth_mm.iter_mut().enumerate() {
         *depth *= left(counted(rates, node) * interval);
     }
-    let scale = match volume(&sunk_mm) {
-        sunk_mm3 if sunk_mm3 > 0.0 => ((asked_mm3 - volume(&depth_mm)) / sunk_mm3).max(0.0),
-        _ => 0.0,
+    let sunk_mm3 = volume(&sunk_mm);
+    let scale = if sunk_mm3 > 0.0 {
+        ((asked_mm3 - volume(&depth_mm)) / sunk_mm3).max(0.0)
+    } else {
+        0.0
     };
     let each = depth_mm.iter_mut().zip(&sunk_mm);
     each.for_each(|(depth, sunk)| *depth += scale * sunk);
@@ -63,16 +67,17 @@ pub(super) fn counted(rates: &Rates, node: usize) -> f64 {
 pub(super) fn left(relaxed: f64) -> f64 {
     // Below this the difference is taken from too few digits.
     const FEW: f64 = 1e-5;
-    match relaxed > FEW {
-        true => -(-relaxed).exp_m1() / relaxed,
-        false => 1.0 - relaxed / 2.0,
+    if relaxed > FEW {
+        -(-relaxed).exp_m1() / relaxed
+    } else {
+        1.0 - relaxed / 2.0
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::step::Step;
+    use crate::evolve::step_record::Step;
 
     /// How fast the rate of a node falls as it is worn more than the femur sinks.
     const RELAXATION: f64 = 1.0;
@@ -113,11 +118,11 @@ mod tests {
                 let step = Step {
                     interval,
                     cycles_after: 0.0,
-                    foreseen_mm: Vec::new(),
-                    missed_mm: vec![0.0; self.nodes],
+                    predicted_mm: Vec::new(),
+                    error_mm: vec![0.0; self.nodes],
                     depth_mm,
                 };
-                last = Some(step.remembered(rates));
+                last = Some(step.record(rates));
             }
             worn_mm
         }
@@ -143,9 +148,9 @@ mod tests {
         let error = |steps: usize, rule: fn(&Rates, Option<&StepRecord>, f64) -> Vec<f64>| {
             deepest(&bed.worn_mm(steps, cycles / steps as f64, rule)) / exact - 1.0
         };
-        assert!(error(10, relaxing).abs() < 0.01);
-        assert!(error(20, relaxing).abs() < error(20, euler).abs() / 2.0);
-        let fall = error(80, relaxing) / error(160, relaxing);
+        assert!(error(10, exponential).abs() < 0.01);
+        assert!(error(20, exponential).abs() < error(20, euler).abs() / 2.0);
+        let fall = error(80, exponential) / error(160, exponential);
         assert!((fall - 4.0).abs() < 0.4, "{fall}");
     }
 
@@ -163,10 +168,14 @@ mod tests {
         let after = |steps: usize, rule: fn(&Rates, Option<&StepRecord>, f64) -> Vec<f64>| {
             deepest(&bed.worn_mm(steps, 5.0 / steps as f64, rule))
         };
-        let exact = after(4000, relaxing);
+        let exact = after(4000, exponential);
         let error = |steps, rule| after(steps, rule) / exact - 1.0;
-        assert!(error(10, relaxing).abs() < 0.01, "{}", error(10, relaxing));
-        let fall = error(80, relaxing) / error(160, relaxing);
+        assert!(
+            error(10, exponential).abs() < 0.01,
+            "{}",
+            error(10, exponential)
+        );
+        let fall = error(80, exponential) / error(160, exponential);
         assert!((fall - 4.0).abs() < 0.4, "{fall}");
     }
 
@@ -178,7 +187,7 @@ mod tests {
             sunk_mm: |node: usize, _, mean_mm| 1.0 / RELAXATION + mean_mm + [0.5e-3, -0.5e-3][node],
         };
         let uneven = |interval: f64, steps: usize| {
-            let worn_mm = bed.worn_mm(steps, interval, relaxing);
+            let worn_mm = bed.worn_mm(steps, interval, exponential);
             (worn_mm[0] - worn_mm[1] - 1e-3).abs() / 1e-3
         };
         assert!(uneven(1.9, 200) < 0.01);
@@ -198,11 +207,11 @@ mod tests {
             interval: 1.0,
             cycles_after: 1.0,
             depth_mm: vec![0.5, 1.0],
-            foreseen_mm: Vec::new(),
-            missed_mm: vec![0.0; 2],
+            predicted_mm: Vec::new(),
+            error_mm: vec![0.0; 2],
         };
-        let last = last.remembered(at(0.5, 1.0));
-        let depth_mm = relaxing(&at(0.0, 0.0), Some(&last), 1.0);
+        let last = last.record(at(0.5, 1.0));
+        let depth_mm = exponential(&at(0.0, 0.0), Some(&last), 1.0);
         assert_eq!(depth_mm[0], 0.0);
     }
 }

@@ -3,57 +3,57 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    rates::{mean, total},
-    relaxing::{counted, left},
-    step::{Before, Step, StepRecord},
+    exponential_step::{counted, left},
+    mean_over_wear::{mean_over_volume, volume_mm3, weight_of_depth},
+    step_record::{Standing, Step, StepRecord},
 };
-
-/// How much a node counts for the maximum depth: by this power of its depth, high enough to see the
-/// bottom of the scar alone, low enough to average over the nodes there.
-const DEEP_POWER: i32 = 8;
 
 /// Estimated error of a march from the length of its steps alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct StepError {
+pub struct AccumulatedError {
     /// Volume that the exact march would have worn more, mm3.
     pub volume_mm3: f64,
     /// How much deeper the exact march would be where it is deepest, mm; known with the last step.
     pub max_depth_mm: f64,
 }
 
-impl StepError {
-    /// With the step that led to `before` added, now that what a cycle wears at its end is known:
+impl AccumulatedError {
+    /// With the step that led to `standing` added, now that what a cycle wears at its end is known:
     /// the trapezoidal rule against what the step took.
-    pub(super) fn after(self, before: Before<'_>) -> Self {
-        let Some(last) = before.last else {
+    pub(super) fn after(self, standing: Standing<'_>) -> Self {
+        let Some(last) = standing.last else {
             return self;
         };
-        let rates = before.rates;
+        let rates = standing.rates;
         let mean = (rates.volume_per_cycle_mm3() + last.volume_per_cycle_mm3()) / 2.0;
-        let missed_mm3 = mean * last.interval - last.volume_mm3();
+        let error_mm3 = mean * last.interval - last.volume_mm3();
         Self {
-            volume_mm3: self.volume_mm3 + missed_mm3,
+            volume_mm3: self.volume_mm3 + error_mm3,
             ..self
         }
     }
 
-    /// With the last step added: what is foreseen against what it takes.
-    pub(super) fn with_last(self, before: Before<'_>, step: &Step) -> Self {
-        let area_mm2 = &before.rates.area_mm2;
-        let foreseen_mm3 = total(area_mm2, &step.foreseen_mm);
-        let missed_mm = missed_after(before, step);
+    /// With the last step added: what is predicted against what it takes.
+    pub(super) fn with_last(self, standing: Standing<'_>, step: &Step) -> Self {
+        let area_mm2 = &standing.rates.area_mm2;
+        let predicted_mm3 = volume_mm3(area_mm2, &step.predicted_mm);
+        let error_mm = error_after(standing, step);
         Self {
-            volume_mm3: self.volume_mm3 + foreseen_mm3 - total(area_mm2, &step.depth_mm),
-            max_depth_mm: mean(area_mm2, &deep(before.worn_mm, &step.depth_mm), &missed_mm),
+            volume_mm3: self.volume_mm3 + predicted_mm3 - volume_mm3(area_mm2, &step.depth_mm),
+            max_depth_mm: mean_over_volume(
+                area_mm2,
+                &deep(standing.worn_mm, &step.depth_mm),
+                &error_mm,
+            ),
         }
     }
 }
 
 /// How much deeper the exact march would be at every node after `step`, mm.
-fn missed_after(before: Before<'_>, step: &Step) -> Vec<f64> {
+fn error_after(standing: Standing<'_>, step: &Step) -> Vec<f64> {
     let after = |node: usize| {
-        let relaxed = counted(before.rates, node) * step.interval;
-        step.missed_mm[node] * (-relaxed).exp() + step.foreseen_mm[node] - step.depth_mm[node]
+        let relaxed = counted(standing.rates, node) * step.interval;
+        step.error_mm[node] * (-relaxed).exp() + step.predicted_mm[node] - step.depth_mm[node]
     };
     (0..step.depth_mm.len()).map(after).collect()
 }
@@ -61,35 +61,36 @@ fn missed_after(before: Before<'_>, step: &Step) -> Vec<f64> {
 /// How much every node counts for the maximum depth.
 fn deep(worn_mm: &[f64], more_mm: &[f64]) -> Vec<f64> {
     let depths = worn_mm.iter().zip(more_mm).map(|(worn, more)| worn + more);
-    depths.map(|depth| depth.powi(DEEP_POWER)).collect()
+    depths.map(weight_of_depth).collect()
 }
 
 /// How much deeper the exact march would be at every node by now, mm.
 ///
 /// What the last step should have worn follows from where the femur turned out to sink, by the
-/// equation of [`super::relaxing`]. By the same equation an error made earlier has faded.
-pub(super) fn missed(before: Before<'_>) -> Vec<f64> {
-    let at = |node: usize| match before.last {
+/// equation of [`super::exponential_step`]. By the same equation an error made earlier has faded.
+pub(super) fn accumulated_error_mm(standing: Standing<'_>) -> Vec<f64> {
+    let at = |node: usize| match standing.last {
         None => 0.0,
         Some(last) => {
-            let rate = before.rates.depth_per_cycle_mm[node];
-            missed_at(last, node, rate, counted(before.rates, node))
+            let rate = standing.rates.depth_per_cycle_mm[node];
+            error_at(last, node, rate, counted(standing.rates, node))
         }
     };
-    (0..before.worn_mm.len()).map(at).collect()
+    (0..standing.worn_mm.len()).map(at).collect()
 }
 
 /// The same at a node that relaxes by `counted` a cycle and now wears by `rate`.
-fn missed_at(last: &StepRecord, node: usize, rate: f64, counted: f64) -> f64 {
+fn error_at(last: &StepRecord, node: usize, rate: f64, counted: f64) -> f64 {
     let relaxed = counted * last.interval;
     let left = left(relaxed);
     let before = last.depth_per_cycle_mm[node];
     // (1 - left) / relaxed, which is 1/2 where nothing relaxes.
-    let late = match relaxed > 0.0 {
-        true => (1.0 - left) / relaxed,
-        false => 0.5,
+    let late = if relaxed > 0.0 {
+        (1.0 - left) / relaxed
+    } else {
+        0.5
     };
-    last.missed_mm[node] * (-relaxed).exp()
+    last.error_mm[node] * (-relaxed).exp()
         + left * (last.interval * before - last.depth_mm[node])
         + late * last.interval * (rate - before)
 }
@@ -109,19 +110,19 @@ mod tests {
     }
 
     /// A step of 2 cycles that began with 3 mm a cycle and took `depth_mm`.
-    fn last(depth_mm: f64, missed_mm: f64) -> StepRecord {
+    fn last(depth_mm: f64, error_mm: f64) -> StepRecord {
         let step = Step {
             interval: 2.0,
             cycles_after: 2.0,
             depth_mm: vec![depth_mm],
-            foreseen_mm: Vec::new(),
-            missed_mm: vec![missed_mm],
+            predicted_mm: Vec::new(),
+            error_mm: vec![error_mm],
         };
-        step.remembered(rates(3.0, 0.0))
+        step.record(rates(3.0, 0.0))
     }
 
-    fn before<'a>(now: &'a Rates, last: &'a StepRecord) -> Before<'a> {
-        Before {
+    fn standing<'a>(now: &'a Rates, last: &'a StepRecord) -> Standing<'a> {
+        Standing {
             rates: now,
             last: Some(last),
             worn_mm: &[6.0],
@@ -133,14 +134,14 @@ mod tests {
     #[test]
     fn verify_a_step_misses_the_trapezoidal_rule_less_what_it_took() {
         let (now, last) = (rates(5.0, 0.0), last(6.0, 1.5));
-        let earlier = StepError {
+        let earlier = AccumulatedError {
             volume_mm3: 1.0,
-            ..StepError::default()
+            ..AccumulatedError::default()
         };
         // 2 cycles of (3 + 5)/2 mm, less 6 mm: 2 mm, of 2 mm2; of depth 1.5 mm were missed before.
-        let before = before(&now, &last);
-        assert_eq!(earlier.after(before).volume_mm3, 1.0 + 2.0 * 2.0);
-        assert_eq!(missed(before), [1.5 + 2.0]);
+        let standing = standing(&now, &last);
+        assert_eq!(earlier.after(standing).volume_mm3, 1.0 + 2.0 * 2.0);
+        assert_eq!(accumulated_error_mm(standing), [1.5 + 2.0]);
     }
 
     #[test]
@@ -151,7 +152,7 @@ mod tests {
         let last = last(6.0, 0.0);
         let now = rates(3.0 - 6.0 * counted, 2.0 * counted);
         let exact = 3.0 * (1.0 - (-2.0 * counted).exp()) / counted;
-        assert!((missed(before(&now, &last))[0] - (exact - 6.0)).abs() < 1e-12);
+        assert!((accumulated_error_mm(standing(&now, &last))[0] - (exact - 6.0)).abs() < 1e-12);
     }
 
     #[test]
@@ -159,7 +160,7 @@ mod tests {
         // Nothing is missed by this step: the rate stays, and so the femur sinks as it wears.
         let relaxation = 0.7;
         let (now, last) = (rates(3.0, relaxation), last(6.0, 1.0));
-        let missed = missed(before(&now, &last))[0];
-        assert!((missed - (-2.0 * counted(&now, 0)).exp()).abs() < 1e-12);
+        let error_mm = accumulated_error_mm(standing(&now, &last))[0];
+        assert!((error_mm - (-2.0 * counted(&now, 0)).exp()).abs() < 1e-12);
     }
 }

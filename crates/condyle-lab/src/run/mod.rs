@@ -1,0 +1,15 @@
+//! A case run into a results folder, from the start or from where it was stopped.
+
+mod clock;
+mod error;
+mod event;
+mod options;
+mod prepare;
+mod run_case;
+
+pub use error::RunError;
+pub use event::{Outcome, Reached, RunEvent};
+pub use options::RunOptions;
+pub use prepare::check;
+pub(crate) use prepare::{build, start};
+pub use run_case::{run, run_case};

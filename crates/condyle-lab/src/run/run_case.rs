@@ -1,0 +1,207 @@
+//! The run itself: found, built, marched, estimated, written.
+
+use std::{ops::ControlFlow, path::Path, time::Duration};
+
+use condyle::evolve::March;
+use condyle_io::{
+    case::{Case, Side},
+    results::{Checkpoint, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
+};
+
+use super::{
+    clock::Clock,
+    error::RunError,
+    event::{Outcome, Reached, RunEvent},
+    options::RunOptions,
+    prepare::{build, start},
+};
+use crate::accuracy;
+
+/// Hears of everything that happens, and may stop the run by breaking.
+type Listener<'a> = dyn FnMut(RunEvent<'_>) -> ControlFlow<()> + 'a;
+
+/// Runs the case at `case_path`.
+///
+/// `on_event` hears of everything and may stop the run by breaking; the updates done are then on
+/// the disk, and a run with `resume` goes on to the same bytes as one never stopped. A run that
+/// cannot start makes no folder, and one that is done is left as it is.
+///
+/// # Errors
+/// A bad case, a folder that cannot be used, or physics that cannot be solved.
+pub fn run(
+    case_path: &Path,
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
+    run_case(&Case::read(case_path)?, options, on_event)
+}
+
+/// Runs a case that is read already, as [`run`] does.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_case(
+    case: &Case,
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
+    let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
+    let checkpoint = match found(case, options, &inputs_blake3)? {
+        Found::Done(summary) => return done_before(summary, options),
+        Found::Checkpoint(checkpoint, spent_s) => Some((*checkpoint, spent_s)),
+        Found::Case | Found::Nothing => None,
+    };
+    let mut run = Run::begin(case, options, checkpoint, inputs_blake3, on_event)?;
+    if run.march_on(on_event)?.is_break() {
+        return Ok(Outcome::Interrupted(Reached::by(&run.march)));
+    }
+    let summary = match run.summary(on_event) {
+        ControlFlow::Continue(summary) => summary,
+        ControlFlow::Break(()) => return Ok(Outcome::Interrupted(Reached::by(&run.march))),
+    };
+    run.folder.write_summary(&summary)?;
+    condyle_report::write_report(run.folder.path())?;
+    run.folder.finish()?;
+    Ok(Outcome::Done(Box::new(summary)))
+}
+
+/// What the folder holds; an error if it is not free, or with `resume` if there is no run in it.
+fn found(case: &Case, options: &RunOptions, inputs_blake3: &str) -> Result<Found, ResultsError> {
+    if options.resume {
+        let cycles = case.march.cycles as f64;
+        ResultsFolder::reopen(&options.out, &case.to_toml(), inputs_blake3, cycles)
+    } else {
+        ResultsFolder::free(&options.out).map(|()| Found::Nothing)
+    }
+}
+
+/// A run that is done already. It may have been stopped before it wrote the page; the same folder gives
+/// the same one.
+fn done_before(summary: Box<Summary>, options: &RunOptions) -> Result<Outcome, RunError> {
+    condyle_report::write_report(&options.out)?;
+    ResultsFolder::existing(&options.out).finish()?;
+    Ok(Outcome::DoneBefore(summary))
+}
+
+/// A run on its way.
+struct Run<'a> {
+    case: &'a Case,
+    options: &'a RunOptions,
+    inputs_blake3: String,
+    warnings: Vec<String>,
+    folder: ResultsFolder,
+    march: March,
+    clock: Clock,
+}
+
+impl<'a> Run<'a> {
+    /// Builds the bodies and starts the march, or goes on from a checkpoint.
+    fn begin(
+        case: &'a Case,
+        options: &'a RunOptions,
+        checkpoint: Option<(Checkpoint, f64)>,
+        inputs_blake3: String,
+        on_event: &mut Listener<'_>,
+    ) -> Result<Self, RunError> {
+        let mut clock = Clock::default();
+        let built = clock.time(|| build(case, options.threads, &options.cache))?;
+        let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
+        for warning in &warnings {
+            let _ = on_event(RunEvent::Warning(warning.clone()));
+        }
+        let is_new = checkpoint.is_none();
+        let march = match checkpoint {
+            Some((checkpoint, spent_s)) => {
+                clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
+                clock.time(|| March::resume(built.test, checkpoint.state))
+            }
+            None => clock.time(|| start(case, built.test))?,
+        };
+        let folder = if is_new {
+            let folder = ResultsFolder::create(&options.out)?;
+            folder.write_case(&case.to_toml())?;
+            folder
+        } else {
+            ResultsFolder::existing(&options.out)
+        };
+        let run = Self {
+            case,
+            options,
+            inputs_blake3,
+            warnings,
+            folder,
+            march,
+            clock,
+        };
+        if is_new {
+            run.write_update()?;
+        }
+        Ok(run)
+    }
+
+    /// Updates until all cycles are done; a break if somebody asked to stop before.
+    fn march_on(&mut self, on_event: &mut Listener<'_>) -> Result<ControlFlow<()>, RunError> {
+        let mut flow = on_event(RunEvent::Started(Reached::by(&self.march)));
+        while !self.march.is_done() && flow.is_continue() {
+            let (march, clock) = (&mut self.march, &mut self.clock);
+            let mut watch = |progress| on_event(RunEvent::Solved(progress));
+            let updated = clock.time(|| {
+                march
+                    .update(&mut watch)
+                    .map(|flow| flow.map_continue_value(Clone::clone))
+            });
+            let updated = updated.map_err(|source| RunError::March {
+                source,
+                out: self.options.out.clone(),
+            })?;
+            flow = match updated {
+                ControlFlow::Continue(update) => {
+                    self.write_update()?;
+                    on_event(RunEvent::Updated(&update))
+                }
+                ControlFlow::Break(()) => ControlFlow::Break(()),
+            };
+        }
+        // Whoever stops a run that is done has stopped nothing.
+        if self.march.is_done() {
+            flow = ControlFlow::Continue(());
+        }
+        Ok(flow)
+    }
+
+    fn write_update(&self) -> Result<(), ResultsError> {
+        let side: Side = self.case.heading.side;
+        self.folder
+            .write_update(&self.march, side, &self.inputs_blake3)?;
+        self.folder.write_time_spent(self.clock.spent.as_secs_f64())
+    }
+
+    /// What the run found, with its error if the case asks for that; a break if somebody asked to stop.
+    fn summary(&self, on_event: &mut Listener<'_>) -> ControlFlow<(), Summary> {
+        let mut summary = self.summary_without_error();
+        if self.case.accuracy.estimate {
+            let mut watch = || on_event(RunEvent::Estimating);
+            let mut clock = Clock::default();
+            let error = clock.time(|| accuracy::estimate(self.case, &self.march, &mut watch))?;
+            summary.error = error.map(|mut error| {
+                error.wall_s = clock.spent.as_secs_f64();
+                error
+            });
+        }
+        ControlFlow::Continue(summary)
+    }
+
+    fn summary_without_error(&self) -> Summary {
+        Summary::new(SummaryInput {
+            state: self.march.state(),
+            increments: self.march.test().time.increments,
+            hexahedra: self.march.insert().mesh().hexes.len(),
+            articulating_nodes: self.march.insert().surface_nodes().len(),
+            wall_s: self.clock.spent.as_secs_f64(),
+            inputs_blake3: self.inputs_blake3.clone(),
+            warnings: self.warnings.clone(),
+            error: None,
+        })
+        .expect("a march that is done has an update")
+    }
+}

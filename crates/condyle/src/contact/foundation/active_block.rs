@@ -1,0 +1,68 @@
+//! A block that touches, and what presses it.
+
+use super::{
+    cached_sample::CachedSample,
+    mean_overclosure::{EdgeSlopes, mean_overclosure},
+    settings::Foundation,
+    traction::{Sliding, Tractions4},
+};
+use crate::{
+    contact::share_block::ShareBlock,
+    number::{
+        F64x4,
+        vector::{cross, scale_add, tangential_part, zero_vector},
+    },
+    spatial::{Pose4, Twist4},
+};
+
+/// Four shares that touch, as they see the femur.
+pub(super) struct ActiveBlock {
+    /// Number of the block.
+    pub block: u32,
+    pub seen: CachedSample,
+    /// How the overclosure rises along the shares' edges.
+    pub slopes: EdgeSlopes<F64x4>,
+}
+
+impl ActiveBlock {
+    /// Pressure and rubbing on the four shares.
+    ///
+    /// With n the femur's normal, K its curvature, G the gradient of the gap, e_k the share's edges and W
+    /// the mean overclosure of the share, a motion a and a turn w of the femur change the middle's
+    /// overclosure by G . a, the normal by w x n - K a, and each rise n . e_k with the normal.
+    #[inline(always)]
+    pub fn press(
+        &self,
+        law: &Foundation,
+        shares: &ShareBlock,
+        pose: &Pose4,
+        twist: &Twist4,
+    ) -> Tractions4 {
+        let CachedSample { place, sample } = &self.seen;
+        let mean = mean_overclosure(-sample.gap_mm, &self.slopes);
+        let (pressure_mpa, slope) = law.pressure.pressures(mean.mm, shares.per_thickness);
+        let stiffness = slope * shares.area_mm2;
+        let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
+        let mut load_by_turn = zero_vector();
+        if let Some(by_rise) = mean.by_rise {
+            let (by_a, by_b) = (by_rise[0] * stiffness, by_rise[1] * stiffness);
+            let by_normal = scale_add(&shares.edge_a, by_a, &(shares.edge_b * by_b));
+            let by_normal = pose.turn_to_femur(&by_normal);
+            let along_surface = tangential_part(&by_normal, &sample.normal);
+            load_by_motion -= sample.curvature.times(&along_surface);
+            load_by_turn = cross(&sample.normal, &by_normal);
+        }
+        Tractions4 {
+            pressure_mpa,
+            area_mm2: shares.area_mm2,
+            covered_mm2: mean.by_middle * shares.area_mm2,
+            load_by_motion,
+            load_by_turn,
+            sliding: Sliding::new(
+                &twist.velocity(place),
+                &sample.normal,
+                law.slip_tolerance_mm_per_s,
+            ),
+        }
+    }
+}

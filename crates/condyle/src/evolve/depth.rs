@@ -1,0 +1,114 @@
+//! How deep the surface has gone down, and by what.
+
+use serde::{Deserialize, Serialize};
+
+/// What one cause has taken a surface down by.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DepthField {
+    /// The cause: `wear`, for instance.
+    pub name: String,
+    /// Whether what goes down is lost, as wear is, or only pressed aside.
+    pub loses_mass: bool,
+    /// Depth at every surface node along the inward normal, mm.
+    pub depth_mm: Vec<f64>,
+}
+
+impl DepthField {
+    /// Name of the depth that the wear law takes.
+    pub const WEAR: &'static str = "wear";
+
+    /// Depth worn away.
+    pub fn wear(depth_mm: Vec<f64>) -> Self {
+        Self {
+            name: Self::WEAR.to_owned(),
+            loses_mass: true,
+            depth_mm,
+        }
+    }
+}
+
+/// The depths of all causes; the surface goes down by their sum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DepthFields {
+    node_count: usize,
+    fields: Vec<DepthField>,
+}
+
+impl DepthFields {
+    /// A surface of `node_count` nodes that nothing has taken down yet.
+    pub fn none(node_count: usize) -> Self {
+        let fields = vec![DepthField::wear(vec![0.0; node_count])];
+        Self { node_count, fields }
+    }
+
+    /// Every cause with its depth, wear first.
+    pub fn fields(&self) -> &[DepthField] {
+        &self.fields
+    }
+
+    /// Depth worn away at every surface node, mm.
+    pub fn wear_mm(&self) -> &[f64] {
+        &self.fields[0].depth_mm
+    }
+
+    /// Depth that the surface has gone down at every node, mm: the sum of all causes.
+    pub fn total_mm(&self) -> Vec<f64> {
+        total_mm(&self.fields, self.node_count)
+    }
+
+    /// Adds what a step takes, cause by cause; a cause that is new starts with it.
+    pub(super) fn add(&mut self, step: &[DepthField]) {
+        for taken in step {
+            match self.fields.iter_mut().find(|own| own.name == taken.name) {
+                Some(own) => {
+                    let depths = own.depth_mm.iter_mut().zip(&taken.depth_mm);
+                    depths.for_each(|(own, taken)| *own += taken);
+                }
+                None => self.fields.push(taken.clone()),
+            }
+        }
+    }
+}
+
+/// The sum of some fields at every node, mm.
+pub(super) fn total_mm(fields: &[DepthField], node_count: usize) -> Vec<f64> {
+    summed(fields.iter(), node_count)
+}
+
+/// The sum of those fields that lose mass at every node, mm.
+pub(super) fn lost_mm(fields: &[DepthField], node_count: usize) -> Vec<f64> {
+    summed(fields.iter().filter(|field| field.loses_mass), node_count)
+}
+
+fn summed<'a>(fields: impl Iterator<Item = &'a DepthField>, node_count: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; node_count];
+    for field in fields {
+        let depths = sum.iter_mut().zip(&field.depth_mm);
+        depths.for_each(|(sum, depth)| *sum += depth);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_field_that_loses_no_mass_moves_the_surface_alone() {
+        let creep = DepthField {
+            name: "creep".to_owned(),
+            loses_mass: false,
+            depth_mm: vec![0.5, 0.0],
+        };
+        let step = [DepthField::wear(vec![1.0, 2.0]), creep];
+        assert_eq!(total_mm(&step, 2), [1.5, 2.0]);
+        assert_eq!(lost_mm(&step, 2), [1.0, 2.0]);
+
+        let mut depths = DepthFields::none(2);
+        depths.add(&step);
+        depths.add(&step[..1]);
+        assert_eq!(depths.wear_mm(), [2.0, 4.0]);
+        assert_eq!(depths.total_mm(), [2.5, 4.0]);
+        assert_eq!(depths.fields().len(), 2);
+    }
+}
