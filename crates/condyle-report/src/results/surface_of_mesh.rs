@@ -127,7 +127,7 @@ mod tests {
         };
         HexMesh {
             nodes,
-            hexes: vec![hex(0), hex(4)],
+            hexes: [hex(0), hex(4)].into(),
         }
     }
 
