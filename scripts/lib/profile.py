@@ -16,17 +16,18 @@ BASE = 0x555555554000
 
 # Patterns fit "function file".
 PARTS = [
-    ("femur: its distance field, once", r"geometry/curved_mesh|(gaps_at_nodes|new|filtered) .*geometry/smooth_field"),
+    ("femur: its distance field, once", r"geometry/curved_mesh|(closest_point|weighted) .*geometry/triangle"
+     r"|(new|in_cell|with_cells_beside) .*geometry/smooth_field|geometry/smooth_field/(gaps|far_gaps|second_differences)"),
     ("contact: which shares are due", r"(find_due|begin_increment|is_apart|touches|kept) .*contact/nearness|contact/(standoff|clearance|ground)"),
-    ("contact: look at the femur", r"look .*contact/foundation|contact/seen|geometry/(smooth_field|spline|bend_map|generic_femur|torus|femoral_surface)"),
+    ("contact: look at the femur", r"look .*contact/foundation|contact/seen|geometry/(smooth_field|surface_sample|curvature_bounds|generic_femur|torus|femoral_surface)"),
     ("contact: press", r"press .*contact/foundation"),
     ("contact: tangent", r"tangent .*contact/foundation"),
     ("contact: pressure and sliding at the nodes", r"(touched|touch|landed) .*contact/foundation"),
     ("contact: shares of the new surface", r"contact/(shares|nearness)|(new|after) .*contact/foundation"),
     ("contact: rest", r"respond .*contact/foundation"),
     ("histories and wear", r"contact/history|condyle/src/wear/|evolve/(rates|interval|step)|(gather|land) .*machine/cycle"),
-    ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|faces_around|fours)"),
-    ("mesh: the inside follows", r"condyle-fem/src/follow"),
+    ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|faces_around|node_blocks)"),
+    ("mesh: the inside follows", r"condyle-fem/src/(follow|neighbours)"),
     ("mesh: quality and volume", r"condyle-fem/src/"),
     ("insert: made, worn, its thickness", r"geometry/|condyle-io/"),
     ("Newton's method, machine and chain", r"condyle/src/machine/"),

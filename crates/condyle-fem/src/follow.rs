@@ -1,9 +1,9 @@
 //! The inside of a mesh follows its moved surface.
 
-use crate::{hex::HEX_EDGES, mesh::HexMesh, vector::Vec3};
+use crate::{mesh::HexMesh, neighbours::Neighbours, vector::Vec3};
 
-/// Relative residual at which the following is taken as solved: a hundredth of what one wear step moves, some tenths of a
-/// micrometre, is far below what the shape of an element can feel.
+/// Relative residual at which the following is taken as solved: a hundredth of what one wear step
+/// moves, some tenths of a micrometre, is far below what the shape of an element can feel.
 const RELATIVE_RESIDUAL: f64 = 1e-2;
 
 /// Spreads the displacement of some nodes into the mesh, harmonically: every free node moves by
@@ -14,18 +14,18 @@ const RELATIVE_RESIDUAL: f64 = 1e-2;
 pub struct InteriorFollower {
     /// Nodes that are not held, ascending; "row k" is that of node `free[k]`.
     free: Vec<u32>,
-    /// Neighbours of row k are `neighbours[first[k]..first[k + 1]]`.
-    first: Vec<usize>,
-    neighbours: Vec<u32>,
-    /// One over how many they are.
+    /// Those of every row.
+    neighbours: Neighbours,
+    /// One over how many they are: the inverse of the diagonal, the preconditioner.
     scale: Vec<f64>,
 }
 
 /// How large a residual is.
 #[derive(Clone, Copy)]
 struct Size {
+    /// Square of its length.
     length2: f64,
-    /// Times the preconditioner.
+    /// Its product with itself, preconditioned.
     scaled2: f64,
 }
 
@@ -39,14 +39,13 @@ impl InteriorFollower {
         let free: Vec<u32> = (0..mesh.nodes.len() as u32)
             .filter(|&node| !is_held[node as usize])
             .collect();
-        let (first, neighbours) = neighbours_of(&free, mesh);
-        let scale = first
-            .windows(2)
-            .map(|ends| 1.0 / (ends[1] - ends[0]) as f64);
+        let neighbours = Neighbours::along_edges(&free, mesh);
         Self {
+            scale: neighbours
+                .counts()
+                .map(|count| 1.0 / count as f64)
+                .collect(),
             free,
-            scale: scale.collect(),
-            first,
             neighbours,
         }
     }
@@ -77,7 +76,7 @@ impl InteriorFollower {
         }
     }
 
-    /// Turns the direction of search to the scaled residual, and keeps some of the last one.
+    /// The next direction of search: the preconditioned residual, and some of the last direction.
     fn turn(&self, direction: &mut [Vec3], residual: &[Vec3], keep: f64) {
         for ((r, scale), &node) in residual.iter().zip(&self.scale).zip(&self.free) {
             let d = &mut direction[node as usize];
@@ -85,7 +84,8 @@ impl InteriorFollower {
         }
     }
 
-    /// The product of a direction with its image, which is found on the way, less its sign.
+    /// What a direction meets: less its product with its image under [`Self::pulls`], which is found
+    /// on the way.
     fn resistance(&self, direction: &[Vec3], image: &mut [Vec3]) -> f64 {
         let mut resistance = 0.0;
         for ((image, pull), &node) in image.iter_mut().zip(self.pulls(direction)).zip(&self.free) {
@@ -115,7 +115,7 @@ impl InteriorFollower {
     /// What the neighbours of every free node pull it by: sum of (u_j - u_i).
     fn pulls(&self, u: &[Vec3]) -> impl Iterator<Item = Vec3> {
         self.free.iter().enumerate().map(|(k, &node)| {
-            let around = self.around(k);
+            let around = self.neighbours.of(k);
             let sum: Vec3 = around.iter().map(|&j| u[j as usize]).sum();
             sum - u[node as usize] * around.len() as f64
         })
@@ -131,46 +131,6 @@ impl InteriorFollower {
             .map(|pull| pull.norm_squared())
             .sum::<f64>()
             .sqrt()
-    }
-
-    fn around(&self, k: usize) -> &[u32] {
-        &self.neighbours[self.first[k]..self.first[k + 1]]
-    }
-}
-
-/// The neighbours along the edges of every free node, ascending, and where each node's begin.
-///
-/// An edge is met once in every hexahedron around it: all are put into their node's place first,
-/// and there are few enough of them to sort.
-fn neighbours_of(free: &[u32], mesh: &HexMesh) -> (Vec<usize>, Vec<u32>) {
-    let mut place = vec![0; mesh.nodes.len() + 1];
-    both_ways(mesh, |from, _| place[from as usize + 1] += 1);
-    for node in 0..mesh.nodes.len() {
-        place[node + 1] += place[node];
-    }
-    let start = place.clone();
-    let mut met = vec![0; start[mesh.nodes.len()]];
-    both_ways(mesh, |from, to| {
-        met[place[from as usize]] = to;
-        place[from as usize] += 1;
-    });
-    let (mut first, mut neighbours) = (vec![0], Vec::new());
-    for &node in free {
-        let around = &mut met[start[node as usize]..start[node as usize + 1]];
-        around.sort_unstable();
-        neighbours.extend(around.chunk_by(u32::eq).map(|same| same[0]));
-        first.push(neighbours.len());
-    }
-    (first, neighbours)
-}
-
-/// Tells every edge of every hexahedron both ways.
-fn both_ways(mesh: &HexMesh, mut tell: impl FnMut(u32, u32)) {
-    for hex in mesh.hexes.iter() {
-        for &[a, b] in &HEX_EDGES {
-            tell(hex[a], hex[b]);
-            tell(hex[b], hex[a]);
-        }
     }
 }
 

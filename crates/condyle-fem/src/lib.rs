@@ -5,6 +5,7 @@
 mod follow;
 mod hex;
 mod mesh;
+mod neighbours;
 mod quality;
 mod vector;
 

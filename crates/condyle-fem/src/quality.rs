@@ -5,7 +5,7 @@ use wide::f64x4;
 
 use crate::{mesh::HexMesh, vector::Vec3};
 
-/// How many are looked at in one go.
+/// How many go side by side.
 const LANES: usize = 4;
 
 /// A vector of each of four hexahedra.

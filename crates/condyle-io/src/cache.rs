@@ -12,7 +12,7 @@ use std::{
 use serde::{Serialize, de::DeserializeOwned};
 
 /// Version of how files are laid out.
-const FORMAT: &str = "3";
+const FORMAT: &str = "4";
 /// Length of the hash that guards a file's content.
 const HASH_LENGTH: usize = 32;
 /// Ending of the files that are kept; no other is ever removed.

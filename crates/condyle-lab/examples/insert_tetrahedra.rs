@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{} {} {}", node.x, node.y, node.z);
     }
     println!("CELLS {count} {}", 5 * count);
-    for hex in &mesh.hexes {
+    for hex in mesh.hexes.iter() {
         for corners in TETRAHEDRA {
             let [a, b, c, d] = corners.map(|corner| hex[corner]);
             println!("4 {a} {b} {c} {d}");

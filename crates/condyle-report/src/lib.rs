@@ -6,6 +6,7 @@
 
 mod error;
 mod figure;
+mod file;
 pub mod measured;
 mod number;
 mod page;
@@ -13,6 +14,7 @@ mod pictures;
 mod plots;
 mod results;
 
+pub use condyle_fem::Vec3;
 pub use error::ReportError;
 pub use page::report_html;
 pub use pictures::{
@@ -20,12 +22,18 @@ pub use pictures::{
     write_wear_map,
 };
 pub use plots::{Plot, plots_svg};
-pub use results::{Extreme, Region, Results, Side, Summary, SurfaceFields, Table};
+pub use results::{
+    contents::Results,
+    measure::{Extreme, Region},
+    side::Side,
+    summary::Summary,
+    surface::SurfaceFields,
+    table::Table,
+};
 
 use std::path::{Path, PathBuf};
 
-/// A point or a vector in the insert frame, mm.
-pub type Vec3 = condyle_fem::Vec3;
+use file::write_text;
 
 /// Writes `report.html` into a results folder and returns its path.
 ///
@@ -36,15 +44,5 @@ pub type Vec3 = condyle_fem::Vec3;
 /// or the page cannot be written.
 pub fn write_report(results_dir: &Path) -> Result<PathBuf, ReportError> {
     let html = report_html(&Results::read(results_dir)?);
-    write(results_dir.join("report.html"), &html)
-}
-
-fn write(path: PathBuf, text: &str) -> Result<PathBuf, ReportError> {
-    // Beside it and then in its place in one step: a stop leaves the old page or the new one.
-    let mut beside = path.clone().into_os_string();
-    beside.push(".part");
-    match std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, &path)) {
-        Ok(()) => Ok(path),
-        Err(source) => Err(ReportError::Write { path, source }),
-    }
+    write_text(results_dir.join("report.html"), &html)
 }

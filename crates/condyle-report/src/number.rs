@@ -46,8 +46,8 @@ fn grouped(digits: &str) -> String {
         return digits.to_owned();
     }
     let mut out = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
             out.push(THIN_SPACE);
         }
         out.push(digit);

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::error::ReportError;
 use crate::figure::{alone, sheet};
+use crate::file::write_text;
 use crate::page::{kinematics_panels, wear_map, wear_panels};
-use crate::results::Results;
-use crate::{ReportError, write};
+use crate::results::contents::Results;
 
 /// Scale of the map, px per mm.
 const PX_PER_MM: f64 = 8.0;
@@ -96,7 +97,7 @@ pub fn kinematics_svg(results_dir: &Path) -> Result<String, ReportError> {
 /// # Errors
 /// As [`wear_map_svg`], or the file cannot be written.
 pub fn write_wear_map(results_dir: &Path) -> Result<PathBuf, ReportError> {
-    write(
+    write_text(
         results_dir.join("wear_map.svg"),
         &wear_map_svg(results_dir)?,
     )
@@ -107,7 +108,7 @@ pub fn write_wear_map(results_dir: &Path) -> Result<PathBuf, ReportError> {
 /// # Errors
 /// As [`wear_curve_svg`], or the file cannot be written.
 pub fn write_wear_curve(results_dir: &Path) -> Result<PathBuf, ReportError> {
-    write(results_dir.join("wear.svg"), &wear_curve_svg(results_dir)?)
+    write_text(results_dir.join("wear.svg"), &wear_curve_svg(results_dir)?)
 }
 
 /// Writes `kinematics.svg` into a results folder and returns its path.
@@ -115,7 +116,7 @@ pub fn write_wear_curve(results_dir: &Path) -> Result<PathBuf, ReportError> {
 /// # Errors
 /// As [`kinematics_svg`], or the file cannot be written.
 pub fn write_kinematics(results_dir: &Path) -> Result<PathBuf, ReportError> {
-    write(
+    write_text(
         results_dir.join("kinematics.svg"),
         &kinematics_svg(results_dir)?,
     )

@@ -40,9 +40,9 @@ pub fn plots_svg(title: &str, plots: &[Plot], keys: [&str; 2]) -> String {
     sheet(title, &desc, &panels, COLUMNS, &key[used..])
 }
 
-fn panel((place, plot): (usize, &Plot)) -> Panel {
+fn panel((index, plot): (usize, &Plot)) -> Panel {
     Panel {
-        id: format!("plot-{place}"),
+        id: format!("plot-{index}"),
         title: plot.title.clone(),
         unit: plot.unit.clone(),
         positive: String::new(),

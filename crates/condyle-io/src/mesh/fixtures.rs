@@ -37,6 +37,6 @@ pub(crate) fn two_cubes() -> HexMesh {
     };
     HexMesh {
         nodes: (0..12).map(place).collect(),
-        hexes: vec![[0, 1, 4, 3, 6, 7, 10, 9], [1, 2, 5, 4, 7, 8, 11, 10]],
+        hexes: [[0, 1, 4, 3, 6, 7, 10, 9], [1, 2, 5, 4, 7, 8, 11, 10]].into(),
     }
 }

@@ -160,6 +160,7 @@ impl<'a> HexDraft<'a> {
             hexes.push(numbers);
         }
         let nodes = self.nodes.clone();
+        let hexes = hexes.into();
         Ok(HexMesh { nodes, hexes })
     }
 

@@ -64,6 +64,7 @@ pub(super) fn grid_points(path: &Path, bytes: &[u8]) -> Result<VtuFile, MeshFile
         .into_iter()
         .filter(|array| array.components == 1);
     let point_data = scalars.map(|array| (array.name, array.values)).collect();
+    let hexes = hexes.into();
     let mesh = HexMesh { nodes, hexes };
     Ok(VtuFile { mesh, point_data })
 }

@@ -4,7 +4,7 @@
 //! level is bounded by iso-lines through triangles and by pieces of the mesh's own border. Only
 //! those are collected and joined into loops, so a region is one path without inner seams.
 
-use crate::results::SurfaceFields;
+use crate::results::surface::SurfaceFields;
 
 /// A mesh prepared for contours, seen from above: (x, y) of the picture.
 pub(crate) struct Contours<'a> {

@@ -3,10 +3,14 @@
 
 use super::axis::{Axis, round_step};
 use super::contour::{Contours, borders};
-use super::escape;
+use super::escape::escape;
 use super::path::Path;
 use crate::number::{fixed, significant};
-use crate::results::{Extreme, Region, Side, SurfaceFields};
+use crate::results::{
+    measure::{Extreme, Region},
+    side::Side,
+    surface::SurfaceFields,
+};
 
 /// Bands between 0 and the largest value, at most.
 const MOST_BANDS: usize = 12;
@@ -43,7 +47,7 @@ pub(crate) enum Shades {
 
 /// What the colours of a map range over.
 #[derive(Clone, Copy)]
-pub(crate) enum Range {
+pub(crate) enum ColourRange {
     /// From 0 to the largest value.
     Own,
     /// From 0 to this value, so that two maps can be compared.
@@ -71,7 +75,7 @@ pub(crate) struct Map<'a> {
     /// The colours.
     pub(crate) shades: Shades,
     /// What they range over.
-    pub(crate) range: Range,
+    pub(crate) range: ColourRange,
     /// Scale of the picture, px per mm.
     pub(crate) px_per_mm: f64,
 }
@@ -139,19 +143,19 @@ impl Map<'_> {
 
     fn largest_value(&self) -> f64 {
         match self.range {
-            Range::Own => self
+            ColourRange::Own => self
                 .surface
                 .largest(self.values, Region::Whole)
                 .map_or(0.0, |extreme| extreme.value),
-            Range::UpTo(largest) | Range::BothWays(largest) => largest,
+            ColourRange::UpTo(largest) | ColourRange::BothWays(largest) => largest,
         }
     }
 
     fn bands(&self) -> Axis {
         let largest = self.largest_value();
         let (sides, low) = match self.range {
-            Range::Own | Range::UpTo(_) => (1, 0.0),
-            Range::BothWays(_) => (2, -1.0),
+            ColourRange::Own | ColourRange::UpTo(_) => (1, 0.0),
+            ColourRange::BothWays(_) => (2, -1.0),
         };
         let step = round_step(largest.max(NOTHING) / (MOST_BANDS / sides) as f64);
         let high = (largest / step - 1e-9).ceil().max(1.0) * step;
@@ -200,8 +204,8 @@ impl Map<'_> {
         (0..bands.intervals())
             .map(|band| {
                 let level = match (band, self.range) {
-                    (0, Range::BothWays(_)) => f64::NEG_INFINITY,
-                    (0, Range::Own | Range::UpTo(_)) => bands.step * NEXT_TO_NOTHING,
+                    (0, ColourRange::BothWays(_)) => f64::NEG_INFINITY,
+                    (0, ColourRange::Own | ColourRange::UpTo(_)) => bands.step * NEXT_TO_NOTHING,
                     (band, _) => bands.low + bands.step * band as f64,
                 };
                 let (fill, shape) = (self.colour(band, bands), path(&contours.region(level)));
@@ -213,7 +217,7 @@ impl Map<'_> {
     fn colour(&self, band: usize, bands: &Axis) -> String {
         let share = (band as f64 + 0.5) / bands.intervals() as f64;
         let is_next_to_zero = (share - 0.5).abs() * (bands.intervals() as f64) < 1.0;
-        if matches!(self.range, Range::BothWays(_)) && is_next_to_zero {
+        if matches!(self.range, ColourRange::BothWays(_)) && is_next_to_zero {
             return BARE.to_owned();
         }
         let gradient = match self.shades {
@@ -317,17 +321,17 @@ impl Map<'_> {
     /// The largest value of a region; with its sign, where values go both ways.
     fn extreme(&self, region: Region) -> Option<Extreme> {
         let highest = self.surface.largest(self.values, region)?;
-        if !matches!(self.range, Range::BothWays(_)) {
+        if !matches!(self.range, ColourRange::BothWays(_)) {
             return Some(highest);
         }
         let turned: Vec<f64> = self.values.iter().map(|value| -value).collect();
         let lowest = self.surface.largest(&turned, region)?;
-        Some(match lowest.value > highest.value {
-            true => Extreme {
-                value: -lowest.value,
-                ..lowest
-            },
-            false => highest,
+        if lowest.value <= highest.value {
+            return Some(highest);
+        }
+        Some(Extreme {
+            value: -lowest.value,
+            ..lowest
         })
     }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::axis::Axis;
-use super::escape;
+use super::escape::escape;
 use super::path::Path;
 
 /// Space above a plot's grid for its heading, and around it for the labels, px.

@@ -1,6 +1,6 @@
 //! A picture as a file of its own: on white, its style inside.
 
-use super::escape;
+use super::escape::escape;
 use super::panel::Panel;
 use super::style::css_on_white;
 
@@ -35,9 +35,9 @@ pub(crate) fn sheet(
         .map_or((0.0, 0.0), |panel| (panel.size.0, panel.size.1 + GAP));
     let (width, height) = (columns as f64 * cell.0, rows as f64 * cell.1);
     let mut body = String::new();
-    for (place, panel) in panels.iter().enumerate() {
-        let x = (place % columns) as f64 * cell.0;
-        let y = (place / columns) as f64 * cell.1;
+    for (index, panel) in panels.iter().enumerate() {
+        let x = (index % columns) as f64 * cell.0;
+        let y = (index / columns) as f64 * cell.1;
         body += &format!(r#"<g transform="translate({x} {y})">{}</g>"#, panel.body());
     }
     body += &key_line(key, height + CAPTION / 2.0);
@@ -45,8 +45,8 @@ pub(crate) fn sheet(
 }
 
 fn key_line(key: &[(&str, &str)], y: f64) -> String {
-    let entry = |(place, (class, meaning)): (usize, &(&str, &str))| {
-        let x = 46.0 + 130.0 * place as f64;
+    let entry = |(index, (class, meaning)): (usize, &(&str, &str))| {
+        let x = 46.0 + 130.0 * index as f64;
         let (end, text, base) = (x + 24.0, x + 32.0, y + 3.8);
         format!(
             r#"<path class="{class}" d="M{x} {y}H{end}"/><text x="{text}" y="{base}">{meaning}</text>"#

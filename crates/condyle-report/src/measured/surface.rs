@@ -1,7 +1,7 @@
 //! Predicted and scanned wear on the articulating surface, and their difference.
 
-use crate::figure::{Map, Range, Shades, alone};
-use crate::results::{Side, SurfaceFields};
+use crate::figure::{ColourRange, Map, Shades, alone};
+use crate::results::{side::Side, surface::SurfaceFields};
 
 /// Scale of each map, px per mm.
 const PX_PER_MM: f64 = 5.0;
@@ -14,8 +14,8 @@ pub fn compared_surface_svg(surface: &SurfaceFields, side: Side) -> Option<Strin
     let depth_mm =
         largest(surface.field("predicted_mm")?).max(largest(surface.field("scanned_mm")?));
     let difference_mm = largest(surface.field("difference_mm")?);
-    let depth = (Shades::Magma, Range::UpTo(depth_mm));
-    let difference = (Shades::RedBlue, Range::BothWays(difference_mm));
+    let depth = (Shades::Magma, ColourRange::UpTo(depth_mm));
+    let difference = (Shades::RedBlue, ColourRange::BothWays(difference_mm));
     let maps = [
         map(
             surface,
@@ -34,11 +34,11 @@ pub fn compared_surface_svg(surface: &SurfaceFields, side: Side) -> Option<Strin
         )?,
     ];
     let (width, height) = maps[0].size();
-    let place = |(place, map): (usize, &Map<'_>)| {
-        let x = place as f64 * (width + GAP);
+    let beside = |(index, map): (usize, &Map<'_>)| {
+        let x = index as f64 * (width + GAP);
         format!(r#"<g transform="translate({x:.1} 0)">{}</g>"#, map.body())
     };
-    let body: String = maps.iter().enumerate().map(place).collect();
+    let body: String = maps.iter().enumerate().map(beside).collect();
     let whole = (3.0 * width + 2.0 * GAP, height);
     let desc: Vec<String> = maps.iter().map(Map::desc).collect();
     Some(alone(
@@ -60,7 +60,7 @@ fn map<'a>(
     side: Side,
     field: &str,
     [title, largest]: [&'static str; 2],
-    (shades, range): (Shades, Range),
+    (shades, range): (Shades, ColourRange),
 ) -> Option<Map<'a>> {
     Some(Map {
         id: "",

@@ -4,19 +4,19 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::number::{fixed, significant};
-use crate::results::Results;
+use crate::results::contents::Results;
 
 /// The table of estimated errors.
 #[derive(Serialize)]
 pub(super) struct Accuracy {
-    rows: Vec<Row>,
+    rows: Vec<ErrorPart>,
     /// Why parts have no estimate, a sentence each.
     missing: Vec<String>,
 }
 
 /// An error of mass loss and of maximum depth: %, mg, %, mm.
 #[derive(Serialize)]
-struct Row {
+struct ErrorPart {
     name: &'static str,
     values: [String; 4],
     meaning: &'static str,
@@ -41,22 +41,22 @@ const PARTS: [(&str, &str, &str); 5] = [
 
 /// What the summary estimates; none where it estimates nothing.
 pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
-    let error = results.summary.as_ref()?.table("error")?;
-    let row = |(key, name, meaning): &(&'static str, &'static str, &'static str)| Row {
+    let error = results.summary.as_ref()?.object("error")?;
+    let part = |(key, name, meaning): &(&'static str, &'static str, &'static str)| ErrorPart {
         name,
         values: values(error, key),
         meaning,
     };
     Some(Accuracy {
-        rows: PARTS.iter().map(row).collect(),
+        rows: PARTS.iter().map(part).collect(),
         missing: missing(error),
     })
 }
 
 fn values(error: &Map<String, Value>, part: &str) -> [String; 4] {
-    let number = |table: &str| error.get(table)?.get(part)?.as_f64();
-    let shown = |table: &str, digits: fn(f64) -> String| {
-        number(table).map_or_else(|| String::from("unknown"), digits)
+    let number = |quantity: &str| error.get(quantity)?.get(part)?.as_f64();
+    let shown = |quantity: &str, digits: fn(f64) -> String| {
+        number(quantity).map_or_else(|| String::from("unknown"), digits)
     };
     [
         shown("mass_loss_percent", |percent| fixed(percent, 2)),

@@ -1,8 +1,8 @@
 //! The channels of kinematics.csv, drawn against the cycle.
 
-use super::cycle_caption;
+use super::captions::cycle_caption;
 use crate::figure::{Axis, Curve, Panel};
-use crate::results::{Results, Table};
+use crate::results::{contents::Results, table::Table};
 
 /// Width and height of a panel, px.
 const SIZE: (f64, f64) = (340.0, 206.0);

@@ -3,74 +3,100 @@
 use serde::Serialize;
 
 use crate::number::{fixed, significant};
-use crate::results::{Region, Results, SurfaceFields};
+use crate::results::{contents::Results, measure::Region, surface::SurfaceFields};
 
 /// Depth above which a face counts as part of the scar, as a share of the largest depth.
 const SCAR_SHARE: f64 = 0.05;
 
-/// A row: what, its unit, and its values for medial, lateral, both.
+/// A quantity of both sides: its unit, and its values for medial, lateral, both.
 #[derive(Serialize)]
-pub(super) struct Row {
+pub(super) struct Comparison {
     name: &'static str,
     unit: &'static str,
     values: [String; 3],
 }
 
-/// The rows of the table; none without a mesh that carries the wear depth.
-pub(super) fn rows(results: &Results) -> Vec<Row> {
+/// What the table compares; none without a mesh that carries the wear depth.
+pub(super) fn comparisons(results: &Results) -> Vec<Comparison> {
     let Some(surface) = &results.surface else {
         return Vec::new();
+    };
+    let sides = Sides {
+        surface,
+        regions: medial_lateral_both(results),
     };
     let Some(depth) = surface.field("wear_depth_mm") else {
         return Vec::new();
     };
-    let regions = medial_lateral_both(results);
-    let measure = |name, unit, of: &dyn Fn(Region) -> String| Row {
-        name,
-        unit,
-        values: regions.map(of),
-    };
-    let scar = SCAR_SHARE
-        * surface
-            .largest(depth, Region::Whole)
-            .map_or(0.0, |found| found.value);
-    let mut rows = vec![
-        measure("Maximum wear depth", "mm", &|region| {
-            largest(surface, depth, region)
-        }),
-        measure("at x, z", "mm", &|region| place(surface, depth, region)),
-        measure("Worn volume", "mm\u{b3}", &|region| {
-            significant(surface.integral(depth, region), 3)
-        }),
-        measure(
-            "Area of the wear scar, deeper than 5\u{a0}% of the maximum",
-            "mm\u{b2}",
-            &|region| fixed(surface.area_above(depth, scar, region), 0),
-        ),
-    ];
-    for (field, name, unit) in [
-        (
-            "peak_pressure_mpa",
-            "Highest pressure of a node in the last cycle",
-            "MPa",
-        ),
-        (
-            "sliding_distance_mm",
-            "Longest sliding distance in a cycle",
-            "mm",
-        ),
-    ] {
-        if let Some(values) = surface.field(field) {
-            rows.push(measure(name, unit, &|region| {
-                largest(surface, values, region)
-            }));
+    let mut all = sides.wear(depth);
+    all.extend(sides.load());
+    all.extend(sides.thinnest());
+    all
+}
+
+/// The surface, and its sides in the order of the columns.
+struct Sides<'a> {
+    surface: &'a SurfaceFields,
+    regions: [Region; 3],
+}
+
+impl Sides<'_> {
+    fn compare(
+        &self,
+        name: &'static str,
+        unit: &'static str,
+        measure: impl Fn(Region) -> String,
+    ) -> Comparison {
+        Comparison {
+            name,
+            unit,
+            values: self.regions.map(measure),
         }
     }
-    if let Some(values) = surface.field("thickness_mm") {
-        let thinnest = |region| thinnest(surface, values, region);
-        rows.push(measure("Thinnest polyethylene left", "mm", &thinnest));
+
+    fn wear(&self, depth: &[f64]) -> Vec<Comparison> {
+        const SCAR: &str = "Area of the wear scar, deeper than 5\u{a0}% of the maximum";
+        let surface = self.surface;
+        let deepest = surface.largest(depth, Region::Whole);
+        let scar = SCAR_SHARE * deepest.map_or(0.0, |found| found.value);
+        vec![
+            self.compare("Maximum wear depth", "mm", |region| {
+                largest(surface, depth, region)
+            }),
+            self.compare("at x, z", "mm", |region| deepest_at(surface, depth, region)),
+            self.compare("Worn volume", "mm\u{b3}", |region| {
+                significant(surface.integral(depth, region), 3)
+            }),
+            self.compare(SCAR, "mm\u{b2}", |region| {
+                fixed(surface.area_above(depth, scar, region), 0)
+            }),
+        ]
     }
-    rows
+
+    fn load(&self) -> impl Iterator<Item = Comparison> {
+        const FIELDS: [(&str, &str, &str); 2] = [
+            (
+                "peak_pressure_mpa",
+                "Highest pressure of a node in the last cycle",
+                "MPa",
+            ),
+            (
+                "sliding_distance_mm",
+                "Longest sliding distance in a cycle",
+                "mm",
+            ),
+        ];
+        FIELDS.into_iter().filter_map(|(field, name, unit)| {
+            let values = self.surface.field(field)?;
+            Some(self.compare(name, unit, |region| largest(self.surface, values, region)))
+        })
+    }
+
+    fn thinnest(&self) -> Option<Comparison> {
+        let values = self.surface.field("thickness_mm")?;
+        let measure = |region| thinnest(self.surface, values, region);
+        Some(self.compare("Thinnest polyethylene left", "mm", measure))
+    }
 }
 
 fn thinnest(surface: &SurfaceFields, values: &[f64], region: Region) -> String {
@@ -91,7 +117,7 @@ fn largest(surface: &SurfaceFields, values: &[f64], region: Region) -> String {
         .map_or_else(String::new, |found| significant(found.value, 3))
 }
 
-fn place(surface: &SurfaceFields, values: &[f64], region: Region) -> String {
+fn deepest_at(surface: &SurfaceFields, values: &[f64], region: Region) -> String {
     let found = surface
         .largest(values, region)
         .filter(|found| found.value > 0.0);

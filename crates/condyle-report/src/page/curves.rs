@@ -2,7 +2,7 @@
 
 use crate::figure::{Axis, Curve, Panel};
 use crate::number::significant;
-use crate::results::{Results, Table};
+use crate::results::{contents::Results, table::Table};
 
 /// Width and height of a panel, px.
 const SIZE: (f64, f64) = (480.0, 232.0);

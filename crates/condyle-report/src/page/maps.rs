@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::figure::{Map, Range, Shades};
-use crate::results::{Results, SurfaceFields};
+use crate::figure::{ColourRange, Map, Shades};
+use crate::results::{contents::Results, surface::SurfaceFields};
 
 /// A small map with its caption.
 #[derive(Serialize)]
@@ -72,7 +72,7 @@ fn plain<'a>(
         values: surface.field(field)?,
         side: results.side,
         shades: Shades::Magma,
-        range: Range::Own,
+        range: ColourRange::Own,
         px_per_mm,
     })
 }

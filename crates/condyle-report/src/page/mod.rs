@@ -1,6 +1,7 @@
 //! The page: what stands on it, and in which order.
 
 mod accuracy;
+mod captions;
 mod channels;
 mod compartments;
 mod curves;
@@ -18,9 +19,8 @@ use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
 use serde::Serialize;
 
-use crate::figure::{css, variables};
-use crate::number::cycles;
-use crate::results::{Results, title};
+use crate::figure::{Panel, css, variables};
+use crate::results::{case::title, contents::Results};
 
 const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
@@ -42,11 +42,11 @@ struct Page<'a> {
     tiles: Vec<numbers::Tile>,
     missing: Vec<&'static str>,
     wear_map: Option<String>,
-    compartments: Vec<compartments::Row>,
+    compartments: Vec<compartments::Comparison>,
     wear_curves: Vec<String>,
     channels: Vec<String>,
     cycles: Option<(String, String)>,
-    ranges: Vec<ranges::Row>,
+    ranges: Vec<ranges::ChannelRange>,
     small_maps: Vec<maps::Small>,
     numbers: Vec<numbers::Group>,
     checks: Option<String>,
@@ -68,11 +68,11 @@ impl<'a> Page<'a> {
             tiles: numbers::tiles(results),
             missing: story::missing(results),
             wear_map: wear_map(results, LARGE).map(|map| map.svg()),
-            compartments: compartments::rows(results),
+            compartments: compartments::comparisons(results),
             wear_curves: svgs(&wear_panels(results)),
             channels: svgs(&kinematics_panels(results)),
             cycles: channels::cycle_names(results),
-            ranges: ranges::rows(results),
+            ranges: ranges::ranges(results),
             small_maps: maps::small(results, SMALL),
             numbers: numbers::groups(results),
             checks: story::volume_check(results),
@@ -90,8 +90,8 @@ pub fn report_html(results: &Results) -> String {
     render(Page::of(results)).expect("the template is part of the program, and its tests render it")
 }
 
-fn svgs(panels: &[crate::figure::Panel]) -> Vec<String> {
-    panels.iter().map(crate::figure::Panel::svg).collect()
+fn svgs(panels: &[Panel]) -> Vec<String> {
+    panels.iter().map(Panel::svg).collect()
 }
 
 fn render(page: Page) -> Result<String, minijinja::Error> {
@@ -99,13 +99,4 @@ fn render(page: Page) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_syntax(syntax.trim_blocks(true).lstrip_blocks(true).build()?);
     environment.render_named_str("report.html", PAGE, Serde(page))
-}
-
-/// Names of the first and last cycle for captions.
-fn cycle_caption(first: f64, last: f64) -> (String, String) {
-    let named = |count: f64| match count {
-        0.0 => String::from("unworn"),
-        count => format!("after {} cycles", cycles(count)),
-    };
-    (named(first), named(last))
 }

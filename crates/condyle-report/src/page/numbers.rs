@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::number::{fixed, significant};
-use crate::results::{Results, Summary};
+use crate::results::{contents::Results, summary::Summary};
 
 /// A number that the report knows: name in the summary, label, unit, digits, meaning.
 struct Known {
@@ -14,15 +14,16 @@ struct Known {
     meaning: &'static str,
 }
 
-/// Rows under one heading.
+/// Numbers under one heading.
 #[derive(Serialize)]
 pub(super) struct Group {
     heading: &'static str,
-    rows: Vec<Row>,
+    rows: Vec<Listed>,
 }
 
+/// A number as it stands in the list.
 #[derive(Serialize)]
-struct Row {
+struct Listed {
     label: String,
     value: String,
     unit: &'static str,
@@ -225,7 +226,7 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
         heading,
         rows: numbers
             .iter()
-            .filter_map(|number| row(number, summary))
+            .filter_map(|number| listed(number, summary))
             .collect(),
     };
     let mut groups: Vec<_> = GROUPS.iter().map(group).collect();
@@ -237,10 +238,10 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
     groups
 }
 
-fn row(number: &Known, summary: &Summary) -> Option<Row> {
+fn listed(number: &Known, summary: &Summary) -> Option<Listed> {
     let value = shown(number, summary.number(number.key)?, 4);
     let label = number.label.to_owned();
-    Some(Row {
+    Some(Listed {
         label,
         value,
         unit: number.unit,
@@ -248,13 +249,13 @@ fn row(number: &Known, summary: &Summary) -> Option<Row> {
     })
 }
 
-fn others(summary: &Summary) -> Vec<Row> {
+fn others(summary: &Summary) -> Vec<Listed> {
     summary
         .entries()
         .filter(|(key, _)| known_by(key).is_none())
         .filter(|(key, _)| !NOT_LISTED.iter().any(|hidden| key.contains(hidden)))
         .filter_map(|(key, value)| {
-            Some(Row {
+            Some(Listed {
                 label: key.to_owned(),
                 value: plain(value)?,
                 unit: "",

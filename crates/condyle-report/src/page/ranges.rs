@@ -4,27 +4,28 @@ use serde::Serialize;
 
 use super::channels::{CHANNELS, Cycle, first_and_last};
 use crate::number::{fixed, significant};
-use crate::results::{Results, Table};
+use crate::results::{contents::Results, table::Table};
 
-/// A row of the table of ranges.
+/// The range of a channel in the first and in the last cycle.
 #[derive(Serialize)]
-pub(super) struct Row {
+pub(super) struct ChannelRange {
     name: &'static str,
     unit: &'static str,
     /// One entry a cycle.
-    ends: Vec<Range>,
+    ends: Vec<CycleRange>,
 }
 
+/// Smallest and largest value in one cycle, and where in it.
 #[derive(Serialize)]
-struct Range {
+struct CycleRange {
     low: String,
     low_percent: String,
     high: String,
     high_percent: String,
 }
 
-/// A row a channel that the folder holds.
-pub(super) fn rows(results: &Results) -> Vec<Row> {
+/// The range of every channel that the folder holds.
+pub(super) fn ranges(results: &Results) -> Vec<ChannelRange> {
     let Some(table) = &results.kinematics else {
         return Vec::new();
     };
@@ -37,7 +38,7 @@ pub(super) fn rows(results: &Results) -> Vec<Row> {
                 .iter()
                 .map(|cycle| range(table, values, cycle))
                 .collect::<Option<_>>()?;
-            Some(Row {
+            Some(ChannelRange {
                 name: channel.title,
                 unit: channel.unit,
                 ends,
@@ -46,7 +47,7 @@ pub(super) fn rows(results: &Results) -> Vec<Row> {
         .collect()
 }
 
-fn range(table: &Table, values: &[f64], cycle: &Cycle) -> Option<Range> {
+fn range(table: &Table, values: &[f64], cycle: &Cycle) -> Option<CycleRange> {
     let percent = table.column("percent")?;
     let finite = || {
         cycle
@@ -57,7 +58,7 @@ fn range(table: &Table, values: &[f64], cycle: &Cycle) -> Option<Range> {
     };
     let low = finite().min_by(|&a, &b| values[a].total_cmp(&values[b]))?;
     let high = finite().max_by(|&a, &b| values[a].total_cmp(&values[b]))?;
-    Some(Range {
+    Some(CycleRange {
         low: significant(values[low], 3),
         low_percent: fixed(percent[low], 0),
         high: significant(values[high], 3),

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::number::{cycles, fixed, significant};
-use crate::results::{Region, Results};
+use crate::results::{contents::Results, measure::Region};
 
 /// The result in two sentences.
 pub(super) fn lede(results: &Results) -> Option<String> {
@@ -35,8 +35,8 @@ fn deepest(results: &Results) -> Option<String> {
             .largest(values, region)
             .map_or(0.0, |found| found.value)
     });
-    let place = usize::from(right > left);
-    let side = results.side.regions()[place].to_lowercase();
+    let deeper = usize::from(right > left);
+    let side = results.side.regions()[deeper].to_lowercase();
     let depth = left.max(right);
     (depth > 0.0).then(|| {
         format!(

@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use crate::results::Side;
+use super::side::Side;
 
 /// The text of `title` or `name` at the top of a case.
 pub(crate) fn title(case: &str) -> Option<String> {

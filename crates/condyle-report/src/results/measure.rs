@@ -1,7 +1,8 @@
 //! What the report measures on the articulating surface itself.
 
-use super::SurfaceFields;
-use crate::Vec3;
+use condyle_fem::Vec3;
+
+use super::surface::SurfaceFields;
 
 /// A part of the surface by the sign of z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::case::side;
 use condyle_io::mesh::read_vtu_points;
 
-use super::{Results, Side, Summary, SurfaceFields, Table};
-use crate::ReportError;
+use super::{
+    case::side, contents::Results, side::Side, summary::Summary, surface::SurfaceFields,
+    table::Table,
+};
+use crate::error::ReportError;
 
 impl Results {
     /// Reads what a results folder holds; parts that are not there become `None`.

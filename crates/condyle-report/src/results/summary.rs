@@ -27,8 +27,8 @@ impl Summary {
         self.values.get(key)?.as_str()
     }
 
-    /// The table called `key`.
-    pub fn table(&self, key: &str) -> Option<&Map<String, Value>> {
+    /// The object called `key`: numbers and texts that belong together.
+    pub fn object(&self, key: &str) -> Option<&Map<String, Value>> {
         self.values.get(key)?.as_object()
     }
 

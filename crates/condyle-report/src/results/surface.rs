@@ -1,6 +1,6 @@
 //! The articulating surface with its fields.
 
-use crate::Vec3;
+use condyle_fem::Vec3;
 
 /// A surface of quads with values at its nodes.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use condyle_fem::{HEX_FACES, HexMesh};
 
-use super::SurfaceFields;
-use crate::ReportError;
+use super::surface::SurfaceFields;
+use crate::error::ReportError;
 
 /// Point data that is 1 on nodes of the articulating surface.
 const ARTICULATING: &str = "articulating";
@@ -127,7 +127,7 @@ mod tests {
         };
         HexMesh {
             nodes,
-            hexes: vec![hex(0), hex(4)],
+            hexes: [hex(0), hex(4)].into(),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::ReportError;
+use crate::error::ReportError;
 
 /// Columns of numbers by name; an empty cell is NaN.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,8 +31,8 @@ impl Table {
 
     /// The column called `name`.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
-        let place = self.names.iter().position(|known| known == name)?;
-        Some(&self.columns[place])
+        let index = self.names.iter().position(|known| known == name)?;
+        Some(&self.columns[index])
     }
 
     /// Number of rows.
@@ -50,14 +50,14 @@ impl Table {
             .position()
             .map_or(0, |position| position.line() as usize);
         self.check_length(row.len(), line, path)?;
-        for (place, cell) in row.iter().enumerate() {
+        for (index, cell) in row.iter().enumerate() {
             let value = number(cell).ok_or_else(|| ReportError::NotANumber {
                 path: path.to_owned(),
                 line,
-                column: self.names[place].clone(),
+                column: self.names[index].clone(),
                 text: cell.to_owned(),
             })?;
-            self.columns[place].push(value);
+            self.columns[index].push(value);
         }
         Ok(())
     }

@@ -24,8 +24,8 @@ impl NodeBlock {
     }
 }
 
-/// The blocks of a surface, every node once: the corners of every other face along rows and columns, and then what is left in
-/// chains; ascending by their first nodes.
+/// The blocks of a surface, every node in one: the corners of every other face along rows and
+/// columns, and then what is left in chains; ascending by their first nodes.
 ///
 /// A grid falls into blocks of two by two, whatever its outline. They touch, or not, sooner all
 /// together than four nodes in a row would, and do not reach from one end of a row to the start of

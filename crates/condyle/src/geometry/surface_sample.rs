@@ -21,17 +21,23 @@ pub struct Curvature<T> {
 }
 
 impl<T: Number> Curvature<T> {
-    /// The curvature of a plane.
-    pub fn none() -> Self {
-        let zero = T::zero();
+    /// The matrix of entries xx, yy, zz, xy, xz, yz.
+    #[inline(always)]
+    pub fn of_entries([xx, yy, zz, xy, xz, yz]: [T; 6]) -> Self {
         Self {
-            xx: zero,
-            yy: zero,
-            zz: zero,
-            xy: zero,
-            xz: zero,
-            yz: zero,
+            xx,
+            yy,
+            zz,
+            xy,
+            xz,
+            yz,
         }
+    }
+
+    /// Its entries xx, yy, zz, xy, xz, yz.
+    #[inline(always)]
+    pub fn entries(&self) -> [T; 6] {
+        [self.xx, self.yy, self.zz, self.xy, self.xz, self.yz]
     }
 
     /// The matrix times a vector.
@@ -67,7 +73,7 @@ impl<T: Number> SurfaceSample<T> {
             gap_mm: T::splat(f64::INFINITY),
             gap_gradient: none,
             normal: none,
-            curvature: Curvature::none(),
+            curvature: Curvature::of_entries([T::zero(); 6]),
         }
     }
 

@@ -61,6 +61,9 @@ impl<T: Number> Torus<T> {
         let radial = across * per_tube;
         let normal = Vector::new(outward_x * radial, outward_y * radial, r.z * per_tube);
         let ring = self.ring_radius_mm * per_axis;
+        // The mean of the gap over a flat share is g + spread div n: of the share's second moment M
+        // only the trace counts, as if the share were a square, since g + K:M/2 with M = 2 spread
+        // (I - n n') is just that. Its gradient has the derivatives of div n added.
         let divergence = (T::splat(2.0) - ring) * per_tube;
         let inward = -(divergence * per_tube * spread_mm2);
         let outward = ring * per_axis * per_tube * spread_mm2;

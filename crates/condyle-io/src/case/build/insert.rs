@@ -106,10 +106,7 @@ fn place(file: &mut HexFile, placing: &Placing) {
         .for_each(|node| *node = placing.point(node));
     if placing.mirrors {
         let swapped = |[a, b, c, d, e, f, g, h]: [u32; 8]| [e, f, g, h, a, b, c, d];
-        file.mesh
-            .hexes
-            .iter_mut()
-            .for_each(|hex| *hex = swapped(*hex));
+        file.mesh.hexes = file.mesh.hexes.iter().copied().map(swapped).collect();
         let quads = file
             .surfaces
             .iter_mut()

@@ -163,7 +163,7 @@ impl<W: Write> InpWriter<W> {
 /// hexahedron has the label `first`; a quad that is no face of the boundary is left out.
 pub fn element_faces(mesh: &HexMesh, quads: &[[u32; 4]], first: u32) -> Vec<(u32, u8)> {
     let mut faces: HashMap<[u32; 4], (u32, u8)> = HashMap::new();
-    for (label, hex) in (first..).zip(&mesh.hexes) {
+    for (label, hex) in (first..).zip(mesh.hexes.iter()) {
         for (number, face) in (1..).zip(HEX_FACES) {
             faces.insert(sorted(face.map(|corner| hex[corner])), (label, number));
         }

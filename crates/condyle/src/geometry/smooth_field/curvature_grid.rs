@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{gap_spline::GapSpline, node_grid::SPACING_MM};
 use crate::{
     Vec3, Vector,
-    geometry::{curvature_bounds::CurvatureBounds, surface_sample::Curvature},
+    geometry::curvature_bounds::CurvatureBounds,
     number::{F64x4, LANES, Number},
 };
 
@@ -161,24 +161,12 @@ fn in_cell(gap: &GapSpline, middle: &Vec3) -> CellBounds {
         let slopes = sample.gap_gradient.dot(&sample.gap_gradient).sqrt();
         for lane in 0..LANES {
             if NEAR_MM.contains(&sample.gap_mm.lane(lane)) {
-                let curvature = entries(&sample.curvature, lane);
+                let curvature = sample.curvature.entries().map(|entry| entry.lane(lane));
                 all = all.joined(CellBounds::at(slopes.lane(lane), curvature));
             }
         }
     }
     all
-}
-
-fn entries(curvature: &Curvature<F64x4>, lane: usize) -> [f64; 6] {
-    let Curvature {
-        xx,
-        yy,
-        zz,
-        xy,
-        xz,
-        yz,
-    } = curvature;
-    [xx, yy, zz, xy, xz, yz].map(|entry| entry.lane(lane))
 }
 
 #[cfg(test)]

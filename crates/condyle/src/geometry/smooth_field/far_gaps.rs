@@ -5,7 +5,7 @@ use super::{
     node_grid::{NodeGrid, SPACING_MM},
 };
 
-/// Straight way over way along the grid lines, at least: 1 over the root of 3, rounded down.
+/// Straight way over way along the grid lines, at least: these are at most sqrt 3 times as long.
 const STRAIGHT_PER_PATH: f64 = 0.577;
 
 /// Gives the nodes beyond the band a lower bound of their distance, and says which they are.
@@ -21,7 +21,7 @@ pub fn bound_far_gaps(grid: &NodeGrid, gaps: &mut [f64], is_closed: bool) -> Vec
             gaps[here] = nearer(gaps[here], gaps[there], is_closed);
         }
     };
-    // The shortest path to a node comes from lower or from higher numbers: it is found forth or back.
+    // One pass carries bounds to higher numbers along all axes at once, the other back to lower ones.
     for here in 0..count {
         let lower = strides.iter().filter(|&&stride| here >= stride);
         lower.for_each(|stride| pass_on(here - stride, here));

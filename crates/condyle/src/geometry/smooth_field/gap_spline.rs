@@ -148,18 +148,10 @@ fn sample_from<T: Number>(spline: &Derivatives<T>) -> SurfaceSample<T> {
     );
     let per_length = T::one() / length;
     let scale = per_length * T::splat(1.0 / (SPACING_MM * SPACING_MM));
-    let [xx, yy, zz, xy, xz, yz] = spline.hessian.map(|entry| entry * scale);
     SurfaceSample {
         gap_mm: spline.value,
         gap_gradient,
         normal: gap_gradient * per_length,
-        curvature: Curvature {
-            xx,
-            yy,
-            zz,
-            xy,
-            xz,
-            yz,
-        },
+        curvature: Curvature::of_entries(spline.hessian.map(|entry| entry * scale)),
     }
 }

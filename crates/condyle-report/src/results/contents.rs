@@ -1,0 +1,20 @@
+//! What a results folder holds.
+
+use super::{side::Side, summary::Summary, surface::SurfaceFields, table::Table};
+
+/// What a results folder holds; a part that is not there is `None`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Results {
+    /// `summary.json`.
+    pub summary: Option<Summary>,
+    /// `wear.csv`, a row an update.
+    pub wear: Option<Table>,
+    /// `kinematics.csv`, a row an increment of the first and of the last cycle.
+    pub kinematics: Option<Table>,
+    /// The articulating surface at the last update.
+    pub surface: Option<SurfaceFields>,
+    /// `case.toml`, its text.
+    pub case: Option<String>,
+    /// Which knee it is.
+    pub side: Side,
+}
