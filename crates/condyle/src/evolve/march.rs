@@ -14,9 +14,7 @@ use crate::{
     Vec3,
     contact::{ContactModel, CycleHistory, Former, Foundation},
     geometry::ArticulatingSurface,
-    machine::{
-        Chain, Cycle, CycleRow, Freedom, MachineState, Simulator, SolverCounters, TimeSettings,
-    },
+    machine::{Chain, Cycle, CycleRow, MachineState, Simulator, SolverCounters, TimeSettings},
 };
 
 /// The first and the last cycle, whose motions are kept, repeat themselves within this part of the
@@ -149,15 +147,15 @@ impl March {
 
     /// Solves the next cycle that repeats itself, and wears the insert by an interval of it.
     ///
-    /// `watch` is told of every increment, and may stop the march; an update begun is then lost,
-    /// those before are kept.
+    /// `watch` is told of every increment, and the march breaks where it does; an update begun is
+    /// then lost, those before are kept.
     ///
     /// # Errors
-    /// A cycle that cannot be solved, an insert worn through, or a stop asked for.
+    /// A cycle that cannot be solved, or an insert worn through.
     pub fn update(
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<&UpdateRecord, MarchError> {
+    ) -> Result<ControlFlow<(), &UpdateRecord>, MarchError> {
         let spent = std::mem::take(&mut self.spent);
         let former = self.former.take();
         let WearTest {
@@ -168,10 +166,14 @@ impl March {
         } = &self.test;
         let mut contact = Foundation::after(former, contact, femur, insert);
         let mut counters = self.state.counters;
-        let cycle = self.repeating_cycle(&mut contact, spent, &mut counters, watch)?;
+        let solved = self.repeating_cycle(&mut contact, spent, &mut counters, watch)?;
+        let ControlFlow::Continue(cycle) = solved else {
+            return Ok(ControlFlow::Break(()));
+        };
         let (surface, former) = contact.into_parts();
         self.former = Some(former);
-        self.wear(&surface, cycle, counters)
+        let record = self.wear(&surface, cycle, counters)?;
+        Ok(ControlFlow::Continue(record))
     }
 
     /// As [`March::update`], on another model of contact: the one made for the test as worn so far.
@@ -182,13 +184,17 @@ impl March {
         &mut self,
         model: impl for<'a> Fn(&'a WearTest) -> Box<dyn ContactModel + 'a>,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<&UpdateRecord, MarchError> {
+    ) -> Result<ControlFlow<(), &UpdateRecord>, MarchError> {
         let spent = std::mem::take(&mut self.spent);
         let mut counters = self.state.counters;
         let mut contact = model(&self.test);
-        let cycle = self.repeating_cycle(contact.as_mut(), spent, &mut counters, watch)?;
+        let solved = self.repeating_cycle(contact.as_mut(), spent, &mut counters, watch)?;
         drop(contact);
-        self.wear(&self.test.insert.surface(), cycle, counters)
+        let ControlFlow::Continue(cycle) = solved else {
+            return Ok(ControlFlow::Break(()));
+        };
+        let record = self.wear(&self.test.insert.surface(), cycle, counters)?;
+        Ok(ControlFlow::Continue(record))
     }
 
     /// Wears the insert by an interval of a solved cycle.
@@ -201,8 +207,11 @@ impl March {
         let update = self.state.updates.len() + 1;
         let cycles = self.cycles();
         if cycle.rows.iter().all(|row| row.axial_force_n == 0.0) {
-            let ap_mm = cycle.end.now.positions[Freedom::AnteroPosterior as usize];
-            return Err(MarchError::LostContact { update, ap_mm });
+            return Err(MarchError::lost_contact(
+                update,
+                &self.test.machine,
+                &cycle.end,
+            ));
         }
         let rates = Rates::of(
             &cycle,
@@ -263,14 +272,14 @@ impl March {
         self.state.updates.last().map_or(0.0, |last| last.cycles)
     }
 
-    /// A cycle that repeats itself, the geometry held still, and the contact that it pressed on.
+    /// A cycle that repeats itself, the geometry held still; breaks where `watch` does.
     fn repeating_cycle(
         &self,
         contact: &mut dyn ContactModel,
         spent: CycleHistory,
         counters: &mut SolverCounters,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<Cycle, MarchError> {
+    ) -> Result<ControlFlow<(), Cycle>, MarchError> {
         let update = self.state.updates.len() + 1;
         let time = self.time();
         let mut simulator = Simulator::new(&self.test.machine, &self.chain, contact, &time);
@@ -286,14 +295,13 @@ impl March {
                 cycles: cycles + interval * cycles_solved.min(1.0),
             })
         };
-        match simulator.cycle(&self.state.machine, counters, &mut watch_cycle) {
-            Ok(cycle) => Ok(cycle),
-            Err(source) => Err(MarchError::Cycle {
+        simulator
+            .cycle(&self.state.machine, counters, &mut watch_cycle)
+            .map_err(|source| MarchError::Cycle {
                 update,
                 cycles,
                 source,
-            }),
-        }
+            })
     }
 
     /// How nearly the next cycle repeats itself.

@@ -7,7 +7,7 @@ use crate::{
     Vec3,
     contact::{ContactModel, Foundation},
     geometry::{ArticulatingSurface, FemoralSurface},
-    machine::{Chain, Freedom, NotSettled, SolverCounters, settle},
+    machine::{Chain, Drive, JointKind, Machine, NotSettled, Settling, SolverCounters, settle},
     spatial::{Pose, RelativeMotion},
 };
 
@@ -46,28 +46,33 @@ pub enum PlacementError {
     /// The femur slides off or tips over.
     #[error(
         "the femur does not settle on the insert under the axial load: {residual_n:.3e} N are left over at \
-         AP {ap_mm:.2}, ML {ml_mm:.2}, IS {is_mm:.2} mm; check axes and start_mm"
+         {}; check axes and start_mm",
+        listed(shifts_mm)
     )]
     NotSettled {
         /// Force left out of balance.
         residual_n: f64,
-        /// Where it got to.
-        ap_mm: f64,
-        /// Where it got to.
-        ml_mm: f64,
-        /// Where it got to.
-        is_mm: f64,
+        /// Where it got to: the shifts that settling zeroes, by the names that messages give them.
+        shifts_mm: Vec<(&'static str, f64)>,
     },
 }
 
-impl From<NotSettled> for PlacementError {
-    fn from(failed: NotSettled) -> Self {
-        let at = |freedom: Freedom| failed.positions[freedom as usize];
+/// Shifts as a message tells them, such as `AP 1.00, ML 0.00, IS -0.20 mm`.
+fn listed(shifts_mm: &[(&'static str, f64)]) -> String {
+    let shift = |(symbol, at_mm): &(&str, f64)| format!("{symbol} {at_mm:.2}");
+    let shifts: Vec<String> = shifts_mm.iter().map(shift).collect();
+    format!("{} mm", shifts.join(", "))
+}
+
+impl PlacementError {
+    fn not_settled(machine: &Machine, failed: &NotSettled) -> Self {
+        let mechanism = machine.mechanism;
+        let in_files = mechanism.in_files.into_iter();
+        let zeroed = in_files.filter(|&index| mechanism.joint(index).is_zeroed);
+        let shift = |index| (mechanism.joint(index).symbol, index.of(&failed.positions));
         Self::NotSettled {
             residual_n: failed.residual_n,
-            ap_mm: at(Freedom::AnteroPosterior),
-            ml_mm: at(Freedom::MedioLateral),
-            is_mm: at(Freedom::InferoSuperior),
+            shifts_mm: zeroed.map(shift).collect(),
         }
     }
 }
@@ -94,32 +99,31 @@ pub(super) fn place(
         test.flexion_axis_mm,
     );
     let mut contact = Foundation::new(&test.contact, &test.femur, &test.insert);
-    let mut positions = settle(
+    let positions = settle(
         &test.machine,
         &chain,
         &mut contact,
         test.time.force_tolerance_n,
         counters,
-    )?;
+    )
+    .map_err(|failed| PlacementError::not_settled(&test.machine, &failed))?;
     check_depth(test, &surface, &mut contact, &chain.at(&positions).pose)?;
-    let zeroed = chain.zeroed_at(&test.machine, &positions);
-    for freedom in [
-        Freedom::MedioLateral,
-        Freedom::AnteroPosterior,
-        Freedom::InferoSuperior,
-    ] {
-        positions[freedom as usize] = 0.0;
-    }
-    Ok((zeroed, positions))
+    Ok(chain.zeroed_at(&test.machine, &positions))
 }
 
-/// Positions with the femur flexed as at the start of the cycle and all else at zero.
+/// Positions with the femur turned as at the start of the cycle and all else at zero.
 fn driven(test: &WearTest) -> [f64; 6] {
-    let mut positions = [0.0; 6];
-    if let crate::machine::Drive::Prescribed(flexion) = &test.machine.row(Freedom::Flexion).drive {
-        positions[Freedom::Flexion as usize] = flexion.at(0.0).0;
-    }
-    positions
+    std::array::from_fn(|j| {
+        let joint = &test.machine.joints[j];
+        let description = joint.description;
+        let turns = description.kind() == JointKind::Rotation;
+        match &joint.drive {
+            Drive::Prescribed(turn) if turns && description.settling == Settling::Driven => {
+                turn.at(0.0).0
+            }
+            _ => 0.0,
+        }
+    })
 }
 
 /// The pose lowered from high above until the first node touches; none if it passes the insert.
