@@ -13,7 +13,7 @@ use condyle::{
         March, MarchError, MarchState, PlacementError, Schedule, Snapshot, StepRecord, WearTest,
     },
     geometry::Insert,
-    machine::{CycleError, MachineState, TimeSettings},
+    machine::{MachineState, TimeSettings},
 };
 use condyle_io::{
     case::Case,
@@ -199,13 +199,16 @@ impl<'a> Again<'a> {
         reference: [f64; 2],
         factor: f64,
     ) -> Result<[f64; 2], Without> {
-        let solved = march.update(&mut |_| (self.watch)()).map(|_| ());
+        let solved = march.update(&mut |_| (self.watch)());
+        let solved = solved.map(|update| update.is_continue());
         let now = match &march.state().first_step {
             Some((step, _)) => worn(step, weights),
             None => [0.0; 2],
         };
         self.march = Some(march);
-        solved?;
+        if !solved? {
+            return Err(Without::Interrupted);
+        }
         Ok([0, 1].map(|i| self.growth[i] * 100.0 * factor * (now[i] / reference[i] - 1.0)))
     }
 }
@@ -242,13 +245,7 @@ impl From<PlacementError> for Without {
 
 impl From<MarchError> for Without {
     fn from(why: MarchError) -> Self {
-        match why {
-            MarchError::Cycle {
-                source: CycleError::Interrupted,
-                ..
-            } => Self::Interrupted,
-            why => Self::Reason(why.to_string()),
-        }
+        Self::Reason(why.to_string())
     }
 }
 

@@ -7,10 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use condyle::{
-    evolve::{March, MarchError, PlacementError, Progress, UpdateRecord, WearTest},
-    machine::CycleError,
-};
+use condyle::evolve::{March, MarchError, PlacementError, Progress, UpdateRecord, WearTest};
 use condyle_io::{
     cache::Cache,
     case::{BuildError, BuildWarning, Built, Case, CaseError},
@@ -206,16 +203,14 @@ pub fn run_case(
             return Ok(Outcome::Interrupted(Reached::by(&march)));
         }
         let mut watch = |progress| on_event(RunEvent::Solved(progress));
-        match clock.time(|| march.update(&mut watch).cloned()) {
-            Ok(update) => {
+        let update = clock.time(|| march.update(&mut watch));
+        match update.map(|update| update.map_continue(UpdateRecord::clone)) {
+            Ok(ControlFlow::Continue(update)) => {
                 folder.write_update(&march, side, &inputs_blake3)?;
                 folder.write_time_spent(clock.spent.as_secs_f64())?;
                 stop = on_event(RunEvent::Updated(&update));
             }
-            Err(MarchError::Cycle {
-                source: CycleError::Interrupted,
-                ..
-            }) => stop = ControlFlow::Break(()),
+            Ok(ControlFlow::Break(())) => stop = ControlFlow::Break(()),
             Err(source) => {
                 return Err(RunError::March {
                     source,
