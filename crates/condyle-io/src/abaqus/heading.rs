@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use condyle::machine::Freedom;
+use condyle::machine::{JointIndex, knee};
 
 use super::model::Model;
 use crate::case::Side;
@@ -64,8 +64,8 @@ fn deformable_differs(model: &Model<'_>) -> &'static str {
 
 /// Where both bodies stand when the file begins.
 fn pose(model: &Model<'_>) -> String {
-    let at = |freedom: Freedom| model.placing.positions[freedom as usize];
-    let is_mm = at(Freedom::InferoSuperior);
+    let at = |joint: JointIndex| joint.of(&model.placing.positions);
+    let is_mm = at(knee::IS);
     let deepest = model
         .placing
         .gaps_mm(model.test)
@@ -75,7 +75,7 @@ fn pose(model: &Model<'_>) -> String {
         "\nPOSE. The bodies stand where condyle finds them settled under the axial force at 0 % of the cycle:\n\
          flexion {:.4} deg, VV {:.6} deg, IE 0, and AP = ML = 0 by definition; IS is {is_mm:.5} mm from there.\n\
          Smallest gap {deepest:.5} mm (negative is overlap).",
-        at(Freedom::Flexion).to_degrees(),
-        at(Freedom::VarusValgus).to_degrees(),
+        at(knee::FLEXION).to_degrees(),
+        at(knee::VV).to_degrees(),
     )
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use condyle::Vec3;
-use condyle::machine::{ApSpring, Freedom};
+use condyle::machine::{Spring, knee};
 
 use super::model::Model;
 use super::names;
@@ -48,8 +48,8 @@ fn nodes<W: Write>(model: &Model<'_>, inp: &mut InpWriter<W>) -> io::Result<()> 
     inp.nodes(labels.carriage, &[model.ie_centre()], names::CARRIAGE)?;
     inp.nodes(labels.hinge, &[model.vv_centre()], names::CARRIAGE_NODES)?;
     inp.nodes(labels.insert_ref, &[model.vv_centre()], names::INSERT_REF)?;
-    let held = |spring: &ApSpring| model.ie_centre() + Vec3::z() * spring.lateral_offset_mm;
-    let held: Vec<Vec3> = model.test.machine().ap_springs.iter().map(held).collect();
+    let held = |spring: &Spring| model.ie_centre() + Vec3::z() * spring.offset_mm;
+    let held: Vec<Vec3> = model.test.machine().springs.iter().map(held).collect();
     if held.is_empty() {
         return Ok(());
     }
@@ -81,7 +81,7 @@ fn joints<W: Write>(
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
     let labels = &model.labels;
-    let damping = |freedom| model.test.machine().row(freedom).damping;
+    let damping = |freedom| model.test.machine().joint(freedom).damping;
     let frame = Some(names::FRAME);
     inp.orientation(names::FRAME, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
     inp.comment("Carriage: damping of AP (1), ML (3) and IE (5), N s/mm and N mm s/rad.")?;
@@ -94,9 +94,9 @@ fn joints<W: Write>(
         frame,
     )?;
     inp.connector_behavior(names::CARRIAGE_JOINT)?;
-    inp.connector_damping(1, damping(Freedom::AnteroPosterior))?;
-    inp.connector_damping(3, damping(Freedom::MedioLateral))?;
-    inp.connector_damping(5, damping(Freedom::InternalExternal))?;
+    inp.connector_damping(1, damping(knee::AP))?;
+    inp.connector_damping(3, damping(knee::ML))?;
+    inp.connector_damping(5, damping(knee::IE))?;
     inp.comment("Femur: damping of IS (2) and flexion (6).")?;
     let nodes = (None, labels.femur_ref);
     inp.connector(
@@ -107,15 +107,15 @@ fn joints<W: Write>(
         frame,
     )?;
     inp.connector_behavior(names::FEMUR_JOINT)?;
-    inp.connector_damping(2, damping(Freedom::InferoSuperior))?;
-    inp.connector_damping(6, damping(Freedom::Flexion))?;
+    inp.connector_damping(2, damping(knee::IS))?;
+    inp.connector_damping(6, damping(knee::FLEXION))?;
     inp.comment(
         "The insert turns on the carriage about the VV axis, which the carriage carries along.",
     )?;
     let nodes = (Some(labels.hinge), labels.insert_ref);
     inp.connector(names::HINGE, next(element), nodes, "HINGE", frame)?;
     inp.connector_behavior(names::HINGE)?;
-    inp.connector_damping(4, damping(Freedom::VarusValgus))
+    inp.connector_damping(4, damping(knee::VV))
 }
 
 fn springs<W: Write>(
@@ -123,7 +123,7 @@ fn springs<W: Write>(
     element: &mut u32,
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
-    let springs = &model.test.machine().ap_springs;
+    let springs = &model.test.machine().springs;
     inp.comment(
         "Springs from the frame to points of the carriage, along x whatever the carriage turns.\n\
          Rows: force on the frame, N; anterior motion of the point, mm. No force within the free play.",
@@ -131,10 +131,7 @@ fn springs<W: Write>(
     for (i, (node, spring)) in (model.labels.spring..).zip(springs).enumerate() {
         let name = format!("AP-SPRING-{}", i + 1);
         let nodes = (None, node);
-        inp.comment(&format!(
-            "{} mm lateral of the IE axis.",
-            spring.lateral_offset_mm
-        ))?;
+        inp.comment(&format!("{} mm lateral of the IE axis.", spring.offset_mm))?;
         inp.connector(&name, next(element), nodes, "CARTESIAN", Some(names::FRAME))?;
         inp.connector_behavior(&name)?;
         inp.connector_elasticity(1, &spring_table(spring))?;
@@ -144,7 +141,7 @@ fn springs<W: Write>(
 
 /// (force, motion) from far posterior to far anterior; the connector's force has the sign of the
 /// motion it resists.
-fn spring_table(spring: &ApSpring) -> Vec<(f64, f64)> {
+fn spring_table(spring: &Spring) -> Vec<(f64, f64)> {
     let play = spring.free_play_mm;
     let far = play + SPRING_REACH_MM;
     let row = |motion: f64| (-spring.force(motion).0, motion);
@@ -159,15 +156,9 @@ fn inertias<W: Write>(
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
     let labels = &model.labels;
-    let inertia = |freedom| model.test.machine().row(freedom).inertia;
-    let (ap, ml) = (
-        inertia(Freedom::AnteroPosterior),
-        inertia(Freedom::MedioLateral),
-    );
-    let (vv, ie) = (
-        inertia(Freedom::VarusValgus),
-        inertia(Freedom::InternalExternal),
-    );
+    let inertia = |freedom| model.test.machine().joint(freedom).inertia;
+    let (ap, ml) = (inertia(knee::AP), inertia(knee::ML));
+    let (vv, ie) = (inertia(knee::VV), inertia(knee::IE));
     // What turns with VV also turns with IE; a body without inertia about a free axis, or with more
     // about one axis than about the other two together, is refused.
     let shared = vv.min(ie / 2.0);
@@ -195,7 +186,7 @@ fn inertias<W: Write>(
         labels.insert_ref,
         [vv, shared, shared],
     )?;
-    let is = inertia(Freedom::InferoSuperior);
+    let is = inertia(knee::IS);
     mass(
         inp,
         names::FEMUR_REF,
@@ -203,7 +194,7 @@ fn inertias<W: Write>(
         labels.femur_ref,
         [is; 3],
     )?;
-    let flexion = inertia(Freedom::Flexion);
+    let flexion = inertia(knee::FLEXION);
     rotary(
         inp,
         names::FEMUR_REF,
@@ -255,11 +246,13 @@ fn rotary<W: Write>(
 mod tests {
     use super::*;
 
-    fn spring(free_play_mm: f64) -> ApSpring {
-        ApSpring {
-            lateral_offset_mm: 28.0,
-            posterior_n_per_mm: 16.9,
-            anterior_n_per_mm: 3.62,
+    fn spring(free_play_mm: f64) -> Spring {
+        Spring {
+            along: knee::AP,
+            about: knee::IE,
+            offset_mm: 28.0,
+            positive_n_per_mm: 3.62,
+            negative_n_per_mm: 16.9,
             free_play_mm,
         }
     }

@@ -3,6 +3,7 @@
 use condyle::Vec3;
 use condyle::evolve::{March, WearTest};
 use condyle::geometry::TriangleMesh;
+use condyle::machine::{JointIndex, knee};
 use condyle_fem::HexMesh;
 
 use super::placing::Placing;
@@ -76,18 +77,18 @@ impl<'a> Model<'a> {
 
     /// A point of the IE axis, at the height of the VV axis.
     pub fn ie_centre(&self) -> Vec3 {
-        let machine = &self.test.machine;
-        Vec3::new(
-            machine.ie_axis_mm.0,
-            machine.vv_axis_mm.0,
-            machine.ie_axis_mm.1,
-        )
+        let (ie, vv) = (self.axis_point(knee::IE), self.axis_point(knee::VV));
+        Vec3::new(ie.x, vv.y, ie.z)
     }
 
     /// A point of the VV axis, beside the IE axis.
     pub fn vv_centre(&self) -> Vec3 {
-        let (y, z) = self.test.machine().vv_axis_mm;
-        Vec3::new(self.test.machine().ie_axis_mm.0, y, z)
+        let (ie, vv) = (self.axis_point(knee::IE), self.axis_point(knee::VV));
+        Vec3::new(ie.x, vv.y, vv.z)
+    }
+
+    fn axis_point(&self, joint: JointIndex) -> Vec3 {
+        self.test.machine().joint(joint).axis_point_mm
     }
 
     /// Length of a cycle, s.

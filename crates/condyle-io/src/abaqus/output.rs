@@ -33,7 +33,7 @@ pub(super) fn write<W: Write>(
         inp.keyword(&format!("*NODE OUTPUT, NSET={set}"))?;
         inp.line("U, UR, RF, RM")?;
     }
-    let springs = (1..=model.test.machine().ap_springs.len()).map(|i| format!("AP-SPRING-{i}"));
+    let springs = (1..=model.test.machine().springs.len()).map(|i| format!("AP-SPRING-{i}"));
     for connector in std::iter::once(names::HINGE.to_owned()).chain(springs) {
         inp.keyword(&format!("*ELEMENT OUTPUT, ELSET={connector}"))?;
         inp.line("CU, CTF")?;

@@ -2,16 +2,9 @@
 
 use condyle::Vec3;
 use condyle::evolve::{March, WearTest};
-use condyle::machine::{Chain, Drive, Freedom};
+use condyle::machine::{Chain, MovedBody, knee};
 use condyle::spatial::Pose;
 
-/// Freedoms that move the insert, and not the femur.
-const OF_THE_INSERT: [Freedom; 4] = [
-    Freedom::VarusValgus,
-    Freedom::InternalExternal,
-    Freedom::MedioLateral,
-    Freedom::AnteroPosterior,
-];
 /// Smallest gap at the start of an explicit analysis, mm.
 const CLEARANCE_MM: f64 = 0.005;
 
@@ -31,16 +24,14 @@ impl Placing {
         let test = march.test();
         let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
         let mut positions = settled(march);
-        let is_loaded = matches!(
-            test.machine().row(Freedom::InferoSuperior).drive,
-            Drive::Loaded(_)
-        );
-        if apart && is_loaded {
+        if apart && test.machine().joint(knee::IS).is_loaded() {
             lift(test, &chain, &mut positions);
         }
         let mut of_femur = positions;
-        for freedom in OF_THE_INSERT {
-            of_femur[freedom as usize] = 0.0;
+        for (position, joint) in of_femur.iter_mut().zip(&test.machine().joints) {
+            if joint.description.moves == MovedBody::Insert {
+                *position = 0.0;
+            }
         }
         Self {
             positions,
@@ -62,16 +53,13 @@ impl Placing {
     }
 }
 
-/// Positions after settling: IE, ML, AP and IS at zero, and not yet where a cycle leads them.
+/// Positions after settling, and not yet where a cycle leads them.
 fn settled(march: &March) -> [f64; 6] {
     let mut positions = march.state().activities[0].machine.now.positions;
-    for freedom in [
-        Freedom::InternalExternal,
-        Freedom::MedioLateral,
-        Freedom::AnteroPosterior,
-        Freedom::InferoSuperior,
-    ] {
-        positions[freedom as usize] = 0.0;
+    for (position, joint) in positions.iter_mut().zip(&march.test().machine().joints) {
+        if joint.description.settles_at_zero() {
+            *position = 0.0;
+        }
     }
     positions
 }
@@ -94,7 +82,6 @@ fn lift(test: &WearTest, chain: &Chain, positions: &mut [f64; 6]) {
         if nearest >= CLEARANCE_MM {
             return;
         }
-        positions[Freedom::InferoSuperior as usize] +=
-            (CLEARANCE_MM - nearest).max(SHORTEST_STEP_MM);
+        positions[knee::IS.place()] += (CLEARANCE_MM - nearest).max(SHORTEST_STEP_MM);
     }
 }

@@ -82,7 +82,7 @@ fn step<W: Write>(
     if model.options.explicit && name == "SETTLE" {
         inp.explicit_contact_pair(names::BEARING, names::FEMUR_SURFACE, names::ARTICULATING)?;
     }
-    drives::write(commands, inp)?;
+    drives::write(model, commands, inp)?;
     output::write(model, period_s, inp)?;
     inp.end_step()
 }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use condyle::machine::{Drive, FREEDOMS, Freedom, Waveform};
+use condyle::machine::{Drive, JointDescription, JointIndex, JointKind, Waveform};
 
 use super::model::Model;
 use super::names;
@@ -25,9 +25,9 @@ pub(super) fn write<W: Write>(model: &Model<'_>, inp: &mut InpWriter<W>) -> io::
     } else {
         inp.amplitude(names::LOADING, &[(0.0, 1.0), (SETTLE_S, 1.0)])?;
     }
-    for freedom in FREEDOMS {
-        if let Some((name, table)) = wave(model, freedom) {
-            inp.amplitude(name, &table)?;
+    for joint in JointIndex::ALL {
+        if let Some((name, table)) = wave(model, joint) {
+            inp.amplitude(&name, &table)?;
         }
     }
     Ok(())
@@ -39,16 +39,20 @@ fn smooth_step<W: Write>(inp: &mut InpWriter<W>, name: &str, seconds: f64) -> io
     inp.reals(&[0.0, 0.0, seconds, 1.0])
 }
 
-/// Name and table of what drives a freedom; none where it is locked or nothing pushes it.
-pub(super) fn wave(model: &Model<'_>, freedom: Freedom) -> Option<(&'static str, Vec<(f64, f64)>)> {
-    let from = model.placing.positions[freedom as usize];
-    match &model.test.machine().row(freedom).drive {
+/// Name and table of what drives a joint; none where it is locked or nothing pushes it.
+pub(super) fn wave(model: &Model<'_>, index: JointIndex) -> Option<(String, Vec<(f64, f64)>)> {
+    let from = index.of(&model.placing.positions);
+    let joint = model.test.machine().joint(index);
+    match &joint.drive {
         Drive::Locked(_) => None,
-        Drive::Prescribed(motion) => Some((motion_name(freedom), sampled(model, motion, from))),
+        Drive::Prescribed(motion) => {
+            let name = motion_name(joint.description);
+            Some((name, sampled(model, motion, from)))
+        }
         Drive::Loaded(load) => {
             let table = sampled(model, load, 0.0);
             let pushes = table.iter().any(|&(_, value)| value != 0.0);
-            pushes.then_some((load_name(freedom), table))
+            pushes.then_some((load_name(joint.description), table))
         }
     }
 }
@@ -63,24 +67,24 @@ fn sampled(model: &Model<'_>, waveform: &Waveform, from: f64) -> Vec<(f64, f64)>
     (0..=points).map(at).collect()
 }
 
-fn motion_name(freedom: Freedom) -> &'static str {
-    match freedom {
-        Freedom::VarusValgus => "VV-MOTION",
-        Freedom::InternalExternal => "IE-MOTION",
-        Freedom::MedioLateral => "ML-MOTION",
-        Freedom::AnteroPosterior => "AP-MOTION",
-        Freedom::InferoSuperior => "IS-MOTION",
-        Freedom::Flexion => "FLEXION",
-    }
+/// The amplitude of a prescribed motion: after its waveform, or else after its joint.
+pub(super) fn motion_name(joint: &JointDescription) -> String {
+    let channel = joint.motion.map(|channel| channel.name);
+    let name = channel.map_or_else(|| format!("{}-motion", joint.name), str::to_owned);
+    in_capitals(&name)
 }
 
-fn load_name(freedom: Freedom) -> &'static str {
-    match freedom {
-        Freedom::VarusValgus => "VV-TORQUE",
-        Freedom::InternalExternal => "IE-TORQUE",
-        Freedom::MedioLateral => "ML-FORCE",
-        Freedom::AnteroPosterior => "AP-FORCE",
-        Freedom::InferoSuperior => "AXIAL-FORCE",
-        Freedom::Flexion => "FLEXION-TORQUE",
-    }
+/// The amplitude of a load: after its waveform, or else after its joint.
+pub(super) fn load_name(joint: &JointDescription) -> String {
+    let load = match joint.kind() {
+        JointKind::Rotation => "torque",
+        JointKind::Translation => "force",
+    };
+    let channel = joint.load_channel().map(|channel| channel.name);
+    let name = channel.map_or_else(|| format!("{}-{load}", joint.name), str::to_owned);
+    in_capitals(&name)
+}
+
+fn in_capitals(name: &str) -> String {
+    name.replace('_', "-").to_uppercase()
 }

@@ -1,25 +1,12 @@
 //! The waveforms a machine takes, and the named ones that come with condyle.
 
-use condyle::machine::Interpolation;
+use condyle::machine::{self, ChannelUnit, Interpolation, knee::KNEE};
 
 use super::keys::{Limits, within};
 
-/// A waveform of the machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channel {
-    /// Compression along IS, N.
-    AxialForce,
-    /// Flexion of the femur, degrees.
-    Flexion,
-    /// AP force on the insert, N, + anterior.
-    ApForce,
-    /// IE torque on the insert, N m, + internal.
-    IeTorque,
-    /// AP motion of the insert, mm, + anterior.
-    ApMotion,
-    /// IE rotation of the insert, degrees, + internal.
-    IeMotion,
-}
+/// A waveform of the machine, as a case has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Channel(&'static machine::Channel);
 
 /// A waveform with a name, as a CSV text.
 pub(super) struct NamedWaveform {
@@ -49,59 +36,43 @@ const NONE: NamedWaveform = NamedWaveform {
 
 impl Channel {
     /// All of them, in the order they are written.
-    pub const ALL: [Self; 6] = [
-        Self::AxialForce,
-        Self::Flexion,
-        Self::ApForce,
-        Self::IeTorque,
-        Self::ApMotion,
-        Self::IeMotion,
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        KNEE.channels.iter().copied().map(Self)
+    }
+
+    /// That of a machine's channel.
+    pub fn of(channel: &'static machine::Channel) -> Self {
+        Self(channel)
+    }
+
+    /// What the machine knows of it.
+    pub fn of_machine(self) -> &'static machine::Channel {
+        self.0
+    }
 
     /// Name of its table inside `[machine]`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::AxialForce => "axial_force",
-            Self::Flexion => "flexion",
-            Self::ApForce => "ap_force",
-            Self::IeTorque => "ie_torque",
-            Self::ApMotion => "ap_motion",
-            Self::IeMotion => "ie_motion",
-        }
+        self.0.name
     }
 
     /// What it is and which way is positive.
     pub fn about(self) -> &'static str {
-        match self {
-            Self::AxialForce => "Compression of the joint.",
-            Self::Flexion => "Flexion of the femur, + flexion.",
-            Self::ApForce => "AP force on the insert, + anterior.",
-            Self::IeTorque => "Torque on the insert, + internal.",
-            Self::ApMotion => "AP motion of the insert, + anterior.",
-            Self::IeMotion => "IE rotation of the insert, + internal.",
-        }
+        self.0.about
     }
 
     /// The key that gives its knots in the case file.
     pub fn knots_key(self) -> &'static str {
-        match self {
-            Self::AxialForce | Self::ApForce => "knots_n",
-            Self::Flexion | Self::IeMotion => "knots_deg",
-            Self::IeTorque => "knots_nm",
-            Self::ApMotion => "knots_mm",
+        match self.0.unit {
+            ChannelUnit::Newton => "knots_n",
+            ChannelUnit::NewtonMetre => "knots_nm",
+            ChannelUnit::Millimetre => "knots_mm",
+            ChannelUnit::Degree => "knots_deg",
         }
     }
 
     /// What its values may be, in its unit.
     pub fn limits(self) -> Limits {
-        match self {
-            Self::AxialForce => within(0.0, 20_000.0),
-            Self::Flexion => within(-45.0, 180.0),
-            Self::ApForce => within(-5000.0, 5000.0),
-            Self::IeTorque => within(-200.0, 200.0),
-            Self::ApMotion => within(-50.0, 50.0),
-            Self::IeMotion => within(-90.0, 90.0),
-        }
+        within(self.0.least, self.0.most)
     }
 
     /// The named waveforms it can have.
@@ -126,13 +97,28 @@ impl Channel {
             &[shipped!("iso-like", "iso-like-ap-motion.csv", Spline), NONE];
         const IE_MOTION: &[NamedWaveform] =
             &[shipped!("iso-like", "iso-like-ie-motion.csv", Spline), NONE];
-        match self {
-            Self::AxialForce => AXIAL_FORCE,
-            Self::Flexion => FLEXION,
-            Self::ApForce => AP_FORCE,
-            Self::IeTorque => IE_TORQUE,
-            Self::ApMotion => AP_MOTION,
-            Self::IeMotion => IE_MOTION,
+        match self.name() {
+            "axial_force" => AXIAL_FORCE,
+            "flexion" => FLEXION,
+            "ap_force" => AP_FORCE,
+            "ie_torque" => IE_TORQUE,
+            "ap_motion" => AP_MOTION,
+            "ie_motion" => IE_MOTION,
+            _ => &[],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_waveform_has_a_default_and_a_key_with_its_unit() {
+        for channel in Channel::all() {
+            assert!(!channel.named().is_empty(), "{}", channel.name());
+            let suffix = channel.of_machine().unit.suffix();
+            assert_eq!(channel.knots_key(), format!("knots_{suffix}"));
         }
     }
 }

@@ -1,5 +1,7 @@
 //! What a case is made of.
 
+use condyle::machine::knee;
+
 use super::axes::Axes;
 use super::files::DataFile;
 use super::keys::{choice, settings, within};
@@ -264,9 +266,9 @@ settings! {
         /// Where it is held when locked.
         locked_at_mm: f64 = 0.0, in within(-100.0, 100.0);
         /// Mass that moves with it.
-        inertia_kg: f64 = 5.0, in within(0.0, 1000.0);
+        inertia_kg: f64 = 1e3 * knee::MASS_TONNE, in within(0.0, 1000.0);
         /// Viscous damping.
-        damping_n_s_per_mm: f64 = 0.3, in within(0.0, 1000.0);
+        damping_n_s_per_mm: f64 = knee::DAMPING_N_S_PER_MM, in within(0.0, 1000.0);
     }
 
     /// A freedom that rotates. Inertia and damping are choices of ours: no source gives them.
@@ -276,9 +278,9 @@ settings! {
         /// Where it is held when locked.
         locked_at_deg: f64 = 0.0, in within(-180.0, 180.0);
         /// Moment of inertia that moves with it.
-        inertia_kg_m2: f64 = 0.01, in within(0.0, 100.0);
+        inertia_kg_m2: f64 = 1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2, in within(0.0, 100.0);
         /// Viscous damping.
-        damping_nm_s_per_rad: f64 = 0.2, in within(0.0, 1000.0);
+        damping_nm_s_per_rad: f64 = 1e-3 * knee::DAMPING_NMM_S_PER_RAD, in within(0.0, 1000.0);
     }
 
     /// The wear law.

@@ -1,6 +1,6 @@
 //! The simulator: its numbers, its six freedoms and what drives them.
 
-use condyle::machine::Waveform;
+use condyle::machine::{JointDescription, JointIndex, JointKind, Waveform, knee::KNEE};
 
 use super::channel::Channel;
 use super::declared::{DriveWord, MachineSettings, Preset, Rotation, Springs, Translation};
@@ -9,6 +9,7 @@ use super::parse::{Log, Others, Section, names};
 use super::problems::Reason;
 use super::read_plain;
 use super::setting::Setting;
+use super::to_toml::Writer;
 use super::waveforms;
 
 /// The simulator.
@@ -26,33 +27,33 @@ pub struct Machine {
     pub waveforms: Waveforms,
 }
 
-/// The six freedoms; the drive of each is given.
+/// The keys of a freedom.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Freedom {
+    /// One that translates.
+    Translation(Translation),
+    /// One that rotates.
+    Rotation(Rotation),
+}
+
+/// The six freedoms, one a joint; the drive of each is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Freedoms {
-    /// Antero-posterior translation of the insert.
-    pub ap: Translation,
-    /// Internal-external rotation of the insert.
-    pub ie: Rotation,
-    /// Medio-lateral translation of the insert.
-    pub ml: Translation,
-    /// Varus-valgus rotation of the insert.
-    pub vv: Rotation,
-    /// Infero-superior translation of the femur.
-    pub is: Translation,
-    /// Flexion of the femur.
-    pub flexion: Rotation,
+    /// In the order of the chain.
+    rows: [Freedom; 6],
 }
 
 /// The waveforms of a machine, each in the unit of its key.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waveforms {
-    given: [Option<Waveform>; 6],
+    given: Vec<(Channel, Waveform)>,
 }
 
 impl Waveforms {
     /// The waveform of `channel`, if the machine uses it.
     pub fn get(&self, channel: Channel) -> Option<&Waveform> {
-        self.given[channel as usize].as_ref()
+        let mut given = self.given.iter();
+        given.find_map(|(of, waveform)| (*of == channel).then_some(waveform))
     }
 }
 
@@ -65,75 +66,130 @@ pub(super) const PRESET: Key = Key {
     limits: None,
 };
 
-/// Names of the freedoms, in the order they are written.
-pub(super) const FREEDOMS: [&str; 6] = ["ap", "ie", "ml", "vv", "is", "flexion"];
-
-/// What a freedom can be, and the waveform each drive needs.
-pub(super) struct Drives {
-    pub freedom: &'static str,
-    pub prescribed: Option<Channel>,
-    pub loaded: Option<Channel>,
-    pub can_be_loaded: bool,
-}
-
-/// The drives of each freedom, in the order of [`FREEDOMS`].
-pub(super) const DRIVES: [Drives; 6] = [
-    drives("ap", Some(Channel::ApMotion), Some(Channel::ApForce), true),
-    drives("ie", Some(Channel::IeMotion), Some(Channel::IeTorque), true),
-    drives("ml", None, None, true),
-    drives("vv", None, None, true),
-    drives("is", None, Some(Channel::AxialForce), true),
-    drives("flexion", Some(Channel::Flexion), None, false),
-];
-
-const fn drives(
-    freedom: &'static str,
-    prescribed: Option<Channel>,
-    loaded: Option<Channel>,
-    can_be_loaded: bool,
-) -> Drives {
-    Drives {
-        freedom,
-        prescribed,
-        loaded,
-        can_be_loaded,
-    }
-}
-
-impl Drives {
-    fn allow(&self, drive: DriveWord) -> bool {
-        match drive {
-            DriveWord::Locked => true,
-            DriveWord::Prescribed => self.prescribed.is_some(),
-            DriveWord::Loaded => self.can_be_loaded,
-        }
-    }
-
-    fn words(&self) -> &'static str {
-        match (self.prescribed.is_some(), self.can_be_loaded) {
-            (true, true) => "\"locked\", \"prescribed\" or \"loaded\"",
-            (true, false) => "\"locked\" or \"prescribed\"",
-            (false, _) => "\"locked\" or \"loaded\"",
-        }
-    }
-
-    /// The waveform that `drive` needs.
-    pub(super) fn channel(&self, drive: DriveWord) -> Option<Channel> {
-        match drive {
-            DriveWord::Locked => None,
-            DriveWord::Prescribed => self.prescribed,
-            DriveWord::Loaded => self.loaded,
-        }
-    }
-}
-
-/// What moves each freedom of a preset, in the order of [`FREEDOMS`].
-fn preset_drives(preset: Preset) -> [DriveWord; 6] {
+/// What moves each freedom of a preset.
+fn preset_drives(preset: Preset) -> [(&'static str, DriveWord); 6] {
     use DriveWord::{Loaded, Prescribed};
     match preset {
-        Preset::StanmoreForce => [Loaded, Loaded, Loaded, Loaded, Loaded, Prescribed],
-        Preset::StanmoreDisplacement => {
-            [Prescribed, Prescribed, Loaded, Loaded, Loaded, Prescribed]
+        Preset::StanmoreForce => [
+            ("ap", Loaded),
+            ("ie", Loaded),
+            ("ml", Loaded),
+            ("vv", Loaded),
+            ("is", Loaded),
+            ("flexion", Prescribed),
+        ],
+        Preset::StanmoreDisplacement => [
+            ("ap", Prescribed),
+            ("ie", Prescribed),
+            ("ml", Loaded),
+            ("vv", Loaded),
+            ("is", Loaded),
+            ("flexion", Prescribed),
+        ],
+    }
+}
+
+/// What moves a freedom where the case does not say.
+fn preset_drive(preset: Preset, freedom: &str) -> Option<DriveWord> {
+    let mut drives = preset_drives(preset).into_iter();
+    drives.find_map(|(name, drive)| (name == freedom).then_some(drive))
+}
+
+/// Whether a drive moves a joint.
+fn allows(joint: &JointDescription, drive: DriveWord) -> bool {
+    match drive {
+        DriveWord::Locked => true,
+        DriveWord::Prescribed => joint.motion.is_some(),
+        DriveWord::Loaded => joint.can_be_free(),
+    }
+}
+
+/// The drives that a joint can have.
+fn drive_words(joint: &JointDescription) -> &'static str {
+    match (joint.motion.is_some(), joint.can_be_free()) {
+        (true, true) => "\"locked\", \"prescribed\" or \"loaded\"",
+        (true, false) => "\"locked\" or \"prescribed\"",
+        (false, true) => "\"locked\" or \"loaded\"",
+        (false, false) => "\"locked\"",
+    }
+}
+
+/// The waveform that a drive of a joint needs.
+pub(super) fn channel_of(joint: &JointDescription, drive: DriveWord) -> Option<Channel> {
+    let channel = match drive {
+        DriveWord::Locked => None,
+        DriveWord::Prescribed => joint.motion,
+        DriveWord::Loaded => joint.load_channel(),
+    };
+    channel.map(Channel::of)
+}
+
+impl Freedom {
+    fn read(joint: &JointDescription, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        match joint.kind() {
+            JointKind::Translation => read_plain(section, joint.name, log).map(Self::Translation),
+            JointKind::Rotation => read_plain(section, joint.name, log).map(Self::Rotation),
+        }
+    }
+
+    /// What moves it.
+    pub fn drive(&self) -> DriveWord {
+        let drive = match self {
+            Self::Translation(keys) => keys.drive,
+            Self::Rotation(keys) => keys.drive,
+        };
+        drive.unwrap_or(DriveWord::Locked)
+    }
+
+    fn drive_unless_given(&mut self, drive: Option<DriveWord>) {
+        let given = match self {
+            Self::Translation(keys) => &mut keys.drive,
+            Self::Rotation(keys) => &mut keys.drive,
+        };
+        *given = given.or(drive);
+    }
+
+    /// The key that says where it is held when locked.
+    fn locked_at_key(&self) -> &'static str {
+        match self {
+            Self::Translation(_) => "locked_at_mm",
+            Self::Rotation(_) => "locked_at_deg",
+        }
+    }
+
+    /// Where it is held when locked, in the unit of files.
+    pub(super) fn locked_at(&self) -> f64 {
+        match self {
+            Self::Translation(keys) => keys.locked_at_mm,
+            Self::Rotation(keys) => keys.locked_at_deg,
+        }
+    }
+
+    pub(super) fn write(&self, out: &mut Writer) {
+        match self {
+            Self::Translation(keys) => keys.write(out),
+            Self::Rotation(keys) => keys.write(out),
+        }
+    }
+
+    /// Reports a drive that it cannot have, and a place to lock it where it is not locked.
+    fn check(&self, joint: &JointDescription, section: &Section<'_>, log: &mut Log<'_>) {
+        let (row, drive) = (section.table(joint.name, log), self.drive());
+        if !allows(joint, drive) {
+            let reason = Reason::NoSuchDrive {
+                freedom: joint.name,
+                drive: drive.word(),
+                drives: drive_words(joint),
+            };
+            log.problem(row.value_span("drive"), reason);
+        }
+        if drive != DriveWord::Locked && self.locked_at() != 0.0 {
+            let key = self.locked_at_key();
+            let reason = Reason::Idle {
+                key: key.to_owned(),
+                needs: "`drive = \"locked\"`".to_owned(),
+            };
+            log.problem(row.key_span(key), reason);
         }
     }
 }
@@ -141,111 +197,44 @@ fn preset_drives(preset: Preset) -> [DriveWord; 6] {
 impl Freedoms {
     fn read(machine: &Section<'_>, preset: Preset, log: &mut Log<'_>) -> Option<Self> {
         let section = machine.table("freedoms", log);
-        section.check_keys(&FREEDOMS, &Others::NONE, log);
-        let (ap, ie) = (
-            read_plain(&section, "ap", log),
-            read_plain(&section, "ie", log),
-        );
-        let (ml, vv) = (
-            read_plain(&section, "ml", log),
-            read_plain(&section, "vv", log),
-        );
-        let (is, flexion) = (
-            read_plain(&section, "is", log),
-            read_plain(&section, "flexion", log),
-        );
-        let (ap, ie, ml) = (ap?, ie?, ml?);
-        let mut freedoms = Self {
-            ap,
-            ie,
-            ml,
-            vv: vv?,
-            is: is?,
-            flexion: flexion?,
-        };
-        for (drive, default) in freedoms.drives_mut().into_iter().zip(preset_drives(preset)) {
-            drive.get_or_insert(default);
+        let known = KNEE.in_files.map(|index| KNEE.joint(index).name);
+        section.check_keys(&known, &Others::NONE, log);
+        let read = KNEE.joints.each_ref();
+        let read = read.map(|joint| Freedom::read(joint, &section, log));
+        let rows: Vec<Freedom> = read.into_iter().collect::<Option<_>>()?;
+        let mut rows: [Freedom; 6] = rows.try_into().ok()?;
+        for (joint, row) in KNEE.joints.iter().zip(&mut rows) {
+            row.drive_unless_given(preset_drive(preset, joint.name));
+            row.check(joint, &section, log);
         }
-        freedoms.check(&section, log);
-        Some(freedoms)
+        Some(Self { rows })
     }
 
-    fn drives_mut(&mut self) -> [&mut Option<DriveWord>; 6] {
-        [
-            &mut self.ap.drive,
-            &mut self.ie.drive,
-            &mut self.ml.drive,
-            &mut self.vv.drive,
-            &mut self.is.drive,
-            &mut self.flexion.drive,
-        ]
+    /// The keys of one freedom.
+    pub fn get(&self, joint: JointIndex) -> &Freedom {
+        &self.rows[joint.place()]
     }
 
-    /// What moves each freedom, in the order ap, ie, ml, vv, is, flexion.
-    pub fn drives(&self) -> [DriveWord; 6] {
-        [
-            self.ap.drive,
-            self.ie.drive,
-            self.ml.drive,
-            self.vv.drive,
-            self.is.drive,
-            self.flexion.drive,
-        ]
-        .map(|drive| drive.unwrap_or(DriveWord::Locked))
-    }
-
-    fn locked_at(&self) -> [f64; 6] {
-        [
-            self.ap.locked_at_mm,
-            self.ie.locked_at_deg,
-            self.ml.locked_at_mm,
-            self.vv.locked_at_deg,
-            self.is.locked_at_mm,
-            self.flexion.locked_at_deg,
-        ]
-    }
-
-    /// Reports drives that a freedom cannot have, and places to lock one that is not locked.
-    fn check(&self, section: &Section<'_>, log: &mut Log<'_>) {
-        for ((can, drive), at) in DRIVES.iter().zip(self.drives()).zip(self.locked_at()) {
-            let row = section.table(can.freedom, log);
-            if !can.allow(drive) {
-                let (freedom, drive, drives) = (can.freedom, drive.word(), can.words());
-                let reason = Reason::NoSuchDrive {
-                    freedom,
-                    drive,
-                    drives,
-                };
-                log.problem(row.value_span("drive"), reason);
-            }
-            if drive != DriveWord::Locked && at != 0.0 {
-                let key = ["locked_at_mm", "locked_at_deg"]
-                    .into_iter()
-                    .find(|key| row.value(key).is_some())
-                    .unwrap_or_default();
-                let needs = "`drive = \"locked\"`".to_owned();
-                let reason = Reason::Idle {
-                    key: key.to_owned(),
-                    needs,
-                };
-                log.problem(row.key_span(key), reason);
-            }
-        }
+    /// Every freedom with its joint, in the order they are written.
+    pub(super) fn in_files(&self) -> impl Iterator<Item = (&'static JointDescription, &Freedom)> {
+        let joints = KNEE.in_files.into_iter();
+        joints.map(|index| (KNEE.joint(index), self.get(index)))
     }
 }
 
 impl Waveforms {
-    fn read(machine: &Section<'_>, drives: &[DriveWord; 6], log: &mut Log<'_>) -> Option<Self> {
-        let mut given: [Option<Waveform>; 6] = Default::default();
+    fn read(machine: &Section<'_>, freedoms: &Freedoms, log: &mut Log<'_>) -> Option<Self> {
+        let mut given = Vec::new();
         let mut complete = true;
-        for (can, &drive) in DRIVES.iter().zip(drives) {
-            for channel in [can.prescribed, can.loaded].into_iter().flatten() {
-                if can.channel(drive) == Some(channel) {
+        for (joint, freedom) in freedoms.in_files() {
+            let channels = [joint.motion, joint.load_channel()].into_iter().flatten();
+            for channel in channels.map(Channel::of) {
+                if channel_of(joint, freedom.drive()) == Some(channel) {
                     let waveform = waveforms::read(channel, machine, log);
                     complete &= waveform.is_some();
-                    given[channel as usize] = waveform;
+                    given.extend(waveform.map(|waveform| (channel, waveform)));
                 } else {
-                    check_absent(machine, can, drive, channel, log);
+                    check_absent(machine, joint, freedom.drive(), channel, log);
                 }
             }
         }
@@ -256,7 +245,7 @@ impl Waveforms {
 /// Reports a waveform for a freedom that is driven otherwise.
 fn check_absent(
     machine: &Section<'_>,
-    can: &Drives,
+    joint: &JointDescription,
     drive: DriveWord,
     channel: Channel,
     log: &mut Log<'_>,
@@ -264,13 +253,14 @@ fn check_absent(
     if machine.value(channel.name()).is_none() {
         return;
     }
-    let wanted = match can.prescribed == Some(channel) {
-        true => DriveWord::Prescribed,
-        false => DriveWord::Loaded,
+    let wanted = if joint.motion.map(Channel::of) == Some(channel) {
+        DriveWord::Prescribed
+    } else {
+        DriveWord::Loaded
     };
     let reason = Reason::UnusedWaveform {
         section: format!("machine.{}", channel.name()),
-        freedom: can.freedom,
+        freedom: joint.name,
         drive: drive.word(),
         wanted: wanted.word(),
     };
@@ -281,14 +271,14 @@ impl Machine {
     pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let known: Vec<&str> = names(MachineSettings::KEYS)
             .chain(["preset", "springs", "freedoms"])
-            .chain(Channel::ALL.map(Channel::name))
+            .chain(Channel::all().map(Channel::name))
             .collect();
         section.check_keys(&known, &Others::NONE, log);
         let settings = MachineSettings::read(section, log);
         let springs = read_plain(section, "springs", log);
         let preset = section.setting(&PRESET, Some(Preset::StanmoreForce), log)?;
         let freedoms = Freedoms::read(section, preset, log)?;
-        let waveforms = Waveforms::read(section, &freedoms.drives(), log);
+        let waveforms = Waveforms::read(section, &freedoms, log);
         Some(Self {
             preset,
             settings: settings?,

@@ -46,7 +46,7 @@ pub use declared::{
 };
 pub use files::DataFile;
 pub use keys::{Key, Limits, Settings, unit_of};
-pub use machine::{Freedoms, Machine, Waveforms};
+pub use machine::{Freedom, Freedoms, Machine, Waveforms};
 pub use march::{March, Update};
 pub use overriding::{NumberKey, Override, OverrideError};
 pub use problems::{CaseError, Look, Problem, Reason};

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use condyle::evolve::PlacementError;
 use condyle::geometry::ShellInsertError;
+use condyle::machine::knee;
 use toml::de::DeTable;
 
-use super::machine::FREEDOMS;
 use super::parse::{Log, Section};
 use super::problems::{Problem, Reason, Source};
 use super::{BuildError, Case, CaseError, DriveWord};
@@ -76,9 +76,7 @@ impl Case {
     }
 
     fn culprit_of_overlap(&self) -> Culprit {
-        let is = FREEDOMS.iter().position(|&freedom| freedom == "is");
-        let drives = self.machine.freedoms.drives();
-        if is.is_some_and(|is| drives[is] == DriveWord::Locked) {
+        if self.machine.freedoms.get(knee::IS).drive() == DriveWord::Locked {
             Culprit {
                 table: "machine.freedoms.is",
                 keys: &["locked_at_mm", "drive"],

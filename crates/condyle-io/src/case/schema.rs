@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use condyle::machine::{JointKind, knee::KNEE};
+
 use super::channel::Channel;
 use super::contact;
 use super::declared::{
@@ -32,14 +34,10 @@ pub fn schema_markdown() -> String {
     section(&mut page, "[machine.springs]", &[Springs::KEYS]);
     section(
         &mut page,
-        "[machine.freedoms.ap], .ml and .is",
+        &freedoms(JointKind::Translation),
         &[Translation::KEYS],
     );
-    section(
-        &mut page,
-        "[machine.freedoms.ie], .vv and .flexion",
-        &[Rotation::KEYS],
-    );
+    section(&mut page, &freedoms(JointKind::Rotation), &[Rotation::KEYS]);
     waveforms(&mut page);
     section(&mut page, "[wear]", &[Wear::KEYS]);
     chosen(
@@ -61,6 +59,25 @@ A case is a TOML file. Every key that has a default may be left out; every numbe
 its name; paths count from the folder of the case file. This page is made from the declarations
 that the program reads a case with.
 ";
+
+/// The tables of all freedoms of a kind, such as `[machine.freedoms.ap], .ml and .is`.
+fn freedoms(kind: JointKind) -> String {
+    let joints = KNEE.in_files.into_iter().map(|index| KNEE.joint(index));
+    let names: Vec<&str> = joints
+        .filter(|joint| joint.kind() == kind)
+        .map(|joint| joint.name)
+        .collect();
+    let others = names[1..].iter().map(|name| format!(".{name}"));
+    let others: Vec<String> = others.collect();
+    let first = format!("[machine.freedoms.{}]", names[0]);
+    match others.split_last() {
+        Some((last, between)) => {
+            let listed = [&[first], between].concat().join(", ");
+            format!("{listed} and {last}")
+        }
+        None => first,
+    }
+}
 
 fn section(page: &mut String, title: &str, keys: &[&[Key]]) {
     page.push_str(&format!("\n## `{title}`\n\n").replace("`Top of the file`", "Top of the file"));
@@ -109,8 +126,8 @@ fn chosen(page: &mut String, title: &str, keys: &[&[Key]], by: &str, words: &[(&
 }
 
 fn waveforms(page: &mut String) {
-    let named = |channel: &Channel| format!("`[machine.{}]`", channel.name());
-    let tables: Vec<String> = Channel::ALL.iter().map(named).collect();
+    let named = |channel: Channel| format!("`[machine.{}]`", channel.name());
+    let tables: Vec<String> = Channel::all().map(named).collect();
     page.push_str(&format!("\n## Waveforms: {}\n\n", tables.join(", ")));
     page.push_str(
         "One of `waveform`, `file` or the points themselves. A freedom takes the one its drive \
@@ -118,7 +135,7 @@ fn waveforms(page: &mut String) {
     );
     table(page, &[WaveformSource::KEYS]);
     page.push_str("\n| table | points | unit | values may be | named | what |\n| --- | --- | --- | --- | --- | --- |\n");
-    for channel in Channel::ALL {
+    for channel in Channel::all() {
         let (key, unit) = knots_doc(channel);
         let words: Vec<&str> = channel.named().iter().map(|named| named.word).collect();
         page.push_str(&format!(

@@ -4,9 +4,9 @@ use condyle::machine::{Interpolation, Waveform};
 
 use super::channel::Channel;
 use super::contact::{self, PressureLawChoice};
-use super::declared::{Preset, Rotation, Translation};
+use super::declared::Preset;
 use super::keys::{Key, Settings};
-use super::machine::{FREEDOMS, PRESET};
+use super::machine::PRESET;
 use super::setting::Setting;
 use super::shapes::{FEMUR_SHAPE, INSERT_SHAPE};
 use super::waveforms::DEFAULT_WAVEFORM;
@@ -126,41 +126,15 @@ impl Case {
         machine.settings.write(out);
         out.table("machine.springs");
         machine.springs.write(out);
-        for channel in Channel::ALL {
+        for channel in Channel::all() {
             if let Some(waveform) = machine.waveforms.get(channel) {
                 write_waveform(out, channel, waveform);
             }
         }
-        let freedoms = &machine.freedoms;
-        let rows: [&dyn Row; 6] = [
-            &freedoms.ap,
-            &freedoms.ie,
-            &freedoms.ml,
-            &freedoms.vv,
-            &freedoms.is,
-            &freedoms.flexion,
-        ];
-        for (name, row) in FREEDOMS.iter().zip(rows) {
-            out.table(&format!("machine.freedoms.{name}"));
-            row.write_row(out);
+        for (joint, freedom) in machine.freedoms.in_files() {
+            out.table(&format!("machine.freedoms.{}", joint.name));
+            freedom.write(out);
         }
-    }
-}
-
-/// A freedom of either kind.
-trait Row {
-    fn write_row(&self, out: &mut Writer);
-}
-
-impl Row for Translation {
-    fn write_row(&self, out: &mut Writer) {
-        self.write(out);
-    }
-}
-
-impl Row for Rotation {
-    fn write_row(&self, out: &mut Writer) {
-        self.write(out);
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use condyle::machine::knee::KNEE;
+
 use super::declared::KinematicsKeys;
 use super::phases::{self, Phase};
 use super::reason::MeasuredReason;
@@ -19,19 +21,7 @@ pub(super) const PHASES: &str = "phases_percent";
 const EXAMPLE: &str = "percent,ap_mm,ie_deg";
 
 /// Columns of kinematics.csv that a measured curve can be compared with.
-pub const COLUMNS: [&str; 11] = [
-    "flexion_deg",
-    "axial_force_n",
-    "ap_mm",
-    "ie_deg",
-    "ml_mm",
-    "vv_deg",
-    "is_mm",
-    "contact_area_mm2",
-    "peak_pressure_mpa",
-    "medial_force_n",
-    "lateral_force_n",
-];
+pub const COLUMNS: [&str; 11] = KNEE.column_names();
 
 /// Measured motions and loads, and how they are compared.
 #[derive(Clone, Debug)]

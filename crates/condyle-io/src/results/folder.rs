@@ -281,7 +281,11 @@ impl ResultsFolder {
         self.replace("wear.csv", wear_csv(&state.updates).as_bytes())?;
         self.replace(
             "kinematics.csv",
-            kinematics_csv(state.activities[0].first_and_last.as_ref()).as_bytes(),
+            kinematics_csv(
+                march.test().machine().mechanism,
+                state.activities[0].first_and_last.as_ref(),
+            )
+            .as_bytes(),
         )?;
         let checkpoint = Checkpoint {
             inputs_blake3: inputs_blake3.to_owned(),

@@ -8,6 +8,9 @@ mod replace;
 mod summary;
 mod tables;
 
+/// What the columns of `kinematics.csv` are.
+pub use condyle::machine::{CycleQuantity, JointKind, knee::KNEE};
+
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part};
 pub use folder::{Found, ResultsError, ResultsFolder};

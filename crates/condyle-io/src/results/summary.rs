@@ -2,7 +2,10 @@
 
 use condyle::{
     evolve::{MarchState, UpdateRecord},
-    machine::{CycleRow, Freedom},
+    machine::{
+        CycleRow, JointIndex,
+        knee::{AP, IE, KNEE, MEDIAL},
+    },
 };
 use serde::{Deserialize, Serialize};
 
@@ -116,8 +119,8 @@ impl Summary {
             error: input.error,
             peak_pressure_mpa: largest(|update| update.peak_pressure_mpa),
             peak_contact_area_mm2: largest(|update| update.peak_contact_area_mm2),
-            ap_range_mm: range(first_cycle, Freedom::AnteroPosterior),
-            ie_range_deg: range(first_cycle, Freedom::InternalExternal).to_degrees(),
+            ap_range_mm: range(first_cycle, AP),
+            ie_range_deg: range(first_cycle, IE),
             medial_load_share: medial_load_share(first_cycle),
             updates: updates.len(),
             increments: input.increments,
@@ -144,13 +147,18 @@ impl Summary {
     }
 }
 
-fn range(rows: &[CycleRow], freedom: Freedom) -> f64 {
-    let values = || rows.iter().map(|row| row.positions[freedom as usize]);
-    values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+/// Largest less smallest position of a joint, in the unit of files.
+fn range(rows: &[CycleRow], joint: JointIndex) -> f64 {
+    let values = || rows.iter().map(|row| joint.of(&row.positions));
+    let (low, high) = (
+        values().fold(f64::INFINITY, f64::min),
+        values().fold(f64::NEG_INFINITY, f64::max),
+    );
+    KNEE.joint(joint).kind().in_files(high - low)
 }
 
 fn medial_load_share(rows: &[CycleRow]) -> f64 {
-    let medial: f64 = rows.iter().map(|row| row.region_force_n[0]).sum();
+    let medial: f64 = rows.iter().map(|row| row.region_force_n[MEDIAL]).sum();
     let whole: f64 = rows.iter().map(|row| row.axial_force_n).sum();
     medial / whole
 }

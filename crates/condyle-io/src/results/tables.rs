@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use condyle::{
     evolve::{CycleRecord, UpdateRecord},
-    machine::{CycleRow, Freedom},
+    machine::Mechanism,
 };
 
 /// `wear.csv`: a row an update.
@@ -31,46 +31,36 @@ pub(super) fn wear_csv(updates: &[UpdateRecord]) -> String {
     text
 }
 
-/// `kinematics.csv`: a row an increment of the given cycles.
+/// `kinematics.csv`: a row an increment of the given cycles, with the columns of their mechanism.
 ///
 /// A last cycle that is the first one is written once.
-pub(super) fn kinematics_csv(cycles: Option<&(CycleRecord, CycleRecord)>) -> String {
-    let mut text = String::from(
-        "cycles,percent,flexion_deg,axial_force_n,ap_mm,ie_deg,ml_mm,vv_deg,is_mm,\
-         contact_area_mm2,peak_pressure_mpa,medial_force_n,lateral_force_n\n",
-    );
+pub(super) fn kinematics_csv(
+    mechanism: &Mechanism,
+    cycles: Option<&(CycleRecord, CycleRecord)>,
+) -> String {
+    let mut text = String::from("cycles,percent");
+    for &quantity in mechanism.columns {
+        text.push(',');
+        text.push_str(mechanism.column(quantity));
+    }
+    text.push('\n');
     if let Some((first, last)) = cycles {
-        add_cycle(&mut text, first);
+        add_cycle(&mut text, mechanism, first);
         if last.cycles != first.cycles {
-            add_cycle(&mut text, last);
+            add_cycle(&mut text, mechanism, last);
         }
     }
     text
 }
 
-fn add_cycle(text: &mut String, record: &CycleRecord) {
+fn add_cycle(text: &mut String, mechanism: &Mechanism, record: &CycleRecord) {
     for row in &record.rows {
-        let mm = |freedom: Freedom| row.positions[freedom as usize];
-        let deg = |freedom: Freedom| row.positions[freedom as usize].to_degrees();
-        let CycleRow {
-            percent,
-            axial_force_n,
-            contact_area_mm2,
-            peak_pressure_mpa,
-            region_force_n: [medial_force_n, lateral_force_n],
-            ..
-        } = row;
-        writeln!(
-            text,
-            "{},{percent},{},{axial_force_n},{},{},{},{},{},{contact_area_mm2},{peak_pressure_mpa},{medial_force_n},{lateral_force_n}",
-            record.cycles,
-            deg(Freedom::Flexion),
-            mm(Freedom::AnteroPosterior),
-            deg(Freedom::InternalExternal),
-            mm(Freedom::MedioLateral),
-            deg(Freedom::VarusValgus),
-            mm(Freedom::InferoSuperior),
-        )
-        .expect("writing to a string cannot fail");
+        let values = mechanism.columns.iter();
+        let values = values.map(|&quantity| mechanism.value(quantity, row));
+        write!(text, "{},{}", record.cycles, row.percent).expect("writing to a string cannot fail");
+        for value in values {
+            write!(text, ",{value}").expect("writing to a string cannot fail");
+        }
+        text.push('\n');
     }
 }

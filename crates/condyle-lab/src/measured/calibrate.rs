@@ -253,10 +253,13 @@ impl<'a> Search<'a> {
         let mut go_on = |_: Progress| ControlFlow::Continue(());
         while !march.is_done() {
             let update = march.update(&mut go_on);
-            update.map_err(|source| CalibrateError::March {
+            let update = update.map_err(|source| CalibrateError::March {
                 factor_mm3_per_nm,
                 source,
             })?;
+            if update.is_break() {
+                break;
+            }
         }
         let updates = march.state().updates.iter();
         let losses = updates.map(|update| (update.cycles, update.mass_loss_mg));

@@ -1,5 +1,9 @@
 //! The channels of kinematics.csv, drawn against the cycle.
 
+use std::sync::LazyLock;
+
+use condyle_io::results::{CycleQuantity, JointKind, KNEE};
+
 use super::captions::cycle_caption;
 use crate::figure::{Axis, Curve, Panel};
 use crate::results::{contents::Results, table::Table};
@@ -22,69 +26,49 @@ pub(crate) fn channel(column: &str) -> Option<&'static Channel> {
     CHANNELS.iter().find(|channel| channel.column == column)
 }
 
-pub(super) static CHANNELS: [Channel; 11] = [
-    motion("flexion_deg", "Flexion", "degrees", "flexion", 1.0),
-    load("axial_force_n", "Axial force", "N", "compression", 10.0),
-    motion(
-        "ap_mm",
-        "Anterior\u{2013}posterior",
-        "mm",
-        "insert anterior",
-        0.5,
-    ),
-    motion(
-        "ie_deg",
-        "Internal\u{2013}external",
-        "degrees",
-        "insert internal",
-        0.5,
-    ),
-    motion("ml_mm", "Medio-lateral", "mm", "insert lateral", 0.5),
-    motion(
-        "vv_deg",
-        "Varus\u{2013}valgus",
-        "degrees",
-        "insert varus",
-        0.5,
-    ),
-    motion("is_mm", "Superior\u{2013}inferior", "mm", "superior", 0.1),
-    load("contact_area_mm2", "Contact area", "mm\u{b2}", "", 1.0),
-    load("peak_pressure_mpa", "Peak pressure", "MPa", "", 1.0),
-    load("medial_force_n", "Medial force", "N", "", 10.0),
-    load("lateral_force_n", "Lateral force", "N", "", 10.0),
-];
+/// The columns of kinematics.csv, in their order.
+pub(super) static CHANNELS: LazyLock<Vec<Channel>> =
+    LazyLock::new(|| KNEE.columns.iter().copied().map(Channel::of).collect());
 
-const fn motion(
-    column: &'static str,
-    title: &'static str,
-    unit: &'static str,
-    positive: &'static str,
-    least_span: f64,
-) -> Channel {
-    Channel {
-        column,
-        title,
-        unit,
-        positive,
-        from_zero: false,
-        least_span,
+impl Channel {
+    fn of(quantity: CycleQuantity) -> Self {
+        let column = KNEE.column(quantity);
+        let from_zero = |title, unit, least_span| Self {
+            column,
+            title,
+            unit,
+            positive: "",
+            from_zero: true,
+            least_span,
+        };
+        match quantity {
+            CycleQuantity::Position(index) => {
+                let joint = KNEE.joint(index);
+                Self {
+                    column,
+                    title: joint.title,
+                    unit: in_words(joint.kind()),
+                    positive: joint.positive,
+                    from_zero: false,
+                    least_span: joint.least_span,
+                }
+            }
+            CycleQuantity::AxialForce => Self {
+                positive: "compression",
+                ..from_zero("Axial force", "N", 10.0)
+            },
+            CycleQuantity::ContactArea => from_zero("Contact area", "mm\u{b2}", 1.0),
+            CycleQuantity::PeakPressure => from_zero("Peak pressure", "MPa", 1.0),
+            CycleQuantity::RegionForce(region) => from_zero(KNEE.regions[region].title, "N", 10.0),
+        }
     }
 }
 
-const fn load(
-    column: &'static str,
-    title: &'static str,
-    unit: &'static str,
-    positive: &'static str,
-    least_span: f64,
-) -> Channel {
-    Channel {
-        column,
-        title,
-        unit,
-        positive,
-        from_zero: true,
-        least_span,
+/// The unit of a joint's positions, as people write it.
+fn in_words(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Rotation => "degrees",
+        JointKind::Translation => "mm",
     }
 }
 

@@ -18,9 +18,7 @@ use crate::{
     Vec3,
     contact::{Bodies, ContactCache, ContactMemory, ContactModel, ContactState, CycleHistory},
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
-    machine::{
-        Chain, Cycle, CycleRow, Freedom, MachineState, Simulator, SolverCounters, TimeSettings,
-    },
+    machine::{Chain, Cycle, CycleRow, MachineState, Simulator, SolverCounters, TimeSettings},
 };
 
 /// The first and the last cycle, whose motions are kept, repeat themselves within this part of the
@@ -309,11 +307,12 @@ impl March {
         if rows().any(|row| row.axial_force_n != 0.0) {
             return Ok(());
         }
-        let positions = solved.cycles.last().map(|cycle| cycle.end.now.positions);
-        Err(MarchError::LostContact {
-            update: self.state.updates.len() + 1,
-            ap_mm: positions.map_or(0.0, |at| at[Freedom::AnteroPosterior as usize]),
-        })
+        let (activity, cycle) = (&self.test.activities[0], &solved.cycles[0]);
+        Err(MarchError::lost_contact(
+            self.state.updates.len() + 1,
+            &activity.machine,
+            &cycle.end,
+        ))
     }
 
     fn rates(&self, solved: &Solved) -> Rates {

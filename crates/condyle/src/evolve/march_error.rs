@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::PlacementError;
-use crate::machine::CycleError;
+use crate::machine::{CycleError, Machine, MachineState};
 
 /// Why a march ended early.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -23,14 +23,16 @@ pub enum MarchError {
     },
     /// The femur fell off the insert.
     #[error(
-        "update {update}: the femur touches the insert zero_vector in the whole cycle, and ends it at AP {ap_mm:.1} mm; \
+        "update {update}: the femur touches the insert nowhere in the whole cycle, and ends it at {joint} {at_mm:.1} mm; \
          check loads, springs, axes and start_mm"
     )]
     LostContact {
         /// Which update, from 1.
         update: usize,
-        /// AP at the end of the cycle.
-        ap_mm: f64,
+        /// The joint along which the femur leaves, as messages call it.
+        joint: &'static str,
+        /// Where that is at the end of the cycle.
+        at_mm: f64,
     },
     /// The insert wore through.
     #[error(
@@ -44,4 +46,18 @@ pub enum MarchError {
         /// Place along z.
         z: f64,
     },
+}
+
+impl MarchError {
+    /// That of a femur that has left the insert; along the first joint in files that settling zeroes.
+    pub(super) fn lost_contact(update: usize, machine: &Machine, end: &MachineState) -> Self {
+        let mechanism = machine.mechanism;
+        let mut in_files = mechanism.in_files.into_iter();
+        let leaving = in_files.find(|&index| mechanism.joint(index).is_zeroed);
+        Self::LostContact {
+            update,
+            joint: leaving.map_or("", |index| mechanism.joint(index).symbol),
+            at_mm: leaving.map_or(0.0, |index| index.of(&end.now.positions)),
+        }
+    }
 }

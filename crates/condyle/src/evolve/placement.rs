@@ -5,7 +5,7 @@ use crate::{
     Vec3,
     contact::{Bodies, ContactMemory, ContactModel},
     geometry::{ArticulatingSurface, FemoralSurface},
-    machine::{Chain, Drive, Freedom, SolverCounters, settle},
+    machine::{Chain, Drive, JointKind, Settling, SolverCounters, settle},
     spatial::{Pose, RelativeMotion},
 };
 
@@ -35,32 +35,31 @@ pub(super) fn place(
     let down = lowered.translation.y - flexed.translation.y - FIRST_OVERCLOSURE_MM;
     let chain = Chain::new(machine, start + Vec3::y() * down, test.flexion_axis_mm);
     let mut contact = test.contact.contact(bodies, ContactMemory::default());
-    let mut positions = settle(
+    let positions = settle(
         machine,
         &chain,
         contact.as_mut(),
         test.time.force_tolerance_n,
         counters,
-    )?;
+    )
+    .map_err(|failed| PlacementError::not_settled(machine, &failed))?;
     check_depth(bodies, contact.as_mut(), &chain.at(&positions).pose)?;
-    let zeroed = chain.zeroed_at(machine, &positions);
-    for freedom in [
-        Freedom::MedioLateral,
-        Freedom::AnteroPosterior,
-        Freedom::InferoSuperior,
-    ] {
-        positions[freedom as usize] = 0.0;
-    }
-    Ok((zeroed, positions))
+    Ok(chain.zeroed_at(machine, &positions))
 }
 
-/// Positions with the femur flexed as at the start of the cycle and all else at zero.
+/// Positions with the femur turned as at the start of the cycle and all else at zero.
 fn driven(test: &WearTest) -> [f64; 6] {
-    let mut positions = [0.0; 6];
-    if let Drive::Prescribed(flexion) = &test.machine().row(Freedom::Flexion).drive {
-        positions[Freedom::Flexion as usize] = flexion.at(0.0).0;
-    }
-    positions
+    std::array::from_fn(|j| {
+        let joint = &test.machine().joints[j];
+        let description = joint.description;
+        let turns = description.kind() == JointKind::Rotation;
+        match &joint.drive {
+            Drive::Prescribed(turn) if turns && description.settling == Settling::Driven => {
+                turn.at(0.0).0
+            }
+            _ => 0.0,
+        }
+    })
 }
 
 /// The pose lowered from high above until the first node touches; none if it passes the insert.

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::machine::{Freedom, NotSettled};
+use crate::machine::{Machine, NotSettled};
 
 /// Why two bodies make no knee.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -32,28 +32,34 @@ pub enum PlacementError {
     /// The femur slides off or tips over.
     #[error(
         "the femur does not settle on the insert under the axial load: {residual_n:.3e} N are left over at \
-         AP {ap_mm:.2}, ML {ml_mm:.2}, IS {is_mm:.2} mm; check axes and start_mm"
+         {}; check axes and start_mm",
+        listed(shifts_mm)
     )]
     NotSettled {
         /// Force left out of balance.
         residual_n: f64,
-        /// Where it got to.
-        ap_mm: f64,
-        /// Where it got to.
-        ml_mm: f64,
-        /// Where it got to.
-        is_mm: f64,
+        /// Where it got to: the shifts that settling zeroes, by the names that messages give them.
+        shifts_mm: Vec<(&'static str, f64)>,
     },
 }
 
-impl From<NotSettled> for PlacementError {
-    fn from(failed: NotSettled) -> Self {
-        let at = |freedom: Freedom| failed.positions[freedom as usize];
+/// Shifts as a message tells them, such as `AP 1.00, ML 0.00, IS -0.20 mm`.
+fn listed(shifts_mm: &[(&'static str, f64)]) -> String {
+    let shift = |(symbol, at_mm): &(&str, f64)| format!("{symbol} {at_mm:.2}");
+    let shifts: Vec<String> = shifts_mm.iter().map(shift).collect();
+    format!("{} mm", shifts.join(", "))
+}
+
+impl PlacementError {
+    /// A machine that does not come to rest.
+    pub(super) fn not_settled(machine: &Machine, failed: &NotSettled) -> Self {
+        let mechanism = machine.mechanism;
+        let in_files = mechanism.in_files.into_iter();
+        let zeroed = in_files.filter(|&index| mechanism.joint(index).is_zeroed);
+        let shift = |index| (mechanism.joint(index).symbol, index.of(&failed.positions));
         Self::NotSettled {
             residual_n: failed.residual_n,
-            ap_mm: at(Freedom::AnteroPosterior),
-            ml_mm: at(Freedom::MedioLateral),
-            is_mm: at(Freedom::InferoSuperior),
+            shifts_mm: zeroed.map(shift).collect(),
         }
     }
 }

@@ -1,28 +1,27 @@
-//! The balance of forces on every freedom, and its tangent.
+//! The balance of forces on every joint, and its tangent.
 
 use super::{
-    ApSpring, Chain, Configuration, Drive, Freedom, Machine,
-    joint_numbers::{Mat6, Vec6},
+    Chain, Configuration, Kinematics, Machine,
+    joint_vectors::{JointForces, JointStiffness},
 };
-use crate::contact::{ContactModel, Response};
-use serde::{Deserialize, Serialize};
-
-/// Positions, rates and accelerations of the six freedoms, mm and rad and s.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Kinematics {
-    /// Positions, mm or rad.
-    pub positions: [f64; 6],
-    /// Rates, mm/s or rad/s.
-    pub rates: [f64; 6],
-    /// Accelerations, mm/s2 or rad/s2.
-    pub accelerations: [f64; 6],
-}
+use crate::{
+    contact::{ContactModel, Response},
+    spatial::RelativeMotion,
+};
 
 /// How rates and accelerations follow the positions within a step: 1/s and 1/s2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepSlopes {
     pub rate: f64,
     pub acceleration: f64,
+}
+
+impl StepSlopes {
+    /// Positions that change without a rate.
+    pub const STILL: Self = Self {
+        rate: 0.0,
+        acceleration: 0.0,
+    };
 }
 
 /// A machine and its contact at one instant.
@@ -51,24 +50,24 @@ impl<'a> Balance<'a> {
         }
     }
 
-    /// The residual r = M a + C v + springs - contact - load of every loaded freedom, N or N mm;
+    /// The residual r = M a + C v + springs - contact - load of every loaded joint, N or N mm;
     /// 0 on the others.
     ///
-    /// The contact does work on freedom j through its screw s_j, the motion of the femur past the
+    /// The contact does work on joint j through its screw s_j, the motion of the femur past the
     /// insert: its load there is W . s_j, W the wrench on the femur.
-    pub fn residual(&self, loads: &[f64; 6]) -> Vec6 {
+    pub fn residual(&self, loads: &JointForces) -> JointForces {
         let on_femur = self.response.wrench.reaction();
-        let mut residual = Vec6::zeros();
-        for (j, row) in self.machine.freedoms.iter().enumerate() {
-            residual[j] = row.inertia * self.kinematics.accelerations[j]
-                + row.damping * self.kinematics.rates[j]
+        let mut residual = JointForces::zero();
+        for (j, joint) in self.machine.joints.iter().enumerate() {
+            residual[j] = joint.inertia * self.kinematics.accelerations[j]
+                + joint.damping * self.kinematics.rates[j]
                 - on_femur.power(&self.configuration.screws[j])
                 - loads[j];
         }
-        for spring in &self.machine.ap_springs {
-            spring_forces(spring, &self.kinematics.positions, &mut residual);
+        for spring in &self.machine.springs {
+            spring.subtract_force(&self.kinematics.positions, &mut residual);
         }
-        for j in held(self.machine) {
+        for j in self.machine.held() {
             residual[j] = 0.0;
         }
         residual
@@ -79,86 +78,55 @@ impl<'a> Balance<'a> {
         &self.response
     }
 
-    /// Derivative of the residual by the positions; the identity on rows that are not loaded.
-    ///
-    /// That of W . s_j by q_k has four parts: the wrench changes with the pose, with the twist
-    /// that q_k's rate adds, with the turning of the other screws' twist, and s_j itself turns.
-    pub fn tangent(&self, slopes: StepSlopes) -> Mat6 {
+    /// The femur's motion past the insert at the balance's positions and other rates.
+    pub fn motion_at(&self, rates: &[f64; 6]) -> RelativeMotion {
+        self.configuration.motion(rates)
+    }
+
+    /// The femur's motion past the insert that the contact has answered.
+    pub fn motion(&self) -> RelativeMotion {
+        self.motion_at(&self.kinematics.rates)
+    }
+
+    /// Derivative of the residual by the positions, as exact as the contact's own; the identity on rows
+    /// that are not loaded.
+    pub fn tangent(&self, slopes: StepSlopes) -> JointStiffness {
+        let mut tangent = self.contact_tangent(slopes);
+        for (j, joint) in self.machine.joints.iter().enumerate() {
+            tangent[(j, j)] += joint.inertia * slopes.acceleration + joint.damping * slopes.rate;
+        }
+        for spring in &self.machine.springs {
+            spring.subtract_stiffness(&self.kinematics.positions, &mut tangent);
+        }
+        for j in self.machine.held() {
+            tangent.take_out(j);
+        }
+        tangent
+    }
+
+    /// Derivative of the contact's part of the residual, -W . s_j, by the position of every joint k.
+    fn contact_tangent(&self, slopes: StepSlopes) -> JointStiffness {
         let contact = self.response.tangent();
         let on_femur = self.response.wrench.reaction();
         let screws = &self.configuration.screws;
-        let mut tangent = Mat6::zeros();
+        let mut tangent = JointStiffness::zero();
         for k in 0..6 {
+            // The twist is the sum of s_i v_i. Moving joint k changes its own rate v_k by the slope of
+            // the step, and it turns every screw s_i that it carries, so that s_i v_i turns too.
             let mut twist_change = screws[k] * slopes.rate;
             for i in k + 1..6 {
                 twist_change +=
                     self.configuration.screw_derivative(i, k) * self.kinematics.rates[i];
             }
+            // The wrench changes because the pose moves along s_k, and because the twist changes.
             let by_pose = &contact.by_pose * &screws[k];
             let change = (by_pose + &contact.by_twist * &twist_change).reaction();
             for j in 0..6 {
+                // The product rule of W . s_j: the wrench changes, and s_j turns where k carries it.
                 tangent[(j, k)] = -change.power(&screws[j])
                     - on_femur.power(&self.configuration.screw_derivative(j, k));
             }
         }
-        for (j, row) in self.machine.freedoms.iter().enumerate() {
-            tangent[(j, j)] += row.inertia * slopes.acceleration + row.damping * slopes.rate;
-        }
-        for spring in &self.machine.ap_springs {
-            spring_stiffness(spring, &self.kinematics.positions, &mut tangent);
-        }
-        for j in held(self.machine) {
-            tangent.row_mut(j).fill(0.0);
-            tangent.column_mut(j).fill(0.0);
-            tangent[(j, j)] = 1.0;
-        }
         tangent
     }
-}
-
-/// Rows that are not loaded: their positions are given.
-fn held(machine: &Machine) -> impl Iterator<Item = usize> + '_ {
-    (0..6).filter(|&j| !matches!(machine.freedoms[j].drive, Drive::Loaded(_)))
-}
-
-/// Where a spring holds the insert: its point moves u = AP + L sin(IE) along the AP axis.
-struct SpringPlace {
-    force: f64,
-    slope: f64,
-    along: f64,
-    across: f64,
-}
-
-const AP: usize = Freedom::AnteroPosterior as usize;
-const IE: usize = Freedom::InternalExternal as usize;
-
-fn spring_place(spring: &ApSpring, positions: &[f64; 6]) -> SpringPlace {
-    let (sine, cosine) = positions[IE].sin_cos();
-    let offset = spring.lateral_offset_mm;
-    let (force, slope) = spring.force(positions[AP] + offset * sine);
-    SpringPlace {
-        force,
-        slope,
-        along: offset * cosine,
-        across: -offset * sine,
-    }
-}
-
-fn spring_forces(spring: &ApSpring, positions: &[f64; 6], residual: &mut Vec6) {
-    let place = spring_place(spring, positions);
-    residual[AP] -= place.force;
-    residual[IE] -= place.force * place.along;
-}
-
-fn spring_stiffness(spring: &ApSpring, positions: &[f64; 6], tangent: &mut Mat6) {
-    let SpringPlace {
-        force,
-        slope,
-        along,
-        across,
-    } = spring_place(spring, positions);
-    tangent[(AP, AP)] -= slope;
-    tangent[(AP, IE)] -= slope * along;
-    tangent[(IE, AP)] -= slope * along;
-    tangent[(IE, IE)] -= slope * along * along + force * across;
 }

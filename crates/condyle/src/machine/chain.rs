@@ -1,6 +1,6 @@
 //! The machine as a chain of six screw joints from the insert to the femur.
 
-use super::{FREEDOMS, Freedom, Machine};
+use super::{Axis, Joint, Machine, MovedBody};
 use crate::{
     Vec3,
     spatial::{Pose, RelativeMotion, Twist},
@@ -8,13 +8,13 @@ use crate::{
 
 /// The kinematics of the machine.
 ///
-/// With the joints' axes e_j in the insert frame at zero, the femur's pose in the insert is the
-/// product of exponentials exp(e_1 q_1) ... exp(e_6 q_6) T_0 (Brockett 1984). The insert's own
-/// motions come first and with a minus sign, since they move the insert and not the femur.
+/// With the joints' screws e_j in the insert frame at zero, the femur's pose in the insert is the
+/// product of exponentials exp(e_1 q_1) ... exp(e_6 q_6) T_0 (Brockett 1984). Joints that move the insert
+/// enter with a minus sign, since they move the insert and not the femur.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    axes: [Twist; 6],
-    /// Where the femoral frame's origin is in the insert frame with all freedoms at zero, mm.
+    screws: [Twist; 6],
+    /// Where the femoral frame's origin is in the insert frame with all joints at zero, mm.
     zero_mm: Vec3,
     flexion_axis_mm: (f64, f64),
 }
@@ -24,54 +24,67 @@ pub struct Chain {
 pub struct Configuration {
     /// The femur in the insert frame.
     pub pose: Pose,
-    /// How each freedom moves the femur relative to the insert: twist a unit of rate.
+    /// How each joint moves the femur relative to the insert: twist a unit of rate.
     pub screws: [Twist; 6],
 }
 
 impl Chain {
-    /// The chain of a machine whose femur, with all freedoms at zero, has its frame's origin at
-    /// `zero_mm` in the insert frame and flexes about the axis (x, y) of its own frame.
+    /// The chain of a machine whose femur, with all joints at zero, has its frame's origin at
+    /// `zero_mm` in the insert frame and turns about the point (x, y, 0) of its own frame.
     pub fn new(machine: &Machine, zero_mm: Vec3, flexion_axis_mm: (f64, f64)) -> Self {
-        let flexion_centre = zero_mm + Vec3::new(flexion_axis_mm.0, flexion_axis_mm.1, 0.0);
-        let vv_centre = Vec3::new(0.0, machine.vv_axis_mm.0, machine.vv_axis_mm.1);
-        let ie_centre = Vec3::new(machine.ie_axis_mm.0, 0.0, machine.ie_axis_mm.1);
-        let axis = |freedom| match freedom {
-            Freedom::VarusValgus => Twist::about(-Vec3::x(), vv_centre),
-            Freedom::InternalExternal => Twist::about(-Vec3::y(), ie_centre),
-            Freedom::MedioLateral => Twist::along(-Vec3::z()),
-            Freedom::AnteroPosterior => Twist::along(-Vec3::x()),
-            Freedom::InferoSuperior => Twist::along(Vec3::y()),
-            Freedom::Flexion => Twist::about(Vec3::z(), flexion_centre),
-        };
+        let pivot_mm = zero_mm + Vec3::new(flexion_axis_mm.0, flexion_axis_mm.1, 0.0);
         Self {
-            axes: FREEDOMS.map(axis),
+            screws: machine
+                .joints
+                .each_ref()
+                .map(|joint| screw(joint, pivot_mm)),
             zero_mm,
             flexion_axis_mm,
         }
     }
 
-    /// The chain that reads AP, ML and IS as zero where it now stands at `positions`.
-    pub fn zeroed_at(&self, machine: &Machine, positions: &[f64; 6]) -> Self {
-        let [_, _, ml, ap, is, _] = *positions;
-        let zero_mm = self.zero_mm + Vec3::new(-ap, is, -ml);
-        Self::new(machine, zero_mm, self.flexion_axis_mm)
+    /// The chain that reads zero where it now stands at `positions`, as far as its joints are zeroed by
+    /// settling; and the positions that it reads there. The pose is the same.
+    pub fn zeroed_at(&self, machine: &Machine, positions: &[f64; 6]) -> (Self, [f64; 6]) {
+        let (mut zero_mm, mut positions) = (self.zero_mm, *positions);
+        for (joint, position) in machine.joints.iter().zip(&mut positions) {
+            if joint.description.is_zeroed {
+                zero_mm += screw(joint, Vec3::zeros()).linear * *position;
+                *position = 0.0;
+            }
+        }
+        let zeroed = Self::new(machine, zero_mm, self.flexion_axis_mm);
+        (zeroed, positions)
     }
 
-    /// Where the femoral frame's origin is in the insert frame with all freedoms at zero, mm.
+    /// Where the femoral frame's origin is in the insert frame with all joints at zero, mm.
     pub fn zero_mm(&self) -> Vec3 {
         self.zero_mm
     }
 
-    /// Pose and screws at positions, mm and rad, in the order of [`FREEDOMS`].
+    /// Pose and screws at positions, mm and rad, in the order of the chain.
     pub fn at(&self, positions: &[f64; 6]) -> Configuration {
         let mut pose = Pose::identity();
         let mut screws = [Twist::zero(); 6];
-        for ((screw, axis), &position) in screws.iter_mut().zip(&self.axes).zip(positions) {
+        for ((screw, axis), &position) in screws.iter_mut().zip(&self.screws).zip(positions) {
             *screw = axis.carried(&pose);
             pose = pose.then(&axis.exponential(position));
         }
         pose.translation += pose.rotation * self.zero_mm;
         Configuration { pose, screws }
+    }
+}
+
+/// How a joint moves the femur past the insert at zero: its screw; the femur turns about `pivot_mm`.
+fn screw(joint: &Joint, pivot_mm: Vec3) -> Twist {
+    let directed = |direction: [f64; 3]| match joint.description.moves {
+        MovedBody::Insert => -Vec3::from(direction),
+        MovedBody::Femur => Vec3::from(direction),
+    };
+    match joint.description.axis {
+        Axis::Along(direction) => Twist::along(directed(direction)),
+        Axis::About(direction) => Twist::about(directed(direction), joint.axis_point_mm),
+        Axis::AboutFemur(direction) => Twist::about(directed(direction), pivot_mm),
     }
 }
 
@@ -93,7 +106,7 @@ impl Configuration {
             .sum()
     }
 
-    /// Derivative of screw `of` by the position of freedom `by`: their Lie bracket where `by`
+    /// Derivative of screw `of` by the position of joint `by`: their Lie bracket where `by`
     /// carries `of`, that is where it is nearer to the insert, and nothing elsewhere.
     pub fn screw_derivative(&self, of: usize, by: usize) -> Twist {
         if by < of {
@@ -107,21 +120,16 @@ impl Configuration {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::{Drive, FreedomSettings};
+    use crate::machine::{
+        JointIndex,
+        knee::{AP, FLEXION, IE, IS, KNEE, ML, VV},
+    };
 
     fn machine() -> Machine {
-        let row = FreedomSettings {
-            drive: Drive::Locked(0.0),
-            inertia: 0.0,
-            damping: 0.0,
-        };
-        Machine {
-            freedoms: [(); 6].map(|()| row.clone()),
-            ap_springs: Vec::new(),
-            frequency_hz: 1.1,
-            vv_axis_mm: (-20.0, -5.0),
-            ie_axis_mm: (1.0, 0.5),
-        }
+        let mut machine = Machine::new(&KNEE);
+        machine.joint_mut(VV).axis_point_mm = Vec3::new(0.0, -20.0, -5.0);
+        machine.joint_mut(IE).axis_point_mm = Vec3::new(1.0, 0.0, 0.5);
+        machine
     }
 
     fn chain() -> Chain {
@@ -131,34 +139,23 @@ mod tests {
     const SOMEWHERE: [f64; 6] = [0.03, -0.1, 1.2, -3.0, 0.4, 0.7];
 
     #[test]
-    fn verify_signs_of_every_freedom() {
-        let femur_origin = |freedom: Freedom, position: f64| {
+    fn verify_signs_of_every_joint() {
+        let femur_origin = |joint: JointIndex, position: f64| {
             let mut positions = [0.0; 6];
-            positions[freedom as usize] = position;
+            positions[joint.place()] = position;
             chain().at(&positions).pose
         };
         let zero = Vec3::new(-5.0, 22.0, 0.0);
         // The insert moves anterior, lateral: the femur falls behind, medial of it.
-        assert!(
-            (femur_origin(Freedom::AnteroPosterior, 2.0).translation - zero + Vec3::x() * 2.0)
-                .norm()
-                < 1e-12
-        );
-        assert!(
-            (femur_origin(Freedom::MedioLateral, 2.0).translation - zero + Vec3::z() * 2.0).norm()
-                < 1e-12
-        );
-        assert!(
-            (femur_origin(Freedom::InferoSuperior, 2.0).translation - zero - Vec3::y() * 2.0)
-                .norm()
-                < 1e-12
-        );
+        assert!((femur_origin(AP, 2.0).translation - zero + Vec3::x() * 2.0).norm() < 1e-12);
+        assert!((femur_origin(ML, 2.0).translation - zero + Vec3::z() * 2.0).norm() < 1e-12);
+        assert!((femur_origin(IS, 2.0).translation - zero - Vec3::y() * 2.0).norm() < 1e-12);
         // Flexion brings the back of the femur down.
-        assert!((femur_origin(Freedom::Flexion, 0.5).rotation * -Vec3::x()).y < 0.0);
+        assert!((femur_origin(FLEXION, 0.5).rotation * -Vec3::x()).y < 0.0);
         // Internal rotation turns the insert's front medially: the femur's front looks lateral.
-        assert!((femur_origin(Freedom::InternalExternal, 0.5).rotation * Vec3::x()).z > 0.0);
+        assert!((femur_origin(IE, 0.5).rotation * Vec3::x()).z > 0.0);
         // Varus lowers the insert's lateral side: the femur rises over it.
-        assert!((femur_origin(Freedom::VarusValgus, 0.1).rotation * Vec3::z()).y > 0.0);
+        assert!((femur_origin(VV, 0.1).rotation * Vec3::z()).y > 0.0);
     }
 
     #[test]
@@ -202,10 +199,11 @@ mod tests {
 
     #[test]
     fn zeroing_keeps_the_pose() {
-        let zeroed = chain().zeroed_at(&machine(), &SOMEWHERE);
+        let (zeroed, positions) = chain().zeroed_at(&machine(), &SOMEWHERE);
         let [vv, ie, _, _, _, flexion] = SOMEWHERE;
+        assert_eq!(positions, [vv, ie, 0.0, 0.0, 0.0, flexion]);
         let before = chain().at(&SOMEWHERE).pose;
-        let after = zeroed.at(&[vv, ie, 0.0, 0.0, 0.0, flexion]).pose;
+        let after = zeroed.at(&positions).pose;
         assert!((before.translation - after.translation).norm() < 1e-12);
         assert!((before.rotation - after.rotation).norm() < 1e-12);
     }

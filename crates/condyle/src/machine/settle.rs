@@ -1,10 +1,9 @@
 //! Where the extended femur settles under the vertical load: the machine's neutral position.
 
-use super::joint_numbers::Mat6;
 use super::{
-    Chain, Drive, Freedom, Machine, Waveform,
-    balance::{Balance, Kinematics, StepSlopes},
-    integrator::{SolverCounters, drive, loads_at, longest_mm, out_of_balance_n},
+    Chain, Drive, Joint, JointKind, Kinematics, Machine, Settling, SolverCounters, Waveform,
+    balance::{Balance, StepSlopes},
+    joint_vectors::JointStiffness,
 };
 use crate::contact::ContactModel;
 
@@ -14,22 +13,25 @@ const MOST_ITERATIONS: usize = 2000;
 const LONGEST_CORRECTION_MM: f64 = 0.2;
 /// Motion that the first iteration allows for the whole load, mm.
 const FIRST_MOTION_MM: f64 = 0.05;
+/// Lever on which damping slows a turn, mm: about how far the contact is from the axes, so that the
+/// surfaces move against each other at the same pace whether the femur turns or shifts. It changes how the
+/// machine gets to rest, and not where that is.
+const TURNING_LEVER_MM: f64 = 30.0;
 
 /// The femur did not come to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotSettled {
-    /// Positions at the last iteration, mm and rad, in the order of [`FREEDOMS`](super::FREEDOMS).
+    /// Positions at the last iteration, mm and rad, in the order of the chain.
     pub positions: [f64; 6],
     /// Force left out of balance, N.
     pub residual_n: f64,
 }
 
-/// Positions of static balance under the axial load at the start of the cycle alone.
+/// Positions of static balance under the load at the start of the cycle.
 ///
-/// Femur extended as at 0 % of the cycle, IE at zero, no springs, no other loads and, nothing
-/// sliding, no friction; AP always free, the other freedoms if the machine loads them. Newton's
-/// method with a damping that vanishes as balance nears (pseudo-transient continuation), so that
-/// it also finds its way from a first touch of one condyle.
+/// What each joint does meanwhile is part of its [description](Settling); there are no springs and,
+/// nothing sliding, no friction. Newton's method with a damping that vanishes as balance nears
+/// (pseudo-transient continuation), so that it also finds its way from a first touch on one side.
 ///
 /// # Errors
 /// Where the femur does not come to rest, for instance because it slides off.
@@ -41,26 +43,17 @@ pub fn settle(
     counters: &mut SolverCounters,
 ) -> Result<[f64; 6], NotSettled> {
     let machine = settling(machine);
-    let loads = loads_at(&machine, 0.0);
+    let (loads, levers) = (machine.loads_at(0.0), machine.levers());
     let mut positions = [0.0; 6];
-    drive(&machine, 0.0, &mut positions, &mut [0.0; 6]);
-    let axial_n = loads[Freedom::InferoSuperior as usize].abs().max(1.0);
-    let mut damping = axial_n / FIRST_MOTION_MM;
+    machine.drive(0.0, &mut positions, &mut [0.0; 6]);
+    let mut damping = loads.largest_n(&levers).max(1.0) / FIRST_MOTION_MM;
     let mut last_residual_n = f64::INFINITY;
     for _ in 0..MOST_ITERATIONS {
-        let kinematics = Kinematics {
-            positions,
-            rates: [0.0; 6],
-            accelerations: [0.0; 6],
-        };
-        let still = StepSlopes {
-            rate: 0.0,
-            acceleration: 0.0,
-        };
-        let balance = Balance::new(&machine, chain, contact, kinematics);
-        let residual = balance.residual(&loads);
+        let still = Kinematics::at_rest(positions);
+        let balance = Balance::new(&machine, chain, contact, still);
         counters.contact_evaluations += 1;
-        let residual_n = out_of_balance_n(&residual);
+        let residual = balance.residual(&loads);
+        let residual_n = residual.largest_n(&levers);
         if residual_n <= force_tolerance_n {
             return Ok(positions);
         }
@@ -68,16 +61,13 @@ pub fn settle(
             damping *= (residual_n / last_residual_n).clamp(0.3, 2.0);
         }
         last_residual_n = residual_n;
-        let damped = balance.tangent(still) + damping_matrix(damping);
-        let Some(correction) = damped.lu().solve(&residual) else {
+        let damped = balance.tangent(StepSlopes::STILL) + damping_of(&machine, damping);
+        let Some(correction) = damped.correction(&residual) else {
             break;
         };
         counters.newton_iterations += 1;
-        let limit = (LONGEST_CORRECTION_MM / longest_mm(&correction)).min(1.0);
-        positions
-            .iter_mut()
-            .zip(&correction)
-            .for_each(|(q, c)| *q -= c * limit);
+        let part = correction.part_within(LONGEST_CORRECTION_MM, &levers);
+        (correction * part).move_from(&mut positions);
     }
     Err(NotSettled {
         positions,
@@ -88,31 +78,25 @@ pub fn settle(
 /// The machine while it settles.
 fn settling(machine: &Machine) -> Machine {
     let mut settling = machine.clone();
-    settling.ap_springs.clear();
-    for (j, row) in settling.freedoms.iter_mut().enumerate() {
-        (row.inertia, row.damping) = (0.0, 0.0);
+    settling.springs.clear();
+    for joint in &mut settling.joints {
+        (joint.inertia, joint.damping) = (0.0, 0.0);
         let free = Drive::Loaded(Waveform::constant(0.0));
-        row.drive = match (super::FREEDOMS[j], &row.drive) {
-            (Freedom::AnteroPosterior, _) => free,
-            (Freedom::InternalExternal, _) => Drive::Locked(0.0),
-            (Freedom::InferoSuperior | Freedom::Flexion, kept) => kept.clone(),
-            (_, Drive::Loaded(_)) => free,
-            (_, driven) => driven.clone(),
-        };
+        match joint.description.settling {
+            Settling::Free => joint.drive = free,
+            Settling::HeldAtZero => joint.drive = Drive::Locked(0.0),
+            Settling::DrivenWithoutLoad if joint.is_loaded() => joint.drive = free,
+            Settling::DrivenWithoutLoad | Settling::Driven => {}
+        }
     }
     settling
 }
 
-/// Damping of all rows, rotations on a lever of 30 mm.
-fn damping_matrix(damping: f64) -> Mat6 {
-    const LEVER2_MM2: f64 = 900.0;
-    let row = |freedom: Freedom| {
-        damping
-            * if freedom.is_rotation() {
-                LEVER2_MM2
-            } else {
-                1.0
-            }
+/// The same damping of every joint, turns on their lever.
+fn damping_of(machine: &Machine, damping: f64) -> JointStiffness {
+    let of_joint = |joint: &Joint| match joint.description.kind() {
+        JointKind::Rotation => damping * (TURNING_LEVER_MM * TURNING_LEVER_MM),
+        JointKind::Translation => damping,
     };
-    Mat6::from_diagonal(&super::FREEDOMS.map(row).into())
+    JointStiffness::from_diagonal(machine.joints.each_ref().map(of_joint))
 }

@@ -10,9 +10,9 @@ pub struct TimeSettings {
     pub increment_error_mm: f64,
     /// Largest force left out of balance, N; for moments, this much on a lever of 10 mm.
     pub force_tolerance_n: f64,
-    /// Whether Newton's method may stop at a correction that leaves no more than that, as foreseen
-    /// from its convergence, and not look.
-    pub foresees: bool,
+    /// Whether Newton's iteration may stop at a correction that leaves no more than that, as predicted
+    /// from its convergence, and not compute what is left.
+    pub trusts_prediction: bool,
     /// A cycle counts once its end lies this near to its start, mm ...
     pub repeat_tolerance_mm: f64,
     /// ... and this near, rad.
@@ -32,12 +32,17 @@ impl TimeSettings {
             ..self
         }
     }
+
+    /// Length of an increment at so many cycles a second, s.
+    pub fn increment_s(&self, frequency_hz: f64) -> f64 {
+        1.0 / (frequency_hz * self.increments as f64)
+    }
 }
 
 /// How an increment is stepped through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integration {
-    /// Second-order backward differences and Newton's method, one step an increment.
+    /// Second-order backward differences and Newton's iteration, one step an increment.
     Implicit,
     /// Central differences in as many stable steps as an increment takes.
     Explicit {
@@ -52,7 +57,7 @@ impl Default for TimeSettings {
             increments: 200,
             increment_error_mm: 0.0,
             force_tolerance_n: 1e-2,
-            foresees: true,
+            trusts_prediction: true,
             repeat_tolerance_mm: 1e-2,
             repeat_tolerance_rad: 0.01f64.to_radians(),
             most_cycles_to_repeat: 10,

@@ -1,9 +1,12 @@
 //! The simulator in mm, N, s, tonne and rad.
 
 use condyle::Vec3;
-use condyle::machine::{ApSpring, Drive, Freedom, FreedomSettings, Machine, Waveform};
+use condyle::machine::{
+    Drive, JointDescription, JointIndex, Machine, Spring, Waveform,
+    knee::{self, KNEE},
+};
 
-use super::super::{Channel, DriveWord, Rotation, Springs, StiffnessOf, Translation};
+use super::super::{Channel, DriveWord, Freedom, Springs, StiffnessOf};
 use crate::case;
 
 /// A kilogram in tonnes.
@@ -13,102 +16,94 @@ const TONNE_MM2_PER_KG_M2: f64 = 1e3;
 /// A newton metre in N mm.
 const NMM_PER_NM: f64 = 1e3;
 
+impl Freedom {
+    /// Mass in tonne, or moment of inertia in tonne mm2.
+    fn inertia(&self) -> f64 {
+        match self {
+            Self::Translation(keys) => keys.inertia_kg * TONNE_PER_KG,
+            Self::Rotation(keys) => keys.inertia_kg_m2 * TONNE_MM2_PER_KG_M2,
+        }
+    }
+
+    /// Viscous damping, N s/mm or N mm s/rad.
+    fn damping(&self) -> f64 {
+        match self {
+            Self::Translation(keys) => keys.damping_n_s_per_mm,
+            Self::Rotation(keys) => keys.damping_nm_s_per_rad * NMM_PER_NM,
+        }
+    }
+}
+
 impl case::Machine {
     /// The machine around an insert whose dishes are lowest at `low_point_mm`.
     pub(super) fn build(&self, low_point_mm: Vec3) -> Machine {
-        let (settings, rows) = (&self.settings, &self.freedoms);
-        Machine {
-            // The order of the chain, from the insert to the femur.
-            freedoms: [
-                self.rotation(&rows.vv, None, None),
-                self.rotation(&rows.ie, Some(Channel::IeMotion), Some(Channel::IeTorque)),
-                self.translation(&rows.ml, None, None),
-                self.translation(&rows.ap, Some(Channel::ApMotion), Some(Channel::ApForce)),
-                self.translation(&rows.is, None, Some(Channel::AxialForce)),
-                self.rotation(&rows.flexion, Some(Channel::Flexion), None),
-            ],
-            ap_springs: springs(&self.springs),
-            frequency_hz: settings.frequency_hz,
-            vv_axis_mm: (
-                low_point_mm.y - settings.vv_axis_below_mm,
-                -settings.vv_axis_medial_mm,
-            ),
-            ie_axis_mm: (settings.ie_axis_anterior_mm, 0.0),
+        let settings = &self.settings;
+        let mut machine = Machine::new(&KNEE);
+        for index in JointIndex::ALL {
+            let (joint, freedom) = (machine.joint_mut(index), self.freedoms.get(index));
+            joint.drive = self.drive(joint.description, freedom);
+            joint.inertia = freedom.inertia();
+            joint.damping = freedom.damping();
+        }
+        machine.joint_mut(knee::VV).axis_point_mm = Vec3::new(
+            0.0,
+            low_point_mm.y - settings.vv_axis_below_mm,
+            -settings.vv_axis_medial_mm,
+        );
+        machine.joint_mut(knee::IE).axis_point_mm =
+            Vec3::new(settings.ie_axis_anterior_mm, 0.0, 0.0);
+        machine.springs = springs(&self.springs);
+        machine.frequency_hz = settings.frequency_hz;
+        machine
+    }
+
+    fn drive(&self, joint: &JointDescription, freedom: &Freedom) -> Drive {
+        match freedom.drive() {
+            DriveWord::Prescribed => Drive::Prescribed(self.inside(joint.motion)),
+            DriveWord::Loaded => Drive::Loaded(self.inside(joint.load_channel())),
+            DriveWord::Locked => {
+                let unit = joint.kind().file_unit_in_solver();
+                Drive::Locked(freedom.locked_at() * unit)
+            }
         }
     }
 
-    fn translation(
-        &self,
-        row: &Translation,
-        motion: Option<Channel>,
-        load: Option<Channel>,
-    ) -> FreedomSettings {
-        FreedomSettings {
-            drive: self.drive(row.drive, row.locked_at_mm, motion, load),
-            inertia: row.inertia_kg * TONNE_PER_KG,
-            damping: row.damping_n_s_per_mm,
-        }
-    }
-
-    fn rotation(
-        &self,
-        row: &Rotation,
-        motion: Option<Channel>,
-        load: Option<Channel>,
-    ) -> FreedomSettings {
-        FreedomSettings {
-            drive: self.drive(row.drive, row.locked_at_deg.to_radians(), motion, load),
-            inertia: row.inertia_kg_m2 * TONNE_MM2_PER_KG_M2,
-            damping: row.damping_nm_s_per_rad * NMM_PER_NM,
-        }
-    }
-
-    fn drive(
-        &self,
-        word: Option<DriveWord>,
-        locked_at: f64,
-        motion: Option<Channel>,
-        load: Option<Channel>,
-    ) -> Drive {
-        match word {
-            Some(DriveWord::Prescribed) => Drive::Prescribed(self.inside(motion)),
-            Some(DriveWord::Loaded) => Drive::Loaded(self.inside(load)),
-            Some(DriveWord::Locked) | None => Drive::Locked(locked_at),
-        }
-    }
-
-    /// The waveform of a channel in mm, rad, N or N mm, with the sign of its freedom; nothing
-    /// pushes a freedom without one.
-    fn inside(&self, channel: Option<Channel>) -> Waveform {
+    /// The waveform of a channel in mm, rad, N or N mm, with the sign of its joint; nothing pushes a
+    /// joint without one.
+    fn inside(&self, channel: Option<&'static condyle::machine::Channel>) -> Waveform {
+        let channel = channel.map(Channel::of);
         let given = channel.and_then(|channel| Some((channel, self.waveforms.get(channel)?)));
         let Some((channel, waveform)) = given else {
             return Waveform::constant(0.0);
         };
-        let (waveform, settings) = (waveform.clone(), &self.settings);
-        match channel {
-            // Compression is positive in the file and pushes the femur down, against IS.
-            Channel::AxialForce => waveform.scaled(-1.0),
-            Channel::Flexion => waveform
-                .shifted(settings.flexion_offset_deg)
-                .scaled(1f64.to_radians()),
-            Channel::ApForce => waveform.scaled(settings.ap_force_sign.factor()),
-            Channel::IeTorque => waveform.scaled(settings.ie_torque_sign.factor() * NMM_PER_NM),
-            Channel::ApMotion => waveform,
-            Channel::IeMotion => waveform.scaled(1f64.to_radians()),
+        let waveform = self.adjusted(channel, waveform.clone());
+        waveform.scaled(channel.of_machine().factor())
+    }
+
+    /// The waveform as the case's own numbers change it, in the unit of files.
+    fn adjusted(&self, channel: Channel, waveform: Waveform) -> Waveform {
+        let settings = &self.settings;
+        match channel.name() {
+            "flexion" => waveform.shifted(settings.flexion_offset_deg),
+            "ap_force" => waveform.scaled(settings.ap_force_sign.factor()),
+            "ie_torque" => waveform.scaled(settings.ie_torque_sign.factor()),
+            _ => waveform,
         }
     }
 }
 
 /// A spring to each side of the IE axis.
-fn springs(springs: &Springs) -> Vec<ApSpring> {
+fn springs(springs: &Springs) -> Vec<Spring> {
     let share = match springs.stiffness_of {
         StiffnessOf::Pair => 0.5,
         StiffnessOf::Each => 1.0,
     };
-    let spring = |side: f64| ApSpring {
-        lateral_offset_mm: side * springs.lateral_offset_mm,
-        posterior_n_per_mm: share * springs.posterior_n_per_mm,
-        anterior_n_per_mm: share * springs.anterior_n_per_mm,
+    let spring = |side: f64| Spring {
+        along: knee::AP,
+        about: knee::IE,
+        offset_mm: side * springs.lateral_offset_mm,
+        positive_n_per_mm: share * springs.anterior_n_per_mm,
+        negative_n_per_mm: share * springs.posterior_n_per_mm,
         free_play_mm: springs.free_play_mm,
     };
     vec![spring(1.0), spring(-1.0)]
@@ -116,7 +111,7 @@ fn springs(springs: &Springs) -> Vec<ApSpring> {
 
 /// Flexion at the start of the cycle, rad.
 pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
-    match &machine.row(Freedom::Flexion).drive {
+    match &machine.joint(knee::FLEXION).drive {
         Drive::Prescribed(flexion) => flexion.at(0.0).0,
         Drive::Locked(at) => *at,
         Drive::Loaded(_) => 0.0,
@@ -135,8 +130,8 @@ mod tests {
         case.machine.build(Vec3::new(0.0, 1.0, 23.0))
     }
 
-    fn driven(machine: &Machine, freedom: Freedom, phase: f64) -> f64 {
-        match &machine.row(freedom).drive {
+    fn driven(machine: &Machine, joint: JointIndex, phase: f64) -> f64 {
+        match &machine.joint(joint).drive {
             Drive::Prescribed(waveform) | Drive::Loaded(waveform) => waveform.at(phase).0,
             Drive::Locked(at) => *at,
         }
@@ -145,45 +140,46 @@ mod tests {
     #[test]
     fn verify_units_and_signs_of_force_control() {
         let machine = machine("");
-        assert_eq!(driven(&machine, Freedom::InferoSuperior, 0.13), -2600.3);
-        assert_eq!(driven(&machine, Freedom::AnteroPosterior, 0.05), -265.0);
-        assert_eq!(driven(&machine, Freedom::InternalExternal, 0.5), 5900.0);
-        let flexion = driven(&machine, Freedom::Flexion, 0.7);
+        assert_eq!(driven(&machine, knee::IS, 0.13), -2600.3);
+        assert_eq!(driven(&machine, knee::AP, 0.05), -265.0);
+        assert_eq!(driven(&machine, knee::IE, 0.5), 5900.0);
+        let flexion = driven(&machine, knee::FLEXION, 0.7);
         assert!((flexion - 51f64.to_radians()).abs() < 1e-12);
         assert!((start_flexion_rad(&machine) + 7f64.to_radians()).abs() < 1e-12);
-        assert_eq!(driven(&machine, Freedom::MedioLateral, 0.3), 0.0);
-        assert_eq!(machine.vv_axis_mm, (-19.0, -5.0));
-        assert_eq!(machine.row(Freedom::AnteroPosterior).inertia, 0.005);
-        assert_eq!(machine.row(Freedom::InternalExternal).inertia, 10.0);
-        assert_eq!(machine.row(Freedom::VarusValgus).damping, 200.0);
+        assert_eq!(driven(&machine, knee::ML, 0.3), 0.0);
+        let vv_axis = machine.joint(knee::VV).axis_point_mm;
+        assert_eq!((vv_axis.y, vv_axis.z), (-19.0, -5.0));
+        assert_eq!(machine.joint(knee::AP).inertia, 0.005);
+        assert_eq!(machine.joint(knee::IE).inertia, 10.0);
+        assert_eq!(machine.joint(knee::VV).damping, 200.0);
     }
 
     #[test]
     fn signs_turn_force_and_torque_round() {
         let machine = machine("[machine]\nap_force_sign = -1\nie_torque_sign = -1\n");
-        assert_eq!(driven(&machine, Freedom::AnteroPosterior, 0.05), 265.0);
-        assert_eq!(driven(&machine, Freedom::InternalExternal, 0.5), -5900.0);
+        assert_eq!(driven(&machine, knee::AP, 0.05), 265.0);
+        assert_eq!(driven(&machine, knee::IE, 0.5), -5900.0);
     }
 
     #[test]
     fn displacement_control_prescribes_ap_and_ie() {
         let machine = machine("[machine]\npreset = \"stanmore-displacement\"\n");
-        let ap = &machine.row(Freedom::AnteroPosterior).drive;
+        let ap = &machine.joint(knee::AP).drive;
         assert!(matches!(ap, Drive::Prescribed(_)));
-        assert!((driven(&machine, Freedom::AnteroPosterior, 0.65) + 5.2).abs() < 1e-9);
-        let ie = driven(&machine, Freedom::InternalExternal, 0.0);
+        assert!((driven(&machine, knee::AP, 0.65) + 5.2).abs() < 1e-9);
+        let ie = driven(&machine, knee::IE, 0.0);
         assert!((ie + 1.57f64.to_radians()).abs() < 1e-12);
     }
 
     #[test]
     fn a_pair_of_springs_shares_its_stiffness() {
-        let pair = machine("").ap_springs;
-        let each = machine("[machine.springs]\nstiffness_of = \"each\"\n").ap_springs;
-        let stiffness = |springs: &[ApSpring]| -> f64 {
-            springs.iter().map(|spring| spring.posterior_n_per_mm).sum()
+        let pair = machine("").springs;
+        let each = machine("[machine.springs]\nstiffness_of = \"each\"\n").springs;
+        let stiffness = |springs: &[Spring]| -> f64 {
+            springs.iter().map(|spring| spring.negative_n_per_mm).sum()
         };
         assert_eq!((stiffness(&pair), stiffness(&each)), (33.8, 67.6));
-        assert_eq!(pair[0].lateral_offset_mm, -pair[1].lateral_offset_mm);
+        assert_eq!(pair[0].offset_mm, -pair[1].offset_mm);
     }
 
     #[test]
@@ -191,7 +187,7 @@ mod tests {
         let locked = "drive = \"locked\"\nlocked_at_deg = 3.0\n";
         let machine = machine(&format!("[machine.freedoms.vv]\n{locked}"));
         assert_eq!(
-            machine.row(Freedom::VarusValgus).drive,
+            machine.joint(knee::VV).drive,
             Drive::Locked(3f64.to_radians())
         );
     }

@@ -106,7 +106,7 @@ impl Case {
             increments: time.increments as usize,
             increment_error_mm: time.increment_error_mm,
             force_tolerance_n: time.force_tolerance_n,
-            foresees: true,
+            trusts_prediction: true,
             repeat_tolerance_mm: time.repeat_tolerance_mm,
             repeat_tolerance_rad: time.repeat_tolerance_deg.to_radians(),
             most_cycles_to_repeat: time.most_cycles_to_repeat as usize,

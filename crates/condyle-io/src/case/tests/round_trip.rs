@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use condyle::machine::{self, knee};
+
 use super::{cases, has_dm_data, parsed};
 use crate::case::{
     Case, Channel, DriveWord, Femur, Insert, Preset, Side, schema_markdown, template,
@@ -62,7 +64,7 @@ fn force_case_is_the_default_but_for_its_title_and_axial_force() {
     let peak = |case: &Case| {
         case.machine
             .waveforms
-            .get(Channel::AxialForce)
+            .get(Channel::of(&knee::AXIAL_FORCE))
             .map(|w| w.at(0.13).0)
     };
     assert_eq!((peak(&case), peak(&default)), (Some(3200.0), Some(2600.3)));
@@ -73,10 +75,10 @@ fn force_case_is_the_default_but_for_its_title_and_axial_force() {
 
 #[test]
 fn every_shipped_waveform_is_read_and_stays_near_its_points() {
-    for channel in Channel::ALL {
+    for channel in Channel::all() {
         for named in channel.named() {
-            let drive = match channel {
-                Channel::ApMotion | Channel::IeMotion => "stanmore-displacement",
+            let drive = match channel.name() {
+                "ap_motion" | "ie_motion" => "stanmore-displacement",
                 _ => "stanmore-force",
             };
             let (table, word) = (channel.name(), named.word);
@@ -108,23 +110,24 @@ fn validate_signs_of_the_measured_gait() {
         return;
     }
     let case = shipped("dm-knee-displacement.toml");
-    let at = |channel, percent: f64| {
+    let at = |channel: &'static machine::Channel, percent: f64| {
+        let channel = Channel::of(channel);
         let waveform = case.machine.waveforms.get(channel).unwrap();
         waveform.at(percent / 100.0).0
     };
     // The rows at 5, 40 and 80 % of the gait file: x' -6.1, -6.9 and 0.9 mm, zrot -7.4, -7.8, -51.6.
     for (percent, flexion, ap) in [(5.0, 7.4, 1.3), (40.0, 7.8, 0.5), (80.0, 51.6, 8.3)] {
         assert!(
-            (at(Channel::Flexion, percent) - flexion).abs() < 1.5,
+            (at(&knee::FLEXION_MOTION, percent) - flexion).abs() < 1.5,
             "{percent}"
         );
         assert!(
-            (at(Channel::ApMotion, percent) - ap).abs() < 2.0,
+            (at(&knee::AP_MOTION, percent) - ap).abs() < 2.0,
             "{percent}"
         );
     }
-    assert!((at(Channel::IeMotion, 15.0) + 4.06).abs() < 1.0);
-    assert!(at(Channel::ApMotion, 0.0).abs() < 0.5);
+    assert!((at(&knee::IE_MOTION, 15.0) + 4.06).abs() < 1.0);
+    assert!(at(&knee::AP_MOTION, 0.0).abs() < 0.5);
 }
 
 #[test]
@@ -150,7 +153,7 @@ fn templates_are_cases_of_their_preset() {
         assert_eq!(case.machine.preset, preset);
         let prescribed = preset == Preset::StanmoreDisplacement;
         assert_eq!(
-            case.machine.freedoms.drives()[0] == DriveWord::Prescribed,
+            case.machine.freedoms.get(knee::AP).drive() == DriveWord::Prescribed,
             prescribed
         );
     }

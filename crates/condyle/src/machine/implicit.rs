@@ -1,0 +1,138 @@
+//! One implicit step of time: backward differences, solved by Newton's iteration.
+
+use super::{
+    Chain, Kinematics, Machine, MachineState, SolverCounters, WarmStart, balance::Balance,
+    differences::BackwardDifferences, newton::NewtonIteration,
+};
+use crate::{contact::ContactModel, spatial::RelativeMotion};
+
+/// Iterations after which a step is given up, and tried in halves.
+const MOST_ITERATIONS: usize = 12;
+
+/// Why a step was given up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NotConverged {
+    pub phase: f64,
+    pub positions: [f64; 6],
+    pub residual_n: f64,
+}
+
+/// Where a step has ended.
+pub(super) struct Stepped {
+    pub state: MachineState,
+    /// The femur's motion past the insert there.
+    pub motion: RelativeMotion,
+    /// How the step was solved, for the same step a cycle later.
+    pub warm_start: WarmStart,
+}
+
+/// Everything one implicit step needs beside the state.
+pub(super) struct Implicit<'a> {
+    pub machine: &'a Machine,
+    pub chain: &'a Chain,
+    pub contact: &'a mut dyn ContactModel,
+    pub force_tolerance_n: f64,
+    /// Whether a predicted residual counts as if it were computed.
+    pub trusts_prediction: bool,
+    pub counters: &'a mut SolverCounters,
+}
+
+/// A step that is being solved.
+struct Step<'a> {
+    machine: &'a Machine,
+    from: &'a MachineState,
+    phase: f64,
+    step_s: f64,
+    differences: BackwardDifferences,
+}
+
+impl Step<'_> {
+    fn kinematics(&self, iteration: &NewtonIteration) -> Kinematics {
+        let positions = iteration.positions();
+        self.differences
+            .kinematics(self.machine, self.from, positions, self.phase)
+    }
+
+    /// Where the joints will be, as a cycle before; without a warm start, if accelerations last.
+    /// Driven ones, where they are driven.
+    fn predicted(&self, warm_start: Option<&WarmStart>) -> [f64; 6] {
+        let mut positions = warm_start.map_or_else(
+            || self.from.extrapolated(self.step_s),
+            |warm_start| warm_start.followed_from(&self.from.now, self.step_s),
+        );
+        self.machine
+            .drive(self.phase, &mut positions, &mut [0.0; 6]);
+        positions
+    }
+
+    fn ended(
+        &self,
+        now: Kinematics,
+        motion: RelativeMotion,
+        iteration: &NewtonIteration,
+    ) -> Stepped {
+        let state = MachineState {
+            phase: self.phase,
+            now,
+            before: Some((self.from.now, self.step_s)),
+        };
+        Stepped {
+            state,
+            motion,
+            warm_start: WarmStart::new(&state, iteration.contraction_per_n()),
+        }
+    }
+}
+
+impl Implicit<'_> {
+    /// The state a `step` of the cycle later.
+    ///
+    /// BDF2 is stable however stiff the contact, damps what a step cannot resolve, and its error
+    /// falls with the square of the step. `watch` is told the length of every residual, N.
+    pub fn step(
+        &mut self,
+        from: &MachineState,
+        step: f64,
+        warm_start: Option<&WarmStart>,
+        watch: &mut dyn FnMut(f64),
+    ) -> Result<Stepped, NotConverged> {
+        let step_s = step / self.machine.frequency_hz;
+        let step = Step {
+            machine: self.machine,
+            from,
+            phase: from.phase + step,
+            step_s,
+            differences: BackwardDifferences::from(from, step_s),
+        };
+        let levers = self.machine.levers();
+        let mut iteration = NewtonIteration::new(levers, step.predicted(warm_start), warm_start);
+        let loads = self.machine.loads_at(step.phase);
+        for _ in 0..MOST_ITERATIONS {
+            let kinematics = step.kinematics(&iteration);
+            let balance = Balance::new(self.machine, self.chain, self.contact, kinematics);
+            self.counters.contact_evaluations += 1;
+            let residual = balance.residual(&loads);
+            watch(residual.length_n(&levers));
+            if residual.largest_n(&levers) <= self.force_tolerance_n {
+                return Ok(step.ended(kinematics, balance.motion(), &iteration));
+            }
+            let mean_slip = balance.response().mean_slip;
+            let tangent = || balance.tangent(step.differences.slopes());
+            if !iteration.improve(&residual, mean_slip, tangent) {
+                break;
+            }
+            self.counters.newton_iterations += 1;
+            if self.trusts_prediction && iteration.predicted_n() <= self.force_tolerance_n {
+                let kinematics = step.kinematics(&iteration);
+                let configuration = self.chain.at(&kinematics.positions);
+                let motion = configuration.motion(&kinematics.rates);
+                return Ok(step.ended(kinematics, motion, &iteration));
+            }
+        }
+        Err(NotConverged {
+            phase: step.phase,
+            positions: iteration.positions(),
+            residual_n: iteration.residual_n(),
+        })
+    }
+}
