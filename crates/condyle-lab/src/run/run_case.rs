@@ -145,28 +145,32 @@ impl<'a> Run<'a> {
         while !self.march.is_done() && flow.is_continue() {
             let (march, clock) = (&mut self.march, &mut self.clock);
             let mut watch = |progress| on_event(RunEvent::Solved(progress));
-            let updated = clock.time(|| {
-                march
-                    .update(&mut watch)
-                    .map(|flow| flow.map_continue_value(Clone::clone))
-            });
-            let updated = updated.map_err(|source| RunError::March {
+            let updated = clock.time(|| march.update(&mut watch).map(|flow| flow.is_continue()));
+            let is_updated = updated.map_err(|source| RunError::March {
                 source,
                 out: self.options.out.clone(),
             })?;
-            flow = match updated {
-                ControlFlow::Continue(update) => {
-                    self.write_update()?;
-                    on_event(RunEvent::Updated(&update))
-                }
-                ControlFlow::Break(()) => ControlFlow::Break(()),
-            };
+            flow = self.updated(is_updated, on_event)?;
         }
         // Whoever stops a run that is done has stopped nothing.
         if self.march.is_done() {
             flow = ControlFlow::Continue(());
         }
         Ok(flow)
+    }
+
+    /// Writes an update, and tells of it; a break if there was none.
+    fn updated(
+        &self,
+        is_updated: bool,
+        on_event: &mut Listener<'_>,
+    ) -> Result<ControlFlow<()>, RunError> {
+        let update = self.march.state().updates.last();
+        let Some(update) = update.filter(|_| is_updated) else {
+            return Ok(ControlFlow::Break(()));
+        };
+        self.write_update()?;
+        Ok(on_event(RunEvent::Updated(update)))
     }
 
     fn write_update(&self) -> Result<(), ResultsError> {
