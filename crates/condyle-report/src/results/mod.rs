@@ -8,6 +8,8 @@ mod surface;
 mod surface_of_mesh;
 mod table;
 
+use condyle_io::results::{KNEE, LATERAL, MEDIAL};
+
 pub(crate) use case::title;
 pub use measure::{Extreme, Region};
 pub use summary::Summary;
@@ -44,9 +46,10 @@ pub enum Side {
 impl Side {
     /// Names of the regions at -z and at +z.
     pub(crate) fn regions(self) -> [&'static str; 2] {
+        let [medial, lateral] = [MEDIAL, LATERAL].map(|region| KNEE.regions[region].label);
         match self {
-            Self::Right => ["Medial", "Lateral"],
-            Self::Left => ["Lateral", "Medial"],
+            Self::Right => [medial, lateral],
+            Self::Left => [lateral, medial],
         }
     }
 }
