@@ -3,7 +3,7 @@
 use condyle::{
     contact::{Mat6, Vec6},
     evolve::WearTest,
-    machine::{ApSpring, Chain, CycleRow, Drive, Freedom, Integration},
+    machine::{Chain, CycleRow, Drive, Integration, Spring},
 };
 
 use crate::{
@@ -136,7 +136,7 @@ impl Flow {
     fn at(test: &WearTest, chain: &Chain, row: &CycleRow, instant: &Instant) -> Self {
         let screws = chain.at(&row.positions).screws;
         let rates = rates(&screws, instant);
-        let springs = test.machine.ap_springs.iter();
+        let springs = test.machine.springs.iter();
         let mut flow = Self {
             put_in: 0.0,
             damping: 0.0,
@@ -147,12 +147,12 @@ impl Flow {
                     .map(|spring| stored_nmm(spring, &row.positions))
                     .sum::<f64>(),
         };
-        for (j, freedom) in test.machine.freedoms.iter().enumerate() {
+        for (j, joint) in test.machine.joints.iter().enumerate() {
             let rate = rates[j];
-            if let Drive::Loaded(load) = &freedom.drive {
+            if let Drive::Loaded(load) = &joint.drive {
                 flow.put_in += load.at(row.percent / 100.0).0 * rate;
-                flow.damping += freedom.damping * rate * rate;
-                flow.stored += freedom.inertia * rate * rate / 2.0;
+                flow.damping += joint.damping * rate * rate;
+                flow.stored += joint.inertia * rate * rate / 2.0;
             } else {
                 flow.put_in += screws[j].dot(&instant.wrench) * rate;
             }
@@ -168,10 +168,9 @@ fn rates(screws: &[Vec6; 6], instant: &Instant) -> Vec6 {
 }
 
 /// Energy of a spring that is linear beyond its free play: f^2/(2 k).
-fn stored_nmm(spring: &ApSpring, positions: &[f64; 6]) -> f64 {
-    let ap_mm = positions[Freedom::AnteroPosterior as usize];
-    let ie = positions[Freedom::InternalExternal as usize];
-    match spring.force(ap_mm + spring.lateral_offset_mm * ie.sin()) {
+fn stored_nmm(spring: &Spring, positions: &[f64; 6]) -> f64 {
+    let (ap_mm, ie) = (spring.along.of(positions), spring.about.of(positions));
+    match spring.force(ap_mm + spring.offset_mm * ie.sin()) {
         (_, 0.0) => 0.0,
         (force, slope) => -force * force / (2.0 * slope),
     }

@@ -1,6 +1,6 @@
 //! The implicit integrator against central differences.
 
-use condyle::machine::{FREEDOMS, Integration};
+use condyle::machine::{Integration, JointKind, knee::KNEE};
 
 use crate::{
     Case, Row,
@@ -77,13 +77,11 @@ fn apart(one: &Solved, other: &Solved) -> Apart {
     let mut apart = Apart { mm: 0.0, deg: 0.0 };
     for place in 0..PLACES {
         let (one, other) = (at(one, place), at(other, place));
-        for freedom in FREEDOMS {
-            let j = freedom as usize;
+        for (j, joint) in KNEE.joints.iter().enumerate() {
             let here = (one.positions[j] - other.positions[j]).abs();
-            if freedom.is_rotation() {
-                apart.deg = apart.deg.max(here.to_degrees());
-            } else {
-                apart.mm = apart.mm.max(here);
+            match joint.kind() {
+                JointKind::Rotation => apart.deg = apart.deg.max(here.to_degrees()),
+                JointKind::Translation => apart.mm = apart.mm.max(here),
             }
         }
     }

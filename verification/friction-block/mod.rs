@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use condyle::{
     Vec3,
     contact::Foundation,
-    machine::{Cycle, Drive, Freedom, Machine, Waveform},
+    machine::{Cycle, Drive, Machine, Waveform, knee::AP},
 };
 
 use crate::{
@@ -94,7 +94,7 @@ fn moved(ap: Drive, damping: f64, increments: usize) -> (Cycle, Machine) {
     let locked = || Drive::Locked(0.0);
     let drives = [locked(), locked(), locked(), ap, load, locked()];
     let mut machine = machine(drives, Vec::new());
-    machine.freedoms[Freedom::AnteroPosterior as usize].damping = damping;
+    machine.joint_mut(AP).damping = damping;
     let down = Vec3::new(0.0, -overclosure_mm(stiffness), 0.0);
     let mut time = exact_time(increments);
     time.force_tolerance_n = 1e-7;
@@ -106,7 +106,7 @@ fn moved(ap: Drive, damping: f64, increments: usize) -> (Cycle, Machine) {
 fn speed_pulled(force_n: f64, damping: f64) -> f64 {
     let pull = Drive::Loaded(Waveform::constant(force_n));
     let (cycle, _) = moved(pull, damping, 100);
-    cycle.end.now.rates[Freedom::AnteroPosterior as usize]
+    AP.of(&cycle.end.now.rates)
 }
 
 fn creeping(part: f64) -> Row {

@@ -4,7 +4,7 @@ mod contact_turned;
 mod knee;
 mod twice_as_large;
 
-use condyle::Vec3;
+use condyle::{Vec3, machine::knee::IE};
 
 use crate::{Case, Row, marched::marched};
 use knee::{Knee, Worn};
@@ -91,7 +91,7 @@ fn shifted() -> Worn {
     };
     let mut test = moved.test();
     // A case has the IE axis in the middle.
-    test.machine.ie_axis_mm.1 += by.z;
+    test.machine.joint_mut(IE).axis_point_mm.z += by.z;
     Worn::of(&marched(test))
 }
 

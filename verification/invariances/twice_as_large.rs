@@ -1,9 +1,10 @@
 //! A knee twice as large, loaded so that its pressures are the same.
 
 use condyle::{
+    Vec3,
     evolve::{March, WearTest},
     geometry::{ColumnGrid, GenericInsertShape, Insert},
-    machine::Drive,
+    machine::{Drive, JointKind, knee},
 };
 
 use super::knee::EXACTLY;
@@ -97,26 +98,24 @@ fn grown(grid: ColumnGrid, factor: f64) -> ColumnGrid {
 fn scale_machine(test: &mut WearTest, factor: f64) {
     let (square, cube) = (factor.powi(2), factor.powi(3));
     let machine = &mut test.machine;
-    for (row, freedom) in machine.freedoms.iter_mut().zip(condyle::machine::FREEDOMS) {
-        let rotates = freedom.is_rotation();
-        let (load, slow) = if rotates {
-            (cube, cube)
-        } else {
-            (square, factor)
+    for joint in &mut machine.joints {
+        let (load, slow) = match joint.description.kind() {
+            JointKind::Rotation => (cube, cube),
+            JointKind::Translation => (square, factor),
         };
-        row.inertia *= slow;
-        row.damping *= slow;
-        if let Drive::Loaded(waveform) = &mut row.drive {
+        joint.inertia *= slow;
+        joint.damping *= slow;
+        if let Drive::Loaded(waveform) = &mut joint.drive {
             *waveform = waveform.clone().scaled(load);
         }
     }
-    for spring in &mut machine.ap_springs {
-        spring.lateral_offset_mm *= factor;
+    for spring in &mut machine.springs {
+        spring.offset_mm *= factor;
         spring.free_play_mm *= factor;
-        spring.posterior_n_per_mm *= factor;
-        spring.anterior_n_per_mm *= factor;
+        spring.positive_n_per_mm *= factor;
+        spring.negative_n_per_mm *= factor;
     }
-    machine.vv_axis_mm = (-20.0 * factor, -5.0 * factor);
+    machine.joint_mut(knee::VV).axis_point_mm = Vec3::new(0.0, -20.0 * factor, -5.0 * factor);
     test.time.force_tolerance_n *= square;
     test.time.repeat_tolerance_mm *= factor;
 }

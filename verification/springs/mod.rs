@@ -2,7 +2,10 @@
 
 use condyle::{
     Vec3,
-    machine::{ApSpring, Drive, Freedom, Waveform},
+    machine::{
+        Drive, Spring, Waveform,
+        knee::{AP, IE},
+    },
 };
 
 use crate::{
@@ -35,10 +38,12 @@ fn rows() -> Vec<Row> {
 
 /// Where the springs hold the insert: AP, mm, and IE, rad.
 fn held(ie: Drive, force_n: f64) -> (f64, f64) {
-    let spring = |lateral_offset_mm| ApSpring {
-        lateral_offset_mm,
-        posterior_n_per_mm: POSTERIOR,
-        anterior_n_per_mm: ANTERIOR,
+    let spring = |offset_mm| Spring {
+        along: AP,
+        about: IE,
+        offset_mm,
+        positive_n_per_mm: ANTERIOR,
+        negative_n_per_mm: POSTERIOR,
         free_play_mm: FREE_PLAY_MM,
     };
     let locked = || Drive::Locked(0.0);
@@ -46,8 +51,7 @@ fn held(ie: Drive, force_n: f64) -> (f64, f64) {
     let drives = [locked(), ie, locked(), ap, locked(), locked()];
     let machine = machine(drives, vec![spring(OFFSET_MM), spring(-OFFSET_MM)]);
     let end = cycle(&machine, Apart, Vec3::zeros(), &exact_time(20)).end;
-    let at = |freedom: Freedom| end.now.positions[freedom as usize];
-    (at(Freedom::AnteroPosterior), at(Freedom::InternalExternal))
+    (AP.of(&end.now.positions), IE.of(&end.now.positions))
 }
 
 fn under_force(force_n: f64) -> Row {

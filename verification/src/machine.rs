@@ -4,8 +4,8 @@ use condyle::{
     Vec3,
     contact::{ContactModel, Mat6, RelativeMotion, Tangent, TouchedNode, Vec6},
     machine::{
-        ApSpring, Chain, Cycle, Drive, FreedomSettings, Machine, MachineState, Simulator,
-        SolverCounters, TimeSettings,
+        Chain, Cycle, Drive, JointKind, Machine, MachineState, Simulator, SolverCounters, Spring,
+        TimeSettings, knee::KNEE,
     },
 };
 use std::ops::ControlFlow;
@@ -43,29 +43,18 @@ impl ContactModel for Apart {
     }
 }
 
-/// A machine whose rows, in the order of the freedoms, are driven so; one cycle a second, light
+/// A knee's machine whose joints, in the order of the chain, are driven so; one cycle a second, light
 /// and a little damped, all axes through the origin.
-pub(crate) fn machine(drives: [Drive; 6], ap_springs: Vec<ApSpring>) -> Machine {
-    let row = |drive, rotates: bool| FreedomSettings {
-        drive,
-        inertia: if rotates { 1.0 } else { 1e-3 },
-        damping: if rotates { 300.0 } else { 0.3 },
-    };
-    let [vv, ie, ml, ap, is, flexion] = drives;
-    Machine {
-        freedoms: [
-            row(vv, true),
-            row(ie, true),
-            row(ml, false),
-            row(ap, false),
-            row(is, false),
-            row(flexion, true),
-        ],
-        ap_springs,
-        frequency_hz: 1.0,
-        vv_axis_mm: (0.0, 0.0),
-        ie_axis_mm: (0.0, 0.0),
+pub(crate) fn machine(drives: [Drive; 6], springs: Vec<Spring>) -> Machine {
+    let mut machine = Machine::new(&KNEE);
+    for (joint, drive) in machine.joints.iter_mut().zip(drives) {
+        joint.drive = drive;
+        (joint.inertia, joint.damping) = match joint.description.kind() {
+            JointKind::Rotation => (1.0, 300.0),
+            JointKind::Translation => (1e-3, 0.3),
+        };
     }
+    Machine { springs, ..machine }
 }
 
 /// Time settings that leave nothing to chance.
@@ -94,4 +83,6 @@ pub(crate) fn cycle(
     simulator
         .cycle(&start, &mut SolverCounters::default(), &mut watch)
         .expect("a solved cycle")
+        .continue_value()
+        .expect("nobody stops it")
 }

@@ -25,7 +25,8 @@ pub(crate) fn marched(test: WearTest) -> March {
 pub(crate) fn going_on(mut march: March) -> March {
     while !march.is_done() {
         let mut watch = |_| ControlFlow::Continue(());
-        march.update(&mut watch).expect("a solved update");
+        let update = march.update(&mut watch).expect("a solved update");
+        assert!(update.is_continue(), "nobody stops it");
     }
     march
 }

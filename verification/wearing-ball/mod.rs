@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use condyle::{evolve::UpdateRecord, geometry::FemoralSurface, machine::Freedom};
+use condyle::{evolve::UpdateRecord, geometry::FemoralSurface, machine::knee};
 
 use crate::{
     Case, Row,
@@ -79,7 +79,7 @@ fn updates() -> Vec<UpdateRecord> {
         updates: UPDATES,
     };
     let mut test = rub.test();
-    test.machine.freedoms[Freedom::MedioLateral as usize].drive = to_and_fro_later(ORBIT_MM);
+    test.machine.joint_mut(knee::ML).drive = to_and_fro_later(ORBIT_MM);
     marched(test).state().updates.clone()
 }
 

@@ -11,7 +11,7 @@ use std::error::Error;
 use condyle::{
     contact::{Foundation, Pose},
     evolve::{March, WearTest},
-    machine::{Chain, Drive, Freedom, SolverCounters, Waveform, settle},
+    machine::{Chain, Drive, SolverCounters, Waveform, knee, settle},
 };
 use condyle_io::case::Case;
 
@@ -38,9 +38,8 @@ fn balanced(march: &March, phase: f64, force_n: f64) -> Result<Pose, String> {
     let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
     let mut contact = Foundation::new(&test.contact, &test.femur, &test.insert);
     let mut machine = test.machine.clone();
-    machine.freedoms[Freedom::Flexion as usize].drive = Drive::Locked(flexion(test, phase));
-    machine.freedoms[Freedom::InferoSuperior as usize].drive =
-        Drive::Loaded(Waveform::constant(-force_n));
+    machine.joint_mut(knee::FLEXION).drive = Drive::Locked(flexion(test, phase));
+    machine.joint_mut(knee::IS).drive = Drive::Loaded(Waveform::constant(-force_n));
     settle(
         &machine,
         &chain,
@@ -53,7 +52,7 @@ fn balanced(march: &March, phase: f64, force_n: f64) -> Result<Pose, String> {
 }
 
 fn flexion(test: &WearTest, phase: f64) -> f64 {
-    match &test.machine.row(Freedom::Flexion).drive {
+    match &test.machine.joint(knee::FLEXION).drive {
         Drive::Prescribed(waveform) => waveform.at(phase).0,
         Drive::Locked(at) => *at,
         Drive::Loaded(_) => 0.0,

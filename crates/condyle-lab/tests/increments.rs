@@ -5,7 +5,7 @@ use std::{ops::ControlFlow, path::Path};
 use condyle::{
     contact::Foundation,
     evolve::March,
-    machine::{Chain, Cycle, Simulator, SolverCounters, TimeSettings},
+    machine::{Chain, Cycle, Simulator, SolverCounters, TimeSettings, knee::AP},
 };
 use condyle_io::case::Case;
 
@@ -26,17 +26,17 @@ fn cycle(march: &March, increments: usize, increment_error_mm: f64) -> Cycle {
     );
     let (mut counters, mut watch) = (SolverCounters::default(), |_| ControlFlow::Continue(()));
     let solved = simulator.cycle(&march.state().machine, &mut counters, &mut watch);
-    solved.expect("the default case is solved")
+    let solved = solved.expect("the default case is solved");
+    solved.continue_value().expect("nobody stops it")
 }
 
 /// Root mean square difference of AP, mm, over the places of the coarser cycle.
 fn apart_mm(coarse: &Cycle, fine: &Cycle) -> f64 {
-    const AP: usize = 3;
     let each = fine.rows.len() / coarse.rows.len();
     let finer = fine.rows.iter().skip(each - 1).step_by(each);
     let squares = coarse.rows.iter().zip(finer);
     let sum: f64 = squares
-        .map(|(a, b)| (a.positions[AP] - b.positions[AP]).powi(2))
+        .map(|(a, b)| (AP.of(&a.positions) - AP.of(&b.positions)).powi(2))
         .sum();
     (sum / coarse.rows.len() as f64).sqrt()
 }

@@ -79,7 +79,7 @@ fn near_the_solution_every_residual_is_the_square_of_the_one_before() {
     let (test, chain) = (march.test(), chain(&march));
     let time = TimeSettings {
         force_tolerance_n: EXACT_N,
-        foresees: false,
+        trusts_prediction: false,
         ..test.time
     };
     let mut simulator = simulator(test, &chain, &time);

@@ -12,7 +12,7 @@ use condyle::{
     contact::{ContactModel, Foundation, RelativeMotion, Tangent, TouchedNode, Vec6},
     evolve::{CycleRecord, March, MarchError, Progress, WearTest},
     geometry::FemoralSurface,
-    machine::{Chain, FREEDOMS, Simulator, SolverCounters, settle},
+    machine::{Chain, JointIndex, Simulator, SolverCounters, knee::KNEE, settle},
 };
 use condyle_io::case::Case;
 
@@ -86,7 +86,7 @@ fn tightened(mut test: WearTest) -> WearTest {
     time.force_tolerance_n /= TIGHTER;
     time.repeat_tolerance_mm /= TIGHTER;
     time.repeat_tolerance_rad /= TIGHTER;
-    time.foresees = false;
+    time.trusts_prediction = false;
     test
 }
 
@@ -122,17 +122,17 @@ fn assert_settled(march: &March) {
         &mut counters,
     )
     .expect("it has settled before");
-    for freedom in FREEDOMS {
-        let apart =
-            settled[freedom as usize] - march.state().machine.now.positions[freedom as usize];
-        assert!(apart.abs() < 1e-4, "{freedom:?}: {apart}");
+    let found = &march.state().machine.now.positions;
+    for joint in JointIndex::ALL {
+        let apart = joint.of(&settled) - joint.of(found);
+        let name = KNEE.joint(joint).long_name;
+        assert!(apart.abs() < 1e-4, "{name}: {apart}");
     }
 }
 
 /// Largest difference over a cycle of every freedom, as a fraction of its range.
 fn kinematics_apart(found: &CycleRecord, exact: &CycleRecord) -> [f64; 6] {
-    FREEDOMS.map(|freedom| {
-        let j = freedom as usize;
+    [0, 1, 2, 3, 4, 5].map(|j| {
         let places = exact.rows.iter().map(|row| row.positions[j]);
         let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
             (low.min(at), high.max(at))
@@ -167,8 +167,8 @@ fn assert_exact(name: &str) {
     let ((first, last), (true_first, true_last)) =
         (cycles.as_ref().unwrap(), true_cycles.as_ref().unwrap());
     for (which, found, exact) in [("first", first, true_first), ("last", last, true_last)] {
-        for (freedom, off) in FREEDOMS.iter().zip(kinematics_apart(found, exact)) {
-            apart.push((format!("{freedom:?} in the {which} cycle"), off));
+        for (joint, off) in KNEE.joints.iter().zip(kinematics_apart(found, exact)) {
+            apart.push((format!("{} in the {which} cycle", joint.long_name), off));
         }
     }
     println!("{name}: {:?} exact {:?}", now.counters, truth.counters);
@@ -226,6 +226,8 @@ fn assert_small_steps_are_exact(name: &str) {
     let rows = simulator
         .cycle(&state.machine, &mut SolverCounters::default(), &mut watch)
         .expect("a solved cycle")
+        .continue_value()
+        .expect("nobody stops it")
         .rows;
     let mut walked = anew(test);
     let (mut worst_n, mut worst) = (0.0_f64, 0.0_f64);

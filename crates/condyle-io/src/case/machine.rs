@@ -9,7 +9,6 @@ use super::parse::{Log, Others, Section, names};
 use super::problems::Reason;
 use super::read_plain;
 use super::setting::Setting;
-use super::to_toml::Writer;
 use super::waveforms;
 
 /// The simulator.
@@ -162,13 +161,6 @@ impl Freedom {
         match self {
             Self::Translation(keys) => keys.locked_at_mm,
             Self::Rotation(keys) => keys.locked_at_deg,
-        }
-    }
-
-    pub(super) fn write(&self, out: &mut Writer) {
-        match self {
-            Self::Translation(keys) => keys.write(out),
-            Self::Rotation(keys) => keys.write(out),
         }
     }
 

@@ -6,7 +6,7 @@ use super::channel::Channel;
 use super::contact::{self, PressureLawChoice};
 use super::declared::Preset;
 use super::keys::{Key, Settings};
-use super::machine::PRESET;
+use super::machine::{Freedom, PRESET};
 use super::setting::Setting;
 use super::shapes::{FEMUR_SHAPE, INSERT_SHAPE};
 use super::waveforms::DEFAULT_WAVEFORM;
@@ -133,7 +133,10 @@ impl Case {
         }
         for (joint, freedom) in machine.freedoms.in_files() {
             out.table(&format!("machine.freedoms.{}", joint.name));
-            freedom.write(out);
+            match freedom {
+                Freedom::Translation(keys) => keys.write(out),
+                Freedom::Rotation(keys) => keys.write(out),
+            }
         }
     }
 }

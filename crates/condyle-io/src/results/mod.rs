@@ -9,7 +9,10 @@ mod summary;
 mod tables;
 
 /// What the columns of `kinematics.csv` are.
-pub use condyle::machine::{CycleQuantity, JointKind, knee::KNEE};
+pub use condyle::machine::{
+    CycleQuantity, JointKind,
+    knee::{KNEE, LATERAL, MEDIAL},
+};
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part};

@@ -6,7 +6,7 @@ use condyle::{
     Vec3,
     contact::{ContactModel, Former, Foundation, RelativeMotion, Tangent, TouchedNode, Vec6},
     evolve::{March, WearTest},
-    machine::{Chain, Drive, Freedom, Simulator, SolverCounters, Waveform},
+    machine::{Chain, Drive, Simulator, SolverCounters, Waveform, knee},
 };
 use condyle_io::case::Case;
 
@@ -105,7 +105,9 @@ impl<'a> Gait<'a> {
         let watch = &mut |_| ControlFlow::Continue(());
         let cycle = simulator
             .cycle(&state.machine, &mut SolverCounters::default(), watch)
-            .unwrap_or_else(|error| panic!("{error}"));
+            .unwrap_or_else(|error| panic!("{error}"))
+            .continue_value()
+            .expect("nobody stops it");
         (cycle.increments_solved, simulator.contact)
     }
 
@@ -175,6 +177,6 @@ impl Updates {
 
 /// Sets the axial force to one that stays.
 pub fn press(test: &mut WearTest, axial_force_n: f64) {
-    let axial = &mut test.machine.freedoms[Freedom::InferoSuperior as usize];
+    let axial = test.machine.joint_mut(knee::IS);
     axial.drive = Drive::Loaded(Waveform::constant(-axial_force_n));
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::number::{fixed, significant};
-use crate::results::{contents::Results, measure::Region, surface::SurfaceFields};
+use crate::results::{contents::Results, measure::Region, side::Side, surface::SurfaceFields};
 
 /// Depth above which a face counts as part of the scar, as a share of the largest depth.
 const SCAR_SHARE: f64 = 0.05;
@@ -105,9 +105,9 @@ fn thinnest(surface: &SurfaceFields, values: &[f64], region: Region) -> String {
 }
 
 fn medial_lateral_both(results: &Results) -> [Region; 3] {
-    match results.side.regions() {
-        ["Medial", _] => [Region::Left, Region::Right, Region::Whole],
-        _ => [Region::Right, Region::Left, Region::Whole],
+    match results.side {
+        Side::Right => [Region::Left, Region::Right, Region::Whole],
+        Side::Left => [Region::Right, Region::Left, Region::Whole],
     }
 }
 

@@ -1,5 +1,7 @@
 //! Which knee it is.
 
+use condyle_io::results::{KNEE, LATERAL, MEDIAL};
+
 /// A right or a left knee; lateral is at +z in the one, at -z in the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
@@ -13,9 +15,10 @@ pub enum Side {
 impl Side {
     /// Names of the regions at -z and at +z.
     pub(crate) fn regions(self) -> [&'static str; 2] {
+        let [medial, lateral] = [MEDIAL, LATERAL].map(|region| KNEE.regions[region].label);
         match self {
-            Self::Right => ["Medial", "Lateral"],
-            Self::Left => ["Lateral", "Medial"],
+            Self::Right => [medial, lateral],
+            Self::Left => [lateral, medial],
         }
     }
 }

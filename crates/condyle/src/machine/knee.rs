@@ -239,11 +239,13 @@ pub static KNEE: Mechanism = Mechanism {
     regions: &[
         Region {
             name: "medial",
+            label: "Medial",
             column: "medial_force_n",
             title: "Medial force",
         },
         Region {
             name: "lateral",
+            label: "Lateral",
             column: "lateral_force_n",
             title: "Lateral force",
         },

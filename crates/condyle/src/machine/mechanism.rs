@@ -7,6 +7,8 @@ use super::{Channel, CycleRow, JointDescription, JointIndex};
 pub struct Region {
     /// Its name: `medial`.
     pub name: &'static str,
+    /// What a picture calls it.
+    pub label: &'static str,
     /// The column of its part of the axial force.
     pub column: &'static str,
     /// What a page calls that part.
