@@ -3,7 +3,7 @@
 use std::{ops::ControlFlow, path::Path};
 
 use condyle::{
-    contact::Foundation,
+    contact::ContactMemory,
     evolve::March,
     machine::{Chain, Cycle, Simulator, SolverCounters, TimeSettings, knee::AP},
 };
@@ -17,15 +17,17 @@ fn cycle(march: &March, increments: usize, increment_error_mm: f64) -> Cycle {
         increment_error_mm,
         ..test.time
     };
-    let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
-    let mut simulator = Simulator::new(
-        &test.machine,
-        &chain,
-        Foundation::new(&test.contact, &test.femur, &test.insert),
-        &time,
-    );
+    let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
+    let surface = march.insert().surface();
+    let bodies = march.bodies(&surface);
+    let mut contact = test.contact.contact(bodies, ContactMemory::default());
+    let mut simulator = Simulator::new(test.machine(), &chain, contact.as_mut(), &time);
     let (mut counters, mut watch) = (SolverCounters::default(), |_| ControlFlow::Continue(()));
-    let solved = simulator.cycle(&march.state().machine, &mut counters, &mut watch);
+    let solved = simulator.cycle(
+        &march.state().activities[0].machine,
+        &mut counters,
+        &mut watch,
+    );
     let solved = solved.expect("the default case is solved");
     solved.continue_value().expect("nobody stops it")
 }

@@ -4,8 +4,9 @@
 use std::path::Path;
 
 use condyle::{
-    contact::Foundation,
+    contact::{ContactMemory, ContactModel},
     evolve::{March, WearTest},
+    geometry::ArticulatingSurface,
     machine::{Chain, MachineState, Simulator, SolverCounters, TimeSettings},
 };
 use condyle_io::case::Case;
@@ -35,20 +36,22 @@ fn default_case() -> March {
 
 fn chain(march: &March) -> Chain {
     let test = march.test();
-    Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm)
+    Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm)
+}
+
+/// A contact that knows nothing yet.
+fn contact<'a>(march: &'a March, surface: &'a ArticulatingSurface) -> Box<dyn ContactModel + 'a> {
+    let law = &march.test().contact;
+    law.contact(march.bodies(surface), ContactMemory::default())
 }
 
 fn simulator<'a>(
     test: &'a WearTest,
     chain: &'a Chain,
+    contact: &'a mut dyn ContactModel,
     time: &'a TimeSettings,
-) -> Simulator<'a, Foundation<'a>> {
-    Simulator::new(
-        &test.machine,
-        chain,
-        Foundation::new(&test.contact, &test.femur, &test.insert),
-        time,
-    )
+) -> Simulator<'a> {
+    Simulator::new(test.machine(), chain, contact, time)
 }
 
 /// The instants at which the increments of a gait cycle end, from its start.
@@ -58,9 +61,10 @@ fn ends(increments: usize) -> impl Iterator<Item = f64> {
 
 /// At the start of a cycle, and in the middle of its motion.
 fn in_motion(march: &March) -> MachineState {
-    let (test, chain) = (march.test(), chain(march));
-    let mut simulator = simulator(test, &chain, &test.time);
-    let mut state = march.state().machine;
+    let (test, chain, surface) = (march.test(), chain(march), march.insert().surface());
+    let mut contact = contact(march, &surface);
+    let mut simulator = simulator(test, &chain, contact.as_mut(), &test.time);
+    let mut state = march.state().activities[0].machine;
     for to in ends(test.time.increments) {
         let counters = &mut SolverCounters::default();
         state = simulator
@@ -76,13 +80,14 @@ fn in_motion(march: &March) -> MachineState {
 #[test]
 fn near_the_solution_every_residual_is_the_square_of_the_one_before() {
     let march = default_case();
-    let (test, chain) = (march.test(), chain(&march));
+    let (test, chain, surface) = (march.test(), chain(&march), march.insert().surface());
+    let mut contact = contact(&march, &surface);
     let time = TimeSettings {
         force_tolerance_n: EXACT_N,
         trusts_prediction: false,
         ..test.time
     };
-    let mut simulator = simulator(test, &chain, &time);
+    let mut simulator = simulator(test, &chain, contact.as_mut(), &time);
     let mut state = in_motion(&march);
     let (mut worst_per_n, mut pairs) = (0.0_f64, 0);
     for to in ends(time.increments) {
@@ -117,10 +122,7 @@ struct Solved {
 
 impl Solved {
     /// A cycle from `state`, and where it ends.
-    fn cycle(
-        simulator: &mut Simulator<'_, Foundation<'_>>,
-        mut state: MachineState,
-    ) -> (Self, MachineState) {
+    fn cycle(simulator: &mut Simulator<'_>, mut state: MachineState) -> (Self, MachineState) {
         let (mut solved, mut counters) = (Self::default(), SolverCounters::default());
         for to in ends(simulator.time.increments) {
             let before = counters;
@@ -155,9 +157,10 @@ impl Solved {
 #[test]
 fn a_state_accepted_by_foresight_is_nearly_in_balance() {
     let march = default_case();
-    let (test, chain) = (march.test(), chain(&march));
+    let (test, chain, surface) = (march.test(), chain(&march), march.insert().surface());
+    let mut contact = contact(&march, &surface);
     let (tolerance_n, increments) = (test.time.force_tolerance_n, test.time.increments);
-    let mut simulator = simulator(test, &chain, &test.time);
+    let mut simulator = simulator(test, &chain, contact.as_mut(), &test.time);
     let (first, state) = Solved::cycle(&mut simulator, in_motion(&march));
     assert!(first.unseen(tolerance_n) > increments / 2);
     let (second, _) = Solved::cycle(&mut simulator, state);

@@ -1,18 +1,18 @@
 //! Speed costs no accuracy: the shipped cases as they run, against the same solved without any of
 //! the shortcuts that make them fast.
 //!
-//! The other run searches contact by brute force: its foundation is made anew for every single
-//! evaluation, so that every share is looked at, and nothing that was seen before is moved along.
+//! The other run searches contact by brute force and takes every sample of the femur anew, so that
+//! every share is looked at, and nothing that was seen before is extrapolated.
 //! Its tolerances are ten times tighter, and every force that is called balanced was computed.
 
-use std::{ops::ControlFlow, path::Path};
+use std::{ops::ControlFlow, path::Path, sync::Arc};
 
 use condyle::{
-    Vec3,
-    contact::{ContactModel, Foundation, RelativeMotion, Tangent, TouchedNode, Vec6},
-    evolve::{CycleRecord, March, MarchError, Progress, WearTest},
-    geometry::FemoralSurface,
+    contact::{ContactLaw, ContactMemory, ContactModel, Foundation, Search, TouchedNode},
+    evolve::{CycleRecord, March, Progress, WearTest},
+    geometry::{ArticulatingSurface, FemoralSurface},
     machine::{Chain, JointIndex, Simulator, SolverCounters, knee::KNEE, settle},
+    spatial::RelativeMotion,
 };
 use condyle_io::case::Case;
 
@@ -21,53 +21,8 @@ const TOLERANCE: f64 = 1e-3;
 /// How much tighter the exact run's tolerances are.
 const TIGHTER: f64 = 10.0;
 
-/// A foundation that knows nothing of the evaluations before.
-struct BruteForce<'a> {
-    test: &'a WearTest,
-    last: Foundation<'a>,
-}
-
-impl<'a> BruteForce<'a> {
-    fn new(test: &'a WearTest) -> Self {
-        let last = anew(test);
-        Self { test, last }
-    }
-}
-
-fn anew(test: &WearTest) -> Foundation<'_> {
-    Foundation::new(&test.contact, &test.femur, &test.insert)
-}
-
-impl ContactModel for BruteForce<'_> {
-    fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
-        self.last = anew(self.test);
-        self.last.respond(motion)
-    }
-
-    fn tangent(&self) -> Tangent {
-        self.last.tangent()
-    }
-
-    fn mean_slip(&self) -> [Vec3; 2] {
-        self.last.mean_slip()
-    }
-
-    fn node_count(&self) -> usize {
-        self.last.node_count()
-    }
-
-    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
-        self.respond(motion);
-        self.last.touched(motion)
-    }
-
-    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64 {
-        self.last.peak_pressure_mpa(motion, touched)
-    }
-}
-
-/// A shipped case, built; none where its meshes are not there.
-fn built(name: &str) -> Option<WearTest> {
+/// A shipped case; none where its meshes are not there.
+fn case(name: &str) -> Option<Case> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let is_there = root.join("../shared/data/dm-knee").is_dir();
     if name.starts_with("dm") && !is_there {
@@ -76,12 +31,28 @@ fn built(name: &str) -> Option<WearTest> {
         eprintln!("skipped: {name}: the data of subject DM are not there");
         return None;
     }
-    let case = Case::read(&root.join("cases").join(name)).expect("a shipped case is good");
-    Some(case.build(1).expect("a shipped case builds").test)
+    Some(Case::read(&root.join("cases").join(name)).expect("a shipped case is good"))
 }
 
-/// A test with tighter tolerances, and without foresight.
-fn tightened(mut test: WearTest) -> WearTest {
+/// Its test.
+fn built(case: &Case) -> WearTest {
+    case.build(1).expect("a shipped case builds").test
+}
+
+/// Its law of contact without any shortcut.
+fn plain(case: &Case) -> Foundation {
+    Foundation {
+        search: Search::BruteForce,
+        sample_reuse_mm: 0.0,
+        ..case.foundation()
+    }
+}
+
+/// Its test without shortcuts in the contact, with tighter tolerances, and without trust in
+/// predictions.
+fn exact(case: &Case) -> WearTest {
+    let mut test = built(case);
+    test.contact = Arc::new(plain(case));
     let time = &mut test.time;
     time.force_tolerance_n /= TIGHTER;
     time.repeat_tolerance_mm /= TIGHTER;
@@ -90,16 +61,13 @@ fn tightened(mut test: WearTest) -> WearTest {
     test
 }
 
-fn brute_force<'a>(test: &'a WearTest) -> Box<dyn ContactModel + 'a> {
-    Box::new(BruteForce::new(test))
-}
-
 /// A march to its end.
-fn marched(test: WearTest, update: impl Fn(&mut March) -> Result<(), MarchError>) -> March {
+fn marched(case: &Case, test: WearTest) -> March {
     let mut march = March::start(test).expect("a shipped case settles");
-    assert_settled(&march);
+    assert_settled(case, &march);
     while !march.is_done() {
-        update(&mut march).expect("a solved update");
+        let update = march.update(&mut go_on).expect("a solved update");
+        assert!(update.is_continue(), "nobody stops it");
     }
     march
 }
@@ -108,21 +76,30 @@ fn go_on(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
+/// A contact of a march's bodies that knows nothing yet.
+fn anew<'a>(
+    march: &'a March,
+    surface: &'a ArticulatingSurface,
+    law: &'a dyn ContactLaw,
+) -> Box<dyn ContactModel + 'a> {
+    law.contact(march.bodies(surface), ContactMemory::default())
+}
+
 /// The neutral position is one for the contact searched by brute force too.
-fn assert_settled(march: &March) {
+fn assert_settled(case: &Case, march: &March) {
     let (test, zero_mm) = (march.test(), march.state().zero_mm);
-    let chain = Chain::new(&test.machine, zero_mm, test.flexion_axis_mm);
-    let tolerance_n = test.time.force_tolerance_n;
-    let (mut contact, mut counters) = (BruteForce::new(test), SolverCounters::default());
+    let chain = Chain::new(test.machine(), zero_mm, test.flexion_axis_mm);
+    let (surface, law) = (march.insert().surface(), plain(case));
+    let mut contact = anew(march, &surface, &law);
     let settled = settle(
-        &test.machine,
+        test.machine(),
         &chain,
-        &mut contact,
-        tolerance_n,
-        &mut counters,
+        contact.as_mut(),
+        test.time.force_tolerance_n,
+        &mut SolverCounters::default(),
     )
     .expect("it has settled before");
-    let found = &march.state().machine.now.positions;
+    let found = &march.state().activities[0].machine.now.positions;
     for joint in JointIndex::ALL {
         let apart = joint.of(&settled) - joint.of(found);
         let name = KNEE.joint(joint).long_name;
@@ -145,12 +122,8 @@ fn kinematics_apart(found: &CycleRecord, exact: &CycleRecord) -> [f64; 6] {
 
 /// Asserts that a case as it runs is the exact one, and prints how near it is.
 fn assert_exact(name: &str) {
-    let (Some(found), Some(exact)) = (built(name), built(name).map(tightened)) else {
-        return;
-    };
-    let found = marched(found, |march| march.update(&mut go_on).map(|_| ()));
-    let without = |march: &mut March| march.update_on(brute_force, &mut go_on).map(|_| ());
-    let exact = marched(exact, without);
+    let Some(case) = case(name) else { return };
+    let (found, exact) = (marched(&case, built(&case)), marched(&case, exact(&case)));
     let (now, truth) = (found.state(), exact.state());
     let mut apart = Vec::new();
     let (last, true_last) = (now.updates.last().unwrap(), truth.updates.last().unwrap());
@@ -163,7 +136,10 @@ fn assert_exact(name: &str) {
         "maximum depth".to_owned(),
         off(last.max_depth_mm, true_last.max_depth_mm),
     ));
-    let (cycles, true_cycles) = (&now.first_and_last, &truth.first_and_last);
+    let (cycles, true_cycles) = (
+        &now.activities[0].first_and_last,
+        &truth.activities[0].first_and_last,
+    );
     let ((first, last), (true_first, true_last)) =
         (cycles.as_ref().unwrap(), true_cycles.as_ref().unwrap());
     for (which, found, exact) in [("first", first, true_first), ("last", last, true_last)] {
@@ -188,26 +164,27 @@ const SMALL_STEPS: [f64; 9] = [0.0, 0.002, 0.004, 0.01, 0.02, 0.03, 0.05, 0.06, 
 /// hundred-thousandth of the force, or half of what may be left out of balance, if that is more.
 const ASTRAY: f64 = 1e-5;
 
-/// Farthest that a sample is moved along before a new one is taken, mm.
-const MOVED_ALONG_MM: f64 = 0.02;
-
 /// What shares that have just passed from one arc of a generic femur to the other may add to the
 /// force: the mean gap over a share bends with the surface, so it jumps there by spread times the
-/// change of curvature, and a sample moved along jumps a little later.
-fn jump_n(test: &WearTest, contact: &mut Foundation<'_>, motion: &RelativeMotion) -> f64 {
-    let FemoralSurface::Generic(femur) = &test.femur else {
+/// change of curvature, and an extrapolated sample jumps a little later.
+fn jump_n(
+    march: &March,
+    surface: &ArticulatingSurface,
+    law: &Foundation,
+    touched: &[TouchedNode],
+    motion: &RelativeMotion,
+) -> f64 {
+    let FemoralSurface::Generic(femur) = march.femur() else {
         return 0.0;
     };
     let shape = femur.shape();
     let (sine, cosine) = shape.transition_deg.to_radians().sin_cos();
     let change_per_mm = 1.0 / shape.posterior_radius_mm - 1.0 / shape.distal_radius_mm;
-    let touched = contact.touched(motion);
     let jump_n = |node: &TouchedNode| {
-        let share = &contact.surface().shares[node.node as usize];
+        let share = &surface.shares[node.node as usize];
         let place = motion.pose.to_femur(&share.centre);
-        let is_passing = (place.x * cosine - place.y * sine).abs() <= MOVED_ALONG_MM;
-        let thickness_mm = test.insert.thickness_mm()[node.node as usize];
-        let slope = test.contact.law.pressure(0.0, thickness_mm).1;
+        let is_passing = (place.x * cosine - place.y * sine).abs() <= law.sample_reuse_mm;
+        let slope = law.stiffness_mpa_per_mm(march.insert(), node.node as usize);
         let jump_mm = share.spread_mm2 * change_per_mm;
         f64::from(u8::from(is_passing)) * jump_mm * slope * share.area_mm2
     };
@@ -217,19 +194,21 @@ fn jump_n(test: &WearTest, contact: &mut Foundation<'_>, motion: &RelativeMotion
 /// Walks a foundation along the first cycle of a test, and holds its force at every step against
 /// that of one made anew.
 fn assert_small_steps_are_exact(name: &str) {
-    let Some(test) = built(name) else { return };
-    let march = March::start(test).expect("a shipped case settles");
+    let Some(case) = case(name) else { return };
+    let march = March::start(built(&case)).expect("a shipped case settles");
     let (test, state) = (march.test(), march.state());
-    let chain = Chain::new(&test.machine, state.zero_mm, test.flexion_axis_mm);
-    let mut simulator = Simulator::new(&test.machine, &chain, anew(test), &test.time);
-    let mut watch = |_| ControlFlow::Continue(());
+    let (surface, law) = (march.insert().surface(), case.foundation());
+    let chain = Chain::new(test.machine(), state.zero_mm, test.flexion_axis_mm);
+    let mut walked = anew(&march, &surface, &law);
+    let mut simulator = Simulator::new(test.machine(), &chain, walked.as_mut(), &test.time);
+    let (start, mut counters) = (&state.activities[0].machine, SolverCounters::default());
     let rows = simulator
-        .cycle(&state.machine, &mut SolverCounters::default(), &mut watch)
+        .cycle(start, &mut counters, &mut |_| ControlFlow::Continue(()))
         .expect("a solved cycle")
         .continue_value()
         .expect("nobody stops it")
         .rows;
-    let mut walked = anew(test);
+    let mut walked = anew(&march, &surface, &law);
     let (mut worst_n, mut worst) = (0.0_f64, 0.0_f64);
     for (row, next) in rows.iter().zip(&rows[1..]).step_by(10) {
         for part in SMALL_STEPS {
@@ -237,11 +216,12 @@ fn assert_small_steps_are_exact(name: &str) {
                 |j: usize| row.positions[j] + part * (next.positions[j] - row.positions[j]);
             let positions = [0, 1, 2, 3, 4, 5].map(between);
             let motion = chain.at(&positions).motion(&[0.0; 6]);
-            let force = |wrench: Vec6| Vec3::from(wrench.fixed_rows::<3>(3));
-            let force_n = force(anew(test).respond(&motion));
-            let apart_n = (force(walked.respond(&motion)) - force_n).norm();
+            let fresh = anew(&march, &surface, &law).respond(&motion).wrench;
+            let force_n = fresh.force;
+            let apart_n = (walked.respond(&motion).wrench.force - force_n).norm();
+            let touched = walked.land(&motion).touched;
             let allowed_n = (ASTRAY * force_n.norm()).max(0.5 * test.time.force_tolerance_n)
-                + jump_n(test, &mut walked, &motion);
+                + jump_n(&march, &surface, &law, &touched, &motion);
             let place = format!("{name} {} %: {apart_n:.1e} N", row.percent);
             assert!(apart_n <= allowed_n, "{place} of {}", force_n.norm());
             worst_n = worst_n.max(apart_n);
@@ -252,12 +232,12 @@ fn assert_small_steps_are_exact(name: &str) {
 }
 
 #[test]
-fn samples_moved_along_the_gait_of_the_default_case_keep_the_force() {
+fn samples_extrapolated_along_the_gait_of_the_default_case_keep_the_force() {
     assert_small_steps_are_exact("stanmore-force.toml");
 }
 
 #[test]
-fn samples_moved_along_the_gait_of_a_real_implant_keep_the_force() {
+fn samples_extrapolated_along_the_gait_of_a_real_implant_keep_the_force() {
     assert_small_steps_are_exact("dm-knee.toml");
 }
 
@@ -274,16 +254,24 @@ fn a_real_implant_is_within_a_thousandth_of_itself_without_shortcuts() {
 /// Asserts that what a march knows of the cycles before changes not a bit: it is given up and
 /// resumed at every update, which leaves of it what a checkpoint holds.
 fn assert_the_same_when_resumed(name: &str) {
-    let (Some(whole), Some(resumed)) = (built(name), built(name)) else {
-        return;
-    };
-    let [mut whole, mut resumed] =
-        [whole, resumed].map(|test| March::start(test).expect("a shipped case settles"));
+    let Some(case) = case(name) else { return };
+    let test = built(&case);
+    let start = |test| March::start(test).expect("a shipped case settles");
+    let (mut whole, mut resumed) = (start(test.clone()), start(test.clone()));
     for update in 1..=4 {
-        whole.update(&mut go_on).expect("a solved update");
-        let test = built(name).expect("it was built before");
-        resumed = March::resume(test, resumed.state().clone());
-        resumed.update(&mut go_on).expect("a solved update");
+        assert!(
+            whole
+                .update(&mut go_on)
+                .expect("a solved update")
+                .is_continue()
+        );
+        resumed = March::resume(test.clone(), resumed.state().clone());
+        assert!(
+            resumed
+                .update(&mut go_on)
+                .expect("a solved update")
+                .is_continue()
+        );
         assert!(whole.state() == resumed.state(), "{name}: update {update}");
     }
 }

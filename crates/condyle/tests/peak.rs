@@ -2,14 +2,12 @@
 
 use condyle::{
     Mat3, Vec3,
-    contact::{
-        ContactModel, Foundation, FoundationSettings, Pose, PressureLaw, PressureTable,
-        RelativeMotion, Vec6,
-    },
+    contact::{Bodies, ContactLaw, ContactMemory, Foundation, PressureLaw, PressureTable},
     geometry::{
         Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert,
         Meshing, flat_insert,
     },
+    spatial::{Pose, RelativeMotion},
 };
 use nalgebra::Rotation3;
 
@@ -46,24 +44,20 @@ fn mean_and_peak(
     place: Vec3,
     turn_rad: f64,
 ) -> [f64; 2] {
-    let settings = FoundationSettings {
-        law: law.clone(),
-        friction: 0.07,
-        slip_tolerance_mm_per_s: 1.0,
+    let law = Foundation::new(law.clone(), 0.07, 1.0);
+    let surface = &insert.surface();
+    let bodies = Bodies {
+        femur,
+        insert,
+        surface,
     };
-    let mut contact = Foundation::new(&settings, femur, insert);
-    let motion = RelativeMotion {
-        pose: Pose {
-            rotation: Mat3::from(Rotation3::new(Vec3::y() * turn_rad)),
-            translation: place,
-        },
-        twist: Vec6::zeros(),
-    };
+    let mut contact = law.contact(bodies, ContactMemory::default());
+    let turn = Mat3::from(Rotation3::new(Vec3::y() * turn_rad));
+    let motion = RelativeMotion::at_rest(Pose::new(turn, place));
     contact.respond(&motion);
-    let touched = contact.touched(&motion);
-    let means = touched.iter().map(|node| node.pressure_mpa);
-    let peak = contact.peak_pressure_mpa(&motion, &touched);
-    [means.fold(0.0, f64::max), peak]
+    let landing = contact.land(&motion);
+    let means = landing.touched.iter().map(|node| node.pressure_mpa);
+    [means.fold(0.0, f64::max), landing.peak_pressure_mpa]
 }
 
 /// The ball over a layer, `deep_mm` into it, away from a node in the middle.

@@ -3,10 +3,11 @@
 use std::ops::ControlFlow;
 
 use condyle::{
-    Vec3,
-    contact::{ContactModel, Former, Foundation, RelativeMotion, Tangent, TouchedNode, Vec6},
+    contact::{ContactCache, ContactMemory, ContactModel, ContactState, Landing, Response},
     evolve::{March, WearTest},
+    geometry::ArticulatingSurface,
     machine::{Chain, Drive, Simulator, SolverCounters, Waveform, knee},
+    spatial::RelativeMotion,
 };
 use condyle_io::case::Case;
 
@@ -25,19 +26,23 @@ pub struct Asked {
 
 /// A contact that writes down what it is asked.
 struct Recorder<'a> {
-    contact: Foundation<'a>,
+    contact: Box<dyn ContactModel + 'a>,
     asked: Vec<Asked>,
     increment: usize,
     is_first: bool,
 }
 
 impl ContactModel for Recorder<'_> {
+    fn node_count(&self) -> usize {
+        self.contact.node_count()
+    }
+
     fn begin_increment(&mut self, increment: usize) {
         self.increment = increment;
         self.contact.begin_increment(increment);
     }
 
-    fn respond(&mut self, motion: &RelativeMotion) -> Vec6 {
+    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
         self.asked.push(Asked {
             motion: *motion,
             increment: self.increment,
@@ -46,25 +51,9 @@ impl ContactModel for Recorder<'_> {
         self.contact.respond(motion)
     }
 
-    fn tangent(&self) -> Tangent {
-        self.contact.tangent()
-    }
-
-    fn mean_slip(&self) -> [Vec3; 2] {
-        self.contact.mean_slip()
-    }
-
-    fn node_count(&self) -> usize {
-        self.contact.node_count()
-    }
-
-    fn touched(&mut self, motion: &RelativeMotion) -> Vec<TouchedNode> {
+    fn land(&mut self, motion: &RelativeMotion) -> Landing {
         self.is_first = true;
-        self.contact.touched(motion)
-    }
-
-    fn peak_pressure_mpa(&self, motion: &RelativeMotion, touched: &[TouchedNode]) -> f64 {
-        self.contact.peak_pressure_mpa(motion, touched)
+        self.contact.land(motion)
     }
 }
 
@@ -72,54 +61,61 @@ impl ContactModel for Recorder<'_> {
 pub struct Gait<'a> {
     march: &'a March,
     chain: Chain,
+    surface: ArticulatingSurface,
 }
 
 impl<'a> Gait<'a> {
     /// The next update of a march.
     pub fn of(march: &'a March) -> Self {
         let test = march.test();
-        let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
-        Self { march, chain }
+        let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
+        Self {
+            march,
+            chain,
+            surface: march.insert().surface(),
+        }
     }
 
     /// The contact, which has seen nothing yet.
-    pub fn contact(&self) -> Foundation<'a> {
-        self.contact_after(None)
+    pub fn contact(&self) -> Box<dyn ContactModel + '_> {
+        self.contact_after(ContactCache::default())
     }
 
     /// The contact, which knows what that of the update before knew.
-    pub fn contact_after(&self, former: Option<Former>) -> Foundation<'a> {
-        let test = self.march.test();
-        Foundation::after(former, &test.contact, &test.femur, &test.insert)
+    pub fn contact_after(&self, cache: ContactCache) -> Box<dyn ContactModel + '_> {
+        let state = ContactState::default();
+        let law = &self.march.test().contact;
+        law.contact(
+            self.march.bodies(&self.surface),
+            ContactMemory { state, cache },
+        )
     }
 
     /// Solves increments until the motion repeats itself; gives how many.
-    pub fn solve(&self, contact: impl ContactModel) -> usize {
-        self.solved(contact).0
-    }
-
-    fn solved<C: ContactModel>(&self, contact: C) -> (usize, C) {
-        let (test, state) = (self.march.test(), self.march.state());
-        let mut simulator = Simulator::new(&test.machine, &self.chain, contact, &test.time);
-        simulator.warm_starts.clone_from(&state.warm_starts);
+    pub fn solve(&self, contact: &mut dyn ContactModel) -> usize {
+        let (test, own) = (self.march.test(), &self.march.state().activities[0]);
+        let mut simulator = Simulator::new(test.machine(), &self.chain, contact, &test.time);
+        simulator.warm_starts.clone_from(&own.warm_starts);
         let watch = &mut |_| ControlFlow::Continue(());
         let cycle = simulator
-            .cycle(&state.machine, &mut SolverCounters::default(), watch)
-            .unwrap_or_else(|error| panic!("{error}"))
+            .cycle(&own.machine, &mut SolverCounters::default(), watch)
+            .unwrap_or_else(|error| panic!("{error}"));
+        cycle
             .continue_value()
-            .expect("nobody stops it");
-        (cycle.increments_solved, simulator.contact)
+            .expect("nobody stops it")
+            .increments_solved
     }
 
     /// The evaluations that this asks for.
     pub fn asked(&self) -> Vec<Asked> {
-        let recorder = Recorder {
+        let mut recorder = Recorder {
             contact: self.contact(),
             asked: Vec::new(),
             increment: 0,
             is_first: true,
         };
-        self.solved(recorder).1.asked
+        self.solve(&mut recorder);
+        recorder.asked
     }
 }
 
@@ -160,23 +156,24 @@ impl Updates {
         &self.asked[update]
     }
 
-    /// Its contact, after all those before have asked for theirs.
-    pub fn contact(&self, update: usize) -> Foundation<'_> {
-        let mut former = None;
+    /// What its contact knows after all those before have asked for theirs.
+    pub fn cache(&self, update: usize) -> ContactCache {
+        let mut cache = ContactCache::default();
         for (before, asked) in self.asked[..update].iter().enumerate() {
-            let mut contact = self.gait(before).contact_after(former);
+            let gait = self.gait(before);
+            let mut contact = gait.contact_after(cache);
             for asked in asked {
                 contact.begin_increment(asked.increment);
                 contact.respond(&asked.motion);
             }
-            former = Some(contact.into_parts().1);
+            cache = contact.into_memory().cache;
         }
-        self.gait(update).contact_after(former)
+        cache
     }
 }
 
 /// Sets the axial force to one that stays.
 pub fn press(test: &mut WearTest, axial_force_n: f64) {
-    let axial = test.machine.joint_mut(knee::IS);
+    let axial = test.activities[0].machine.joint_mut(knee::IS);
     axial.drive = Drive::Loaded(Waveform::constant(-axial_force_n));
 }

@@ -9,10 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use condyle::{
-    contact::{ContactModel, Foundation},
-    evolve::MarchState,
-};
+use condyle::{contact::ContactModel, evolve::MarchState};
 use condyle_io::{cache::Cache, case::Case};
 
 use crate::{
@@ -177,10 +174,11 @@ of them press, mean | instructions an evaluation | time of one, mean |
 
 /// Nodes that press, averaged over the evaluations of a cycle.
 fn mean_pressing(updates: &Updates) -> f64 {
-    let (asked, mut contact) = (updates.asked(SECOND), updates.contact(SECOND));
+    let (asked, gait) = (updates.asked(SECOND), updates.gait(SECOND));
+    let mut contact = gait.contact_after(updates.cache(SECOND));
     let pressing = |asked: &Asked| {
         contact.respond(&asked.motion);
-        contact.touched(&asked.motion).len()
+        contact.land(&asked.motion).touched.len()
     };
     asked.iter().map(pressing).sum::<usize>() as f64 / asked.len() as f64
 }
@@ -243,12 +241,12 @@ struct Evaluations(Vec<(Duration, bool)>);
 impl Evaluations {
     /// Of an update's cycle.
     fn of(updates: &Updates, update: usize) -> Self {
-        let asked = updates.asked(update);
+        let (asked, gait) = (updates.asked(update), updates.gait(update));
         let mut least = vec![Duration::MAX; asked.len()];
         for _ in 0..EVALUATION_ROUNDS {
-            let mut contact = updates.contact(update);
+            let mut contact = gait.contact_after(updates.cache(update));
             for (asked, least) in asked.iter().zip(&mut least) {
-                *least = (*least).min(evaluation_time(&mut contact, asked));
+                *least = (*least).min(evaluation_time(contact.as_mut(), asked));
             }
         }
         let is_first = asked.iter().map(|asked| asked.is_first);
@@ -271,11 +269,10 @@ impl Evaluations {
 }
 
 /// Wrench and tangent.
-fn evaluation_time(contact: &mut Foundation<'_>, asked: &Asked) -> Duration {
+fn evaluation_time(contact: &mut dyn ContactModel, asked: &Asked) -> Duration {
     let start = Instant::now();
     contact.begin_increment(asked.increment);
-    black_box(contact.respond(&asked.motion));
-    black_box(contact.tangent());
+    black_box(contact.respond(&asked.motion).tangent());
     start.elapsed()
 }
 

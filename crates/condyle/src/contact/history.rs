@@ -55,7 +55,7 @@ impl Sums {
 
 impl<'a> NodeHistory<'a> {
     /// The instants in the order of time; none where the node was never touched.
-    pub fn moments(&self) -> impl Iterator<Item = &'a Moment> {
+    pub fn moments(&self) -> impl Iterator<Item = &'a Moment> + use<'a> {
         let records = self.records;
         self.own.iter().map(|&record| &records[record as usize].1)
     }

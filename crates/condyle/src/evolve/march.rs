@@ -148,6 +148,15 @@ impl March {
         &self.femur
     }
 
+    /// The bodies as they are now, for a contact of one's own; `surface` is that of [`March::insert`].
+    pub fn bodies<'a>(&'a self, surface: &'a ArticulatingSurface) -> Bodies<'a> {
+        Bodies {
+            femur: &self.femur,
+            insert: &self.insert,
+            surface,
+        }
+    }
+
     /// All that is needed to go on.
     pub fn state(&self) -> &MarchState {
         &self.state
@@ -196,14 +205,9 @@ impl March {
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), Solved>, MarchError> {
         let surface = self.insert.surface();
-        let bodies = Bodies {
-            femur: &self.femur,
-            insert: &self.insert,
-            surface: &surface,
-        };
         let state = self.state.contact.clone();
         let memory = ContactMemory { state, cache };
-        let mut contact = self.test.contact.contact(bodies, memory);
+        let mut contact = self.test.contact.contact(self.bodies(&surface), memory);
         let mut counters = self.state.counters;
         let mut cycles = Vec::with_capacity(self.test.activities.len());
         for (number, spent) in spent.into_iter().enumerate() {

@@ -13,14 +13,11 @@ use crate::{contact::share_block::ShareBlock, spatial::Pose};
 /// A block that was seen apart needs no look before the femur has come near enough. What is left is
 /// exactly what a search over all blocks would find. A cycle after, and with a little wear, the femur
 /// is within tenths of a millimetre of where it was, and so every increment goes on from what was known
-/// there; where that is not enough, from what the increment before has just found. Hardly any block is
-/// looked at but those that touch.
+/// there. Hardly any block is looked at but those that touch.
 pub(in crate::contact) struct Coherent {
     /// What is known at the increments come to so far, but for the one that it is now.
     kept: Vec<Option<Separations>>,
     increment: usize,
-    /// The increment before, until the first search at this one.
-    beside: Option<usize>,
     now: Separations,
     places: Vec<BlockPlaces>,
     last_wear: LastWear,
@@ -40,7 +37,6 @@ impl BroadPhase for Coherent {
         Self {
             kept: Vec::new(),
             increment: 0,
-            beside: None,
             now: Separations::new(blocks.len()),
             places: BlockPlaces::of(blocks),
             last_wear: LastWear::default(),
@@ -72,7 +68,6 @@ impl BroadPhase for Coherent {
             self.kept.resize(most + 1, None);
         }
         let kept = self.take_kept(increment);
-        self.beside = kept.is_some().then_some(self.increment);
         let next = kept.unwrap_or_else(|| self.now.clone());
         let left = std::mem::replace(&mut self.now, next);
         self.kept[self.increment] = Some(left);
@@ -80,11 +75,9 @@ impl BroadPhase for Coherent {
     }
 
     fn candidates(&mut self, pose: &Pose) -> &[u32] {
-        let beside = self.beside.take();
-        let beside = beside.and_then(|beside| self.kept[beside].as_ref());
         let (places, last_wear) = (&self.places, &self.last_wear);
         self.now
-            .follow(pose, places, last_wear, beside, &mut self.candidates);
+            .follow(pose, places, last_wear, &mut self.candidates);
         &self.candidates
     }
 

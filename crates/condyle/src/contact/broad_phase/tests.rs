@@ -1,15 +1,23 @@
-//! What is not candidates is apart: held against a search over all shares, and the gaps at all their
-//! corners.
+//! What is no candidate is apart: held against a search over all blocks, and the gaps at all corners
+//! of their shares.
 
-use super::*;
+use super::{
+    block_places::{BlockPlaces, BlockWear, LastWear},
+    separation_bound::SeparationBound,
+    separations::Separations,
+};
 use crate::{
-    contact::{partial::Rises, seen::Seen, shares::ShareBlock},
+    Mat3, Vec3, Vector,
+    contact::{
+        foundation::{CachedSample, EdgeSlopes},
+        share_block::ShareBlock,
+    },
     geometry::{
         FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
         SmoothField, TriangleMesh, flat_insert,
     },
-    number::{F64x4, LANES},
-    spatial::Pose4,
+    number::{F64x4, LANES, Number, vector::dot},
+    spatial::{Pose, Pose4},
 };
 
 /// Farthest step of the femur, mm and rad.
@@ -112,7 +120,6 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
         pose,
         &BlockPlaces::of(blocks),
         &LastWear::default(),
-        None,
         &mut candidates,
     );
     assert_eq!(candidates.len(), blocks.len());
@@ -132,13 +139,12 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
 }
 
 /// Steps the femur at random from about `height_mm` over the insert, which wears or is restored at
-/// two of three steps, and holds what is no candidate then against a search, with the help of what is
-/// known near by. Gives how many blocks were no candidates.
+/// two of three steps, and holds what is no candidate then against a search. Gives how many blocks were no candidates.
 fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
     let shares = |insert: &Insert| ShareBlock::of(insert, &insert.surface());
     let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
     let mut numbers = Numbers(17);
-    let (mut sure, mut taken_over) = (0, 0);
+    let mut sure = 0;
     for step in 0..150 {
         let (from, to) = numbers.step(height_mm);
         let (before, after) = match step % 3 {
@@ -153,28 +159,9 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
         };
         let mut candidates = Vec::new();
         // There by way of half of it, as over many steps.
-        let half = Pose {
-            rotation: from.rotation,
-            ..to
-        };
-        separations.follow(&half, &BlockPlaces::of(after), &wear, None, &mut candidates);
-        let mut alone = separations.clone();
-        alone.follow(&to, &BlockPlaces::of(after), &wear, None, &mut candidates);
-        let candidates_alone = candidates.len();
-        let beside = Pose {
-            translation: to.translation + numbers.vector(0.2),
-            ..to
-        };
-        let mut beside = searched(femur, after, &beside);
-        beside.worn = wear.number;
-        separations.follow(
-            &to,
-            &BlockPlaces::of(after),
-            &wear,
-            Some(&beside),
-            &mut candidates,
-        );
-        taken_over += candidates_alone - candidates.len();
+        let half = Pose::new(from.rotation, to.translation);
+        separations.follow(&half, &BlockPlaces::of(after), &wear, &mut candidates);
+        separations.follow(&to, &BlockPlaces::of(after), &wear, &mut candidates);
         for (number, block) in (0..).zip(after) {
             if !candidates.contains(&number) {
                 sure += 1;
@@ -184,8 +171,7 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
             }
         }
     }
-    println!("{sure} of {}, {taken_over} taken over", 150 * unworn.len());
-    assert!(taken_over > LANES);
+    println!("{sure} of {}", 150 * unworn.len());
     sure
 }
 
