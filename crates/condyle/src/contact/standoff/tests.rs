@@ -151,18 +151,12 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
         };
         let mut due = Vec::new();
         // There by way of half of it, as over many steps.
-        let half = Pose {
-            rotation: from.rotation,
-            ..to
-        };
+        let half = Pose::new(from.rotation, to.translation);
         standoff.follow(&half, &Ground::of(after), &wear, None, &mut due);
         let mut alone = standoff.clone();
         alone.follow(&to, &Ground::of(after), &wear, None, &mut due);
         let due_alone = due.len();
-        let beside = Pose {
-            translation: to.translation + numbers.vector(0.2),
-            ..to
-        };
+        let beside = Pose::new(to.rotation, to.translation + numbers.vector(0.2));
         let mut beside = searched(femur, after, &beside);
         beside.worn = wear.number;
         standoff.follow(&to, &Ground::of(after), &wear, Some(&beside), &mut due);
