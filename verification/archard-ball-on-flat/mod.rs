@@ -1,10 +1,10 @@
 //! The volume that Archard's law wears, whatever the shape.
 
-use std::{cell::RefCell, f64::consts::PI};
+use std::{cell::RefCell, f64::consts::PI, path::Path};
 
 use condyle::{
     contact::Foundation,
-    evolve::{March, WearTest},
+    evolve::March,
     geometry::FemoralSurface,
     machine::{Chain, Simulator, SolverCounters},
 };
@@ -13,9 +13,9 @@ use crate::{
     Case, Row,
     drives::to_and_fro,
     law::THICKNESS_MM,
-    marched::{going_on, marched, test_of},
+    marched::{bodies_of, case_in, going_on, marched, started},
     plate::rubbing,
-    pressed::block,
+    pressed::{block, contact_of},
     quadrature::integral,
     recorder::Recorder,
     rub_test::{MM_PER_M, Rub, WEAR_FACTOR_MM3_PER_NM},
@@ -98,8 +98,8 @@ fn volumes_mm3(march: &March) -> (f64, f64) {
 }
 
 fn of_a_knee() -> Vec<Row> {
-    let march = March::start(knee()).expect("a knee");
-    let rubbed_nm = rubbed_nmm(&march) / MM_PER_M;
+    let (march, law) = started(&knee());
+    let rubbed_nm = rubbed_nmm(&march, &law) / MM_PER_M;
     let exact = WEAR_FACTOR_MM3_PER_NM * rubbed_nm * CYCLES;
     let (depth, mesh) = volumes_mm3(&going_on(march));
     vec![
@@ -114,31 +114,29 @@ fn of_a_knee() -> Vec<Row> {
     ]
 }
 
-fn knee() -> WearTest {
+fn knee() -> condyle_io::case::Case {
     let default = include_str!("../../cases/stanmore-force.toml");
     let above = default.split("[march]").next().unwrap_or_default();
     let cycles = CYCLES as u64;
-    test_of(&format!("{above}[march]\ncycles = {cycles}\nupdates = 1\n"))
+    let text = format!("{above}[march]\ncycles = {cycles}\nupdates = 1\n");
+    case_in(&text, Path::new(""))
 }
 
 /// Normal force times sliding over the cycle that a march is about to solve.
-fn rubbed_nmm(march: &March) -> f64 {
-    let test = march.test();
+fn rubbed_nmm(march: &March, law: &Foundation) -> f64 {
+    let (test, surface) = (march.test(), march.insert().surface());
+    let machine = test.machine();
     let rubbed = RefCell::default();
-    let foundation = Foundation::new(&test.contact, &test.femur, &test.insert);
-    let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
-    let mut simulator = Simulator::new(
-        &test.machine,
-        &chain,
-        Recorder::new(foundation, &test.contact, &rubbed),
-        &test.time,
-    );
+    let contact = contact_of(law, bodies_of(march, &surface));
+    let mut contact = Recorder::new(contact, law, &rubbed);
+    let chain = Chain::new(machine, march.state().zero_mm, test.flexion_axis_mm);
+    let mut simulator = Simulator::new(machine, &chain, &mut contact, &test.time);
     let mut watch = |_| std::ops::ControlFlow::Continue(());
-    let start = march.state().machine;
+    let start = march.state().activities[0].machine;
     let solved = simulator.cycle(&start, &mut SolverCounters::default(), &mut watch);
     assert!(solved.expect("a solved cycle").is_continue());
-    let rubbed = rubbed.into_inner();
-    let step_s = 1.0 / (test.machine.frequency_hz * test.time.increments as f64);
+    let rubbed = rubbed.take();
+    let step_s = 1.0 / (machine.frequency_hz * test.time.increments as f64);
     let last_cycle = &rubbed[rubbed.len() - test.time.increments..];
     last_cycle.iter().sum::<f64>() * step_s
 }

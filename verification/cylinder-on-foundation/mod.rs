@@ -2,7 +2,7 @@
 
 use condyle::{
     Vec3,
-    contact::{Foundation, PressureLaw},
+    contact::{Bodies, PressureLaw},
     geometry::{Cylinder, FemoralSurface},
 };
 
@@ -10,7 +10,7 @@ use crate::{
     Case, Row,
     foundation_rows::{Accepted, refined, rows as rows_of},
     law::{ExactLaw, THICKNESS_MM, exact_laws, kinks_mm, modulus_mpa},
-    pressed::{Exact, Pressed, block, press, still, without_friction},
+    pressed::{Exact, Pressed, block, contact_of, press, still, without_friction},
     quadrature::integral,
 };
 
@@ -105,17 +105,22 @@ fn slide(law: &PressureLaw, edge_mm: f64) -> Vec<Pressed> {
     let femur = FemoralSurface::Cylinder(Cylinder {
         radius_mm: RADIUS_MM,
     });
-    let (settings, layer) = (
+    let (law, layer) = (
         without_friction(law),
         block(WIDTH_MM, THICKNESS_MM, edge_mm),
     );
-    let mut contact = Foundation::new(&settings, &femur, &layer);
+    let bodies = Bodies {
+        femur: &femur,
+        insert: &layer,
+        surface: &layer.surface(),
+    };
+    let mut contact = contact_of(&law, bodies);
     let place = |i: u32| {
         let x = 2.0 * EDGE_MM * f64::from(i) / f64::from(PLACES);
         still(Vec3::new(x - 1.0, depth_mm(), 0.0))
     };
     (0..PLACES)
-        .map(|i| press(&mut contact, &place(i)))
+        .map(|i| press(contact.as_mut(), &place(i)))
         .collect()
 }
 

@@ -1,9 +1,9 @@
 //! Where the work of a gait cycle goes.
 
 use condyle::{
-    contact::{Mat6, Vec6},
     evolve::WearTest,
     machine::{Chain, CycleRow, Drive, Integration, Spring},
+    spatial::{Mat6, Twist, Vec6},
 };
 
 use crate::{
@@ -67,7 +67,7 @@ fn rows() -> Vec<Row> {
 
 impl Ledger {
     fn of(case: &DefaultCase, solved: &Solved) -> Self {
-        let step_s = 1.0 / (case.test().machine.frequency_hz * solved.rows.len() as f64);
+        let step_s = 1.0 / (case.test().machine().frequency_hz * solved.rows.len() as f64);
         let chain = case.chain();
         let instants = solved.rows.iter().zip(&solved.contact);
         let flows: Vec<Flow> = instants
@@ -136,25 +136,26 @@ impl Flow {
     fn at(test: &WearTest, chain: &Chain, row: &CycleRow, instant: &Instant) -> Self {
         let screws = chain.at(&row.positions).screws;
         let rates = rates(&screws, instant);
-        let springs = test.machine.springs.iter();
+        let on_femur = instant.wrench.reaction();
+        let springs = test.machine().springs.iter();
         let mut flow = Self {
             put_in: 0.0,
             damping: 0.0,
             friction: instant.friction_nmm_per_s,
-            contact: instant.wrench.dot(&instant.twist),
+            contact: -on_femur.power(&instant.twist),
             stored: instant.stored_nmm
                 + springs
                     .map(|spring| stored_nmm(spring, &row.positions))
                     .sum::<f64>(),
         };
-        for (j, joint) in test.machine.joints.iter().enumerate() {
+        for (j, joint) in test.machine().joints.iter().enumerate() {
             let rate = rates[j];
             if let Drive::Loaded(load) = &joint.drive {
                 flow.put_in += load.at(row.percent / 100.0).0 * rate;
                 flow.damping += joint.damping * rate * rate;
                 flow.stored += joint.inertia * rate * rate / 2.0;
             } else {
-                flow.put_in += screws[j].dot(&instant.wrench) * rate;
+                flow.put_in -= on_femur.power(&screws[j]) * rate;
             }
         }
         flow
@@ -162,8 +163,10 @@ impl Flow {
 }
 
 /// Rates of the freedoms, from the twist that they make together.
-fn rates(screws: &[Vec6; 6], instant: &Instant) -> Vec6 {
-    let solved = Mat6::from_columns(screws).lu().solve(&instant.twist);
+fn rates(screws: &[Twist; 6], instant: &Instant) -> Vec6 {
+    let columns = screws.each_ref().map(Twist::numbers);
+    let solved = Mat6::from_columns(&columns).lu();
+    let solved = solved.solve(&instant.twist.numbers());
     solved.expect("six independent freedoms")
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use condyle::{
     Vec3,
-    contact::Foundation,
+    contact::Bodies,
     machine::{Cycle, Drive, Machine, Waveform, knee::AP},
 };
 
@@ -14,7 +14,7 @@ use crate::{
     law::THICKNESS_MM,
     machine::{cycle, exact_time, machine},
     plate::{plate, rubbing},
-    pressed::{block, moving, press},
+    pressed::{block, contact_of, moving, press},
     quadrature::integral,
 };
 
@@ -50,12 +50,17 @@ fn overclosure_mm(stiffness: f64) -> f64 {
 
 /// Friction as the contact says, at speeds from deep stick to full slip, 30 degrees off the mesh.
 fn at_speeds() -> Vec<Row> {
-    let (settings, stiffness) = rubbing(FRICTION, TOLERANCE_MM_PER_S);
+    let (law, stiffness) = rubbing(FRICTION, TOLERANCE_MM_PER_S);
     let (femur, insert) = (plate(SIZE_MM), block(SIZE_MM, THICKNESS_MM, 1.0));
-    let mut contact = Foundation::new(&settings, &femur, &insert);
+    let bodies = Bodies {
+        femur: &femur,
+        insert: &insert,
+        surface: &insert.surface(),
+    };
+    let mut contact = contact_of(&law, bodies);
     let along = Vec3::new((PI / 6.0).cos(), 0.0, (PI / 6.0).sin());
     let place = Vec3::new(0.0, -overclosure_mm(stiffness), 0.0);
-    let mut at = |speed: f64| press(&mut contact, &moving(place, along * speed)).force_n;
+    let mut at = |speed: f64| press(contact.as_mut(), &moving(place, along * speed)).force_n;
     let pressed = Row::relative("load at rest", "N", LOAD_N, -at(0.0).y, 1e-9);
     let speeds = [1e-3, 0.1, 1.0, 10.0];
     let mut rows: Vec<Row> = speeds
@@ -88,7 +93,7 @@ fn at_speeds() -> Vec<Row> {
 
 /// The block's cycle, pulled or moved along AP under the load.
 fn moved(ap: Drive, damping: f64, increments: usize) -> (Cycle, Machine) {
-    let (settings, stiffness) = rubbing(FRICTION, TOLERANCE_MM_PER_S);
+    let (law, stiffness) = rubbing(FRICTION, TOLERANCE_MM_PER_S);
     let (femur, insert) = (plate(60.0), block(SIZE_MM, THICKNESS_MM, 2.0));
     let load = Drive::Loaded(Waveform::constant(-LOAD_N));
     let locked = || Drive::Locked(0.0);
@@ -99,8 +104,13 @@ fn moved(ap: Drive, damping: f64, increments: usize) -> (Cycle, Machine) {
     let mut time = exact_time(increments);
     time.force_tolerance_n = 1e-7;
     time.most_cycles_to_repeat = 2;
-    let contact = Foundation::new(&settings, &femur, &insert);
-    (cycle(&machine, contact, down, &time), machine)
+    let bodies = Bodies {
+        femur: &femur,
+        insert: &insert,
+        surface: &insert.surface(),
+    };
+    let mut contact = contact_of(&law, bodies);
+    (cycle(&machine, contact.as_mut(), down, &time), machine)
 }
 
 fn speed_pulled(force_n: f64, damping: f64) -> f64 {

@@ -2,12 +2,13 @@
 
 use condyle::{
     Mat3, Vec3,
-    contact::{ContactModel, Foundation, Mat6, Pose, RelativeMotion, Tangent, Vec6, cross_matrix},
+    contact::{Bodies, Tangent},
     geometry::{ColumnGrid, FemoralSurface, GenericInsertShape, Insert},
+    spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6, WrenchByTwist},
 };
 use nalgebra::Rotation3;
 
-use crate::{Row, plate::rubbing};
+use crate::{Row, plate::rubbing, pressed::contact_of};
 
 /// A turn and then a shift of everything.
 struct Moved {
@@ -26,19 +27,20 @@ impl Moved {
         let mut matrix = Mat6::zeros();
         matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.turn);
         matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.turn);
-        let lever = cross_matrix(&self.shift) * self.turn;
+        let lever = self.shift.cross_matrix() * self.turn;
         matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&lever);
         matrix
     }
 
     fn motion(&self, motion: &RelativeMotion) -> RelativeMotion {
         let to_old = self.wrenches().transpose();
+        let to_new = to_old.try_inverse().expect("a rigid motion");
         RelativeMotion {
-            pose: Pose {
-                rotation: self.turn * motion.pose.rotation,
-                translation: self.point(&motion.pose.translation),
-            },
-            twist: to_old.try_inverse().expect("a rigid motion") * motion.twist,
+            pose: Pose::new(
+                self.turn * motion.pose.rotation,
+                self.point(&motion.pose.translation),
+            ),
+            twist: Twist::of_numbers(&(to_new * motion.twist.numbers())),
         }
     }
 }
@@ -51,16 +53,15 @@ pub(super) fn rows() -> [Row; 3] {
         shift: Vec3::new(12.0, -5.0, 30.0),
     };
     let motion = RelativeMotion {
-        pose: Pose {
-            rotation: Mat3::identity(),
-            translation: Vec3::new(1.3, 23.8, 22.4),
-        },
-        twist: Vec6::new(0.3, -0.2, 0.5, 12.0, 1.0, -7.0),
+        pose: Pose::new(Mat3::identity(), Vec3::new(1.3, 23.8, 22.4)),
+        twist: Twist::new(Vec3::new(0.3, -0.2, 0.5), Vec3::new(12.0, 1.0, -7.0)),
     };
     let (wrench, tangent) = response(&insert(Vec3::clone), &motion);
     let there = response(&insert(|point| moved.point(point)), &moved.motion(&motion));
     let along = moved.wrenches();
-    let apart = |there: Mat6, here: Mat6| (there - along * here * along.transpose()).norm();
+    let apart = |there: &WrenchByTwist, here: &WrenchByTwist| {
+        (there.matrix - along * here.matrix * along.transpose()).norm()
+    };
     let row = |what: &str, apart: f64, size: f64| {
         Row::absolute(
             format!("contact turned: {what}, part"),
@@ -74,22 +75,28 @@ pub(super) fn rows() -> [Row; 3] {
         row("wrench", (there.0 - along * wrench).norm(), there.0.norm()),
         row(
             "derivative by pose",
-            apart(there.1.by_pose, tangent.by_pose),
-            there.1.by_pose.norm(),
+            apart(&there.1.by_pose, &tangent.by_pose),
+            there.1.by_pose.matrix.norm(),
         ),
         row(
             "derivative by twist",
-            apart(there.1.by_twist, tangent.by_twist),
-            there.1.by_twist.norm(),
+            apart(&there.1.by_twist, &tangent.by_twist),
+            there.1.by_twist.matrix.norm(),
         ),
     ]
 }
 
 /// A ball's wrench and tangent.
 fn response(insert: &Insert, motion: &RelativeMotion) -> (Vec6, Tangent) {
-    let (femur, (settings, _)) = (FemoralSurface::sphere(24.0), rubbing(0.07, 1.0));
-    let mut contact = Foundation::new(&settings, &femur, insert);
-    (contact.respond(motion), contact.tangent())
+    let (femur, (law, _)) = (FemoralSurface::sphere(24.0), rubbing(0.07, 1.0));
+    let bodies = Bodies {
+        femur: &femur,
+        insert,
+        surface: &insert.surface(),
+    };
+    let mut contact = contact_of(&law, bodies);
+    let response = contact.respond(motion);
+    (response.wrench.numbers(), response.tangent())
 }
 
 /// The lateral dish, every node placed anew.

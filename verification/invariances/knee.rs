@@ -8,7 +8,7 @@ use condyle::{
     geometry::{GenericFemur, GenericFemurShape, GenericInsertShape, Meshing, TriangleMesh},
 };
 
-use crate::marched::test_in;
+use crate::marched::{built, case_in};
 
 /// Flexion at the start of the cycle, degrees: that of the machine.
 const START_FLEXION_DEG: f64 = -7.0;
@@ -105,7 +105,7 @@ impl Knee {
         for (name, mesh) in [("femur.obj", &self.femur), ("insert.obj", &self.insert)] {
             fs::write(folder.path().join(name), self.obj(mesh)).expect("a file");
         }
-        test_in(&self.case(), folder.path())
+        built(&case_in(&self.case(), folder.path()))
     }
 
     fn obj(&self, mesh: &TriangleMesh) -> String {

@@ -91,7 +91,8 @@ fn shifted() -> Worn {
     };
     let mut test = moved.test();
     // A case has the IE axis in the middle.
-    test.machine.joint_mut(IE).axis_point_mm.z += by.z;
+    let machine = &mut test.activities[0].machine;
+    machine.joint_mut(IE).axis_point_mm.z += by.z;
     Worn::of(&marched(test))
 }
 

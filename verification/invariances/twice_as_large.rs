@@ -1,5 +1,7 @@
 //! A knee twice as large, loaded so that its pressures are the same.
 
+use std::sync::Arc;
+
 use condyle::{
     Vec3,
     evolve::{March, WearTest},
@@ -66,7 +68,7 @@ slip_tolerance_mm_per_s = {:?}
         10.0 * factor,
     );
     let mut test = test_of(&(femur + &EXACTLY.replace("100", "400")));
-    test.insert = insert(factor);
+    test.insert = Arc::new(insert(factor));
     scale_machine(&mut test, factor);
     test
 }
@@ -97,7 +99,7 @@ fn grown(grid: ColumnGrid, factor: f64) -> ColumnGrid {
 /// Loads, springs, inertia, damping and axes, so that pressures stay.
 fn scale_machine(test: &mut WearTest, factor: f64) {
     let (square, cube) = (factor.powi(2), factor.powi(3));
-    let machine = &mut test.machine;
+    let machine = &mut test.activities[0].machine;
     for joint in &mut machine.joints {
         let (load, slow) = match joint.description.kind() {
             JointKind::Rotation => (cube, cube),

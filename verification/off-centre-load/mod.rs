@@ -1,5 +1,7 @@
 //! A load off the centre line, shared between two condyles.
 
+use condyle::machine::knee::{LATERAL, MEDIAL};
+
 use crate::{
     Case, Row,
     marched::{marched, test_of},
@@ -22,11 +24,17 @@ fn rows() -> Vec<Row> {
 /// Shares and sum of the load with the axis `medial_mm` medial of the middle.
 fn shared(medial_mm: f64) -> [Row; 3] {
     let march = marched(test_of(&case(medial_mm)));
-    let (_, last) = march.state().first_and_last.as_ref().expect("a cycle");
+    let (_, last) = march.state().activities[0]
+        .first_and_last
+        .as_ref()
+        .expect("a cycle");
     let row = last.rows.last().expect("an increment");
     let share = |n: f64| 100.0 * n / row.axial_force_n;
     let exact = 50.0 * (HALF_SPACING_MM + medial_mm) / HALF_SPACING_MM;
-    let (medial, lateral) = (share(row.medial_force_n), share(row.lateral_force_n));
+    let (medial, lateral) = (
+        share(row.region_force_n[MEDIAL]),
+        share(row.region_force_n[LATERAL]),
+    );
     let what = |side: &str| format!("{side} share, axis {medial_mm} mm medial");
     [
         Row::absolute(what("medial"), "%", exact, medial, 0.01),

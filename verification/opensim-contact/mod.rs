@@ -4,14 +4,13 @@ use std::path::{Path, PathBuf};
 
 use condyle::{
     Mat3, Vec3,
-    contact::{Foundation, Pose, RelativeMotion, Vec6},
-    evolve::March,
+    spatial::{Pose, RelativeMotion},
 };
 
 use crate::{
     Case, Row,
-    marched::test_in,
-    pressed::{Pressed, press},
+    marched::{bodies_of, case_in, started},
+    pressed::{Pressed, contact_of, press},
 };
 
 pub(crate) const CASE: Case = Case {
@@ -87,11 +86,10 @@ fn approach_mm(ours: &Pressed, theirs: &Theirs) -> f64 {
 
 /// Condyle at the same poses.
 fn ours() -> Vec<Pressed> {
-    let march = March::start(test_in(include_str!("dm-knee-uniform.toml"), &folder()));
-    let march = march.expect("the implant settles");
-    let test = march.test();
-    let mut contact = Foundation::new(&test.contact, &test.femur, &test.insert);
-    let at = |line: &str| press(&mut contact, &at_rest(&numbers(line)));
+    let (march, law) = started(&case_in(include_str!("dm-knee-uniform.toml"), &folder()));
+    let surface = march.insert().surface();
+    let mut contact = contact_of(&law, bodies_of(&march, &surface));
+    let at = |line: &str| press(contact.as_mut(), &at_rest(&numbers(line)));
     POSES.lines().skip(1).map(at).collect()
 }
 
@@ -104,13 +102,10 @@ fn folder() -> PathBuf {
 }
 
 fn at_rest(row: &[f64]) -> RelativeMotion {
-    RelativeMotion {
-        pose: Pose {
-            rotation: Mat3::from_row_slice(&row[1..10]),
-            translation: Vec3::from_row_slice(&row[10..13]),
-        },
-        twist: Vec6::zeros(),
-    }
+    RelativeMotion::at_rest(Pose::new(
+        Mat3::from_row_slice(&row[1..10]),
+        Vec3::from_row_slice(&row[10..13]),
+    ))
 }
 
 /// Rows of OpenSim's answers, after the line that says its version and the header.

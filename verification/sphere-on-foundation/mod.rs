@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use condyle::{
     Vec3,
-    contact::{Foundation, PressureLaw, PressureTable},
+    contact::{Bodies, PressureLaw, PressureTable},
     geometry::{FemoralSurface, GenericInsertShape, Insert, Meshing, SmoothField},
 };
 
@@ -13,7 +13,7 @@ use crate::{
     ball::ball_mesh,
     foundation_rows::{Accepted, refined, ripple_row, rows as rows_of},
     law::{ExactLaw, THICKNESS_MM, exact_laws, modulus_mpa},
-    pressed::{Exact, Pressed, block, press, still, without_friction},
+    pressed::{Exact, Pressed, block, contact_of, press, still, without_friction},
 };
 
 pub(crate) const CASE: Case = Case {
@@ -107,15 +107,20 @@ fn layer(edge_mm: f64) -> Insert {
 
 /// The ball at places along a line that meets no symmetry of the mesh.
 fn slide(law: &PressureLaw, femur: &FemoralSurface, layer: &Insert) -> Vec<Pressed> {
-    let settings = without_friction(law);
-    let mut contact = Foundation::new(&settings, femur, layer);
+    let law = without_friction(law);
+    let bodies = Bodies {
+        femur,
+        insert: layer,
+        surface: &layer.surface(),
+    };
+    let mut contact = contact_of(&law, bodies);
     let height = RADIUS_MM - overclosure_mm();
     let place = |i: u32| {
         let along = 4.0 * DEFAULT_EDGE_MM * f64::from(i) / f64::from(PLACES);
         Vec3::new(along - 2.0, height, 0.618 * along - 1.3)
     };
     (0..PLACES)
-        .map(|i| press(&mut contact, &still(place(i))))
+        .map(|i| press(contact.as_mut(), &still(place(i))))
         .collect()
 }
 
@@ -134,15 +139,20 @@ const APPROACH_MM: f64 = 0.13;
 /// A table of two points is a linear law whatever the thickness, so the force has one size.
 fn forces_in_dish(femur: &FemoralSurface, dish: &Insert) -> Vec<f64> {
     let stiff = PressureTable::new(vec![(0.0, 0.0), (1.0, modulus_mpa() / THICKNESS_MM)]);
-    let settings = without_friction(&PressureLaw::Tabulated(stiff.expect("a table that rises")));
-    let mut contact = Foundation::new(&settings, femur, dish);
+    let law = without_friction(&PressureLaw::Tabulated(stiff.expect("a table that rises")));
+    let bodies = Bodies {
+        femur,
+        insert: dish,
+        surface: &dish.surface(),
+    };
+    let mut contact = contact_of(&law, bodies);
     let shape = GenericInsertShape::default();
     let axis = Vec3::new(0.0, shape.sagittal_radius_mm, shape.spacing_mm / 2.0);
     let reach = shape.sagittal_radius_mm - RADIUS_MM + APPROACH_MM;
     let force_n = |i: u32| {
         let turn = 0.1 * (f64::from(i) / f64::from(PLACES) - 0.4);
         let place = axis + Vec3::new(turn.sin(), -turn.cos(), 0.0) * reach;
-        press(&mut contact, &still(place)).force_n.norm()
+        press(contact.as_mut(), &still(place)).force_n.norm()
     };
     (0..PLACES).map(force_n).collect()
 }

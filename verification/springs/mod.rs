@@ -50,7 +50,7 @@ fn held(ie: Drive, force_n: f64) -> (f64, f64) {
     let ap = Drive::Loaded(Waveform::constant(force_n));
     let drives = [locked(), ie, locked(), ap, locked(), locked()];
     let machine = machine(drives, vec![spring(OFFSET_MM), spring(-OFFSET_MM)]);
-    let end = cycle(&machine, Apart, Vec3::zeros(), &exact_time(20)).end;
+    let end = cycle(&machine, &mut Apart, Vec3::zeros(), &exact_time(20)).end;
     (AP.of(&end.now.positions), IE.of(&end.now.positions))
 }
 

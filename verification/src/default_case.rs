@@ -1,14 +1,17 @@
 //! The default case's gait cycle on the unworn insert, solved as finely as one likes.
 
-use std::{cell::RefCell, ops::ControlFlow};
+use std::{cell::RefCell, ops::ControlFlow, path::Path};
 
 use condyle::{
+    contact::Foundation,
     evolve::{March, WearTest},
-    machine::{Chain, CycleRow, Integration, Simulator, SolverCounters, TimeSettings},
+    machine::{
+        Chain, CycleRow, Integration, MachineState, Simulator, SolverCounters, TimeSettings,
+    },
 };
 
 use crate::{
-    marched::test_of,
+    marched::{bodies_of, case_in, started},
     witness::{Instant, Witness},
 };
 
@@ -20,6 +23,7 @@ const REPEATS_RAD: f64 = 1e-7;
 /// The default case, its femur settled on the insert.
 pub(crate) struct DefaultCase {
     march: March,
+    law: Foundation,
 }
 
 /// A cycle that repeats itself.
@@ -33,9 +37,9 @@ pub(crate) struct Solved {
 
 impl DefaultCase {
     pub(crate) fn new() -> Self {
-        let test = test_of(include_str!("../../cases/stanmore-force.toml"));
-        let march = March::start(test).expect("a shipped case settles");
-        Self { march }
+        let text = include_str!("../../cases/stanmore-force.toml");
+        let (march, law) = started(&case_in(text, Path::new("")));
+        Self { march, law }
     }
 
     pub(crate) fn test(&self) -> &WearTest {
@@ -44,7 +48,12 @@ impl DefaultCase {
 
     pub(crate) fn chain(&self) -> Chain {
         let (test, zero_mm) = (self.test(), self.march.state().zero_mm);
-        Chain::new(&test.machine, zero_mm, test.flexion_axis_mm)
+        Chain::new(test.machine(), zero_mm, test.flexion_axis_mm)
+    }
+
+    /// The machine at rest, where the femur settled.
+    fn start(&self) -> MachineState {
+        self.march.state().activities[0].machine
     }
 
     /// Cycles from rest, where the femur settled, until one repeats itself.
@@ -59,18 +68,20 @@ impl DefaultCase {
             ..test.time
         };
         let seen = RefCell::new(Vec::new());
-        let mut simulator = Simulator::new(&test.machine, &chain, Witness::new(test, &seen), &time);
+        let surface = self.march.insert().surface();
+        let mut contact = Witness::new(&self.law, bodies_of(&self.march, &surface), &seen);
+        let mut simulator = Simulator::new(test.machine(), &chain, &mut contact, &time);
         let mut counters = SolverCounters::default();
         let mut watch = |_| ControlFlow::Continue(());
         let cycle = simulator
-            .cycle(&self.march.state().machine, &mut counters, &mut watch)
+            .cycle(&self.start(), &mut counters, &mut watch)
             .expect("a shipped case is solved")
             .continue_value()
             .expect("nobody stops it");
         assert!(cycle.repeats, "no cycle repeats itself");
         Solved {
             rows: cycle.rows,
-            contact: last_of_each_place(&seen.into_inner(), increments),
+            contact: last_of_each_place(&seen.take(), increments),
             counters,
         }
     }

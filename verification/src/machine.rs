@@ -2,44 +2,38 @@
 
 use condyle::{
     Vec3,
-    contact::{ContactModel, Mat6, RelativeMotion, Tangent, TouchedNode, Vec6},
+    contact::{ContactModel, Landing, Linearization, MOST_REGIONS, Response, Tangent},
     machine::{
         Chain, Cycle, Drive, JointKind, Machine, MachineState, Simulator, SolverCounters, Spring,
         TimeSettings, knee::KNEE,
     },
+    spatial::{RelativeMotion, Wrench, WrenchByTwist},
 };
 use std::ops::ControlFlow;
 
 /// No contact at all.
 pub(crate) struct Apart;
 
-impl ContactModel for Apart {
-    fn respond(&mut self, _: &RelativeMotion) -> Vec6 {
-        Vec6::zeros()
-    }
-
+impl Linearization for Apart {
     fn tangent(&self) -> Tangent {
-        let none = Mat6::zeros();
         Tangent {
-            by_pose: none,
-            by_twist: none,
+            by_pose: WrenchByTwist::zero(),
+            by_twist: WrenchByTwist::zero(),
         }
     }
+}
 
-    fn mean_slip(&self) -> [Vec3; 2] {
-        [Vec3::zeros(); 2]
-    }
-
+impl ContactModel for Apart {
     fn node_count(&self) -> usize {
         0
     }
 
-    fn touched(&mut self, _: &RelativeMotion) -> Vec<TouchedNode> {
-        Vec::new()
+    fn respond(&mut self, _: &RelativeMotion) -> Response<'_> {
+        Response::new(Wrench::zero(), [Vec3::zeros(); MOST_REGIONS], self)
     }
 
-    fn peak_pressure_mpa(&self, _: &RelativeMotion, _: &[TouchedNode]) -> f64 {
-        0.0
+    fn land(&mut self, _: &RelativeMotion) -> Landing {
+        Landing::default()
     }
 }
 
@@ -72,7 +66,7 @@ pub(crate) fn exact_time(increments: usize) -> TimeSettings {
 /// A cycle that repeats itself, the femur's frame at `zero_mm` with the machine at zero.
 pub(crate) fn cycle(
     machine: &Machine,
-    contact: impl ContactModel,
+    contact: &mut dyn ContactModel,
     zero_mm: Vec3,
     time: &TimeSettings,
 ) -> Cycle {

@@ -2,18 +2,41 @@
 
 use std::{ops::ControlFlow, path::Path};
 
-use condyle::evolve::{March, WearTest};
+use condyle::{
+    contact::{Bodies, Foundation},
+    evolve::{March, WearTest},
+    geometry::ArticulatingSurface,
+};
 use condyle_io::case::Case;
 
 /// The wear test that a case file describes.
 pub(crate) fn test_of(case: &str) -> WearTest {
-    test_in(case, Path::new(""))
+    built(&case_in(case, Path::new("")))
 }
 
-/// The wear test that a case file describes, whose paths count from `folder`.
-pub(crate) fn test_in(case: &str, folder: &Path) -> WearTest {
-    let case = Case::parse(case, "case.toml", folder).expect("a good case");
+/// The case of a case file whose paths count from `folder`.
+pub(crate) fn case_in(text: &str, folder: &Path) -> Case {
+    Case::parse(text, "case.toml", folder).expect("a good case")
+}
+
+/// The wear test of a case.
+pub(crate) fn built(case: &Case) -> WearTest {
     case.build(1).expect("bodies").test
+}
+
+/// A march that has not gone yet, and the foundation that its test is made with.
+pub(crate) fn started(case: &Case) -> (March, Foundation) {
+    let march = March::start(built(case)).expect("a knee");
+    (march, case.foundation())
+}
+
+/// The bodies of a march as worn so far, `surface` that of its insert.
+pub(crate) fn bodies_of<'a>(march: &'a March, surface: &'a ArticulatingSurface) -> Bodies<'a> {
+    Bodies {
+        femur: march.femur(),
+        insert: march.insert(),
+        surface,
+    }
 }
 
 /// A test with all its updates done.

@@ -2,14 +2,11 @@
 
 use condyle::{
     Vec3,
-    contact::FoundationSettings,
+    contact::Foundation,
     geometry::{FemoralSurface, SmoothField, TriangleMesh},
 };
 
-use crate::{
-    law::{THICKNESS_MM, exact_laws},
-    pressed::without_friction,
-};
+use crate::law::{THICKNESS_MM, exact_laws};
 
 /// Edges of the triangles, mm.
 const EDGE_MM: f64 = 2.0;
@@ -38,12 +35,8 @@ pub(crate) fn plate(half_mm: f64) -> FemoralSurface {
 }
 
 /// A linear foundation with friction, and the stiffness of its layer, MPa/mm.
-pub(crate) fn rubbing(friction: f64, slip_tolerance_mm_per_s: f64) -> (FoundationSettings, f64) {
+pub(crate) fn rubbing(friction: f64, slip_tolerance_mm_per_s: f64) -> (Foundation, f64) {
     let [linear, ..] = exact_laws();
-    let settings = FoundationSettings {
-        friction,
-        slip_tolerance_mm_per_s,
-        ..without_friction(&linear.law)
-    };
-    (settings, crate::law::modulus_mpa() / THICKNESS_MM)
+    let law = Foundation::new(linear.law, friction, slip_tolerance_mm_per_s);
+    (law, crate::law::modulus_mpa() / THICKNESS_MM)
 }

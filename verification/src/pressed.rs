@@ -2,19 +2,22 @@
 
 use condyle::{
     Mat3, Vec3,
-    contact::{
-        ContactModel, Foundation, FoundationSettings, Pose, PressureLaw, RelativeMotion, Vec6,
-    },
+    contact::{Bodies, ContactLaw, ContactMemory, ContactModel, Foundation, PressureLaw},
     geometry::{Insert, Meshing, flat_insert},
+    spatial::{Pose, RelativeMotion, Twist},
 };
 
 /// A foundation without friction.
-pub(crate) fn without_friction(law: &PressureLaw) -> FoundationSettings {
-    FoundationSettings {
-        law: law.clone(),
-        friction: 0.0,
-        slip_tolerance_mm_per_s: 1.0,
-    }
+pub(crate) fn without_friction(law: &PressureLaw) -> Foundation {
+    Foundation::new(law.clone(), 0.0, 1.0)
+}
+
+/// The contact of bodies on a foundation that nothing has pressed before.
+pub(crate) fn contact_of<'a>(
+    law: &'a Foundation,
+    bodies: Bodies<'a>,
+) -> Box<dyn ContactModel + 'a> {
+    law.contact(bodies, ContactMemory::default())
 }
 
 /// A flat square block of one layer, the articulating surface at y = 0.
@@ -42,22 +45,19 @@ pub(crate) fn still(place: Vec3) -> RelativeMotion {
 /// The femur unturned, its origin at `place`, moving without turning.
 pub(crate) fn moving(place: Vec3, velocity: Vec3) -> RelativeMotion {
     RelativeMotion {
-        pose: Pose {
-            rotation: Mat3::identity(),
-            translation: place,
-        },
-        twist: Vec6::new(0.0, 0.0, 0.0, velocity.x, velocity.y, velocity.z),
+        pose: Pose::new(Mat3::identity(), place),
+        twist: Twist::new(Vec3::zeros(), velocity),
     }
 }
 
 /// Lets the contact respond to a motion.
-pub(crate) fn press(contact: &mut Foundation<'_>, motion: &RelativeMotion) -> Pressed {
-    let wrench = contact.respond(motion);
-    let touched = contact.touched(motion);
+pub(crate) fn press(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> Pressed {
+    let force_n = contact.respond(motion).wrench.force;
+    let landing = contact.land(motion);
     Pressed {
-        force_n: wrench.fixed_rows::<3>(3).into(),
-        area_mm2: touched.iter().map(|node| node.covered_mm2).sum(),
-        peak_pressure_mpa: contact.peak_pressure_mpa(motion, &touched),
+        force_n,
+        area_mm2: landing.touched.iter().map(|node| node.covered_mm2).sum(),
+        peak_pressure_mpa: landing.peak_pressure_mpa,
     }
 }
 

@@ -1,8 +1,10 @@
 //! A femur that rubs an insert, moved along AP under a load that is held.
 
+use std::sync::Arc;
+
 use condyle::{
-    contact::FoundationSettings,
-    evolve::{Schedule, WearTest},
+    contact::Foundation,
+    evolve::{Activity, Schedule, WearTest},
     geometry::{FemoralSurface, Insert},
     machine::{Drive, Waveform},
     wear::Archard,
@@ -20,7 +22,7 @@ pub(crate) const MM_PER_M: f64 = 1000.0;
 pub(crate) struct Rub {
     pub femur: FemoralSurface,
     pub insert: Insert,
-    pub contact: FoundationSettings,
+    pub contact: Foundation,
     /// Motion of the insert along AP.
     pub ap: Drive,
     pub load_n: f64,
@@ -39,13 +41,13 @@ impl Rub {
         time.force_tolerance_n = 1e-6 * self.load_n;
         (time.repeat_tolerance_mm, time.repeat_tolerance_rad) = (1e-5, 1e-6);
         WearTest {
-            femur: self.femur,
+            femur: Arc::new(self.femur),
             flexion_axis_mm: (0.0, 0.0),
             start_mm: (0.0, 0.0),
-            insert: self.insert,
-            machine: machine(drives, Vec::new()),
-            contact: self.contact,
-            wear: Box::new(Archard {
+            insert: Arc::new(self.insert),
+            contact: Arc::new(self.contact),
+            activities: vec![Activity::only("rub", machine(drives, Vec::new()))],
+            wear: Arc::new(Archard {
                 wear_factor_mm3_per_nm: WEAR_FACTOR_MM3_PER_NM,
             }),
             density_mg_per_mm3: 0.93,

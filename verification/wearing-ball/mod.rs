@@ -79,7 +79,8 @@ fn updates() -> Vec<UpdateRecord> {
         updates: UPDATES,
     };
     let mut test = rub.test();
-    test.machine.joint_mut(knee::ML).drive = to_and_fro_later(ORBIT_MM);
+    let machine = &mut test.activities[0].machine;
+    machine.joint_mut(knee::ML).drive = to_and_fro_later(ORBIT_MM);
     marched(test).state().updates.clone()
 }
 

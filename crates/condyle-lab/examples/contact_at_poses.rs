@@ -14,8 +14,9 @@ use std::{
 
 use condyle::{
     Mat3, Vec3,
-    contact::{ContactModel, Foundation, Pose, RelativeMotion, Vec6},
+    contact::{Bodies, ContactMemory, ContactModel},
     evolve::March,
+    spatial::{Pose, RelativeMotion},
 };
 use condyle_io::case::Case;
 
@@ -29,29 +30,28 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let poses = read_poses(&std::fs::read_to_string(poses)?)?;
     let march = March::start(Case::read(case.as_ref())?.build(1)?.test)?;
-    let test = march.test();
-    let mut contact = Foundation::new(&test.contact, &test.femur, &test.insert);
-    let times = median_times_us(&mut contact, &poses);
+    let bodies = Bodies {
+        femur: march.femur(),
+        insert: march.insert(),
+        surface: &march.insert().surface(),
+    };
+    let law = &march.test().contact;
+    let mut contact = law.contact(bodies, ContactMemory::default());
+    let times = median_times_us(contact.as_mut(), &poses);
     println!("percent,force_x_n,force_y_n,force_z_n,area_mm2,first_us,again_us");
     for ((percent, pose), [first_us, again_us]) in poses.iter().zip(times) {
-        let wrench = contact.respond(&at_rest(pose));
-        let touched = contact.touched(&at_rest(pose));
+        let motion = RelativeMotion::at_rest(*pose);
+        let force_n = contact.respond(&motion).wrench.force;
+        let touched = contact.land(&motion).touched;
         let area_mm2: f64 = touched.iter().map(|node| node.covered_mm2).sum();
-        let (x, y, z) = (wrench[3], wrench[4], wrench[5]);
+        let (x, y, z) = (force_n.x, force_n.y, force_n.z);
         println!("{percent:.1},{x:.4},{y:.4},{z:.4},{area_mm2:.4},{first_us:.2},{again_us:.2}");
     }
     Ok(())
 }
 
-fn at_rest(pose: &Pose) -> RelativeMotion {
-    RelativeMotion {
-        pose: *pose,
-        twist: Vec6::zeros(),
-    }
-}
-
 /// Of every pose, the first and the second evaluation.
-fn median_times_us(contact: &mut Foundation<'_>, poses: &[(f64, Pose)]) -> Vec<[f64; 2]> {
+fn median_times_us(contact: &mut dyn ContactModel, poses: &[(f64, Pose)]) -> Vec<[f64; 2]> {
     let mut times = vec![[const { Vec::new() }; 2]; poses.len()];
     for _ in 0..ROUNDS {
         for ((_, pose), times) in poses.iter().zip(&mut times) {
@@ -63,10 +63,12 @@ fn median_times_us(contact: &mut Foundation<'_>, poses: &[(f64, Pose)]) -> Vec<[
     times.into_iter().map(|both| both.map(median_us)).collect()
 }
 
-fn time(contact: &mut Foundation<'_>, pose: &Pose) -> Duration {
+fn time(contact: &mut dyn ContactModel, pose: &Pose) -> Duration {
+    let motion = RelativeMotion::at_rest(*pose);
     let start = Instant::now();
-    black_box(contact.respond(&at_rest(pose)));
-    black_box(contact.tangent());
+    let response = contact.respond(&motion);
+    black_box(response.wrench);
+    black_box(response.tangent());
     start.elapsed()
 }
 
@@ -84,9 +86,9 @@ fn read_pose(line: &str) -> Result<(f64, Pose), Box<dyn Error>> {
     if numbers.len() != 13 {
         return Err(format!("a pose has 13 numbers, this row has {}", numbers.len()).into());
     }
-    let pose = Pose {
-        rotation: Mat3::from_row_slice(&numbers[1..10]),
-        translation: Vec3::from_row_slice(&numbers[10..]),
-    };
+    let pose = Pose::new(
+        Mat3::from_row_slice(&numbers[1..10]),
+        Vec3::from_row_slice(&numbers[10..]),
+    );
     Ok((numbers[0], pose))
 }

@@ -9,9 +9,10 @@
 use std::error::Error;
 
 use condyle::{
-    contact::{Foundation, Pose},
+    contact::{Bodies, ContactMemory},
     evolve::{March, WearTest},
     machine::{Chain, Drive, SolverCounters, Waveform, knee, settle},
+    spatial::Pose,
 };
 use condyle_io::case::Case;
 
@@ -35,15 +36,20 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn balanced(march: &March, phase: f64, force_n: f64) -> Result<Pose, String> {
     let test = march.test();
-    let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
-    let mut contact = Foundation::new(&test.contact, &test.femur, &test.insert);
-    let mut machine = test.machine.clone();
+    let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
+    let bodies = Bodies {
+        femur: march.femur(),
+        insert: march.insert(),
+        surface: &march.insert().surface(),
+    };
+    let mut contact = test.contact.contact(bodies, ContactMemory::default());
+    let mut machine = test.machine().clone();
     machine.joint_mut(knee::FLEXION).drive = Drive::Locked(flexion(test, phase));
     machine.joint_mut(knee::IS).drive = Drive::Loaded(Waveform::constant(-force_n));
     settle(
         &machine,
         &chain,
-        &mut contact,
+        contact.as_mut(),
         TOLERANCE_N,
         &mut SolverCounters::default(),
     )
@@ -52,7 +58,7 @@ fn balanced(march: &March, phase: f64, force_n: f64) -> Result<Pose, String> {
 }
 
 fn flexion(test: &WearTest, phase: f64) -> f64 {
-    match &test.machine.joint(knee::FLEXION).drive {
+    match &test.machine().joint(knee::FLEXION).drive {
         Drive::Prescribed(waveform) => waveform.at(phase).0,
         Drive::Locked(at) => *at,
         Drive::Loaded(_) => 0.0,
