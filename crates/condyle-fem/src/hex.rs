@@ -1,4 +1,4 @@
-//! One trilinear hexahedron: its edges and its volume.
+//! One trilinear hexahedron: its edges, its faces and its volume.
 
 use crate::Vec3;
 
@@ -18,6 +18,16 @@ pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
     [3, 7],
 ];
 
+/// The six faces of a hexahedron as corners in VTK order, each anticlockwise seen from outside.
+pub const HEX_FACES: [[usize; 4]; 6] = [
+    [0, 3, 2, 1],
+    [4, 5, 6, 7],
+    [0, 1, 5, 4],
+    [1, 2, 6, 5],
+    [2, 3, 7, 6],
+    [3, 0, 4, 7],
+];
+
 /// Exact volume enclosed by a hexahedron with bilinear faces.
 ///
 /// `corners` are in VTK order (bottom quad anticlockwise seen from the top, then the top quad).
@@ -26,7 +36,7 @@ pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
 /// tetrahedral splits of a face, weighted one half, gives it exactly.
 pub fn trilinear_volume(corners: &[Vec3; 8]) -> f64 {
     let origin = corners[0];
-    crate::HEX_FACES
+    HEX_FACES
         .iter()
         .map(|face| volume_below(&face.map(|i| corners[i] - origin)))
         .sum()

@@ -8,8 +8,8 @@ mod mesh;
 mod quality;
 
 pub use follow::InteriorFollower;
-pub use hex::{trilinear_volume, volume_below};
-pub use mesh::{HEX_FACES, HexMesh};
+pub use hex::{HEX_FACES, trilinear_volume, volume_below};
+pub use mesh::HexMesh;
 
 /// A point or a vector in space.
 pub type Vec3 = nalgebra::Vector3<f64>;

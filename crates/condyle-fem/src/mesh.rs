@@ -1,16 +1,6 @@
 //! A mesh of hexahedra: nodes, elements, boundary.
 
-use crate::{Vec3, trilinear_volume};
-
-/// The six faces of a hexahedron as corners in VTK order, each anticlockwise seen from outside.
-pub const HEX_FACES: [[usize; 4]; 6] = [
-    [0, 3, 2, 1],
-    [4, 5, 6, 7],
-    [0, 1, 5, 4],
-    [1, 2, 6, 5],
-    [2, 3, 7, 6],
-    [3, 0, 4, 7],
-];
+use crate::{HEX_FACES, Vec3, trilinear_volume};
 
 /// A mesh of 8-node hexahedra.
 #[derive(Clone, Debug, PartialEq)]
