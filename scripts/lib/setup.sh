@@ -33,18 +33,25 @@ need_python() {
     fi
 }
 
-# A headless browser and the library that drives it; sets $chromium.
-need_browser() {
-    local version=1.64.1
+# Node with the packages of npm that the parts use, in node_modules.
+need_node() {
+    # One after the other they would put each other out.
+    local packages='katex@0.19.1 playwright-core@1.64.1' installed=node_modules/installed-packages.txt
     need_command node nodejs
     need_command npm npm
+    if [[ $(cat "$installed" 2>/dev/null) != "$packages" ]]; then
+        # shellcheck disable=SC2086 # several words
+        npm install --prefix . --no-save --no-package-lock --no-audit --no-fund --loglevel=error $packages >/dev/null ||
+            skip "these packages cannot be installed from npm: $packages"
+        echo "$packages" > "$installed"
+    fi
+}
+
+# A headless browser and the library that drives it; sets $chromium.
+need_browser() {
+    need_node
     need_command chromium chromium
     chromium=$(command -v chromium)
-    if ! grep -qs "\"version\": \"$version\"" node_modules/playwright-core/package.json; then
-        npm install --prefix . --no-save --no-package-lock --no-audit --no-fund --loglevel=error \
-            "playwright-core@$version" >/dev/null ||
-            skip "playwright-core $version cannot be installed from npm"
-    fi
 }
 
 # Builds the command; sets $condyle to its path.

@@ -5,6 +5,8 @@
 //! [`CASES`], then `cargo run --release -p condyle-verification -- --page`.
 
 mod ball;
+#[cfg(doctest)]
+mod book;
 mod case;
 mod convergence;
 mod default_case;

@@ -2,8 +2,6 @@
 
 use std::process::ExitCode;
 
-use crate::exit;
-
 /// An error and its exit code where this machine's processor lacks what the build asks for.
 ///
 /// Without this look it would stop at the first vector with "illegal instruction". The standard library's
@@ -20,10 +18,10 @@ pub fn check() -> Result<(), ExitCode> {
     if has_avx2 && has_fma {
         return Ok(());
     }
-    Err(exit::fail(
+    Err(crate::exit::fail(
         "this condyle was built for x86 processors with AVX2 and FMA, and this one lacks them; build it with \
          RUSTFLAGS=\"-C target-cpu=x86-64\" cargo build --release, and it runs at about half the speed",
-        exit::BAD_INPUT,
+        crate::exit::BAD_INPUT,
     ))
 }
 

@@ -31,6 +31,9 @@ struct Size {
 
 impl InteriorFollower {
     /// A follower of `mesh` whose `held` nodes take a given displacement, and the rest follow.
+    ///
+    /// # Panics
+    /// If the mesh has not as many nodes as `held` or an element says.
     pub fn new(mesh: &HexMesh, held: impl IntoIterator<Item = u32>) -> Self {
         let mut is_held = vec![false; mesh.nodes.len()];
         for node in held {
@@ -54,6 +57,9 @@ impl InteriorFollower {
     ///
     /// `displacement`: one vector a node; those of held nodes are the data, the others the
     /// starting guess. Conjugate gradients, preconditioned by the diagonal.
+    ///
+    /// # Panics
+    /// If there are fewer displacements than the mesh has nodes.
     pub fn follow(&self, displacement: &mut [Vec3]) {
         let enough2 = (RELATIVE_RESIDUAL * self.pull_of_held(displacement)).powi(2);
         let mut residual: Vec<Vec3> = self.pulls(displacement).collect();

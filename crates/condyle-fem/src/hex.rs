@@ -28,12 +28,31 @@ pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
     [3, 7],
 ];
 
+/// The six faces of a hexahedron as corners in VTK order, each anticlockwise seen from outside.
+pub const HEX_FACES: [[usize; 4]; 6] = [
+    [0, 3, 2, 1],
+    [4, 5, 6, 7],
+    [0, 1, 5, 4],
+    [1, 2, 6, 5],
+    [2, 3, 7, 6],
+    [3, 0, 4, 7],
+];
+
 /// Exact volume enclosed by a hexahedron with bilinear faces.
 ///
 /// `corners` are in VTK order (bottom quad anticlockwise seen from the top, then the top quad).
-/// The volume integral becomes one over the six faces, V = 1/3 sum of int x . n dA, and on a
-/// bilinear face that integral is (a + b + c + d)/4 . A plus a twist term; summing the four
-/// tetrahedral splits of a face, weighted one half, gives it exactly.
+/// The volume integral becomes one over the six faces, $V = \tfrac{1}{3} \sum \int x \cdot n dA$, and on a
+/// bilinear face with corners $a, b, c, d$ and vector area $A$ that integral is
+/// $\tfrac{1}{4} (a + b + c + d) \cdot A$ plus a twist term; summing the four tetrahedral splits of a face,
+/// weighted one half, gives it exactly.
+///
+/// ```
+/// use condyle_fem::{Vec3, trilinear_volume};
+///
+/// let bottom = [[0., 0.], [2., 0.], [2., 3.], [0., 3.]];
+/// let corner = |i: usize| Vec3::new(bottom[i % 4][0], bottom[i % 4][1], if i < 4 { 0.0 } else { 0.5 });
+/// assert_eq!(trilinear_volume(&std::array::from_fn(corner)), 3.0);
+/// ```
 pub fn trilinear_volume(corners: &[Vec3; 8]) -> f64 {
     let origin = corners[0];
     HEX_FACES

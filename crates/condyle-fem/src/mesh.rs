@@ -20,6 +20,9 @@ pub struct HexMesh {
 
 impl HexMesh {
     /// Positions of the eight corners of hexahedron `hex`.
+    ///
+    /// # Panics
+    /// If there is no such hexahedron, or it names a node that there is not.
     pub fn corners(&self, hex: usize) -> [Vec3; 8] {
         self.hexes[hex].map(|node| self.nodes[node as usize])
     }
@@ -30,6 +33,9 @@ impl HexMesh {
     }
 
     /// Volume of the whole mesh, each element with bilinear faces.
+    ///
+    /// # Panics
+    /// If an element names a node that there is not.
     pub fn volume(&self) -> f64 {
         (0..self.hexes.len())
             .map(|hex| trilinear_volume(&self.corners(hex)))
@@ -38,6 +44,9 @@ impl HexMesh {
 
     /// The quads that belong to one hexahedron only, anticlockwise seen from outside,
     /// in the order of the elements.
+    ///
+    /// # Panics
+    /// If an element names a node that there is not.
     pub fn boundary_quads(&self) -> Vec<[u32; 4]> {
         let shared = self.shared_quads();
         let alone = shared

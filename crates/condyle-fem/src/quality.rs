@@ -15,7 +15,8 @@ impl HexMesh {
     /// The scaled Jacobian of every element, the smallest over its eight corners: 1 for a brick, 0 or
     /// less where the element is flat or inverted at a corner.
     ///
-    /// At each corner it is the triple product of the three edges over the product of their lengths.
+    /// At each corner with edges $e, f, h$ it is $e \cdot (f \times h)/(|e| |f| |h|)$. Taken to the end it panics
+    /// if an element names a node that there is not.
     pub fn qualities(&self) -> impl Iterator<Item = f64> + '_ {
         self.hexes.chunks(LANES).flat_map(|hexes| {
             let at = |corner: usize| self.gathered(hexes, corner);

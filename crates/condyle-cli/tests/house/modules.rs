@@ -1,116 +1,215 @@
-//! Modules of the physics know only those that they may.
+//! Modules know only those that they may, private ones too.
 
-use crate::repository::{TextFile, text_files_ending};
+use crate::source::{Edge, Sources, made_up};
 
-const MODULES: &[&str] = &["number", "geometry", "contact", "machine", "wear", "evolve"];
-
-/// Each module of `condyle`, and the others that it may use.
+/// Each module, and what it may name outside of itself: modules with all that is in them, or single
+/// items. The row of the longest path speaks for a module; a crate that has a row here needs one for
+/// each of its outermost modules.
 const MAY_USE: &[(&str, &[&str])] = &[
-    ("number", &[]),
-    ("geometry", &["number"]),
-    ("contact", &["number", "geometry"]),
-    // The contact interface, never a mesh.
-    ("machine", &["contact"]),
+    ("condyle_fem::hex", &[]),
+    ("condyle_fem::mesh", &["condyle_fem::hex"]),
+    (
+        "condyle_fem::follow",
+        &["condyle_fem::hex", "condyle_fem::mesh"],
+    ),
+    ("condyle_fem::quality", &["condyle_fem::mesh"]),
+    ("condyle::number", &[]),
+    ("condyle::products", &["condyle::number"]),
+    (
+        "condyle::geometry",
+        &["condyle::number", "condyle::products", "condyle_fem"],
+    ),
+    (
+        "condyle::contact",
+        &["condyle::number", "condyle::products", "condyle::geometry"],
+    ),
+    // The contact interface, never a model or a mesh.
+    (
+        "condyle::machine",
+        &[
+            "condyle::contact::ContactModel",
+            "condyle::contact::TouchedNode",
+            "condyle::contact::history",
+            "condyle::contact::motion",
+        ],
+    ),
     // Histories, never a solver.
-    ("wear", &["contact"]),
-    ("evolve", &["geometry", "contact", "machine", "wear"]),
+    ("condyle::wear", &["condyle::contact::history"]),
+    (
+        "condyle::evolve",
+        &[
+            "condyle::geometry",
+            "condyle::contact",
+            "condyle::machine",
+            "condyle::wear",
+            "condyle_fem",
+        ],
+    ),
+    ("condyle_report::error", &["condyle_io"]),
+    ("condyle_report::number", &[]),
+    (
+        "condyle_report::results",
+        &["condyle_report::error", "condyle_io", "condyle_fem"],
+    ),
+    (
+        "condyle_report::figure",
+        &["condyle_report::number", "condyle_report::results"],
+    ),
+    ("condyle_report::plots", &["condyle_report::figure"]),
+    (
+        "condyle_report::page",
+        &[
+            "condyle_report::figure",
+            "condyle_report::number",
+            "condyle_report::results",
+        ],
+    ),
+    (
+        "condyle_report::measured",
+        &[
+            "condyle_report::figure",
+            "condyle_report::page",
+            "condyle_report::results",
+        ],
+    ),
+    (
+        "condyle_report::pictures",
+        &[
+            "condyle_report::error",
+            "condyle_report::figure",
+            "condyle_report::page",
+            "condyle_report::results",
+            "condyle_report::write",
+        ],
+    ),
+    ("condyle_lab::accuracy", &["condyle", "condyle_io"]),
+    (
+        "condyle_lab::run",
+        &[
+            "condyle_lab::accuracy",
+            "condyle",
+            "condyle_io",
+            "condyle_report",
+        ],
+    ),
+    (
+        "condyle_lab::studies",
+        &["condyle_lab::run", "condyle_io", "condyle_report"],
+    ),
+    (
+        "condyle_lab::measured",
+        &[
+            "condyle_lab::run",
+            "condyle",
+            "condyle_io",
+            "condyle_report",
+        ],
+    ),
 ];
 
-/// Names of `contact` that are a model rather than its interface or its history.
-const MODELS_OF_CONTACT: &[&str] = &["Foundation", "FoundationSettings", "PressureLaw"];
+/// What everyone may name.
+const KNOWN_TO_ALL: &[&str] = &[
+    "condyle_fem::Vec3",
+    "condyle::Vec3",
+    "condyle::Vector",
+    "condyle::Mat3",
+    "condyle_report::Vec3",
+];
 
-/// Names of `contact` that are its interface and not a history.
-const SOLVERS_OF_CONTACT: &[&str] = &["ContactModel", "ContactResponse", "RelativeMotion"];
-
-/// A source file without comments and without its tests, cut into words and `::`.
-fn words(text: &str) -> Vec<String> {
-    let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
-    let lines = code
-        .lines()
-        .map(|line| line.split("//").next().unwrap_or_default());
-    let spaced = lines.collect::<Vec<_>>().join("\n").replace("::", " :: ");
-    let is_apart = |c: char| !(c.is_alphanumeric() || c == '_' || c == ':' || c == ';');
-    let apart = spaced.replace(';', " ; ").replace(is_apart, " ");
-    apart.split_whitespace().map(str::to_owned).collect()
+/// Whether `path` is `whole` or lies within it.
+fn lies_in(path: &str, whole: &str) -> bool {
+    let rest = path.strip_prefix(whole);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
 }
 
-/// Words that name an item of another module: those of `use` statements and those beside a `::`.
-fn imported(text: &str) -> Vec<String> {
-    let words = words(text);
-    let mut is_use = false;
-    let mut found = Vec::new();
-    for (i, word) in words.iter().enumerate() {
-        is_use = word == "use" || (is_use && word != ";");
-        let beside = |other: Option<&String>| other.is_some_and(|other| other == "::");
-        if is_use || beside(words.get(i + 1)) || i > 0 && beside(words.get(i - 1)) {
-            found.push(word.clone());
-        }
-    }
-    found
+/// The row that speaks for a module.
+fn row<'a>(rows: &'a [(&str, &[&str])], module: &str) -> Option<&'a (&'a str, &'a [&'a str])> {
+    let of_module = rows.iter().filter(|(name, _)| lies_in(module, name));
+    of_module.max_by_key(|(name, _)| name.len())
 }
 
-fn files_of(module: &str) -> Vec<TextFile> {
-    let mut files = text_files_ending(".rs");
-    let folder = format!("crates/condyle/src/{module}/");
-    let alone = format!("crates/condyle/src/{module}.rs");
-    files.retain(|file| file.path.starts_with(&folder) || file.path == alone);
-    files
+/// What an edge names, as `condyle::contact::law::Linear`.
+fn named(sources: &Sources, edge: &Edge) -> String {
+    format!("{}::{}", sources.modules[edge.to].path, edge.item)
 }
 
-fn assert_does_not_import(module: &str, banned: &[&str]) {
-    for file in files_of(module) {
-        let found = imported(&file.text);
-        let wrong = found.iter().find(|word| banned.contains(&word.as_str()));
-        assert!(wrong.is_none(), "{} may not use {wrong:?}", file.path);
-    }
+/// Every edge that no row allows, told with its place.
+fn forbidden(sources: &Sources, rows: &[(&str, &[&str])], known_to_all: &[&str]) -> Vec<String> {
+    let edges = sources.edges();
+    let is_forbidden = |edge: &&Edge| {
+        let (from, to) = (&sources.modules[edge.from].path, named(sources, edge));
+        row(rows, from).is_some_and(|(module, allowed)| {
+            let mut all = allowed.iter().chain(known_to_all).chain([module]);
+            !all.any(|whole| lies_in(&to, whole))
+        })
+    };
+    let told = edges.iter().filter(is_forbidden).map(|edge| {
+        let from = &sources.modules[edge.from];
+        let to = named(sources, edge);
+        format!(
+            "{}:{}: {} may not use {to}",
+            from.file, edge.line, from.path
+        )
+    });
+    told.collect()
+}
+
+/// The outermost modules without a row, in crates that have one.
+fn without_row(sources: &Sources, rows: &[(&str, &[&str])]) -> Vec<String> {
+    let has_rows = |name: &str| rows.iter().any(|(module, _)| lies_in(module, name));
+    let outermost = sources.modules.iter().filter(|module| {
+        let parent = module.path.rsplit_once("::");
+        parent.is_some_and(|(parent, _)| !parent.contains("::") && has_rows(parent))
+    });
+    let missing = outermost.filter(|module| row(rows, &module.path).is_none());
+    missing.map(|module| module.path.clone()).collect()
 }
 
 #[test]
 fn modules_use_only_what_they_may() {
-    for (module, allowed) in MAY_USE {
-        let others = MODULES.iter().filter(|other| *other != module);
-        let banned: Vec<&str> = others
-            .filter(|other| !allowed.contains(other))
-            .copied()
-            .collect();
-        assert_does_not_import(module, &banned);
-    }
+    let wrong = forbidden(Sources::of_workspace(), MAY_USE, KNOWN_TO_ALL);
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
 #[test]
-fn machine_sees_a_contact_interface_and_wear_sees_histories() {
-    assert_does_not_import("machine", MODELS_OF_CONTACT);
-    assert_does_not_import("wear", MODELS_OF_CONTACT);
-    assert_does_not_import("wear", SOLVERS_OF_CONTACT);
+fn every_outermost_module_has_its_rule() {
+    let missing = without_row(Sources::of_workspace(), MAY_USE);
+    assert!(missing.is_empty(), "no row in MAY_USE: {missing:?}");
 }
 
 #[test]
-fn every_module_has_files_to_look_at() {
-    for (module, _) in MAY_USE {
-        assert!(!files_of(module).is_empty(), "{module}");
-    }
+fn every_rule_is_about_something_that_there_is() {
+    let sources = Sources::of_workspace();
+    let rows = MAY_USE
+        .iter()
+        .flat_map(|(module, allowed)| [module].into_iter().chain(*allowed));
+    let gone: Vec<_> = rows
+        .chain(KNOWN_TO_ALL)
+        .filter(|path| !sources.has(path))
+        .collect();
+    assert!(gone.is_empty(), "there is no {gone:?}");
 }
 
 #[test]
-fn every_module_of_the_physics_has_its_rule() {
-    let library = crate::repository::read("crates/condyle/src/lib.rs");
-    let public = library
-        .lines()
-        .filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
-    for module in public {
-        assert!(MAY_USE.iter().any(|(name, _)| *name == module), "{module}");
-    }
-}
-
-#[test]
-fn an_import_is_seen_wherever_it_stands() {
-    let sees = |text: &str| imported(text).iter().any(|word| word == "geometry");
-    assert!(sees("use crate::{\n    Vec3,\n    geometry::Insert,\n};"));
-    assert!(sees("use crate::{Vec3, geometry};"));
-    assert!(sees("fn f(insert: &crate::geometry::Insert) {}"));
-    assert!(sees("fn f() { super::super::geometry::g() }"));
-    assert!(!sees("// crate::geometry is not for us\nlet geometry = 1;"));
-    assert!(!sees(
-        "#[cfg(test)]\nmod tests {\n    use crate::geometry::Insert;\n}"
-    ));
+fn what_no_row_allows_is_told_with_its_place() {
+    let sources = made_up(&[
+        ("lib.rs", "mod low; mod high; pub struct Everyone;"),
+        (
+            "low.rs",
+            "use crate::{Everyone, high::inner::Secret};\npub struct Low;",
+        ),
+        ("high/mod.rs", "mod inner; use crate::low::Low;"),
+        ("high/inner.rs", "pub struct Secret;"),
+    ]);
+    let rows: &[(&str, &[&str])] = &[("made::low", &[]), ("made::high", &["made::low"])];
+    let told = ["src/low.rs:1: made::low may not use made::high::inner::Secret"];
+    assert_eq!(forbidden(&sources, rows, &["made::Everyone"]), told);
+    assert_eq!(forbidden(&sources, rows, &[]).len(), 2);
+    let item: &[(&str, &[&str])] = &[(
+        "made::low",
+        &["made::high::inner::Secret", "made::Everyone"],
+    )];
+    assert!(forbidden(&sources, item, &[]).is_empty());
+    let of_inner: &[(&str, &[&str])] = &[("made::high", &[]), ("made::high::inner", &[])];
+    assert_eq!(without_row(&sources, of_inner), ["made::low"]);
 }

@@ -70,6 +70,21 @@ fn summary_of_the_book_names_every_page() {
     }
 }
 
+#[test]
+fn rust_of_the_book_is_compiled() {
+    let compiled = read("verification/src/book.rs");
+    for page in text_files_ending(".md") {
+        let has_rust = page.text.contains("```rust");
+        let is_compiled = compiled.contains(&format!("/{}\"", page.path));
+        assert_eq!(
+            has_rust, is_compiled,
+            "{} in verification/src/book.rs",
+            page.path
+        );
+        assert!(!page.text.contains("```rust,ignore"), "{}", page.path);
+    }
+}
+
 /// A key of references.bib: small letters, a year, perhaps a letter.
 fn is_key(word: &str) -> bool {
     let year = word.trim_start_matches(|c: char| c.is_ascii_lowercase() || c == '-');
@@ -143,6 +158,10 @@ fn numbers_of_the_changes_match_the_version() {
         .expect("has one");
     assert!(
         read("CHANGELOG.md").contains(&format!("## {version}")),
+        "{version}"
+    );
+    assert!(
+        read("CITATION.cff").contains(&format!("\nversion: {version}\n")),
         "{version}"
     );
 }

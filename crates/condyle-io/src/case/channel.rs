@@ -21,7 +21,7 @@ macro_rules! shipped {
         NamedWaveform {
             word: $word,
             file: concat!("cases/waveforms/", $file),
-            text: include_str!(concat!("../../../../cases/waveforms/", $file)),
+            text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/waveforms/", $file)),
             interpolation: Interpolation::$interpolation,
         }
     };

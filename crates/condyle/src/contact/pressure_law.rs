@@ -3,15 +3,27 @@
 use super::pressure_table::PressureTable;
 use crate::number::Number;
 
-/// How an elastic layer on a rigid base answers overclosure with pressure.
+/// How an elastic layer on a rigid base answers overclosure with pressure: $d$ is the overclosure, $h$ the
+/// thickness, and $K$ the modulus of the layer where it cannot spread sideways.
+///
+/// A tenth of a millimetre into 8 mm of polyethylene:
+///
+/// ```
+/// use condyle::contact::{PressureLaw, confined_modulus};
+///
+/// let law = PressureLaw::Linear { modulus_mpa: confined_modulus(463.0, 0.46) };
+/// let (pressure_mpa, slope_mpa_per_mm) = law.pressure(0.1, 8.0);
+/// assert!((pressure_mpa - 26.8).abs() < 0.1);
+/// assert!((slope_mpa_per_mm - 268.0).abs() < 1.0);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum PressureLaw {
-    /// p = K d / h.
+    /// $p = K d/h$.
     Linear {
         /// Modulus K of the confined layer, MPa: see [`confined_modulus`].
         modulus_mpa: f64,
     },
-    /// p = -K ln(1 - d / h): stiffens as the layer is used up.
+    /// $p = -K \ln(1 - d/h)$: stiffens as the layer is used up.
     Logarithmic {
         /// Modulus K of the confined layer, MPa: see [`confined_modulus`].
         modulus_mpa: f64,
@@ -24,7 +36,8 @@ pub enum PressureLaw {
 /// that an iterate of Newton's method beyond the layer still finds its way back.
 const LOGARITHM_ENDS_AT: f64 = 0.9;
 
-/// Modulus of an elastic layer that cannot spread sideways, K = (1 - v) E / ((1 + v)(1 - 2v)), MPa.
+/// Modulus of an elastic layer that cannot spread sideways,
+/// $K = (1 - \nu) E/((1 + \nu)(1 - 2 \nu))$, MPa.
 ///
 /// Source: the elastic foundation of Bei & Fregly 2004; `youngs_modulus_mpa` > 0,
 /// `poissons_ratio` in \[0, 0.5).

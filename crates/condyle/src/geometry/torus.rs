@@ -4,6 +4,15 @@ use super::surface_sample::{Curvature, SurfaceSample};
 use crate::{Vec3, Vector, number::Number};
 
 /// The outer side of a torus about an axis along z; with a tube circle about the axis, a ball.
+///
+/// ```
+/// use condyle::{Vec3, geometry::Torus};
+///
+/// let ball = Torus::sphere(Vec3::new(0.0, 24.0, 0.0), 24.0);
+/// let sample = ball.sample(&Vec3::new(0.0, -0.5, 0.0), 0.0);
+/// assert!((sample.gap_mm - 0.5).abs() < 1e-12);
+/// assert!((sample.normal - Vec3::new(0.0, -1.0, 0.0)).norm() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torus<T: Number = f64> {
     /// Centre of the torus, mm.
@@ -47,8 +56,10 @@ impl<T: Number> Torus<T> {
     /// Gap, normal and curvature at a point, the gap averaged as
     /// [`FemoralSurface::sample`](super::FemoralSurface::sample) says.
     ///
-    /// With t the distance from the circle of tube centres, rho that from the axis and rho0 the
-    /// ring's: K = (I - n n' - (rho0/rho) e e')/t, e along the ring, and div n = (2 - rho0/rho)/t.
+    /// With $t$ the distance from the circle of tube centres, $\rho$ that from the axis, $\rho_0$ the
+    /// ring's, $n$ the normal and $e$ along the ring, the curvature is
+    /// $K = \frac{1}{t} \left(I - n n^T - \frac{\rho_0}{\rho} e e^T\right)$ and
+    /// $\operatorname{div} n = \frac{1}{t} \left(2 - \frac{\rho_0}{\rho}\right)$.
     #[inline(always)]
     pub fn sample(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
         let r = point - self.centre;

@@ -11,13 +11,27 @@ use super::{
 /// How a waveform goes from knot to knot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
-    /// y = ya + (yb - ya)(1 - cos(pi (t - ta)/(tb - ta)))/2: flat at every knot.
+    /// $y = y_a + \tfrac{1}{2} (y_b - y_a) \left(1 - \cos \frac{\pi (t - t_a)}{t_b - t_a}\right)$: flat at every knot.
     HalfCosine,
     /// The periodic cubic spline: two continuous derivatives, for measured samples.
     Spline,
 }
 
 /// A periodic quantity over the gait cycle, without a step at the seam.
+///
+/// An axial force of two peaks, in newtons:
+///
+/// ```
+/// use condyle::machine::{Interpolation, Knot, Waveform};
+///
+/// let knot = |(percent, value)| Knot { percent, value };
+/// let points = [(0.0, 170.0), (13.0, 2600.0), (25.0, 850.0), (45.0, 2450.0), (65.0, 170.0)];
+/// let force = Waveform::new(points.map(knot).to_vec(), Interpolation::HalfCosine)?;
+/// let (value_n, slope_n_per_cycle) = force.at(0.13);
+/// assert!((value_n - 2600.0).abs() < 1e-9 && slope_n_per_cycle.abs() < 1e-9);
+/// assert_eq!(force.at(0.9), force.at(1.9));
+/// # Ok::<(), condyle::machine::WaveformError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Waveform {
     knots: Vec<Knot>,
