@@ -13,7 +13,8 @@ use condyle::{
 };
 use condyle_io::{
     cache::Cache,
-    case::{BuildError, BuildWarning, Built, Case, CaseError},
+    case::{BuildError, BuildWarning, Built, Case},
+    keyed::Problems,
     results::{ErrorEstimate, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
 };
 use thiserror::Error;
@@ -85,14 +86,14 @@ pub enum Outcome {
 pub enum RunError {
     /// The case file.
     #[error(transparent)]
-    Case(#[from] CaseError),
+    Case(#[from] Problems),
     /// The bodies that the case describes.
     #[error("{shown}")]
     Build {
         /// Why.
         source: BuildError,
         /// The same at the key of the case that is behind it.
-        shown: CaseError,
+        shown: Problems,
     },
     /// A mesh that went away.
     #[error("a mesh of the case cannot be read: {0}; check the paths in the case")]
@@ -109,7 +110,7 @@ pub enum RunError {
         /// Why.
         source: PlacementError,
         /// The same at the key of the case that is behind it.
-        shown: CaseError,
+        shown: Problems,
     },
     /// The physics.
     #[error("{source}; what was computed is kept in {}", out.display())]
@@ -135,7 +136,7 @@ impl RunError {
     }
 
     /// The error with its place in the case file, where it has one.
-    pub fn in_case(&self) -> Option<&CaseError> {
+    pub fn in_case(&self) -> Option<&Problems> {
         match self {
             Self::Case(shown) | Self::Build { shown, .. } | Self::Placement { shown, .. } => {
                 Some(shown)

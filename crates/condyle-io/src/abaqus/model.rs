@@ -5,8 +5,10 @@ use condyle::evolve::{March, WearTest};
 use condyle::geometry::TriangleMesh;
 use condyle_fem::HexMesh;
 
+use super::error::ExportError;
+use super::femur;
+use super::options::AbaqusOptions;
 use super::placing::Placing;
-use super::{AbaqusOptions, ExportError, femur};
 use crate::case::Case;
 
 /// The model that is written.

@@ -2,7 +2,7 @@
 
 use condyle::machine::Interpolation;
 
-use super::keys::{Limits, within};
+use crate::keyed::{Limits, within};
 
 /// A waveform of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

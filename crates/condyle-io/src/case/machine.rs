@@ -3,13 +3,12 @@
 use condyle::machine::Waveform;
 
 use super::channel::Channel;
-use super::declared::{DriveWord, MachineSettings, Preset, Rotation, Springs, Translation};
-use super::keys::{Key, Settings};
-use super::parse::{Log, Others, Section, names};
-use super::problems::Reason;
-use super::read_plain;
-use super::setting::Setting;
-use super::waveforms;
+use super::drive_reason::DriveReason;
+use super::machine_keys::{
+    DriveWord, MachineSettings, Preset, Rotation, Springs, Start, Translation,
+};
+use super::waveform;
+use crate::keyed::{KeyReason, Log, Section, Settings, names, read_table};
 
 /// The simulator.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,15 +54,6 @@ impl Waveforms {
         self.given[channel as usize].as_ref()
     }
 }
-
-/// The key that chooses the preset.
-pub(super) const PRESET: Key = Key {
-    name: "preset",
-    doc: "The simulator it starts from: which freedoms are free and which are moved.",
-    kind: <Preset as Setting>::kind,
-    default: Some(|| Some("\"stanmore-force\"".to_owned())),
-    limits: None,
-};
 
 /// Names of the freedoms, in the order they are written.
 pub(super) const FREEDOMS: [&str; 6] = ["ap", "ie", "ml", "vv", "is", "flexion"];
@@ -141,18 +131,18 @@ fn preset_drives(preset: Preset) -> [DriveWord; 6] {
 impl Freedoms {
     fn read(machine: &Section<'_>, preset: Preset, log: &mut Log<'_>) -> Option<Self> {
         let section = machine.table("freedoms", log);
-        section.check_keys(&FREEDOMS, &Others::NONE, log);
+        section.check_keys(&FREEDOMS, log);
         let (ap, ie) = (
-            read_plain(&section, "ap", log),
-            read_plain(&section, "ie", log),
+            read_table(&section, "ap", log),
+            read_table(&section, "ie", log),
         );
         let (ml, vv) = (
-            read_plain(&section, "ml", log),
-            read_plain(&section, "vv", log),
+            read_table(&section, "ml", log),
+            read_table(&section, "vv", log),
         );
         let (is, flexion) = (
-            read_plain(&section, "is", log),
-            read_plain(&section, "flexion", log),
+            read_table(&section, "is", log),
+            read_table(&section, "flexion", log),
         );
         let (ap, ie, ml) = (ap?, ie?, ml?);
         let mut freedoms = Self {
@@ -211,7 +201,7 @@ impl Freedoms {
             let row = section.table(can.freedom, log);
             if !can.allow(drive) {
                 let (freedom, drive, drives) = (can.freedom, drive.word(), can.words());
-                let reason = Reason::NoSuchDrive {
+                let reason = DriveReason::NoSuchDrive {
                     freedom,
                     drive,
                     drives,
@@ -224,7 +214,7 @@ impl Freedoms {
                     .find(|key| row.value(key).is_some())
                     .unwrap_or_default();
                 let needs = "`drive = \"locked\"`".to_owned();
-                let reason = Reason::Idle {
+                let reason = KeyReason::Idle {
                     key: key.to_owned(),
                     needs,
                 };
@@ -241,7 +231,7 @@ impl Waveforms {
         for (can, &drive) in DRIVES.iter().zip(drives) {
             for channel in [can.prescribed, can.loaded].into_iter().flatten() {
                 if can.channel(drive) == Some(channel) {
-                    let waveform = waveforms::read(channel, machine, log);
+                    let waveform = waveform::read(channel, machine, log);
                     complete &= waveform.is_some();
                     given[channel as usize] = waveform;
                 } else {
@@ -268,7 +258,7 @@ fn check_absent(
         true => DriveWord::Prescribed,
         false => DriveWord::Loaded,
     };
-    let reason = Reason::UnusedWaveform {
+    let reason = DriveReason::UnusedWaveform {
         section: format!("machine.{}", channel.name()),
         freedom: can.freedom,
         drive: drive.word(),
@@ -279,14 +269,15 @@ fn check_absent(
 
 impl Machine {
     pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let known: Vec<&str> = names(MachineSettings::KEYS)
-            .chain(["preset", "springs", "freedoms"])
+        let known: Vec<&str> = names(&MachineSettings::keys())
+            .chain(names(&Start::keys()))
+            .chain(["springs", "freedoms"])
             .chain(Channel::ALL.map(Channel::name))
             .collect();
-        section.check_keys(&known, &Others::NONE, log);
+        section.check_keys(&known, log);
         let settings = MachineSettings::read(section, log);
-        let springs = read_plain(section, "springs", log);
-        let preset = section.setting(&PRESET, Some(Preset::StanmoreForce), log)?;
+        let springs = read_table(section, "springs", log);
+        let preset = Start::read(section, log)?.preset;
         let freedoms = Freedoms::read(section, preset, log)?;
         let waveforms = Waveforms::read(section, &freedoms.drives(), log);
         Some(Self {

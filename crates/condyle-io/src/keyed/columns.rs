@@ -1,15 +1,12 @@
 //! Columns of numbers in a CSV file, each with its place.
 
 use std::ops::Range;
-use std::path::Path;
-use std::sync::Arc;
 
-use miette::NamedSource;
-
-use super::problems::{Reason, Source};
+use super::column_reason::ColumnReason;
+use super::problem::Placed;
 
 /// A CSV file: names of its columns, and rows of cells that are yet to be read as numbers.
-pub(crate) struct Table<'a> {
+pub(crate) struct Columns<'a> {
     text: &'a str,
     header: Vec<Range<usize>>,
     rows: Vec<Vec<Range<usize>>>,
@@ -21,22 +18,7 @@ pub(crate) struct Cell {
     pub span: Range<usize>,
 }
 
-/// A problem with the place where it is.
-pub(crate) type Placed = (Range<usize>, Reason);
-
-/// Reads a file that a case names; the name under which problems show it is its path.
-pub(crate) fn read_source(path: &Path) -> Result<Source, Reason> {
-    let name = path.display().to_string();
-    match std::fs::read_to_string(path) {
-        Ok(text) => Ok(Arc::new(NamedSource::new(name, text))),
-        Err(error) => Err(Reason::UnreadableFile {
-            path: path.to_path_buf(),
-            why: error.to_string(),
-        }),
-    }
-}
-
-impl<'a> Table<'a> {
+impl<'a> Columns<'a> {
     /// Splits `text` into a header and rows; `example` shows a header where there is none.
     ///
     /// The header is the last line above the numbers with as many names as they have columns, and
@@ -51,31 +33,32 @@ impl<'a> Table<'a> {
         let columns = lines.get(start).map_or(2, |line| cells(text, line).len());
         if columns < 2 {
             let (file, example) = (file.to_owned(), example.to_owned());
-            return Err((lines[start].clone(), Reason::OneColumn { file, example }));
+            let reason = ColumnReason::OneColumn { file, example };
+            return Err(Placed::new(lines[start].clone(), reason));
         }
         let named = |line: &&Range<usize>| cells(text, line).len() == columns;
         let Some(header) = lines[..start].iter().rev().find(named) else {
             let (file, example) = (file.to_owned(), example.to_owned());
             let first = lines.first().cloned().unwrap_or(0..0);
-            return Err((first, Reason::NoHeader { file, example }));
+            return Err(Placed::new(first, ColumnReason::NoHeader { file, example }));
         };
         let is_row = |line: &&Range<usize>| !text[(*line).clone()].trim_start().starts_with('#');
         let rows = lines[start..].iter().filter(is_row);
         Ok(Self {
             text,
-            header: names(text, header),
+            header: names_in(text, header),
             rows: rows.map(|line| cells(text, line)).collect(),
         })
     }
 
-    /// Names of the columns.
-    pub(crate) fn columns(&self) -> Vec<&'a str> {
+    /// Their names.
+    pub(crate) fn names(&self) -> Vec<&'a str> {
         let name = |span: &Range<usize>| &self.text[span.clone()];
         self.header.iter().map(name).collect()
     }
 
     /// Where the name of a column stands.
-    pub(crate) fn column_span(&self, column: usize) -> Range<usize> {
+    pub(crate) fn name_span(&self, column: usize) -> Range<usize> {
         self.header[column].clone()
     }
 
@@ -115,9 +98,9 @@ impl<'a> Table<'a> {
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Cell { value, span }),
             Ok(_) | Err(_) => {
-                let column = self.columns()[column].to_owned();
+                let column = self.names()[column].to_owned();
                 let text = text.to_owned();
-                Err((span, Reason::NotNumber { text, column }))
+                Err(Placed::new(span, ColumnReason::NotNumber { text, column }))
             }
         }
     }
@@ -149,7 +132,7 @@ fn cells(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
 }
 
 /// The names in a header: its cells without the `#` of a comment, each up to a blank.
-fn names(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
+fn names_in(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
     let after_hash = |span: Range<usize>| {
         let name = text[span.clone()].trim_start_matches(['#', ' ', '\t']);
         let start = span.end - name.len();
@@ -168,9 +151,9 @@ mod tests {
         let text = "# measured, in May\n# pct_cycle,ant_mm(xtrans),flex_deg  source: a, thesis\n\
                     0,1.0,2.0\n50, 3.0 ,4.0\n";
         let text = text.replace("a, thesis", "thesis");
-        let table = Table::split(&text, "x.csv", "percent,y_mm").unwrap();
-        assert_eq!(table.columns(), ["pct_cycle", "ant_mm(xtrans)", "flex_deg"]);
-        let Ok(cells) = table.numbers(1) else {
+        let columns = Columns::split(&text, "x.csv", "percent,y_mm").unwrap();
+        assert_eq!(columns.names(), ["pct_cycle", "ant_mm(xtrans)", "flex_deg"]);
+        let Ok(cells) = columns.numbers(1) else {
             panic!("all are numbers");
         };
         assert_eq!(cells.iter().map(|cell| cell.value).sum::<f64>(), 4.0);

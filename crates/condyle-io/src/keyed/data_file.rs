@@ -1,16 +1,20 @@
-//! Files that a case names.
+//! Files that a file names.
 
 use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::keys::Key;
-use super::parse::Log;
-use super::problems::Reason;
-use super::setting::{Setting, quoted, wrong_type};
+use super::file_reason::FileReason;
+use super::key::Key;
+use super::log::Log;
+use super::section::Section;
+use super::setting::Setting;
+use super::source::{Source, read_source};
+use super::value::quoted;
+use super::words::wrong_type;
 
-/// A file that a case names and that was there when the case was read.
+/// A file that another names, and that was there when that one was read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DataFile {
     /// Absolute, without `..` or links.
@@ -34,6 +38,25 @@ impl DataFile {
     pub fn path(&self) -> &Path {
         &self.path
     }
+
+    /// Its name without its folder.
+    pub(crate) fn name(&self) -> String {
+        let name = self.path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+
+    /// Its text, or the reason at the key `key` of `section` that names it.
+    pub(crate) fn source(
+        &self,
+        section: &Section<'_>,
+        key: &str,
+        log: &mut Log<'_>,
+    ) -> Option<Source> {
+        let source = read_source(&self.path);
+        source
+            .map_err(|reason| log.problem(section.value_span(key), reason))
+            .ok()
+    }
 }
 
 impl Setting for DataFile {
@@ -50,7 +73,7 @@ impl Setting for DataFile {
             Ok(file) => Some(file),
             Err(path) => {
                 let key = key.name.to_owned();
-                log.problem(value.span(), Reason::MissingFile { key, path });
+                log.problem(value.span(), FileReason::Missing { key, path });
                 None
             }
         }

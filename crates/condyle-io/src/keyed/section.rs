@@ -1,60 +1,21 @@
-//! Tables of a case file: finding keys, reporting what is wrong with them.
+//! Tables of a file: finding keys, reporting those that are not known.
 
 use std::ops::Range;
-use std::path::Path;
-use std::sync::Arc;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
-use super::keys::Key;
-use super::problems::{Problem, Reason, Source};
-use super::setting::{Setting, type_name};
+use super::key::Key;
+use super::key_reason::KeyReason;
+use super::log::Log;
+use super::setting::Setting;
 use super::unknown::explain;
+use super::value::type_name;
 
-/// Problems found so far, in one case file and the files it names.
-pub struct Log<'a> {
-    source: Source,
-    folder: &'a Path,
-    problems: Vec<Problem>,
-}
+/// A key and its value, each with its place.
+type Entry<'a> = (&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>);
 
-impl<'a> Log<'a> {
-    pub(crate) fn new(source: &Source, folder: &'a Path) -> Self {
-        Self {
-            source: Arc::clone(source),
-            folder,
-            problems: Vec::new(),
-        }
-    }
-
-    /// The case file.
-    pub(crate) fn source(&self) -> &Source {
-        &self.source
-    }
-
-    /// Folder that paths in the case count from.
-    pub(crate) fn folder(&self) -> &'a Path {
-        self.folder
-    }
-
-    /// Notes a problem in the case file.
-    pub(crate) fn problem(&mut self, span: Range<usize>, reason: Reason) {
-        let problem = Problem::at(&self.source, span, reason);
-        self.problems.push(problem);
-    }
-
-    /// Notes a problem in a file that the case names.
-    pub(crate) fn problem_in(&mut self, source: &Source, span: Range<usize>, reason: Reason) {
-        self.problems.push(Problem::at(source, span, reason));
-    }
-
-    pub(crate) fn into_problems(self) -> Vec<Problem> {
-        self.problems
-    }
-}
-
-/// A table of a case file; an absent one has no keys.
+/// A table of a file; an absent one has no keys.
 pub struct Section<'a> {
     path: String,
     table: Option<&'a DeTable<'a>>,
@@ -82,7 +43,7 @@ impl<'a> Section<'a> {
         if let (Some((_, value)), None) = (entry, table) {
             let found = type_name(value.get_ref());
             let (key, wanted) = (name.to_owned(), format!("a table, [{path}]"));
-            log.problem(value.span(), Reason::WrongType { key, wanted, found });
+            log.problem(value.span(), KeyReason::WrongType { key, wanted, found });
         }
         let span = entry.map_or(self.span.clone(), |(key, _)| key.span());
         Self { path, table, span }
@@ -111,13 +72,7 @@ impl<'a> Section<'a> {
         self.span.clone()
     }
 
-    fn entry(
-        &self,
-        name: &str,
-    ) -> Option<(
-        &'a Spanned<toml::de::DeString<'a>>,
-        &'a Spanned<DeValue<'a>>,
-    )> {
+    fn entry(&self, name: &str) -> Option<Entry<'a>> {
         self.table?.iter().find(|(key, _)| key.get_ref() == name)
     }
 
@@ -147,67 +102,36 @@ impl<'a> Section<'a> {
             return T::read(value, key, log);
         }
         if default.is_none() {
-            let reason = Reason::MissingKey {
+            let reason = KeyReason::MissingKey {
                 key: key.name.to_owned(),
                 section: self.name(),
-                wanted: (key.kind)(),
+                wanted: key.kind.clone(),
             };
             log.problem(self.span(), reason);
         }
         default
     }
 
-    /// Reports every key that is in none of `known`; one that `others` have under a different
-    /// choice is said to belong there.
-    pub(crate) fn check_keys(&self, known: &[&str], others: &Others<'_>, log: &mut Log<'_>) {
-        for (key, value) in self.table.into_iter().flatten() {
-            let name = key.get_ref().as_ref();
-            if known.contains(&name) {
-                continue;
-            }
-            let reason = match others.owner_of(name) {
-                Some(owner) => Reason::OtherChoice {
-                    key: name.to_owned(),
-                    owner,
-                    chosen: others.chosen(),
-                },
-                None => explain(name, value.get_ref(), &self.name(), known),
-            };
-            log.problem(key.span(), reason);
+    /// Reports every key that is none of `known`.
+    pub(crate) fn check_keys(&self, known: &[&str], log: &mut Log<'_>) {
+        for (key, value) in self.other_keys(known) {
+            log.problem(key.span(), self.unknown(key.get_ref(), value, known));
         }
     }
-}
 
-/// The keys that a table has under each choice of one key, such as `shape`.
-pub(crate) struct Others<'a> {
-    /// The key that chooses.
-    pub key: &'a str,
-    /// The word chosen.
-    pub word: &'a str,
-    /// Words and the keys they bring.
-    pub all: &'a [(&'a str, &'a [Key])],
-}
-
-impl Others<'_> {
-    /// No choices at all.
-    pub(crate) const NONE: Others<'static> = Others {
-        key: "",
-        word: "",
-        all: &[],
-    };
-
-    fn owner_of(&self, name: &str) -> Option<String> {
-        let has = |(_, keys): &&(&str, &[Key])| keys.iter().any(|key| key.name == name);
-        let (word, _) = self.all.iter().find(has)?;
-        Some(format!("{} = \"{word}\"", self.key))
+    /// Keys of the table that are none of `known`, with their values.
+    pub(super) fn other_keys(
+        &self,
+        known: &[&str],
+    ) -> impl Iterator<Item = (&'a Spanned<DeString<'a>>, &'a DeValue<'a>)> {
+        let entries = self.table.into_iter().flatten();
+        entries
+            .filter(|(key, _)| !known.contains(&key.get_ref().as_ref()))
+            .map(|(key, value)| (key, value.get_ref()))
     }
 
-    fn chosen(&self) -> String {
-        format!("{} = \"{}\"", self.key, self.word)
+    /// The likeliest reason why the table has no key `name` among those `known`.
+    pub(super) fn unknown(&self, name: &str, value: &DeValue<'_>, known: &[&str]) -> KeyReason {
+        explain(name, value, &self.name(), known)
     }
-}
-
-/// Names of declared keys.
-pub(crate) fn names(keys: &[Key]) -> impl Iterator<Item = &'static str> + '_ {
-    keys.iter().map(|key| key.name)
 }

@@ -3,11 +3,12 @@
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::Sign;
-use super::keys::{Key, unit_of};
-use super::parse::Log;
-use super::problems::Reason;
-use super::unknown::nearest;
+use super::key::Key;
+use super::key_reason::KeyReason;
+use super::log::Log;
+use super::unit::unit_of;
+use super::value::{number, quoted};
+use super::words::wrong_type;
 
 /// A value that stands behind a key.
 pub trait Setting: Sized {
@@ -21,73 +22,6 @@ pub trait Setting: Sized {
     fn text(&self) -> Option<String>;
 }
 
-/// Words in quotes with commas between: `"a", "b" or "c"`.
-pub(crate) fn quoted_list(words: &[&str]) -> String {
-    let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
-    match quoted.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-        _ => quoted.concat(),
-    }
-}
-
-/// Reports that `value` is not what `key` takes.
-pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
-    let reason = Reason::WrongType {
-        key: key.name.to_owned(),
-        wanted: (key.kind)(),
-        found: type_name(value.get_ref()),
-    };
-    log.problem(value.span(), reason);
-}
-
-/// What a value is, in words.
-pub(crate) fn type_name(value: &DeValue<'_>) -> &'static str {
-    match value {
-        DeValue::String(_) => "text in quotes",
-        DeValue::Integer(_) => "an integer",
-        DeValue::Float(_) => "a number",
-        DeValue::Boolean(_) => "true or false",
-        DeValue::Datetime(_) => "a date",
-        DeValue::Array(_) => "a list",
-        DeValue::Table(_) => "a table",
-    }
-}
-
-/// A float or an integer as a number; none for anything else.
-pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
-    match value {
-        DeValue::Float(float) => float.as_str().replace('_', "").parse().ok(),
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-            .ok()
-            .map(|whole| whole as f64),
-        _ => None,
-    }
-}
-
-/// One of `words`, as written, or the reason in `log`.
-pub(crate) fn read_word<'a>(
-    value: &'a Spanned<DeValue<'_>>,
-    key: &Key,
-    words: &[&str],
-    log: &mut Log<'_>,
-) -> Option<&'a str> {
-    let Some(word) = value.get_ref().as_str() else {
-        wrong_type(value, key, log);
-        return None;
-    };
-    if words.contains(&word) {
-        return Some(word);
-    }
-    let reason = Reason::UnknownWord {
-        key: key.name.to_owned(),
-        word: word.to_owned(),
-        near: nearest(word, words.iter().copied()),
-        words: quoted_list(words),
-    };
-    log.problem(value.span(), reason);
-    None
-}
-
 /// A number inside the limits of its key, or the reason in `log`.
 fn limited(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<f64> {
     let Some(number) = number(value.get_ref()) else {
@@ -97,7 +31,7 @@ fn limited(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option
     match key.limits {
         Some(limits) if !limits.allow(number) => {
             let unit = unit_of(key.name).map_or(String::new(), |unit| format!(" {unit}"));
-            let reason = Reason::OutOfRange {
+            let reason = KeyReason::OutOfRange {
                 key: key.name.to_owned(),
                 value: format!("{number}{unit}"),
                 range: format!("{limits}{unit}"),
@@ -178,11 +112,6 @@ impl Setting for String {
     }
 }
 
-/// A basic string of TOML.
-pub(crate) fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
-}
-
 impl Setting for [f64; 2] {
     fn kind() -> String {
         "a list of two numbers".to_owned()
@@ -218,23 +147,26 @@ impl<T: Setting> Setting for Option<T> {
     }
 }
 
-impl Setting for Sign {
+impl Setting for [f64; 3] {
     fn kind() -> String {
-        "1 or -1".to_owned()
+        "a list of three numbers".to_owned()
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        match number(value.get_ref()) {
-            Some(1.0) => Some(Self::Plus),
-            Some(-1.0) => Some(Self::Minus),
-            _ => {
-                wrong_type(value, key, log);
-                None
-            }
+        let list: Vec<_> = value.get_ref().as_array().into_iter().flatten().collect();
+        let numbers: Vec<f64> = list
+            .iter()
+            .filter_map(|value| number(value.get_ref()))
+            .filter(|value| key.limits.is_none_or(|limits| limits.allow(*value)))
+            .collect();
+        let three = numbers.try_into().ok().filter(|_| list.len() == 3);
+        if three.is_none() {
+            wrong_type(value, key, log);
         }
+        three
     }
 
     fn text(&self) -> Option<String> {
-        Some(format!("{:.0}", self.factor()))
+        Some(format!("{self:?}"))
     }
 }

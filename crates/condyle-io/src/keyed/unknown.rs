@@ -2,9 +2,10 @@
 
 use toml::de::DeValue;
 
-use super::keys::{plain, split_unit, unit_of};
-use super::problems::Reason;
-use super::setting::number;
+use super::key_reason::KeyReason;
+use super::limits::plain;
+use super::unit::{split_unit, unit_of};
+use super::value::number;
 
 /// Units a person may write that condyle does not take: (ending, ending taken, factor).
 const CONVERSIONS: &[(&str, &str, f64)] = &[
@@ -35,8 +36,8 @@ const CONVERSIONS: &[(&str, &str, f64)] = &[
 ];
 
 /// The likeliest reason why `section` has no `key` among `keys`.
-pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&str]) -> Reason {
-    wrong_unit(key, value, keys).unwrap_or_else(|| Reason::UnknownKey {
+pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&str]) -> KeyReason {
+    wrong_unit(key, value, keys).unwrap_or_else(|| KeyReason::UnknownKey {
         key: key.to_owned(),
         section: section.to_owned(),
         near: nearest(key, keys.iter().copied()),
@@ -45,13 +46,13 @@ pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&st
 }
 
 /// A key that exists, but with another unit at its end.
-fn wrong_unit(key: &str, value: &DeValue<'_>, keys: &[&str]) -> Option<Reason> {
+fn wrong_unit(key: &str, value: &DeValue<'_>, keys: &[&str]) -> Option<KeyReason> {
     let same_quantity = |known: &&&str| {
         let (base, unit) = split_unit(known);
         unit.is_some() && bases(key).any(|written| written == base)
     };
     let meant = *keys.iter().find(same_quantity)?;
-    Some(Reason::WrongUnit {
+    Some(KeyReason::WrongUnit {
         key: key.to_owned(),
         meant: meant.to_owned(),
         unit: unit_of(meant)?,

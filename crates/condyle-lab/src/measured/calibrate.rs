@@ -4,10 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use condyle::evolve::{MarchError, Progress};
-use condyle_io::{
-    cache::Cache,
-    case::{Case, CaseError},
-};
+use condyle_io::{cache::Cache, case::Case, keyed::Problems};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -28,7 +25,7 @@ pub enum CalibrateError {
     Compare(#[from] CompareError),
     /// The case of the results folder.
     #[error(transparent)]
-    Case(#[from] CaseError),
+    Case(#[from] Problems),
     /// A run with another factor.
     #[error("with a wear factor of {factor_mm3_per_nm:.3e} mm3/(N m): {source}")]
     Run {

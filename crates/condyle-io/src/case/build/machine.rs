@@ -3,8 +3,9 @@
 use condyle::Vec3;
 use condyle::machine::{ApSpring, Drive, Freedom, FreedomSettings, Machine, Waveform};
 
-use super::super::{Channel, DriveWord, Rotation, Springs, StiffnessOf, Translation};
-use crate::case;
+use super::super::channel::Channel;
+use super::super::machine as case;
+use super::super::machine_keys::{DriveWord, Rotation, Springs, StiffnessOf, Translation};
 
 /// A kilogram in tonnes.
 const TONNE_PER_KG: f64 = 1e-3;

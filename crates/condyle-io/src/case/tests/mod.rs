@@ -6,7 +6,8 @@ mod round_trip;
 
 use std::path::{Path, PathBuf};
 
-use super::{Case, CaseError};
+use super::contents::Case;
+use crate::keyed::Problems;
 
 /// The folder of the cases that come with condyle.
 pub(super) fn cases() -> PathBuf {
@@ -31,7 +32,7 @@ pub(super) fn has_dm_data(test: &str) -> bool {
     there
 }
 
-fn parsed(text: &str) -> Result<Case, CaseError> {
+fn parsed(text: &str) -> Result<Case, Problems> {
     Case::parse(text, "case.toml", Path::new(""))
 }
 

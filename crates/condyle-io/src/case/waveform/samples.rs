@@ -4,10 +4,8 @@ use std::ops::Range;
 
 use condyle::machine::Knot;
 
-use super::channel::Channel;
-use super::keys::unit_of;
-use super::problems::Reason;
-use super::table::{Cell, Placed, Table};
+use super::super::channel::Channel;
+use crate::keyed::{Cell, ColumnReason, Columns, Placed, unit_of};
 
 /// Samples, and where each stands in its text.
 #[derive(Default)]
@@ -19,7 +17,7 @@ pub(super) struct Samples {
 /// Whether the case names a column of the file, or what is wrong with what it says.
 pub(super) enum Choice {
     Column,
-    InTheCase(Reason),
+    InTheCase(ColumnReason),
 }
 
 pub(super) fn choose_column(
@@ -28,22 +26,19 @@ pub(super) fn choose_column(
     column: Option<&str>,
     channel: Channel,
 ) -> Result<Choice, Placed> {
-    let table = Table::split(text, file, &example(channel))?;
-    let columns: Vec<String> = table.columns()[1..]
-        .iter()
-        .map(|&name| name.to_owned())
-        .collect();
+    let names = Columns::split(text, file, &example(channel))?.names();
+    let columns: Vec<String> = names[1..].iter().map(|&name| name.to_owned()).collect();
     let file = file.to_owned();
     Ok(match column {
         Some(column) if !columns.iter().any(|name| name == column) => {
             let column = column.to_owned();
-            Choice::InTheCase(Reason::NoColumn {
+            Choice::InTheCase(ColumnReason::NoColumn {
                 column,
                 file,
                 columns,
             })
         }
-        None if columns.len() > 1 => Choice::InTheCase(Reason::WhichColumn { file, columns }),
+        None if columns.len() > 1 => Choice::InTheCase(ColumnReason::WhichColumn { file, columns }),
         _ => Choice::Column,
     })
 }
@@ -64,22 +59,23 @@ pub(super) fn csv_points(
     file: &str,
     column: Option<&str>,
 ) -> Result<Samples, Vec<Placed>> {
-    let table = Table::split(text, file, &example(channel)).map_err(|placed| vec![placed])?;
-    let columns = table.columns();
+    let columns = Columns::split(text, file, &example(channel)).map_err(|placed| vec![placed])?;
+    let names = columns.names();
     let wanted = |name: &&str| Some(*name) == column;
-    let index = columns.iter().position(wanted).unwrap_or(1);
+    let index = names.iter().position(wanted).unwrap_or(1);
     let mut problems = Vec::new();
-    if !is_percent(columns[0]) {
-        let column = columns[0].to_owned();
-        problems.push((table.column_span(0), Reason::NoPercent { column }));
+    if !is_percent(names[0]) {
+        let column = names[0].to_owned();
+        let reason = ColumnReason::NoPercent { column };
+        problems.push(Placed::new(columns.name_span(0), reason));
     }
-    if header_unit(columns[index]) != unit_of(channel.knots_key()) {
-        let reason = Reason::ColumnUnit {
-            column: columns[index].to_owned(),
+    if header_unit(names[index]) != unit_of(channel.knots_key()) {
+        let reason = ColumnReason::OtherUnit {
+            column: names[index].to_owned(),
             unit: unit_of(channel.knots_key()).unwrap_or_default(),
             suffix: suffix(channel),
         };
-        problems.push((table.column_span(index), reason));
+        problems.push(Placed::new(columns.name_span(index), reason));
     }
     if problems.is_empty() {
         column_points(text, index)
@@ -90,8 +86,8 @@ pub(super) fn csv_points(
 
 /// Percent from the first column and values from column `index`.
 pub(super) fn column_points(text: &str, index: usize) -> Result<Samples, Vec<Placed>> {
-    let table = Table::split(text, "", "").map_err(|placed| vec![placed])?;
-    let (percents, values) = match (table.numbers(0), table.numbers(index)) {
+    let columns = Columns::split(text, "", "").map_err(|placed| vec![placed])?;
+    let (percents, values) = match (columns.numbers(0), columns.numbers(index)) {
         (Ok(percents), Ok(values)) => (percents, values),
         (Err(mut one), Err(other)) => {
             one.extend(other);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::error::{MeshFileError, Place};
+use super::super::error::{FileLine, MeshFileError};
 
 /// `*NAME, KEY=value, FLAG` and its data lines.
 pub(crate) struct Keyword<'t> {
@@ -43,7 +43,7 @@ pub(crate) fn keywords<'t>(
             keyword.data.push((line, row));
         } else {
             let what = "a data line stands before the first keyword; is this an Abaqus file?";
-            return Err(Place::line(path, line).error(what));
+            return Err(FileLine::line(path, line).error(what));
         }
     }
     Ok(keywords)

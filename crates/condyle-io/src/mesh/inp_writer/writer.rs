@@ -1,18 +1,6 @@
-//! Abaqus input files, out: a writer of keywords, from which a whole case is put together.
-//!
-//! Syntax after the Abaqus Keywords Reference. Labels count from 1; a block of nodes or elements
-//! says with which label it begins, and items of it are `first + index`.
-
-mod contact;
-mod mesh;
-mod springs;
-mod step;
+//! The writer of Abaqus keywords, lines and numbers.
 
 use std::io::{self, Write};
-
-pub use contact::PressureOverclosure;
-pub use mesh::{RigidTriangle, element_faces};
-pub use step::{Application, Procedure, Step};
 
 /// Writes Abaqus keywords to a file or to memory, in the order of the calls.
 ///
@@ -20,7 +8,7 @@ pub use step::{Application, Procedure, Step};
 /// consistent in; condyle uses mm, N, s, MPa, tonne.
 #[derive(Debug)]
 pub struct InpWriter<W: Write> {
-    out: W,
+    pub(super) out: W,
 }
 
 impl<W: Write> InpWriter<W> {
@@ -63,7 +51,7 @@ impl<W: Write> InpWriter<W> {
     }
 
     /// Labels, sixteen a line as the format allows.
-    fn labels(&mut self, labels: impl IntoIterator<Item = u32>) -> io::Result<()> {
+    pub(super) fn labels(&mut self, labels: impl IntoIterator<Item = u32>) -> io::Result<()> {
         let words: Vec<String> = labels.into_iter().map(|label| label.to_string()).collect();
         words
             .chunks(16)
@@ -73,7 +61,7 @@ impl<W: Write> InpWriter<W> {
 
 /// A number in the shortest form that reads back the same, or, where that is longer than the
 /// twenty characters a field may have, with thirteen digits.
-fn real(value: f64) -> String {
+pub(super) fn real(value: f64) -> String {
     let plain = format!("{value:?}");
     if plain.len() <= 20 {
         return plain;
@@ -82,11 +70,13 @@ fn real(value: f64) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// What a few calls write.
-    pub(super) fn written(calls: impl FnOnce(&mut InpWriter<Vec<u8>>) -> io::Result<()>) -> String {
+    pub(in super::super) fn written(
+        calls: impl FnOnce(&mut InpWriter<Vec<u8>>) -> io::Result<()>,
+    ) -> String {
         let mut writer = InpWriter::new(Vec::new());
         calls(&mut writer).unwrap();
         String::from_utf8(writer.into_inner()).unwrap()

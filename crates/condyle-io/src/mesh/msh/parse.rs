@@ -1,36 +1,39 @@
-//! Gmsh meshes, versions 2.2 and 4.1 as text: hexahedra, and quads and nodes of physical groups.
+//! The whole of a Gmsh mesh, section by section.
 
-use std::collections::HashMap;
 use std::path::Path;
 
-use super::error::{MeshFileError, Place};
-use super::hex_draft::{DraftHex, HexDraft};
-use super::hex_file::HexFile;
-use super::text;
+use super::super::error::{FileLine, MeshFileError};
+use super::super::hex_draft::HexDraft;
+use super::super::hex_file::HexFile;
+use super::super::text;
+use super::elements::{elements_v2, elements_v4};
+use super::groups::Groups;
+use super::lines::Lines;
+use super::nodes::{nodes_v2, nodes_v4};
 
 pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError> {
     let content = text::decode(bytes);
-    let mut rows = Rows::new(path, &content);
+    let mut lines = Lines::new(path, &content);
     let mut groups = Groups::default();
     let mut draft = HexDraft::new(path);
     let mut version = None;
-    while let Some((line, row)) = rows.next() {
+    while let Some((line, row)) = lines.next() {
         match (row, version) {
             ("$MeshFormat", _) => {
-                version = Some(read_version(&mut rows)?);
-                rows.skip_to_end_of("$MeshFormat");
+                version = Some(read_version(&mut lines)?);
+                lines.skip_to_end_of("$MeshFormat");
             }
-            ("$PhysicalNames", _) => groups.read_names(&mut rows)?,
-            ("$Entities", Some(Version::V4)) => groups.read_entities(&mut rows)?,
-            ("$Nodes", Some(Version::V2)) => nodes_v2(&mut rows, &mut draft)?,
-            ("$Nodes", Some(Version::V4)) => nodes_v4(&mut rows, &mut draft)?,
-            ("$Elements", Some(Version::V2)) => elements_v2(&mut rows, &groups, &mut draft)?,
-            ("$Elements", Some(Version::V4)) => elements_v4(&mut rows, &groups, &mut draft)?,
+            ("$PhysicalNames", _) => groups.read_names(&mut lines)?,
+            ("$Entities", Some(Version::V4)) => groups.read_entities(&mut lines)?,
+            ("$Nodes", Some(Version::V2)) => nodes_v2(&mut lines, &mut draft)?,
+            ("$Nodes", Some(Version::V4)) => nodes_v4(&mut lines, &mut draft)?,
+            ("$Elements", Some(Version::V2)) => elements_v2(&mut lines, &groups, &mut draft)?,
+            ("$Elements", Some(Version::V4)) => elements_v4(&mut lines, &groups, &mut draft)?,
             (_, None) => {
                 let what = "does not start with $MeshFormat; is this a Gmsh file?";
-                return Err(Place::line(path, line).error(what));
+                return Err(FileLine::line(path, line).error(what));
             }
-            (section, _) => rows.skip_to_end_of(section),
+            (section, _) => lines.skip_to_end_of(section),
         }
     }
     draft.finish()
@@ -42,8 +45,8 @@ enum Version {
     V4,
 }
 
-fn read_version(rows: &mut Rows) -> Result<Version, MeshFileError> {
-    let (line, row) = rows.expect_row()?;
+fn read_version(lines: &mut Lines) -> Result<Version, MeshFileError> {
+    let (line, row) = lines.expect_row()?;
     let words: Vec<&str> = row.split_ascii_whitespace().collect();
     match words[..] {
         ["2.2", "0", ..] => Ok(Version::V2),
@@ -53,290 +56,12 @@ fn read_version(rows: &mut Rows) -> Result<Version, MeshFileError> {
             let what = format!(
                 "is Gmsh version {version} as {kind}; save it as version 4.1 or 2.2, ASCII"
             );
-            Err(rows.at(line).error(what))
+            Err(lines.at(line).error(what))
         }
-        _ => Err(rows
+        _ => Err(lines
             .at(line)
             .error("the format line needs version, type and size")),
     }
-}
-
-/// Lines that are not empty, with their numbers.
-struct Rows<'t> {
-    path: &'t Path,
-    lines: std::iter::Enumerate<std::str::Lines<'t>>,
-}
-
-impl<'t> Rows<'t> {
-    fn new(path: &'t Path, content: &'t str) -> Self {
-        let lines = content.lines().enumerate();
-        Self { path, lines }
-    }
-
-    fn next(&mut self) -> Option<(usize, &'t str)> {
-        let mut filled = self
-            .lines
-            .by_ref()
-            .map(|(index, row)| (index + 1, row.trim()));
-        filled.find(|(_, row)| !row.is_empty())
-    }
-
-    fn expect_row(&mut self) -> Result<(usize, &'t str), MeshFileError> {
-        let end =
-            || Place::file(self.path).error("ends in the middle of a section; was it cut off?");
-        self.next().ok_or_else(end)
-    }
-
-    fn at(&self, line: usize) -> Place {
-        Place::line(self.path, line)
-    }
-
-    /// The next row as whole numbers, at least `least` of them.
-    fn integers(&mut self, least: usize) -> Result<(usize, Vec<i64>), MeshFileError> {
-        let (line, row) = self.expect_row()?;
-        let words = row.split_ascii_whitespace();
-        let numbers: Result<Vec<i64>, _> = words
-            .map(|word| text::number(self.path, line, word))
-            .collect();
-        let numbers = numbers?;
-        if numbers.len() < least {
-            let what = format!("this row has {} numbers; it needs {least}", numbers.len());
-            return Err(self.at(line).error(what));
-        }
-        Ok((line, numbers))
-    }
-
-    fn skip_to_end_of(&mut self, section: &str) {
-        let end = section.replacen('$', "$End", 1);
-        while self.next().is_some_and(|(_, row)| row != end) {}
-    }
-}
-
-/// Physical groups: names by dimension and number, and in version 4 the groups of each entity.
-#[derive(Default)]
-struct Groups {
-    names: HashMap<(i64, i64), String>,
-    of_entity: HashMap<(i64, i64), Vec<i64>>,
-}
-
-impl Groups {
-    fn read_names(&mut self, rows: &mut Rows) -> Result<(), MeshFileError> {
-        let (_, count) = rows.integers(1)?;
-        for _ in 0..count[0] {
-            let (line, row) = rows.expect_row()?;
-            let mut words = row.splitn(3, char::is_whitespace);
-            let mut number = || text::number(rows.path, line, words.next().unwrap_or_default());
-            let key = (number()?, number()?);
-            let name = words.next().unwrap_or_default().trim().trim_matches('"');
-            self.names.insert(key, name.to_string());
-        }
-        rows.skip_to_end_of("$PhysicalNames");
-        Ok(())
-    }
-
-    fn read_entities(&mut self, rows: &mut Rows) -> Result<(), MeshFileError> {
-        let (_, counts) = rows.integers(4)?;
-        for (dimension, count) in (0..).zip(counts) {
-            for _ in 0..count {
-                self.read_entity(rows, dimension)?;
-            }
-        }
-        rows.skip_to_end_of("$Entities");
-        Ok(())
-    }
-
-    /// Tag, a point or the two corners of a box, then the number of groups and the groups.
-    fn read_entity(&mut self, rows: &mut Rows, dimension: i64) -> Result<(), MeshFileError> {
-        let (line, row) = rows.expect_row()?;
-        let mut words = row.split_ascii_whitespace();
-        let tag = text::number(rows.path, line, words.next().unwrap_or_default())?;
-        let extent = if dimension == 0 { 3 } else { 6 };
-        let mut words = words.skip(extent);
-        let count: usize = text::number(rows.path, line, words.next().unwrap_or_default())?;
-        let groups: Result<_, _> = words
-            .take(count)
-            .map(|word| text::number(rows.path, line, word))
-            .collect();
-        self.of_entity.insert((dimension, tag), groups?);
-        Ok(())
-    }
-
-    /// Name of a group; its number where it has none. A negative number means turned round.
-    fn name(&self, dimension: i64, group: i64) -> String {
-        let group = group.abs();
-        let name = self.names.get(&(dimension, group));
-        name.cloned().unwrap_or_else(|| group.to_string())
-    }
-}
-
-fn nodes_v2(rows: &mut Rows, draft: &mut HexDraft) -> Result<(), MeshFileError> {
-    let (_, count) = rows.integers(1)?;
-    for _ in 0..count[0] {
-        let (line, row) = rows.expect_row()?;
-        let mut words = row.split_ascii_whitespace();
-        let label = text::number(rows.path, line, words.next().unwrap_or_default())?;
-        let position = text::coordinates(rows.path, line, &mut words)?;
-        draft.node(Some(line), label, position)?;
-    }
-    rows.skip_to_end_of("$Nodes");
-    Ok(())
-}
-
-fn nodes_v4(rows: &mut Rows, draft: &mut HexDraft) -> Result<(), MeshFileError> {
-    let (_, head) = rows.integers(4)?;
-    for _ in 0..head[0] {
-        let (_, block) = rows.integers(4)?;
-        let mut labels = Vec::new();
-        for _ in 0..block[3] {
-            labels.push(rows.integers(1)?.1[0]);
-        }
-        for label in labels {
-            let (line, row) = rows.expect_row()?;
-            let mut words = row.split_ascii_whitespace();
-            let position = text::coordinates(rows.path, line, &mut words)?;
-            draft.node(Some(line), label.cast_unsigned(), position)?;
-        }
-    }
-    rows.skip_to_end_of("$Nodes");
-    Ok(())
-}
-
-fn elements_v2(
-    rows: &mut Rows,
-    groups: &Groups,
-    draft: &mut HexDraft,
-) -> Result<(), MeshFileError> {
-    let (_, count) = rows.integers(1)?;
-    for _ in 0..count[0] {
-        let (line, numbers) = rows.integers(3)?;
-        let tags = usize::try_from(numbers[2]).unwrap_or(0);
-        // Without a group, the first tag is missing or 0.
-        let group = numbers[3..]
-            .iter()
-            .take(tags.min(1))
-            .copied()
-            .filter(|&group| group != 0);
-        let element = Element {
-            line,
-            label: numbers[0].cast_unsigned(),
-            kind: numbers[1],
-            groups: &group.collect::<Vec<_>>(),
-            nodes: numbers.get(3 + tags..).unwrap_or_default(),
-        };
-        element.add_to(draft, groups, rows)?;
-    }
-    rows.skip_to_end_of("$Elements");
-    Ok(())
-}
-
-fn elements_v4(
-    rows: &mut Rows,
-    groups: &Groups,
-    draft: &mut HexDraft,
-) -> Result<(), MeshFileError> {
-    let (_, head) = rows.integers(4)?;
-    for _ in 0..head[0] {
-        let (_, block) = rows.integers(4)?;
-        let [dimension, entity, kind, count] = [block[0], block[1], block[2], block[3]];
-        let of_entity = groups.of_entity.get(&(dimension, entity));
-        for _ in 0..count {
-            let (line, numbers) = rows.integers(1)?;
-            let element = Element {
-                line,
-                label: numbers[0].cast_unsigned(),
-                kind,
-                groups: of_entity.map_or(&[], Vec::as_slice),
-                nodes: &numbers[1..],
-            };
-            element.add_to(draft, groups, rows)?;
-        }
-    }
-    rows.skip_to_end_of("$Elements");
-    Ok(())
-}
-
-struct Element<'e> {
-    line: usize,
-    label: u64,
-    kind: i64,
-    groups: &'e [i64],
-    nodes: &'e [i64],
-}
-
-impl Element<'_> {
-    fn add_to(
-        &self,
-        draft: &mut HexDraft,
-        groups: &Groups,
-        rows: &Rows,
-    ) -> Result<(), MeshFileError> {
-        match self.kind {
-            5 => draft.hex(DraftHex {
-                label: self.label,
-                line: Some(self.line),
-                nodes: self.corners(rows)?,
-            }),
-            3 => self.add_quad(draft, groups, rows),
-            1 => self.add_nodes(draft, groups, 1),
-            15 => self.add_nodes(draft, groups, 0),
-            other => Err(MeshFileError::NotHexahedron {
-                at: rows.at(self.line),
-                element: self.label,
-                kind: kind_in_words(other),
-            }),
-        }
-    }
-
-    fn corners<const N: usize>(&self, rows: &Rows) -> Result<[u64; N], MeshFileError> {
-        let corners = <[i64; N]>::try_from(self.nodes).map_err(|_| {
-            let found = self.nodes.len();
-            let what = format!("element {} has {found} nodes; its type has {N}", self.label);
-            rows.at(self.line).error(what)
-        })?;
-        Ok(corners.map(i64::cast_unsigned))
-    }
-
-    fn add_quad(
-        &self,
-        draft: &mut HexDraft,
-        groups: &Groups,
-        rows: &Rows,
-    ) -> Result<(), MeshFileError> {
-        let corners = self.corners(rows)?;
-        for &group in self.groups {
-            draft.quad(&groups.name(2, group), Some(self.line), corners);
-        }
-        Ok(())
-    }
-
-    fn add_nodes(
-        &self,
-        draft: &mut HexDraft,
-        groups: &Groups,
-        dimension: i64,
-    ) -> Result<(), MeshFileError> {
-        for &group in self.groups {
-            let nodes = self.nodes.iter().map(|node| node.cast_unsigned());
-            draft.set_nodes(&groups.name(dimension, group), nodes);
-        }
-        Ok(())
-    }
-}
-
-fn kind_in_words(kind: i64) -> String {
-    let name = match kind {
-        2 => "3-node triangle",
-        4 => "4-node tetrahedron",
-        6 => "6-node prism",
-        7 => "5-node pyramid",
-        9 => "6-node triangle",
-        11 => "10-node tetrahedron",
-        12 => "27-node hexahedron",
-        16 => "8-node quadrangle",
-        17 => "20-node hexahedron",
-        _ => return kind.to_string(),
-    };
-    format!("{kind} ({name})")
 }
 
 #[cfg(test)]
