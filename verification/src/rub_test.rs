@@ -1,5 +1,7 @@
 //! A femur that rubs an insert, moved along AP under a load that is held.
 
+use std::sync::Arc;
+
 use condyle::{
     contact::FoundationSettings,
     evolve::{Schedule, WearTest},
@@ -45,7 +47,7 @@ impl Rub {
             insert: self.insert,
             machine: machine(drives, Vec::new()),
             contact: self.contact,
-            wear: Box::new(Archard {
+            wear: Arc::new(Archard {
                 wear_factor_mm3_per_nm: WEAR_FACTOR_MM3_PER_NM,
             }),
             density_mg_per_mm3: 0.93,

@@ -2,17 +2,26 @@
 
 use crate::repository::{TextFile, text_files_ending};
 
-const MODULES: &[&str] = &["number", "geometry", "contact", "machine", "wear", "evolve"];
+const MODULES: &[&str] = &[
+    "number",
+    "parameter",
+    "geometry",
+    "contact",
+    "machine",
+    "wear",
+    "evolve",
+];
 
 /// Each module of `condyle`, and the others that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("number", &[]),
+    ("parameter", &[]),
     ("geometry", &["number"]),
     ("contact", &["number", "geometry"]),
     // The contact interface, never a mesh.
     ("machine", &["contact"]),
     // Histories, never a solver.
-    ("wear", &["contact"]),
+    ("wear", &["parameter", "contact"]),
     ("evolve", &["geometry", "contact", "machine", "wear"]),
 ];
 

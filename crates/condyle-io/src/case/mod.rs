@@ -26,6 +26,7 @@ mod origin;
 mod overriding;
 mod pressure_table;
 mod read;
+mod reader;
 mod schema;
 #[cfg(test)]
 mod tests;
@@ -55,10 +56,11 @@ pub use mesh_file::LengthUnit;
 pub use number_keys::NumberKey;
 pub use overriding::{Override, OverrideError};
 pub use pressure_table::PressureTableReason;
+pub use reader::CaseReader;
 pub use schema::schema_markdown;
 pub use time::{IntegratorWord, Time};
 pub use waveform::WaveformReason;
-pub use wear::{Wear, WearLawWord};
+pub use wear::{ConstantError, Wear, WearLaws};
 pub use write::template;
 
 pub(crate) use axes::check as check_axes;

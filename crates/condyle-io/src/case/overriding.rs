@@ -1,14 +1,7 @@
 //! One number of a case set from outside, before the case is read.
 
-use std::path::Path;
-use std::sync::Arc;
-
-use miette::NamedSource;
 use thiserror::Error;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
-
-use super::contents::Case;
-use crate::keyed::{Problems, read_source};
 
 /// A number to be taken in place of the one that the case file gives, or leaves out.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,7 +87,7 @@ impl Override {
     }
 
     /// The text of a case with this number in it; a text that is not TOML stays as it is.
-    fn applied_to(&self, case: &str) -> String {
+    pub(super) fn applied_to(&self, case: &str) -> String {
         let Ok(mut document) = case.parse::<DocumentMut>() else {
             return case.to_owned();
         };
@@ -126,20 +119,6 @@ fn set(table: &mut dyn TableLike, key: &str, mut value: Value) {
         *value.decor_mut() = before.decor().clone();
     }
     table.insert(key, Item::Value(value));
-}
-
-impl Case {
-    /// Reads the case file at `path` with one number changed. Messages show the changed text, and
-    /// say so in its name.
-    ///
-    /// # Errors
-    /// As [`Case::read`].
-    pub fn read_with(path: &Path, number: &Override) -> Result<Self, Problems> {
-        let file = read_source(path).map_err(Problems::unreadable)?;
-        let name = format!("{} with {} = {}", file.name(), number.path, number.text);
-        let source = Arc::new(NamedSource::new(name, number.applied_to(file.inner())));
-        Self::from_source(&source, path.parent().unwrap_or(Path::new("")))
-    }
 }
 
 #[cfg(test)]

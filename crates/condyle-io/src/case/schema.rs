@@ -1,5 +1,8 @@
 //! The page of the book that lists every key.
 
+use condyle::parameter::Parameter;
+use condyle::wear::WearLawKind;
+
 use super::accuracy::Accuracy;
 use super::channel::Channel;
 use super::contact::{Contact, PressureLawChoice};
@@ -11,7 +14,7 @@ use super::march::{March, Update};
 use super::material::Material;
 use super::time::Time;
 use super::waveform::{WaveformSource, knots_key};
-use super::wear::Wear;
+use super::wear::{Wear, WearLaws};
 use crate::keyed::{Page, Settings, Variants, unit_of};
 
 const OPENING: &str = "\
@@ -36,8 +39,9 @@ const POINTS: &str = "
 | --- | --- | --- | --- | --- | --- |
 ";
 
-/// Every key of a case file with its unit, range, default and meaning, as Markdown.
-pub fn schema_markdown() -> String {
+/// Every key of a case file that may choose from `wear_laws`, with its unit, range, default and
+/// meaning, as Markdown.
+pub fn schema_markdown(wear_laws: WearLaws) -> String {
     let mut page = Page::new(OPENING);
     page.table(&Heading::keys());
     let (femur, insert) = (Femur::choices(), Insert::choices());
@@ -50,11 +54,31 @@ pub fn schema_markdown() -> String {
         &PressureLawChoice::choices(),
     );
     machine(&mut page);
-    page.section("`[wear]`", &Wear::keys());
+    wear(&mut page, wear_laws);
     page.chosen("`[march]`", &March::keys(), &Update::choices());
     page.section("`[time]`", &Time::keys());
     page.section("`[accuracy]`", &Accuracy::keys());
     page.into_text()
+}
+
+fn wear(page: &mut Page, laws: WearLaws) {
+    let choices = Wear::choices(laws);
+    page.chosen("`[wear]`", std::slice::from_ref(&choices.by), &choices);
+    page.push("\n");
+    for law in laws {
+        page.push(&law_line(law));
+    }
+}
+
+/// The formula of a law and where its constants are from.
+fn law_line(law: &WearLawKind) -> String {
+    let source = |parameter: &Parameter| match parameter.source {
+        "choice" => "choice".to_owned(),
+        key => format!("[{key}]"),
+    };
+    let sources: Vec<String> = law.parameters.iter().map(source).collect();
+    let (word, about, sources) = (law.word, law.about, sources.join(", "));
+    format!("- `{word}`: {about} Its constants are from: {sources}.\n")
 }
 
 fn machine(page: &mut Page) {

@@ -1,5 +1,7 @@
 //! A whole wear test, as the solver sees it.
 
+use std::sync::Arc;
+
 use super::Schedule;
 use crate::{
     contact::FoundationSettings,
@@ -23,7 +25,7 @@ pub struct WearTest {
     /// Contact between femur and insert.
     pub contact: FoundationSettings,
     /// The law of wear.
-    pub wear: Box<dyn WearLaw>,
+    pub wear: Arc<dyn WearLaw>,
     /// Density of the insert, mg/mm3.
     pub density_mg_per_mm3: f64,
     /// How finely and exactly a cycle is solved.

@@ -3,13 +3,11 @@
 use condyle::contact::{FoundationSettings, PressureLaw, confined_modulus};
 use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::machine::{Integration, TimeSettings};
-use condyle::wear::Archard;
 
 use super::super::contact::PressureLawChoice;
 use super::super::contents::Case;
 use super::super::march::Update;
 use super::super::time::IntegratorWord;
-use super::super::wear::WearLawWord;
 use super::error::{BuildError, BuildWarning};
 use super::femur::Preparing;
 use super::machine::start_flexion_rad;
@@ -55,11 +53,7 @@ impl Case {
             insert,
             machine,
             contact: self.foundation(),
-            wear: match self.wear.law {
-                WearLawWord::Archard => Box::new(Archard {
-                    wear_factor_mm3_per_nm: self.wear.wear_factor_mm3_per_nm,
-                }),
-            },
+            wear: self.wear.law(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),
             schedule: Schedule {
@@ -95,7 +89,6 @@ impl Case {
             increments: time.increments as usize,
             increment_error_mm: time.increment_error_mm,
             force_tolerance_n: time.force_tolerance_n,
-            foresees: true,
             repeat_tolerance_mm: time.repeat_tolerance_mm,
             repeat_tolerance_rad: time.repeat_tolerance_deg.to_radians(),
             most_cycles_to_repeat: time.most_cycles_to_repeat as usize,
@@ -105,6 +98,7 @@ impl Case {
                     least_step_s: time.explicit_step_s,
                 },
             },
+            ..TimeSettings::default()
         }
     }
 }

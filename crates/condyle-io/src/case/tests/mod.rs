@@ -3,6 +3,7 @@
 mod errors;
 mod files;
 mod round_trip;
+mod wear;
 
 use std::path::{Path, PathBuf};
 
