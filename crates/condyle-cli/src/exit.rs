@@ -6,7 +6,7 @@ use std::{
     process::ExitCode,
 };
 
-use condyle_io::case::{CaseError, Look};
+use condyle_io::keyed::{Problems, RenderStyle};
 use condyle_lab::RunError;
 
 /// Bad input.
@@ -32,19 +32,19 @@ pub fn fail_run(error: &RunError) -> ExitCode {
     let Some(in_case) = error.in_case() else {
         return fail(error, code);
     };
-    eprint!("{}", in_case.render(look()));
+    eprint!("{}", in_case.render(style()));
     ExitCode::from(code)
 }
 
 /// Prints what is wrong with a case file, with carets, and gives the exit code.
-pub fn fail_case(error: &CaseError) -> ExitCode {
-    eprint!("{}", error.render(look()));
+pub fn fail_case(error: &Problems) -> ExitCode {
+    eprint!("{}", error.render(style()));
     ExitCode::from(BAD_INPUT)
 }
 
-fn look() -> Look {
+fn style() -> RenderStyle {
     match stderr().is_terminal() {
-        true => Look::Terminal { width: 100 },
-        false => Look::Plain,
+        true => RenderStyle::Terminal { width: 100 },
+        false => RenderStyle::Plain,
     }
 }

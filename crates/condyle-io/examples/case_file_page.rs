@@ -3,5 +3,8 @@
 //! `cargo run -q -p condyle-io --example case_file_page > docs/src/case-file.md`
 
 fn main() {
-    print!("{}", condyle_io::case::schema_markdown());
+    print!(
+        "{}",
+        condyle_io::case::schema_markdown(condyle::wear::WEAR_LAWS)
+    );
 }

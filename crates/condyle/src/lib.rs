@@ -8,6 +8,7 @@ pub mod evolve;
 pub mod geometry;
 pub mod machine;
 pub mod number;
+pub mod parameter;
 pub mod spatial;
 pub mod wear;
 

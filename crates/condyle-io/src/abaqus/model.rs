@@ -6,8 +6,10 @@ use condyle::geometry::TriangleMesh;
 use condyle::machine::{JointIndex, knee};
 use condyle_fem::HexMesh;
 
+use super::error::ExportError;
+use super::femur;
+use super::options::AbaqusOptions;
 use super::placing::Placing;
-use super::{AbaqusOptions, ExportError, femur};
 use crate::case::Case;
 
 /// The model that is written.

@@ -4,13 +4,10 @@ use std::io::{self, Write};
 
 use super::drives::{self, Commands};
 use super::model::Model;
+use super::step_times::{SETTLE_S, START_S};
 use super::{names, output};
-use crate::mesh::{Application, InpWriter, Procedure, Step};
+use crate::mesh::{AnalysisStep, Application, InpWriter, Procedure};
 
-/// Length of the step SETTLE, s.
-pub(super) const SETTLE_S: f64 = 0.3;
-/// Length of the step START, s.
-pub(super) const START_S: f64 = 0.2;
 /// Smallest increment that Abaqus may cut down to, s.
 const LEAST_S: f64 = 1e-9;
 
@@ -74,7 +71,7 @@ fn step<W: Write>(
             most_s: increment_s,
         },
     };
-    inp.begin_step(&Step {
+    inp.begin_step(&AnalysisStep {
         name,
         period_s,
         procedure,

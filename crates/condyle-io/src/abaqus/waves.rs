@@ -6,7 +6,7 @@ use condyle::machine::{Drive, JointDescription, JointIndex, JointKind, Waveform}
 
 use super::model::Model;
 use super::names;
-use super::steps::{SETTLE_S, START_S};
+use super::step_times::{SETTLE_S, START_S};
 use crate::mesh::InpWriter;
 
 /// Points of a table at least.

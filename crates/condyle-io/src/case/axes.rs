@@ -5,11 +5,8 @@ use thiserror::Error;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::Side;
-use super::keys::Key;
-use super::parse::Log;
-use super::problems::Reason;
-use super::setting::{Setting, quoted_list, read_word, wrong_type};
+use super::heading::Side;
+use crate::keyed::{Key, Log, Reason, Setting, quoted_list, read_word, wrong_type};
 
 /// Where x, y and z of a file point, in words of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,9 +25,22 @@ pub enum AxesError {
     LeftHanded,
 }
 
-impl AxesError {
-    pub(crate) const ADVICE: &'static str = "name where x, y and z of the file point; the third \
-        is the cross product of the first two, such as [\"anterior\", \"superior\", \"right\"]";
+/// Axes that are no right-handed frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("`{key}`: {error}")]
+pub struct AxesReason {
+    /// The key that gives them.
+    pub key: &'static str,
+    /// Why.
+    pub error: AxesError,
+}
+
+impl Reason for AxesReason {
+    fn advice(&self) -> Option<String> {
+        const ADVICE: &str = "name where x, y and z of the file point; the third is the cross \
+            product of the first two, such as [\"anterior\", \"superior\", \"right\"]";
+        Some(ADVICE.to_owned())
+    }
 }
 
 /// Words that say a direction.
@@ -103,7 +113,7 @@ impl Setting for Axes {
             wrong_type(value, key, log);
             return None;
         };
-        let words = [x, y, z].map(|word| known_word(word, key, log));
+        let words = [x, y, z].map(|word| read_word(word, key, WORDS, log));
         let [Some(x), Some(y), Some(z)] = words else {
             return None;
         };
@@ -120,16 +130,10 @@ fn three<'a, 'i>(array: &'a toml::de::DeArray<'i>) -> Option<[&'a Spanned<DeValu
     all.try_into().ok()
 }
 
-fn known_word(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<&'static str> {
-    let written = read_word(value, key, WORDS, log)?;
-    WORDS.iter().copied().find(|word| *word == written)
-}
-
 /// Reports axes that are no right-handed frame on a `side` knee.
 pub(crate) fn check(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
     if let Err(error) = axes.rotation(side) {
-        let key = "axes".to_owned();
-        log.problem(span, Reason::Axes { key, error });
+        log.problem(span, AxesReason { key: "axes", error });
     }
 }
 

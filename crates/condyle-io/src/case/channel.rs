@@ -2,7 +2,7 @@
 
 use condyle::machine::{self, ChannelUnit, Interpolation, knee::KNEE};
 
-use super::keys::{Limits, within};
+use crate::keyed::{Limits, within};
 
 /// A waveform of the machine, as a case has it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,8 @@
 
 use std::{fs, io};
 
-use super::{Case, DataFile};
+use super::contents::Case;
+use crate::keyed::DataFile;
 
 impl Case {
     /// Hash of the case as run and of the bytes of its meshes, in hexadecimal.

@@ -3,13 +3,12 @@
 use condyle::machine::{JointDescription, JointIndex, JointKind, Waveform, knee::KNEE};
 
 use super::channel::Channel;
-use super::declared::{DriveWord, MachineSettings, Preset, Rotation, Springs, Translation};
-use super::keys::{Key, Settings};
-use super::parse::{Log, Others, Section, names};
-use super::problems::Reason;
-use super::read_plain;
-use super::setting::Setting;
-use super::waveforms;
+use super::drive_reason::DriveReason;
+use super::machine_keys::{
+    DriveWord, MachineSettings, Preset, Rotation, Springs, Start, Translation,
+};
+use super::waveform;
+use crate::keyed::{KeyReason, Log, Section, Settings, names, read_table};
 
 /// The simulator.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,15 +54,6 @@ impl Waveforms {
         given.find_map(|(of, waveform)| (*of == channel).then_some(waveform))
     }
 }
-
-/// The key that chooses the preset.
-pub(super) const PRESET: Key = Key {
-    name: "preset",
-    doc: "The simulator it starts from: which freedoms are free and which are moved.",
-    kind: <Preset as Setting>::kind,
-    default: Some(|| Some("\"stanmore-force\"".to_owned())),
-    limits: None,
-};
 
 /// What moves each freedom of a preset.
 fn preset_drives(preset: Preset) -> [(&'static str, DriveWord); 6] {
@@ -126,8 +116,8 @@ pub(super) fn channel_of(joint: &JointDescription, drive: DriveWord) -> Option<C
 impl Freedom {
     fn read(joint: &JointDescription, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         match joint.kind() {
-            JointKind::Translation => read_plain(section, joint.name, log).map(Self::Translation),
-            JointKind::Rotation => read_plain(section, joint.name, log).map(Self::Rotation),
+            JointKind::Translation => read_table(section, joint.name, log).map(Self::Translation),
+            JointKind::Rotation => read_table(section, joint.name, log).map(Self::Rotation),
         }
     }
 
@@ -168,7 +158,7 @@ impl Freedom {
     fn check(&self, joint: &JointDescription, section: &Section<'_>, log: &mut Log<'_>) {
         let (row, drive) = (section.table(joint.name, log), self.drive());
         if !allows(joint, drive) {
-            let reason = Reason::NoSuchDrive {
+            let reason = DriveReason::NoSuchDrive {
                 freedom: joint.name,
                 drive: drive.word(),
                 drives: drive_words(joint),
@@ -177,7 +167,7 @@ impl Freedom {
         }
         if drive != DriveWord::Locked && self.locked_at() != 0.0 {
             let key = self.locked_at_key();
-            let reason = Reason::Idle {
+            let reason = KeyReason::Idle {
                 key: key.to_owned(),
                 needs: "`drive = \"locked\"`".to_owned(),
             };
@@ -190,7 +180,7 @@ impl Freedoms {
     fn read(machine: &Section<'_>, preset: Preset, log: &mut Log<'_>) -> Option<Self> {
         let section = machine.table("freedoms", log);
         let known = KNEE.in_files.map(|index| KNEE.joint(index).name);
-        section.check_keys(&known, &Others::NONE, log);
+        section.check_keys(&known, log);
         let read = KNEE.joints.each_ref();
         let read = read.map(|joint| Freedom::read(joint, &section, log));
         let rows: Vec<Freedom> = read.into_iter().collect::<Option<_>>()?;
@@ -222,7 +212,7 @@ impl Waveforms {
             let channels = [joint.motion, joint.load_channel()].into_iter().flatten();
             for channel in channels.map(Channel::of) {
                 if channel_of(joint, freedom.drive()) == Some(channel) {
-                    let waveform = waveforms::read(channel, machine, log);
+                    let waveform = waveform::read(channel, machine, log);
                     complete &= waveform.is_some();
                     given.extend(waveform.map(|waveform| (channel, waveform)));
                 } else {
@@ -250,7 +240,7 @@ fn check_absent(
     } else {
         DriveWord::Loaded
     };
-    let reason = Reason::UnusedWaveform {
+    let reason = DriveReason::UnusedWaveform {
         section: format!("machine.{}", channel.name()),
         freedom: joint.name,
         drive: drive.word(),
@@ -261,14 +251,15 @@ fn check_absent(
 
 impl Machine {
     pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let known: Vec<&str> = names(MachineSettings::KEYS)
-            .chain(["preset", "springs", "freedoms"])
+        let known: Vec<&str> = names(&MachineSettings::keys())
+            .chain(names(&Start::keys()))
+            .chain(["springs", "freedoms"])
             .chain(Channel::all().map(Channel::name))
             .collect();
-        section.check_keys(&known, &Others::NONE, log);
+        section.check_keys(&known, log);
         let settings = MachineSettings::read(section, log);
-        let springs = read_plain(section, "springs", log);
-        let preset = section.setting(&PRESET, Some(Preset::StanmoreForce), log)?;
+        let springs = read_table(section, "springs", log);
+        let preset = Start::read(section, log)?.preset;
         let freedoms = Freedoms::read(section, preset, log)?;
         let waveforms = Waveforms::read(section, &freedoms, log);
         Some(Self {

@@ -1,10 +1,38 @@
 //! The march over the life of the insert.
 
-use super::declared::{AutoUpdates, FixedUpdates, UpdateWord, WholeTest};
-use super::keys::{Key, Settings};
-use super::parse::{Log, Others, Section, names};
-use super::setting::Setting;
-use super::to_toml::Writer;
+use crate::keyed::{Key, Log, Section, Settings, Variants, Writer, settings, variants, within};
+
+settings! {
+    /// The whole test.
+    WholeTest {
+        /// Gait cycles in all.
+        cycles: u64 = 5_000_000, in within(1.0, 1e10);
+    }
+
+    /// Updates of the worn shape, evenly over the cycles.
+    FixedUpdates {
+        /// How often the worn shape is brought up to date, evenly over the cycles.
+        updates: u64 = 10, in within(1.0, 10_000.0);
+    }
+
+    /// Updates of the worn shape as the depth asks for them.
+    AutoUpdates {
+        /// Error of the maximum depth that one interval may make, as a fraction of the depth expected at the end; it mostly wears away in those that follow.
+        depth_tolerance_fraction: f64 = 0.05, in within(1e-5, 0.5);
+    }
+}
+
+variants! {
+    /// When the worn shape is brought up to date.
+    Update by
+    /// How often the worn shape is brought up to date: evenly, or as a tolerance on depth asks for.
+    update = "fixed" {
+        /// So many times, evenly over the cycles.
+        Fixed(FixedUpdates) = "fixed",
+        /// As seldom as a tolerance on the maximum depth allows.
+        Auto(AutoUpdates) = "auto",
+    }
+}
 
 /// The march over the life of the insert.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,72 +43,24 @@ pub struct March {
     pub update: Update,
 }
 
-/// When the worn shape is brought up to date.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Update {
-    /// So many times, evenly over the cycles.
-    Fixed(FixedUpdates),
-    /// As seldom as a tolerance on the maximum depth allows.
-    Auto(AutoUpdates),
-}
-
-/// The key that chooses when the shape is updated.
-pub(super) const UPDATE: Key = Key {
-    name: "update",
-    doc: "How often the worn shape is brought up to date: evenly, or as a tolerance on depth asks for.",
-    kind: <UpdateWord as Setting>::kind,
-    default: Some(|| Some("\"fixed\"".to_owned())),
-    limits: None,
-};
-
 impl March {
-    /// Words for `update` and the keys each brings.
-    pub(super) const UPDATES: &'static [(&'static str, &'static [Key])] =
-        &[("fixed", FixedUpdates::KEYS), ("auto", AutoUpdates::KEYS)];
+    /// The keys that `[march]` has whatever the update, and the one that chooses it.
+    pub(super) fn keys() -> Vec<Key> {
+        [WholeTest::keys(), vec![Update::choices().by]].concat()
+    }
 
     pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let word = section.setting(&UPDATE, Some(UpdateWord::Fixed), log)?;
-        check_keys(section, word, log);
+        let update = Update::read(section, &WholeTest::keys(), log);
         let test = WholeTest::read(section, log);
-        let update = match word {
-            UpdateWord::Fixed => Update::Fixed(FixedUpdates::read(section, log)?),
-            UpdateWord::Auto => Update::Auto(AutoUpdates::read(section, log)?),
-        };
         Some(Self {
             cycles: test?.cycles,
-            update,
+            update: update?,
         })
     }
 
     pub(super) fn write(&self, out: &mut Writer) {
-        WholeTest {
-            cycles: self.cycles,
-        }
-        .write(out);
-        match &self.update {
-            Update::Fixed(fixed) => {
-                out.setting(&UPDATE, &UpdateWord::Fixed);
-                fixed.write(out);
-            }
-            Update::Auto(by_depth) => {
-                out.setting(&UPDATE, &UpdateWord::Auto);
-                by_depth.write(out);
-            }
-        }
+        let cycles = self.cycles;
+        WholeTest { cycles }.write(out);
+        self.update.write(out);
     }
-}
-
-fn check_keys(section: &Section<'_>, word: UpdateWord, log: &mut Log<'_>) {
-    let own = March::UPDATES.iter().filter(|(own, _)| *own == word.word());
-    let keys = own.flat_map(|(_, keys)| names(keys));
-    let known: Vec<&str> = names(WholeTest::KEYS)
-        .chain([UPDATE.name])
-        .chain(keys)
-        .collect();
-    let others = Others {
-        key: UPDATE.name,
-        word: word.word(),
-        all: March::UPDATES,
-    };
-    section.check_keys(&known, &others, log);
 }

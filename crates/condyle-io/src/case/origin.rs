@@ -1,16 +1,8 @@
-//! Where a case comes from, so that what its bodies fail with points to the key behind it.
+//! The file that a case comes from.
 
-use std::ops::Range;
 use std::sync::Arc;
 
-use condyle::evolve::PlacementError;
-use condyle::geometry::ShellInsertError;
-use condyle::machine::knee;
-use toml::de::DeTable;
-
-use super::parse::{Log, Section};
-use super::problems::{Problem, Reason, Source};
-use super::{BuildError, Case, CaseError, DriveWord};
+use crate::keyed::Source;
 
 /// The text of a case file.
 ///
@@ -18,99 +10,14 @@ use super::{BuildError, Case, CaseError, DriveWord};
 #[derive(Clone, Debug)]
 pub(super) struct Origin(pub Source);
 
-impl PartialEq for Origin {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-/// A table of a case and those of its keys that may be at fault, likeliest first.
-struct Culprit {
-    table: &'static str,
-    keys: &'static [&'static str],
-}
-
-/// What places the femur over the insert.
-const START: Culprit = Culprit {
-    table: "femur",
-    keys: &["start_mm", "length_unit", "axes", "file", "shape"],
-};
-
-/// A material softer than this, MPa, is likelier at fault for a deep overlap than the shapes.
-const SOFT_MPA: f64 = 100.0;
-
-impl Case {
-    /// A failed build, at the key of this case that is behind it.
-    pub fn at_its_key(&self, error: &BuildError) -> CaseError {
-        self.error_at(&self.culprit_of_build(error), error.to_string())
-    }
-
-    /// A failed placement of this case's bodies, at the key that is behind it.
-    pub fn placement_at_its_key(&self, error: &PlacementError) -> CaseError {
-        let culprit = match error {
-            PlacementError::DeepOverlap { .. } => self.culprit_of_overlap(),
-            _ => START,
-        };
-        self.error_at(&culprit, error.to_string())
-    }
-
-    fn culprit_of_build(&self, error: &BuildError) -> Culprit {
-        let keys: &[&str] = match error {
-            BuildError::MeshFile(_) | BuildError::Shell { .. } => &["file"],
-            BuildError::ShellInsert { source, .. } => match source {
-                ShellInsertError::NoColumns { .. } => &["edge_mm", "file"],
-                ShellInsertError::OpenWithoutThickness | ShellInsertError::Insert(_) => &["file"],
-            },
-            BuildError::ThicknessOfClosed { .. } => &["thickness_mm"],
-            BuildError::NoSurface { key, .. } => match *key {
-                "backside" => &["backside"],
-                _ => &["articulating_surface"],
-            },
-            BuildError::Insert(_) => &["backside", "articulating_surface", "file", "edge_mm"],
-            BuildError::Axes(_) => &["axes"],
-        };
-        let file = error.file();
-        let is_of_femur = file.is_some() && file == self.femur.file().map(super::DataFile::path);
-        let table = if is_of_femur { "femur" } else { "insert" };
-        Culprit { table, keys }
-    }
-
-    fn culprit_of_overlap(&self) -> Culprit {
-        if self.machine.freedoms.get(knee::IS).drive() == DriveWord::Locked {
-            Culprit {
-                table: "machine.freedoms.is",
-                keys: &["locked_at_mm", "drive"],
-            }
-        } else if self.material.youngs_modulus_mpa < SOFT_MPA {
-            Culprit {
-                table: "material",
-                keys: &["youngs_modulus_mpa"],
-            }
-        } else {
-            START
-        }
-    }
-
-    fn error_at(&self, culprit: &Culprit, message: String) -> CaseError {
-        let source = &self.origin.0;
-        let problem = Problem::at(source, span_of(source, culprit), Reason::Unfit { message });
-        CaseError::new(vec![problem], source)
-    }
-}
-
-/// Where the first key of `culprit` that is given has its value, or else the name of the table.
-fn span_of(source: &Source, culprit: &Culprit) -> Range<usize> {
-    let (document, _) = DeTable::parse_recoverable(source.inner());
-    let mut unheard = Log::new(source, std::path::Path::new(""));
-    let root = Section::root(document.get_ref());
-    let tables = culprit.table.split('.');
-    let section = tables.fold(root, |above, name| above.table(name, &mut unheard));
-    let given = culprit.keys.iter().find(|key| section.value(key).is_some());
-    given.map_or(section.span(), |key| section.value_span(key))
-}
-
 impl Origin {
     pub(super) fn of(source: &Source) -> Self {
         Self(Arc::clone(source))
+    }
+}
+
+impl PartialEq for Origin {
+    fn eq(&self, _: &Self) -> bool {
+        true
     }
 }

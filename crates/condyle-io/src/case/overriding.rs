@@ -1,25 +1,7 @@
 //! One number of a case set from outside, before the case is read.
 
-use std::path::Path;
-use std::sync::Arc;
-
-use miette::NamedSource;
 use thiserror::Error;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
-
-use super::keys::split_unit;
-use super::table::read_source;
-use super::unknown::nearest;
-use super::{Case, CaseError};
-
-/// A number that a case has.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NumberKey {
-    /// Dotted path, such as `march.updates`.
-    pub path: String,
-    /// Whether it counts something, rather than measuring it.
-    pub is_whole: bool,
-}
 
 /// A number to be taken in place of the one that the case file gives, or leaves out.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +87,7 @@ impl Override {
     }
 
     /// The text of a case with this number in it; a text that is not TOML stays as it is.
-    fn applied_to(&self, case: &str) -> String {
+    pub(super) fn applied_to(&self, case: &str) -> String {
         let Ok(mut document) = case.parse::<DocumentMut>() else {
             return case.to_owned();
         };
@@ -137,89 +119,6 @@ fn set(table: &mut dyn TableLike, key: &str, mut value: Value) {
         *value.decor_mut() = before.decor().clone();
     }
     table.insert(key, Item::Value(value));
-}
-
-impl Case {
-    /// Reads the case file at `path` with one number changed. Messages show the changed text, and
-    /// say so in its name.
-    ///
-    /// # Errors
-    /// As [`Case::read`].
-    pub fn read_with(path: &Path, number: &Override) -> Result<Self, CaseError> {
-        let file = read_source(path).map_err(CaseError::unreadable)?;
-        let name = format!("{} with {} = {}", file.name(), number.path, number.text);
-        let source = Arc::new(NamedSource::new(name, number.applied_to(file.inner())));
-        Self::from_source(&source, path.parent().unwrap_or(Path::new("")))
-    }
-
-    /// Every number of the case, defaults too, in the order they are written.
-    pub fn number_keys(&self) -> Vec<NumberKey> {
-        let mut keys = Vec::new();
-        let written: toml::Table = self.to_toml().parse().unwrap_or_default();
-        add_numbers(&written, "", &mut keys);
-        keys
-    }
-
-    /// The dotted path of the number that `written` means: a dotted path as it is, or the name of
-    /// a key, with or without its unit.
-    ///
-    /// # Errors
-    /// A name that no number has, or several.
-    pub fn path_of_number(&self, written: &str) -> Result<String, OverrideError> {
-        if written.contains('.') {
-            return Ok(written.to_owned());
-        }
-        let keys = self.number_keys();
-        let is_meant = |key: &&NumberKey| is_called(leaf(&key.path), written);
-        let paths: Vec<String> = keys
-            .iter()
-            .filter(is_meant)
-            .map(|key| key.path.clone())
-            .collect();
-        let key = written.to_owned();
-        match <[String; 1]>::try_from(paths) {
-            Ok([path]) => Ok(path),
-            Err(paths) if paths.is_empty() && key == "updates" => {
-                Err(OverrideError::UpdatesAreFound)
-            }
-            Err(paths) if paths.is_empty() => {
-                let near = nearest(written, keys.iter().map(|key| leaf(&key.path)));
-                Err(OverrideError::UnknownKey { key, near })
-            }
-            Err(paths) => Err(OverrideError::ManyKeys { key, paths }),
-        }
-    }
-
-    /// Whether the number at the dotted `path` counts something.
-    pub fn is_whole_number(&self, path: &str) -> bool {
-        let keys = self.number_keys();
-        keys.iter().any(|key| key.path == path && key.is_whole)
-    }
-}
-
-fn leaf(path: &str) -> &str {
-    path.rsplit('.').next().unwrap_or(path)
-}
-
-fn is_called(name: &str, written: &str) -> bool {
-    name == written || split_unit(name).0 == written
-}
-
-fn add_numbers(table: &toml::Table, above: &str, keys: &mut Vec<NumberKey>) {
-    for (name, value) in table {
-        let path = match above {
-            "" => name.clone(),
-            above => format!("{above}.{name}"),
-        };
-        match value {
-            toml::Value::Table(inside) => add_numbers(inside, &path, keys),
-            toml::Value::Integer(_) | toml::Value::Float(_) => keys.push(NumberKey {
-                is_whole: value.is_integer(),
-                path,
-            }),
-            _ => {}
-        }
-    }
 }
 
 #[cfg(test)]
@@ -275,39 +174,5 @@ mod tests {
             let expected = format!("`{text}` is no value for `march.updates`; write a number");
             assert!(error.to_string().starts_with(&expected), "{error}");
         }
-    }
-
-    #[test]
-    fn updates_that_a_march_finds_itself_are_no_number() {
-        let text = "[march]\nupdate = \"auto\"\n";
-        let case = Case::parse(text, "case.toml", Path::new("")).expect("it is a case");
-        let error = case.path_of_number("updates").unwrap_err();
-        assert_eq!(error, OverrideError::UpdatesAreFound);
-        let said = error.to_string();
-        assert!(said.contains("update = \"auto\"") && said.contains("depth_tolerance_fraction"));
-    }
-
-    #[test]
-    fn names_of_numbers_are_found_with_and_without_unit() {
-        let case = Case::parse("", "case.toml", Path::new("")).expect("all have defaults");
-        let path = |written| case.path_of_number(written).map_err(|e| e.to_string());
-        assert_eq!(path("updates").as_deref(), Ok("march.updates"));
-        assert_eq!(
-            path("slip_tolerance").as_deref(),
-            Ok("contact.slip_tolerance_mm_per_s")
-        );
-        assert_eq!(path("edge_mm").as_deref(), Ok("insert.edge_mm"));
-        assert_eq!(path("what.ever").as_deref(), Ok("what.ever"));
-        assert!(case.is_whole_number("march.updates") && !case.is_whole_number("insert.edge_mm"));
-        assert_eq!(
-            path("updatse").unwrap_err(),
-            "the case has no number called `updatse`; did you mean `updates`?"
-        );
-        assert!(path("xyz").unwrap_err().contains("such as `march.updates`"));
-        let many = path("spacing_mm").unwrap_err();
-        assert!(
-            many.ends_with("write `femur.spacing_mm` or `insert.spacing_mm`"),
-            "{many}"
-        );
     }
 }

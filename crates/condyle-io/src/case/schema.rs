@@ -1,56 +1,22 @@
 //! The page of the book that lists every key.
 
-use std::fmt::Write;
-
 use condyle::machine::{JointKind, knee::KNEE};
+use condyle::parameter::Parameter;
+use condyle::wear::WearLawKind;
 
+use super::accuracy::Accuracy;
 use super::channel::Channel;
-use super::contact;
-use super::declared::{
-    Accuracy, Friction, Heading, MachineSettings, Material, Rotation, Springs, Time, Translation,
-    Wear, WholeTest,
-};
-use super::keys::{Key, Settings};
-use super::machine::PRESET;
-use super::march::{March, UPDATE};
-use super::shapes::{FEMUR_SHAPE, INSERT_SHAPE};
-use super::waveforms::{WaveformSource, knots_doc};
-use super::{Femur, Insert, unit_of};
-
-/// Every key of a case file with its unit, range, default and meaning, as Markdown.
-pub fn schema_markdown() -> String {
-    let mut page = String::from(OPENING);
-    section(&mut page, "Top of the file", &[Heading::KEYS]);
-    body(&mut page, "[femur]", FEMUR_SHAPE, Femur::SHAPES);
-    body(&mut page, "[insert]", INSERT_SHAPE, Insert::SHAPES);
-    section(&mut page, "[material]", &[Material::KEYS]);
-    let law = [contact::LAW];
-    section(
-        &mut page,
-        "[contact]",
-        &[&law, contact::TABULATED, Friction::KEYS],
-    );
-    section(&mut page, "[machine]", &[&[PRESET], MachineSettings::KEYS]);
-    section(&mut page, "[machine.springs]", &[Springs::KEYS]);
-    section(
-        &mut page,
-        &freedoms(JointKind::Translation),
-        &[Translation::KEYS],
-    );
-    section(&mut page, &freedoms(JointKind::Rotation), &[Rotation::KEYS]);
-    waveforms(&mut page);
-    section(&mut page, "[wear]", &[Wear::KEYS]);
-    chosen(
-        &mut page,
-        "[march]",
-        &[WholeTest::KEYS, &[UPDATE]],
-        "update",
-        March::UPDATES,
-    );
-    section(&mut page, "[time]", &[Time::KEYS]);
-    section(&mut page, "[accuracy]", &[Accuracy::KEYS]);
-    page
-}
+use super::contact::{Contact, PressureLawChoice};
+use super::femur::Femur;
+use super::heading::Heading;
+use super::insert::Insert;
+use super::machine_keys::{MachineSettings, Rotation, Springs, Start, Translation};
+use super::march::{March, Update};
+use super::material::Material;
+use super::time::Time;
+use super::waveform::{WaveformSource, knots_key};
+use super::wear::{Wear, WearLaws};
+use crate::keyed::{Page, Settings, Variants, unit_of};
 
 const OPENING: &str = "\
 # The case file
@@ -58,7 +24,80 @@ const OPENING: &str = "\
 A case is a TOML file. Every key that has a default may be left out; every number has its unit in
 its name; paths count from the folder of the case file. This page is made from the declarations
 that the program reads a case with.
+
+## Top of the file
+
 ";
+
+const WAVEFORMS: &str = "\
+One of `waveform`, `file` or the points themselves. A freedom takes the one its drive \
+needs; one for another drive is an error.
+
+";
+
+const POINTS: &str = "
+| table | points | unit | values may be | named | what |
+| --- | --- | --- | --- | --- | --- |
+";
+
+/// Every key of a case file that may choose from `wear_laws`, with its unit, range, default and
+/// meaning, as Markdown.
+pub fn schema_markdown(wear_laws: WearLaws) -> String {
+    let mut page = Page::new(OPENING);
+    page.table(&Heading::keys());
+    let (femur, insert) = (Femur::choices(), Insert::choices());
+    page.chosen("`[femur]`", std::slice::from_ref(&femur.by), &femur);
+    page.chosen("`[insert]`", std::slice::from_ref(&insert.by), &insert);
+    page.section("`[material]`", &Material::keys());
+    page.chosen(
+        "`[contact]`",
+        &Contact::keys(),
+        &PressureLawChoice::choices(),
+    );
+    machine(&mut page);
+    wear(&mut page, wear_laws);
+    page.chosen("`[march]`", &March::keys(), &Update::choices());
+    page.section("`[time]`", &Time::keys());
+    page.section("`[accuracy]`", &Accuracy::keys());
+    page.into_text()
+}
+
+fn wear(page: &mut Page, laws: WearLaws) {
+    let choices = Wear::choices(laws);
+    page.chosen("`[wear]`", std::slice::from_ref(&choices.by), &choices);
+    page.push("\n");
+    for law in laws {
+        page.push(&law_line(law));
+    }
+}
+
+/// The formula of a law and where its constants are from.
+fn law_line(law: &WearLawKind) -> String {
+    let source = |parameter: &Parameter| match parameter.source {
+        "choice" => "choice".to_owned(),
+        key => format!("[{key}]"),
+    };
+    let sources: Vec<String> = law.parameters.iter().map(source).collect();
+    let (word, about, sources) = (law.word, law.about, sources.join(", "));
+    format!("- `{word}`: {about} Its constants are from: {sources}.\n")
+}
+
+fn machine(page: &mut Page) {
+    let keys = [Start::keys(), MachineSettings::keys()].concat();
+    page.section("`[machine]`", &keys);
+    page.section("`[machine.springs]`", &Springs::keys());
+    page.section(&freedoms(JointKind::Translation), &Translation::keys());
+    page.section(&freedoms(JointKind::Rotation), &Rotation::keys());
+    let named = |channel: Channel| format!("`[machine.{}]`", channel.name());
+    let tables: Vec<String> = Channel::all().map(named).collect();
+    page.push(&format!("\n## Waveforms: {}\n\n", tables.join(", ")));
+    page.push(WAVEFORMS);
+    page.table(&WaveformSource::keys());
+    page.push(POINTS);
+    for channel in Channel::all() {
+        page.push(&waveform_row(channel));
+    }
+}
 
 /// The tables of all freedoms of a kind, such as `[machine.freedoms.ap], .ml and .is`.
 fn freedoms(kind: JointKind) -> String {
@@ -73,78 +112,22 @@ fn freedoms(kind: JointKind) -> String {
     match others.split_last() {
         Some((last, between)) => {
             let listed = [&[first], between].concat().join(", ");
-            format!("{listed} and {last}")
+            format!("`{listed} and {last}`")
         }
-        None => first,
+        None => format!("`{first}`"),
     }
 }
 
-fn section(page: &mut String, title: &str, keys: &[&[Key]]) {
-    page.push_str(&format!("\n## `{title}`\n\n").replace("`Top of the file`", "Top of the file"));
-    table(page, keys);
-}
-
-fn table(page: &mut String, keys: &[&[Key]]) {
-    page.push_str("| key | unit | may be | default | meaning |\n| --- | --- | --- | --- | --- |\n");
-    keys.iter()
-        .copied()
-        .flatten()
-        .for_each(|key| row(page, key));
-}
-
-fn row(page: &mut String, key: &Key) {
-    let unit = unit_of(key.name).unwrap_or("");
-    let range = match &key.limits {
-        Some(limits) => format!("{}, {limits}", (key.kind)()),
-        None => (key.kind)(),
-    };
-    let default = match key.default.map(|default| default()) {
-        Some(Some(text)) => format!("`{text}`"),
-        Some(None) => "none".to_owned(),
-        None => "must be given".to_owned(),
-    };
-    let doc = key.doc.trim();
-    let written = writeln!(
-        page,
-        "| `{}` | {unit} | {range} | {default} | {doc} |",
-        key.name
-    );
-    debug_assert!(written.is_ok(), "writing to a String does not fail");
-}
-
-fn body(page: &mut String, title: &str, shape: Key, shapes: &[(&str, &[Key])]) {
-    chosen(page, title, &[&[shape]], "shape", shapes);
-}
-
-/// A table whose other keys depend on the word that the key `by` has.
-fn chosen(page: &mut String, title: &str, keys: &[&[Key]], by: &str, words: &[(&str, &[Key])]) {
-    section(page, title, keys);
-    for (word, keys) in words {
-        page.push_str(&format!("\nWith `{by} = \"{word}\"`:\n\n"));
-        table(page, &[keys]);
-    }
-}
-
-fn waveforms(page: &mut String) {
-    let named = |channel: Channel| format!("`[machine.{}]`", channel.name());
-    let tables: Vec<String> = Channel::all().map(named).collect();
-    page.push_str(&format!("\n## Waveforms: {}\n\n", tables.join(", ")));
-    page.push_str(
-        "One of `waveform`, `file` or the points themselves. A freedom takes the one its drive \
-         needs; one for another drive is an error.\n\n",
-    );
-    table(page, &[WaveformSource::KEYS]);
-    page.push_str("\n| table | points | unit | values may be | named | what |\n| --- | --- | --- | --- | --- | --- |\n");
-    for channel in Channel::all() {
-        let (key, unit) = knots_doc(channel);
-        let words: Vec<&str> = channel.named().iter().map(|named| named.word).collect();
-        page.push_str(&format!(
-            "| `{}` | `{}` | {unit} | {} | {} | {} |\n",
-            channel.name(),
-            key.name,
-            channel.limits(),
-            words.join(", "),
-            channel.about(),
-        ));
-    }
+fn waveform_row(channel: Channel) -> String {
+    let key = knots_key(channel);
+    let words: Vec<&str> = channel.named().iter().map(|named| named.word).collect();
+    format!(
+        "| `{}` | `{}` | {} | {} | {} | {} |\n",
+        channel.name(),
+        key.name,
+        unit_of(key.name).unwrap_or_default(),
+        channel.limits(),
+        words.join(", "),
+        channel.about(),
+    )
 }

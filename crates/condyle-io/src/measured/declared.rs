@@ -1,8 +1,8 @@
 //! What a file of measured data is made of.
 
 use super::setting::Names;
-use crate::case::keys::{choice, settings, within};
-use crate::case::{Axes, DataFile, LengthUnit};
+use crate::case::{Axes, LengthUnit};
+use crate::keyed::{DataFile, choice, settings, within};
 
 choice! {
     /// Which cycle of the run a measured one is held against.

@@ -1,12 +1,9 @@
 //! Measured masses: a CSV file of specimens and soak controls, as ISO 14243-2 weighs them.
 
+use super::checks::{not_growing, repeated};
 use super::declared::GravimetricKeys;
-use super::kinematics::{not_growing, note, open, repeated, shown};
 use super::reason::MeasuredReason;
-use crate::case::Reason;
-use crate::case::keys::{Settings, within};
-use crate::case::parse::{Log, Others, Section, names};
-use crate::case::table::{Cell, Placed, Table};
+use crate::keyed::{Cell, ColumnReason, Columns, Log, Placed, Section, Settings, names, within};
 
 const EXAMPLE: &str = "cycles,specimen_1_mg,soak_1_mg";
 /// What a column's name begins with where the file does not name its soak controls.
@@ -39,80 +36,69 @@ pub struct Specimen {
 /// Reads `[gravimetric]` and its CSV file.
 pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Gravimetric> {
     let section = root.table("gravimetric", log);
-    let known: Vec<&str> = names(GravimetricKeys::KEYS).collect();
-    section.check_keys(&known, &Others::NONE, log);
+    let known: Vec<&str> = names(&GravimetricKeys::keys()).collect();
+    section.check_keys(&known, log);
     let keys = GravimetricKeys::read(&section, log)?;
-    let source = open(&keys.file, &section, log)?;
-    let file = shown(&keys.file);
-    let table = match Table::split(source.inner(), &file, EXAMPLE) {
-        Ok(table) => table,
-        Err(placed) => {
-            note(vec![placed], &source, log);
-            return None;
-        }
-    };
-    let soaks = match soak_columns(&table, &keys, &file) {
-        Ok(soaks) => soaks,
-        Err(reason) => {
-            log.problem(section.value_span("soak_controls"), reason);
-            return None;
-        }
-    };
-    match weighed(&table, &soaks) {
-        Ok(weighed) => checked(weighed, keys, &section, log),
-        Err(problems) => {
-            note(problems, &source, log);
-            None
-        }
-    }
+    let source = keys.file.source(&section, "file", log)?;
+    let split = Columns::split(source.inner(), &keys.file.name(), EXAMPLE);
+    let columns = log.noted(&source, split.map_err(|placed| vec![placed]))?;
+    let soaks = soak_columns(&columns, &keys, &section, log)?;
+    let weighed = log.noted(&source, weighed(&columns, &soaks))?;
+    checked(weighed, keys, &section, log)
 }
 
 /// Which columns are soak controls.
 fn soak_columns(
-    table: &Table<'_>,
+    columns: &Columns<'_>,
     keys: &GravimetricKeys,
-    file: &str,
-) -> Result<Vec<usize>, Reason> {
-    let columns = table.columns();
+    section: &Section<'_>,
+    log: &mut Log<'_>,
+) -> Option<Vec<usize>> {
+    let names = columns.names();
     let soaks = match &keys.soak_controls {
-        Some(names) => {
-            let place = |name: &String| {
-                let found = columns.iter().skip(1).position(|column| column == name);
-                found
-                    .map(|index| index + 1)
-                    .ok_or_else(|| Reason::NoColumn {
-                        column: name.clone(),
-                        file: file.to_owned(),
-                        columns: columns[1..].iter().map(|&name| name.to_owned()).collect(),
-                    })
-            };
-            names.0.iter().map(place).collect::<Result<Vec<_>, _>>()?
+        Some(soaks) => {
+            let place = |name: &String| place_of(name, &names, keys);
+            let places: Result<Vec<_>, _> = soaks.0.iter().map(place).collect();
+            let report = |reason| log.problem(section.value_span("soak_controls"), reason);
+            places.map_err(report).ok()?
         }
         None => {
-            let is_soak = |index: &usize| columns[*index].to_lowercase().starts_with(SOAK);
-            (1..columns.len()).filter(is_soak).collect()
+            let is_soak = |index: &usize| names[*index].to_lowercase().starts_with(SOAK);
+            (1..names.len()).filter(is_soak).collect()
         }
     };
-    if soaks.len() + 1 < columns.len() {
-        return Ok(soaks);
+    if soaks.len() + 1 < names.len() {
+        return Some(soaks);
     }
-    let file = file.to_owned();
-    Err(MeasuredReason::NoSpecimen { file }.into())
+    let file = keys.file.name();
+    let reason = MeasuredReason::NoSpecimen { file };
+    log.problem(section.value_span("soak_controls"), reason);
+    None
+}
+
+/// Which column is called `name`; the first is none of the specimens.
+fn place_of(name: &str, names: &[&str], keys: &GravimetricKeys) -> Result<usize, ColumnReason> {
+    let found = (1..names.len()).find(|&index| names[index] == name);
+    found.ok_or_else(|| ColumnReason::NoColumn {
+        column: name.to_owned(),
+        file: keys.file.name(),
+        columns: names[1..].iter().map(|&name| name.to_owned()).collect(),
+    })
 }
 
 /// Cycles, specimens and soak controls.
 type Weighed = (Vec<f64>, Vec<Specimen>, Vec<Specimen>);
 
-fn weighed(table: &Table<'_>, soaks: &[usize]) -> Result<Weighed, Vec<Placed>> {
-    let mut problems = repeated(table);
-    let cycles = cycles(table).map_err(|found| problems.extend(found));
+fn weighed(columns: &Columns<'_>, soaks: &[usize]) -> Result<Weighed, Vec<Placed>> {
+    let mut problems = repeated(columns);
+    let cycles = cycles(columns).map_err(|found| problems.extend(found));
     let (mut worn, mut soaked) = (Vec::new(), Vec::new());
-    for index in 1..table.columns().len() {
+    for index in 1..columns.names().len() {
         let kind = match soaks.contains(&index) {
             true => &mut soaked,
             false => &mut worn,
         };
-        match specimen(table, index) {
+        match specimen(columns, index) {
             Ok(specimen) => kind.push(specimen),
             Err(found) => problems.extend(found),
         }
@@ -123,14 +109,14 @@ fn weighed(table: &Table<'_>, soaks: &[usize]) -> Result<Weighed, Vec<Placed>> {
     }
 }
 
-fn cycles(table: &Table<'_>) -> Result<Vec<f64>, Vec<Placed>> {
-    let found = table.columns()[0];
+fn cycles(columns: &Columns<'_>) -> Result<Vec<f64>, Vec<Placed>> {
+    let found = columns.names()[0];
     if found != "cycles" {
         let (wanted, found) = ("cycles", found.to_owned());
         let reason = MeasuredReason::FirstColumn { wanted, found };
-        return Err(vec![(table.column_span(0), reason.into())]);
+        return Err(vec![Placed::new(columns.name_span(0), reason)]);
     }
-    let cells = table.numbers(0)?;
+    let cells = columns.numbers(0)?;
     let mut problems = not_growing("cycles", &cells);
     problems.extend(outside("cycles", &cells, 0.0, "0 or more"));
     if problems.is_empty() {
@@ -150,19 +136,19 @@ fn outside(column: &str, cells: &[Cell], least: f64, range: &'static str) -> Vec
             value: cell.value,
             range,
         };
-        (cell.span.clone(), Reason::from(reason))
+        Placed::new(cell.span.clone(), reason)
     };
     wrong.map(problem).collect()
 }
 
-fn specimen(table: &Table<'_>, index: usize) -> Result<Specimen, Vec<Placed>> {
-    let column = table.columns()[index];
+fn specimen(columns: &Columns<'_>, index: usize) -> Result<Specimen, Vec<Placed>> {
+    let column = columns.names()[index];
     let Some(name) = column.strip_suffix("_mg") else {
         let column = column.to_owned();
         let reason = MeasuredReason::NoMass { column };
-        return Err(vec![(table.column_span(index), reason.into())]);
+        return Err(vec![Placed::new(columns.name_span(index), reason)]);
     };
-    let cells = table.numbers(index)?;
+    let cells = columns.numbers(index)?;
     let problems = outside(column, &cells, 1.0, "a mass of 1 mg or more");
     if !problems.is_empty() {
         return Err(problems);
@@ -184,7 +170,7 @@ fn checked(
     let rows = cycles.iter().skip(1).filter(counts).count();
     if rows < LEAST_WEIGHINGS {
         let reason = MeasuredReason::TooFewWeighings { rows };
-        log.problem(section.value_span("file"), reason.into());
+        log.problem(section.value_span("file"), reason);
         return None;
     }
     Some(Gravimetric {

@@ -1,22 +1,12 @@
 //! Measured motions and loads: a CSV file by percent of the cycle.
 
-use std::ops::Range;
-
 use condyle::machine::knee::KNEE;
 
+use super::checks::{not_growing, repeated, too_few};
 use super::declared::KinematicsKeys;
-use super::phases::{self, Phase};
+use super::phases::{self, PHASES, Phase};
 use super::reason::MeasuredReason;
-use crate::case::DataFile;
-use crate::case::Reason;
-use crate::case::keys::Settings;
-use crate::case::parse::{Log, Others, Section, names};
-use crate::case::problems::Source;
-use crate::case::table::{Cell, Placed, Table, read_source};
-use crate::case::unknown::nearest;
-
-/// Name of the table of phases.
-pub(super) const PHASES: &str = "phases_percent";
+use crate::keyed::{Cell, Columns, Log, Placed, Section, Settings, names, nearest};
 
 const EXAMPLE: &str = "percent,ap_mm,ie_deg";
 
@@ -55,55 +45,27 @@ pub struct Sample {
 /// Reads `[kinematics]` and its CSV file.
 pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Kinematics> {
     let section = root.table("kinematics", log);
-    let known: Vec<&str> = names(KinematicsKeys::KEYS).chain([PHASES]).collect();
-    section.check_keys(&known, &Others::NONE, log);
+    let known: Vec<&str> = names(&KinematicsKeys::keys()).chain([PHASES]).collect();
+    section.check_keys(&known, log);
     let phases = phases::read(&section, log);
     let keys = KinematicsKeys::read(&section, log)?;
-    let source = open(&keys.file, &section, log)?;
-    match curves(source.inner(), &shown(&keys.file)) {
-        Ok(curves) => Some(Kinematics {
-            keys,
-            phases: phases?,
-            curves,
-        }),
-        Err(problems) => {
-            note(problems, &source, log);
-            None
-        }
-    }
-}
-
-/// The text of a data file, or the reason at its key.
-pub(super) fn open(file: &DataFile, section: &Section<'_>, log: &mut Log<'_>) -> Option<Source> {
-    match read_source(file.path()) {
-        Ok(source) => Some(source),
-        Err(reason) => {
-            log.problem(section.value_span("file"), reason);
-            None
-        }
-    }
-}
-
-/// The file's name without its folder.
-pub(super) fn shown(file: &DataFile) -> String {
-    let name = file.path().file_name().unwrap_or_default();
-    name.to_string_lossy().into_owned()
-}
-
-pub(super) fn note(problems: Vec<Placed>, source: &Source, log: &mut Log<'_>) {
-    for (span, reason) in problems {
-        log.problem_in(source, span, reason);
-    }
+    let source = keys.file.source(&section, "file", log)?;
+    let curves = log.noted(&source, curves(source.inner(), &keys.file.name()))?;
+    Some(Kinematics {
+        keys,
+        phases: phases?,
+        curves,
+    })
 }
 
 fn curves(text: &str, file: &str) -> Result<Vec<MeasuredCurve>, Vec<Placed>> {
-    let table = Table::split(text, file, EXAMPLE).map_err(|placed| vec![placed])?;
-    let columns = known_columns(&table)?;
-    let percents = percents(&table)?;
+    let columns = Columns::split(text, file, EXAMPLE).map_err(|placed| vec![placed])?;
+    let known = known_columns(&columns)?;
+    let percents = percents(&columns)?;
     let mut curves = Vec::new();
     let mut problems = Vec::new();
-    for (index, column) in columns {
-        match curve(&table, index, column, &percents) {
+    for (index, column) in known {
+        match curve(&columns, index, column, &percents) {
             Ok(curve) => curves.push(curve),
             Err(found) => problems.extend(found),
         }
@@ -116,21 +78,21 @@ fn curves(text: &str, file: &str) -> Result<Vec<MeasuredCurve>, Vec<Placed>> {
 }
 
 /// Number and name of every column after the first.
-fn known_columns(table: &Table<'_>) -> Result<Vec<(usize, &'static str)>, Vec<Placed>> {
-    let written = table.columns();
-    let mut problems = repeated(table);
+fn known_columns(columns: &Columns<'_>) -> Result<Vec<(usize, &'static str)>, Vec<Placed>> {
+    let written = columns.names();
+    let mut problems = repeated(columns);
     if written[0] != "percent" {
         let reason = MeasuredReason::FirstColumn {
             wanted: "percent",
             found: written[0].to_owned(),
         };
-        problems.push((table.column_span(0), reason.into()));
+        problems.push(Placed::new(columns.name_span(0), reason));
     }
     let mut known = Vec::new();
     for (index, name) in written.iter().enumerate().skip(1) {
         match COLUMNS.iter().find(|column| *column == name) {
             Some(column) => known.push((index, *column)),
-            None => problems.push((table.column_span(index), unknown(name))),
+            None => problems.push(Placed::new(columns.name_span(index), unknown(name))),
         }
     }
     if problems.is_empty() {
@@ -140,30 +102,17 @@ fn known_columns(table: &Table<'_>) -> Result<Vec<(usize, &'static str)>, Vec<Pl
     }
 }
 
-/// Every column whose name stands before it already.
-pub(super) fn repeated(table: &Table<'_>) -> Vec<Placed> {
-    let columns = table.columns();
-    let again = |index: &usize| columns[..*index].contains(&columns[*index]);
-    let problem = |index: usize| {
-        let column = columns[index].to_owned();
-        let reason = MeasuredReason::RepeatedColumn { column };
-        (table.column_span(index), Reason::from(reason))
-    };
-    (0..columns.len()).filter(again).map(problem).collect()
-}
-
-fn unknown(column: &str) -> Reason {
+fn unknown(column: &str) -> MeasuredReason {
     MeasuredReason::UnknownColumn {
         column: column.to_owned(),
         near: nearest(column, COLUMNS.iter().copied()),
         columns: COLUMNS.join(", "),
     }
-    .into()
 }
 
 /// The first column: growing, from 0 to 100.
-fn percents(table: &Table<'_>) -> Result<Vec<f64>, Vec<Placed>> {
-    let cells = table.numbers(0)?;
+fn percents(columns: &Columns<'_>) -> Result<Vec<f64>, Vec<Placed>> {
+    let cells = columns.numbers(0)?;
     let mut problems = not_growing("percent", &cells);
     let outside = cells
         .iter()
@@ -174,7 +123,7 @@ fn percents(table: &Table<'_>) -> Result<Vec<f64>, Vec<Placed>> {
             value: cell.value,
             range: "0 to 100",
         };
-        (cell.span.clone(), reason.into())
+        Placed::new(cell.span.clone(), reason)
     }));
     if problems.is_empty() {
         Ok(cells.iter().map(|cell| cell.value).collect())
@@ -183,28 +132,14 @@ fn percents(table: &Table<'_>) -> Result<Vec<f64>, Vec<Placed>> {
     }
 }
 
-/// Every number that is not larger than the one above.
-pub(super) fn not_growing(column: &str, cells: &[Cell]) -> Vec<Placed> {
-    let falls = |pair: &&[Cell]| pair[1].value <= pair[0].value;
-    let problem = |pair: &[Cell]| {
-        let reason = MeasuredReason::NotGrowing {
-            column: column.to_owned(),
-            value: pair[1].value,
-            before: pair[0].value,
-        };
-        (pair[1].span.clone(), Reason::from(reason))
-    };
-    cells.windows(2).filter(falls).map(problem).collect()
-}
-
 fn curve(
-    table: &Table<'_>,
+    columns: &Columns<'_>,
     index: usize,
     column: &'static str,
     percents: &[f64],
 ) -> Result<MeasuredCurve, Vec<Placed>> {
     const LEAST: usize = 2;
-    let cells = table.numbers_given(index)?;
+    let cells = columns.numbers_given(index)?;
     let sample = |(row, cell): &(usize, Cell)| Sample {
         percent: percents[*row],
         value: cell.value,
@@ -214,19 +149,9 @@ fn curve(
             column,
             cells.len(),
             LEAST,
-            table.column_span(index),
+            columns.name_span(index),
         )]);
     }
     let samples = cells.iter().map(sample).collect();
     Ok(MeasuredCurve { column, samples })
-}
-
-pub(super) fn too_few(column: &str, found: usize, needed: usize, span: Range<usize>) -> Placed {
-    let column = column.to_owned();
-    let reason = MeasuredReason::TooFew {
-        column,
-        found,
-        needed,
-    };
-    (span, reason.into())
 }

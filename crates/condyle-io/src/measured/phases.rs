@@ -3,9 +3,11 @@
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::MeasuredReason;
-use crate::case::parse::{Log, Section};
-use crate::case::setting::number;
+use super::reason::MeasuredReason;
+use crate::keyed::{Log, Section, number};
+
+/// Name of the table of phases.
+pub(super) const PHASES: &str = "phases_percent";
 
 /// A named part of the gait cycle.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,15 +47,15 @@ impl Phase {
 
 /// The phases of `[kinematics.phases_percent]`, or those of walking.
 pub(super) fn read(kinematics: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Phase>> {
-    let Some(table) = kinematics.value(super::kinematics::PHASES) else {
+    let Some(table) = kinematics.value(PHASES) else {
         return Some(Phase::of_walking());
     };
-    let section = kinematics.table(super::kinematics::PHASES, log);
+    let section = kinematics.table(PHASES, log);
     let mut phases = Vec::new();
     for (name, value) in table.get_ref().as_table()? {
         match phase(name.get_ref(), value) {
             Ok(phase) => phases.push(phase),
-            Err(reason) => log.problem(section.value_span(name.get_ref()), reason.into()),
+            Err(reason) => log.problem(section.value_span(name.get_ref()), reason),
         }
     }
     Some(phases)

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::keyed::Reason;
+
 /// Why measured data cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MeasuredReason {
@@ -114,10 +116,9 @@ pub enum MeasuredReason {
     Scan(String),
 }
 
-impl MeasuredReason {
-    /// What to do about it.
-    pub(crate) fn advice(&self) -> String {
-        match self {
+impl Reason for MeasuredReason {
+    fn advice(&self) -> Option<String> {
+        Some(match self {
             Self::Nothing => "add one of [kinematics], [gravimetric] and [surface], each with \
                 `file = `"
                 .to_owned(),
@@ -147,6 +148,6 @@ impl MeasuredReason {
             Self::Scan(_) => "export the scan again as STL, PLY, or CSV with the columns \
                 x_mm,y_mm,z_mm"
                 .to_owned(),
-        }
+        })
     }
 }

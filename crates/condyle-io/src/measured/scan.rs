@@ -3,13 +3,11 @@
 use condyle::geometry::TriangleMesh;
 use condyle::{Mat3, Vec3};
 
+use super::checks::too_few;
 use super::declared::{FitWord, ScanKeys};
-use super::kinematics::{note, open, shown};
 use super::reason::MeasuredReason;
-use crate::case::keys::Settings;
-use crate::case::parse::{Log, Others, Section, names};
-use crate::case::table::{Cell, Placed, Table};
-use crate::case::{Reason, Side, axes};
+use crate::case::{Side, check_axes};
+use crate::keyed::{Cell, ColumnReason, Columns, KeyReason, Log, Placed, Section, Settings, names};
 use crate::mesh::read_surface;
 
 const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
@@ -30,10 +28,10 @@ pub struct Scan {
 /// Reads `[surface]` and its file for a `side` knee.
 pub(super) fn read(root: &Section<'_>, side: Side, log: &mut Log<'_>) -> Option<Scan> {
     let section = root.table("surface", log);
-    let known: Vec<&str> = names(ScanKeys::KEYS).collect();
-    section.check_keys(&known, &Others::NONE, log);
+    let known: Vec<&str> = names(&ScanKeys::keys()).collect();
+    section.check_keys(&known, log);
     let keys = ScanKeys::read(&section, log)?;
-    axes::check(&keys.axes, side, section.value_span("axes"), log);
+    check_axes(&keys.axes, side, section.value_span("axes"), log);
     check_region(&keys, &section, log);
     // Reported by the check already.
     let rotation = keys.axes.rotation(side).ok()?;
@@ -42,10 +40,11 @@ pub(super) fn read(root: &Section<'_>, side: Side, log: &mut Log<'_>) -> Option<
         .path()
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-    let scan = match is_csv {
-        true => points(&keys, &section, log),
-        false => surface(&keys, &section, log),
-    }?;
+    let scan = if is_csv {
+        points(&keys, &section, log)?
+    } else {
+        surface(&keys, &section, log)?
+    };
     let scan = placed(scan, &rotation, Vec3::from(keys.start_mm));
     Some(Scan {
         keys,
@@ -68,7 +67,7 @@ fn surface(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) -> Option<
         Ok(mesh) => Some(vertices(&mesh, keys.length_unit.in_mm())),
         Err(error) => {
             let reason = MeasuredReason::Scan(error.to_string());
-            log.problem(section.value_span("file"), reason.into());
+            log.problem(section.value_span("file"), reason);
             None
         }
     }
@@ -83,30 +82,26 @@ fn vertices(mesh: &TriangleMesh, in_mm: f64) -> Raw {
 }
 
 fn points(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) -> Option<Raw> {
-    let source = open(&keys.file, section, log)?;
-    match rows(source.inner(), &shown(&keys.file)) {
-        Ok(points) => Some((points, None)),
-        Err(problems) => {
-            note(problems, &source, log);
-            None
-        }
-    }
+    let source = keys.file.source(section, "file", log)?;
+    let points = log.noted(&source, rows(source.inner(), &keys.file.name()))?;
+    Some((points, None))
 }
 
 fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
-    let table = Table::split(text, file, &COORDINATES.join(",")).map_err(|placed| vec![placed])?;
-    let columns = table.columns();
+    let columns =
+        Columns::split(text, file, &COORDINATES.join(",")).map_err(|placed| vec![placed])?;
+    let names = columns.names();
     let mut found = Vec::new();
     for name in COORDINATES {
-        let Some(index) = columns.iter().position(|column| *column == name) else {
-            let reason = Reason::NoColumn {
+        let Some(index) = names.iter().position(|column| *column == name) else {
+            let reason = ColumnReason::NoColumn {
                 column: name.to_owned(),
                 file: file.to_owned(),
-                columns: columns.iter().map(|&name| name.to_owned()).collect(),
+                columns: names.iter().map(|&name| name.to_owned()).collect(),
             };
-            return Err(vec![(table.column_span(0), reason)]);
+            return Err(vec![Placed::new(columns.name_span(0), reason)]);
         };
-        found.push(table.numbers(index)?);
+        found.push(columns.numbers(index)?);
     }
     let value = |column: &Vec<Cell>, row: usize| column[row].value;
     let point = |row| {
@@ -117,11 +112,11 @@ fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
         )
     };
     match found[0].len() {
-        few if few < LEAST_POINTS => Err(vec![super::kinematics::too_few(
+        few if few < LEAST_POINTS => Err(vec![too_few(
             COORDINATES[0],
             few,
             LEAST_POINTS,
-            table.column_span(0),
+            columns.name_span(0),
         )]),
         all => Ok((0..all).map(point).collect()),
     }
@@ -133,13 +128,13 @@ fn check_region(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) {
         let Some([low, high]) = range else { continue };
         if low >= high {
             let reason = MeasuredReason::EmptyRange { key, low, high };
-            log.problem(section.value_span(key), reason.into());
+            log.problem(section.value_span(key), reason);
         }
         if keys.fit != FitWord::Region {
             let (key, needs) = (key.to_owned(), "`fit = \"region\"`".to_owned());
             log.problem(
                 section.key_span(&key),
-                Reason::Idle {
+                KeyReason::Idle {
                     key: key.clone(),
                     needs,
                 },
@@ -148,6 +143,6 @@ fn check_region(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) {
     }
     let none = ranges.iter().all(|(_, range)| range.is_none());
     if keys.fit == FitWord::Region && none {
-        log.problem(section.value_span("fit"), MeasuredReason::NoRegion.into());
+        log.problem(section.value_span("fit"), MeasuredReason::NoRegion);
     }
 }

@@ -3,9 +3,7 @@
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::case::keys::Key;
-use crate::case::parse::Log;
-use crate::case::setting::{Setting, number, quoted, wrong_type};
+use crate::keyed::{Key, Log, Setting, quoted, wrong_type};
 
 /// Names of columns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -31,29 +29,5 @@ impl Setting for Names {
     fn text(&self) -> Option<String> {
         let names: Vec<String> = self.0.iter().map(|name| quoted(name)).collect();
         Some(format!("[{}]", names.join(", ")))
-    }
-}
-
-impl Setting for [f64; 3] {
-    fn kind() -> String {
-        "a list of three numbers".to_owned()
-    }
-
-    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        let list: Vec<_> = value.get_ref().as_array().into_iter().flatten().collect();
-        let numbers: Vec<f64> = list
-            .iter()
-            .filter_map(|value| number(value.get_ref()))
-            .filter(|value| key.limits.is_none_or(|limits| limits.allow(*value)))
-            .collect();
-        let three = numbers.try_into().ok().filter(|_| list.len() == 3);
-        if three.is_none() {
-            wrong_type(value, key, log);
-        }
-        three
-    }
-
-    fn text(&self) -> Option<String> {
-        Some(format!("{self:?}"))
     }
 }

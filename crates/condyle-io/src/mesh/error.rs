@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 /// A place in a file: the line where the format is text, else the file alone.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct FileLine {
     /// The file as the caller named it.
     pub path: PathBuf,
     /// Line number from 1; none in binary formats.
     pub line: Option<usize>,
 }
 
-impl Place {
+impl FileLine {
     pub(crate) fn file(path: &Path) -> Self {
         Self::new(path, None)
     }
@@ -32,7 +32,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FileLine {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{}", self.path.display())?;
         self.line.map_or(Ok(()), |line| write!(out, ":{line}"))
@@ -78,7 +78,7 @@ pub enum MeshFileError {
     #[error("{at}: {what}")]
     Parse {
         /// Where.
-        at: Place,
+        at: FileLine,
         /// What is wrong and what to do.
         what: String,
     },
@@ -98,7 +98,7 @@ pub enum MeshFileError {
     #[error("{at}: {what} has a coordinate that is not a finite number; repair the mesh")]
     NonFinite {
         /// Where.
-        at: Place,
+        at: FileLine,
         /// Which vertex or node, in the words of the format.
         what: String,
     },
@@ -106,7 +106,7 @@ pub enum MeshFileError {
     #[error("{at}: {what} names vertex {index}, but the file numbers its vertices {numbering}")]
     IndexOutOfRange {
         /// Where.
-        at: Place,
+        at: FileLine,
         /// Which polygon or element.
         what: String,
         /// The number as the file gives it.
@@ -121,7 +121,7 @@ pub enum MeshFileError {
     )]
     NotHexahedron {
         /// Where.
-        at: Place,
+        at: FileLine,
         /// The element's number in the file.
         element: u64,
         /// Its type in the words of the format.
@@ -134,7 +134,7 @@ pub enum MeshFileError {
     )]
     Inverted {
         /// Where.
-        at: Place,
+        at: FileLine,
         /// The element's number in the file.
         element: u64,
         /// Smallest scaled Jacobian, 0 or less.
@@ -147,7 +147,7 @@ pub enum MeshFileError {
     )]
     NotOnBoundary {
         /// Where.
-        at: Place,
+        at: FileLine,
         /// Name of the surface.
         surface: String,
     },
@@ -158,7 +158,7 @@ pub enum MeshFileError {
     )]
     SeveralBodies {
         /// Where the second one starts.
-        at: Place,
+        at: FileLine,
         /// "instance" or "part".
         what: &'static str,
     },

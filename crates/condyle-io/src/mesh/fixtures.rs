@@ -4,7 +4,7 @@ use condyle::Vec3;
 use condyle::geometry::TriangleMesh;
 use condyle_fem::HexMesh;
 
-use super::MeshFileError;
+use super::error::MeshFileError;
 
 /// A corner of the unit cube, closed, facing outwards.
 pub(crate) fn tetrahedron() -> TriangleMesh {

@@ -6,7 +6,7 @@ use std::path::Path;
 use condyle::Vec3;
 use condyle_fem::{HEX_FACES, HexMesh};
 
-use super::error::{MeshFileError, Place};
+use super::error::{FileLine, MeshFileError};
 use super::hex_file::{HexFile, NamedNodes, NamedSurface};
 
 /// Nodes, elements and sets by the labels of the file.
@@ -58,7 +58,7 @@ impl<'a> HexDraft<'a> {
         label: u64,
         position: [f64; 3],
     ) -> Result<(), MeshFileError> {
-        let at = Place::new(self.path, line);
+        let at = FileLine::new(self.path, line);
         if position.iter().any(|coordinate| !coordinate.is_finite()) {
             let what = format!("node {label}");
             return Err(MeshFileError::NonFinite { at, what });
@@ -82,7 +82,7 @@ impl<'a> HexDraft<'a> {
                 "element {} is given twice; number each element once",
                 hex.label
             );
-            return Err(Place::new(self.path, hex.line).error(what));
+            return Err(FileLine::new(self.path, hex.line).error(what));
         }
         self.hexes.push(hex);
         Ok(())
@@ -166,7 +166,7 @@ impl<'a> HexDraft<'a> {
 
     fn no_such_node(&self, hex: &DraftHex, label: u64) -> MeshFileError {
         MeshFileError::IndexOutOfRange {
-            at: Place::new(self.path, hex.line),
+            at: FileLine::new(self.path, hex.line),
             what: format!("element {}", hex.label),
             index: label.cast_signed(),
             numbering: "otherwise".to_string(),
@@ -176,7 +176,7 @@ impl<'a> HexDraft<'a> {
     fn check_shapes(&self, mesh: &HexMesh) -> Result<(), MeshFileError> {
         for (hex, quality) in self.hexes.iter().zip(mesh.qualities()) {
             if quality <= 0.0 {
-                let at = Place::new(self.path, hex.line);
+                let at = FileLine::new(self.path, hex.line);
                 return Err(MeshFileError::Inverted {
                     at,
                     element: hex.label,
@@ -207,7 +207,7 @@ impl<'a> HexDraft<'a> {
                     .each_ref()
                     .map(|label| number(label).unwrap_or(u32::MAX));
                 let quad = outward.get(&sorted(key)).ok_or_else(|| {
-                    let at = Place::new(self.path, *line);
+                    let at = FileLine::new(self.path, *line);
                     MeshFileError::NotOnBoundary {
                         at,
                         surface: name.clone(),

@@ -4,12 +4,13 @@
 //! and nodes are numbered from 0 in the order of the file, whatever numbers the file uses.
 
 mod error;
+mod file;
 #[cfg(test)]
 mod fixtures;
 mod hex_draft;
 mod hex_file;
+mod hexahedra;
 mod inp;
-mod inp_keyword;
 mod inp_writer;
 mod msh;
 mod obj;
@@ -24,14 +25,17 @@ mod vtp;
 mod vtu;
 mod vtu_write;
 
-pub use error::{MeshFileError, Place};
-pub use hex_file::{HexFile, NamedNodes, NamedSurface, read_hexahedra};
+pub use error::{FileLine, MeshFileError};
+pub use hex_file::{HexFile, NamedNodes, NamedSurface};
+pub use hexahedra::read_hexahedra;
 pub use inp_writer::{
-    Application, InpWriter, PressureOverclosure, Procedure, RigidTriangle, Step, element_faces,
+    AnalysisStep, Application, InpWriter, PressureOverclosure, Procedure, RigidTriangle,
+    element_faces,
 };
 pub use pvd::{pvd_text, read_pvd, write_pvd};
 pub use stl::write_stl;
 pub use surface::read_surface;
-pub(crate) use surface::{parse_surface, surface_bytes};
 pub use vtu::{VtuFile, read_vtu_points};
 pub use vtu_write::{PointArray, PointValues, vtu_bytes, write_vtu};
+
+pub(crate) use surface::{parse_surface, surface_bytes};

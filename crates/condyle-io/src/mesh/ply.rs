@@ -7,16 +7,16 @@ use condyle::geometry::TriangleMesh;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
 
-use super::error::{MeshFileError, Place};
+use super::error::{FileLine, MeshFileError};
 use super::surface_draft::SurfaceDraft;
 
 /// A row of any element: what of it is a point, and what a polygon.
-struct Row {
+struct PlyElement {
     point: [f64; 3],
     corners: Vec<i64>,
 }
 
-impl PropertyAccess for Row {
+impl PropertyAccess for PlyElement {
     fn new() -> Self {
         // A file without, say, z must not be read as flat.
         let point = [f64::NAN; 3];
@@ -63,7 +63,7 @@ fn list(value: Property) -> Vec<i64> {
 }
 
 pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
-    let parser = Parser::<Row>::new();
+    let parser = Parser::<PlyElement>::new();
     let mut reader = Reader::new(Cursor::new(bytes));
     let header = parser
         .read_header(&mut reader)
@@ -97,7 +97,7 @@ fn check_columns(path: &Path, header: &Header) -> Result<(), MeshFileError> {
     let complete = ["x", "y", "z"].iter().all(|axis| has("vertex", axis));
     if !complete {
         let what = "the header has no element vertex with properties x, y and z";
-        return Err(Place::file(path).error(what));
+        return Err(FileLine::file(path).error(what));
     }
     if has("face", "vertex_indices") || has("face", "vertex_index") {
         return Ok(());
@@ -114,7 +114,7 @@ fn in_words(path: &Path, error: &ParseError) -> MeshFileError {
         .strip_prefix(&number.unwrap_or_default())
         .unwrap_or(&said);
     let words: Vec<&str> = said.split_whitespace().collect();
-    Place::new(path, error.line()).error(format!("is not PLY: {}", words.join(" ")))
+    FileLine::new(path, error.line()).error(format!("is not PLY: {}", words.join(" ")))
 }
 
 #[cfg(test)]

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use roxmltree::Document;
 
-use super::surface::read_bytes;
-use super::vtu_write::{escaped, write_bytes};
-use super::{MeshFileError, Place, text};
+use super::error::{FileLine, MeshFileError};
+use super::file::{read_bytes, write_bytes};
+use super::text;
+use super::vtu_write::escaped;
 
 /// The text of a `.pvd` file: each data set's time and its file relative to the collection.
 ///
@@ -49,7 +50,7 @@ pub fn read_pvd(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>, MeshFileE
     let content = text::decode(&bytes);
     let document = Document::parse(&content).map_err(|error| {
         let line = error.pos().row as usize;
-        Place::line(path, line).error(format!("is not XML: {error}"))
+        FileLine::line(path, line).error(format!("is not XML: {error}"))
     })?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let sets = document
@@ -63,7 +64,7 @@ pub fn read_pvd(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>, MeshFileE
         time.zip(node.attribute("file"))
             .map(|(time, file)| (time, folder.join(file)))
             .ok_or_else(|| {
-                Place::line(path, line).error("a DataSet needs a number as timestep, and a file")
+                FileLine::line(path, line).error("a DataSet needs a number as timestep, and a file")
             })
     })
     .collect()

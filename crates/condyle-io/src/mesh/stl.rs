@@ -6,7 +6,7 @@ use std::path::Path;
 use condyle::Vec3;
 use condyle::geometry::TriangleMesh;
 
-use super::error::{MeshFileError, Place};
+use super::error::{FileLine, MeshFileError};
 use super::surface_draft::SurfaceDraft;
 use super::text;
 
@@ -35,15 +35,16 @@ fn announced_triangles(bytes: &[u8]) -> Option<usize> {
 }
 
 fn parse_binary(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
-    let announced = announced_triangles(bytes)
-        .ok_or_else(|| Place::file(path).error("is too short for an STL file; was it cut off?"))?;
+    let announced = announced_triangles(bytes).ok_or_else(|| {
+        FileLine::file(path).error("is too short for an STL file; was it cut off?")
+    })?;
     let records = bytes[HEADER_BYTES..].chunks_exact(TRIANGLE_BYTES);
     if records.len() < announced {
         let what = format!(
             "announces {announced} triangles but ends after {}; was it cut off?",
             records.len()
         );
-        return Err(Place::file(path).error(what));
+        return Err(FileLine::file(path).error(what));
     }
     let mut draft = SurfaceDraft::new(path, 0);
     for record in records.take(announced) {
@@ -83,7 +84,7 @@ fn parse_text(path: &Path, content: &str) -> Result<TriangleMesh, MeshFileError>
             None | Some("solid" | "outer" | "endloop" | "endsolid") => {}
             Some(word) => {
                 let what = format!("{word:?} is not a word of STL");
-                return Err(Place::line(path, line).error(what));
+                return Err(FileLine::line(path, line).error(what));
             }
         }
     }
@@ -99,7 +100,7 @@ fn close_facet(
     let corners = draft.points() - facet_start;
     if corners != 3 {
         let what = format!("a facet ends here with {corners} vertices; STL facets have three");
-        return Err(Place::line(path, line).error(what));
+        return Err(FileLine::line(path, line).error(what));
     }
     close_triangle(draft, Some(line))
 }

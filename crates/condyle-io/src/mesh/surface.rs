@@ -1,11 +1,12 @@
 //! A triangle surface from any of the formats, by the ending of its name.
 
-use std::io::ErrorKind;
 use std::path::Path;
 
 use condyle::geometry::TriangleMesh;
 
-use super::{MeshFileError, obj, ply, stl, vtp};
+use super::error::MeshFileError;
+use super::file::{ending, read_bytes, unknown_ending};
+use super::{obj, ply, stl, vtp};
 
 /// Reads a triangle surface from `.stl`, `.obj`, `.ply` or `.vtp`.
 ///
@@ -46,40 +47,13 @@ fn parser(path: &Path) -> Result<Parser, MeshFileError> {
     })
 }
 
-/// The ending of a file's name in small letters, without the dot.
-pub(super) fn ending(path: &Path) -> String {
-    path.extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_lowercase()
-}
-
-pub(super) fn unknown_ending(path: &Path, known: &'static str) -> MeshFileError {
-    MeshFileError::UnknownExtension {
-        path: path.to_path_buf(),
-        ending: ending(path),
-        known,
-    }
-}
-
-pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, MeshFileError> {
-    std::fs::read(path).map_err(|source| {
-        let path = path.to_path_buf();
-        if source.kind() == ErrorKind::NotFound {
-            MeshFileError::Missing { path }
-        } else {
-            MeshFileError::Unreadable { path, source }
-        }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use condyle::geometry::checked_shell;
 
     use super::*;
     use crate::mesh::fixtures::{corners, message, tetrahedron};
-    use crate::mesh::write_stl;
+    use crate::mesh::stl::write_stl;
 
     #[test]
     fn the_ending_chooses_the_format_whatever_its_case() {

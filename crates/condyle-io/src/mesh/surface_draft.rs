@@ -6,7 +6,7 @@ use std::path::Path;
 use condyle::Vec3;
 use condyle::geometry::TriangleMesh;
 
-use super::error::{MeshFileError, Place};
+use super::error::{FileLine, MeshFileError};
 
 /// Vertices and polygons in the order of the file, with the lines they came from.
 pub(crate) struct SurfaceDraft<'a> {
@@ -48,7 +48,7 @@ impl<'a> SurfaceDraft<'a> {
         let number = self.points.len() as i64 + self.first_vertex;
         if point.iter().any(|coordinate| !coordinate.is_finite()) {
             return Err(MeshFileError::NonFinite {
-                at: Place::new(self.path, line),
+                at: FileLine::new(self.path, line),
                 what: format!("vertex {number}"),
             });
         }
@@ -70,7 +70,7 @@ impl<'a> SurfaceDraft<'a> {
                 "polygon {polygon} has {} corners; it needs three or more",
                 corners.len()
             );
-            return Err(Place::new(self.path, line).error(what));
+            return Err(FileLine::new(self.path, line).error(what));
         }
         let fan = corners[1..].windows(2).map(|ends| DraftTriangle {
             corners: [corners[0], ends[0], ends[1]],
@@ -121,7 +121,7 @@ impl<'a> SurfaceDraft<'a> {
     fn out_of_range(&self, triangle: &DraftTriangle, index: i64) -> MeshFileError {
         let last = self.points.len() as i64 + self.first_vertex - 1;
         MeshFileError::IndexOutOfRange {
-            at: Place::new(self.path, triangle.line),
+            at: FileLine::new(self.path, triangle.line),
             what: format!("polygon {}", triangle.polygon),
             index,
             numbering: format!("from {} to {last}", self.first_vertex),

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use super::error::{MeshFileError, Place};
+use super::error::{FileLine, MeshFileError};
 
 /// Content of a text format; bytes that are not UTF-8 can only be in names and comments,
 /// and are replaced.
@@ -15,7 +15,7 @@ pub(crate) fn decode(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
 pub(crate) fn number<T: FromStr>(path: &Path, line: usize, word: &str) -> Result<T, MeshFileError> {
     let word = word.trim();
     word.parse()
-        .map_err(|_| Place::line(path, line).error(format!("{word:?} is not a number here")))
+        .map_err(|_| FileLine::line(path, line).error(format!("{word:?} is not a number here")))
 }
 
 /// The next three words as coordinates.
@@ -28,7 +28,7 @@ pub(crate) fn coordinates<'w>(
     for coordinate in &mut point {
         let word = words
             .next()
-            .ok_or_else(|| Place::line(path, line).error("a point needs three coordinates"))?;
+            .ok_or_else(|| FileLine::line(path, line).error("a point needs three coordinates"))?;
         *coordinate = number(path, line, word)?;
     }
     Ok(point)

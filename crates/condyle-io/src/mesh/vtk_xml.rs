@@ -11,7 +11,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use roxmltree::{Document, Node};
 
-use super::error::{MeshFileError, Place};
+use super::error::{FileLine, MeshFileError};
 use super::text;
 
 const APPENDED: &[u8] = b"<AppendedData";
@@ -92,20 +92,20 @@ impl<'a> VtkDocument<'a> {
     ) -> Result<Self, MeshFileError> {
         let document = Document::parse(&source.xml).map_err(|error| {
             let line = error.pos().row as usize;
-            Place::line(path, line).error(format!("is not XML: {error}"))
+            FileLine::line(path, line).error(format!("is not XML: {error}"))
         })?;
         let root = document.root_element();
         let found = root.attribute("type").unwrap_or_default();
         if !root.has_tag_name("VTKFile") || found != kind {
             let what = format!("is not a VTKFile of type {kind} but {found:?}");
-            return Err(Place::file(path).error(what));
+            return Err(FileLine::file(path).error(what));
         }
         let zlib = match root.attribute("compressor") {
             None => false,
             Some("vtkZLibDataCompressor") => true,
             Some(other) => {
                 let what = format!("is compressed by {other}; save it with zlib or uncompressed");
-                return Err(Place::file(path).error(what));
+                return Err(FileLine::file(path).error(what));
             }
         };
         let count_bytes = if root.attribute("header_type") == Some("UInt64") {
@@ -131,12 +131,12 @@ impl<'a> VtkDocument<'a> {
             .descendants()
             .filter(|node| node.has_tag_name("Piece"));
         let piece = pieces.next();
-        let piece = piece.ok_or_else(|| Place::file(self.path).error("has no Piece"))?;
+        let piece = piece.ok_or_else(|| FileLine::file(self.path).error("has no Piece"))?;
         match pieces.next() {
             None => Ok(piece),
             Some(second) => {
                 let what = "has a second Piece; merge the pieces into one and save again";
-                Err(Place::line(self.path, self.line_of(second)).error(what))
+                Err(FileLine::line(self.path, self.line_of(second)).error(what))
             }
         }
     }
@@ -160,7 +160,7 @@ impl<'a> VtkDocument<'a> {
         let points = self.group(piece, "Points")?.into_iter().next();
         points
             .filter(|array| array.components == 3)
-            .ok_or_else(|| Place::file(self.path).error("has no Points of three components"))
+            .ok_or_else(|| FileLine::file(self.path).error("has no Points of three components"))
     }
 
     fn array(&self, node: Node) -> Result<DataArray, MeshFileError> {
@@ -187,7 +187,7 @@ impl<'a> VtkDocument<'a> {
     }
 
     fn at(&self, node: Node, what: impl Into<String>) -> MeshFileError {
-        Place::line(self.path, self.line_of(node)).error(what)
+        FileLine::line(self.path, self.line_of(node)).error(what)
     }
 
     fn text_values(&self, node: Node) -> Result<Vec<f64>, MeshFileError> {

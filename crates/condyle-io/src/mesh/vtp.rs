@@ -4,7 +4,7 @@ use std::path::Path;
 
 use condyle::geometry::TriangleMesh;
 
-use super::error::{MeshFileError, Place};
+use super::error::{FileLine, MeshFileError};
 use super::surface_draft::SurfaceDraft;
 use super::vtk_xml::{DataArray, VtkDocument, VtkSource};
 
@@ -47,7 +47,7 @@ pub(crate) fn cells(
             .filter(|&end| end >= start && end <= points.len());
         let end = end.ok_or_else(|| {
             let what = format!("offset {offset} does not fit the connectivity");
-            Place::line(path, offsets.line).error(what)
+            FileLine::line(path, offsets.line).error(what)
         })?;
         cells.push((connectivity.line, points[start..end].to_vec()));
         start = end;

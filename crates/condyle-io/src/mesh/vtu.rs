@@ -5,10 +5,10 @@ use std::path::Path;
 use condyle::Vec3;
 use condyle_fem::HexMesh;
 
-use super::error::{MeshFileError, Place};
+use super::error::{FileLine, MeshFileError};
+use super::file::read_bytes;
 use super::hex_draft::{DraftHex, HexDraft};
 use super::hex_file::HexFile;
-use super::surface::read_bytes;
 use super::vtk_xml::{DataArray, VtkDocument, VtkSource};
 use super::vtp::cells;
 
@@ -40,7 +40,7 @@ impl VtuFile {
 /// that a result can be looked at whatever became of it.
 ///
 /// # Errors
-/// Those of the format, and other cells than hexahedra, as for [`read_hexahedra`](super::read_hexahedra).
+/// Those of the format, and other cells than hexahedra, as for [`read_hexahedra`](super::hexahedra::read_hexahedra).
 pub fn read_vtu_points(path: impl AsRef<Path>) -> Result<VtuFile, MeshFileError> {
     let path = path.as_ref();
     grid_points(path, &read_bytes(path)?)
@@ -148,13 +148,13 @@ impl<'a> Grid<'a> {
                 self.cells.len(),
                 self.kinds.len()
             );
-            return Err(Place::file(self.path).error(what));
+            return Err(FileLine::file(self.path).error(what));
         }
         let known = |kind| kind == HEXAHEDRON || kind == QUAD || PASSED_OVER.contains(&kind);
         match self.kinds.iter().position(|&kind| !known(kind)) {
             None => Ok(()),
             Some(index) => Err(MeshFileError::NotHexahedron {
-                at: Place::file(self.path),
+                at: FileLine::file(self.path),
                 element: index as u64,
                 kind: kind_in_words(self.kinds[index]),
             }),
@@ -175,7 +175,7 @@ impl<'a> Grid<'a> {
             Some(array) => {
                 let (name, values) = (&array.name, array.values.len());
                 let what = format!("array {name:?} has {values} values for {rows} {of}");
-                Err(Place::line(self.path, array.line).error(what))
+                Err(FileLine::line(self.path, array.line).error(what))
             }
         }
     }
@@ -184,14 +184,14 @@ impl<'a> Grid<'a> {
         let (line, points) = &self.cells[cell];
         let corners = <[i64; N]>::try_from(points.as_slice()).map_err(|_| {
             let what = format!("cell {cell} has {} points; its type has {N}", points.len());
-            Place::line(self.path, *line).error(what)
+            FileLine::line(self.path, *line).error(what)
         })?;
         Ok(corners.map(i64::cast_unsigned))
     }
 
     fn no_such_point(&self, line: usize, cell: usize, point: u64, points: usize) -> MeshFileError {
         MeshFileError::IndexOutOfRange {
-            at: Place::line(self.path, line),
+            at: FileLine::line(self.path, line),
             what: format!("cell {cell}"),
             index: point.cast_signed(),
             numbering: format!("from 0 to {}", points as i64 - 1),
@@ -249,7 +249,7 @@ fn kind_in_words(kind: i64) -> String {
 mod tests {
     use super::*;
     use crate::mesh::fixtures::{message, two_cubes};
-    use crate::mesh::{PointArray, PointValues, vtu_bytes};
+    use crate::mesh::vtu_write::{PointArray, PointValues, vtu_bytes};
 
     const TEXT: &str = r#"<VTKFile type="UnstructuredGrid" version="0.1">
 <UnstructuredGrid><Piece NumberOfPoints="13" NumberOfCells="4">

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use condyle_fem::HexMesh;
 
-use super::MeshFileError;
+use super::error::MeshFileError;
+use super::file::write_bytes;
 
 /// Values at the nodes.
 #[derive(Clone, Copy, Debug)]
@@ -74,13 +75,6 @@ pub fn write_vtu(
     arrays: &[PointArray],
 ) -> Result<(), MeshFileError> {
     write_bytes(path.as_ref(), &vtu_bytes(mesh, arrays)?)
-}
-
-pub(super) fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), MeshFileError> {
-    std::fs::write(path, bytes).map_err(|source| {
-        let path = path.to_path_buf();
-        MeshFileError::Unwritable { path, source }
-    })
 }
 
 fn check_length(mesh: &HexMesh, array: &PointArray) -> Result<(), MeshFileError> {
@@ -181,7 +175,7 @@ pub(super) fn escaped(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::mesh::fixtures::{message, two_cubes};
-    use crate::mesh::read_vtu_points;
+    use crate::mesh::vtu::read_vtu_points;
 
     #[test]
     fn a_file_is_written_and_read_back() {

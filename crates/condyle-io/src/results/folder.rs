@@ -9,9 +9,10 @@ use condyle::evolve::March;
 use thiserror::Error;
 
 use super::{
-    Checkpoint, CheckpointError, Summary,
+    checkpoint::{Checkpoint, CheckpointError},
     insert_series::{insert_file_name, insert_pvd, insert_vtu},
     replace::{beside, replace_file, replace_file_durably},
+    summary::Summary,
     tables::{kinematics_csv, wear_csv},
 };
 use crate::{case::Side, mesh::MeshFileError};

@@ -9,7 +9,7 @@ use condyle::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::ErrorEstimate;
+use super::error_estimate::ErrorEstimate;
 
 /// What a summary is made from.
 pub struct SummaryInput<'a> {

@@ -3,10 +3,15 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use condyle::evolve::{MarchError, Progress};
+use condyle::{
+    evolve::{MarchError, Progress},
+    parameter::Parameter,
+    wear::Archard,
+};
 use condyle_io::{
     cache::Cache,
-    case::{Case, CaseError},
+    case::{Case, ConstantError},
+    keyed::Problems,
 };
 use serde::Serialize;
 use thiserror::Error;
@@ -15,6 +20,8 @@ use super::{CompareError, GravimetricComparison, Interval, compare};
 use crate::RunError;
 use crate::run::{build, start};
 
+/// The constant of the wear law that is found.
+const FACTOR: Parameter = Archard::WEAR_FACTOR;
 /// Rates that differ by less than this part of the measured one match.
 const MATCHES: f64 = 1e-3;
 /// Runs for one rate at most; nearly linear as it is, two or three are enough.
@@ -28,7 +35,10 @@ pub enum CalibrateError {
     Compare(#[from] CompareError),
     /// The case of the results folder.
     #[error(transparent)]
-    Case(#[from] CaseError),
+    Case(#[from] Problems),
+    /// A wear law without a wear factor, or a factor that no law may have.
+    #[error("no wear factor can be found: {0}")]
+    Factor(#[from] ConstantError),
     /// A run with another factor.
     #[error("with a wear factor of {factor_mm3_per_nm:.3e} mm3/(N m): {source}")]
     Run {
@@ -148,7 +158,7 @@ pub fn calibrate(
         measured_by: aim.name.clone(),
         interval_mg_per_million_cycles: ends,
         confidence_percent: weighed.confidence_percent,
-        run_with_mm3_per_nm: case.wear.wear_factor_mm3_per_nm,
+        run_with_mm3_per_nm: case.wear.constant(FACTOR.name)?,
         wear_factor_mm3_per_nm: factor,
         wear_factor_interval_mm3_per_nm: interval,
         trials: search.trials,
@@ -171,7 +181,7 @@ impl<'a> Search<'a> {
         tried: &'a mut dyn FnMut(&Trial),
     ) -> Result<Self, CalibrateError> {
         let first = Trial {
-            wear_factor_mm3_per_nm: case.wear.wear_factor_mm3_per_nm,
+            wear_factor_mm3_per_nm: case.wear.constant(FACTOR.name)?,
             mg_per_million_cycles: weighed.predicted.mg_per_million_cycles,
         };
         if first.wear_factor_mm3_per_nm <= 0.0 || first.mg_per_million_cycles <= 0.0 {
@@ -243,7 +253,7 @@ impl<'a> Search<'a> {
     /// Mass lost after each update with another factor, as (cycles, mg), from nothing at the start.
     fn losses(&self, factor_mm3_per_nm: f64) -> Result<Vec<(f64, f64)>, CalibrateError> {
         let mut case = self.case.clone();
-        case.wear.wear_factor_mm3_per_nm = factor_mm3_per_nm;
+        case.wear = case.wear.with_constant(FACTOR.name, factor_mm3_per_nm)?;
         let failed = |source| CalibrateError::Run {
             factor_mm3_per_nm,
             source: Box::new(source),

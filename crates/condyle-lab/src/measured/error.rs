@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use condyle_io::case::CaseError;
+use condyle_io::keyed::Problems;
 use condyle_io::mesh::MeshFileError;
 use condyle_report::ReportError;
 use thiserror::Error;
@@ -12,7 +12,7 @@ use thiserror::Error;
 pub enum CompareError {
     /// The file of measured data.
     #[error(transparent)]
-    Measured(#[from] CaseError),
+    Measured(#[from] Problems),
     /// The results folder.
     #[error(transparent)]
     Results(#[from] ReportError),

@@ -5,7 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use condyle_io::case::{Case, CaseError, Override, OverrideError};
+use condyle_io::case::{Case, Override, OverrideError};
+use condyle_io::keyed::Problems;
 use thiserror::Error;
 
 use crate::RunError;
@@ -15,7 +16,7 @@ use crate::RunError;
 pub enum ConvergeError {
     /// The case file, as it is or with one of the values.
     #[error(transparent)]
-    Case(#[from] CaseError),
+    Case(#[from] Problems),
     /// A key or a value that is none.
     #[error(transparent)]
     Override(#[from] OverrideError),

@@ -1,7 +1,22 @@
 //! Archard's law.
 
-use super::WearLaw;
+use std::sync::Arc;
+
+use super::law::{WearLaw, WearLawKind};
 use crate::contact::NodeHistory;
+use crate::parameter::Parameter;
+
+/// Archard's law as it is offered.
+pub(super) const KIND: WearLawKind = WearLawKind {
+    word: "archard",
+    about: "Depth per cycle = Kw sum of p |ds|.",
+    parameters: &[Archard::WEAR_FACTOR],
+    make: |constants| {
+        Arc::new(Archard {
+            wear_factor_mm3_per_nm: constants[0],
+        })
+    },
+};
 
 /// Archard's law: $\text{depth per cycle} = K_w \sum p |\Delta s|$, with $p$ the pressure and $\Delta s$ the
 /// slip of the femur past the node in each increment.
@@ -11,6 +26,18 @@ use crate::contact::NodeHistory;
 pub struct Archard {
     /// Wear factor Kw, mm3 of wear for each newton and metre of sliding.
     pub wear_factor_mm3_per_nm: f64,
+}
+
+impl Archard {
+    /// The wear factor Kw, by default that of Knight 2007.
+    pub const WEAR_FACTOR: Parameter = Parameter {
+        name: "wear_factor_mm3_per_nm",
+        about: "Volume worn for each newton of load and metre of sliding.",
+        default: 2.64e-7,
+        least: 0.0,
+        most: 1e-3,
+        source: "knight2007",
+    };
 }
 
 /// A metre in millimetres.

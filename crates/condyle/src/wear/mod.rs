@@ -1,13 +1,13 @@
 //! Wear laws: one cycle's contact history in, depth per cycle out.
+//!
+//! A law is one file: its constants with their units, defaults, limits and sources, and its
+//! formula; one line here adds it.
 
-mod archard;
+mod law;
 
 pub use archard::Archard;
+pub use law::{WearLaw, WearLawKind};
 
-use crate::contact::NodeHistory;
-
-/// A law of wear. It sees what happened at one node through a whole cycle, and never a solver.
-pub trait WearLaw: std::fmt::Debug + Send + Sync {
-    /// Depth worn at a node by one cycle, mm, along the inward normal; 0 or more.
-    fn depth_per_cycle_mm(&self, history: &NodeHistory<'_>) -> f64;
+law::wear_laws! {
+    archard,
 }

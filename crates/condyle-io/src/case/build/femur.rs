@@ -9,10 +9,11 @@ use condyle::geometry::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::super::{MeshFemur, Side};
+use super::super::femur::{Femur, MeshFemur};
+use super::super::heading::Side;
 use super::error::{BuildError, BuildWarning};
 use super::meshes::{Faces, Placing, parsed_shell, shell, warn};
-use crate::{cache::Cache, case, mesh::surface_bytes};
+use crate::{cache::Cache, mesh::surface_bytes};
 
 /// A femoral surface, the axis it flexes about and where that starts over the insert.
 pub(super) struct BuiltFemur {
@@ -30,7 +31,7 @@ pub(super) struct Preparing<'a> {
     pub cache: &'a Cache,
 }
 
-impl case::Femur {
+impl Femur {
     /// The femur, which starts the cycle flexed by `flexion_rad`.
     pub(super) fn build(
         &self,

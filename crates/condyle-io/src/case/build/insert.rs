@@ -1,30 +1,31 @@
 //! The insert in hexahedra.
 
 use condyle::Vec3;
-use condyle::geometry::{GenericInsertShape, Insert, Meshing, flat_insert, insert_from_shell};
+use condyle::geometry::{self, GenericInsertShape, Meshing, flat_insert, insert_from_shell};
 use condyle_fem::HexMesh;
 
-use super::super::{HexahedralInsert, MeshInsert, Side};
+use super::super::contents::Case;
+use super::super::heading::Side;
+use super::super::insert::{HexahedralInsert, Insert, MeshInsert};
 use super::error::{BuildError, BuildWarning};
 use super::meshes::{Faces, Placing, shell};
-use crate::case;
 use crate::mesh::{HexFile, read_hexahedra};
 
 /// Length and width of the flat block, mm, about those of the generic insert.
 const FLAT_SIZE_MM: (f64, f64) = (46.0, 72.0);
 
-impl case::Case {
+impl Case {
     /// The insert of this case in a mesh of twice the edge.
     ///
     /// # Errors
     /// In words: an insert that is read as hexahedra, or that has no such mesh.
-    pub fn coarser_insert(&self) -> Result<Insert, String> {
+    pub fn coarser_insert(&self) -> Result<geometry::Insert, String> {
         let mut coarser = self.insert.clone();
         match &mut coarser {
-            case::Insert::Generic(insert) => insert.edge_mm *= 2.0,
-            case::Insert::Flat(insert) => insert.edge_mm *= 2.0,
-            case::Insert::Mesh(insert) => insert.edge_mm *= 2.0,
-            case::Insert::Hexahedra(_) => {
+            Insert::Generic(insert) => insert.edge_mm *= 2.0,
+            Insert::Flat(insert) => insert.edge_mm *= 2.0,
+            Insert::Mesh(insert) => insert.edge_mm *= 2.0,
+            Insert::Hexahedra(_) => {
                 return Err("an insert read as hexahedra has no coarser mesh".to_owned());
             }
         }
@@ -33,12 +34,12 @@ impl case::Case {
     }
 }
 
-impl case::Insert {
+impl Insert {
     pub(super) fn build(
         &self,
         side: Side,
         warnings: &mut Vec<BuildWarning>,
-    ) -> Result<Insert, BuildError> {
+    ) -> Result<geometry::Insert, BuildError> {
         Ok(match self {
             Self::Generic(insert) => GenericInsertShape {
                 sagittal_radius_mm: insert.sagittal_radius_mm,
@@ -67,7 +68,7 @@ fn from_mesh(
     insert: &MeshInsert,
     side: Side,
     warnings: &mut Vec<BuildWarning>,
-) -> Result<Insert, BuildError> {
+) -> Result<geometry::Insert, BuildError> {
     let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
     let path = insert.file.path();
     let shell = shell(path, &placing, Faces::Up, warnings)?;
@@ -84,7 +85,7 @@ fn from_mesh(
     })
 }
 
-fn from_hexahedra(insert: &HexahedralInsert, side: Side) -> Result<Insert, BuildError> {
+fn from_hexahedra(insert: &HexahedralInsert, side: Side) -> Result<geometry::Insert, BuildError> {
     let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
     let path = insert.file.path();
     let mut file = read_hexahedra(path)?;
@@ -95,7 +96,7 @@ fn from_hexahedra(insert: &HexahedralInsert, side: Side) -> Result<Insert, Build
     };
     let articulating = surface("articulating_surface", &insert.articulating_surface, 1.0)?;
     let backside = surface("backside", &insert.backside, -1.0)?;
-    Ok(Insert::new(file.mesh, &articulating, &backside)?)
+    Ok(geometry::Insert::new(file.mesh, &articulating, &backside)?)
 }
 
 /// Moves nodes into the frame; where that mirrors, turns hexahedra and faces the right way again.

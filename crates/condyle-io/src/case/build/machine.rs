@@ -6,8 +6,9 @@ use condyle::machine::{
     knee::{self, KNEE},
 };
 
-use super::super::{Channel, DriveWord, Freedom, Springs, StiffnessOf};
-use crate::case;
+use super::super::channel::Channel;
+use super::super::machine::{self as case, Freedom};
+use super::super::machine_keys::{DriveWord, Springs, StiffnessOf};
 
 /// A kilogram in tonnes.
 const TONNE_PER_KG: f64 = 1e-3;

@@ -5,7 +5,9 @@ use std::path::Path;
 use condyle::geometry::{CheckedShell, TriangleMesh, checked_shell};
 use condyle::{Mat3, Vec3};
 
-use super::super::{Axes, LengthUnit, Side};
+use super::super::axes::Axes;
+use super::super::heading::Side;
+use super::super::mesh_file::LengthUnit;
 use super::error::{BuildError, BuildWarning};
 use crate::mesh::{parse_surface, surface_bytes};
 

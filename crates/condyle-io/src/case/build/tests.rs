@@ -10,8 +10,9 @@ use condyle::geometry::{
 };
 use tempfile::TempDir;
 
+use super::assemble::Built;
+use super::error::BuildError;
 use super::meshes::{Faces, Placing, shell};
-use super::{BuildError, Built};
 use crate::cache::Cache;
 use crate::case::tests::{cases, has_dm_data};
 use crate::case::{Case, Femur, Side};

@@ -1,7 +1,8 @@
 //! Every problem that stands in the case file itself.
 
 use super::{assert_shows, parsed, refusal};
-use crate::case::{Case, Look, Problem};
+use crate::case::Case;
+use crate::keyed::{Problem, RenderStyle};
 
 #[test]
 fn syntax_errors_are_all_shown() {
@@ -474,10 +475,10 @@ fn a_terminal_gets_colour_and_a_log_none() {
     let Err(error) = parsed("side = \"up\"\n") else {
         panic!("no such side");
     };
-    assert!(error.render(Look::Plain).is_ascii());
+    assert!(error.render(RenderStyle::Plain).is_ascii());
     assert!(
         error
-            .render(Look::Terminal { width: 80 })
+            .render(RenderStyle::Terminal { width: 80 })
             .contains("\u{1b}[")
     );
 }

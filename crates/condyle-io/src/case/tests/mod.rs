@@ -3,10 +3,12 @@
 mod errors;
 mod files;
 mod round_trip;
+mod wear;
 
 use std::path::{Path, PathBuf};
 
-use super::{Case, CaseError};
+use super::contents::Case;
+use crate::keyed::Problems;
 
 /// The folder of the cases that come with condyle.
 pub(super) fn cases() -> PathBuf {
@@ -31,7 +33,7 @@ pub(super) fn has_dm_data(test: &str) -> bool {
     there
 }
 
-fn parsed(text: &str) -> Result<Case, CaseError> {
+fn parsed(text: &str) -> Result<Case, Problems> {
     Case::parse(text, "case.toml", Path::new(""))
 }
 

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use condyle::machine::{self, knee};
+use condyle::wear::WEAR_LAWS;
 
 use super::{cases, has_dm_data, parsed};
 use crate::case::{
@@ -161,7 +162,7 @@ fn templates_are_cases_of_their_preset() {
 
 #[test]
 fn page_of_keys_has_unit_range_default_and_meaning() {
-    let page = schema_markdown();
+    let page = schema_markdown(WEAR_LAWS);
     let row = "| `edge_mm` | mm | a number, 0.1 to 10 | `1.05` | Edge of a hexahedron, seen from above. |";
     assert!(page.contains(row), "{page}");
     assert!(page.contains("| `file` |  | a path in quotes | must be given |"));
@@ -173,5 +174,5 @@ fn page_of_keys_in_the_book_is_up_to_date() {
     let path = cases().join("../docs/src/case-file.md");
     let page = std::fs::read_to_string(path).unwrap_or_default();
     let advice = "run: cargo run -q -p condyle-io --example case_file_page > docs/src/case-file.md";
-    assert!(page == schema_markdown(), "{advice}");
+    assert!(page == schema_markdown(WEAR_LAWS), "{advice}");
 }

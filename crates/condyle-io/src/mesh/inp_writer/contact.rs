@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{InpWriter, real};
+use super::writer::{InpWriter, real};
 
 /// A row of a pressure-overclosure law.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +65,7 @@ impl<W: Write> InpWriter<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::inp_writer::tests::written;
+    use crate::mesh::inp_writer::writer::tests::written;
 
     const LAW: [PressureOverclosure; 2] = [
         PressureOverclosure {

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use condyle::Vec3;
 use condyle_fem::{HEX_FACES, HexMesh};
 
-use super::{InpWriter, real};
+use super::writer::{InpWriter, real};
 
 /// Type of the triangles of a rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -186,7 +186,7 @@ mod tests {
     use super::*;
     use crate::mesh::fixtures::two_cubes;
     use crate::mesh::inp;
-    use crate::mesh::inp_writer::tests::written;
+    use crate::mesh::inp_writer::writer::tests::written;
 
     #[test]
     fn a_mesh_with_sets_and_surface_is_read_back() {

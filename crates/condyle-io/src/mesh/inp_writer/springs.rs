@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::InpWriter;
+use super::writer::InpWriter;
 
 impl<W: Write> InpWriter<W> {
     /// A spring from a node to the ground along one degree of freedom (`SPRING1`), with a table of
@@ -100,7 +100,7 @@ impl<W: Write> InpWriter<W> {
 
 #[cfg(test)]
 mod tests {
-    use crate::mesh::inp_writer::tests::written;
+    use crate::mesh::inp_writer::writer::tests::written;
 
     /// Free for 2.5 mm each way, then 7.24 N/mm one way and 33.8 N/mm the other.
     const TABLE: [(f64, f64); 4] = [(-72.4, -12.5), (0.0, -2.5), (0.0, 2.5), (338.0, 12.5)];

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{InpWriter, real};
+use super::writer::{InpWriter, real};
 
 /// How much an implicit step damps what its increments do not resolve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub enum Procedure {
 
 /// The head of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step<'a> {
+pub struct AnalysisStep<'a> {
     /// Its name.
     pub name: &'a str,
     /// How long it lasts, s.
@@ -59,8 +59,8 @@ impl<W: Write> InpWriter<W> {
     }
 
     /// `*STEP` with its procedure; geometry is nonlinear.
-    pub fn begin_step(&mut self, step: &Step) -> io::Result<()> {
-        let Step {
+    pub fn begin_step(&mut self, step: &AnalysisStep) -> io::Result<()> {
+        let AnalysisStep {
             name,
             period_s,
             procedure,
@@ -138,7 +138,7 @@ impl<W: Write> InpWriter<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::inp_writer::tests::written;
+    use crate::mesh::inp_writer::writer::tests::written;
 
     #[test]
     fn amplitudes_hold_four_pairs_a_line() {
@@ -158,7 +158,7 @@ mod tests {
             most_s: 0.01,
         };
         let text = written(|inp| {
-            inp.begin_step(&Step {
+            inp.begin_step(&AnalysisStep {
                 name: "gait",
                 period_s: 0.9,
                 procedure,
@@ -183,7 +183,7 @@ mod tests {
     fn an_explicit_step_is_written() {
         let procedure = Procedure::Explicit;
         let text = written(|inp| {
-            inp.begin_step(&Step {
+            inp.begin_step(&AnalysisStep {
                 name: "gait",
                 period_s: 0.9,
                 procedure,

@@ -280,7 +280,8 @@ mod tests {
     use std::path::Path;
 
     use condyle::geometry::TriangleMesh;
-    use condyle_io::case::{Axes, DataFile, LengthUnit};
+    use condyle_io::case::{Axes, LengthUnit};
+    use condyle_io::keyed::DataFile;
 
     use super::*;
 

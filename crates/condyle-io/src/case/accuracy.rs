@@ -1,0 +1,11 @@
+//! What a run tells of its own accuracy.
+
+use crate::keyed::settings;
+
+settings! {
+    /// What a run tells of its own accuracy.
+    Accuracy {
+        /// Whether discretisation errors are estimated after the run, by solving the unworn cycle more coarsely.
+        estimate: bool = true;
+    }
+}

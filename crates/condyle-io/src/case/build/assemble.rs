@@ -1,0 +1,109 @@
+//! A whole case made into a wear test.
+
+use std::sync::Arc;
+
+use condyle::contact::{Foundation, PressureLaw, confined_modulus};
+use condyle::evolve::{Activity, Schedule, Updates, WearTest};
+use condyle::machine::{Integration, TimeSettings};
+
+use super::super::contact::PressureLawChoice;
+use super::super::contents::Case;
+use super::super::march::Update;
+use super::super::time::IntegratorWord;
+use super::error::{BuildError, BuildWarning};
+use super::femur::Preparing;
+use super::machine::start_flexion_rad;
+use crate::cache::Cache;
+
+/// A wear test ready to run, and what was put right on the way to it.
+pub struct Built {
+    /// The test, of a right knee: a left one is mirrored, and its results are to be mirrored back.
+    pub test: WearTest,
+    /// What was put right, for the user to know.
+    pub warnings: Vec<BuildWarning>,
+}
+
+impl Case {
+    /// Reads the meshes and makes bodies, machine and laws; `threads` share the work on a mesh.
+    ///
+    /// # Errors
+    /// A mesh that cannot be read or is no shell, an open insert without a thickness, a surface
+    /// that is not in its file, or an insert that cannot be meshed.
+    pub fn build(&self, threads: usize) -> Result<Built, BuildError> {
+        self.build_kept(threads, &Cache::off())
+    }
+
+    /// As [`Case::build`], to the same bytes, with the preparation of a mesh femur kept in a cache
+    /// for the next time.
+    ///
+    /// # Errors
+    /// As [`Case::build`]; a cache that cannot be used is none.
+    pub fn build_kept(&self, threads: usize, cache: &Cache) -> Result<Built, BuildError> {
+        let mut warnings = Vec::new();
+        let insert = self.insert.build(self.heading.side, &mut warnings)?;
+        let machine = self.machine.build(insert.dish_low_point_mm());
+        let femur = self.femur.build(
+            self.heading.side,
+            start_flexion_rad(&machine),
+            Preparing { threads, cache },
+            &mut warnings,
+        )?;
+        let test = WearTest {
+            femur: Arc::new(femur.surface),
+            flexion_axis_mm: femur.flexion_axis_mm,
+            start_mm: femur.start_mm,
+            insert: Arc::new(insert),
+            activities: vec![Activity::only("gait", machine)],
+            contact: Arc::new(self.foundation()),
+            wear: self.wear.law(),
+            density_mg_per_mm3: self.material.density_mg_per_mm3,
+            time: self.time_settings(),
+            schedule: Schedule {
+                cycles: self.march.cycles as f64,
+                updates: match &self.march.update {
+                    Update::Fixed(fixed) => Updates::Fixed(fixed.updates as usize),
+                    Update::Auto(auto) => Updates::Auto {
+                        tolerance: auto.depth_tolerance_fraction,
+                    },
+                },
+            },
+        };
+        Ok(Built { test, warnings })
+    }
+
+    /// The law of contact of this case.
+    pub fn foundation(&self) -> Foundation {
+        let material = &self.material;
+        let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
+        let friction = &self.contact.friction;
+        let pressure = match &self.contact.law {
+            PressureLawChoice::Linear => PressureLaw::Linear { modulus_mpa },
+            PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },
+            PressureLawChoice::Tabulated(table) => PressureLaw::Tabulated(table.clone()),
+        };
+        Foundation::new(
+            pressure,
+            friction.friction,
+            friction.slip_tolerance_mm_per_s,
+        )
+    }
+
+    fn time_settings(&self) -> TimeSettings {
+        let time = &self.time;
+        TimeSettings {
+            increments: time.increments as usize,
+            increment_error_mm: time.increment_error_mm,
+            force_tolerance_n: time.force_tolerance_n,
+            repeat_tolerance_mm: time.repeat_tolerance_mm,
+            repeat_tolerance_rad: time.repeat_tolerance_deg.to_radians(),
+            most_cycles_to_repeat: time.most_cycles_to_repeat as usize,
+            integration: match time.integrator {
+                IntegratorWord::Implicit => Integration::Implicit,
+                IntegratorWord::Explicit => Integration::Explicit {
+                    least_step_s: time.explicit_step_s,
+                },
+            },
+            ..TimeSettings::default()
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! All that a case says.
+
+use super::accuracy::Accuracy;
+use super::contact::Contact;
+use super::femur::Femur;
+use super::heading::Heading;
+use super::insert::Insert;
+use super::machine::Machine;
+use super::march::March;
+use super::material::Material;
+use super::origin::Origin;
+use super::time::Time;
+use super::wear::Wear;
+
+/// A wear test as its file describes it, checked, with every default filled in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Title and side.
+    pub heading: Heading,
+    /// The femoral component.
+    pub femur: Femur,
+    /// The tibial insert.
+    pub insert: Insert,
+    /// Polyethylene of the insert.
+    pub material: Material,
+    /// Pressure law and friction.
+    pub contact: Contact,
+    /// The simulator.
+    pub machine: Machine,
+    /// The wear law.
+    pub wear: Wear,
+    /// The march over the life of the insert.
+    pub march: March,
+    /// Steps and tolerances in time.
+    pub time: Time,
+    /// What a run tells of its own accuracy.
+    pub accuracy: Accuracy,
+    pub(super) origin: Origin,
+}

@@ -1,0 +1,114 @@
+//! What in a case is behind a failure of its bodies, so that the message points to the key.
+
+use std::ops::Range;
+use std::path::Path;
+
+use condyle::evolve::PlacementError;
+use condyle::geometry::ShellInsertError;
+use condyle::machine::knee;
+use thiserror::Error;
+use toml::de::DeTable;
+
+use super::build::BuildError;
+use super::contents::Case;
+use super::machine_keys::DriveWord;
+use crate::keyed::{DataFile, Log, Problem, Problems, Reason, Section, Source};
+
+/// Values that are good one by one and make no wear test together.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{message}")]
+pub struct Unfit {
+    /// Why, and what to do.
+    pub message: String,
+}
+
+impl Reason for Unfit {
+    fn advice(&self) -> Option<String> {
+        None
+    }
+}
+
+/// A table of a case and those of its keys that may be at fault, likeliest first.
+struct Culprit {
+    table: &'static str,
+    keys: &'static [&'static str],
+}
+
+/// What places the femur over the insert.
+const START: Culprit = Culprit {
+    table: "femur",
+    keys: &["start_mm", "length_unit", "axes", "file", "shape"],
+};
+
+/// A material softer than this, MPa, is likelier at fault for a deep overlap than the shapes.
+const SOFT_MPA: f64 = 100.0;
+
+impl Case {
+    /// A failed build, at the key of this case that is behind it.
+    pub fn at_its_key(&self, error: &BuildError) -> Problems {
+        self.error_at(&self.culprit_of_build(error), error.to_string())
+    }
+
+    /// A failed placement of this case's bodies, at the key that is behind it.
+    pub fn placement_at_its_key(&self, error: &PlacementError) -> Problems {
+        let culprit = match error {
+            PlacementError::DeepOverlap { .. } => self.culprit_of_overlap(),
+            _ => START,
+        };
+        self.error_at(&culprit, error.to_string())
+    }
+
+    fn culprit_of_build(&self, error: &BuildError) -> Culprit {
+        let keys: &[&str] = match error {
+            BuildError::MeshFile(_) | BuildError::Shell { .. } => &["file"],
+            BuildError::ShellInsert { source, .. } => match source {
+                ShellInsertError::NoColumns { .. } => &["edge_mm", "file"],
+                ShellInsertError::OpenWithoutThickness | ShellInsertError::Insert(_) => &["file"],
+            },
+            BuildError::ThicknessOfClosed { .. } => &["thickness_mm"],
+            BuildError::NoSurface { key, .. } => match *key {
+                "backside" => &["backside"],
+                _ => &["articulating_surface"],
+            },
+            BuildError::Insert(_) => &["backside", "articulating_surface", "file", "edge_mm"],
+            BuildError::Axes(_) => &["axes"],
+        };
+        let file = error.file();
+        let is_of_femur = file.is_some() && file == self.femur.file().map(DataFile::path);
+        let table = if is_of_femur { "femur" } else { "insert" };
+        Culprit { table, keys }
+    }
+
+    fn culprit_of_overlap(&self) -> Culprit {
+        if self.machine.freedoms.get(knee::IS).drive() == DriveWord::Locked {
+            Culprit {
+                table: "machine.freedoms.is",
+                keys: &["locked_at_mm", "drive"],
+            }
+        } else if self.material.youngs_modulus_mpa < SOFT_MPA {
+            Culprit {
+                table: "material",
+                keys: &["youngs_modulus_mpa"],
+            }
+        } else {
+            START
+        }
+    }
+
+    fn error_at(&self, culprit: &Culprit, message: String) -> Problems {
+        let source = &self.origin.0;
+        let problem = Problem::at(source, span_of(source, culprit), Unfit { message });
+        Problems::new(vec![problem], source)
+    }
+}
+
+/// Where the first key of `culprit` that is given has its value, or else the name of the table.
+fn span_of(source: &Source, culprit: &Culprit) -> Range<usize> {
+    let (document, _) = DeTable::parse_recoverable(source.inner());
+    let mut unheard = Log::new(source, Path::new(""));
+    let root = Section::root(document.get_ref());
+    let tables = culprit.table.split('.');
+    let section = tables.fold(root, |above, name| above.table(name, &mut unheard));
+    let given = culprit.keys.iter().find(|key| section.value(key).is_some());
+    given.map_or(section.span(), |key| section.value_span(key))
+}

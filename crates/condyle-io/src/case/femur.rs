@@ -1,0 +1,95 @@
+//! The femoral component.
+
+use condyle::geometry::GenericFemurShape;
+
+use super::axes::{self, Axes};
+use super::heading::Side;
+use super::mesh_file::LengthUnit;
+use crate::keyed::{DataFile, Log, Section, Variants, settings, variants, within};
+
+settings! {
+    /// A pair of condyles, each a piece of torus.
+    GenericFemur {
+        /// Radius of the distal arc, seen from the side.
+        distal_radius_mm: f64 = GenericFemurShape::default().distal_radius_mm, in within(5.0, 200.0);
+        /// Radius of the posterior arc, seen from the side.
+        posterior_radius_mm: f64 = GenericFemurShape::default().posterior_radius_mm, in within(5.0, 200.0);
+        /// Where the posterior arc takes over, behind straight down.
+        transition_deg: f64 = GenericFemurShape::default().transition_deg, in within(0.0, 90.0);
+        /// Radius of each condyle, seen from the front.
+        coronal_radius_mm: f64 = GenericFemurShape::default().coronal_radius_mm, in within(2.0, 200.0);
+        /// Distance between the lowest lines of the condyles.
+        spacing_mm: f64 = GenericFemurShape::default().spacing_mm, in within(10.0, 100.0);
+        /// Where the femoral frame starts in the insert frame, [x, z], before it settles; over the dish if not given.
+        start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
+    }
+
+    /// One sphere, for verification.
+    SphereFemur {
+        /// Radius of the sphere.
+        radius_mm: f64 = 24.0, in within(1.0, 500.0);
+        /// Where its centre starts in the insert frame, [x, z], before it settles; over the origin if not given.
+        start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
+    }
+
+    /// One endless cylinder about the medio-lateral axis, for verification.
+    CylinderFemur {
+        /// Radius of the cylinder.
+        radius_mm: f64 = 24.0, in within(1.0, 500.0);
+        /// Where its axis starts in the insert frame, [x, z], before it settles; over the origin if not given.
+        start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
+    }
+
+    /// A femoral component read from a triangle mesh.
+    MeshFemur {
+        /// STL, OBJ, PLY or VTP file, relative to the case file.
+        file: DataFile;
+        /// Unit of length of the file.
+        length_unit: LengthUnit = LengthUnit::Millimetre;
+        /// Where x, y and z of the file point.
+        axes: Axes = Axes::ISB;
+        /// Flexion axis [x, y] in the femoral frame; fitted to the posterior condyles if not given.
+        flexion_axis_mm: Option<[f64; 2]> = None, in within(-200.0, 200.0);
+        /// Where the femoral frame starts in the insert frame, [x, z], before it settles; at the origin if not given.
+        start_mm: Option<[f64; 2]> = None, in within(-100.0, 100.0);
+    }
+}
+
+variants! {
+    /// The femoral component.
+    Femur by
+    /// What the femoral component is made from.
+    shape = "generic" {
+        /// A pair of condyles, each a piece of torus.
+        Generic(GenericFemur) = "generic",
+        /// A triangle mesh.
+        Mesh(MeshFemur) = "mesh",
+        /// One sphere, for verification.
+        Sphere(SphereFemur) = "sphere",
+        /// One cylinder about the medio-lateral axis, for verification.
+        Cylinder(CylinderFemur) = "cylinder",
+    }
+}
+
+impl Femur {
+    /// Reads `[femur]` of a `side` knee.
+    pub(super) fn read_checked(
+        section: &Section<'_>,
+        side: Side,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
+        let femur = Self::read(section, &[], log)?;
+        if let Self::Mesh(mesh) = &femur {
+            axes::check(&mesh.axes, side, section.value_span("axes"), log);
+        }
+        Some(femur)
+    }
+
+    /// The mesh file it comes from, if any.
+    pub fn file(&self) -> Option<&DataFile> {
+        match self {
+            Self::Mesh(mesh) => Some(&mesh.file),
+            Self::Generic(_) | Self::Sphere(_) | Self::Cylinder(_) => None,
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! What stands above the first table of a case.
+
+use crate::keyed::{choice, settings};
+
+choice! {
+    /// Which knee.
+    Side {
+        /// A right knee.
+        Right = "right",
+        /// A left knee, mirrored on the way in and out.
+        Left = "left",
+    }
+}
+
+settings! {
+    /// What stands above the first table of a case.
+    Heading {
+        /// One line that says what the case is.
+        title: String = "Untitled".to_owned();
+        /// Which knee; a left one is mirrored on the way in and out.
+        side: Side = Side::Right;
+    }
+}

@@ -1,0 +1,115 @@
+//! The tibial insert.
+
+use condyle::geometry::{GenericInsertShape, Meshing};
+
+use super::axes::{self, Axes};
+use super::heading::Side;
+use super::mesh_file::LengthUnit;
+use crate::keyed::{DataFile, Log, Section, Variants, settings, variants, within};
+
+settings! {
+    /// Two dishes with an eminence between.
+    GenericInsert {
+        /// Radius of each dish, seen from the side.
+        sagittal_radius_mm: f64 = GenericInsertShape::default().sagittal_radius_mm, in within(5.0, 10000.0);
+        /// Radius of each dish, seen from the front.
+        coronal_radius_mm: f64 = GenericInsertShape::default().coronal_radius_mm, in within(2.0, 10000.0);
+        /// Distance between the lowest lines of the dishes.
+        spacing_mm: f64 = GenericInsertShape::default().spacing_mm, in within(10.0, 100.0);
+        /// Thickness where it is thinnest.
+        thickness_mm: f64 = GenericInsertShape::default().thickness_mm, in within(1.0, 50.0);
+        /// Edge of a hexahedron, seen from above.
+        edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
+        /// Hexahedra through the thickness.
+        layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
+    }
+
+    /// An insert whose triangle mesh is turned into columns of hexahedra.
+    MeshInsert {
+        /// STL, OBJ, PLY or VTP file, relative to the case file.
+        file: DataFile;
+        /// Unit of length of the file.
+        length_unit: LengthUnit = LengthUnit::Millimetre;
+        /// Where x, y and z of the file point.
+        axes: Axes = Axes::ISB;
+        /// Edge of a hexahedron, seen from above.
+        edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
+        /// Hexahedra through the thickness.
+        layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
+        /// Thickness where it is thinnest: only for an open articulating surface, which has none of its own.
+        thickness_mm: Option<f64> = None, in within(1.0, 50.0);
+    }
+
+    /// An insert read as hexahedra.
+    HexahedralInsert {
+        /// Abaqus .inp, Gmsh .msh or .vtu file, relative to the case file.
+        file: DataFile;
+        /// Unit of length of the file.
+        length_unit: LengthUnit = LengthUnit::Millimetre;
+        /// Where x, y and z of the file point.
+        axes: Axes = Axes::ISB;
+        /// Name in the file of the surface that articulates; found from above if not given.
+        articulating_surface: Option<String> = None;
+        /// Name in the file of the backside; found from below if not given.
+        backside: Option<String> = None;
+    }
+
+    /// A flat block, for verification.
+    FlatInsert {
+        /// Thickness.
+        thickness_mm: f64 = GenericInsertShape::default().thickness_mm, in within(1.0, 50.0);
+        /// Edge of a hexahedron, seen from above.
+        edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
+        /// Hexahedra through the thickness.
+        layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
+    }
+}
+
+variants! {
+    /// The tibial insert.
+    Insert by
+    /// What the insert is made from.
+    shape = "generic" {
+        /// Two dishes.
+        Generic(GenericInsert) = "generic",
+        /// A triangle mesh.
+        Mesh(MeshInsert) = "mesh",
+        /// A mesh of hexahedra.
+        Hexahedra(HexahedralInsert) = "hexahedra",
+        /// A flat block, for verification.
+        Flat(FlatInsert) = "flat",
+    }
+}
+
+impl Insert {
+    /// Reads `[insert]` of a `side` knee.
+    pub(super) fn read_checked(
+        section: &Section<'_>,
+        side: Side,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
+        let insert = Self::read(section, &[], log)?;
+        if let Some(axes) = insert.axes() {
+            axes::check(axes, side, section.value_span("axes"), log);
+        }
+        Some(insert)
+    }
+
+    /// Where the axes of its mesh file point, if it comes from one.
+    fn axes(&self) -> Option<&Axes> {
+        match self {
+            Self::Mesh(mesh) => Some(&mesh.axes),
+            Self::Hexahedra(mesh) => Some(&mesh.axes),
+            Self::Generic(_) | Self::Flat(_) => None,
+        }
+    }
+
+    /// The mesh file it comes from, if any.
+    pub fn file(&self) -> Option<&DataFile> {
+        match self {
+            Self::Mesh(mesh) => Some(&mesh.file),
+            Self::Hexahedra(mesh) => Some(&mesh.file),
+            Self::Generic(_) | Self::Flat(_) => None,
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! A wear law that condyle does not have, added in one place.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use condyle::contact::{CycleHistory, Moment, NodeHistory};
+use condyle::parameter::Parameter;
+use condyle::wear::{WEAR_LAWS, WearLaw, WearLawKind};
+
+use super::assert_shows;
+use crate::case::{Case, CaseReader, ConstantError, Wear, WearLaws, schema_markdown};
+
+/// Wear that begins at a pressure: depth per cycle = a (sum of p |ds| - b), 0 or more.
+#[derive(Debug)]
+struct Threshold {
+    wear_factor_mm3_per_nm: f64,
+    from_n_per_mm: f64,
+}
+
+impl WearLaw for Threshold {
+    fn depth_per_cycle_mm(&self, history: &NodeHistory<'_>) -> f64 {
+        let above = history.pressure_slip_mpa_mm - self.from_n_per_mm;
+        self.wear_factor_mm3_per_nm / 1000.0 * above.max(0.0)
+    }
+}
+
+const THRESHOLD: WearLawKind = WearLawKind {
+    word: "threshold",
+    about: "Depth per cycle = a (sum of p |ds| - b).",
+    parameters: &[
+        Parameter {
+            name: "factor_mm3_per_nm",
+            about: "Factor a on the work of friction.",
+            default: 3e-7,
+            least: 0.0,
+            most: 1e-3,
+            source: "choice",
+        },
+        Parameter {
+            name: "from_n_per_mm",
+            about: "Work b below which nothing wears.",
+            default: 20.0,
+            least: 0.0,
+            most: 1000.0,
+            source: "choice",
+        },
+    ],
+    make: |constants| {
+        Arc::new(Threshold {
+            wear_factor_mm3_per_nm: constants[0],
+            from_n_per_mm: constants[1],
+        })
+    },
+};
+
+/// The one line beside the law itself.
+const LAWS: WearLaws = &[WEAR_LAWS[0], &THRESHOLD];
+
+fn read(text: &str) -> Result<Case, String> {
+    let reader = CaseReader::default().with_wear_laws(LAWS);
+    let case = reader.parse(text, "case.toml", Path::new(""));
+    case.map_err(|problems| problems.to_string())
+}
+
+const CASE: &str = "[insert]\nedge_mm = 6.0\n[wear]\nlaw = \"threshold\"\nfrom_n_per_mm = 40.0\n";
+
+#[test]
+fn a_law_with_two_constants_is_read_with_its_defaults() {
+    let wear = read(CASE).unwrap().wear;
+    assert_eq!(wear.kind().word, "threshold");
+    assert_eq!(wear.constant("factor_mm3_per_nm"), Ok(3e-7));
+    assert_eq!(wear.constant("from_n_per_mm"), Ok(40.0));
+    assert_eq!(read("").unwrap().wear, Wear::new(WEAR_LAWS[0]));
+}
+
+#[test]
+fn it_is_written_and_reads_back() {
+    let case = read(CASE).unwrap();
+    let text = case.to_toml();
+    assert_shows(
+        &text,
+        &[
+            "[wear]\nlaw = \"threshold\"  ",
+            " # Which law.\n",
+            "factor_mm3_per_nm = 3e-7  ",
+            " # Factor a on the work of friction.\n",
+            "from_n_per_mm = 40.0  ",
+            " # Work b below which nothing wears.\n",
+        ],
+    );
+    assert_eq!(read(&text).unwrap(), case);
+}
+
+#[test]
+fn its_keys_are_checked_as_all_others() {
+    let refusal = |keys: &str| read(&format!("[wear]\n{keys}\n")).unwrap_err();
+    assert_shows(
+        &refusal("from_n_per_mm = 40.0"),
+        &[
+            "`from_n_per_mm` belongs to law = \"threshold\", but this case has law = \"archard\"",
+            "help: remove the key, or write `law = \"threshold\"`",
+        ],
+    );
+    let threshold = |key: &str| refusal(&format!("law = \"threshold\"\n{key}"));
+    assert_shows(
+        &threshold("from_n_per_mm = -1.0"),
+        &["-1 N/mm, outside its range", "it can be 0 to 1000 N/mm"],
+    );
+    assert_shows(
+        &threshold("from_n_per_m = 1.0"),
+        &["the key is `from_n_per_mm`, in N/mm"],
+    );
+    assert_shows(
+        &refusal("law = \"treshold\""),
+        &["did you mean \"threshold\"? It can be \"archard\" or \"threshold\""],
+    );
+}
+
+#[test]
+fn its_keys_are_on_the_page() {
+    assert_shows(
+        &schema_markdown(LAWS),
+        &[
+            "| `law` |  | \"archard\" or \"threshold\" | `\"archard\"` | Which law. |",
+            "With `law = \"threshold\"`:",
+            "| `from_n_per_mm` | N/mm | a number, 0 to 1000 | `20.0` | Work b below which",
+            "- `threshold`: Depth per cycle = a (sum of p |ds| - b). Its constants are from: choice, choice.",
+        ],
+    );
+}
+
+#[test]
+fn verify_it_is_the_law_that_the_test_wears_by() {
+    let test = read(CASE).unwrap().build(1).unwrap().test;
+    let mut history = CycleHistory::default();
+    let moment = Moment {
+        pressure_mpa: 10.0,
+        slip_mm: [10.0, 0.0],
+    };
+    let instant = history.record([(0, moment)].into_iter());
+    history.sort(1, &[instant]);
+    let depth = test.wear.depth_per_cycle_mm(&history.node(0));
+    assert!((depth - 3e-10 * 60.0).abs() < 1e-20, "{depth:e}");
+}
+
+#[test]
+fn a_constant_that_a_law_has_not_or_cannot_have_is_refused() {
+    let archard = || Wear::new(WEAR_LAWS[0]);
+    let missing = archard().constant("from_n_per_mm").unwrap_err();
+    assert_eq!(
+        missing.to_string(),
+        "the wear law \"archard\" has no `from_n_per_mm`; take a case with a law that has"
+    );
+    let beyond = archard().with_constant("wear_factor_mm3_per_nm", 0.5);
+    let beyond: ConstantError = beyond.unwrap_err();
+    assert_eq!(
+        beyond.to_string(),
+        "`wear_factor_mm3_per_nm` cannot be 5e-1: it can be 0 to 0.001"
+    );
+    let changed = archard().with_constant("wear_factor_mm3_per_nm", 1e-6);
+    let changed = changed.unwrap();
+    assert_eq!(changed.constant("wear_factor_mm3_per_nm"), Ok(1e-6));
+}

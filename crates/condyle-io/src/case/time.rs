@@ -1,0 +1,47 @@
+//! Steps and tolerances in time.
+
+use condyle::machine::{Integration, TimeSettings};
+
+use crate::keyed::{choice, settings, within};
+
+choice! {
+    /// How time is integrated.
+    IntegratorWord {
+        /// Backward differences and Newton's method.
+        Implicit = "implicit",
+        /// Central differences, as a cross-check.
+        Explicit = "explicit",
+    }
+}
+
+impl IntegratorWord {
+    /// The word for a way to step through an increment.
+    fn of(integration: Integration) -> Self {
+        match integration {
+            Integration::Implicit => Self::Implicit,
+            Integration::Explicit { .. } => Self::Explicit,
+        }
+    }
+}
+
+settings! {
+    /// Steps and tolerances in time.
+    Time {
+        /// Increments in a gait cycle.
+        increments: u64 = TimeSettings::default().increments as u64, in within(20.0, 100_000.0);
+        /// An implicit increment is halved until its own error is estimated below this; rotations on a lever of 10 mm. 0 never halves for that.
+        increment_error_mm: f64 = TimeSettings::default().increment_error_mm, in within(0.0, 10.0);
+        /// Largest residual force of a converged increment.
+        force_tolerance_n: f64 = TimeSettings::default().force_tolerance_n, in within(1e-9, 10.0);
+        /// Cycles to run at most until one repeats the one before.
+        most_cycles_to_repeat: u64 = TimeSettings::default().most_cycles_to_repeat as u64, in within(1.0, 1000.0);
+        /// Largest difference of a translation between two cycles that repeat.
+        repeat_tolerance_mm: f64 = TimeSettings::default().repeat_tolerance_mm, in within(1e-9, 10.0);
+        /// Largest difference of a rotation between two cycles that repeat.
+        repeat_tolerance_deg: f64 = TimeSettings::default().repeat_tolerance_rad.to_degrees(), in within(1e-9, 10.0);
+        /// How an increment is stepped through: implicit in one step, or explicit in many short ones.
+        integrator: IntegratorWord = IntegratorWord::of(TimeSettings::default().integration);
+        /// Explicit: inertia is added wherever a stable step would be shorter than this; 0 adds none.
+        explicit_step_s: f64 = 0.0, in within(0.0, 1e-3);
+    }
+}

@@ -1,0 +1,48 @@
+//! A case back as a file.
+
+use std::path::Path;
+
+use super::contents::Case;
+use super::machine_keys::Preset;
+use super::machine_write::{WriteWaveform, write_knots, write_name};
+use crate::keyed::{Settings, Variants, Writer};
+
+impl Case {
+    /// The case as a file that reads back as an equal case: every default written out, waveforms
+    /// as points, files by their absolute paths.
+    pub fn to_toml(&self) -> String {
+        self.written(write_knots)
+    }
+
+    fn written(&self, write_waveform: WriteWaveform) -> String {
+        let mut out = Writer::default();
+        self.heading.write(&mut out);
+        out.table("femur");
+        self.femur.write(&mut out);
+        out.table("insert");
+        self.insert.write(&mut out);
+        out.table("material");
+        self.material.write(&mut out);
+        out.table("contact");
+        self.contact.write(&mut out);
+        self.machine.write(write_waveform, &mut out);
+        out.table("wear");
+        self.wear.write(&mut out);
+        out.table("march");
+        self.march.write(&mut out);
+        out.table("time");
+        self.time.write(&mut out);
+        out.table("accuracy");
+        self.accuracy.write(&mut out);
+        out.into_text()
+    }
+}
+
+/// A case to start from: every key with its default and its meaning.
+pub fn template(preset: Preset) -> String {
+    let text = format!("[machine]\npreset = {:?}\n", preset.word());
+    match Case::parse(&text, "template", Path::new("")) {
+        Ok(case) => case.written(write_name),
+        Err(error) => unreachable!("the defaults are a case, a test reads them: {error}"),
+    }
+}

@@ -1,0 +1,162 @@
+//! Columns of numbers in a CSV file, each with its place.
+
+use std::ops::Range;
+
+use super::column_reason::ColumnReason;
+use super::problem::Placed;
+
+/// A CSV file: names of its columns, and rows of cells that are yet to be read as numbers.
+pub(crate) struct Columns<'a> {
+    text: &'a str,
+    header: Vec<Range<usize>>,
+    rows: Vec<Vec<Range<usize>>>,
+}
+
+/// A number and where it stands.
+pub(crate) struct Cell {
+    pub value: f64,
+    pub span: Range<usize>,
+}
+
+impl<'a> Columns<'a> {
+    /// Splits `text` into a header and rows; `example` shows a header where there is none.
+    ///
+    /// The header is the last line above the numbers with as many names as they have columns, and
+    /// may be a comment; a name ends at a blank, so that a remark may follow the last.
+    pub(crate) fn split(text: &'a str, file: &str, example: &str) -> Result<Self, Placed> {
+        let is_data = |line: &Range<usize>| {
+            let first = text[line.clone()].split(',').next().unwrap_or_default();
+            first.trim().parse::<f64>().is_ok()
+        };
+        let lines: Vec<Range<usize>> = lines(text).collect();
+        let start = lines.iter().position(is_data).unwrap_or(lines.len());
+        let columns = lines.get(start).map_or(2, |line| cells(text, line).len());
+        if columns < 2 {
+            let (file, example) = (file.to_owned(), example.to_owned());
+            let reason = ColumnReason::OneColumn { file, example };
+            return Err(Placed::new(lines[start].clone(), reason));
+        }
+        let named = |line: &&Range<usize>| cells(text, line).len() == columns;
+        let Some(header) = lines[..start].iter().rev().find(named) else {
+            let (file, example) = (file.to_owned(), example.to_owned());
+            let first = lines.first().cloned().unwrap_or(0..0);
+            return Err(Placed::new(first, ColumnReason::NoHeader { file, example }));
+        };
+        let is_row = |line: &&Range<usize>| !text[(*line).clone()].trim_start().starts_with('#');
+        let rows = lines[start..].iter().filter(is_row);
+        Ok(Self {
+            text,
+            header: names_in(text, header),
+            rows: rows.map(|line| cells(text, line)).collect(),
+        })
+    }
+
+    /// Their names.
+    pub(crate) fn names(&self) -> Vec<&'a str> {
+        let name = |span: &Range<usize>| &self.text[span.clone()];
+        self.header.iter().map(name).collect()
+    }
+
+    /// Where the name of a column stands.
+    pub(crate) fn name_span(&self, column: usize) -> Range<usize> {
+        self.header[column].clone()
+    }
+
+    /// The numbers of a column, or every cell that is none.
+    pub(crate) fn numbers(&self, column: usize) -> Result<Vec<Cell>, Vec<Placed>> {
+        let mut good = Vec::new();
+        let mut bad = Vec::new();
+        for row in &self.rows {
+            match self.number(row, column) {
+                Ok(cell) => good.push(cell),
+                Err(problem) => bad.push(problem),
+            }
+        }
+        if bad.is_empty() { Ok(good) } else { Err(bad) }
+    }
+
+    /// The numbers of a column with the row of each, empty cells left out, or every cell that is
+    /// none.
+    pub(crate) fn numbers_given(&self, column: usize) -> Result<Vec<(usize, Cell)>, Vec<Placed>> {
+        let is_given = |row: &[Range<usize>]| row.get(column).is_none_or(|span| !span.is_empty());
+        let rows = self.rows.iter().enumerate();
+        let mut good = Vec::new();
+        let mut bad = Vec::new();
+        for (index, row) in rows.filter(|(_, row)| is_given(row)) {
+            match self.number(row, column) {
+                Ok(cell) => good.push((index, cell)),
+                Err(problem) => bad.push(problem),
+            }
+        }
+        if bad.is_empty() { Ok(good) } else { Err(bad) }
+    }
+
+    fn number(&self, row: &[Range<usize>], column: usize) -> Result<Cell, Placed> {
+        let end = row.last().map_or(0, |last| last.end);
+        let span = row.get(column).cloned().unwrap_or(end..end);
+        let text = &self.text[span.clone()];
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Cell { value, span }),
+            Ok(_) | Err(_) => {
+                let column = self.names()[column].to_owned();
+                let text = text.to_owned();
+                Err(Placed::new(span, ColumnReason::NotNumber { text, column }))
+            }
+        }
+    }
+}
+
+/// The lines that are not blank.
+fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut start = 0;
+    let span = move |line: &str| {
+        let span = start..start + line.trim_end().len();
+        start += line.len();
+        span
+    };
+    text.split_inclusive('\n')
+        .map(span)
+        .filter(|line| !line.is_empty())
+}
+
+/// What stands between the commas of a line, without blanks around.
+fn cells(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
+    let mut start = line.start;
+    let cell = |cell: &str| {
+        let before = cell.len() - cell.trim_start().len();
+        let span = start + before..start + before + cell.trim().len();
+        start += cell.len() + 1;
+        span
+    };
+    text[line.clone()].split(',').map(cell).collect()
+}
+
+/// The names in a header: its cells without the `#` of a comment, each up to a blank.
+fn names_in(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
+    let after_hash = |span: Range<usize>| {
+        let name = text[span.clone()].trim_start_matches(['#', ' ', '\t']);
+        let start = span.end - name.len();
+        let length = name.find(char::is_whitespace).unwrap_or(name.len());
+        start..start + length
+    };
+    cells(text, line).into_iter().map(after_hash).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn header_may_be_a_comment_with_a_remark() {
+        let text = "# measured, in May\n# pct_cycle,ant_mm(xtrans),flex_deg  source: a, thesis\n\
+                    0,1.0,2.0\n50, 3.0 ,4.0\n";
+        let text = text.replace("a, thesis", "thesis");
+        let columns = Columns::split(&text, "x.csv", "percent,y_mm").unwrap();
+        assert_eq!(columns.names(), ["pct_cycle", "ant_mm(xtrans)", "flex_deg"]);
+        let Ok(cells) = columns.numbers(1) else {
+            panic!("all are numbers");
+        };
+        assert_eq!(cells.iter().map(|cell| cell.value).sum::<f64>(), 4.0);
+        assert_eq!(&text[cells[1].span.clone()], "3.0");
+    }
+}

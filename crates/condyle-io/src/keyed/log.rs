@@ -1,0 +1,59 @@
+//! What has been found wrong so far.
+
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::problem::{Placed, Problem};
+use super::reason::Reason;
+use super::source::Source;
+
+/// Problems found so far, in one file and the files it names.
+pub struct Log<'a> {
+    source: Source,
+    folder: &'a Path,
+    problems: Vec<Problem>,
+}
+
+impl<'a> Log<'a> {
+    pub(crate) fn new(source: &Source, folder: &'a Path) -> Self {
+        Self {
+            source: Arc::clone(source),
+            folder,
+            problems: Vec::new(),
+        }
+    }
+
+    /// The file itself.
+    pub(crate) fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// Folder that paths in the file count from.
+    pub(crate) fn folder(&self) -> &'a Path {
+        self.folder
+    }
+
+    /// Notes a problem in the file.
+    pub(crate) fn problem(&mut self, span: Range<usize>, reason: impl Reason) {
+        let problem = Problem::at(&self.source, span, reason);
+        self.problems.push(problem);
+    }
+
+    /// Notes a problem in the file, or in `source` if there is one: a file that this one names.
+    pub(crate) fn placed(&mut self, source: Option<&Source>, placed: Placed) {
+        let source = source.unwrap_or(&self.source);
+        self.problems.push(Problem::placed(source, placed));
+    }
+
+    /// What `source`, a file that this one names, was read as, or nothing and its problems noted.
+    pub(crate) fn noted<T>(&mut self, source: &Source, read: Result<T, Vec<Placed>>) -> Option<T> {
+        let placed = |all: Vec<Placed>| all.into_iter().map(|one| Problem::placed(source, one));
+        read.map_err(|problems| self.problems.extend(placed(problems)))
+            .ok()
+    }
+
+    pub(crate) fn into_problems(self) -> Vec<Problem> {
+        self.problems
+    }
+}

@@ -1,0 +1,65 @@
+//! How problems are shown: the place, a caret under it, and what to do.
+
+use std::fmt;
+
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
+
+use super::problem::Problem;
+use super::problems::Problems;
+
+/// How problems are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RenderStyle {
+    /// ASCII without colour, the same everywhere: for logs, pipes and tests.
+    Plain,
+    /// Colour and line art, for a terminal this many columns wide.
+    Terminal {
+        /// Columns.
+        width: usize,
+    },
+}
+
+/// Width of text that goes to no terminal, columns.
+const PLAIN_WIDTH: usize = 100;
+
+impl Problems {
+    /// Every problem with its place, a caret under the spot, and what to do.
+    pub fn render(&self, style: RenderStyle) -> String {
+        let (theme, width) = match style {
+            RenderStyle::Plain => (GraphicalTheme::none(), PLAIN_WIDTH),
+            RenderStyle::Terminal { width } => (GraphicalTheme::unicode(), width),
+        };
+        let handler = GraphicalReportHandler::new_themed(theme)
+            .with_width(width)
+            .with_links(false);
+        let mut text = String::new();
+        for problem in self.problems() {
+            let shown = handler.render_report(&mut text, problem);
+            debug_assert!(shown.is_ok(), "writing to a String does not fail");
+        }
+        text
+    }
+}
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(RenderStyle::Plain))
+    }
+}
+
+impl std::error::Error for Problems {}
+
+impl Diagnostic for Problem {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(self.reason.advice()?))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(self.source.as_deref()?)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = LabeledSpan::underline(self.span.clone()?);
+        Some(Box::new(std::iter::once(label)))
+    }
+}

@@ -1,0 +1,137 @@
+//! Tables of a file: finding keys, reporting those that are not known.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+use super::key::Key;
+use super::key_reason::KeyReason;
+use super::log::Log;
+use super::setting::Setting;
+use super::unknown::explain;
+use super::value::type_name;
+
+/// A key and its value, each with its place.
+type Entry<'a> = (&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>);
+
+/// A table of a file; an absent one has no keys.
+pub struct Section<'a> {
+    path: String,
+    table: Option<&'a DeTable<'a>>,
+    span: Range<usize>,
+}
+
+impl<'a> Section<'a> {
+    /// The whole file.
+    pub(crate) fn root(table: &'a DeTable<'a>) -> Self {
+        Self {
+            path: String::new(),
+            table: Some(table),
+            span: 0..0,
+        }
+    }
+
+    /// The table `name` inside this one.
+    pub(crate) fn table(&self, name: &str, log: &mut Log<'_>) -> Self {
+        let path = match self.path.as_str() {
+            "" => name.to_owned(),
+            above => format!("{above}.{name}"),
+        };
+        let entry = self.entry(name);
+        let table = entry.and_then(|(_, value)| value.get_ref().as_table());
+        if let (Some((_, value)), None) = (entry, table) {
+            let found = type_name(value.get_ref());
+            let (key, wanted) = (name.to_owned(), format!("a table, [{path}]"));
+            log.problem(value.span(), KeyReason::WrongType { key, wanted, found });
+        }
+        let span = entry.map_or(self.span.clone(), |(key, _)| key.span());
+        Self { path, table, span }
+    }
+
+    /// Path of the table, such as `machine.springs`.
+    pub(crate) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The table as a message names it.
+    pub(crate) fn name(&self) -> String {
+        match self.path.as_str() {
+            "" => "the top of the file".to_owned(),
+            path => format!("[{path}]"),
+        }
+    }
+
+    /// Whether the file has the table.
+    pub(crate) fn is_given(&self) -> bool {
+        self.table.is_some()
+    }
+
+    /// Where the table is named; where the one around it is, if it is absent.
+    pub(crate) fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+
+    fn entry(&self, name: &str) -> Option<Entry<'a>> {
+        self.table?.iter().find(|(key, _)| key.get_ref() == name)
+    }
+
+    /// The value of `name`.
+    pub(crate) fn value(&self, name: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+        self.entry(name).map(|(_, value)| value)
+    }
+
+    /// Where the name of the key `name` stands, or that of the table.
+    pub(crate) fn key_span(&self, name: &str) -> Range<usize> {
+        self.entry(name).map_or(self.span(), |(key, _)| key.span())
+    }
+
+    /// Where the value of `name` stands, or the name of the table.
+    pub(crate) fn value_span(&self, name: &str) -> Range<usize> {
+        self.value(name).map_or(self.span(), Spanned::span)
+    }
+
+    /// The value behind `key`, its default, or nothing and the reason in `log`.
+    pub fn setting<T: Setting>(
+        &self,
+        key: &Key,
+        default: Option<T>,
+        log: &mut Log<'_>,
+    ) -> Option<T> {
+        if let Some(value) = self.value(key.name) {
+            return T::read(value, key, log);
+        }
+        if default.is_none() {
+            let reason = KeyReason::MissingKey {
+                key: key.name.to_owned(),
+                section: self.name(),
+                wanted: key.kind.clone(),
+            };
+            log.problem(self.span(), reason);
+        }
+        default
+    }
+
+    /// Reports every key that is none of `known`.
+    pub(crate) fn check_keys(&self, known: &[&str], log: &mut Log<'_>) {
+        for (key, value) in self.other_keys(known) {
+            log.problem(key.span(), self.unknown(key.get_ref(), value, known));
+        }
+    }
+
+    /// Keys of the table that are none of `known`, with their values.
+    pub(super) fn other_keys(
+        &self,
+        known: &[&str],
+    ) -> impl Iterator<Item = (&'a Spanned<DeString<'a>>, &'a DeValue<'a>)> {
+        let entries = self.table.into_iter().flatten();
+        entries
+            .filter(|(key, _)| !known.contains(&key.get_ref().as_ref()))
+            .map(|(key, value)| (key, value.get_ref()))
+    }
+
+    /// The likeliest reason why the table has no key `name` among those `known`.
+    pub(super) fn unknown(&self, name: &str, value: &DeValue<'_>, known: &[&str]) -> KeyReason {
+        explain(name, value, &self.name(), known)
+    }
+}
