@@ -2,16 +2,6 @@
 
 use crate::vector::Vec3;
 
-/// The six faces of a hexahedron as corners in VTK order, each anticlockwise seen from outside.
-pub const HEX_FACES: [[usize; 4]; 6] = [
-    [0, 3, 2, 1],
-    [4, 5, 6, 7],
-    [0, 1, 5, 4],
-    [1, 2, 6, 5],
-    [2, 3, 7, 6],
-    [3, 0, 4, 7],
-];
-
 /// Edges of a hexahedron in VTK's numbering.
 pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
     [0, 1],

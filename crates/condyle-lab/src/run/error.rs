@@ -3,10 +3,7 @@
 use std::{io, path::PathBuf};
 
 use condyle::evolve::{MarchError, PlacementError};
-use condyle_io::{
-    case::{BuildError, CaseError},
-    results::ResultsError,
-};
+use condyle_io::{case::BuildError, keyed::Problems, results::ResultsError};
 use thiserror::Error;
 
 /// Why a run failed.
@@ -14,14 +11,14 @@ use thiserror::Error;
 pub enum RunError {
     /// The case file.
     #[error(transparent)]
-    Case(#[from] CaseError),
+    Case(#[from] Problems),
     /// The bodies that the case describes.
     #[error("{shown}")]
     Build {
         /// Why.
         source: BuildError,
         /// The same at the key of the case that is behind it.
-        shown: CaseError,
+        shown: Problems,
     },
     /// A mesh that went away.
     #[error("a mesh of the case cannot be read: {0}; check the paths in the case")]
@@ -38,7 +35,7 @@ pub enum RunError {
         /// Why.
         source: PlacementError,
         /// The same at the key of the case that is behind it.
-        shown: CaseError,
+        shown: Problems,
     },
     /// The physics.
     #[error("{source}; what was computed is kept in {}", out.display())]
@@ -64,7 +61,7 @@ impl RunError {
     }
 
     /// The error with its place in the case file, where it has one.
-    pub fn in_case(&self) -> Option<&CaseError> {
+    pub fn in_case(&self) -> Option<&Problems> {
         match self {
             Self::Case(shown) | Self::Build { shown, .. } | Self::Placement { shown, .. } => {
                 Some(shown)
