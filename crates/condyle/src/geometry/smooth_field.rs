@@ -77,9 +77,8 @@ impl SmoothField {
     #[inline(always)]
     pub fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
         let nodes = self.gap.nodes_at(points);
-        let lanes = nodes[..T::COUNT].iter();
-        lanes
-            .map(|&node| self.curvature.around(node))
+        nodes
+            .map(|node| self.curvature.around(node))
             .reduce(CurvatureBounds::joined)
             .unwrap_or(CurvatureBounds::UNKNOWN)
     }

@@ -21,19 +21,6 @@ pub struct Curvature<T> {
 }
 
 impl<T: Number> Curvature<T> {
-    /// The matrix of entries xx, yy, zz, xy, xz, yz.
-    #[inline(always)]
-    pub fn of_entries([xx, yy, zz, xy, xz, yz]: [T; 6]) -> Self {
-        Self {
-            xx,
-            yy,
-            zz,
-            xy,
-            xz,
-            yz,
-        }
-    }
-
     /// Its entries xx, yy, zz, xy, xz, yz.
     #[inline(always)]
     pub fn entries(&self) -> [T; 6] {
@@ -68,12 +55,19 @@ pub struct SurfaceSample<T> {
 impl<T: Number> SurfaceSample<T> {
     /// A sample that no surface gives: infinitely far.
     pub fn far() -> Self {
-        let none = Vector::repeat(T::zero());
+        let (zero, none) = (T::zero(), Vector::repeat(T::zero()));
         Self {
             gap_mm: T::splat(f64::INFINITY),
             gap_gradient: none,
             normal: none,
-            curvature: Curvature::of_entries([T::zero(); 6]),
+            curvature: Curvature {
+                xx: zero,
+                yy: zero,
+                zz: zero,
+                xy: zero,
+                xz: zero,
+                yz: zero,
+            },
         }
     }
 

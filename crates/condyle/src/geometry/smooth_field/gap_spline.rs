@@ -59,10 +59,10 @@ impl GapSpline {
 
     /// Number of the node around which each lane's point lies.
     #[inline(always)]
-    pub fn nodes_at<T: Number>(&self, points: &Vector<T>) -> [usize; LANES] {
+    pub fn nodes_at<T: Number>(&self, points: &Vector<T>) -> impl Iterator<Item = usize> {
+        let corners = self.locate(points).corner.into_iter().take(T::COUNT);
         let [sx, sy, sz] = self.grid.strides();
-        let corners = self.locate(points).corner;
-        corners.map(|corner| corner as usize + sx + sy + sz)
+        corners.map(move |corner| corner as usize + sx + sy + sz)
     }
 
     /// Gap at a point, mm.
@@ -136,11 +136,9 @@ impl GapSpline {
 /// Gap, unit normal and curvature from the spline.
 #[inline(always)]
 fn sample_from<T: Number>(spline: &Derivatives<T>) -> SurfaceSample<T> {
-    let gap_gradient = Vector::from(
-        spline
-            .gradient
-            .map(|slope| slope * T::splat(1.0 / SPACING_MM)),
-    );
+    let per_spacing = T::splat(1.0 / SPACING_MM);
+    let [x, y, z] = spline.gradient;
+    let gap_gradient = Vector::new(x * per_spacing, y * per_spacing, z * per_spacing);
     // Far from the surface the gap is constant and the normal none, rather than not a number.
     let length = Number::max(
         gap_gradient.dot(&gap_gradient).sqrt(),
@@ -148,10 +146,19 @@ fn sample_from<T: Number>(spline: &Derivatives<T>) -> SurfaceSample<T> {
     );
     let per_length = T::one() / length;
     let scale = per_length * T::splat(1.0 / (SPACING_MM * SPACING_MM));
+    // Written out: a map over an array is a call for each of them.
+    let [xx, yy, zz, xy, xz, yz] = spline.hessian;
     SurfaceSample {
         gap_mm: spline.value,
         gap_gradient,
         normal: gap_gradient * per_length,
-        curvature: Curvature::of_entries(spline.hessian.map(|entry| entry * scale)),
+        curvature: Curvature {
+            xx: xx * scale,
+            yy: yy * scale,
+            zz: zz * scale,
+            xy: xy * scale,
+            xz: xz * scale,
+            yz: yz * scale,
+        },
     }
 }
