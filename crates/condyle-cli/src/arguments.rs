@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
+use condyle_io::case::Preset;
 
 /// A virtual wear test of a joint replacement: from an implant to its wear.
 #[derive(Parser)]
@@ -68,16 +70,8 @@ pub struct New {
     /// The case file to write; it must not be there yet.
     pub case: PathBuf,
     /// Which simulator.
-    #[arg(long, value_enum, default_value_t = Preset::StanmoreForce)]
+    #[arg(long, default_value = Preset::StanmoreForce.word(), value_parser = presets())]
     pub preset: Preset,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum Preset {
-    /// Stanmore, force control.
-    StanmoreForce,
-    /// Stanmore, displacement control.
-    StanmoreDisplacement,
 }
 
 #[derive(Args)]
@@ -155,4 +149,11 @@ pub struct CalibrateWear {
     /// Print the factor, its interval and every trial as JSON, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
+}
+
+/// The presets of a case, with what each is.
+fn presets() -> impl TypedValueParser<Value = Preset> {
+    let possible = |preset: &Preset| PossibleValue::new(preset.word()).help(preset.about());
+    PossibleValuesParser::new(Preset::ALL.iter().map(possible))
+        .try_map(|word| Preset::from_word(&word).ok_or("it is none of the presets"))
 }

@@ -2,21 +2,14 @@
 
 use std::{fs::File, io::Write, process::ExitCode};
 
-use condyle_io::case;
+use condyle_io::case::template;
 
-use crate::{
-    arguments::{New, Preset},
-    exit,
-};
+use crate::{arguments::New, exit};
 
 pub fn new(arguments: &New) -> ExitCode {
-    let preset = match arguments.preset {
-        Preset::StanmoreForce => case::Preset::StanmoreForce,
-        Preset::StanmoreDisplacement => case::Preset::StanmoreDisplacement,
-    };
     let path = &arguments.case;
     let written = File::create_new(path)
-        .and_then(|mut file| file.write_all(case::template(preset).as_bytes()));
+        .and_then(|mut file| file.write_all(template(arguments.preset).as_bytes()));
     match written {
         Ok(()) => {
             println!(

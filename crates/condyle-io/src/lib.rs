@@ -6,6 +6,7 @@
 pub mod abaqus;
 pub mod cache;
 pub mod case;
+pub mod files;
 pub mod keyed;
 pub mod measured;
 pub mod mesh;

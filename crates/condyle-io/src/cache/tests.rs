@@ -4,6 +4,7 @@ use std::{cell::Cell, thread};
 
 use tempfile::TempDir;
 
+use super::super::keep::kept;
 use super::*;
 
 /// What stands for a long computation.
@@ -24,7 +25,7 @@ fn only_file(folder: &TempDir) -> PathBuf {
 /// Whether a cache had to compute the numbers of `inputs`.
 fn computes(cache: &Cache, inputs: &[&[u8]]) -> bool {
     let computed = Cell::new(false);
-    let made: Result<Vec<f64>, ()> = cache.kept("numbers", inputs, || {
+    let made: Result<Vec<f64>, ()> = kept(cache, "numbers", inputs, || {
         computed.set(true);
         Ok(numbers())
     });
@@ -58,7 +59,7 @@ fn a_cache_that_is_off_keeps_nothing() {
 fn what_failed_is_not_kept() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let cache = Cache::in_folder(folder.path());
-    let failed: Result<Vec<f64>, &str> = cache.kept("numbers", &[b"inputs"], || Err("bad"));
+    let failed: Result<Vec<f64>, &str> = kept(&cache, "numbers", &[b"inputs"], || Err("bad"));
     assert_eq!(failed, Err("bad"));
     assert!(computes(&cache, &[b"inputs"]));
 }

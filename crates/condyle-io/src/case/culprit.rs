@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 use condyle::evolve::PlacementError;
 use condyle::geometry::ShellInsertError;
@@ -12,7 +13,8 @@ use toml::de::DeTable;
 use super::build::BuildError;
 use super::contents::Case;
 use super::machine_keys::DriveWord;
-use crate::keyed::{DataFile, Log, Problem, Problems, Reason, Section, Source};
+use crate::files::{Files, MemoryFiles};
+use crate::keyed::{Base, DataFile, Log, Problem, Problems, Reason, Section, Source};
 
 /// Values that are good one by one and make no wear test together.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -105,7 +107,9 @@ impl Case {
 /// Where the first key of `culprit` that is given has its value, or else the name of the table.
 fn span_of(source: &Source, culprit: &Culprit) -> Range<usize> {
     let (document, _) = DeTable::parse_recoverable(source.inner());
-    let mut unheard = Log::new(source, Path::new(""));
+    let files: Arc<dyn Files> = Arc::new(MemoryFiles::default());
+    let base = Base::of(&files, Path::new(""));
+    let mut unheard = Log::new(source, base);
     let root = Section::root(document.get_ref());
     let tables = culprit.table.split('.');
     let section = tables.fold(root, |above, name| above.table(name, &mut unheard));

@@ -1,6 +1,6 @@
 //! A hash of everything that goes into a run.
 
-use std::{fs, io};
+use std::io;
 
 use super::contents::Case;
 use crate::keyed::DataFile;
@@ -19,15 +19,21 @@ impl Case {
             .into_iter()
             .flatten()
         {
-            text = text.replace(&path_in_toml(file), "");
-            hasher.update(blake3::hash(&fs::read(file.path())?).as_bytes());
+            text = without_path(&text, file);
+            hasher.update(blake3::hash(&file.files().read(file.path())?).as_bytes());
         }
         hasher.update(text.as_bytes());
         Ok(hasher.finalize().to_hex().to_string())
     }
 }
 
-/// The file's path as a case writes it.
-fn path_in_toml(file: &DataFile) -> String {
-    toml::Value::String(file.path().to_string_lossy().into_owned()).to_string()
+/// A case as written, without the path of a file and without the blanks that fill its line up to
+/// the comment, which are as many as the path is short.
+fn without_path(text: &str, file: &DataFile) -> String {
+    let path = toml::Value::String(file.path().to_string_lossy().into_owned()).to_string();
+    let mut parts = text.split(&path);
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |before, after| {
+        before + " " + after.trim_start_matches(' ')
+    })
 }

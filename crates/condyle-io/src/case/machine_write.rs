@@ -1,11 +1,11 @@
 //! The simulator back as tables of a case.
 
-use condyle::machine::{Interpolation, Waveform};
+use condyle::machine::Waveform;
 
 use super::channel::Channel;
 use super::machine::{Freedom, Machine};
 use super::machine_keys::Start;
-use super::waveform::DEFAULT_WAVEFORM;
+use super::waveform::{DEFAULT_WAVEFORM, InterpolationWord};
 use crate::keyed::{Settings, Writer, unit_of};
 
 /// How the table of a waveform is written.
@@ -41,10 +41,7 @@ impl Machine {
 
 /// The points of a waveform as its table.
 pub(super) fn write_knots(out: &mut Writer, channel: Channel, waveform: &Waveform) {
-    let interpolation = match waveform.interpolation() {
-        Interpolation::HalfCosine => "half-cosine",
-        Interpolation::Spline => "spline",
-    };
+    let interpolation = InterpolationWord::of(waveform.interpolation()).word();
     out.table(&format!("machine.{}", channel.name()));
     out.comment(channel.about());
     out.line(

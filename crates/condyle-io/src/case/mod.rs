@@ -22,6 +22,8 @@ mod march;
 mod material;
 mod mesh_file;
 mod number_keys;
+#[cfg(feature = "file-system")]
+mod on_disk;
 mod origin;
 mod overriding;
 mod pressure_table;
@@ -59,7 +61,7 @@ pub use pressure_table::PressureTableReason;
 pub use reader::CaseReader;
 pub use schema::schema_markdown;
 pub use time::{IntegratorWord, Time};
-pub use waveform::WaveformReason;
+pub use waveform::{InterpolationWord, WaveformReason};
 pub use wear::{ConstantError, Wear, WearLaws};
 pub use write::template;
 

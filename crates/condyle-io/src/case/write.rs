@@ -5,6 +5,8 @@ use std::path::Path;
 use super::contents::Case;
 use super::machine_keys::Preset;
 use super::machine_write::{WriteWaveform, write_knots, write_name};
+use super::reader::CaseReader;
+use crate::files::MemoryFiles;
 use crate::keyed::{Settings, Variants, Writer};
 
 impl Case {
@@ -41,7 +43,7 @@ impl Case {
 /// A case to start from: every key with its default and its meaning.
 pub fn template(preset: Preset) -> String {
     let text = format!("[machine]\npreset = {:?}\n", preset.word());
-    match Case::parse(&text, "template", Path::new("")) {
+    match CaseReader::new(MemoryFiles::default()).parse(&text, "template", Path::new("")) {
         Ok(case) => case.written(write_name),
         Err(error) => unreachable!("the defaults are a case, a test reads them: {error}"),
     }

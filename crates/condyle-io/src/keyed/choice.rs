@@ -15,12 +15,20 @@ macro_rules! choice {
         }
 
         impl $name {
+            /// Every one of them.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
             /// Every word a file may use.
             pub const WORDS: &'static [&'static str] = &[$($word),+];
 
             /// The word a file uses for it.
             pub fn word(self) -> &'static str {
                 match self { $( Self::$variant => $word, )+ }
+            }
+
+            /// What it is, in one sentence.
+            pub fn about(self) -> &'static str {
+                match self { $( Self::$variant => concat!($($doc),+).trim(), )+ }
             }
 
             /// The choice that `word` stands for.

@@ -1,6 +1,7 @@
 //! Files that a file names.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::DeValue;
@@ -13,28 +14,40 @@ use super::setting::Setting;
 use super::source::{Source, read_source};
 use super::value::quoted;
 use super::words::wrong_type;
+use crate::files::Files;
 
 /// A file that another names, and that was there when that one was read.
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// Two of them are equal if their paths are, wherever they are kept.
+#[derive(Clone, Debug)]
 pub struct DataFile {
-    /// Absolute, without `..` or links.
+    files: Arc<dyn Files>,
+    /// Absolute on a disk, without `..` or links.
     path: PathBuf,
 }
 
+impl PartialEq for DataFile {
+    fn eq(&self, other: &Self) -> bool {
+        self.path == other.path
+    }
+}
+
 impl DataFile {
-    /// The file at `written`, counted from `folder`.
+    /// The one of `files` at `written`, counted from `folder`.
     ///
     /// # Errors
     /// The path that was looked at, where there is no such file.
-    pub fn find(written: &str, folder: &Path) -> Result<Self, PathBuf> {
-        let path = folder.join(written);
-        match path.canonicalize() {
-            Ok(found) if found.is_file() => Ok(Self { path: found }),
-            Ok(_) | Err(_) => Err(path),
-        }
+    pub fn find(files: &Arc<dyn Files>, written: &str, folder: &Path) -> Result<Self, PathBuf> {
+        let (path, files) = (files.find(written, folder)?, Arc::clone(files));
+        Ok(Self { files, path })
     }
 
-    /// Where it is, absolute.
+    /// What it is kept in, and read from.
+    pub fn files(&self) -> &dyn Files {
+        self.files.as_ref()
+    }
+
+    /// Where it is; absolute on a disk.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -52,7 +65,7 @@ impl DataFile {
         key: &str,
         log: &mut Log<'_>,
     ) -> Option<Source> {
-        let source = read_source(&self.path);
+        let source = read_source(self.files(), &self.path);
         source
             .map_err(|reason| log.problem(section.value_span(key), reason))
             .ok()
@@ -69,7 +82,8 @@ impl Setting for DataFile {
             wrong_type(value, key, log);
             return None;
         };
-        match Self::find(written, log.folder()) {
+        let base = log.base();
+        match Self::find(base.files, written, base.folder) {
             Ok(file) => Some(file),
             Err(path) => {
                 let key = key.name.to_owned();

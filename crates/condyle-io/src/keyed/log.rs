@@ -1,9 +1,9 @@
 //! What has been found wrong so far.
 
 use std::ops::Range;
-use std::path::Path;
 use std::sync::Arc;
 
+use super::base::Base;
 use super::problem::{Placed, Problem};
 use super::reason::Reason;
 use super::source::Source;
@@ -11,15 +11,15 @@ use super::source::Source;
 /// Problems found so far, in one file and the files it names.
 pub struct Log<'a> {
     source: Source,
-    folder: &'a Path,
+    base: Base<'a>,
     problems: Vec<Problem>,
 }
 
 impl<'a> Log<'a> {
-    pub(crate) fn new(source: &Source, folder: &'a Path) -> Self {
+    pub(crate) fn new(source: &Source, base: Base<'a>) -> Self {
         Self {
             source: Arc::clone(source),
-            folder,
+            base,
             problems: Vec::new(),
         }
     }
@@ -29,9 +29,9 @@ impl<'a> Log<'a> {
         &self.source
     }
 
-    /// Folder that paths in the file count from.
-    pub(crate) fn folder(&self) -> &'a Path {
-        self.folder
+    /// Where the files that it names are looked for.
+    pub(crate) fn base(&self) -> Base<'a> {
+        self.base
     }
 
     /// Notes a problem in the file.

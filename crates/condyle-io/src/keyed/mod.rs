@@ -4,6 +4,7 @@
 //! What a case or measured data are made of stands above and is not known here: each brings its
 //! own keys ([`Settings`], [`Variants`]) and its own reasons ([`Reason`]).
 
+mod base;
 mod choice;
 pub(crate) mod choices;
 mod column_reason;
@@ -32,6 +33,7 @@ pub(crate) mod variants;
 pub(crate) mod words;
 pub(crate) mod writer;
 
+pub use base::Base;
 pub use choices::{Choices, Offered};
 pub use column_reason::ColumnReason;
 pub use data_file::DataFile;

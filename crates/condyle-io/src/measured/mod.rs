@@ -7,6 +7,8 @@ mod checks;
 mod declared;
 mod gravimetric;
 mod kinematics;
+#[cfg(feature = "file-system")]
+mod on_disk;
 mod phases;
 mod read;
 mod reason;

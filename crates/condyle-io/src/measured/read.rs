@@ -1,13 +1,15 @@
 //! The whole of a file of measured data.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::gravimetric::{self, Gravimetric};
 use super::kinematics::{self, Kinematics};
 use super::reason::MeasuredReason;
 use super::scan::{self, Scan};
 use crate::case::Side;
-use crate::keyed::{Log, Problems, Section, read_document, read_source};
+use crate::files::Files;
+use crate::keyed::{Base, Log, Problems, Section, read_document, read_source};
 
 /// What a laboratory measured; a part that the file does not name is `None`.
 #[derive(Clone, Debug)]
@@ -23,14 +25,14 @@ pub struct Measured {
 const TABLES: &[&str] = &["kinematics", "gravimetric", "surface"];
 
 impl Measured {
-    /// Reads the file at `path` for a `side` knee; paths in it count from its folder.
+    /// Reads the one of `files` at `path` for a `side` knee; paths in it count from its folder.
     ///
     /// # Errors
     /// Everything that is wrong with it and with the files it names, or that it names no data.
-    pub fn read(path: &Path, side: Side) -> Result<Self, Problems> {
-        let source = read_source(path).map_err(Problems::unreadable)?;
-        let folder = path.parent().unwrap_or(Path::new(""));
-        read_document(&source, folder, |root, log| read_tables(root, side, log))
+    pub fn read_from(files: &Arc<dyn Files>, path: &Path, side: Side) -> Result<Self, Problems> {
+        let source = read_source(files.as_ref(), path).map_err(Problems::unreadable)?;
+        let base = Base::of(files, path);
+        read_document(&source, base, |root, log| read_tables(root, side, log))
     }
 }
 

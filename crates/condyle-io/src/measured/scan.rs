@@ -63,7 +63,7 @@ fn placed((points, normals): Raw, rotation: &Mat3, start: Vec3) -> Raw {
 }
 
 fn surface(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) -> Option<Raw> {
-    match read_surface(keys.file.path()) {
+    match read_surface(keys.file.files(), keys.file.path()) {
         Ok(mesh) => Some(vertices(&mesh, keys.length_unit.in_mm())),
         Err(error) => {
             let reason = MeasuredReason::Scan(error.to_string());

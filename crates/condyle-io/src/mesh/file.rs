@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use super::error::MeshFileError;
+use crate::files::Files;
 
 /// The ending of a file's name in small letters, without the dot.
 pub(super) fn ending(path: &Path) -> String {
@@ -21,20 +22,13 @@ pub(super) fn unknown_ending(path: &Path, known: &'static str) -> MeshFileError 
     }
 }
 
-pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, MeshFileError> {
-    std::fs::read(path).map_err(|source| {
+pub(super) fn read_bytes(files: &dyn Files, path: &Path) -> Result<Vec<u8>, MeshFileError> {
+    files.read(path).map_err(|source| {
         let path = path.to_path_buf();
         if source.kind() == ErrorKind::NotFound {
             MeshFileError::Missing { path }
         } else {
             MeshFileError::Unreadable { path, source }
         }
-    })
-}
-
-pub(super) fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), MeshFileError> {
-    std::fs::write(path, bytes).map_err(|source| {
-        let path = path.to_path_buf();
-        MeshFileError::Unwritable { path, source }
     })
 }

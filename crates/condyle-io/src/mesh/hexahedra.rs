@@ -6,6 +6,7 @@ use super::error::MeshFileError;
 use super::file::{ending, read_bytes, unknown_ending};
 use super::hex_file::HexFile;
 use super::{inp, msh, vtu};
+use crate::files::Files;
 
 /// Reads a mesh of 8-node hexahedra from Abaqus `.inp`, Gmsh `.msh` (2.2 and 4.1, text) or `.vtu`.
 ///
@@ -18,7 +19,7 @@ use super::{inp, msh, vtu};
 /// ending, content that does not follow the format or is not understood, several parts or
 /// instances, an element that is no hexahedron, one that is inverted or flat, a node that is not
 /// there or not finite, a surface that is not on the boundary.
-pub fn read_hexahedra(path: impl AsRef<Path>) -> Result<HexFile, MeshFileError> {
+pub fn read_hexahedra(files: &dyn Files, path: impl AsRef<Path>) -> Result<HexFile, MeshFileError> {
     let path = path.as_ref();
     let parse = match ending(path).as_str() {
         "inp" => inp::parse,
@@ -26,19 +27,20 @@ pub fn read_hexahedra(path: impl AsRef<Path>) -> Result<HexFile, MeshFileError> 
         "vtu" => vtu::parse,
         _ => return Err(unknown_ending(path, ".inp, .msh, .vtu")),
     };
-    parse(path, &read_bytes(path)?)
+    parse(path, &read_bytes(files, path)?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::Disk;
     use crate::mesh::fixtures::message;
 
     #[test]
     fn a_missing_file_and_an_unknown_ending_say_so() {
-        let said = message(read_hexahedra("nowhere/insert.inp"));
+        let said = message(read_hexahedra(&Disk, "nowhere/insert.inp"));
         assert!(said.contains("there is no such file"), "{said}");
-        let said = message(read_hexahedra("insert.k"));
+        let said = message(read_hexahedra(&Disk, "insert.k"));
         assert!(
             said.contains("\"k\" is not a known format; use one of .inp, .msh, .vtu"),
             "{said}"

@@ -14,6 +14,8 @@ mod inp;
 mod inp_writer;
 mod msh;
 mod obj;
+#[cfg(feature = "file-system")]
+mod on_disk;
 mod ply;
 mod pvd;
 mod stl;
@@ -32,10 +34,12 @@ pub use inp_writer::{
     AnalysisStep, Application, InpWriter, PressureOverclosure, Procedure, RigidTriangle,
     element_faces,
 };
-pub use pvd::{pvd_text, read_pvd, write_pvd};
+#[cfg(feature = "file-system")]
+pub use on_disk::{read_pvd, read_vtu_points, write_pvd, write_vtu};
+pub use pvd::{parse_pvd, pvd_text};
 pub use stl::write_stl;
-pub use surface::read_surface;
-pub use vtu::{VtuFile, read_vtu_points};
-pub use vtu_write::{PointArray, PointValues, vtu_bytes, write_vtu};
+pub use surface::{parse_surface, read_surface};
+pub use vtu::{VtuFile, parse_vtu_points};
+pub use vtu_write::{PointArray, PointValues, vtu_bytes};
 
-pub(crate) use surface::{parse_surface, surface_bytes};
+pub(crate) use surface::surface_bytes;

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use roxmltree::Document;
 
 use super::error::{FileLine, MeshFileError};
-use super::file::{read_bytes, write_bytes};
 use super::text;
 use super::vtu_write::escaped;
 
@@ -29,25 +28,13 @@ pub fn pvd_text<'a>(series: impl IntoIterator<Item = (f64, &'a str)>) -> String 
     xml
 }
 
-/// Writes a `.pvd` file.
+/// Each data set's time and its file, joined to the collection's folder, from the bytes of the
+/// `.pvd` file called `path`.
 ///
 /// # Errors
-/// [`MeshFileError::Unwritable`] where the system refuses.
-pub fn write_pvd<'a>(
-    path: impl AsRef<Path>,
-    series: impl IntoIterator<Item = (f64, &'a str)>,
-) -> Result<(), MeshFileError> {
-    write_bytes(path.as_ref(), pvd_text(series).as_bytes())
-}
-
-/// Reads a `.pvd` file: each data set's time and its file, joined to the collection's folder.
-///
-/// # Errors
-/// Missing or unreadable file, no collection, a data set without a time or a file.
-pub fn read_pvd(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>, MeshFileError> {
-    let path = path.as_ref();
-    let bytes = read_bytes(path)?;
-    let content = text::decode(&bytes);
+/// No collection, a data set without a time or a file.
+pub fn parse_pvd(path: &Path, bytes: &[u8]) -> Result<Vec<(f64, PathBuf)>, MeshFileError> {
+    let content = text::decode(bytes);
     let document = Document::parse(&content).map_err(|error| {
         let line = error.pos().row as usize;
         FileLine::line(path, line).error(format!("is not XML: {error}"))
@@ -74,6 +61,7 @@ pub fn read_pvd(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>, MeshFileE
 mod tests {
     use super::*;
     use crate::mesh::fixtures::message;
+    use crate::mesh::on_disk::{read_pvd, write_pvd};
 
     #[test]
     fn times_and_files_come_back() {

@@ -7,6 +7,7 @@ use condyle::geometry::TriangleMesh;
 use super::error::MeshFileError;
 use super::file::{ending, read_bytes, unknown_ending};
 use super::{obj, ply, stl, vtp};
+use crate::files::Files;
 
 /// Reads a triangle surface from `.stl`, `.obj`, `.ply` or `.vtp`.
 ///
@@ -18,19 +19,25 @@ use super::{obj, ply, stl, vtp};
 /// Names the file, and the line where the format is text: missing or unreadable file, unknown
 /// ending, content that does not follow the format, no triangles, a coordinate that is not
 /// finite, a polygon that names a vertex that is not there.
-pub fn read_surface(path: impl AsRef<Path>) -> Result<TriangleMesh, MeshFileError> {
+pub fn read_surface(
+    files: &dyn Files,
+    path: impl AsRef<Path>,
+) -> Result<TriangleMesh, MeshFileError> {
     let path = path.as_ref();
-    parse_surface(path, &surface_bytes(path)?)
+    parse_surface(path, &surface_bytes(files, path)?)
 }
 
 /// The bytes of a surface's file, of one of the formats by its name.
-pub(crate) fn surface_bytes(path: &Path) -> Result<Vec<u8>, MeshFileError> {
+pub(crate) fn surface_bytes(files: &dyn Files, path: &Path) -> Result<Vec<u8>, MeshFileError> {
     parser(path)?;
-    read_bytes(path)
+    read_bytes(files, path)
 }
 
 /// As [`read_surface`], from the bytes of the file.
-pub(crate) fn parse_surface(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
+///
+/// # Errors
+/// As [`read_surface`], but for a file that cannot be read.
+pub fn parse_surface(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
     parser(path)?(path, bytes)
 }
 
@@ -52,6 +59,7 @@ mod tests {
     use condyle::geometry::checked_shell;
 
     use super::*;
+    use crate::files::Disk;
     use crate::mesh::fixtures::{corners, message, tetrahedron};
     use crate::mesh::stl::write_stl;
 
@@ -60,19 +68,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("Femur.STL");
         write_stl(std::fs::File::create(&path).unwrap(), &tetrahedron()).unwrap();
-        let mesh = read_surface(&path).unwrap();
+        let mesh = read_surface(&Disk, &path).unwrap();
         assert_eq!(corners(&mesh), corners(&tetrahedron()));
         assert_eq!(mesh.vertices.len(), 4);
     }
 
     #[test]
     fn a_missing_file_and_an_unknown_ending_say_so() {
-        let said = message(read_surface("nowhere/femur.stl"));
+        let said = message(read_surface(&Disk, "nowhere/femur.stl"));
         assert_eq!(
             said,
             "nowhere/femur.stl: there is no such file; check the path"
         );
-        let said = message(read_surface("femur.step"));
+        let said = message(read_surface(&Disk, "femur.step"));
         let expected = "femur.step: the ending \"step\" is not a known format; use one of .stl, .obj, .ply, .vtp";
         assert_eq!(said, expected);
     }
@@ -82,7 +90,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("femur.stl");
         std::fs::create_dir(&path).unwrap();
-        assert!(message(read_surface(&path)).contains("cannot be read"));
+        assert!(message(read_surface(&Disk, &path)).contains("cannot be read"));
     }
 
     /// The real implant is data beside the repository, not in it.
@@ -97,7 +105,7 @@ mod tests {
             eprintln!("skipped: dm_knee: shared/data/dm-knee/{file} is not there");
             return None;
         }
-        Some(read_surface(path).unwrap())
+        Some(read_surface(&Disk, path).unwrap())
     }
 
     #[test]

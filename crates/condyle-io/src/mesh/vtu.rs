@@ -6,7 +6,6 @@ use condyle::Vec3;
 use condyle_fem::HexMesh;
 
 use super::error::{FileLine, MeshFileError};
-use super::file::read_bytes;
 use super::hex_draft::{DraftHex, HexDraft};
 use super::hex_file::HexFile;
 use super::vtk_xml::{DataArray, VtkDocument, VtkSource};
@@ -34,19 +33,15 @@ impl VtuFile {
     }
 }
 
-/// Reads a `.vtu` of hexahedra with its point data, nodes numbered as in the file.
+/// A `.vtu` of hexahedra with its point data, from the bytes of the file called `path`; nodes are
+/// numbered as in the file.
 ///
 /// Arrays of more than one component are left out. The shape of the elements is not judged, so
 /// that a result can be looked at whatever became of it.
 ///
 /// # Errors
-/// Those of the format, and other cells than hexahedra, as for [`read_hexahedra`](super::hexahedra::read_hexahedra).
-pub fn read_vtu_points(path: impl AsRef<Path>) -> Result<VtuFile, MeshFileError> {
-    let path = path.as_ref();
-    grid_points(path, &read_bytes(path)?)
-}
-
-pub(super) fn grid_points(path: &Path, bytes: &[u8]) -> Result<VtuFile, MeshFileError> {
+/// Those of the format, and other cells than hexahedra, as for [`read_hexahedra`](super::read_hexahedra).
+pub fn parse_vtu_points(path: &Path, bytes: &[u8]) -> Result<VtuFile, MeshFileError> {
     let grid = Grid::read(path, bytes)?;
     let nodes: Vec<Vec3> = grid.points.points().map(Vec3::from).collect();
     let mut hexes = Vec::with_capacity(grid.cells.len());
@@ -311,7 +306,7 @@ mod tests {
         ];
         let bytes = vtu_bytes(&mesh, &arrays).unwrap();
         assert_eq!(bytes, vtu_bytes(&mesh, &arrays).unwrap());
-        let points = grid_points(Path::new("a.vtu"), &bytes).unwrap();
+        let points = parse_vtu_points(Path::new("a.vtu"), &bytes).unwrap();
         assert_eq!(points.mesh, mesh);
         assert_eq!(points.values("depth_mm").unwrap(), depth);
         assert_eq!(points.values("articulating").unwrap(), flags.map(f64::from));
@@ -342,7 +337,7 @@ mod tests {
     #[test]
     fn a_result_with_a_point_out_of_range_is_an_error() {
         let text = TEXT.replace("1 2 5 4 7", "1 2 5 4 77");
-        let said = message(grid_points(Path::new("a.vtu"), text.as_bytes()));
+        let said = message(parse_vtu_points(Path::new("a.vtu"), text.as_bytes()));
         let expected =
             "a.vtu:12: cell 3 names vertex 77, but the file numbers its vertices from 0 to 12";
         assert_eq!(said, expected);

@@ -1,12 +1,10 @@
 //! VTK unstructured grids (`.vtu`), out: appended raw bytes, the same bytes for the same mesh.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use condyle_fem::HexMesh;
 
 use super::error::MeshFileError;
-use super::file::write_bytes;
 
 /// Values at the nodes.
 #[derive(Clone, Copy, Debug)]
@@ -62,19 +60,6 @@ pub fn vtu_bytes(mesh: &HexMesh, arrays: &[PointArray]) -> Result<Vec<u8>, MeshF
     bytes.extend_from_slice(&appended.bytes);
     bytes.extend_from_slice(b"\n</AppendedData>\n</VTKFile>\n");
     Ok(bytes)
-}
-
-/// Writes a `.vtu` file of the mesh with its arrays.
-///
-/// # Errors
-/// [`MeshFileError::ArrayLength`] as for [`vtu_bytes`]; [`MeshFileError::Unwritable`] where the
-/// system refuses.
-pub fn write_vtu(
-    path: impl AsRef<Path>,
-    mesh: &HexMesh,
-    arrays: &[PointArray],
-) -> Result<(), MeshFileError> {
-    write_bytes(path.as_ref(), &vtu_bytes(mesh, arrays)?)
 }
 
 fn check_length(mesh: &HexMesh, array: &PointArray) -> Result<(), MeshFileError> {
@@ -175,7 +160,7 @@ pub(super) fn escaped(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::mesh::fixtures::{message, two_cubes};
-    use crate::mesh::vtu::read_vtu_points;
+    use crate::mesh::on_disk::{read_vtu_points, write_vtu};
 
     #[test]
     fn a_file_is_written_and_read_back() {

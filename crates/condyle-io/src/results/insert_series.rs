@@ -16,8 +16,12 @@ pub fn insert_file_name(update: usize) -> String {
     format!("insert_{update:04}.vtu")
 }
 
-/// The insert as worn so far, with the results of its last update at the nodes.
-pub(super) fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
+/// `insert_*.vtu`: the insert as worn so far, with the results of its last update at the nodes, in
+/// the knee of that side.
+///
+/// # Errors
+/// None but those of [`vtu_bytes`].
+pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
     let insert = march.insert();
     let mesh = on_side(insert.mesh(), side);
     let spread = |values: &[f64]| {
@@ -55,8 +59,8 @@ pub(super) fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileE
     vtu_bytes(&mesh, &points)
 }
 
-/// The series of all files so far, with the cycles as time.
-pub(super) fn insert_pvd(updates: &[UpdateRecord]) -> String {
+/// `insert.pvd`: the series of all files so far, with the cycles as time.
+pub fn insert_pvd(updates: &[UpdateRecord]) -> String {
     let names: Vec<String> = (0..=updates.len()).map(insert_file_name).collect();
     let cycles = std::iter::once(0.0).chain(updates.iter().map(|update| update.cycles));
     pvd_text(cycles.zip(names.iter().map(String::as_str)))

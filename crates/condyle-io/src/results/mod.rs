@@ -2,8 +2,10 @@
 
 mod checkpoint;
 mod error_estimate;
+#[cfg(feature = "file-system")]
 mod folder;
 mod insert_series;
+#[cfg(feature = "file-system")]
 mod replace;
 mod summary;
 mod tables;
@@ -16,6 +18,8 @@ pub use condyle::machine::{
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part};
+#[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
-pub use insert_series::insert_file_name;
+pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
 pub use summary::{Summary, SummaryInput};
+pub use tables::{kinematics_csv, wear_csv};

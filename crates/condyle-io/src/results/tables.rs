@@ -8,7 +8,7 @@ use condyle::{
 };
 
 /// `wear.csv`: a row an update.
-pub(super) fn wear_csv(updates: &[UpdateRecord]) -> String {
+pub fn wear_csv(updates: &[UpdateRecord]) -> String {
     let mut text = String::from(
         "cycles,mass_loss_mg,volume_loss_mm3,max_depth_mm,peak_pressure_mpa,peak_contact_area_mm2\n",
     );
@@ -34,7 +34,7 @@ pub(super) fn wear_csv(updates: &[UpdateRecord]) -> String {
 /// `kinematics.csv`: a row an increment of the given cycles, with the columns of their mechanism.
 ///
 /// A last cycle that is the first one is written once.
-pub(super) fn kinematics_csv(
+pub fn kinematics_csv(
     mechanism: &Mechanism,
     cycles: Option<&(CycleRecord, CycleRecord)>,
 ) -> String {

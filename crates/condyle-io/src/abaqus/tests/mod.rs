@@ -12,6 +12,7 @@ use condyle_fem::HexMesh;
 
 use super::{AbaqusOptions, ExportError, write_abaqus};
 use crate::case::Case;
+use crate::files::Disk;
 use crate::mesh::read_hexahedra;
 use reader::Deck;
 
@@ -91,7 +92,7 @@ fn the_insert_part_goes_through_the_reader_of_hexahedra() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("insert.inp");
     fs::write(&path, &text[..end]).unwrap();
-    let file = read_hexahedra(&path).unwrap();
+    let file = read_hexahedra(&Disk, &path).unwrap();
     assert_eq!(file.mesh, hexahedra(&deck));
     let insert = parsed(COARSE).build(1).unwrap().test.insert;
     let mut quads = insert.surface_faces().to_vec();

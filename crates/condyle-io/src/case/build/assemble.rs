@@ -13,7 +13,7 @@ use super::super::time::IntegratorWord;
 use super::error::{BuildError, BuildWarning};
 use super::femur::Preparing;
 use super::machine::start_flexion_rad;
-use crate::cache::Cache;
+use crate::cache::{Keep, KeepNothing};
 
 /// A wear test ready to run, and what was put right on the way to it.
 pub struct Built {
@@ -30,22 +30,22 @@ impl Case {
     /// A mesh that cannot be read or is no shell, an open insert without a thickness, a surface
     /// that is not in its file, or an insert that cannot be meshed.
     pub fn build(&self, threads: usize) -> Result<Built, BuildError> {
-        self.build_kept(threads, &Cache::off())
+        self.build_kept(threads, &KeepNothing)
     }
 
-    /// As [`Case::build`], to the same bytes, with the preparation of a mesh femur kept in a cache
-    /// for the next time.
+    /// As [`Case::build`], to the same bytes, with the preparation of a mesh femur kept for the
+    /// next time.
     ///
     /// # Errors
-    /// As [`Case::build`]; a cache that cannot be used is none.
-    pub fn build_kept(&self, threads: usize, cache: &Cache) -> Result<Built, BuildError> {
+    /// As [`Case::build`].
+    pub fn build_kept(&self, threads: usize, keep: &dyn Keep) -> Result<Built, BuildError> {
         let mut warnings = Vec::new();
         let insert = self.insert.build(self.heading.side, &mut warnings)?;
         let machine = self.machine.build(insert.dish_low_point_mm());
         let femur = self.femur.build(
             self.heading.side,
             start_flexion_rad(&machine),
-            Preparing { threads, cache },
+            Preparing { threads, keep },
             &mut warnings,
         )?;
         let test = WearTest {

@@ -1,7 +1,5 @@
 //! The femoral component as the contact sees it.
 
-use std::path::Path;
-
 use condyle::Vec3;
 use condyle::geometry::{
     CheckedShell, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, SmoothField,
@@ -13,7 +11,9 @@ use super::super::femur::{Femur, MeshFemur};
 use super::super::heading::Side;
 use super::error::{BuildError, BuildWarning};
 use super::meshes::{Faces, Placing, parsed_shell, shell, warn};
-use crate::{cache::Cache, mesh::surface_bytes};
+use crate::cache::{Keep, kept};
+use crate::keyed::DataFile;
+use crate::mesh::surface_bytes;
 
 /// A femoral surface, the axis it flexes about and where that starts over the insert.
 pub(super) struct BuiltFemur {
@@ -28,7 +28,7 @@ pub(super) struct BuiltFemur {
 #[derive(Clone, Copy)]
 pub(super) struct Preparing<'a> {
     pub threads: usize,
-    pub cache: &'a Cache,
+    pub keep: &'a dyn Keep,
 }
 
 impl Femur {
@@ -77,7 +77,7 @@ impl MeshFemur {
     /// Its triangles as a checked shell in the femoral frame of a right knee, mm.
     pub(crate) fn triangles(&self, side: Side) -> Result<TriangleMesh, BuildError> {
         let placing = Placing::new(self.length_unit, &self.axes, side)?;
-        Ok(shell(self.file.path(), &placing, Faces::Down, &mut Vec::new())?.mesh)
+        Ok(shell(&self.file, &placing, Faces::Down, &mut Vec::new())?.mesh)
     }
 }
 
@@ -106,7 +106,7 @@ fn from_mesh(
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<BuiltFemur, BuildError> {
     let placing = Placing::new(femur.length_unit, &femur.axes, side)?;
-    let PreparedFemur { shell, field } = prepared(femur.file.path(), &placing, preparing)?;
+    let PreparedFemur { shell, field } = prepared(&femur.file, &placing, preparing)?;
     warn(femur.file.path(), &shell, warnings);
     let flexion_axis_mm = match femur.flexion_axis_mm {
         Some([x, y]) => (x, y),
@@ -129,15 +129,16 @@ struct PreparedFemur {
 
 /// The shell in a file and its field, computed or kept from a run before.
 fn prepared(
-    file: &Path,
+    file: &DataFile,
     placing: &Placing,
     preparing: Preparing<'_>,
 ) -> Result<PreparedFemur, BuildError> {
-    let bytes = surface_bytes(file)?;
-    let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
+    let path = file.path();
+    let bytes = surface_bytes(file.files(), path)?;
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     let inputs = [ending.as_encoded_bytes(), &placing.bytes(), &bytes];
-    preparing.cache.kept("femur", &inputs, || {
-        let shell = parsed_shell(file, &bytes, placing, Faces::Down)?;
+    kept(preparing.keep, "femur", &inputs, || {
+        let shell = parsed_shell(path, &bytes, placing, Faces::Down)?;
         let field = SmoothField::new(&shell.mesh, preparing.threads);
         Ok(PreparedFemur { shell, field })
     })

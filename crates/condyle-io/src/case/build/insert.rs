@@ -71,7 +71,7 @@ fn from_mesh(
 ) -> Result<geometry::Insert, BuildError> {
     let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
     let path = insert.file.path();
-    let shell = shell(path, &placing, Faces::Up, warnings)?;
+    let shell = shell(&insert.file, &placing, Faces::Up, warnings)?;
     let file = || path.to_path_buf();
     if shell.closed && insert.thickness_mm.is_some() {
         return Err(BuildError::ThicknessOfClosed { file: file() });
@@ -88,7 +88,7 @@ fn from_mesh(
 fn from_hexahedra(insert: &HexahedralInsert, side: Side) -> Result<geometry::Insert, BuildError> {
     let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
     let path = insert.file.path();
-    let mut file = read_hexahedra(path)?;
+    let mut file = read_hexahedra(insert.file.files(), path)?;
     place(&mut file, &placing);
     let surface = |key, name: &Option<String>, up: f64| match name {
         Some(name) => named(&file, key, name, insert),

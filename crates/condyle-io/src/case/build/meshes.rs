@@ -9,6 +9,7 @@ use super::super::axes::Axes;
 use super::super::heading::Side;
 use super::super::mesh_file::LengthUnit;
 use super::error::{BuildError, BuildWarning};
+use crate::keyed::DataFile;
 use crate::mesh::{parse_surface, surface_bytes};
 
 /// From the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.
@@ -66,13 +67,14 @@ pub(super) enum Faces {
 
 /// Reads a surface, checks it and turns it to face out; says what it put right.
 pub(super) fn shell(
-    file: &Path,
+    file: &DataFile,
     placing: &Placing,
     open_faces: Faces,
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<CheckedShell, BuildError> {
-    let shell = parsed_shell(file, &surface_bytes(file)?, placing, open_faces)?;
-    warn(file, &shell, warnings);
+    let bytes = surface_bytes(file.files(), file.path())?;
+    let shell = parsed_shell(file.path(), &bytes, placing, open_faces)?;
+    warn(file.path(), &shell, warnings);
     Ok(shell)
 }
 

@@ -87,7 +87,7 @@ fn dm_cases_build_and_lie_the_right_way_round() {
         panic!("it is a mesh");
     };
     let placing = Placing::new(femur.length_unit, &femur.axes, Side::Right).unwrap();
-    let shell = shell(femur.file.path(), &placing, Faces::Down, &mut Vec::new()).unwrap();
+    let shell = shell(&femur.file, &placing, Faces::Down, &mut Vec::new()).unwrap();
     let (low, high) = shell.mesh.bounds();
     let (x, y) = shell.mesh.posterior_arc_centre_mm();
     // The posterior condyles lie behind, and the flexion axis inside them.

@@ -2,6 +2,7 @@
 
 mod errors;
 mod files;
+mod memory;
 mod round_trip;
 mod wear;
 

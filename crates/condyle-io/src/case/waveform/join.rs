@@ -54,11 +54,8 @@ fn join(
     if source.remove_drift {
         knots = without_drift(&knots);
     }
-    let chosen = match source.interpolation {
-        Some(InterpolationWord::HalfCosine) => Interpolation::HalfCosine,
-        Some(InterpolationWord::Spline) => Interpolation::Spline,
-        None => interpolation,
-    };
+    let given = source.interpolation.map(InterpolationWord::interpolation);
+    let chosen = given.unwrap_or(interpolation);
     let waveform =
         Waveform::new(knots.clone(), chosen).and_then(|waveform| match source.low_pass_harmonics {
             Some(harmonics) => Waveform::new(

@@ -1,5 +1,7 @@
 //! The keys of a table that gives a waveform.
 
+use condyle::machine::Interpolation;
+
 use super::super::channel::Channel;
 use crate::keyed::{DataFile, Key, WhereSilent, choice, settings, within};
 
@@ -10,6 +12,24 @@ choice! {
         HalfCosine = "half-cosine",
         /// The periodic cubic spline, for samples.
         Spline = "spline",
+    }
+}
+
+impl InterpolationWord {
+    /// The word for a way to go from point to point.
+    pub fn of(interpolation: Interpolation) -> Self {
+        match interpolation {
+            Interpolation::HalfCosine => Self::HalfCosine,
+            Interpolation::Spline => Self::Spline,
+        }
+    }
+
+    /// The way itself.
+    pub fn interpolation(self) -> Interpolation {
+        match self {
+            Self::HalfCosine => Interpolation::HalfCosine,
+            Self::Spline => Interpolation::Spline,
+        }
     }
 }
 

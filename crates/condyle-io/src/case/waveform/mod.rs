@@ -7,6 +7,7 @@ mod read;
 mod reason;
 mod samples;
 
+pub use keys::InterpolationWord;
 pub use reason::WaveformReason;
 
 pub(super) use keys::{DEFAULT_WAVEFORM, WaveformSource, knots_key};

@@ -277,10 +277,11 @@ fn tukey(residual: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
+    use std::{path::Path, sync::Arc};
 
     use condyle::geometry::TriangleMesh;
     use condyle_io::case::{Axes, LengthUnit};
+    use condyle_io::files::{Disk, Files};
     use condyle_io::keyed::DataFile;
 
     use super::*;
@@ -352,7 +353,8 @@ mod tests {
             state = state.wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
         };
-        let any_file = DataFile::find("Cargo.toml", Path::new(env!("CARGO_MANIFEST_DIR")));
+        let disk: Arc<dyn Files> = Arc::new(Disk);
+        let any_file = DataFile::find(&disk, "Cargo.toml", Path::new(env!("CARGO_MANIFEST_DIR")));
         let keys = ScanKeys {
             file: any_file.unwrap(),
             length_unit: LengthUnit::Millimetre,

@@ -1,4 +1,4 @@
-//! What takes long to compute and never changes, kept on the disk for the next run.
+//! Results kept on the disk.
 
 use std::{
     env,
@@ -9,7 +9,7 @@ use std::{
     time::SystemTime,
 };
 
-use serde::{Serialize, de::DeserializeOwned};
+use super::keep::Keep;
 
 /// Version of how files are laid out.
 const FORMAT: &str = "4";
@@ -68,30 +68,25 @@ impl Cache {
         };
         Self { folder }
     }
+}
 
-    /// What `make` makes of `inputs`, or what it made of them before; `what` is its name.
-    ///
-    /// # Errors
-    /// Those of `make`.
-    pub(crate) fn kept<T: Serialize + DeserializeOwned, E>(
-        &self,
-        what: &str,
-        inputs: &[&[u8]],
-        make: impl FnOnce() -> Result<T, E>,
-    ) -> Result<T, E> {
-        let Some(folder) = &self.folder else {
-            return make();
-        };
+impl Keep for Cache {
+    fn find(&self, what: &str, inputs: &[&[u8]]) -> Option<Vec<u8>> {
         let key = key(what, inputs);
-        let file = folder.join(format!("{what}-{key}.{ENDING}"));
-        if let Some(kept) = read(&file, &key) {
-            return Ok(kept);
-        }
-        let made = make()?;
-        // Nobody misses what is not kept.
-        let _ = write(folder, &file, &key, &made);
-        Ok(made)
+        read(&file(self.folder.as_ref()?, what, &key), &key)
     }
+
+    fn keep(&self, what: &str, inputs: &[&[u8]], content: &[u8]) {
+        if let Some(folder) = &self.folder {
+            let key = key(what, inputs);
+            // Nobody misses what is not kept.
+            let _ = write(folder, &file(folder, what, &key), &key, content);
+        }
+    }
+}
+
+fn file(folder: &Path, what: &str, key: &blake3::Hash) -> PathBuf {
+    folder.join(format!("{what}-{key}.{ENDING}"))
 }
 
 /// Hash of all that a result follows from.
@@ -122,24 +117,23 @@ fn program_stamp() -> Vec<u8> {
 }
 
 /// The content of a file of that key; none if there is none, or a damaged one.
-fn read<T: DeserializeOwned>(file: &Path, key: &blake3::Hash) -> Option<T> {
+fn read(file: &Path, key: &blake3::Hash) -> Option<Vec<u8>> {
     let bytes = fs::read(file).ok()?;
     let (hash, content) = bytes.split_at_checked(HASH_LENGTH)?;
     let is_whole = blake3::keyed_hash(key.as_bytes(), content)
         .as_bytes()
         .as_slice()
         == hash;
-    is_whole.then(|| postcard::from_bytes(content).ok())?
+    is_whole.then(|| content.to_vec())
 }
 
 /// Writes a file beside its place, under a name of its own, and puts it there in one step: of two
 /// runs at once each writes it whole.
-fn write(folder: &Path, file: &Path, key: &blake3::Hash, value: &impl Serialize) -> io::Result<()> {
+fn write(folder: &Path, file: &Path, key: &blake3::Hash, content: &[u8]) -> io::Result<()> {
     fs::create_dir_all(folder)?;
-    let content = postcard::to_stdvec(value).map_err(io::Error::other)?;
     let mut beside = tempfile::NamedTempFile::new_in(folder)?;
-    beside.write_all(blake3::keyed_hash(key.as_bytes(), &content).as_bytes())?;
-    beside.write_all(&content)?;
+    beside.write_all(blake3::keyed_hash(key.as_bytes(), content).as_bytes())?;
+    beside.write_all(content)?;
     beside.persist(file)?;
     remove_old(folder)
 }
@@ -165,4 +159,5 @@ fn remove_old(folder: &Path) -> io::Result<()> {
 }
 
 #[cfg(test)]
+#[path = "tests.rs"]
 mod tests;

@@ -1,0 +1,48 @@
+//! Where results are kept, as bytes by what they follow from.
+
+use serde::{Serialize, de::DeserializeOwned};
+
+/// Keeps results from run to run.
+///
+/// It is never the reason of an error: what it does not find is computed, and what it does not keep
+/// nobody misses.
+pub trait Keep: Sync {
+    /// What was kept under the name `what` for the same `inputs`.
+    fn find(&self, what: &str, inputs: &[&[u8]]) -> Option<Vec<u8>>;
+
+    /// Keeps `content` under the name `what` for these `inputs`.
+    fn keep(&self, what: &str, inputs: &[&[u8]], content: &[u8]);
+}
+
+/// Keeps nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct KeepNothing;
+
+impl Keep for KeepNothing {
+    fn find(&self, _: &str, _: &[&[u8]]) -> Option<Vec<u8>> {
+        None
+    }
+
+    fn keep(&self, _: &str, _: &[&[u8]], _: &[u8]) {}
+}
+
+/// What `make` makes of `inputs`, or what it made of them before; `what` is its name.
+///
+/// # Errors
+/// Those of `make`.
+pub(crate) fn kept<T: Serialize + DeserializeOwned, E>(
+    keep: &dyn Keep,
+    what: &str,
+    inputs: &[&[u8]],
+    make: impl FnOnce() -> Result<T, E>,
+) -> Result<T, E> {
+    let found = keep.find(what, inputs);
+    if let Some(kept) = found.and_then(|content| postcard::from_bytes(&content).ok()) {
+        return Ok(kept);
+    }
+    let made = make()?;
+    if let Ok(content) = postcard::to_stdvec(&made) {
+        keep.keep(what, inputs, &content);
+    }
+    Ok(made)
+}

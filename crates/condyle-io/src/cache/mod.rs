@@ -1,0 +1,11 @@
+//! What takes long to compute and never changes, kept for the next run.
+
+#[cfg(feature = "file-system")]
+mod disk;
+mod keep;
+
+#[cfg(feature = "file-system")]
+pub use disk::Cache;
+pub use keep::{Keep, KeepNothing};
+
+pub(crate) use keep::kept;

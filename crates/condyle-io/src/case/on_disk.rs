@@ -1,0 +1,41 @@
+//! Cases read from the disk.
+
+use std::path::Path;
+
+use super::contents::Case;
+use super::overriding::Override;
+use super::reader::CaseReader;
+use crate::files::Disk;
+use crate::keyed::Problems;
+
+impl Default for CaseReader {
+    fn default() -> Self {
+        Self::new(Disk)
+    }
+}
+
+impl Case {
+    /// Reads the case file at `path` on the disk; paths in it count from its folder.
+    ///
+    /// # Errors
+    /// As [`CaseReader::read`].
+    pub fn read(path: &Path) -> Result<Self, Problems> {
+        CaseReader::default().read(path)
+    }
+
+    /// Reads the case file at `path` with one number changed.
+    ///
+    /// # Errors
+    /// As [`CaseReader::read_with`].
+    pub fn read_with(path: &Path, number: &Override) -> Result<Self, Problems> {
+        CaseReader::default().read_with(path, number)
+    }
+
+    /// Reads a case from `text`, called `name` in messages; paths count from `folder`.
+    ///
+    /// # Errors
+    /// As [`CaseReader::parse`].
+    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Problems> {
+        CaseReader::default().parse(text, name, folder)
+    }
+}
