@@ -138,7 +138,7 @@ mod tests {
             volume_mm3: 1.0,
             ..AccumulatedError::default()
         };
-        // 2 cycles of (3 + 5)/2 mm, less 6 mm: 2 mm, of 2 mm2; of depth 1.5 mm were missed before.
+        // 2 cycles of (3 + 5)/2 mm, less 6 mm: 2 mm, of 2 mm2; of depth 1.5 mm were lacking before.
         let standing = standing(&now, &last);
         assert_eq!(earlier.after(standing).volume_mm3, 1.0 + 2.0 * 2.0);
         assert_eq!(accumulated_error_mm(standing), [1.5 + 2.0]);
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn what_was_missed_fades_as_the_node_relaxes() {
-        // Nothing is missed by this step: the rate stays, and so the femur sinks as it wears.
+        // This step errs by nothing: the rate stays, and so the femur sinks as it wears.
         let relaxation = 0.7;
         let (now, last) = (rates(3.0, relaxation), last(6.0, 1.0));
         let error_mm = accumulated_error_mm(standing(&now, &last))[0];

@@ -1,4 +1,4 @@
-//! Bounds on a femoral surface around a point: how far what is seen there tells of the rest.
+//! Bounds on a femoral surface around a point: how far a sample there tells of the rest.
 
 use crate::number::Number;
 
@@ -30,7 +30,7 @@ pub struct CurvatureBounds {
 }
 
 impl CurvatureBounds {
-    /// As far as contact ever looks, mm: bounds that hold everywhere hold so far.
+    /// As far as contact ever asks, mm: bounds that hold everywhere hold so far.
     pub const FARTHEST_MM: f64 = 10.0;
 
     /// Where the gap is smaller, any surface has bounds, mm.

@@ -109,7 +109,7 @@ impl Insert {
         &self.unworn.faces_around
     }
 
-    /// The surface nodes, four by four: each once, those of a block near one another.
+    /// The surface nodes in blocks: each once, those of a block near one another.
     pub fn node_blocks(&self) -> &[NodeBlock] {
         &self.unworn.node_blocks
     }

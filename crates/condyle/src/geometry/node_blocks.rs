@@ -1,4 +1,4 @@
-//! The nodes of a surface, four by four.
+//! The nodes of a surface in blocks of up to four.
 
 use super::faces_around::FacesAround;
 use crate::number::LANES;

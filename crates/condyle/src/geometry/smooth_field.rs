@@ -107,7 +107,7 @@ mod tests {
     use crate::{Vec3, geometry::surface_sample::tests::check_derivatives};
 
     /// A ball of radius 24 mm with edges of about `edge_mm`, by latitude and longitude, turned so
-    /// that its poles lie where nobody looks.
+    /// that its poles lie where nobody samples it.
     fn ball(edge_mm: f64) -> TriangleMesh {
         let rows = (std::f64::consts::PI * 24.0 / edge_mm) as u32;
         let columns = 2 * rows;

@@ -1,4 +1,4 @@
-//! The quick path: a block is looked at again only when the femur could have come near it.
+//! The quick path: a block is a candidate only when the femur can have come near it.
 
 use super::{
     block_places::{BlockPlaces, BlockWear, LastWear},
@@ -10,10 +10,10 @@ use crate::{contact::share_block::ShareBlock, spatial::Pose};
 
 /// How far every block is from touching, at least, at every increment of the cycle.
 ///
-/// A block that was seen apart needs no look before the femur has come near enough. What is left is
-/// exactly what a search over all blocks would find. A cycle after, and with a little wear, the femur
+/// A block that was found apart is no candidate before the femur can have come near enough. What touches
+/// is exactly what brute force would find. A cycle after, and with a little wear, the femur
 /// is within tenths of a millimetre of where it was, and so every increment goes on from what was known
-/// there. Hardly any block is looked at but those that touch.
+/// there. Hardly any block is a candidate but those that touch.
 pub(in crate::contact) struct Coherent {
     /// What is known at the increments come to so far, but for the one that it is now.
     kept: Vec<Option<Separations>>,

@@ -8,17 +8,17 @@ use crate::{contact::share_block::ShareBlock, spatial::Pose};
 /// How the blocks of nodes that may touch are found. The results are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Search {
-    /// Every block is looked at, every time: the plain path, and the reference.
+    /// Every block is a candidate, every time: the plain path, and the reference.
     BruteForce,
-    /// A block is looked at once the femur can have come near it, by bounds that are carried along.
+    /// A block is a candidate once the femur can have come near it, by bounds that are carried along.
     #[default]
     Coherent,
 }
 
 /// Finds the blocks that may touch under a femur at a pose.
 ///
-/// It may name blocks that do not touch, and leaves out none that does. The contact looks at what it
-/// names and says what it saw, block by block; a broad phase may remember that.
+/// It may name blocks that do not touch, and leaves out none that does. The contact samples the femur
+/// under what it names and says what it found, block by block; a broad phase may remember that.
 pub(in crate::contact) trait BroadPhase: Any + Send + Sync + Sized {
     /// One that knows nothing of these blocks yet.
     fn new(blocks: &[ShareBlock]) -> Self;
@@ -36,6 +36,6 @@ pub(in crate::contact) trait BroadPhase: Any + Send + Sync + Sized {
     /// A candidate touches.
     fn touches(&mut self, block: u32);
 
-    /// A candidate was seen apart, by no less than `bound` says.
+    /// A candidate is apart, by no less than `bound` says.
     fn is_apart(&mut self, block: u32, bound: impl FnOnce() -> SeparationBound);
 }

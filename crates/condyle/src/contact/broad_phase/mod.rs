@@ -1,4 +1,4 @@
-//! Which blocks of nodes may touch: what is left is looked at by the contact.
+//! Which blocks of nodes may touch: only under these does the contact sample the femur.
 
 mod block_places;
 mod brute_force;

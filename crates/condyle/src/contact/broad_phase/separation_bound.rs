@@ -22,7 +22,7 @@ const EXTRAPOLATED_MM: f64 = 1e-4;
 /// A gap g with gradient G and no second derivative below -h is, a motion d on, at least
 /// g + G . d - h d^2/2. The reach of a share, the overclosure that its highest corner has above its
 /// middle, grows by its half edges times the turn of the normal: K d on the femur, and the femur's own
-/// turn. What the four shares have in common is taken for all of them: the mean of their gradients, for
+/// turn. What the shares of the block have in common is taken for all: the mean of their gradients, for
 /// the motion of their middle.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::contact) struct SeparationBound {

@@ -96,8 +96,8 @@ impl Eight {
     #[inline(always)]
     fn carry(&mut self, motion: &Vector<F32x8>, lost_mm: F32x8) -> u32 {
         // The separation changes by slope . d, and by no more than loss |d| besides. A bound holds within a
-        // radius of where its block was looked at, and every step takes its length away from that: a
-        // block whose radius is used up is looked at again.
+        // radius of where its block was sampled, and every step takes its length away from that: a
+        // block whose radius is used up is a candidate again.
         let [x, y, z] = self.slope;
         let slope = Vector::new(F32x8::new(x), F32x8::new(y), F32x8::new(z));
         let motion_mm = dot(motion, motion).sqrt() + lost_mm;
@@ -158,7 +158,7 @@ impl Separations {
         candidates.truncate(candidates.partition_point(|&block| (block as usize) < self.count));
     }
 
-    /// A block was looked at where the femur is now.
+    /// A block was sampled where the femur is now, and is apart.
     #[inline(always)]
     pub fn set(&mut self, block: u32, bound: &SeparationBound) {
         let (eight, i) = self.place_of(block);

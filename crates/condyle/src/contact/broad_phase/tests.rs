@@ -90,7 +90,7 @@ fn look(femur: &FemoralSurface, block: &ShareBlock, pose: &Pose) -> (CachedSampl
     (seen, reach_mm, is_apart)
 }
 
-/// Smallest gap at the corners of four shares, less how much the mean over a share lies above the
+/// Smallest gap at the corners of a block's shares, less how much the mean over a share lies above the
 /// gap in its middle.
 fn least_corner_mm(femur: &FemoralSurface, block: &ShareBlock, pose: &Pose) -> f64 {
     let pose4 = Pose4::new(pose);
@@ -112,7 +112,7 @@ fn turned(turn: &Vec3) -> Mat3 {
     nalgebra::Rotation3::new(*turn).into_inner()
 }
 
-/// What a search over all shares would know.
+/// What is known after every block was sampled.
 fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separations {
     let mut separations = Separations::new(blocks.len());
     let mut candidates = Vec::new();

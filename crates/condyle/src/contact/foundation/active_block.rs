@@ -15,21 +15,21 @@ use crate::{
     spatial::{Pose4, Twist4},
 };
 
-/// Four shares that touch, as they see the femur.
+/// A block of shares that touches, and its sample of the femur.
 pub(super) struct ActiveBlock {
     /// Number of the block.
     pub block: u32,
     pub seen: CachedSample,
-    /// How the overclosure rises along the shares' edges.
+    /// The edge slopes of the shares.
     pub slopes: EdgeSlopes<F64x4>,
 }
 
 impl ActiveBlock {
-    /// Pressure and rubbing on the four shares.
+    /// Pressure and rubbing on the shares.
     ///
     /// With n the femur's normal, K its curvature, G the gradient of the gap, e_k the share's edges and W
     /// the mean overclosure of the share, a motion a and a turn w of the femur change the middle's
-    /// overclosure by G . a, the normal by w x n - K a, and each rise n . e_k with the normal.
+    /// overclosure by G . a, the normal by w x n - K a, and each edge slope n . e_k with the normal.
     #[inline(always)]
     pub fn press(
         &self,

@@ -1,4 +1,4 @@
-//! What a block last saw of the femur, and the one approximation that this allows.
+//! A block's last sample of the femur, and the one approximation that it allows.
 
 use crate::{
     Vector,
@@ -6,7 +6,7 @@ use crate::{
     number::{F64x4, Number, vector::dot},
 };
 
-/// A sample of the femur under four shares, and the places in its frame where it was taken.
+/// A sample of the femur under a block of shares, and the places in its frame where it was taken.
 #[derive(Clone, Copy)]
 pub(in crate::contact) struct CachedSample {
     /// Places of the shares' centres, p, mm.
@@ -23,7 +23,7 @@ impl CachedSample {
         }
     }
 
-    /// The femur as four shares see it at `place`.
+    /// A sample taken anew at `place`.
     #[inline(always)]
     pub fn at(femur: &FemoralSurface, place: Vector<F64x4>, spread_mm2: F64x4) -> Self {
         let sample = femur.sample(&place, spread_mm2);

@@ -43,8 +43,7 @@ pub(super) struct FoundationContact<'a, B> {
     blocks: Vec<ShareBlock>,
     directions: Vec<Directions4>,
     search: B,
-    /// What every block saw of the femur when it was last sampled, and the number of the response at
-    /// which it touched last.
+    /// Every block's last sample of the femur, and the number of the response at which it touched last.
     seen: Vec<CachedSample>,
     touched_at: Vec<u64>,
     /// The number of the last response: the first is 2, and none has touched at the one before it.

@@ -35,7 +35,7 @@ pub(super) struct ShortWay {
     pose: Pose4,
 }
 
-/// Four shares at the end of an increment.
+/// A block of shares at the end of an increment.
 struct Landed4 {
     pressure_mpa: F64x4,
     covered_mm2: F64x4,
@@ -69,7 +69,7 @@ impl ShortWay {
         landed.add(shares, touched);
     }
 
-    /// Four shares at the end: pressures follow the motion to first order, the covered area stays.
+    /// A block at the end: pressures follow the motion to first order, the covered area stays.
     #[inline(always)]
     fn landed(
         &self,
@@ -104,7 +104,7 @@ impl ShortWay {
 }
 
 impl Landed4 {
-    /// Adds those of four shares that press.
+    /// Adds those of a block that press.
     #[inline(always)]
     fn add(&self, shares: &ShareBlock, touched: &mut Vec<TouchedNode>) {
         for (lane, &node) in shares.nodes.iter().enumerate() {

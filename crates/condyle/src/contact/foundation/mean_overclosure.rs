@@ -2,11 +2,11 @@
 
 use crate::number::Number;
 
-/// Below this the rise of the overclosure along an edge counts as this much, mm: it keeps the
+/// Below this an edge slope counts as this much, mm: it keeps the
 /// closed form away from 0/0 and widens the edge of contact by a thousandth of a millimetre.
 const LEAST_RISE_MM: f64 = 1e-3;
 
-/// How much the overclosure rises along each edge of a share.
+/// The edge slopes of a share: how much the overclosure rises along each of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::contact) struct EdgeSlopes<T> {
     signed_mm: [T; 2],
@@ -15,7 +15,7 @@ pub(in crate::contact) struct EdgeSlopes<T> {
 }
 
 impl<T: Number> EdgeSlopes<T> {
-    /// From the rises along both edges, mm.
+    /// From those along both edges, mm.
     #[inline(always)]
     pub fn new(signed_mm: [T; 2]) -> Self {
         let least2 = T::splat(LEAST_RISE_MM * LEAST_RISE_MM);
@@ -41,7 +41,7 @@ pub(super) struct MeanOverclosure<T> {
     pub mm: T,
     /// Derivative by the overclosure of the share's middle: the part of the share that presses.
     pub by_middle: T,
-    /// Derivative by the rise of the overclosure along each edge of the share; none where all of
+    /// Derivative by the edge slopes of the share; none where all of
     /// it presses in every lane.
     pub by_rise: Option<[T; 2]>,
 }
@@ -74,7 +74,7 @@ pub(super) fn mean_overclosure<T: Number>(
     }
 }
 
-/// With r and s the two rises, the mean is (c1^3 - c2^3 - c3^3 + c4^3)/(6 r s) over the positive
+/// With r and s the edge slopes, the mean is (c1^3 - c2^3 - c3^3 + c4^3)/(6 r s) over the positive
 /// parts of the four corners c = d +- r/2 +- s/2.
 #[inline(always)]
 fn mean_in_part<T: Number>(middle_mm: T, slopes: &EdgeSlopes<T>) -> MeanOverclosure<T> {

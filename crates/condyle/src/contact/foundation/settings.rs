@@ -36,7 +36,7 @@ pub struct Foundation {
 
 impl Foundation {
     /// The motion up to which samples are extrapolated unless said otherwise, mm: most of Newton's
-    /// corrections are shorter, so that a mesh's field is looked up once an increment.
+    /// corrections are shorter, so that a mesh's field is mostly sampled once an increment.
     pub const SAMPLE_REUSE_MM: f64 = 0.02;
 
     /// A foundation that is computed the quick way.

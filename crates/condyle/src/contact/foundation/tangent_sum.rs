@@ -37,7 +37,7 @@ struct Facets<T> {
 }
 
 impl Facets<F32x8> {
-    /// Twice four shares.
+    /// Two blocks of shares.
     #[inline(always)]
     fn pair(one: (&CachedSample, &Tractions4), other: (&CachedSample, &Tractions4)) -> Self {
         let of = |value: fn(&CachedSample, &Tractions4) -> F64x4| {
@@ -76,7 +76,7 @@ impl TangentSum {
         }
     }
 
-    /// Adds twice four shares; the derivatives of the wrench at the femur's origin by pose and by
+    /// Adds two blocks of shares; the derivatives of the wrench at the femur's origin by pose and by
     /// twist.
     #[inline(always)]
     pub fn add(

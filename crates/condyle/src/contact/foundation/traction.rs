@@ -1,4 +1,4 @@
-//! Forces of four shares under pressure.
+//! Forces of a block of shares under pressure.
 
 use crate::{
     Vector,
@@ -76,7 +76,7 @@ impl Tractions4 {
         }
     }
 
-    /// Rises of the loads of shares at `place` by a short motion of the femur, turn and shift in
+    /// How the loads of shares at `place` grow by a short motion of the femur, turn and shift in
     /// its frame, N.
     #[inline(always)]
     pub fn load_rise_n(&self, place: &Vector<F64x4>, motion: &Twist4) -> F64x4 {
