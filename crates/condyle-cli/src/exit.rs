@@ -25,9 +25,10 @@ pub fn fail(error: impl Display, code: u8) -> ExitCode {
 /// Prints why a run failed, with a caret under its place in the case file where it has one, and
 /// gives the exit code.
 pub fn fail_run(error: &RunError) -> ExitCode {
-    let code = match error.is_physics() {
-        true => PHYSICS,
-        false => BAD_INPUT,
+    let code = if error.is_physics() {
+        PHYSICS
+    } else {
+        BAD_INPUT
     };
     let Some(in_case) = error.in_case() else {
         return fail(error, code);
@@ -43,8 +44,9 @@ pub fn fail_case(error: &Problems) -> ExitCode {
 }
 
 fn style() -> RenderStyle {
-    match stderr().is_terminal() {
-        true => RenderStyle::Terminal { width: 100 },
-        false => RenderStyle::Plain,
+    if stderr().is_terminal() {
+        RenderStyle::Terminal { width: 100 }
+    } else {
+        RenderStyle::Plain
     }
 }

@@ -6,41 +6,68 @@ use crate::source::{Edge, Sources, made_up};
 /// items. The row of the longest path speaks for a module; a crate that has a row here needs one for
 /// each of its outermost modules.
 const MAY_USE: &[(&str, &[&str])] = &[
+    ("condyle_fem::vector", &[]),
     ("condyle_fem::hex", &[]),
     ("condyle_fem::mesh", &["condyle_fem::hex"]),
     (
-        "condyle_fem::follow",
+        "condyle_fem::neighbours",
         &["condyle_fem::hex", "condyle_fem::mesh"],
     ),
-    ("condyle_fem::quality", &["condyle_fem::mesh"]),
-    ("condyle::number", &[]),
-    ("condyle::products", &["condyle::number"]),
     (
-        "condyle::geometry",
-        &["condyle::number", "condyle::products", "condyle_fem"],
+        "condyle_fem::follow",
+        &[
+            "condyle_fem::hex",
+            "condyle_fem::mesh",
+            "condyle_fem::neighbours",
+        ],
     ),
+    (
+        "condyle_fem::quality",
+        &["condyle_fem::hex", "condyle_fem::mesh"],
+    ),
+    ("condyle::number", &[]),
+    ("condyle::parameter", &[]),
+    ("condyle::spatial", &["condyle::number"]),
+    ("condyle::geometry", &["condyle::number", "condyle_fem"]),
     (
         "condyle::contact",
-        &["condyle::number", "condyle::products", "condyle::geometry"],
+        &["condyle::number", "condyle::spatial", "condyle::geometry"],
     ),
-    // The contact interface, never a model or a mesh.
+    // What may touch knows shares of a surface, never a law.
+    (
+        "condyle::contact::broad_phase",
+        &[
+            "condyle::contact::share_block",
+            "condyle::number",
+            "condyle::spatial",
+            "condyle::geometry",
+        ],
+    ),
+    // The contact interface, never a law or a mesh.
     (
         "condyle::machine",
         &[
-            "condyle::contact::ContactModel",
-            "condyle::contact::TouchedNode",
+            "condyle::contact::model",
             "condyle::contact::history",
-            "condyle::contact::motion",
+            "condyle::spatial",
         ],
     ),
     // Histories, never a solver.
-    ("condyle::wear", &["condyle::contact::history"]),
+    (
+        "condyle::wear",
+        &["condyle::contact::history", "condyle::parameter"],
+    ),
+    // Contact by its law alone.
     (
         "condyle::evolve",
         &[
             "condyle::geometry",
-            "condyle::contact",
+            "condyle::contact::contact_law",
+            "condyle::contact::history",
+            "condyle::contact::memory",
+            "condyle::contact::model",
             "condyle::machine",
+            "condyle::spatial",
             "condyle::wear",
             "condyle_fem",
         ],
@@ -109,7 +136,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
 
 /// What everyone may name.
 const KNOWN_TO_ALL: &[&str] = &[
-    "condyle_fem::Vec3",
+    "condyle_fem::vector",
     "condyle::Vec3",
     "condyle::Vector",
     "condyle::Mat3",

@@ -62,14 +62,15 @@ fn step<W: Write>(
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
     let increment_s = model.increment_s();
-    let procedure = match model.options.explicit {
-        true => Procedure::Explicit,
-        false => Procedure::Implicit {
+    let procedure = if model.options.explicit {
+        Procedure::Explicit
+    } else {
+        Procedure::Implicit {
             application,
             first_s: increment_s / 10.0,
             least_s: LEAST_S,
             most_s: increment_s,
-        },
+        }
     };
     inp.begin_step(&AnalysisStep {
         name,

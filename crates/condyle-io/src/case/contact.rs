@@ -1,8 +1,30 @@
-//! Pressure law and friction.
+//! Pressure law, friction, and how nodes that touch are found.
 
-use condyle::contact::PressureTable;
+use condyle::contact::{Foundation, PressureTable, Search};
 
-use crate::keyed::{Key, Log, Section, Settings, Variants, Writer, settings, variants, within};
+use crate::keyed::{
+    Key, Log, Section, Settings, Variants, Writer, choice, settings, variants, within,
+};
+
+choice! {
+    /// How the nodes that may touch are found.
+    SearchWord {
+        /// By bounds that are carried along as the femur moves.
+        Coherent = "coherent",
+        /// Every node is looked at, every time.
+        BruteForce = "brute-force",
+    }
+}
+
+impl SearchWord {
+    /// The search that it stands for.
+    pub fn search(self) -> Search {
+        match self {
+            Self::Coherent => Search::Coherent,
+            Self::BruteForce => Search::BruteForce,
+        }
+    }
+}
 
 settings! {
     /// Contact besides the pressure law.
@@ -11,6 +33,14 @@ settings! {
         friction: f64 = 0.07, in within(0.0, 2.0);
         /// Sliding speed at which friction is nearly full: smaller is truer and slower.
         slip_tolerance_mm_per_s: f64 = 0.3, in within(1e-6, 1000.0);
+    }
+
+    /// How contact is found; results do not depend on it, but for what a reused sample rounds.
+    Finding {
+        /// How the nodes that may touch are found; the results are the same, brute force is the slow reference.
+        search: SearchWord = SearchWord::Coherent;
+        /// Motion up to which a sample of the femur is extrapolated rather than taken anew, which changes the force by less than a hundred-thousandth; 0 takes every sample anew.
+        sample_reuse_mm: f64 = Foundation::SAMPLE_REUSE_MM, in within(0.0, 0.02);
     }
 }
 
@@ -28,32 +58,41 @@ variants! {
     }
 }
 
-/// Pressure law and friction.
+/// Pressure law, friction, and how nodes that touch are found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
     /// Pressure against overclosure.
     pub law: PressureLawChoice,
     /// Friction.
     pub friction: Friction,
+    /// How contact is found.
+    pub finding: Finding,
 }
 
 impl Contact {
     /// The key that chooses the law, and those that `[contact]` has whatever the law.
     pub(super) fn keys() -> Vec<Key> {
-        [vec![PressureLawChoice::choices().by], Friction::keys()].concat()
+        [vec![PressureLawChoice::choices().by], Self::other_keys()].concat()
+    }
+
+    fn other_keys() -> Vec<Key> {
+        [Friction::keys(), Finding::keys()].concat()
     }
 
     pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let law = PressureLawChoice::read(section, &Friction::keys(), log);
+        let law = PressureLawChoice::read(section, &Self::other_keys(), log);
         let friction = Friction::read(section, log);
+        let finding = Finding::read(section, log);
         Some(Self {
             law: law?,
             friction: friction?,
+            finding: finding?,
         })
     }
 
     pub(super) fn write(&self, out: &mut Writer) {
         self.law.write(out);
         self.friction.write(out);
+        self.finding.write(out);
     }
 }

@@ -41,7 +41,7 @@ pub use accuracy::Accuracy;
 pub use axes::{Axes, AxesError, AxesReason};
 pub use build::{BuildError, BuildWarning, Built};
 pub use channel::Channel;
-pub use contact::{Contact, Friction, PressureLawChoice};
+pub use contact::{Contact, Finding, Friction, PressureLawChoice, SearchWord};
 pub use contents::Case;
 pub use culprit::Unfit;
 pub use drive_reason::DriveReason;

@@ -94,9 +94,10 @@ fn weighed(columns: &Columns<'_>, soaks: &[usize]) -> Result<Weighed, Vec<Placed
     let cycles = cycles(columns).map_err(|found| problems.extend(found));
     let (mut worn, mut soaked) = (Vec::new(), Vec::new());
     for index in 1..columns.names().len() {
-        let kind = match soaks.contains(&index) {
-            true => &mut soaked,
-            false => &mut worn,
+        let kind = if soaks.contains(&index) {
+            &mut soaked
+        } else {
+            &mut worn
         };
         match specimen(columns, index) {
             Ok(specimen) => kind.push(specimen),

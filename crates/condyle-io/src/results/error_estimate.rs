@@ -106,9 +106,10 @@ impl ErrorEstimate {
 }
 
 fn finite(percent: [f64; 2]) -> Result<[f64; 2], String> {
-    match percent.iter().all(|part| part.is_finite()) {
-        true => Ok(percent),
-        false => Err("nothing was worn".to_owned()),
+    if percent.iter().all(|part| part.is_finite()) {
+        Ok(percent)
+    } else {
+        Err("nothing was worn".to_owned())
     }
 }
 

@@ -308,6 +308,9 @@ fn guess(trials: &[Trial], rate: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use condyle::wear::{WEAR_LAWS, WearLawKind};
+    use condyle_io::case::Wear;
+
     use super::*;
 
     fn trial(wear_factor_mm3_per_nm: f64, mg_per_million_cycles: f64) -> Trial {
@@ -338,5 +341,21 @@ mod tests {
             .last()
             .map_or(0.0, |trial| trial.mg_per_million_cycles);
         assert!((found / 3.0 - 1.0).abs() < 1e-4, "{found}");
+    }
+
+    #[test]
+    fn a_law_without_a_wear_factor_is_not_calibrated() {
+        const OTHER: WearLawKind = WearLawKind {
+            word: "other",
+            about: "No wear.",
+            parameters: &[],
+            make: |_| WEAR_LAWS[0].law(&WEAR_LAWS[0].defaults()),
+        };
+        let error = CalibrateError::from(Wear::new(&OTHER).constant(FACTOR.name).unwrap_err());
+        assert_eq!(
+            error.to_string(),
+            "no wear factor can be found: the wear law \"other\" has no \
+             `wear_factor_mm3_per_nm`; take a case with a law that has"
+        );
     }
 }

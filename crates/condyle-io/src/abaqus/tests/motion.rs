@@ -46,7 +46,7 @@ fn cross_the_nodes_and_hinges_of_the_file_move_as_the_chain() {
         let march = March::start(case.build(1).unwrap().test).unwrap();
         let model = Model::new(&case, &march, options).unwrap();
         let test = march.test();
-        let chain = Chain::new(&test.machine, march.state().zero_mm, test.flexion_axis_mm);
+        let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
         let away = [0.03, -0.12, 1.2, -3.0, 0.4, 0.7];
         let mut positions = model.placing.positions;
         positions.iter_mut().zip(away).for_each(|(q, d)| *q += d);

@@ -81,11 +81,13 @@ impl Case {
             PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },
             PressureLawChoice::Tabulated(table) => PressureLaw::Tabulated(table.clone()),
         };
-        Foundation::new(
+        Foundation {
             pressure,
-            friction.friction,
-            friction.slip_tolerance_mm_per_s,
-        )
+            friction: friction.friction,
+            slip_tolerance_mm_per_s: friction.slip_tolerance_mm_per_s,
+            search: self.contact.finding.search.search(),
+            sample_reuse_mm: self.contact.finding.sample_reuse_mm,
+        }
     }
 
     fn time_settings(&self) -> TimeSettings {

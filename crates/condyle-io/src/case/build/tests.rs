@@ -110,7 +110,7 @@ fn with_mesh_femur(folder: &TempDir, side: &str) -> Case {
 }
 
 fn field(built: &Built) -> &SmoothField {
-    match &built.test.femur {
+    match built.test.femur.as_ref() {
         FemoralSurface::Mesh(field) => field,
         other => panic!("{other:?}"),
     }

@@ -1,0 +1,234 @@
+//! A wear test as a value: cloned, changed, stopped and gone on with.
+
+use std::{ops::ControlFlow, sync::Arc};
+
+use condyle::{
+    contact::{
+        Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Foundation, Landing,
+        PressureLaw, Response, StateField,
+    },
+    evolve::{Activity, March, MarchState, Schedule, WearTest},
+    geometry::{FemoralSurface, Insert, Meshing, flat_insert},
+    machine::{
+        Drive, Interpolation, Knot, Machine, TimeSettings, Waveform,
+        knee::{self, KNEE},
+    },
+    spatial::RelativeMotion,
+    wear::Archard,
+};
+
+/// A contact that counts the steps it has accepted, and keeps the count as its history.
+#[derive(Debug)]
+struct Counting(Foundation);
+
+struct CountingContact<'a> {
+    inner: Box<dyn ContactModel + 'a>,
+    accepted: f64,
+}
+
+impl ContactLaw for Counting {
+    fn contact<'a>(
+        &'a self,
+        bodies: Bodies<'a>,
+        memory: ContactMemory,
+    ) -> Box<dyn ContactModel + 'a> {
+        let accepted = memory
+            .state
+            .fields
+            .first()
+            .map_or(0.0, |field| field.values[0]);
+        let inner = self.0.contact(bodies, memory);
+        Box::new(CountingContact { inner, accepted })
+    }
+
+    fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64 {
+        self.0.stiffness_mpa_per_mm(insert, node)
+    }
+}
+
+impl ContactModel for CountingContact<'_> {
+    fn node_count(&self) -> usize {
+        self.inner.node_count()
+    }
+
+    fn begin_increment(&mut self, increment: usize) {
+        self.inner.begin_increment(increment);
+    }
+
+    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
+        self.inner.respond(motion)
+    }
+
+    fn accept(&mut self, motion: &RelativeMotion) {
+        self.accepted += 1.0;
+        self.inner.accept(motion);
+    }
+
+    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+        self.inner.land(motion)
+    }
+
+    fn into_memory(self: Box<Self>) -> ContactMemory {
+        let field = StateField {
+            name: "accepted".to_owned(),
+            values: vec![self.accepted],
+        };
+        ContactMemory {
+            state: ContactState {
+                fields: vec![field],
+            },
+            ..self.inner.into_memory()
+        }
+    }
+}
+
+/// A knee's machine that presses, and moves AP to and fro by `ap_mm`.
+fn machine(ap_mm: f64) -> Machine {
+    let mut machine = Machine::new(&KNEE);
+    let knot = |percent, value| Knot { percent, value };
+    let knots = vec![knot(0.0, -ap_mm), knot(50.0, ap_mm)];
+    let to_and_fro = Waveform::new(knots, Interpolation::HalfCosine).unwrap();
+    machine.joint_mut(knee::AP).drive = Drive::Prescribed(to_and_fro);
+    machine.joint_mut(knee::IS).drive = Drive::Loaded(Waveform::constant(-500.0));
+    machine
+}
+
+fn foundation() -> Foundation {
+    let modulus_mpa = 2142.0;
+    Foundation::new(PressureLaw::Linear { modulus_mpa }, 0.07, 1.0)
+}
+
+/// A ball that rubs a plate, in four updates.
+fn test() -> WearTest {
+    let meshing = Meshing {
+        edge_mm: 2.0,
+        layers: 1,
+    };
+    WearTest {
+        femur: Arc::new(FemoralSurface::sphere(24.0)),
+        flexion_axis_mm: (0.0, 0.0),
+        start_mm: (0.0, 0.0),
+        insert: Arc::new(flat_insert((32.0, 24.0), 9.0, meshing).unwrap()),
+        contact: Arc::new(foundation()),
+        activities: vec![Activity::only("rub", machine(3.0))],
+        wear: Arc::new(Archard {
+            wear_factor_mm3_per_nm: 2.64e-7,
+        }),
+        density_mg_per_mm3: 0.93,
+        time: TimeSettings {
+            increments: 40,
+            ..TimeSettings::default()
+        },
+        schedule: Schedule::fixed(4e5, 4),
+    }
+}
+
+fn update(march: &mut March) {
+    let update = march.update(&mut |_| ControlFlow::Continue(()));
+    assert!(update.expect("it is solved").is_continue());
+}
+
+fn marched(test: WearTest) -> MarchState {
+    let mut march = March::start(test).expect("a ball settles on a plate");
+    while !march.is_done() {
+        update(&mut march);
+    }
+    march.state().clone()
+}
+
+fn mass_mg(state: &MarchState) -> f64 {
+    state.updates.last().expect("four updates").mass_loss_mg
+}
+
+#[test]
+fn a_history_of_the_contact_is_marched_on_stored_and_gone_on_with() {
+    let test = WearTest {
+        contact: Arc::new(Counting(foundation())),
+        ..test()
+    };
+    let accepted = |state: &MarchState| state.contact.fields[0].values[0];
+    let mut whole = March::start(test.clone()).unwrap();
+    update(&mut whole);
+    let after_one = accepted(whole.state());
+    assert!(after_one >= 40.0, "{after_one}");
+    let mut resumed = March::resume(test.clone(), whole.state().clone());
+    update(&mut whole);
+    update(&mut resumed);
+    assert!(accepted(whole.state()) > after_one + 39.0);
+    assert!(whole.state() == resumed.state());
+    // The snapshot of the second step holds the history that it began with.
+    let late = whole.state().snapshots[1]
+        .as_ref()
+        .expect("a step before 79 %");
+    assert_eq!(late.contact.fields[0].values[0], after_one);
+    let mut again = March::from_snapshot(test, late, whole.state().zero_mm);
+    update(&mut again);
+    assert!(accepted(again.state()) > after_one);
+}
+
+#[test]
+fn a_march_leaves_its_test_as_it_was() {
+    let test = test();
+    let before = test.insert.mesh().clone();
+    let worn = marched(test.clone());
+    assert!(mass_mg(&worn) > 0.0);
+    assert_eq!(*test.insert.mesh(), before);
+    assert_eq!(mass_mg(&marched(test)), mass_mg(&worn));
+}
+
+#[test]
+fn tests_that_run_side_by_side_give_what_they_give_alone() {
+    let scaled = |factor: f64| {
+        let mut test = test();
+        test.wear = Arc::new(Archard {
+            wear_factor_mm3_per_nm: factor * 2.64e-7,
+        });
+        test
+    };
+    let alone = [1.0, 2.0].map(|factor| mass_mg(&marched(scaled(factor))));
+    let beside = std::thread::scope(|scope| {
+        let runs = [1.0, 2.0].map(|factor| {
+            let test = scaled(factor);
+            scope.spawn(move || mass_mg(&marched(test)))
+        });
+        runs.map(|run| run.join().expect("a run beside another"))
+    });
+    assert_eq!(alone, beside);
+}
+
+#[test]
+fn activities_wear_by_their_shares() {
+    let with = |activities: Vec<Activity>| {
+        mass_mg(&marched(WearTest {
+            activities,
+            ..test()
+        }))
+    };
+    let activity = |ap_mm: f64, share: f64| Activity {
+        name: format!("{ap_mm} mm"),
+        machine: machine(ap_mm),
+        share,
+    };
+    let near = |found: f64, expected: f64| {
+        assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
+    };
+    let alone = with(vec![activity(3.0, 1.0)]);
+    // The same activity in two parts is one.
+    near(with(vec![activity(3.0, 0.4), activity(3.0, 0.6)]), alone);
+    near(with(vec![activity(3.0, 1.0), activity(1.0, 0.0)]), alone);
+    // On a flat plate volume is Kw F S: twice the way in half the cycles is the same wear.
+    let mixed = with(vec![activity(2.0, 0.5), activity(4.0, 0.5)]);
+    assert!((mixed / alone - 1.0).abs() < 2e-3, "{mixed} {alone}");
+}
+
+#[test]
+fn a_stop_that_was_asked_for_is_no_error_and_loses_no_update() {
+    let mut march = March::start(test()).unwrap();
+    update(&mut march);
+    let before = march.state().clone();
+    let stopped = march.update(&mut |_| ControlFlow::Break(()));
+    assert!(stopped.expect("no error").is_break());
+    assert!(*march.state() == before);
+    update(&mut march);
+    assert_eq!(march.state().updates.len(), 2);
+}
