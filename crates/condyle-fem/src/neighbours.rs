@@ -36,6 +36,7 @@ impl Neighbours {
     }
 
     /// The neighbours of row `k`.
+    #[inline]
     pub(crate) fn of(&self, k: usize) -> &[u32] {
         &self.nodes[self.first[k]..self.first[k + 1]]
     }

@@ -3,6 +3,7 @@
 use crate::Vec3;
 
 /// The vector with barycentric coordinates `weights` between those at the corners.
+#[inline]
 pub fn weighted(vectors: &[Vec3; 3], weights: [f64; 3]) -> Vec3 {
     vectors[0] * weights[0] + vectors[1] * weights[1] + vectors[2] * weights[2]
 }

@@ -46,6 +46,7 @@ impl NodeGrid {
     }
 
     /// Where node (i, j, k) is, mm.
+    #[inline]
     pub fn position(&self, i: usize, j: usize, k: usize) -> Vec3 {
         self.origin + Vec3::new(i as f64, j as f64, k as f64) * SPACING_MM
     }
