@@ -1,5 +1,7 @@
 //! Modules know only those that they may, private ones too.
 
+use std::collections::BTreeMap;
+
 use crate::source::{Edge, Sources, made_up};
 
 /// Each module, and what it may name outside of itself: modules with all that is in them, or single
@@ -160,25 +162,27 @@ fn named(sources: &Sources, edge: &Edge) -> String {
     format!("{}::{}", sources.modules[edge.to].path, edge.item)
 }
 
-/// Every edge that no row allows, told with its place.
+/// Everything that a module names and no row allows, told once with its first place.
 fn forbidden(sources: &Sources, rows: &[(&str, &[&str])], known_to_all: &[&str]) -> Vec<String> {
-    let edges = sources.edges();
-    let is_forbidden = |edge: &&Edge| {
-        let (from, to) = (&sources.modules[edge.from].path, named(sources, edge));
+    let is_forbidden = |from: &str, to: &str| {
         row(rows, from).is_some_and(|(module, allowed)| {
             let mut all = allowed.iter().chain(known_to_all).chain([module]);
-            !all.any(|whole| lies_in(&to, whole))
+            !all.any(|whole| lies_in(to, whole))
         })
     };
-    let told = edges.iter().filter(is_forbidden).map(|edge| {
-        let from = &sources.modules[edge.from];
-        let to = named(sources, edge);
-        format!(
-            "{}:{}: {} may not use {to}",
-            from.file, edge.line, from.path
-        )
-    });
-    told.collect()
+    let mut told = BTreeMap::new();
+    for edge in sources.edges() {
+        let (from, to) = (&sources.modules[edge.from], named(sources, &edge));
+        if is_forbidden(&from.path, &to) {
+            let words = format!("{} may not use {to}", from.path);
+            told.entry(words)
+                .or_insert(format!("{}:{}", from.file, edge.line));
+        }
+    }
+    let lines = told
+        .iter()
+        .map(|(words, place)| format!("{place}: {words}"));
+    lines.collect()
 }
 
 /// The outermost modules without a row, in crates that have one.
