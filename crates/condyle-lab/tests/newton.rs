@@ -1,5 +1,5 @@
 //! Newton's method on the default case: it converges quadratically, and where it stops without
-//! looking, it might have looked.
+//! evaluating, it might have evaluated.
 
 use std::path::Path;
 
@@ -23,9 +23,9 @@ const QUADRATIC_PER_N: f64 = 0.3;
 const SINGLE: f64 = 3e-6;
 /// Rounding of forces of some thousand newtons, N.
 const ROUNDING_N: f64 = 2e-9;
-/// A state that is accepted by foresight may be so many tolerances out of balance: the foreseen
+/// A state that is accepted by prediction may be so many tolerances out of balance: the predicted
 /// residual takes the contraction to be that of the correction before.
-const FORESIGHT: f64 = 5.0;
+const PREDICTION: f64 = 5.0;
 
 fn default_case() -> March {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
@@ -114,9 +114,9 @@ fn near_the_solution_every_residual_is_the_square_of_the_one_before() {
 /// A cycle as it was solved.
 #[derive(Default)]
 struct Solved {
-    /// What is left out of balance where that was foreseen and not looked at, N.
+    /// What is left out of balance where that was predicted and not evaluated, N.
     left_n: Vec<f64>,
-    /// Increments that took one look at the contact.
+    /// Increments that took one contact evaluation.
     at_once: usize,
 }
 
@@ -130,10 +130,10 @@ impl Solved {
                 .step(&state, to, &mut counters, &mut |_| ())
                 .expect("a shipped case is solved");
             let corrections = counters.newton_iterations - before.newton_iterations;
-            let looks = counters.contact_evaluations - before.contact_evaluations;
-            solved.at_once += usize::from(looks == 1);
-            // One look more than corrections is a step that ended with a look.
-            if looks == corrections {
+            let evaluations = counters.contact_evaluations - before.contact_evaluations;
+            solved.at_once += usize::from(evaluations == 1);
+            // One evaluation more than corrections is a step that ended with one.
+            if evaluations == corrections {
                 solved.left_n.push(simulator.out_of_balance_n(&state));
             }
         }
@@ -141,30 +141,30 @@ impl Solved {
         (solved, state)
     }
 
-    /// How many increments ended unseen; none far out of balance, and few at all.
-    fn unseen(&self, tolerance_n: f64) -> usize {
+    /// How many increments ended by prediction; none far out of balance, and few at all.
+    fn predicted_ends(&self, tolerance_n: f64) -> usize {
         let all = self.left_n.len();
         let above = self.left_n.iter().filter(|left| **left > tolerance_n);
         let above = above.count();
         let worst_n = self.left_n.iter().copied().fold(0.0, f64::max);
-        println!("{all} foreseen, {above} above {tolerance_n} N, at worst {worst_n:.3} N");
-        assert!(worst_n <= FORESIGHT * tolerance_n, "{worst_n}");
+        println!("{all} predicted, {above} above {tolerance_n} N, at worst {worst_n:.3} N");
+        assert!(worst_n <= PREDICTION * tolerance_n, "{worst_n}");
         assert!(20 * above <= all, "{above} of {all}");
         all
     }
 }
 
 #[test]
-fn a_state_accepted_by_foresight_is_nearly_in_balance() {
+fn a_state_accepted_by_prediction_is_nearly_in_balance() {
     let march = default_case();
     let (test, chain, surface) = (march.test(), chain(&march), march.insert().surface());
     let mut contact = contact(&march, &surface);
     let (tolerance_n, increments) = (test.time.force_tolerance_n, test.time.increments);
     let mut simulator = simulator(test, &chain, contact.as_mut(), &test.time);
     let (first, state) = Solved::cycle(&mut simulator, in_motion(&march));
-    assert!(first.unseen(tolerance_n) > increments / 2);
+    assert!(first.predicted_ends(tolerance_n) > increments / 2);
     let (second, _) = Solved::cycle(&mut simulator, state);
-    second.unseen(tolerance_n);
+    second.predicted_ends(tolerance_n);
     println!("at once: {} and then {}", first.at_once, second.at_once);
     assert!(2 * second.at_once > increments && 10 * first.at_once < increments);
 }

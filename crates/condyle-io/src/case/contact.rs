@@ -11,7 +11,7 @@ choice! {
     SearchWord {
         /// By bounds that are carried along as the femur moves.
         Coherent = "coherent",
-        /// Every node is looked at, every time.
+        /// Every node is a candidate, every time.
         BruteForce = "brute-force",
     }
 }
