@@ -114,46 +114,51 @@ fn not_estimated(summary: &Summary) -> impl Iterator<Item = (String, &String)> {
     parts.map(|(part, why)| (part.replace('_', " "), why))
 }
 
-fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
+/// A name and what is said of it.
+type Row = (&'static str, String);
+
+fn rows(summary: &Summary) -> Vec<Row> {
+    let mut rows = vec![("gait cycles", format!("{:.0}", summary.cycles))];
+    rows.extend(rows_of_wear(summary));
+    rows.extend(rows_of_contact(summary));
+    rows.extend(rows_of_motion(summary));
+    rows.extend(rows_of_work(summary));
+    rows.extend(summary.error.iter().flat_map(rows_of_error));
+    rows
+}
+
+fn rows_of_wear(summary: &Summary) -> [Row; 3] {
     let Summary {
         volume_loss_mm3,
         volume_loss_mesh_mm3,
-        medial_load_share,
         ..
     } = summary;
     let parts = |of: fn(&ErrorEstimate) -> &ErrorParts| summary.error.as_ref().map(of);
-    let mut rows = vec![
-        ("gait cycles", format!("{:.0}", summary.cycles)),
+    let mass_parts = parts(|error| &error.mass_loss_percent);
+    let depth_parts = parts(|error| &error.max_depth_percent);
+    let volumes = format!("{volume_loss_mm3:.2} mm3 ({volume_loss_mesh_mm3:.2} from the mesh)");
+    [
         (
             "mass loss",
-            with_error(
-                summary.mass_loss_mg,
-                2,
-                "mg",
-                parts(|error| &error.mass_loss_percent),
-            ),
+            with_error(summary.mass_loss_mg, 2, "mg", mass_parts),
         ),
-        (
-            "volume loss",
-            format!("{volume_loss_mm3:.2} mm3 ({volume_loss_mesh_mm3:.2} from the mesh)"),
-        ),
+        ("volume loss", volumes),
         (
             "deepest wear",
-            with_error(
-                summary.max_depth_mm,
-                4,
-                "mm",
-                parts(|error| &error.max_depth_percent),
-            ),
+            with_error(summary.max_depth_mm, 4, "mm", depth_parts),
         ),
-        (
-            "peak pressure",
-            format!("{:.1} MPa", summary.peak_pressure_mpa),
-        ),
-        (
-            "largest contact area",
-            format!("{:.0} mm2", summary.peak_contact_area_mm2),
-        ),
+    ]
+}
+
+fn rows_of_contact(summary: &Summary) -> [Row; 2] {
+    let pressure = format!("{:.1} MPa", summary.peak_pressure_mpa);
+    let area = format!("{:.0} mm2", summary.peak_contact_area_mm2);
+    [("peak pressure", pressure), ("largest contact area", area)]
+}
+
+fn rows_of_motion(summary: &Summary) -> [Row; 3] {
+    let share = 100.0 * summary.medial_load_share;
+    [
         (
             "AP range, first cycle",
             format!("{:.2} mm", summary.ap_range_mm),
@@ -162,38 +167,32 @@ fn rows(summary: &Summary) -> Vec<(&'static str, String)> {
             "IE range, first cycle",
             format!("{:.2} deg", summary.ie_range_deg),
         ),
-        (
-            "medial share of the load",
-            format!("{:.1} %", 100.0 * medial_load_share),
-        ),
+        ("medial share of the load", format!("{share:.1} %")),
+    ]
+}
+
+fn rows_of_work(summary: &Summary) -> [Row; 5] {
+    let iterations = per_cycle(
+        summary.newton_iterations,
+        summary.newton_iterations_per_cycle,
+    );
+    let evaluations = per_cycle(
+        summary.contact_evaluations,
+        summary.contact_evaluations_per_cycle,
+    );
+    [
         (
             "updates, cycles solved",
             format!("{}, {:.1}", summary.updates, summary.cycles_solved),
         ),
-        (
-            "Newton iterations",
-            per_cycle(
-                summary.newton_iterations,
-                summary.newton_iterations_per_cycle,
-            ),
-        ),
-        (
-            "contact evaluations",
-            per_cycle(
-                summary.contact_evaluations,
-                summary.contact_evaluations_per_cycle,
-            ),
-        ),
+        ("Newton iterations", iterations),
+        ("contact evaluations", evaluations),
         (
             "hexahedra, worst quality",
             format!("{}, {:.3}", summary.hexahedra, summary.worst_quality),
         ),
         ("time, solver only", format!("{:.3} s", summary.wall_s)),
-    ];
-    if let Some(error) = &summary.error {
-        rows.extend(rows_of_error(error));
-    }
-    rows
+    ]
 }
 
 /// Work in all, and of a cycle solved.
@@ -202,7 +201,7 @@ fn per_cycle(all: u64, per_cycle: f64) -> String {
 }
 
 /// Where the discretisation error comes from: signed, what finer values would change.
-fn rows_of_error(error: &ErrorEstimate) -> [(&'static str, String); 3] {
+fn rows_of_error(error: &ErrorEstimate) -> [Row; 3] {
     [
         (
             "error of mass, by parts",

@@ -76,9 +76,15 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     ("condyle_report::error", &["condyle_io"]),
     ("condyle_report::number", &[]),
+    ("condyle_report::file", &["condyle_report::error"]),
     (
         "condyle_report::results",
-        &["condyle_report::error", "condyle_io", "condyle_fem"],
+        &[
+            "condyle_report::error",
+            "condyle_io",
+            "condyle_fem",
+            "condyle::machine::knee",
+        ],
     ),
     (
         "condyle_report::figure",
@@ -91,6 +97,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::figure",
             "condyle_report::number",
             "condyle_report::results",
+            // The table of joints that the columns of kinematics.csv are made by.
+            "condyle::machine::joint_kind",
+            "condyle::machine::knee",
+            "condyle::machine::mechanism",
         ],
     ),
     (
@@ -108,7 +118,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::figure",
             "condyle_report::page",
             "condyle_report::results",
-            "condyle_report::write",
+            "condyle_report::file",
         ],
     ),
     ("condyle_lab::accuracy", &["condyle", "condyle_io"]),
@@ -142,7 +152,6 @@ const KNOWN_TO_ALL: &[&str] = &[
     "condyle::Vec3",
     "condyle::Vector",
     "condyle::Mat3",
-    "condyle_report::Vec3",
 ];
 
 /// Whether `path` is `whole` or lies within it.

@@ -4,7 +4,10 @@ use condyle_report::{Region, Side};
 use serde::Serialize;
 
 use super::series::{above_percent, at, line_through, range};
-use super::{Ran, StudyError, Table, reference};
+use super::{
+    error::StudyError,
+    ran::{Ran, TableOf, reference},
+};
 
 /// End of stance, % of the cycle.
 const STANCE_END_PERCENT: f64 = 60.0;
@@ -188,16 +191,16 @@ fn over_updates(runs: &[Ran], of: fn(&Ran) -> f64) -> Vec<OverUpdates> {
 /// A row of wear.csv stands for the interval before it, and its cycle is solved at the start.
 fn at_last_cycle(coarse: &Ran, fine: &Ran, name: &'static str) -> Result<f64, StudyError> {
     let starts = |ran: &Ran| -> Result<Vec<f64>, StudyError> {
-        let ends = ran.column(Table::Wear, "cycles")?;
+        let ends = ran.column(TableOf::Wear, "cycles")?;
         let interval = ran.summary.cycles / ran.updates as f64;
         Ok(ends.iter().map(|end| end - interval).collect())
     };
     let (coarse_starts, fine_starts) = (starts(coarse)?, starts(fine)?);
-    let coarse_values = coarse.column(Table::Wear, name)?;
+    let coarse_values = coarse.column(TableOf::Wear, name)?;
     let last = coarse_values.len() - 1;
     let found = at(
         &fine_starts,
-        fine.column(Table::Wear, name)?,
+        fine.column(TableOf::Wear, name)?,
         coarse_starts[last],
     );
     let fine_value = found.ok_or_else(|| fine.lacks("cycle at the same place"))?;
@@ -227,14 +230,14 @@ fn excess(ran: &Ran, finest: &Ran) -> Result<Excess, StudyError> {
 /// Cycles and deepest wear after every update.
 fn depths(ran: &Ran) -> Result<(&[f64], &[f64]), StudyError> {
     Ok((
-        ran.column(Table::Wear, "cycles")?,
-        ran.column(Table::Wear, "max_depth_mm")?,
+        ran.column(TableOf::Wear, "cycles")?,
+        ran.column(TableOf::Wear, "max_depth_mm")?,
     ))
 }
 
 fn volumes(ran: &Ran) -> Result<Vec<(f64, f64)>, StudyError> {
-    let cycles = ran.column(Table::Wear, "cycles")?;
-    let volumes = ran.column(Table::Wear, "volume_loss_mm3")?;
+    let cycles = ran.column(TableOf::Wear, "cycles")?;
+    let volumes = ran.column(TableOf::Wear, "volume_loss_mm3")?;
     let after = cycles.iter().copied().zip(volumes.iter().copied());
     Ok([(0.0, 0.0)].into_iter().chain(after).collect())
 }
@@ -252,9 +255,9 @@ fn rate_growth(ran: &Ran) -> Result<f64, StudyError> {
 
 /// (percent, IE in degrees) through stance of the first cycle or the last.
 fn stance_ie(ran: &Ran, is_first: bool) -> Result<Vec<(f64, f64)>, StudyError> {
-    let cycles = ran.column(Table::Kinematics, "cycles")?;
-    let percent = ran.column(Table::Kinematics, "percent")?;
-    let ie = ran.column(Table::Kinematics, "ie_deg")?;
+    let cycles = ran.column(TableOf::Kinematics, "cycles")?;
+    let percent = ran.column(TableOf::Kinematics, "percent")?;
+    let ie = ran.column(TableOf::Kinematics, "ie_deg")?;
     let rows = cycles.iter().zip(percent).zip(ie);
     let wanted = rows.filter(|((cycles, percent), _)| {
         (**cycles == 0.0) == is_first && **percent <= STANCE_END_PERCENT

@@ -3,27 +3,30 @@
 //! A case in force control runs over 1, 2, 5, 10, 20 and 40 updates; its first cycle becomes the
 //! waveforms of a case in displacement control; and what the paper found is set beside what comes out.
 
+mod error;
 mod findings;
 mod motions;
 mod pictures;
+mod ran;
 mod rows;
 mod series;
+mod stamp;
 
 use std::{
-    fs, io,
+    fs,
     path::{Path, PathBuf},
 };
 
-use condyle_io::{cache::Cache, results::Summary};
-use condyle_report::{ReportError, Results};
+use condyle_io::cache::Cache;
 use serde::Serialize;
-use thiserror::Error;
 
-use super::{
-    ConvergeError, ConvergeOptions, ConvergePlan, Converged, Convergence, Listener, converge,
-};
+use super::{ConvergeOptions, ConvergePlan, Converged, Listener, converge};
+use ran::{Ran, read_back, reference};
+
+pub use error::StudyError;
 pub use findings::{Findings, Scar};
 pub use rows::Row;
+pub use stamp::Stamp;
 
 /// The updates of the force-controlled runs: the paper's 1 x 5M to 40 x 125k, and two between.
 const UPDATES: &str = "updates=1,2,5,10,20,40";
@@ -44,45 +47,6 @@ pub struct StudyFiles {
     pub out: PathBuf,
 }
 
-/// When and from what the results were made.
-#[derive(Clone, Debug, Serialize)]
-pub struct Stamp {
-    /// Commit of the source.
-    pub commit: String,
-    /// Date of the run.
-    pub date: String,
-}
-
-/// Why a study is not done.
-#[derive(Debug, Error)]
-pub enum StudyError {
-    /// The runs.
-    #[error(transparent)]
-    Converge(#[from] ConvergeError),
-    /// The results of a run.
-    #[error(transparent)]
-    Report(#[from] ReportError),
-    /// A run that lacks what the study needs.
-    #[error("{}: there is no {what} in it; the study needs whole results folders", folder.display())]
-    Lacking {
-        /// The results folder.
-        folder: PathBuf,
-        /// What it lacks.
-        what: &'static str,
-    },
-    /// The system refused to write.
-    #[error("{}: {source}; check that the folder can be written and the disk is not full", path.display())]
-    Refused {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// Somebody asked to stop.
-    #[error("interrupted")]
-    Interrupted,
-}
-
 /// What `results.json` holds.
 #[derive(Serialize)]
 struct File<'a> {
@@ -91,14 +55,6 @@ struct File<'a> {
     stamp: &'a Stamp,
     findings: &'a Findings,
     rows: &'a [Row],
-}
-
-/// A run, read back from its folder.
-struct Ran {
-    updates: usize,
-    folder: PathBuf,
-    summary: Summary,
-    results: Results,
 }
 
 /// Runs everything, writes the tables and the pictures, and gives the Markdown of the table.
@@ -140,12 +96,6 @@ pub fn study(
     Ok(text)
 }
 
-/// The run of the paper's interval, 500 000 cycles of 5 million.
-fn reference(force: &[Ran]) -> &Ran {
-    let is_reference = |ran: &&Ran| ran.updates == 10;
-    force.iter().find(is_reference).unwrap_or(&force[0])
-}
-
 fn run(
     case: &Path,
     over: &str,
@@ -166,21 +116,6 @@ fn run(
     }
 }
 
-fn read_back(convergence: Convergence, out: &Path) -> Result<Vec<Ran>, StudyError> {
-    let points = convergence.points.into_iter();
-    points
-        .map(|point| {
-            let folder = out.join(&point.folder);
-            Ok(Ran {
-                updates: point.summary.updates,
-                results: Results::read(&folder)?,
-                summary: point.summary,
-                folder,
-            })
-        })
-        .collect()
-}
-
 fn json(stamp: &Stamp, findings: &Findings, rows: &[Row]) -> String {
     let file = File {
         version: env!("CARGO_PKG_VERSION"),
@@ -198,54 +133,11 @@ fn write(path: &Path, text: &str) -> Result<(), StudyError> {
     })
 }
 
-impl Ran {
-    /// A column of wear.csv or kinematics.csv.
-    fn column(&self, table: Table, name: &'static str) -> Result<&[f64], StudyError> {
-        column_of(&self.results, table, name).ok_or_else(|| self.lacks(name))
-    }
-
-    fn lacks(&self, what: &'static str) -> StudyError {
-        lacks(&self.folder, what)
-    }
-}
-
-fn column_of<'a>(results: &'a Results, table: Table, name: &str) -> Option<&'a [f64]> {
-    let table = match table {
-        Table::Wear => &results.wear,
-        Table::Kinematics => &results.kinematics,
-    };
-    table.as_ref()?.column(name)
-}
-
-fn lacks(folder: &Path, what: &'static str) -> StudyError {
-    StudyError::Lacking {
-        folder: folder.to_owned(),
-        what,
-    }
-}
-
-/// Tables of a results folder.
-#[derive(Clone, Copy)]
-enum Table {
-    Wear,
-    Kinematics,
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use condyle_report::Results;
 
-    #[test]
-    fn what_a_results_folder_lacks_is_said() {
-        let empty = Results::default();
-        assert_eq!(column_of(&empty, Table::Wear, "max_depth_mm"), None);
-        assert_eq!(column_of(&empty, Table::Kinematics, "ap_mm"), None);
-        let said = lacks(Path::new("runs/updates-5"), "max_depth_mm").to_string();
-        assert!(
-            said.starts_with("runs/updates-5: there is no max_depth_mm in it; "),
-            "{said}"
-        );
-    }
+    use super::*;
 
     #[test]
     fn a_results_folder_that_is_gone_is_said() {

@@ -2,7 +2,10 @@
 
 use condyle_report::{Plot, plots_svg};
 
-use super::{Ran, StudyError, Table};
+use super::{
+    error::StudyError,
+    ran::{Ran, TableOf},
+};
 
 /// Updates of the runs that are shown against the finest.
 const SHOWN: [usize; 2] = [5, 10];
@@ -57,8 +60,8 @@ fn plot(
 
 /// (million cycles, value), from nothing worn at the start.
 fn points(ran: &Ran, column: &'static str) -> Result<Vec<(f64, f64)>, StudyError> {
-    let cycles = ran.column(Table::Wear, "cycles")?;
-    let values = ran.column(Table::Wear, column)?;
+    let cycles = ran.column(TableOf::Wear, "cycles")?;
+    let values = ran.column(TableOf::Wear, column)?;
     let after = cycles
         .iter()
         .map(|cycles| cycles / 1e6)

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::Stamp;
 use super::findings::{Findings, OverUpdates, Scar};
+use super::stamp::Stamp;
 
 /// A line of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
