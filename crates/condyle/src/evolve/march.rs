@@ -120,11 +120,7 @@ impl March {
         Self {
             chains: test.activities.iter().map(chain).collect(),
             fields: NodeFields::unworn(&insert, &state.depths),
-            spent: test
-                .activities
-                .iter()
-                .map(|_| CycleHistory::default())
-                .collect(),
+            spent: Vec::new(),
             cache: ContactCache::default(),
             femur,
             insert,
@@ -200,7 +196,7 @@ impl March {
     /// One cycle of every activity that repeats itself, the geometry held still.
     fn solve(
         &self,
-        spent: Vec<CycleHistory>,
+        mut spent: Vec<CycleHistory>,
         cache: ContactCache,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), Solved>, MarchError> {
@@ -210,6 +206,8 @@ impl March {
         let mut contact = self.test.contact.contact(self.bodies(&surface), memory);
         let mut counters = self.state.counters;
         let mut cycles = Vec::with_capacity(self.test.activities.len());
+        // A march that was stopped has given its histories away.
+        spent.resize_with(self.test.activities.len(), CycleHistory::default);
         for (number, spent) in spent.into_iter().enumerate() {
             let solved =
                 self.solve_activity(number, contact.as_mut(), spent, &mut counters, watch)?;
