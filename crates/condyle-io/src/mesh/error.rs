@@ -72,7 +72,7 @@ pub enum MeshFileError {
         /// The ending, without the dot.
         ending: String,
         /// The endings that would do.
-        known: &'static str,
+        known: String,
     },
     /// The content does not follow the format.
     #[error("{at}: {what}")]

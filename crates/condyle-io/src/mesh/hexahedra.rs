@@ -3,10 +3,16 @@
 use std::path::Path;
 
 use super::error::MeshFileError;
-use super::file::{ending, read_bytes, unknown_ending};
+use super::file::{Parser, parser, read_bytes};
 use super::hex_file::HexFile;
-use super::{inp, msh, vtu};
 use crate::files::Files;
+
+/// Every format by the ending of its name.
+const FORMATS: &[(&str, Parser<HexFile>)] = &[
+    ("inp", super::inp::parse),
+    ("msh", super::msh::parse),
+    ("vtu", super::vtu::parse),
+];
 
 /// Reads a mesh of 8-node hexahedra from Abaqus `.inp`, Gmsh `.msh` (2.2 and 4.1, text) or `.vtu`.
 ///
@@ -21,13 +27,7 @@ use crate::files::Files;
 /// there or not finite, a surface that is not on the boundary.
 pub fn read_hexahedra(files: &dyn Files, path: impl AsRef<Path>) -> Result<HexFile, MeshFileError> {
     let path = path.as_ref();
-    let parse = match ending(path).as_str() {
-        "inp" => inp::parse,
-        "msh" => msh::parse,
-        "vtu" => vtu::parse,
-        _ => return Err(unknown_ending(path, ".inp, .msh, .vtu")),
-    };
-    parse(path, &read_bytes(files, path)?)
+    parser(path, FORMATS)?(path, &read_bytes(files, path)?)
 }
 
 #[cfg(test)]

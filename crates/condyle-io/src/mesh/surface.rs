@@ -5,9 +5,16 @@ use std::path::Path;
 use condyle::geometry::TriangleMesh;
 
 use super::error::MeshFileError;
-use super::file::{ending, read_bytes, unknown_ending};
-use super::{obj, ply, stl, vtp};
+use super::file::{Parser, parser, read_bytes};
 use crate::files::Files;
+
+/// Every format by the ending of its name.
+const FORMATS: &[(&str, Parser<TriangleMesh>)] = &[
+    ("stl", super::stl::parse),
+    ("obj", super::obj::parse),
+    ("ply", super::ply::parse),
+    ("vtp", super::vtp::parse),
+];
 
 /// Reads a triangle surface from `.stl`, `.obj`, `.ply` or `.vtp`.
 ///
@@ -29,7 +36,7 @@ pub fn read_surface(
 
 /// The bytes of a surface's file, of one of the formats by its name.
 pub(crate) fn surface_bytes(files: &dyn Files, path: &Path) -> Result<Vec<u8>, MeshFileError> {
-    parser(path)?;
+    parser(path, FORMATS)?;
     read_bytes(files, path)
 }
 
@@ -38,20 +45,7 @@ pub(crate) fn surface_bytes(files: &dyn Files, path: &Path) -> Result<Vec<u8>, M
 /// # Errors
 /// As [`read_surface`], but for a file that cannot be read.
 pub fn parse_surface(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
-    parser(path)?(path, bytes)
-}
-
-type Parser = fn(&Path, &[u8]) -> Result<TriangleMesh, MeshFileError>;
-
-/// What reads the format that the file's ending names.
-fn parser(path: &Path) -> Result<Parser, MeshFileError> {
-    Ok(match ending(path).as_str() {
-        "stl" => stl::parse,
-        "obj" => obj::parse,
-        "ply" => ply::parse,
-        "vtp" => vtp::parse,
-        _ => return Err(unknown_ending(path, ".stl, .obj, .ply, .vtp")),
-    })
+    parser(path, FORMATS)?(path, bytes)
 }
 
 #[cfg(test)]
