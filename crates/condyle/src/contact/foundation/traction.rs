@@ -12,7 +12,7 @@ use crate::{
 /// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
 const STANDSTILL_MM_PER_S: f64 = 1e-9;
 
-/// NodeBlock shares under pressure and rubbed; all vectors in the femoral frame.
+/// Four shares of nodes under pressure and rubbed; all vectors in the femoral frame.
 ///
 /// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
 /// of sliding, s = v_t/w and w = sqrt(v_t^2 + v0^2).
