@@ -168,10 +168,7 @@ fn interval(interval: &Interval) -> String {
 }
 
 fn inside(is_inside: bool) -> &'static str {
-    match is_inside {
-        true => "inside",
-        false => "OUTSIDE",
-    }
+    if is_inside { "inside" } else { "OUTSIDE" }
 }
 
 fn print_surface(surface: &SurfaceComparison) {

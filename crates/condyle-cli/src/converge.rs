@@ -38,10 +38,10 @@ pub fn converge(arguments: &Converge) -> ExitCode {
     let told = Mutex::new(BTreeSet::new());
     let outcome = study(&plan, &options, &|on_event| {
         show(on_event, &told);
-        match stop.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if stop.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
         }
+        ControlFlow::Continue(())
     });
     match outcome {
         Ok(Converged::Done(convergence)) => print(&convergence, arguments),

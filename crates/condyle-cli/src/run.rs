@@ -34,10 +34,10 @@ pub fn run(arguments: &Run) -> ExitCode {
     let mut progress = Progress::new();
     let outcome = condyle_lab::run(&arguments.case, &options, &mut |on_event| {
         progress.show(&on_event);
-        match stop.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if stop.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
         }
+        ControlFlow::Continue(())
     });
     progress.finish();
     match outcome {

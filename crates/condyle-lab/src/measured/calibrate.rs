@@ -200,9 +200,10 @@ impl<'a> Search<'a> {
 
     fn factors_for(&mut self, rates: Interval) -> Result<Interval, CalibrateError> {
         // A lower limit of no wear is a factor of 0.
-        let low = match rates.low > 0.0 {
-            true => self.factor_for(rates.low)?,
-            false => 0.0,
+        let low = if rates.low > 0.0 {
+            self.factor_for(rates.low)?
+        } else {
+            0.0
         };
         let high = self.factor_for(rates.high)?;
         Ok(Interval { low, high })
@@ -234,9 +235,12 @@ impl<'a> Search<'a> {
 
     /// The trial whose rate is nearest.
     fn nearest(&self, rate: f64) -> Trial {
-        let nearer = |a: Trial, b: &Trial| match off(b, rate).abs() < off(&a, rate).abs() {
-            true => *b,
-            false => a,
+        let nearer = |a: Trial, b: &Trial| {
+            if off(b, rate).abs() < off(&a, rate).abs() {
+                *b
+            } else {
+                a
+            }
         };
         self.trials.iter().fold(self.trials[0], nearer)
     }

@@ -102,10 +102,10 @@ fn rows_of(run: &Table, cycle: CycleWord) -> Result<(f64, Vec<usize>), CompareEr
     let rows: Vec<usize> = (0..cycles.len())
         .filter(|&row| cycles[row] == chosen)
         .collect();
-    match rows.is_empty() {
-        true => Err(CompareError::NoColumn { column: "cycles" }),
-        false => Ok((chosen, rows)),
+    if rows.is_empty() {
+        return Err(CompareError::NoColumn { column: "cycles" });
     }
+    Ok((chosen, rows))
 }
 
 fn column_of<'a>(run: &'a Table, column: &'static str) -> Result<&'a [f64], CompareError> {

@@ -170,9 +170,12 @@ fn key_and_values(written: &str) -> Result<(&str, Vec<&str>), ConvergeError> {
 
 fn sort(runs: &mut [Planned], is_whole: bool) {
     let value = |run: &Planned| run.number.value();
-    runs.sort_by(|one, other| match is_whole {
-        true => value(one).total_cmp(&value(other)),
-        false => value(other).total_cmp(&value(one)),
+    runs.sort_by(|one, other| {
+        if is_whole {
+            value(one).total_cmp(&value(other))
+        } else {
+            value(other).total_cmp(&value(one))
+        }
     });
 }
 

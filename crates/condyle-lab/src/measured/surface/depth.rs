@@ -41,9 +41,11 @@ pub(super) fn compared(
     let radius = edge_mm(unworn).max(SPACINGS * spacing_mm(&soundings));
     let tree = RTree::bulk_load(soundings);
     let depth_of = |point: &Vec3| sheet.foot(point).map_or(f64::NAN, |foot| -foot.height_mm);
-    let scanned = |node: usize| match sheet.is_border(node) {
-        true => f64::NAN,
-        false => sounded(&tree, &unworn.nodes[node], radius).unwrap_or(f64::NAN),
+    let scanned = |node: usize| {
+        if sheet.is_border(node) {
+            return f64::NAN;
+        }
+        sounded(&tree, &unworn.nodes[node], radius).unwrap_or(f64::NAN)
     };
     Compared {
         predicted_mm: worn_nodes.iter().map(depth_of).collect(),

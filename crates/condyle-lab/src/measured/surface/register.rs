@@ -269,9 +269,10 @@ fn scale(pairs: &[Pair]) -> f64 {
 /// Tukey's weight of a residual in units of the scale.
 fn tukey(residual: f64) -> f64 {
     let part = residual / TUKEY;
-    match part.abs() < 1.0 {
-        true => (1.0 - part * part).powi(2),
-        false => 0.0,
+    if part.abs() < 1.0 {
+        (1.0 - part * part).powi(2)
+    } else {
+        0.0
     }
 }
 

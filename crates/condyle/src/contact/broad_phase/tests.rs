@@ -79,15 +79,19 @@ fn bumpy() -> TriangleMesh {
 }
 
 /// A block as a search would find it: its sample, its reach, and whether it is apart.
-fn look(femur: &FemoralSurface, block: &ShareBlock, pose: &Pose) -> (CachedSample, F64x4, bool) {
+fn sampled_near(
+    femur: &FemoralSurface,
+    block: &ShareBlock,
+    pose: &Pose,
+) -> (CachedSample, F64x4, bool) {
     let pose = Pose4::new(pose);
     let place = pose.to_femur(&block.centre);
-    let seen = CachedSample::at(femur, place, block.spread_mm2);
-    let normal = pose.turn_to_insert(&seen.sample.normal);
+    let cached = CachedSample::at(femur, place, block.spread_mm2);
+    let normal = pose.turn_to_insert(&cached.sample.normal);
     let slopes = EdgeSlopes::new([dot(&normal, &block.edge_a), dot(&normal, &block.edge_b)]);
     let reach_mm = slopes.reach_mm();
-    let is_apart = (seen.sample.gap_mm - reach_mm).least() > 0.0;
-    (seen, reach_mm, is_apart)
+    let is_apart = (cached.sample.gap_mm - reach_mm).least() > 0.0;
+    (cached, reach_mm, is_apart)
 }
 
 /// Smallest gap at the corners of a block's shares, less how much the mean over a share lies above the
@@ -95,8 +99,8 @@ fn look(femur: &FemoralSurface, block: &ShareBlock, pose: &Pose) -> (CachedSampl
 fn least_corner_mm(femur: &FemoralSurface, block: &ShareBlock, pose: &Pose) -> f64 {
     let pose4 = Pose4::new(pose);
     let gap_at = |place: &Vector<F64x4>| femur.gap_mm(&pose4.to_femur(place));
-    let (seen, ..) = look(femur, block, pose);
-    let above_mm = seen.sample.gap_mm - gap_at(&block.centre);
+    let (cached, ..) = sampled_near(femur, block, pose);
+    let above_mm = cached.sample.gap_mm - gap_at(&block.centre);
     let [half_a, half_b] = [&block.edge_a, &block.edge_b].map(|edge| edge * F64x4::splat(0.5));
     let corners = [
         block.centre + half_a + half_b,
@@ -124,12 +128,12 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
     );
     assert_eq!(candidates.len(), blocks.len());
     for (number, shares) in (0..).zip(blocks) {
-        let (seen, reach_mm, is_apart) = look(femur, shares, pose);
+        let (cached, reach_mm, is_apart) = sampled_near(femur, shares, pose);
         if is_apart {
-            let around = femur.curvature_bounds(&seen.place);
+            let around = femur.curvature_bounds(&cached.place);
             separations.set(
                 number,
-                &SeparationBound::new(&seen.sample, reach_mm, shares, around),
+                &SeparationBound::new(&cached.sample, reach_mm, shares, around),
             );
         } else {
             separations.touches(number);
@@ -165,7 +169,7 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
         for (number, block) in (0..).zip(after) {
             if !candidates.contains(&number) {
                 sure += 1;
-                assert!(look(femur, block, &to).2, "{:?} touch", block.nodes);
+                assert!(sampled_near(femur, block, &to).2, "{:?} touch", block.nodes);
                 let corner_mm = least_corner_mm(femur, block, &to);
                 assert!(corner_mm > 0.0, "{:?}: {corner_mm}", block.nodes);
             }

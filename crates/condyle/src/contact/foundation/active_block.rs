@@ -19,7 +19,7 @@ use crate::{
 pub(super) struct ActiveBlock {
     /// Number of the block.
     pub block: u32,
-    pub seen: CachedSample,
+    pub cached: CachedSample,
     /// The edge slopes of the shares.
     pub slopes: EdgeSlopes<F64x4>,
 }
@@ -38,14 +38,14 @@ impl ActiveBlock {
         pose: &Pose4,
         twist: &Twist4,
     ) -> Tractions4 {
-        let CachedSample { place, sample } = &self.seen;
+        let CachedSample { place, sample } = &self.cached;
         let mean = mean_overclosure(-sample.gap_mm, &self.slopes);
         let (pressure_mpa, slope) = law.pressure.pressures(mean.mm, shares.per_thickness);
         let stiffness = slope * shares.area_mm2;
         let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
         let mut load_by_turn = zero_vector();
-        if let Some(by_rise) = mean.by_rise {
-            let (by_a, by_b) = (by_rise[0] * stiffness, by_rise[1] * stiffness);
+        if let Some(by_slope) = mean.by_slope {
+            let (by_a, by_b) = (by_slope[0] * stiffness, by_slope[1] * stiffness);
             let by_normal = scale_add(&shares.edge_a, by_a, &(shares.edge_b * by_b));
             let by_normal = pose.turn_to_femur(&by_normal);
             let along_surface = tangential_part(&by_normal, &sample.normal);

@@ -44,7 +44,7 @@ pub(super) struct FoundationContact<'a, B> {
     directions: Vec<Directions4>,
     search: B,
     /// Every block's last sample of the femur, and the number of the response at which it touched last.
-    seen: Vec<CachedSample>,
+    cached: Vec<CachedSample>,
     touched_at: Vec<u64>,
     /// The number of the last response: the first is 2, and none has touched at the one before it.
     response: u64,
@@ -73,7 +73,7 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
                 Some(cache) => cache.search.worn(&cache.blocks, &blocks),
                 None => B::new(&blocks),
             },
-            seen: vec![CachedSample::nothing(); blocks.len()],
+            cached: vec![CachedSample::nothing(); blocks.len()],
             touched_at: vec![0; blocks.len()],
             response: 1,
             blocks,
@@ -108,30 +108,30 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
             let at = block as usize;
             let shares = &self.blocks[at];
             let touched = self.touched_at[at] + 1 == self.response;
-            let reuses = touched && self.seen[at].reaches(&place, reuse_mm);
-            let seen = if reuses {
-                self.seen[at].extrapolated(place)
+            let reuses = touched && self.cached[at].reaches(&place, reuse_mm);
+            let cached = if reuses {
+                self.cached[at].extrapolated(place)
             } else {
                 CachedSample::at(self.bodies.femur, place, shares.spread_mm2)
             };
-            let normal = pose.turn_to_insert(&seen.sample.normal);
+            let normal = pose.turn_to_insert(&cached.sample.normal);
             let slopes =
                 EdgeSlopes::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
             let reach_mm = slopes.reach_mm();
-            if (seen.sample.gap_mm - reach_mm).least() > 0.0 {
+            if (cached.sample.gap_mm - reach_mm).least() > 0.0 {
                 self.search.is_apart(block, || {
                     let curvature = self.bodies.femur.curvature_bounds(&place);
-                    SeparationBound::new(&seen.sample, reach_mm, shares, curvature)
+                    SeparationBound::new(&cached.sample, reach_mm, shares, curvature)
                 });
             } else {
                 self.search.touches(block);
                 self.touched_at[at] = self.response;
                 if !reuses {
-                    self.seen[at] = seen;
+                    self.cached[at] = cached;
                 }
                 self.active.push(ActiveBlock {
                     block,
-                    seen,
+                    cached,
                     slopes,
                 });
             }
@@ -150,8 +150,8 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
         for active in &self.active {
             let shares = &self.blocks[active.block as usize];
             let pressed = active.press(self.law, shares, pose, twist);
-            let force_n = pressed.force_n(&active.seen.sample.normal, self.law.friction);
-            total.add(&active.seen.place, &force_n);
+            let force_n = pressed.force_n(&active.cached.sample.normal, self.law.friction);
+            total.add(&active.cached.place, &force_n);
             slips.add(&shares.in_region, &pressed);
             self.tractions.push(pressed);
         }
@@ -191,9 +191,9 @@ impl<B: BroadPhase> Linearization for FoundationContact<'_, B> {
     fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
         for (active, tractions) in self.active.chunks(2).zip(self.tractions.chunks(2)) {
-            let one = (&active[0].seen, &tractions[0]);
+            let one = (&active[0].cached, &tractions[0]);
             let nothing = (one.0, &Tractions4::none());
-            let other = active.get(1).map(|active| (&active.seen, &tractions[1]));
+            let other = active.get(1).map(|active| (&active.cached, &tractions[1]));
             sum.add(one, other.unwrap_or(nothing), self.law.friction);
         }
         let (by_pose, by_twist) = sum.total();

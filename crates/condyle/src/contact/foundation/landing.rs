@@ -78,10 +78,10 @@ impl ShortWay {
         tractions: &Tractions4,
         directions: &Directions4,
     ) -> Landed4 {
-        let CachedSample { place, sample } = &active.seen;
-        let rise_n = tractions.load_rise_n(place, &self.moved);
+        let CachedSample { place, sample } = &active.cached;
+        let change_n = tractions.load_change_n(place, &self.moved);
         let area_mm2 = Number::max(tractions.area_mm2, F64x4::splat(f64::MIN_POSITIVE));
-        let pressure_mpa = tractions.pressure_mpa + rise_n / area_mm2;
+        let pressure_mpa = tractions.pressure_mpa + change_n / area_mm2;
         let landed = Tractions4 {
             pressure_mpa: Number::max(pressure_mpa, F64x4::splat(0.0)),
             sliding: Sliding::new(

@@ -4,7 +4,7 @@ use crate::number::Number;
 
 /// Below this an edge slope counts as this much, mm: it keeps the
 /// closed form away from 0/0 and widens the edge of contact by a thousandth of a millimetre.
-const LEAST_RISE_MM: f64 = 1e-3;
+const LEAST_SLOPE_MM: f64 = 1e-3;
 
 /// The edge slopes of a share: how much the overclosure rises along each of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ impl<T: Number> EdgeSlopes<T> {
     /// From those along both edges, mm.
     #[inline(always)]
     pub fn new(signed_mm: [T; 2]) -> Self {
-        let least2 = T::splat(LEAST_RISE_MM * LEAST_RISE_MM);
+        let least2 = T::splat(LEAST_SLOPE_MM * LEAST_SLOPE_MM);
         let size = |rise: T| rise.mul_add(rise, least2).sqrt();
         let [a, b] = signed_mm;
         Self {
@@ -43,7 +43,7 @@ pub(super) struct MeanOverclosure<T> {
     pub by_middle: T,
     /// Derivative by the edge slopes of the share; none where all of
     /// it presses in every lane.
-    pub by_rise: Option<[T; 2]>,
+    pub by_slope: Option<[T; 2]>,
 }
 
 /// Mean of max(0, d) over a parallelogram where d is linear: `middle_mm` at its centre, rising
@@ -61,7 +61,7 @@ pub(super) fn mean_overclosure<T: Number>(
         return MeanOverclosure {
             mm: middle_mm,
             by_middle: T::one(),
-            by_rise: None,
+            by_slope: None,
         };
     }
     let part = mean_in_part(middle_mm, slopes);
@@ -70,7 +70,7 @@ pub(super) fn mean_overclosure<T: Number>(
     MeanOverclosure {
         mm: in_part.below_zero(part.mm, middle_mm),
         by_middle: in_part.below_zero(part.by_middle, T::one()),
-        by_rise: part.by_rise.map(|[a, b]| [none_or(a), none_or(b)]),
+        by_slope: part.by_slope.map(|[a, b]| [none_or(a), none_or(b)]),
     }
 }
 
@@ -94,7 +94,7 @@ fn mean_in_part<T: Number>(middle_mm: T, slopes: &EdgeSlopes<T>) -> MeanOverclos
     MeanOverclosure {
         mm,
         by_middle: (q1 - q2 - q3 + q4) * per_area * half,
-        by_rise: Some([by_r * sign_r, by_s * sign_s]),
+        by_slope: Some([by_r * sign_r, by_s * sign_s]),
     }
 }
 
@@ -116,12 +116,12 @@ mod tests {
 
     #[test]
     fn verify_mean_against_sampling() {
-        for rises in [[0.2, 0.1], [0.05, -0.2], [0.1, 0.1]] {
+        for slopes in [[0.2, 0.1], [0.05, -0.2], [0.1, 0.1]] {
             for middle in [-0.12, -0.05, 0.0, 0.03, 0.1, 0.2] {
-                let mean = mean_overclosure(middle, &EdgeSlopes::new(rises)).mm;
+                let mean = mean_overclosure(middle, &EdgeSlopes::new(slopes)).mm;
                 assert!(
-                    (mean - sampled(middle, rises)).abs() < 2e-6,
-                    "{middle} {rises:?} {mean}"
+                    (mean - sampled(middle, slopes)).abs() < 2e-6,
+                    "{middle} {slopes:?} {mean}"
                 );
             }
         }
@@ -129,24 +129,25 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_mean() {
-        let mean = |middle: f64, rises: [f64; 2]| mean_overclosure(middle, &EdgeSlopes::new(rises));
+        let mean =
+            |middle: f64, slopes: [f64; 2]| mean_overclosure(middle, &EdgeSlopes::new(slopes));
         let step = 1e-6;
-        for rises in [[0.2, 0.1], [0.05, -0.2], [0.1, 0.1], [1e-4, 0.15]] {
+        for slopes in [[0.2, 0.1], [0.05, -0.2], [0.1, 0.1], [1e-4, 0.15]] {
             for middle in [-0.04, 0.0, 0.03, 0.07, 0.2] {
-                let here = mean(middle, rises);
-                let by_middle =
-                    (mean(middle + step, rises).mm - mean(middle - step, rises).mm) / (2.0 * step);
+                let here = mean(middle, slopes);
+                let by_middle = (mean(middle + step, slopes).mm - mean(middle - step, slopes).mm)
+                    / (2.0 * step);
                 assert!((here.by_middle - by_middle).abs() < 1e-7);
                 for edge in 0..2 {
                     let moved = |sign: f64| {
-                        let mut other = rises;
+                        let mut other = slopes;
                         other[edge] += sign * step;
                         mean(middle, other).mm
                     };
-                    let by_rise = (moved(1.0) - moved(-1.0)) / (2.0 * step);
+                    let by_slope = (moved(1.0) - moved(-1.0)) / (2.0 * step);
                     assert!(
-                        (here.by_rise.unwrap_or_default()[edge] - by_rise).abs() < 1e-7,
-                        "{middle} {rises:?}"
+                        (here.by_slope.unwrap_or_default()[edge] - by_slope).abs() < 1e-7,
+                        "{middle} {slopes:?}"
                     );
                 }
             }

@@ -47,15 +47,15 @@ impl Facets<F32x8> {
             value(one.0, one.1).zip_map(&value(other.0, other.1), F32x8::pair)
         };
         Self {
-            place: vector(|seen, _| seen.place),
-            normal: vector(|seen, _| seen.sample.normal),
+            place: vector(|cached, _| cached.place),
+            normal: vector(|cached, _| cached.sample.normal),
             curvature: Curvature {
-                xx: of(|seen, _| seen.sample.curvature.xx),
-                yy: of(|seen, _| seen.sample.curvature.yy),
-                zz: of(|seen, _| seen.sample.curvature.zz),
-                xy: of(|seen, _| seen.sample.curvature.xy),
-                xz: of(|seen, _| seen.sample.curvature.xz),
-                yz: of(|seen, _| seen.sample.curvature.yz),
+                xx: of(|cached, _| cached.sample.curvature.xx),
+                yy: of(|cached, _| cached.sample.curvature.yy),
+                zz: of(|cached, _| cached.sample.curvature.zz),
+                xy: of(|cached, _| cached.sample.curvature.xy),
+                xz: of(|cached, _| cached.sample.curvature.xz),
+                yz: of(|cached, _| cached.sample.curvature.yz),
             },
             load_n: of(|_, tractions| tractions.pressure_mpa * tractions.area_mm2),
             load_by_motion: vector(|_, tractions| tractions.load_by_motion),

@@ -79,7 +79,7 @@ impl Tractions4 {
     /// How the loads of shares at `place` grow by a short motion of the femur, turn and shift in
     /// its frame, N.
     #[inline(always)]
-    pub fn load_rise_n(&self, place: &Vector<F64x4>, motion: &Twist4) -> F64x4 {
+    pub fn load_change_n(&self, place: &Vector<F64x4>, motion: &Twist4) -> F64x4 {
         dot(&self.load_by_motion, &motion.velocity(place))
             + dot(&self.load_by_turn, motion.angular())
     }
