@@ -71,10 +71,11 @@ need_results() {
     "$condyle" run cases/stanmore-force.toml --out "$results"
 }
 
-# Builds the program that measures; sets $figures to its path.
+# Builds the program that measures, in a profile of Cargo.toml; sets $figures to its path.
 need_figures() {
+    local profile=$1
     need_command python3 python3
-    figures=$(cargo bench --locked --quiet -p condyle-lab --bench figures --no-run --message-format=json |
+    figures=$(cargo bench --profile "$profile" --locked --quiet -p condyle-lab --bench figures --no-run --message-format=json |
         python3 -c 'import json, sys
 for line in map(json.loads, sys.stdin):
     if line.get("target", {}).get("name") == "figures": print(line["executable"])')

@@ -11,7 +11,7 @@
 //! let layer = |z: f64| corners.map(|[x, y]| Vec3::new(x, y, z));
 //! let mut mesh = HexMesh {
 //!     nodes: [layer(0.0), layer(1.0), layer(2.0)].concat(),
-//!     hexes: vec![[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]],
+//!     hexes: vec![[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]].into(),
 //! };
 //! assert_eq!(mesh.volume(), 2.0);
 //!

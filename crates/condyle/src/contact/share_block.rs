@@ -4,7 +4,7 @@ use super::model::MOST_REGIONS;
 use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, Insert, NodeBlock, Share, SurfaceRegions},
-    number::{F64x4, LANES, Number},
+    number::{F64x4, LANES, Number, vector::vector_from_lanes},
 };
 
 /// The shares of a block of four nodes; a lane too many repeats the last node without area.
@@ -38,9 +38,6 @@ impl ShareBlock {
         let NodeBlock { nodes, count } = *block;
         let thickness_mm = insert.thickness_mm();
         let share = |lane: usize| &surface.shares[nodes[lane] as usize];
-        let vector = |of: fn(&Share) -> &Vec3| {
-            Vector::from([0, 1, 2].map(|axis| F64x4::from_lanes(|lane| of(share(lane))[axis])))
-        };
         let regions = nodes.map(|node| region_of(insert.regions(), node));
         let is_in = |region: usize, lane: usize| usize::from(regions[lane]) == region;
         Self {
@@ -49,9 +46,9 @@ impl ShareBlock {
             in_region: std::array::from_fn(|region| {
                 F64x4::from_lanes(|lane| f64::from(u8::from(is_in(region, lane))))
             }),
-            centre: vector(|share| &share.centre),
-            edge_a: vector(|share| &share.edge_a),
-            edge_b: vector(|share| &share.edge_b),
+            centre: vector_from_lanes(|lane| &share(lane).centre),
+            edge_a: vector_from_lanes(|lane| &share(lane).edge_a),
+            edge_b: vector_from_lanes(|lane| &share(lane).edge_b),
             area_mm2: F64x4::from_lanes(|lane| {
                 if lane < count {
                     share(lane).area_mm2

@@ -1,12 +1,23 @@
-//! Products of vectors whose sums are rounded once: half the instructions of products and sums.
+//! Vectors of numbers, and their products, whose sums are rounded once: half the instructions of products and sums.
 
-use super::real::Number;
-use crate::Vector;
+use super::{
+    lanes::{F64x4, LANES},
+    real::Number,
+};
+use crate::{Vec3, Vector};
 
 /// Zero, written out: the compiler does not take nalgebra's repetition of it apart.
 #[inline(always)]
 pub fn zero_vector<T: Number>() -> Vector<T> {
     Vector::new(T::zero(), T::zero(), T::zero())
+}
+
+/// Four vectors side by side, each of a lane.
+#[inline(always)]
+pub fn vector_from_lanes<'a>(of: impl Fn(usize) -> &'a Vec3) -> Vector<F64x4> {
+    let lanes: [&Vec3; LANES] = [of(0), of(1), of(2), of(3)];
+    let along = |axis: usize| F64x4::from_lanes(|lane| lanes[lane][axis]);
+    Vector::new(along(0), along(1), along(2))
 }
 
 /// a . b
@@ -44,7 +55,6 @@ pub fn tangential_part<T: Number>(v: &Vector<T>, n: &Vector<T>) -> Vector<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Vec3;
 
     #[test]
     fn products_are_those_of_the_vectors() {

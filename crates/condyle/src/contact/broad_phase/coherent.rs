@@ -13,11 +13,14 @@ use crate::{contact::share_block::ShareBlock, spatial::Pose};
 /// A block that was found apart is no candidate before the femur can have come near enough. What touches
 /// is exactly what brute force would find. A cycle after, and with a little wear, the femur
 /// is within tenths of a millimetre of where it was, and so every increment goes on from what was known
-/// there. Hardly any block is a candidate but those that touch.
+/// there; where that does not tell, from what the increment before has just found. Hardly any block is a
+/// candidate but those that touch.
 pub(in crate::contact) struct Coherent {
     /// What is known at the increments come to so far, but for the one that it is now.
     kept: Vec<Option<Separations>>,
     increment: usize,
+    /// The increment before, until the first pose of this one.
+    neighbour: Option<usize>,
     now: Separations,
     places: Vec<BlockPlaces>,
     last_wear: LastWear,
@@ -37,6 +40,7 @@ impl BroadPhase for Coherent {
         Self {
             kept: Vec::new(),
             increment: 0,
+            neighbour: None,
             now: Separations::new(blocks.len()),
             places: BlockPlaces::of(blocks),
             last_wear: LastWear::default(),
@@ -68,6 +72,7 @@ impl BroadPhase for Coherent {
             self.kept.resize(most + 1, None);
         }
         let kept = self.take_kept(increment);
+        self.neighbour = kept.is_some().then_some(self.increment);
         let next = kept.unwrap_or_else(|| self.now.clone());
         let left = std::mem::replace(&mut self.now, next);
         self.kept[self.increment] = Some(left);
@@ -75,9 +80,14 @@ impl BroadPhase for Coherent {
     }
 
     fn candidates(&mut self, pose: &Pose) -> &[u32] {
-        let (places, last_wear) = (&self.places, &self.last_wear);
-        self.now
-            .follow(pose, places, last_wear, &mut self.candidates);
+        let neighbour = self.neighbour.take();
+        self.now.follow(
+            pose,
+            &self.places,
+            &self.last_wear,
+            neighbour.and_then(|increment| self.kept[increment].as_ref()),
+            &mut self.candidates,
+        );
         &self.candidates
     }
 

@@ -48,6 +48,25 @@ struct FemurStep {
     turn_rad: F32x8,
 }
 
+/// What was known where the femur was at another increment, and the way from there.
+struct Neighbour<'a> {
+    eights: &'a [Eight],
+    step: FemurStep,
+}
+
+impl Neighbour<'_> {
+    /// Gives eight blocks the bounds of those that may touch by theirs, and are apart by its own; a bit for
+    /// each that still may touch.
+    #[inline(always)]
+    fn help(&self, number: usize, places: &BlockPlaces, bounds: &mut Eight, may_touch: u32) -> u32 {
+        let mut known = self.eights[number].clone();
+        let motion = self.step.of(&places.middles);
+        let apart = may_touch & !known.carry(&motion, self.step.lost_mm(places));
+        bounds.take_over(apart, &known);
+        may_touch & !apart
+    }
+}
+
 impl FemurStep {
     fn between(from: &Pose, to: &Pose) -> Self {
         let turn: Mat3 = (to.rotation - from.rotation).transpose();
@@ -108,6 +127,20 @@ impl Eight {
         self.radius_mm = radius_mm.to_array();
         clear_mm.not_above_zero() | radius_mm.not_above_zero()
     }
+
+    /// Takes over those bounds of others that have a bit.
+    fn take_over(&mut self, mut which: u32, others: &Self) {
+        while which != 0 {
+            let i = which.trailing_zeros() as usize;
+            self.clear_mm[i] = others.clear_mm[i];
+            for axis in 0..3 {
+                self.slope[axis][i] = others.slope[axis][i];
+            }
+            self.loss[i] = others.loss[i];
+            self.radius_mm[i] = others.radius_mm[i];
+            which &= which - 1;
+        }
+    }
 }
 
 impl Separations {
@@ -128,13 +161,18 @@ impl Separations {
 
     /// The femur moves on, and the blocks have worn to `places` if they had not yet; lists the blocks
     /// that may touch now, ascending.
+    ///
+    /// Blocks that another increment knows to be apart, from where the femur was then, take over its bounds,
+    /// if it is of the blocks as they have worn.
     pub fn follow(
         &mut self,
         to: &Pose,
         places: &[BlockPlaces],
         last: &LastWear,
+        other: Option<&Self>,
         candidates: &mut Vec<u32>,
     ) {
+        let neighbour = other.and_then(|other| other.neighbour(to, last));
         let from = self.at.replace(*to).unwrap_or(*to);
         let step = FemurStep::between(&from, to);
         let axes = columns(&from.rotation);
@@ -149,6 +187,11 @@ impl Separations {
                 lost_mm += wear.lost_mm;
             }
             let mut may_touch = bounds.carry(&motion, lost_mm);
+            if let Some(neighbour) = &neighbour
+                && may_touch != 0
+            {
+                may_touch = neighbour.help(number, places, bounds, may_touch);
+            }
             while may_touch != 0 {
                 candidates.push((number * LANES_F32) as u32 + may_touch.trailing_zeros());
                 may_touch &= may_touch - 1;
@@ -156,6 +199,15 @@ impl Separations {
         }
         // The last eight may not be full.
         candidates.truncate(candidates.partition_point(|&block| (block as usize) < self.count));
+    }
+
+    /// What this knows where the femur is to go, if it is of the blocks as they have worn last.
+    fn neighbour(&self, to: &Pose, last: &LastWear) -> Option<Neighbour<'_>> {
+        let at = self.at.as_ref().filter(|_| self.worn == last.number)?;
+        Some(Neighbour {
+            eights: &self.eights,
+            step: FemurStep::between(at, to),
+        })
     }
 
     /// A block was sampled where the femur is now, and is apart.

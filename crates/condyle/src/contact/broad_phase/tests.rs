@@ -124,6 +124,7 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
         pose,
         &BlockPlaces::of(blocks),
         &LastWear::default(),
+        None,
         &mut candidates,
     );
     assert_eq!(candidates.len(), blocks.len());
@@ -143,12 +144,13 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
 }
 
 /// Steps the femur at random from about `height_mm` over the insert, which wears or is restored at
-/// two of three steps, and holds what is no candidate then against a search. Gives how many blocks were no candidates.
+/// two of three steps, and holds what is no candidate then against a search, with the help of another increment
+/// near by. Gives how many blocks were no candidates.
 fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
     let shares = |insert: &Insert| ShareBlock::of(insert, &insert.surface());
     let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
     let mut numbers = Numbers(17);
-    let mut sure = 0;
+    let (mut sure, mut taken_over) = (0, 0);
     for step in 0..150 {
         let (from, to) = numbers.step(height_mm);
         let (before, after) = match step % 3 {
@@ -164,8 +166,20 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
         let mut candidates = Vec::new();
         // There by way of half of it, as over many steps.
         let half = Pose::new(from.rotation, to.translation);
-        separations.follow(&half, &BlockPlaces::of(after), &wear, &mut candidates);
-        separations.follow(&to, &BlockPlaces::of(after), &wear, &mut candidates);
+        let places = BlockPlaces::of(after);
+        separations.follow(&half, &places, &wear, None, &mut candidates);
+        let mut alone = separations.clone();
+        alone.follow(&to, &places, &wear, None, &mut candidates);
+        let candidates_alone = candidates.len();
+        let near_by = Pose::new(to.rotation, to.translation + numbers.vector(0.2));
+        let mut other = searched(femur, after, &near_by);
+        let no_more_wear = LastWear {
+            number: 1,
+            eights: BlockWear::between(after, after),
+        };
+        other.follow(&near_by, &places, &no_more_wear, None, &mut candidates);
+        separations.follow(&to, &places, &wear, Some(&other), &mut candidates);
+        taken_over += candidates_alone - candidates.len();
         for (number, block) in (0..).zip(after) {
             if !candidates.contains(&number) {
                 sure += 1;
@@ -175,7 +189,8 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
             }
         }
     }
-    println!("{sure} of {}", 150 * unworn.len());
+    println!("{sure} of {}, {taken_over} taken over", 150 * unworn.len());
+    assert!(taken_over > LANES);
     sure
 }
 

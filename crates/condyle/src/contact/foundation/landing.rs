@@ -10,7 +10,10 @@ use crate::{
     Vec3, Vector,
     contact::{model::TouchedNode, share_block::ShareBlock},
     geometry::ArticulatingSurface,
-    number::{F64x4, Number, vector::dot},
+    number::{
+        F64x4, Number,
+        vector::{dot, vector_from_lanes},
+    },
     spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist, Twist4},
 };
 
@@ -20,11 +23,8 @@ pub(super) struct Directions4([Vector<F64x4>; 2]);
 impl Directions4 {
     /// Anterior along the surface, then lateral along it.
     pub fn new(surface: &ArticulatingSurface, shares: &ShareBlock) -> Self {
-        let at = |lane: usize| surface.directions(shares.nodes[lane] as usize);
-        let vector = |which: usize| {
-            Vector::from([0, 1, 2].map(|axis| F64x4::from_lanes(|lane| at(lane)[which][axis])))
-        };
-        Self([vector(0), vector(1)])
+        let at = shares.nodes.map(|node| surface.directions(node as usize));
+        Self([0, 1].map(|which| vector_from_lanes(|lane| &at[lane][which])))
     }
 }
 

@@ -2,13 +2,12 @@
 
 use super::quadratic::Quadratic;
 use crate::{
-    Vector,
     contact::{
         model::{MOST_REGIONS, TouchedNode},
         pressure_law::PressureLaw,
     },
     geometry::{FacesAround, FemoralSurface, MOST_GAP_SLOPE, Share},
-    number::{F64x4, LANES, Number},
+    number::{F64x4, LANES, Number, vector::vector_from_lanes},
     spatial::Pose4,
 };
 
@@ -95,8 +94,8 @@ impl PeakSearch<'_> {
     /// Mean gaps over the shares of up to four nodes, mm.
     fn gaps_mm(&self, nodes: &[u32]) -> F64x4 {
         let share = |lane: usize| &self.shares[nodes[lane.min(nodes.len() - 1)] as usize];
-        let axis = |axis: usize| F64x4::from_lanes(|lane| share(lane).centre[axis]);
-        let place = self.pose.to_femur(&Vector::new(axis(0), axis(1), axis(2)));
+        let centres = vector_from_lanes(|lane| &share(lane).centre);
+        let place = self.pose.to_femur(&centres);
         let spread_mm2 = F64x4::from_lanes(|lane| share(lane).spread_mm2);
         self.femur.sample(&place, spread_mm2).gap_mm
     }
