@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use condyle_lab::measured::{
-    CompareError, Comparison, Errors, GravimetricComparison, Interval, KinematicsComparison, Place,
-    Rate, SurfaceComparison, SurfaceErrors, compare as study,
+    CompareError, Comparison, Errors, GravimetricComparison, Interval, KinematicsComparison,
+    NodeDepths, Rate, SurfaceComparison, SurfaceErrors, compare as study,
 };
 
 use crate::{arguments::Compare, exit};
@@ -213,8 +213,8 @@ fn print_errors(name: &str, errors: &SurfaceErrors) {
     println!("{name:<28}{mean_mm:>10.4}{mean_absolute_mm:>10.4}{rms_mm:>10.4}{area_mm2:>12.0}");
 }
 
-fn print_place(name: &str, place: &Place) {
-    let Place {
+fn print_place(name: &str, place: &NodeDepths) {
+    let NodeDepths {
         x_mm,
         z_mm,
         predicted_mm,

@@ -115,9 +115,9 @@ fn not_estimated(summary: &Summary) -> impl Iterator<Item = (String, &String)> {
 }
 
 /// A name and what is said of it.
-type Row = (&'static str, String);
+type SummaryLine = (&'static str, String);
 
-fn rows(summary: &Summary) -> Vec<Row> {
+fn rows(summary: &Summary) -> Vec<SummaryLine> {
     let mut rows = vec![("gait cycles", format!("{:.0}", summary.cycles))];
     rows.extend(rows_of_wear(summary));
     rows.extend(rows_of_contact(summary));
@@ -127,7 +127,7 @@ fn rows(summary: &Summary) -> Vec<Row> {
     rows
 }
 
-fn rows_of_wear(summary: &Summary) -> [Row; 3] {
+fn rows_of_wear(summary: &Summary) -> [SummaryLine; 3] {
     let Summary {
         volume_loss_mm3,
         volume_loss_mesh_mm3,
@@ -150,13 +150,13 @@ fn rows_of_wear(summary: &Summary) -> [Row; 3] {
     ]
 }
 
-fn rows_of_contact(summary: &Summary) -> [Row; 2] {
+fn rows_of_contact(summary: &Summary) -> [SummaryLine; 2] {
     let pressure = format!("{:.1} MPa", summary.peak_pressure_mpa);
     let area = format!("{:.0} mm2", summary.peak_contact_area_mm2);
     [("peak pressure", pressure), ("largest contact area", area)]
 }
 
-fn rows_of_motion(summary: &Summary) -> [Row; 3] {
+fn rows_of_motion(summary: &Summary) -> [SummaryLine; 3] {
     let share = 100.0 * summary.medial_load_share;
     [
         (
@@ -171,7 +171,7 @@ fn rows_of_motion(summary: &Summary) -> [Row; 3] {
     ]
 }
 
-fn rows_of_work(summary: &Summary) -> [Row; 5] {
+fn rows_of_work(summary: &Summary) -> [SummaryLine; 5] {
     let iterations = per_cycle(
         summary.newton_iterations,
         summary.newton_iterations_per_cycle,
@@ -201,7 +201,7 @@ fn per_cycle(all: u64, per_cycle: f64) -> String {
 }
 
 /// Where the discretisation error comes from: signed, what finer values would change.
-fn rows_of_error(error: &ErrorEstimate) -> [Row; 3] {
+fn rows_of_error(error: &ErrorEstimate) -> [SummaryLine; 3] {
     [
         (
             "error of mass, by parts",

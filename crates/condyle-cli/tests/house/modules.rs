@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::repository::{TextFile, text_files_ending};
 use crate::source::{Edge, Sources, made_up};
 
 /// Each module, and what it may name outside of itself: modules with all that is in them, or single
@@ -252,4 +253,39 @@ fn what_no_row_allows_is_told_with_its_place() {
     assert!(forbidden(&sources, item, &[]).is_empty());
     let of_inner: &[(&str, &[&str])] = &[("made::high", &[]), ("made::high::inner", &[])];
     assert_eq!(without_row(&sources, of_inner), ["made::low"]);
+}
+
+/// Whether a file declares a module, by `mod name;` or on a line of a macro's list.
+fn declares(file: &TextFile, name: &str) -> bool {
+    let ends = [format!("mod {name};"), format!("mod {name} {{")];
+    file.text.lines().any(|line| {
+        let line = line.trim();
+        ends.iter().any(|end| line.ends_with(end)) || line == format!("{name},")
+    })
+}
+
+/// The files that may declare a module that is in `path`, and its name.
+fn parents(path: &str) -> Option<([String; 4], &str)> {
+    let path = path.strip_suffix("/mod").unwrap_or(path);
+    let (folder, name) = path.rsplit_once('/')?;
+    let outermost = folder.ends_with("/src") && ["lib", "main"].contains(&name);
+    let within = ["mod", "lib", "main"].map(|file| format!("{folder}/{file}.rs"));
+    let [a, b, c] = within;
+    (!outermost).then(|| ([a, b, c, format!("{folder}.rs")], name))
+}
+
+/// A file that nobody declares is not compiled, and nobody misses it.
+#[test]
+fn every_file_is_a_module() {
+    let files = text_files_ending(".rs");
+    let of_src = files.iter().filter(|file| file.path.contains("/src/"));
+    let left_out = of_src.filter(|file| {
+        let Some((parents, name)) = parents(file.path.trim_end_matches(".rs")) else {
+            return false;
+        };
+        let mut parents = files.iter().filter(|file| parents.contains(&file.path));
+        !parents.any(|parent| declares(parent, name))
+    });
+    let left_out: Vec<&str> = left_out.map(|file| file.path.as_str()).collect();
+    assert!(left_out.is_empty(), "not compiled: {left_out:?}");
 }

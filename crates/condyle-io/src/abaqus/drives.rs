@@ -134,7 +134,7 @@ pub(super) fn write<W: Write>(
         inp.line(&format!("{set}, {first}, {last}"))?;
     }
     for (index, command) in JointIndex::ALL.into_iter().zip(commands) {
-        if let (STAY, Place::Node { set, dof }) = (*command, place(model, index)) {
+        if let (STAY, JointInFile::Node { set, dof }) = (*command, place(model, index)) {
             inp.line(&format!("{set}, {dof}, {dof}"))?;
         }
     }
@@ -146,7 +146,7 @@ pub(super) fn write<W: Write>(
 }
 
 /// Where a joint is in the file.
-enum Place {
+enum JointInFile {
     /// A degree of freedom of a reference node.
     Node { set: &'static str, dof: usize },
     /// The free rotation of the hinge.
@@ -155,10 +155,10 @@ enum Place {
 
 /// The joint that carries the insert is the hinge; the others are degrees of freedom of the carriage or the
 /// femur, 1 to 3 along x, y and z and 4 to 6 about them.
-fn place(model: &Model<'_>, index: JointIndex) -> Place {
+fn place(model: &Model<'_>, index: JointIndex) -> JointInFile {
     let joint = model.test.machine().joint(index).description;
     if index.place() == 0 {
-        return Place::Hinge;
+        return JointInFile::Hinge;
     }
     let (Axis::Along(direction) | Axis::About(direction) | Axis::AboutFemur(direction)) =
         joint.axis;
@@ -171,17 +171,17 @@ fn place(model: &Model<'_>, index: JointIndex) -> Place {
         MovedBody::Insert => names::CARRIAGE,
         MovedBody::Femur => names::FEMUR_REF,
     };
-    Place::Node { set, dof }
+    JointInFile::Node { set, dof }
 }
 
 fn drive<W: Write>(
     joint: &JointDescription,
-    place: &Place,
+    place: &JointInFile,
     command: Command,
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
     match (command, place) {
-        (Command::Free, _) | (STAY, Place::Node { .. }) => Ok(()),
+        (Command::Free, _) | (STAY, JointInFile::Node { .. }) => Ok(()),
         (Command::Lead { by, along }, _) => {
             let amplitude = along.name(|| motion_name(joint));
             lead_place(place, by, &amplitude, inp)
@@ -204,18 +204,18 @@ impl Along {
 }
 
 fn lead_place<W: Write>(
-    place: &Place,
+    place: &JointInFile,
     by: f64,
     amplitude: &str,
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
     let how = format!("OP=NEW, AMPLITUDE={amplitude}, TYPE=DISPLACEMENT");
     match place {
-        Place::Node { set, dof } => {
+        JointInFile::Node { set, dof } => {
             inp.keyword(&format!("*BOUNDARY, {how}"))?;
             inp.line(&format!("{set}, {dof}, {dof}, {by:?}"))
         }
-        Place::Hinge => {
+        JointInFile::Hinge => {
             inp.keyword(&format!("*CONNECTOR MOTION, {how}"))?;
             inp.line(&format!("{}, 4, {by:?}", names::HINGE))
         }
@@ -223,18 +223,18 @@ fn lead_place<W: Write>(
 }
 
 fn push_place<W: Write>(
-    place: &Place,
+    place: &JointInFile,
     by: f64,
     amplitude: &str,
     inp: &mut InpWriter<W>,
 ) -> io::Result<()> {
     let how = format!("OP=NEW, AMPLITUDE={amplitude}");
     match place {
-        Place::Node { set, dof } => {
+        JointInFile::Node { set, dof } => {
             inp.keyword(&format!("*CLOAD, {how}"))?;
             inp.line(&format!("{set}, {dof}, {by:?}"))
         }
-        Place::Hinge => {
+        JointInFile::Hinge => {
             inp.keyword(&format!("*CONNECTOR LOAD, {how}"))?;
             inp.line(&format!("{}, 4, {by:?}", names::HINGE))
         }

@@ -159,5 +159,4 @@ fn remove_old(folder: &Path) -> io::Result<()> {
 }
 
 #[cfg(test)]
-#[path = "tests.rs"]
 mod tests;

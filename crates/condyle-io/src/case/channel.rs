@@ -6,7 +6,7 @@ use crate::keyed::{Limits, within};
 
 /// A waveform of the machine, as a case has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Channel(&'static machine::Channel);
+pub struct CaseChannel(&'static machine::Channel);
 
 /// A waveform with a name, as a CSV text.
 pub(super) struct NamedWaveform {
@@ -34,7 +34,7 @@ const NONE: NamedWaveform = NamedWaveform {
     interpolation: Interpolation::HalfCosine,
 };
 
-impl Channel {
+impl CaseChannel {
     /// All of them, in the order they are written.
     pub fn all() -> impl Iterator<Item = Self> {
         KNEE.channels.iter().copied().map(Self)
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn every_waveform_has_a_default_and_a_key_with_its_unit() {
-        for channel in Channel::all() {
+        for channel in CaseChannel::all() {
             assert!(!channel.named().is_empty(), "{}", channel.name());
             let suffix = channel.of_machine().unit.suffix();
             assert_eq!(channel.knots_key(), format!("knots_{suffix}"));

@@ -2,7 +2,7 @@
 
 use condyle::machine::{JointDescription, JointIndex, JointKind, Waveform, knee::KNEE};
 
-use super::channel::Channel;
+use super::channel::CaseChannel;
 use super::drive_reason::DriveReason;
 use super::machine_keys::{
     DriveWord, MachineSettings, Preset, Rotation, Springs, Start, Translation,
@@ -44,12 +44,12 @@ pub struct Freedoms {
 /// The waveforms of a machine, each in the unit of its key.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waveforms {
-    given: Vec<(Channel, Waveform)>,
+    given: Vec<(CaseChannel, Waveform)>,
 }
 
 impl Waveforms {
     /// The waveform of `channel`, if the machine uses it.
-    pub fn get(&self, channel: Channel) -> Option<&Waveform> {
+    pub fn get(&self, channel: CaseChannel) -> Option<&Waveform> {
         let mut given = self.given.iter();
         given.find_map(|(of, waveform)| (*of == channel).then_some(waveform))
     }
@@ -104,13 +104,13 @@ fn drive_words(joint: &JointDescription) -> &'static str {
 }
 
 /// The waveform that a drive of a joint needs.
-pub(super) fn channel_of(joint: &JointDescription, drive: DriveWord) -> Option<Channel> {
+pub(super) fn channel_of(joint: &JointDescription, drive: DriveWord) -> Option<CaseChannel> {
     let channel = match drive {
         DriveWord::Locked => None,
         DriveWord::Prescribed => joint.motion,
         DriveWord::Loaded => joint.load_channel(),
     };
-    channel.map(Channel::of)
+    channel.map(CaseChannel::of)
 }
 
 impl Freedom {
@@ -210,7 +210,7 @@ impl Waveforms {
         let mut complete = true;
         for (joint, freedom) in freedoms.in_files() {
             let channels = [joint.motion, joint.load_channel()].into_iter().flatten();
-            for channel in channels.map(Channel::of) {
+            for channel in channels.map(CaseChannel::of) {
                 if channel_of(joint, freedom.drive()) == Some(channel) {
                     let waveform = waveform::read(channel, machine, log);
                     complete &= waveform.is_some();
@@ -229,13 +229,13 @@ fn check_absent(
     machine: &Section<'_>,
     joint: &JointDescription,
     drive: DriveWord,
-    channel: Channel,
+    channel: CaseChannel,
     log: &mut Log<'_>,
 ) {
     if machine.value(channel.name()).is_none() {
         return;
     }
-    let wanted = if joint.motion.map(Channel::of) == Some(channel) {
+    let wanted = if joint.motion.map(CaseChannel::of) == Some(channel) {
         DriveWord::Prescribed
     } else {
         DriveWord::Loaded
@@ -254,7 +254,7 @@ impl Machine {
         let known: Vec<&str> = names(&MachineSettings::keys())
             .chain(names(&Start::keys()))
             .chain(["springs", "freedoms"])
-            .chain(Channel::all().map(Channel::name))
+            .chain(CaseChannel::all().map(CaseChannel::name))
             .collect();
         section.check_keys(&known, log);
         let settings = MachineSettings::read(section, log);

@@ -2,14 +2,14 @@
 
 use condyle::machine::Waveform;
 
-use super::channel::Channel;
+use super::channel::CaseChannel;
 use super::machine::{Freedom, Machine};
 use super::machine_keys::Start;
 use super::waveform::{DEFAULT_WAVEFORM, InterpolationWord};
 use crate::keyed::{Settings, Writer, unit_of};
 
 /// How the table of a waveform is written.
-pub(super) type WriteWaveform = fn(&mut Writer, Channel, &Waveform);
+pub(super) type WriteWaveform = fn(&mut Writer, CaseChannel, &Waveform);
 
 impl Machine {
     /// Writes `[machine]` and the tables inside it.
@@ -20,7 +20,7 @@ impl Machine {
         self.settings.write(out);
         out.table("machine.springs");
         self.springs.write(out);
-        for channel in Channel::all() {
+        for channel in CaseChannel::all() {
             if let Some(waveform) = self.waveforms.get(channel) {
                 write_waveform(out, channel, waveform);
             }
@@ -40,7 +40,7 @@ impl Machine {
 }
 
 /// The points of a waveform as its table.
-pub(super) fn write_knots(out: &mut Writer, channel: Channel, waveform: &Waveform) {
+pub(super) fn write_knots(out: &mut Writer, channel: CaseChannel, waveform: &Waveform) {
     let interpolation = InterpolationWord::of(waveform.interpolation()).word();
     out.table(&format!("machine.{}", channel.name()));
     out.comment(channel.about());
@@ -56,7 +56,7 @@ pub(super) fn write_knots(out: &mut Writer, channel: Channel, waveform: &Wavefor
 }
 
 /// The table of a waveform by its name.
-pub(super) fn write_name(out: &mut Writer, channel: Channel, _: &Waveform) {
+pub(super) fn write_name(out: &mut Writer, channel: CaseChannel, _: &Waveform) {
     out.table(&format!("machine.{}", channel.name()));
     out.comment(channel.about());
     out.line(

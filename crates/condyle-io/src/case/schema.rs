@@ -5,7 +5,7 @@ use condyle::parameter::Parameter;
 use condyle::wear::WearLawKind;
 
 use super::accuracy::Accuracy;
-use super::channel::Channel;
+use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
 use super::femur::Femur;
 use super::heading::Heading;
@@ -88,13 +88,13 @@ fn machine(page: &mut Page) {
     page.section("`[machine.springs]`", &Springs::keys());
     page.section(&freedoms(JointKind::Translation), &Translation::keys());
     page.section(&freedoms(JointKind::Rotation), &Rotation::keys());
-    let named = |channel: Channel| format!("`[machine.{}]`", channel.name());
-    let tables: Vec<String> = Channel::all().map(named).collect();
+    let named = |channel: CaseChannel| format!("`[machine.{}]`", channel.name());
+    let tables: Vec<String> = CaseChannel::all().map(named).collect();
     page.push(&format!("\n## Waveforms: {}\n\n", tables.join(", ")));
     page.push(WAVEFORMS);
     page.table(&WaveformSource::keys());
     page.push(POINTS);
-    for channel in Channel::all() {
+    for channel in CaseChannel::all() {
         page.push(&waveform_row(channel));
     }
 }
@@ -118,7 +118,7 @@ fn freedoms(kind: JointKind) -> String {
     }
 }
 
-fn waveform_row(channel: Channel) -> String {
+fn waveform_row(channel: CaseChannel) -> String {
     let key = knots_key(channel);
     let words: Vec<&str> = channel.named().iter().map(|named| named.word).collect();
     format!(

@@ -24,7 +24,7 @@ pub use error::CompareError;
 pub use gravimetric::{GravimetricComparison, Rate, Weighing};
 pub use kinematics::{ColumnComparison, Errors, KinematicsComparison, PhaseErrors};
 pub use line::{Interval, Line};
-pub use surface::{Place, Registration, SurfaceComparison, SurfaceErrors};
+pub use surface::{NodeDepths, Registration, SurfaceComparison, SurfaceErrors};
 
 /// A run against measured data; a part that was not measured is `None`.
 #[derive(Clone, Debug, Serialize)]

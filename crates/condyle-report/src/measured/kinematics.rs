@@ -1,7 +1,7 @@
 //! Measured and predicted motions over the cycle, and their difference.
 
 use crate::figure::{Axis, Curve, Panel, sheet};
-use crate::page::{Channel, channel};
+use crate::page::{PlottedColumn, channel};
 
 /// Width and height of a panel, px.
 const SIZE: (f64, f64) = (430.0, 226.0);
@@ -67,7 +67,7 @@ fn unbroken(points: &[[f64; 3]], value: fn(&[f64; 3]) -> f64) -> Vec<(f64, f64)>
     line
 }
 
-fn panel(channel: &Channel, title: String, positive: &str, curves: Vec<Curve>) -> Panel {
+fn panel(channel: &PlottedColumn, title: String, positive: &str, curves: Vec<Curve>) -> Panel {
     Panel {
         id: String::new(),
         desc: format!("{title} in {}.", channel.unit),

@@ -12,7 +12,7 @@ use crate::results::{contents::Results, table::Table};
 const SIZE: (f64, f64) = (340.0, 206.0);
 
 /// A column of kinematics.csv as people call it.
-pub(crate) struct Channel {
+pub(crate) struct PlottedColumn {
     pub(crate) column: &'static str,
     pub(crate) title: &'static str,
     pub(crate) unit: &'static str,
@@ -22,15 +22,20 @@ pub(crate) struct Channel {
 }
 
 /// The channel of a column.
-pub(crate) fn channel(column: &str) -> Option<&'static Channel> {
+pub(crate) fn channel(column: &str) -> Option<&'static PlottedColumn> {
     CHANNELS.iter().find(|channel| channel.column == column)
 }
 
 /// The columns of kinematics.csv, in their order.
-pub(super) static CHANNELS: LazyLock<Vec<Channel>> =
-    LazyLock::new(|| KNEE.columns.iter().copied().map(Channel::of).collect());
+pub(super) static CHANNELS: LazyLock<Vec<PlottedColumn>> = LazyLock::new(|| {
+    KNEE.columns
+        .iter()
+        .copied()
+        .map(PlottedColumn::of)
+        .collect()
+});
 
-impl Channel {
+impl PlottedColumn {
     fn of(quantity: CycleQuantity) -> Self {
         let column = KNEE.column(quantity);
         let from_zero = |title, unit, least_span| Self {
@@ -129,7 +134,12 @@ pub(crate) fn panels(results: &Results) -> Vec<Panel> {
         .collect()
 }
 
-fn panel(channel: &Channel, values: &[f64], percent: &[f64], ends: &[Cycle]) -> Option<Panel> {
+fn panel(
+    channel: &PlottedColumn,
+    values: &[f64],
+    percent: &[f64],
+    ends: &[Cycle],
+) -> Option<Panel> {
     let classes = if ends.len() == 1 {
         ["last"].as_slice()
     } else {

@@ -10,7 +10,7 @@ mod numbers;
 mod ranges;
 mod story;
 
-pub(crate) use channels::{Channel, channel, panels as kinematics_panels};
+pub(crate) use channels::{PlottedColumn, channel, panels as kinematics_panels};
 pub(crate) use curves::panels as wear_panels;
 pub(crate) use maps::wear_map;
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     exponential_step::{counted, left},
     mean_over_wear::{mean_over_volume, volume_mm3, weight_of_depth},
-    step_record::{Standing, Step, StepRecord},
+    step_record::{Standing, StepRecord, WearStep},
 };
 
 /// Estimated error of a march from the length of its steps alone.
@@ -34,7 +34,7 @@ impl AccumulatedError {
     }
 
     /// With the last step added: what is predicted against what it takes.
-    pub(super) fn with_last(self, standing: Standing<'_>, step: &Step) -> Self {
+    pub(super) fn with_last(self, standing: Standing<'_>, step: &WearStep) -> Self {
         let area_mm2 = &standing.rates.area_mm2;
         let predicted_mm3 = volume_mm3(area_mm2, &step.predicted_mm);
         let error_mm = error_after(standing, step);
@@ -50,7 +50,7 @@ impl AccumulatedError {
 }
 
 /// How much deeper the exact march would be at every node after `step`, mm.
-fn error_after(standing: Standing<'_>, step: &Step) -> Vec<f64> {
+fn error_after(standing: Standing<'_>, step: &WearStep) -> Vec<f64> {
     let after = |node: usize| {
         let relaxed = counted(standing.rates, node) * step.interval;
         step.error_mm[node] * (-relaxed).exp() + step.predicted_mm[node] - step.depth_mm[node]
@@ -111,7 +111,7 @@ mod tests {
 
     /// A step of 2 cycles that began with 3 mm a cycle and took `depth_mm`.
     fn last(depth_mm: f64, error_mm: f64) -> StepRecord {
-        let step = Step {
+        let step = WearStep {
             interval: 2.0,
             cycles_after: 2.0,
             depth_mm: vec![depth_mm],

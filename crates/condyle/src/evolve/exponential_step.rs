@@ -77,7 +77,7 @@ pub(super) fn left(relaxed: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::step_record::Step;
+    use crate::evolve::step_record::WearStep;
 
     /// How fast the rate of a node falls as it is worn more than the femur sinks.
     const RELAXATION: f64 = 1.0;
@@ -115,7 +115,7 @@ mod tests {
                 let rates = self.rates(&worn_mm, step as f64 * interval);
                 let depth_mm = rule(&rates, last.as_ref(), interval);
                 worn_mm.iter_mut().zip(&depth_mm).for_each(|(w, d)| *w += d);
-                let step = Step {
+                let step = WearStep {
                     interval,
                     cycles_after: 0.0,
                     predicted_mm: Vec::new(),
@@ -203,7 +203,7 @@ mod tests {
             node_relaxation_per_cycle: vec![relaxation, 1.0],
             relaxation_per_cycle: 1.0,
         };
-        let last = Step {
+        let last = WearStep {
             interval: 1.0,
             cycles_after: 1.0,
             depth_mm: vec![0.5, 1.0],

@@ -48,7 +48,7 @@ pub(super) fn added_mm3(rates: &Rates, last: &StepRecord, interval: f64) -> f64 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::step_record::Step;
+    use crate::evolve::step_record::WearStep;
 
     fn rates(depth_per_cycle_mm: &[f64]) -> Rates {
         Rates {
@@ -60,7 +60,7 @@ mod tests {
     }
 
     fn last(depth_per_cycle_mm: &[f64], interval: f64) -> StepRecord {
-        let step = Step {
+        let step = WearStep {
             interval,
             cycles_after: interval,
             depth_mm: straight(&rates(depth_per_cycle_mm), interval),

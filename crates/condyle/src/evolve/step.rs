@@ -6,11 +6,11 @@ use super::{
     exponential_step::exponential,
     extrapolated_step::extrapolated,
     interval::{adaptive_interval, second_order, shared_out},
-    step_record::{Standing, Step},
+    step_record::{Standing, WearStep},
 };
 
 /// The next step of a march by `schedule`.
-pub(super) fn next_step(standing: Standing<'_>, schedule: &Schedule) -> Step {
+pub(super) fn next_step(standing: Standing<'_>, schedule: &Schedule) -> WearStep {
     let left = schedule.cycles - standing.cycles;
     let (interval, is_last) = match schedule.updates {
         Updates::Fixed(updates) => {
@@ -24,7 +24,7 @@ pub(super) fn next_step(standing: Standing<'_>, schedule: &Schedule) -> Step {
         }
     };
     let (depth_mm, predicted_mm) = worn(standing, schedule.updates, interval);
-    Step {
+    WearStep {
         interval,
         // The last step lands on the last cycle, whatever the intervals sum up to.
         cycles_after: if is_last {

@@ -50,7 +50,7 @@ pub(super) struct Standing<'a> {
 
 /// A step of the march.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Step {
+pub(super) struct WearStep {
     /// Its cycles.
     pub interval: f64,
     /// Cycles of the test done after it.
@@ -63,7 +63,7 @@ pub(super) struct Step {
     pub error_mm: Vec<f64>,
 }
 
-impl Step {
+impl WearStep {
     /// What the next step remembers of this one.
     pub fn record(self, rates: Rates) -> StepRecord {
         StepRecord {

@@ -38,7 +38,7 @@ pub(super) struct Implicit<'a> {
 }
 
 /// A step that is being solved.
-struct Step<'a> {
+struct TimeStep<'a> {
     machine: &'a Machine,
     from: &'a MachineState,
     phase: f64,
@@ -46,7 +46,7 @@ struct Step<'a> {
     differences: BackwardDifferences,
 }
 
-impl Step<'_> {
+impl TimeStep<'_> {
     fn kinematics(&self, iteration: &NewtonIteration) -> Kinematics {
         let positions = iteration.positions();
         self.differences
@@ -97,7 +97,7 @@ impl Implicit<'_> {
         watch: &mut dyn FnMut(f64),
     ) -> Result<Stepped, NotConverged> {
         let step_s = step / self.machine.frequency_hz;
-        let step = Step {
+        let step = TimeStep {
             machine: self.machine,
             from,
             phase: from.phase + step,

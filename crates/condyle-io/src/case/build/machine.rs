@@ -6,7 +6,7 @@ use condyle::machine::{
     knee::{self, KNEE},
 };
 
-use super::super::channel::Channel;
+use super::super::channel::CaseChannel;
 use super::super::machine::{self as case, Freedom};
 use super::super::machine_keys::{DriveWord, Springs, StiffnessOf};
 
@@ -72,7 +72,7 @@ impl case::Machine {
     /// The waveform of a channel in mm, rad, N or N mm, with the sign of its joint; nothing pushes a
     /// joint without one.
     fn inside(&self, channel: Option<&'static condyle::machine::Channel>) -> Waveform {
-        let channel = channel.map(Channel::of);
+        let channel = channel.map(CaseChannel::of);
         let given = channel.and_then(|channel| Some((channel, self.waveforms.get(channel)?)));
         let Some((channel, waveform)) = given else {
             return Waveform::constant(0.0);
@@ -82,7 +82,7 @@ impl case::Machine {
     }
 
     /// The waveform as the case's own numbers change it, in the unit of files.
-    fn adjusted(&self, channel: Channel, waveform: Waveform) -> Waveform {
+    fn adjusted(&self, channel: CaseChannel, waveform: Waveform) -> Waveform {
         let settings = &self.settings;
         match channel.name() {
             "flexion" => waveform.shifted(settings.flexion_offset_deg),

@@ -5,7 +5,7 @@ use std::path::Path;
 use condyle::machine::knee;
 
 use super::assert_shows;
-use crate::case::{Case, Channel};
+use crate::case::{Case, CaseChannel};
 
 /// A folder with `wave.csv` of this text, and a case that takes its flexion from it.
 fn with_csv(csv: &str, extra: &str) -> Result<Case, String> {
@@ -192,7 +192,7 @@ fn verify_scale_offset_and_low_pass_of_samples() {
     let flexion = case
         .machine
         .waveforms
-        .get(Channel::of(&knee::FLEXION_MOTION))
+        .get(CaseChannel::of(&knee::FLEXION_MOTION))
         .unwrap();
     for percent in [0.0, 15.0, 40.0, 77.0] {
         let error = flexion.at(percent / 100.0).0 - (3.0 - 10.0 * wave(percent));

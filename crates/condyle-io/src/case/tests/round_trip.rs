@@ -7,7 +7,7 @@ use condyle::wear::WEAR_LAWS;
 
 use super::{cases, has_dm_data, parsed};
 use crate::case::{
-    Case, Channel, DriveWord, Femur, Insert, Preset, Side, schema_markdown, template,
+    Case, CaseChannel, DriveWord, Femur, Insert, Preset, Side, schema_markdown, template,
 };
 
 fn shipped(name: &str) -> Case {
@@ -65,7 +65,7 @@ fn force_case_is_the_default_but_for_its_title_and_axial_force() {
     let peak = |case: &Case| {
         case.machine
             .waveforms
-            .get(Channel::of(&knee::AXIAL_FORCE))
+            .get(CaseChannel::of(&knee::AXIAL_FORCE))
             .map(|w| w.at(0.13).0)
     };
     assert_eq!((peak(&case), peak(&default)), (Some(3200.0), Some(2600.3)));
@@ -76,7 +76,7 @@ fn force_case_is_the_default_but_for_its_title_and_axial_force() {
 
 #[test]
 fn every_shipped_waveform_is_read_and_stays_near_its_points() {
-    for channel in Channel::all() {
+    for channel in CaseChannel::all() {
         for named in channel.named() {
             let drive = match channel.name() {
                 "ap_motion" | "ie_motion" => "stanmore-displacement",
@@ -112,7 +112,7 @@ fn validate_signs_of_the_measured_gait() {
     }
     let case = shipped("dm-knee-displacement.toml");
     let at = |channel: &'static machine::Channel, percent: f64| {
-        let channel = Channel::of(channel);
+        let channel = CaseChannel::of(channel);
         let waveform = case.machine.waveforms.get(channel).unwrap();
         waveform.at(percent / 100.0).0
     };

@@ -2,7 +2,7 @@
 
 use condyle::machine::{Interpolation, Knot, Waveform, WaveformError, low_passed, without_drift};
 
-use super::super::channel::Channel;
+use super::super::channel::CaseChannel;
 use super::keys::{InterpolationWord, WaveformSource};
 use super::points::Points;
 use super::reason::WaveformReason;
@@ -10,7 +10,7 @@ use crate::keyed::{KeyReason, Log, Placed, Section, plain, unit_of};
 
 /// Scales, levels, smooths and joins points.
 pub(super) fn finish(
-    channel: Channel,
+    channel: CaseChannel,
     section: &Section<'_>,
     source: &WaveformSource,
     points: Points,
@@ -71,7 +71,7 @@ fn join(
 }
 
 /// The first value that the channel cannot have.
-fn out_of_range(channel: Channel, knots: &[Knot]) -> Option<(usize, KeyReason)> {
+fn out_of_range(channel: CaseChannel, knots: &[Knot]) -> Option<(usize, KeyReason)> {
     let limits = channel.limits();
     let index = knots.iter().position(|knot| !limits.allow(knot.value))?;
     let unit = unit_of(channel.knots_key()).unwrap_or_default();

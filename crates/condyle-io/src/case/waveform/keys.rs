@@ -2,7 +2,7 @@
 
 use condyle::machine::Interpolation;
 
-use super::super::channel::Channel;
+use super::super::channel::CaseChannel;
 use crate::keyed::{DataFile, Key, WhereSilent, choice, settings, within};
 
 choice! {
@@ -60,7 +60,7 @@ settings! {
 pub(crate) const DEFAULT_WAVEFORM: &str = "iso-like";
 
 /// The key that gives the points in the case file itself.
-pub(crate) fn knots_key(channel: Channel) -> Key {
+pub(crate) fn knots_key(channel: CaseChannel) -> Key {
     Key {
         name: channel.knots_key(),
         doc: "Points [percent of the cycle, value] in the case file itself.",

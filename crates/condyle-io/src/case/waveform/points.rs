@@ -8,7 +8,7 @@ use miette::NamedSource;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::super::channel::{Channel, NamedWaveform};
+use super::super::channel::{CaseChannel, NamedWaveform};
 use super::keys::{DEFAULT_WAVEFORM, WaveformSource};
 use super::samples::{Choice, Samples, choose_column, column_points, csv_points};
 use crate::keyed::{
@@ -25,7 +25,7 @@ pub(super) struct Points {
 
 /// The points that the table gives, by name, by file or by themselves.
 pub(super) fn points(
-    channel: Channel,
+    channel: CaseChannel,
     section: &Section<'_>,
     source: &WaveformSource,
     log: &mut Log<'_>,
@@ -65,7 +65,7 @@ pub(super) fn points(
 }
 
 fn by_name(
-    channel: Channel,
+    channel: CaseChannel,
     section: &Section<'_>,
     word: Option<&str>,
     log: &mut Log<'_>,
@@ -88,7 +88,11 @@ fn by_name(
     Some(points)
 }
 
-fn shipped_points(channel: Channel, named: &NamedWaveform, log: &mut Log<'_>) -> Option<Points> {
+fn shipped_points(
+    channel: CaseChannel,
+    named: &NamedWaveform,
+    log: &mut Log<'_>,
+) -> Option<Points> {
     let source = Arc::new(NamedSource::new(named.file, named.text.to_owned()));
     let read = match named.word {
         "none" => column_points(named.text, 1),
@@ -98,7 +102,7 @@ fn shipped_points(channel: Channel, named: &NamedWaveform, log: &mut Log<'_>) ->
 }
 
 fn from_file(
-    channel: Channel,
+    channel: CaseChannel,
     section: &Section<'_>,
     file: &DataFile,
     column: Option<&str>,
@@ -130,7 +134,7 @@ fn logged(read: Result<Samples, Vec<Placed>>, source: Source, log: &mut Log<'_>)
 }
 
 /// Points that stand in the case file itself.
-fn inline(channel: Channel, value: &Spanned<DeValue<'_>>, log: &mut Log<'_>) -> Option<Points> {
+fn inline(channel: CaseChannel, value: &Spanned<DeValue<'_>>, log: &mut Log<'_>) -> Option<Points> {
     let pairs = pairs(value, channel.knots_key(), log)?;
     let knot = |&([percent, value], _): &([f64; 2], Range<usize>)| Knot { percent, value };
     Some(Points {

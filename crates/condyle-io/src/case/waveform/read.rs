@@ -2,14 +2,18 @@
 
 use condyle::machine::Waveform;
 
-use super::super::channel::Channel;
+use super::super::channel::CaseChannel;
 use super::join::finish;
 use super::keys::WaveformSource;
 use super::points::points;
 use crate::keyed::{Log, Section, Settings, names};
 
 /// Reads the waveform of `channel` from its table in `machine`.
-pub(crate) fn read(channel: Channel, machine: &Section<'_>, log: &mut Log<'_>) -> Option<Waveform> {
+pub(crate) fn read(
+    channel: CaseChannel,
+    machine: &Section<'_>,
+    log: &mut Log<'_>,
+) -> Option<Waveform> {
     let section = machine.table(channel.name(), log);
     check_names(channel, &section, log);
     let source = WaveformSource::read(&section, log)?;
@@ -17,7 +21,7 @@ pub(crate) fn read(channel: Channel, machine: &Section<'_>, log: &mut Log<'_>) -
     finish(channel, &section, &source, points, log)
 }
 
-fn check_names(channel: Channel, section: &Section<'_>, log: &mut Log<'_>) {
+fn check_names(channel: CaseChannel, section: &Section<'_>, log: &mut Log<'_>) {
     let mut known: Vec<&str> = names(&WaveformSource::keys()).collect();
     known.push(channel.knots_key());
     section.check_keys(&known, log);

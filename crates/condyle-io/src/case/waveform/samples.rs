@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use condyle::machine::Knot;
 
-use super::super::channel::Channel;
+use super::super::channel::CaseChannel;
 use crate::keyed::{Cell, ColumnReason, Columns, Placed, unit_of};
 
 /// Samples, and where each stands in its text.
@@ -24,7 +24,7 @@ pub(super) fn choose_column(
     text: &str,
     file: &str,
     column: Option<&str>,
-    channel: Channel,
+    channel: CaseChannel,
 ) -> Result<Choice, Placed> {
     let names = Columns::split(text, file, &example(channel))?.names();
     let columns: Vec<String> = names[1..].iter().map(|&name| name.to_owned()).collect();
@@ -44,17 +44,17 @@ pub(super) fn choose_column(
 }
 
 /// A header that would do.
-fn example(channel: Channel) -> String {
+fn example(channel: CaseChannel) -> String {
     format!("percent,{}{}", channel.name(), suffix(channel))
 }
 
 /// The unit of a channel as a name ends in it.
-fn suffix(channel: Channel) -> &'static str {
+fn suffix(channel: CaseChannel) -> &'static str {
     channel.knots_key().trim_start_matches("knots")
 }
 
 pub(super) fn csv_points(
-    channel: Channel,
+    channel: CaseChannel,
     text: &str,
     file: &str,
     column: Option<&str>,

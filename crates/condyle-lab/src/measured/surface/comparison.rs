@@ -34,11 +34,11 @@ pub struct SurfaceComparison {
     /// Where either depth is above 5 % of the deepest predicted; none without such a place.
     pub in_scars: Option<SurfaceErrors>,
     /// The node where the two differ most.
-    pub worst: Place,
+    pub worst: NodeDepths,
     /// The node of the deepest predicted wear.
-    pub deepest_predicted: Place,
+    pub deepest_predicted: NodeDepths,
     /// The node of the deepest scanned wear.
-    pub deepest_scanned: Place,
+    pub deepest_scanned: NodeDepths,
     /// Predicted volume over the area compared.
     pub predicted_volume_mm3: f64,
     /// Scanned volume over the same area.
@@ -66,7 +66,7 @@ pub struct SurfaceErrors {
 
 /// A node and its depths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Place {
+pub struct NodeDepths {
     /// Position on the unworn surface, x.
     pub x_mm: f64,
     /// Position on the unworn surface, y.
@@ -90,8 +90,8 @@ pub(super) fn summarised(
 ) -> Result<SurfaceComparison, CompareError> {
     let nodes = covered(compared);
     let place = |node: &usize| place(unworn, compared, *node);
-    let all: Vec<Place> = nodes.iter().map(place).collect();
-    let largest = |of: fn(&Place) -> f64| {
+    let all: Vec<NodeDepths> = nodes.iter().map(place).collect();
+    let largest = |of: fn(&NodeDepths) -> f64| {
         let found = all.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
         let farthest_mm = scan.keys.farthest_mm;
         found
@@ -137,10 +137,10 @@ fn covered(compared: &Compared) -> Vec<usize> {
     (0..compared.scanned_mm.len()).filter(both).collect()
 }
 
-fn place(unworn: &SurfaceFields, compared: &Compared, node: usize) -> Place {
+fn place(unworn: &SurfaceFields, compared: &Compared, node: usize) -> NodeDepths {
     let position = unworn.nodes[node];
     let (predicted_mm, scanned_mm) = (compared.predicted_mm[node], compared.scanned_mm[node]);
-    Place {
+    NodeDepths {
         x_mm: position.x,
         y_mm: position.y,
         z_mm: position.z,

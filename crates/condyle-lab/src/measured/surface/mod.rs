@@ -14,7 +14,7 @@ use condyle_io::results::insert_file_name;
 use condyle_report::SurfaceFields;
 
 use super::CompareError;
-pub use comparison::{Place, SurfaceComparison, SurfaceErrors};
+pub use comparison::{NodeDepths, SurfaceComparison, SurfaceErrors};
 use depth::compared;
 pub use register::Registration;
 use register::register;

@@ -25,7 +25,7 @@ use ran::{Ran, read_back, reference};
 
 pub use error::StudyError;
 pub use findings::{Findings, Scar};
-pub use rows::Row;
+pub use rows::PaperFigure;
 pub use stamp::Stamp;
 
 /// The updates of the force-controlled runs: the paper's 1 x 5M to 40 x 125k, and two between.
@@ -54,7 +54,7 @@ struct File<'a> {
     #[serde(flatten)]
     stamp: &'a Stamp,
     findings: &'a Findings,
-    rows: &'a [Row],
+    rows: &'a [PaperFigure],
 }
 
 /// Runs everything, writes the tables and the pictures, and gives the Markdown of the table.
@@ -116,7 +116,7 @@ fn run(
     }
 }
 
-fn json(stamp: &Stamp, findings: &Findings, rows: &[Row]) -> String {
+fn json(stamp: &Stamp, findings: &Findings, rows: &[PaperFigure]) -> String {
     let file = File {
         version: env!("CARGO_PKG_VERSION"),
         stamp,

@@ -7,7 +7,7 @@ use super::stamp::Stamp;
 
 /// A line of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct PaperFigure {
     /// What is compared.
     pub what: &'static str,
     /// What the paper gives.
@@ -24,7 +24,7 @@ pub struct Row {
 const PAPER_S: f64 = 7200.0;
 
 /// Every row, in the order of the paper's figures.
-pub(super) fn rows(found: &Findings) -> Vec<Row> {
+pub(super) fn rows(found: &Findings) -> Vec<PaperFigure> {
     vec![
         volume(found),
         pressure_and_area(found),
@@ -39,9 +39,9 @@ pub(super) fn rows(found: &Findings) -> Vec<Row> {
     ]
 }
 
-fn volume(found: &Findings) -> Row {
+fn volume(found: &Findings) -> PaperFigure {
     let difference = found.volume_1_against_10_percent;
-    Row {
+    PaperFigure {
         what: "volume against update interval",
         paper: "1 x 5M and 10 x 500k differ by less than 3 %",
         ours: format!(
@@ -56,12 +56,12 @@ fn volume(found: &Findings) -> Row {
     }
 }
 
-fn pressure_and_area(found: &Findings) -> Row {
+fn pressure_and_area(found: &Findings) -> PaperFigure {
     let (pressure, area) = (
         found.pressure_5_against_40_percent,
         found.area_5_against_40_percent,
     );
-    Row {
+    PaperFigure {
         what: "pressure, area",
         paper: "5 x 1M is within 0.5 % and 3 % of 40 x 125k",
         ours: format!("after 4 million cycles {pressure:+.1} % and {area:+.1} %"),
@@ -72,9 +72,9 @@ fn pressure_and_area(found: &Findings) -> Row {
     }
 }
 
-fn depth(found: &Findings) -> Row {
+fn depth(found: &Findings) -> PaperFigure {
     let difference = found.depth_40_against_10_percent;
-    Row {
+    PaperFigure {
         what: "maximum depth, 500k to 125k",
         paper: "needs 500k; 125k changes it by less than 2.75 %",
         ours: format!(
@@ -87,7 +87,7 @@ fn depth(found: &Findings) -> Row {
     }
 }
 
-fn oscillation(found: &Findings) -> Row {
+fn oscillation(found: &Findings) -> PaperFigure {
     let shown: Vec<String> = found
         .depth_excess
         .iter()
@@ -100,7 +100,7 @@ fn oscillation(found: &Findings) -> Row {
         })
         .collect();
     let coarse = found.depth_excess.iter().find(|excess| excess.updates == 5);
-    Row {
+    PaperFigure {
         what: "oscillation of maximum depth",
         paper: "oscillates at intervals coarser than 500k",
         ours: format!(
@@ -113,8 +113,8 @@ fn oscillation(found: &Findings) -> Row {
     }
 }
 
-fn kinematics(found: &Findings) -> Row {
-    Row {
+fn kinematics(found: &Findings) -> PaperFigure {
+    PaperFigure {
         what: "kinematics, force control against measured",
         paper: "mean absolute error 0.48 mm AP, 0.54 degrees IE; 0.9 mm too anterior near 70 %",
         ours: format!(
@@ -127,8 +127,8 @@ fn kinematics(found: &Findings) -> Row {
     }
 }
 
-fn change_of_kinematics(found: &Findings) -> Row {
-    Row {
+fn change_of_kinematics(found: &Findings) -> PaperFigure {
+    PaperFigure {
         what: "change of kinematics by 5 million",
         paper: "IE rotation falls by 1 to 2 degrees in stance",
         ours: format!(
@@ -151,8 +151,8 @@ fn change_of_kinematics(found: &Findings) -> Row {
     }
 }
 
-fn linearity(found: &Findings) -> Row {
-    Row {
+fn linearity(found: &Findings) -> PaperFigure {
+    PaperFigure {
         what: "volume in cycles",
         paper: "linear",
         ours: format!(
@@ -169,9 +169,9 @@ fn linearity(found: &Findings) -> Row {
     }
 }
 
-fn control(found: &Findings) -> Row {
+fn control(found: &Findings) -> PaperFigure {
     let difference = found.mass_force_against_displacement_percent;
-    Row {
+    PaperFigure {
         what: "wear, force against displacement control",
         paper: "displacement control between the two specimens; force control within 13 % of it",
         ours: format!(
@@ -184,9 +184,9 @@ fn control(found: &Findings) -> Row {
     }
 }
 
-fn scars(found: &Findings) -> Row {
+fn scars(found: &Findings) -> PaperFigure {
     let (medial, lateral) = (&found.medial, &found.lateral);
-    Row {
+    PaperFigure {
         what: "scars",
         paper: "deep near the centre medially, large and shallow laterally",
         ours: format!("medial {}; lateral {}", scar(medial), scar(lateral)),
@@ -200,8 +200,8 @@ fn scars(found: &Findings) -> Row {
     }
 }
 
-fn cost(found: &Findings) -> Row {
-    Row {
+fn cost(found: &Findings) -> PaperFigure {
+    PaperFigure {
         what: "cost of 10 x 500k",
         paper: "10 min a cycle, 2 h in all, one 3.0 GHz core",
         ours: format!(
@@ -246,7 +246,7 @@ fn scar(scar: &Scar) -> String {
 }
 
 /// The table in Markdown.
-pub(super) fn markdown(rows: &[Row], stamp: &Stamp) -> String {
+pub(super) fn markdown(rows: &[PaperFigure], stamp: &Stamp) -> String {
     let mut text = format!(
         "Made on {} from commit {}, condyle {}.\n\n\
          | | the paper | ours | agrees | where ours differs, and why |\n\
@@ -261,7 +261,7 @@ pub(super) fn markdown(rows: &[Row], stamp: &Stamp) -> String {
             Some(false) => "no",
             None => "-",
         };
-        let Row {
+        let PaperFigure {
             what,
             paper,
             ours,
@@ -279,7 +279,7 @@ mod tests {
 
     #[test]
     fn a_row_is_a_line_of_the_table() {
-        let row = Row {
+        let row = PaperFigure {
             what: "a",
             paper: "b",
             ours: "c".to_owned(),
