@@ -90,12 +90,11 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) {
         );
         return;
     }
+    for doubt in &summary.plausibility {
+        println!("doubtful: {}\n          {}", doubt.message, doubt.advice);
+    }
     for (what, value) in rows(summary) {
         println!("{what:<28}{value}");
-    }
-    let doubtful = summary.cycles_not_repeating;
-    if doubtful > 0 {
-        println!("warning: in {doubtful} updates no cycle repeated itself within the tolerance");
     }
     for (part, why) in not_estimated(summary) {
         println!("warning: the error from {part} could not be estimated: {why}");

@@ -2,6 +2,7 @@
 
 mod accuracy;
 pub mod measured;
+mod plausibility;
 mod run;
 pub mod studies;
 

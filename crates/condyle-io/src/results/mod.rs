@@ -5,6 +5,7 @@ mod error_estimate;
 #[cfg(feature = "file-system")]
 mod folder;
 mod insert_series;
+mod plausibility;
 #[cfg(feature = "file-system")]
 mod replace;
 mod summary;
@@ -21,5 +22,6 @@ pub use error_estimate::{ErrorEstimate, ErrorParts, Part};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
+pub use plausibility::PlausibilityWarning;
 pub use summary::{Summary, SummaryInput};
 pub use tables::{kinematics_csv, wear_csv};

@@ -9,7 +9,7 @@ use condyle::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::error_estimate::ErrorEstimate;
+use super::{error_estimate::ErrorEstimate, plausibility::PlausibilityWarning};
 
 /// What a summary is made from.
 pub struct SummaryInput<'a> {
@@ -35,6 +35,9 @@ pub struct SummaryInput<'a> {
 /// The numbers of a finished run; units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
+    /// What makes these numbers doubtful, the worst first; empty where nothing does.
+    #[serde(default)]
+    pub plausibility: Vec<PlausibilityWarning>,
     /// Gait cycles.
     pub cycles: f64,
     /// Mass worn, mg.
@@ -111,6 +114,7 @@ impl Summary {
         let largest =
             |value: fn(&UpdateRecord) -> f64| updates.iter().map(value).fold(0.0, f64::max);
         Some(Self {
+            plausibility: Vec::new(),
             cycles: last.cycles,
             mass_loss_mg: last.mass_loss_mg,
             volume_loss_mm3: last.volume_loss_mm3,

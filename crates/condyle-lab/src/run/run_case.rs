@@ -15,7 +15,7 @@ use super::{
     options::RunOptions,
     prepare::{build, start},
 };
-use crate::accuracy;
+use crate::{accuracy, plausibility};
 
 /// Hears of everything that happens, and may stop the run by breaking.
 type Listener<'a> = dyn FnMut(RunEvent<'_>) -> ControlFlow<()> + 'a;
@@ -192,6 +192,7 @@ impl<'a> Run<'a> {
                 error
             });
         }
+        summary.plausibility = plausibility::warnings(&self.march, &summary);
         ControlFlow::Continue(summary)
     }
 

@@ -1,9 +1,10 @@
 //! The sentences of the page that depend on the results.
 
+use condyle_io::results::PlausibilityWarning;
 use serde::Serialize;
 
 use crate::number::{cycles, fixed, significant};
-use crate::results::{contents::Results, measure::Region};
+use crate::results::{contents::Results, measure::Region, summary::Summary};
 
 /// The result in two sentences.
 pub(super) fn lede(results: &Results) -> Option<String> {
@@ -58,6 +59,27 @@ pub(super) fn volume_check(results: &Results) -> Option<String> {
     ))
 }
 
+/// Why the numbers are to be doubted, and what to do.
+#[derive(Serialize)]
+pub(super) struct Doubt {
+    message: String,
+    advice: String,
+}
+
+/// What makes the run doubtful, as the summary says.
+pub(super) fn doubts(results: &Results) -> Vec<Doubt> {
+    let warnings = results.summary.as_ref().map(Summary::plausibility);
+    let doubt = |warning: PlausibilityWarning| Doubt {
+        message: first_letter_large(&warning.message),
+        advice: warning.advice,
+    };
+    warnings
+        .unwrap_or_default()
+        .into_iter()
+        .map(doubt)
+        .collect()
+}
+
 /// A fact about the run's origin.
 #[derive(Serialize)]
 pub(super) struct Fact {
@@ -74,7 +96,7 @@ pub(super) fn provenance(results: &Results) -> Vec<Fact> {
         .entries()
         .filter(|(key, _)| key.contains("version") || key.contains("hash"))
         .filter_map(|(key, value)| {
-            let name = sentence_case(&key.replace('_', " "));
+            let name = first_letter_large(&key.replace('_', " "));
             Some(Fact {
                 name,
                 value: value.as_str()?.to_owned(),
@@ -85,7 +107,7 @@ pub(super) fn provenance(results: &Results) -> Vec<Fact> {
     facts
 }
 
-fn sentence_case(text: &str) -> String {
+fn first_letter_large(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {
         first.to_uppercase().collect::<String>() + letters.as_str()

@@ -1,5 +1,7 @@
 //! `summary.json`.
 
+use condyle_io::results::PlausibilityWarning;
+use serde::Deserialize;
 use serde_json::{Map, Value};
 
 /// The numbers of a run by name; names carry their units.
@@ -30,6 +32,13 @@ impl Summary {
     /// The object called `key`: numbers and texts that belong together.
     pub fn object(&self, key: &str) -> Option<&Map<String, Value>> {
         self.values.get(key)?.as_object()
+    }
+
+    /// What makes the run doubtful; nothing where that is not said.
+    pub fn plausibility(&self) -> Vec<PlausibilityWarning> {
+        let listed = self.values.get("plausibility");
+        let read = listed.and_then(|listed| Vec::deserialize(listed).ok());
+        read.unwrap_or_default()
     }
 
     /// All entries, sorted by name.

@@ -39,7 +39,8 @@ pub struct March {
     /// One an activity.
     chains: Vec<Chain>,
     state: MarchState,
-    fields: NodeFields,
+    /// Those of the insert before the first update.
+    unworn_fields: NodeFields,
     /// The histories of the last cycles, for their memory.
     spent: Vec<CycleHistory>,
     /// What makes the contact of the next update quicker.
@@ -119,7 +120,7 @@ impl March {
         };
         Self {
             chains: test.activities.iter().map(chain).collect(),
-            fields: NodeFields::unworn(&insert, &state.depths),
+            unworn_fields: NodeFields::unworn(&insert, &state.depths),
             spent: Vec::new(),
             cache: ContactCache::default(),
             femur,
@@ -160,7 +161,7 @@ impl March {
 
     /// Results of the last update at every surface node; before the first, of the unworn insert.
     pub fn fields(&self) -> &NodeFields {
-        &self.fields
+        self.state.fields.as_ref().unwrap_or(&self.unworn_fields)
     }
 
     /// Cycles done so far.
@@ -282,12 +283,12 @@ impl March {
         let record = self.record(&solved.cycles, step.cycles_after, lost_mm3);
         self.state.updates.push(record);
         self.state.counters = solved.counters;
-        self.fields = NodeFields::of(
+        self.state.fields = Some(NodeFields::of(
             &with_activities(&self.test, &solved.cycles),
             &rates,
             &self.insert,
             &self.state.depths,
-        );
+        ));
         let snapshot = Snapshot {
             step: step.record(rates),
             mesh_nodes: before.mesh_nodes,

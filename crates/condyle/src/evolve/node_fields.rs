@@ -1,10 +1,12 @@
 //! Results of an update at every node of the articulating surface.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Activity, DepthFields, rates::Rates};
 use crate::{contact::CycleHistory, geometry::Insert};
 
 /// Results of an update at every node of the articulating surface.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NodeFields {
     /// Depth worn so far, mm.
     pub wear_depth_mm: Vec<f64>,

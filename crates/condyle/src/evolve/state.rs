@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    CycleRecord, DepthFields, UpdateRecord, accumulated_error::AccumulatedError,
+    CycleRecord, DepthFields, NodeFields, UpdateRecord, accumulated_error::AccumulatedError,
     step_record::StepRecord,
 };
 use crate::{
@@ -58,6 +58,8 @@ impl ActivityState {
 pub struct MarchState {
     /// Results of the updates done.
     pub updates: Vec<UpdateRecord>,
+    /// What the last of them found at every node of the surface; none before the first.
+    pub fields: Option<NodeFields>,
     /// Nodes of the mesh as worn.
     pub mesh_nodes: Vec<Vec3>,
     /// How deep the surface has gone down, and by what.
@@ -93,6 +95,7 @@ impl MarchState {
     ) -> Self {
         Self {
             updates: Vec::new(),
+            fields: None,
             mesh_nodes,
             depths,
             contact,

@@ -1,0 +1,138 @@
+//! Checks of where an insert wears and what it bears.
+
+use condyle_io::results::PlausibilityWarning;
+
+use super::finished::Finished;
+
+/// Nearer than this to the rim a foundation over-estimates pressure, mm: about the reach of its neighbours that it
+/// does not have there.
+const NEAR_RIM_MM: f64 = 1.5;
+/// Part of the worn volume that may be there, %.
+const MOST_AT_RIM_PERCENT: f64 = 1.0;
+/// Yield stress of UHMWPE, MPa (approximate: facts remembered, not read).
+const YIELD_MPA: f64 = 14.0;
+/// Below the middle of a ball's contact the material yields first when the peak pressure is this many times the
+/// yield stress (Johnson, Contact Mechanics, 1985).
+const FIRST_YIELD: f64 = 1.6;
+/// Under less the stresses in polyethylene rise steeply, mm (Bartel et al. 1986; approximate).
+const LEAST_THICKNESS_MM: f64 = 6.0;
+/// Where it is worn deeper than this part of the deepest, there is a scar.
+const SCAR: f64 = 0.1;
+
+/// Wear within 1.5 mm of the rim.
+pub(super) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let depth_mm = &finished.march.fields().wear_depth_mm;
+    let (mut whole, mut at_rim) = (0.0, 0.0);
+    for (node, share) in finished.surface.shares.iter().enumerate() {
+        let volume_mm3 = depth_mm[node] * share.area_mm2;
+        whole += volume_mm3;
+        if volume_mm3 > 0.0 && finished.distance_to_rim_mm(node) < NEAR_RIM_MM {
+            at_rim += volume_mm3;
+        }
+    }
+    let percent = if whole > 0.0 {
+        100.0 * at_rim / whole
+    } else {
+        0.0
+    };
+    (percent > MOST_AT_RIM_PERCENT).then(|| PlausibilityWarning {
+        check: "wear_at_rim".to_owned(),
+        value: percent,
+        limit: MOST_AT_RIM_PERCENT,
+        unit: "%".to_owned(),
+        message: format!(
+            "{percent:.1} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
+             {MOST_AT_RIM_PERCENT:.0} % would be sound"
+        ),
+        advice: "The femur rides on an edge, where an elastic foundation over-estimates pressure: look at the placement \
+                 of the bodies, their axes and sides, and at where the outline of the insert was cut."
+            .to_owned(),
+    })
+}
+
+/// The node that is pressed hardest lies within 1.5 mm of the rim.
+pub(super) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let pressure_mpa = finished.march.fields().peak_pressure_mpa.iter();
+    let (node, &highest) = pressure_mpa.enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    let from_rim_mm = finished.distance_to_rim_mm(node);
+    (highest > 0.0 && from_rim_mm < NEAR_RIM_MM).then(|| {
+        let place = finished.surface.positions[node];
+        PlausibilityWarning {
+            check: "pressure_at_rim".to_owned(),
+            value: from_rim_mm,
+            limit: NEAR_RIM_MM,
+            unit: "mm".to_owned(),
+            message: format!(
+                "the last cycle's highest pressure, {highest:.1} MPa, is {from_rim_mm:.2} mm from the rim, at x {:.1} mm, z \
+                 {:.1} mm",
+                place.x, place.z
+            ),
+            advice: "The femur rides on an edge: see the placement of the bodies, their axes and sides."
+                .to_owned(),
+        }
+    })
+}
+
+/// Pressure beyond what polyethylene bears without yielding below the surface.
+pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let limit = FIRST_YIELD * YIELD_MPA;
+    let peak = finished.summary.peak_pressure_mpa;
+    (peak > limit).then(|| PlausibilityWarning {
+        check: "pressure_beyond_yield".to_owned(),
+        value: peak,
+        limit,
+        unit: "MPa".to_owned(),
+        message: format!(
+            "the highest pressure is {peak:.1} MPa, and polyethylene yields below the surface from about {limit:.1} MPa; in \
+             the last cycle {:.0} mm2 are pressed harder than that, in {:.0} % of the first one",
+            area_above_mm2(finished, limit),
+            time_above_percent(finished, limit)
+        ),
+        advice: "A layer of springs does not yield: take pressure there as an upper bound, and wear, which goes by \
+                 force times sliding, as less affected."
+            .to_owned(),
+    })
+}
+
+/// Area whose highest pressure in the last cycle is above a limit, mm2.
+fn area_above_mm2(finished: &Finished<'_>, limit_mpa: f64) -> f64 {
+    let pressures = &finished.march.fields().peak_pressure_mpa;
+    let shares = pressures.iter().zip(&finished.surface.shares);
+    let above = shares.filter(|(pressure_mpa, _)| **pressure_mpa > limit_mpa);
+    above.map(|(_, share)| share.area_mm2).sum()
+}
+
+/// Part of the first cycle with a pressure above a limit, in the activity that has most of it, %.
+fn time_above_percent(finished: &Finished<'_>, limit_mpa: f64) -> f64 {
+    let activities = finished.march.state().activities.iter();
+    let first_cycles = activities.filter_map(|activity| activity.first_and_last.as_ref());
+    let percents = first_cycles.map(|(first, _)| {
+        let above = first
+            .rows
+            .iter()
+            .filter(|row| row.peak_pressure_mpa > limit_mpa);
+        100.0 * above.count() as f64 / first.rows.len() as f64
+    });
+    percents.fold(0.0, f64::max)
+}
+
+/// Little polyethylene left under the scar.
+pub(super) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let fields = finished.march.fields();
+    let in_scar = finished.summary.max_depth_mm * SCAR;
+    let nodes = fields.wear_depth_mm.iter().zip(&fields.thickness_mm);
+    let under_scar = nodes.filter(|(depth_mm, _)| **depth_mm > in_scar);
+    let thinnest = under_scar.map(|(_, thickness_mm)| *thickness_mm);
+    let thinnest = thinnest.fold(f64::INFINITY, f64::min);
+    (thinnest < LEAST_THICKNESS_MM).then(|| PlausibilityWarning {
+        check: "thin_polyethylene".to_owned(),
+        value: thinnest,
+        limit: LEAST_THICKNESS_MM,
+        unit: "mm".to_owned(),
+        message: format!(
+            "under the scar {thinnest:.2} mm of polyethylene are left at the thinnest; below {LEAST_THICKNESS_MM:.0} mm stresses \
+             rise steeply"
+        ),
+        advice: "See that the insert's mesh reaches down to its tray and is in the unit that the case says.".to_owned(),
+    })
+}

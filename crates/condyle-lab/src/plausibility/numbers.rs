@@ -1,0 +1,129 @@
+//! Checks of how well the model was solved, and of how the knee moved.
+
+use condyle_io::results::{PlausibilityWarning, Summary};
+
+use super::finished::Finished;
+
+/// The two counts of the worn volume may differ by this, %.
+const COUNTS_PERCENT: f64 = 1.0;
+/// Scaled Jacobian below which an element is about to fold.
+const LEAST_QUALITY: f64 = 0.1;
+/// Discretisation error of mass and depth, %.
+const MOST_ERROR_PERCENT: f64 = 5.0;
+/// More than knees shift from front to back in walking and stairs, mm: a generous choice of ours.
+const MOST_AP_MM: f64 = 25.0;
+/// More than knees turn about their long axis, degrees: a generous choice of ours.
+const MOST_IE_DEG: f64 = 35.0;
+
+/// The volume of depth times area beside that of the mesh.
+pub(super) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let Summary {
+        volume_loss_mm3: depth,
+        volume_loss_mesh_mm3: mesh,
+        ..
+    } = *finished.summary;
+    let percent = 100.0 * (depth - mesh).abs() / depth.max(mesh).max(f64::MIN_POSITIVE);
+    (percent > COUNTS_PERCENT).then(|| PlausibilityWarning {
+        check: "counts_of_volume".to_owned(),
+        value: percent,
+        limit: COUNTS_PERCENT,
+        unit: "%".to_owned(),
+        message: format!(
+            "the worn volume is {depth:.2} mm3 by depth times area and {mesh:.2} mm3 by the change of the mesh, {percent:.1} % \
+             apart"
+        ),
+        advice: "The mesh is too coarse for the scar, or worn at a crease: take a smaller edge_mm.".to_owned(),
+    })
+}
+
+/// The worst element of any update.
+pub(super) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let quality = finished.summary.worst_quality;
+    (quality < LEAST_QUALITY).then(|| PlausibilityWarning {
+        check: "mesh_quality".to_owned(),
+        value: quality,
+        limit: LEAST_QUALITY,
+        unit: String::new(),
+        message: if quality <= 0.0 {
+            format!("elements are inside out: the worst scaled Jacobian is {quality:.3}")
+        } else {
+            format!("the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and {LEAST_QUALITY} would be sound")
+        },
+        advice: "Fewer layers or a larger edge_mm at the outline; where the wear itself folds them, more updates or fewer \
+                 cycles."
+            .to_owned(),
+    })
+}
+
+/// The discretisation error of the mass.
+pub(super) fn error_of_mass(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let error = finished.summary.error.as_ref()?;
+    large_error("error_of_mass", "mass loss", error.mass_loss_percent.total)
+}
+
+/// The discretisation error of the depth.
+pub(super) fn error_of_depth(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let error = finished.summary.error.as_ref()?;
+    large_error(
+        "error_of_depth",
+        "deepest wear",
+        error.max_depth_percent.total,
+    )
+}
+
+fn large_error(check: &str, what: &str, percent: f64) -> Option<PlausibilityWarning> {
+    (percent.abs() > MOST_ERROR_PERCENT).then(|| PlausibilityWarning {
+        check: check.to_owned(),
+        value: percent.abs(),
+        limit: MOST_ERROR_PERCENT,
+        unit: "%".to_owned(),
+        message: format!("the {what} has a discretisation error of {:.1} %", percent.abs()),
+        advice: "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.".to_owned(),
+    })
+}
+
+/// Updates whose cycle did not repeat itself.
+pub(super) fn cycles_not_repeating(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let count = finished.summary.cycles_not_repeating;
+    (count > 0).then(|| PlausibilityWarning {
+        check: "cycles_not_repeating".to_owned(),
+        value: count as f64,
+        limit: 0.0,
+        unit: String::new(),
+        message: format!("in {count} updates no cycle repeated itself within the tolerance"),
+        advice: "The motion goes on changing from cycle to cycle: more cycles an update, or a machine with more \
+                 damping or stiffer springs."
+            .to_owned(),
+    })
+}
+
+/// AP range of the first cycle.
+pub(super) fn ap_range(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    large_motion("ap_range", finished.summary.ap_range_mm, MOST_AP_MM, "mm")
+}
+
+/// IE range of the first cycle.
+pub(super) fn ie_range(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    large_motion(
+        "ie_range",
+        finished.summary.ie_range_deg,
+        MOST_IE_DEG,
+        "degrees",
+    )
+}
+
+fn large_motion(check: &str, range: f64, most: f64, unit: &str) -> Option<PlausibilityWarning> {
+    let (joint, _) = check.split_at(2);
+    (range > most).then(|| PlausibilityWarning {
+        check: check.to_owned(),
+        value: range,
+        limit: most,
+        unit: unit.to_owned(),
+        message: format!(
+            "{} moves by {range:.1} {unit} in the first cycle; knees stay below {most:.0}",
+            joint.to_uppercase()
+        ),
+        advice: "See the loads, the springs and their free play, and whether the femur is held by the dishes at all."
+            .to_owned(),
+    })
+}
