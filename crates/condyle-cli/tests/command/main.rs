@@ -16,5 +16,6 @@ mod interrupt;
 mod left_knee;
 mod measured;
 mod physics;
+mod plausibility;
 mod shapes;
 mod words;

@@ -123,10 +123,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     ("condyle_lab::accuracy", &["condyle", "condyle_io"]),
+    ("condyle_lab::plausibility", &["condyle", "condyle_io"]),
     (
         "condyle_lab::run",
         &[
             "condyle_lab::accuracy",
+            "condyle_lab::plausibility",
             "condyle",
             "condyle_io",
             "condyle_report",

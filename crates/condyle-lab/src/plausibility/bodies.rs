@@ -12,9 +12,9 @@ const MOST_AT_RIM_PERCENT: f64 = 1.0;
 /// Yield stress of UHMWPE, MPa (approximate: facts remembered, not read).
 const YIELD_MPA: f64 = 14.0;
 /// Below the middle of a ball's contact the material yields first when the peak pressure is this many times the
-/// yield stress (Johnson, Contact Mechanics, 1985).
+/// yield stress [johnson1985].
 const FIRST_YIELD: f64 = 1.6;
-/// Under less the stresses in polyethylene rise steeply, mm (Bartel et al. 1986; approximate).
+/// Under less the stresses in polyethylene rise steeply, mm [bartel1986]; approximate.
 const LEAST_THICKNESS_MM: f64 = 6.0;
 /// Where it is worn deeper than this part of the deepest, there is a scar.
 const SCAR: f64 = 0.1;

@@ -44,11 +44,9 @@ pub(super) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarnin
         value: quality,
         limit: LEAST_QUALITY,
         unit: String::new(),
-        message: if quality <= 0.0 {
-            format!("elements are inside out: the worst scaled Jacobian is {quality:.3}")
-        } else {
-            format!("the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and {LEAST_QUALITY} would be sound")
-        },
+        message: format!(
+            "the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and {LEAST_QUALITY} would be sound"
+        ),
         advice: "Fewer layers or a larger edge_mm at the outline; where the wear itself folds them, more updates or fewer \
                  cycles."
             .to_owned(),

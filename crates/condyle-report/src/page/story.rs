@@ -1,6 +1,5 @@
 //! The sentences of the page that depend on the results.
 
-use condyle_io::results::PlausibilityWarning;
 use serde::Serialize;
 
 use crate::number::{cycles, fixed, significant};
@@ -69,15 +68,12 @@ pub(super) struct Doubt {
 /// What makes the run doubtful, as the summary says.
 pub(super) fn doubts(results: &Results) -> Vec<Doubt> {
     let warnings = results.summary.as_ref().map(Summary::plausibility);
-    let doubt = |warning: PlausibilityWarning| Doubt {
+    let warnings = warnings.unwrap_or_default().into_iter();
+    let doubts = warnings.map(|warning| Doubt {
         message: first_letter_large(&warning.message),
         advice: warning.advice,
-    };
-    warnings
-        .unwrap_or_default()
-        .into_iter()
-        .map(doubt)
-        .collect()
+    });
+    doubts.collect()
 }
 
 /// A fact about the run's origin.

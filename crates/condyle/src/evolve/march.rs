@@ -181,7 +181,7 @@ impl March {
     /// begun is lost, and those before are kept.
     ///
     /// # Errors
-    /// A cycle that cannot be solved, or an insert worn through.
+    /// A cycle that cannot be solved, an insert worn through, or elements turned inside out.
     pub fn update(
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
@@ -280,7 +280,12 @@ impl March {
         let before = self.lower(&solved.surface, &taken)?;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
         let lost_mm3 = volume_mm3(&rates.area_mm2, &lost_mm(&taken, rates.area_mm2.len()));
-        let record = self.record(&solved.cycles, step.cycles_after, lost_mm3);
+        let record = self.record(
+            &solved.cycles,
+            step.cycles_after,
+            lost_mm3,
+            before.worst_quality,
+        );
         self.state.updates.push(record);
         self.state.counters = solved.counters;
         self.state.fields = Some(NodeFields::of(
@@ -345,17 +350,29 @@ impl March {
             });
         }
         self.insert.wear_down(surface, &down_mm);
+        let worst_quality = self.insert.mesh().worst_quality();
+        if worst_quality <= 0.0 {
+            let update = self.state.updates.len() + 1;
+            return Err(MarchError::inverted_elements(update, self.insert.mesh()));
+        }
         let depths = self.state.depths.clone();
         self.state.depths.add(taken);
         let nodes = self.insert.mesh().nodes.clone();
         Ok(Before {
             mesh_nodes: std::mem::replace(&mut self.state.mesh_nodes, nodes),
             depths,
+            worst_quality,
         })
     }
 
     /// What the update that has just taken `lost_mm3` off the insert found.
-    fn record(&self, cycles: &[Cycle], cycles_after: f64, lost_mm3: f64) -> UpdateRecord {
+    fn record(
+        &self,
+        cycles: &[Cycle],
+        cycles_after: f64,
+        lost_mm3: f64,
+        worst_quality: f64,
+    ) -> UpdateRecord {
         let last = self.state.updates.last();
         let volume_loss_mm3 = lost_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
         let rows = || cycles.iter().flat_map(|cycle| &cycle.rows);
@@ -371,7 +388,7 @@ impl March {
             peak_contact_area_mm2: most(|row| row.contact_area_mm2),
             cycles_solved: solved as f64 / self.test.time.increments as f64,
             repeats: cycles.iter().all(|cycle| cycle.repeats),
-            worst_quality: self.insert.mesh().worst_quality(),
+            worst_quality,
         }
     }
 
@@ -408,10 +425,11 @@ impl March {
     }
 }
 
-/// What a step began with.
+/// What a step began with, and the worst element that it left.
 struct Before {
     mesh_nodes: Vec<Vec3>,
     depths: DepthFields,
+    worst_quality: f64,
 }
 
 /// Remembers the motions of a cycle as the last ones, and as the first ones too if they are.

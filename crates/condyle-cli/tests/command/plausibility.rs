@@ -1,0 +1,112 @@
+//! A run that should not be believed says so, in the terminal, in its summary and on its page.
+
+use std::fs;
+
+use crate::bench::{Bench, SMALL};
+
+/// A femur that rides over the rim of a flat dish; found among random designs.
+const ON_THE_RIM: &str = "\
+[femur]
+distal_radius_mm = 59.288
+posterior_radius_mm = 34.773
+transition_deg = 27.78
+coronal_radius_mm = 17.359
+spacing_mm = 30.734
+[insert]
+sagittal_radius_mm = 216.082
+coronal_radius_mm = 35.058
+spacing_mm = 30.734
+thickness_mm = 8.644
+edge_mm = 1.897
+layers = 1
+[contact]
+friction = 0.2221
+[machine]
+frequency_hz = 0.825
+flexion_offset_deg = -9.282
+vv_axis_medial_mm = -1.220
+[machine.springs]
+free_play_mm = 3.702
+[march]
+updates = 2
+[time]
+increments = 33
+[accuracy]
+estimate = false
+";
+
+fn checks(bench: &Bench, out: &str) -> Vec<String> {
+    let warnings = bench.summary(out).plausibility;
+    warnings.into_iter().map(|warning| warning.check).collect()
+}
+
+#[test]
+fn a_sound_run_is_not_accused() {
+    let bench = Bench::with_case(&format!(
+        "{SMALL}[machine.axial_force]\nknots_n = [[0, 400]]\n[accuracy]\nestimate = false\n"
+    ));
+    let said = bench.run_into("out");
+    assert_eq!(checks(&bench, "out"), [""; 0]);
+    assert!(!said.out.contains("doubtful"), "{}", said.out);
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
+    assert!(!page.contains("class=\"doubts\""));
+}
+
+#[test]
+fn wear_at_the_rim_comes_first_wherever_the_run_is_read() {
+    let bench = Bench::with_case(ON_THE_RIM);
+    let said = bench.run_into("out");
+    assert_eq!(checks(&bench, "out")[0], "wear_at_rim");
+    let warning = bench.summary("out").plausibility.swap_remove(0);
+    assert!(warning.value > 5.0 * warning.limit, "{warning:?}");
+    let first = said.out.lines().next().unwrap();
+    assert_eq!(first, format!("doubtful: {}", warning.message));
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
+    let (doubts, tiles) = (page.find(&warning.advice), page.find("class=\"tiles\""));
+    assert!(doubts.unwrap() < tiles.unwrap());
+}
+
+#[test]
+fn pressure_beyond_yield_is_told_with_area_and_time() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    let warnings = bench.summary("out").plausibility;
+    let warning = warnings
+        .iter()
+        .find(|warning| warning.check == "pressure_beyond_yield");
+    let warning = warning.expect("35 MPa are beyond 22.4 MPa");
+    assert_eq!(warning.value, bench.summary("out").peak_pressure_mpa);
+    assert!(
+        warning.message.contains("mm2 are pressed harder"),
+        "{warning:?}"
+    );
+}
+
+/// Nothing of what the checks look at is lost with the process that computed it.
+#[test]
+fn a_run_resumed_before_its_summary_is_as_doubtful() {
+    let bench = Bench::with_case(ON_THE_RIM);
+    bench.run_into("out");
+    let before = bench.summary("out").plausibility;
+    fs::remove_file(bench.path("out/summary.json")).unwrap();
+    bench.resume("out");
+    assert_eq!(bench.summary("out").plausibility, before);
+}
+
+#[test]
+fn elements_inside_out_end_the_march_and_what_came_before_is_kept() {
+    let bench = Bench::with_case(
+        "[insert]\nthickness_mm = 1.0\n[wear]\nwear_factor_mm3_per_nm = 4e-7\n[march]\nupdates = 3\n[time]\n\
+         increments = 60\n",
+    );
+    let said = bench.say(&["run", "case.toml", "--out", "out"]);
+    said.assert_refused(
+        3,
+        &[
+            "inside out, the worst at",
+            "use more updates",
+            "kept in out",
+        ],
+    );
+    assert!(!bench.path("out/summary.json").exists());
+}
