@@ -8,10 +8,12 @@ mod converge;
 mod exit;
 mod export;
 mod new;
+mod output;
 mod processor;
 mod progress;
 mod report;
 mod run;
+mod standard_error;
 
 use std::process::ExitCode;
 

@@ -17,7 +17,9 @@ use condyle_lab::{Outcome, RunOptions};
 use crate::{
     arguments::Run,
     exit,
+    output::{self, Lines},
     progress::{Progress, in_words},
+    standard_error::tell,
 };
 
 pub fn run(arguments: &Run) -> ExitCode {
@@ -41,21 +43,17 @@ pub fn run(arguments: &Run) -> ExitCode {
     });
     progress.finish();
     match outcome {
-        Ok(Outcome::Done(summary)) => {
-            print_summary(&summary, &options, arguments.json);
-            ExitCode::SUCCESS
-        }
+        Ok(Outcome::Done(summary)) => print_summary(&summary, &options, arguments.json),
         Ok(Outcome::DoneBefore(summary)) => {
-            eprintln!("this run is done already: nothing was computed");
-            print_summary(&summary, &options, arguments.json);
-            ExitCode::SUCCESS
+            tell("this run is done already: nothing was computed");
+            print_summary(&summary, &options, arguments.json)
         }
         Ok(Outcome::Interrupted(reached)) => {
             let (case, out) = (arguments.case.display(), options.out.display());
-            eprintln!(
+            tell(format_args!(
                 "interrupted: {}, and kept; go on with: condyle run {case} --out {out} --resume",
                 in_words(&reached)
-            );
+            ));
             ExitCode::from(exit::INTERRUPTED)
         }
         Err(error) => exit::fail_run(&error),
@@ -77,34 +75,45 @@ pub fn stop_on_interrupt() -> Arc<AtomicBool> {
         }
     });
     if let Err(error) = set {
-        eprintln!("warning: Ctrl-C will end the run at once: {error}");
+        tell(format_args!(
+            "warning: Ctrl-C will end the run at once: {error}"
+        ));
     }
     stop
 }
 
-fn print_summary(summary: &Summary, options: &RunOptions, json: bool) {
+fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCode {
+    let out = &options.out;
     if json {
-        println!(
-            "{}",
-            serde_json::to_string_pretty(summary).expect("numbers and text always serialise")
-        );
-        return;
+        let text = serde_json::to_string_pretty(summary);
+        let text = text.expect("numbers and text always serialise");
+        return output::print_beside(&(text + "\n"), out);
     }
+    let mut lines = Lines::default();
     for (what, value) in rows(summary) {
-        println!("{what:<28}{value}");
+        lines.line(format_args!("{what:<28}{value}"));
     }
+    add_warnings(summary, &mut lines);
+    lines.line(format_args!(
+        "results in {}; open {}",
+        out.display(),
+        out.join("report.html").display()
+    ));
+    output::print_beside(lines.text(), out)
+}
+
+fn add_warnings(summary: &Summary, lines: &mut Lines) {
     let doubtful = summary.cycles_not_repeating;
     if doubtful > 0 {
-        println!("warning: in {doubtful} updates no cycle repeated itself within the tolerance");
+        lines.line(format_args!(
+            "warning: in {doubtful} updates no cycle repeated itself within the tolerance"
+        ));
     }
     for (part, why) in not_estimated(summary) {
-        println!("warning: the error from {part} could not be estimated: {why}");
+        lines.line(format_args!(
+            "warning: the error from {part} could not be estimated: {why}"
+        ));
     }
-    println!(
-        "results in {}; open {}",
-        options.out.display(),
-        options.out.join("report.html").display()
-    );
 }
 
 /// Parts of the error that have no estimate, and why.

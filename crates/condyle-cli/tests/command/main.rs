@@ -15,6 +15,7 @@ mod folders;
 mod interrupt;
 mod left_knee;
 mod measured;
+mod output;
 mod physics;
 mod shapes;
 mod words;
