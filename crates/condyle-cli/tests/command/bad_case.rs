@@ -141,6 +141,16 @@ fn every_problem_is_said_at_once() {
 }
 
 #[test]
+fn of_very_many_problems_the_rest_is_counted() {
+    let keys: String = (0..20_000)
+        .map(|key| format!("wrong_{key} = 1\n"))
+        .collect();
+    let said = Bench::with_case(&format!("[march]\n{keys}")).say(&["check", "case.toml"]);
+    said.assert_refused(2, &["`wrong_0`", "and 19980 more problems"]);
+    assert!(said.err.lines().count() < 200, "{}", said.err);
+}
+
+#[test]
 fn words_the_command_does_not_know() {
     let bench = Bench::new();
     for arguments in [
