@@ -7,6 +7,8 @@ use std::{
     process::ExitCode,
 };
 
+use condyle_io::keyed::visible;
+
 use crate::exit;
 
 /// Prints `text` on standard output and gives the exit code.
@@ -50,9 +52,9 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Adds a line of words.
+    /// Adds a line of words, which may hold what a file says.
     pub fn line(&mut self, words: impl Display) {
-        self.text += &format!("{words}\n");
+        self.text += &format!("{}\n", visible(&words.to_string()));
     }
 
     pub fn text(&self) -> &str {

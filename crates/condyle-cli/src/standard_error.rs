@@ -5,9 +5,11 @@ use std::{
     io::{self, Write},
 };
 
-/// Says `words` on standard error.
+use condyle_io::keyed::visible;
+
+/// Says `words` on standard error, which may hold what a file or the command line says.
 pub fn tell(words: impl Display) {
-    show(&format!("{words}\n"));
+    show(&format!("{}\n", visible(&words.to_string())));
 }
 
 /// Shows `text` on standard error as it is. No work is given up because nobody hears of it.

@@ -151,6 +151,21 @@ fn of_very_many_problems_the_rest_is_counted() {
 }
 
 #[test]
+fn control_characters_are_shown_as_escapes() {
+    let said = |text: &str| Bench::with_case(text).say(&["check", "case.toml"]);
+    let key = said("[contact]\n\"\\u001b[31mfriction\" = 0.07\n");
+    key.assert_refused(2, &["`\\u{1b}[31mfriction`"]);
+    let value = said("[contact]\nlaw = \"\\u0007linear\"\n");
+    value.assert_refused(2, &["\\u{7}linear"]);
+    let bench = Bench::with_case("");
+    let name = bench.say(&["check", "no\u{1b}[31m.toml"]);
+    name.assert_refused(2, &["no\\u{1b}[31m.toml"]);
+    for said in [key, value, name] {
+        assert!(!said.err.contains(['\u{1b}', '\u{7}']), "{:?}", said.err);
+    }
+}
+
+#[test]
 fn words_the_command_does_not_know() {
     let bench = Bench::new();
     for arguments in [

@@ -25,11 +25,13 @@ mod render;
 pub(crate) mod section;
 pub(crate) mod setting;
 pub(crate) mod settings;
+mod shown;
 mod source;
 mod unit;
 mod unknown;
 pub(crate) mod value;
 pub(crate) mod variants;
+mod visible;
 pub(crate) mod words;
 pub(crate) mod writer;
 
@@ -51,6 +53,7 @@ pub use setting::Setting;
 pub use settings::Settings;
 pub use unit::unit_of;
 pub use variants::Variants;
+pub use visible::visible;
 pub use writer::Writer;
 
 pub(crate) use choice::choice;

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
+use miette::{GraphicalReportHandler, GraphicalTheme};
 
-use super::problem::Problem;
 use super::problems::Problems;
+use super::shown::Shown;
 
 /// How problems are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl Problems {
             .with_links(false);
         let mut text = String::new();
         for problem in self.problems().iter().take(MOST_SHOWN) {
-            let shown = handler.render_report(&mut text, problem);
+            let shown = handler.render_report(&mut text, &Shown::new(problem));
             debug_assert!(shown.is_ok(), "writing to a String does not fail");
         }
         text + &of_the_rest(self.problems().len())
@@ -61,18 +61,3 @@ impl fmt::Display for Problems {
 }
 
 impl std::error::Error for Problems {}
-
-impl Diagnostic for Problem {
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        Some(Box::new(self.reason.advice()?))
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(self.source.as_deref()?)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = LabeledSpan::underline(self.span.clone()?);
-        Some(Box::new(std::iter::once(label)))
-    }
-}

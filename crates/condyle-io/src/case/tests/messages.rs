@@ -1,6 +1,7 @@
-//! How messages are shown: not too many.
+//! How messages are shown: not too many, and harmless to a terminal.
 
-use super::{assert_shows, refusal};
+use super::{assert_shows, parsed, refusal};
+use crate::keyed::RenderStyle;
 
 #[test]
 fn of_many_problems_the_first_are_shown_and_the_rest_counted() {
@@ -18,4 +19,32 @@ fn of_many_problems_the_first_are_shown_and_the_rest_counted() {
         &["`wrong_0`", "`wrong_19`", "and 4980 more problems"],
     );
     assert!(!of_many.contains("`wrong_20`"));
+}
+
+#[test]
+fn control_characters_of_a_case_do_not_reach_the_terminal() {
+    let raw = "[femur]\nfile = \"\u{1b}[31m\"\n";
+    let key = "[femur]\n\"a\\u001b[31m\\u009b\" = 1\n";
+    let value = "[femur]\nshape = \"mesh\\u001b]0;x\\u0007\"\n";
+    let path = "[insert]\nshape = \"mesh\"\nfile = \"\\u001b[2J\\u202e.stl\"\n";
+    for text in [raw, key, value, path] {
+        let plain = refusal(text);
+        let in_colour = parsed(text)
+            .unwrap_err()
+            .render(RenderStyle::Terminal { width: 100 });
+        let from_the_file = [
+            "\u{1b}[31m\u{9b}",
+            "\u{1b}]0",
+            "\u{7}",
+            "\u{1b}[2J",
+            "\u{202e}",
+        ];
+        for steering in from_the_file {
+            assert!(!in_colour.contains(steering), "{in_colour:?}");
+        }
+        let steers = |c: char| c.is_control() && c != '\n';
+        assert!(!plain.contains(steers), "{plain:?}");
+    }
+    assert_shows(&refusal(key), &["`a\\u{1b}[31m\\u{9b}`"]);
+    assert_shows(&refusal(raw), &[" 2 | file = \"?[31m\""]);
 }
