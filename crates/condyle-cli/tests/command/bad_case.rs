@@ -166,6 +166,12 @@ fn control_characters_are_shown_as_escapes() {
 }
 
 #[test]
+fn another_word_for_a_key() {
+    let words = ["[contact] has no key `mu`", "did you mean `friction`?"];
+    assert_refused("[contact]\nmu = 0.07\n", "case.toml:2:1", &words);
+}
+
+#[test]
 fn words_the_command_does_not_know() {
     let bench = Bench::new();
     for arguments in [

@@ -27,6 +27,7 @@ pub(crate) mod setting;
 pub(crate) mod settings;
 mod shown;
 mod source;
+mod synonyms;
 mod unit;
 mod unknown;
 pub(crate) mod value;
@@ -66,6 +67,8 @@ pub(crate) use page::Page;
 pub(crate) use problem::Placed;
 pub(crate) use settings::{read_table, settings};
 pub(crate) use source::{Source, read_source};
+#[cfg(test)]
+pub(crate) use synonyms::SYNONYMS;
 pub(crate) use unit::split_unit;
 pub(crate) use unknown::nearest;
 pub(crate) use value::{number, quoted, quoted_list};

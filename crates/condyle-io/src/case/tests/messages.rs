@@ -1,7 +1,8 @@
 //! How messages are shown: not too many, and harmless to a terminal.
 
 use super::{assert_shows, parsed, refusal};
-use crate::keyed::RenderStyle;
+use crate::case::schema_markdown;
+use crate::keyed::{RenderStyle, SYNONYMS};
 
 #[test]
 fn of_many_problems_the_first_are_shown_and_the_rest_counted() {
@@ -47,4 +48,34 @@ fn control_characters_of_a_case_do_not_reach_the_terminal() {
     }
     assert_shows(&refusal(key), &["`a\\u{1b}[31m\\u{9b}`"]);
     assert_shows(&refusal(raw), &[" 2 | file = \"?[31m\""]);
+}
+
+#[test]
+fn another_word_for_a_key_leads_to_the_key() {
+    for (text, key) in [
+        ("[contact]\nmu = 0.07\n", "friction"),
+        ("[material]\nE = 463\n", "youngs_modulus_mpa"),
+        ("[material]\nE_gpa = 0.463\n", "youngs_modulus_mpa"),
+        ("[material]\nnu = 0.46\n", "poissons_ratio"),
+        ("[wear]\nk = 1e-7\n", "wear_factor_mm3_per_nm"),
+        ("[machine.springs]\nk_n_per_mm = 7\n", "posterior_n_per_mm"),
+        (
+            "[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\nunit = \"m\"\n",
+            "length_unit",
+        ),
+        (
+            "[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\nunit_mm = 1000\n",
+            "length_unit",
+        ),
+    ] {
+        assert_shows(&refusal(text), &[&format!("did you mean `{key}`?")]);
+    }
+}
+
+#[test]
+fn every_key_that_has_another_word_is_a_key() {
+    let page = schema_markdown(condyle::wear::WEAR_LAWS);
+    for (_, key) in SYNONYMS {
+        assert!(page.contains(&format!("| `{key}` |")), "{key}");
+    }
 }
