@@ -17,5 +17,6 @@ mod left_knee;
 mod measured;
 mod output;
 mod physics;
+mod places;
 mod shapes;
 mod words;

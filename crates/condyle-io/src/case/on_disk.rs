@@ -1,5 +1,6 @@
 //! Cases read from the disk.
 
+use std::fs;
 use std::path::Path;
 
 use super::contents::Case;
@@ -37,5 +38,19 @@ impl Case {
     /// As [`CaseReader::parse`].
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Problems> {
         CaseReader::default().parse(text, name, folder)
+    }
+
+    /// The case as [`Self::to_toml`] has it, to be kept in `folder`, which is there: its files by
+    /// their paths counted from that folder, so that nothing in it names a place of one machine.
+    pub fn to_toml_in(&self, folder: &Path) -> String {
+        let Ok(folder) = fs::canonicalize(folder) else {
+            return self.to_toml();
+        };
+        let mut case = self.clone();
+        let files = [case.femur.file_mut(), case.insert.file_mut()];
+        for file in files.into_iter().flatten() {
+            *file = file.named_from(&folder);
+        }
+        case.to_toml()
     }
 }

@@ -69,7 +69,8 @@ pub fn run_case(
 fn found(case: &Case, options: &RunOptions, inputs_blake3: &str) -> Result<Found, ResultsError> {
     if options.resume {
         let cycles = case.march.cycles as f64;
-        ResultsFolder::reopen(&options.out, &case.to_toml(), inputs_blake3, cycles)
+        let case_toml = case.to_toml_in(&options.out);
+        ResultsFolder::reopen(&options.out, &case_toml, inputs_blake3, cycles)
     } else {
         ResultsFolder::free(&options.out).map(|()| Found::Nothing)
     }
@@ -119,7 +120,7 @@ impl<'a> Run<'a> {
         };
         let folder = if is_new {
             let folder = ResultsFolder::create(&options.out)?;
-            folder.write_case(&case.to_toml())?;
+            folder.write_case(&case.to_toml_in(folder.path()))?;
             folder
         } else {
             ResultsFolder::existing(&options.out)
