@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use crate::{arguments::Check, exit, output, standard_error::tell};
 
 pub fn check(arguments: &Check) -> ExitCode {
-    let (case, warnings) = match condyle_lab::check(&arguments.case, 1)
+    let (case, warnings) = match condyle_lab::check_changed(&arguments.case, &arguments.changes, 1)
     {
         Ok(checked) => checked,
         Err(error) => return exit::fail_run(&error),

@@ -34,13 +34,18 @@ pub fn run(arguments: &Run) -> ExitCode {
     };
     let stop = stop_on_interrupt();
     let mut progress = Progress::new();
-    let outcome = condyle_lab::run(&arguments.case, &options, &mut |on_event| {
-        progress.show(&on_event);
-        if stop.load(Ordering::Relaxed) {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
-    });
+    let outcome = condyle_lab::run_changed(
+        &arguments.case,
+        &arguments.changes,
+        &options,
+        &mut |on_event| {
+            progress.show(&on_event);
+            if stop.load(Ordering::Relaxed) {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        },
+    );
     progress.finish();
     match outcome {
         Ok(Outcome::Done(summary)) => print_summary(&summary, &options, arguments.json),
@@ -49,15 +54,26 @@ pub fn run(arguments: &Run) -> ExitCode {
             print_summary(&summary, &options, arguments.json)
         }
         Ok(Outcome::Interrupted(reached)) => {
-            let (case, out) = (arguments.case.display(), options.out.display());
             tell(format_args!(
-                "interrupted: {}, and kept; go on with: condyle run {case} --out {out} --resume",
-                in_words(&reached)
+                "interrupted: {}, and kept; go on with: {}",
+                in_words(&reached),
+                command_to_go_on(arguments, &options)
             ));
             ExitCode::from(exit::INTERRUPTED)
         }
         Err(error) => exit::fail_run(&error),
     }
+}
+
+/// The command that goes on with a run, as a shell takes it.
+fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
+    let (case, out) = (arguments.case.display(), options.out.display());
+    let changes = arguments.changes.iter().map(|change| {
+        let quoted = change.to_string().replace('\'', r"'\''");
+        format!(" --set '{quoted}'")
+    });
+    let changes: String = changes.collect();
+    format!("condyle run {case} --out {out} --resume{changes}")
 }
 
 /// `results/` and the case's name, beside where the command runs.

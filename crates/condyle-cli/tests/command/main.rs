@@ -5,6 +5,7 @@ mod bad_case;
 mod bench;
 mod cache;
 mod calibrate;
+mod changes;
 mod compare_kinematics;
 mod compare_surface;
 mod compare_wear;

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use super::assignment::{Assignment, ChangeError};
 use super::contents::Case;
 use super::overriding::Override;
 use super::reader::CaseReader;
@@ -30,6 +31,14 @@ impl Case {
     /// As [`CaseReader::read_with`].
     pub fn read_with(path: &Path, number: &Override) -> Result<Self, Problems> {
         CaseReader::default().read_with(path, number)
+    }
+
+    /// Reads the case file at `path` with some of its values changed.
+    ///
+    /// # Errors
+    /// As [`CaseReader::read_changed`].
+    pub fn read_changed(path: &Path, changes: &[Assignment]) -> Result<Self, ChangeError> {
+        CaseReader::default().read_changed(path, changes)
     }
 
     /// Reads a case from `text`, called `name` in messages; paths count from `folder`.

@@ -70,7 +70,7 @@ pub(crate) use source::{Source, read_source};
 #[cfg(test)]
 pub(crate) use synonyms::SYNONYMS;
 pub(crate) use unit::split_unit;
-pub(crate) use unknown::nearest;
+pub(crate) use unknown::{likeliest, nearest};
 pub(crate) use value::{number, quoted, quoted_list};
 pub(crate) use variants::variants;
 pub(crate) use words::{read_word, wrong_type};

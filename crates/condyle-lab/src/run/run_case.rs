@@ -4,7 +4,7 @@ use std::{ops::ControlFlow, path::Path, time::Duration};
 
 use condyle::evolve::March;
 use condyle_io::{
-    case::{Case, Side},
+    case::{Assignment, Case, Side},
     results::{Checkpoint, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
 };
 
@@ -13,7 +13,7 @@ use super::{
     error::RunError,
     event::{Outcome, Reached, RunEvent},
     options::RunOptions,
-    prepare::{build, start},
+    prepare::{build, changed, start},
 };
 use crate::accuracy;
 
@@ -33,7 +33,20 @@ pub fn run(
     options: &RunOptions,
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
-    run_case(&Case::read(case_path)?, options, on_event)
+    run_changed(case_path, &[], options, on_event)
+}
+
+/// Runs the case at `case_path` with some of its values changed, as [`run`] does.
+///
+/// # Errors
+/// As [`run`], and a change that cannot be made.
+pub fn run_changed(
+    case_path: &Path,
+    changes: &[Assignment],
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
+    run_case(&changed(case_path, changes)?, options, on_event)
 }
 
 /// Runs a case that is read already, as [`run`] does.
