@@ -1,6 +1,6 @@
 //! The results folder: a run that is in it is never lost.
 
-use std::fs;
+use std::fs::{self, File};
 
 use crate::bench::{Bench, SMALL, assert_same_bytes, files_but_wall_time};
 
@@ -147,4 +147,39 @@ fn the_default_folder_has_the_name_of_the_case() {
     let bench = Bench::with_case(SMALL);
     assert_eq!(bench.say(&["run", "case.toml"]).code, Some(0));
     assert!(bench.path("results/case/summary.json").exists());
+}
+
+#[test]
+fn a_run_stopped_before_its_first_file_is_gone_on_with() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("whole");
+    for left in [&[][..], &["in_use"], &["in_use", "case.toml.part"]] {
+        fs::create_dir(bench.path("out")).unwrap();
+        for name in left {
+            bench.write(&format!("out/{name}"), "");
+        }
+        bench.resume("out");
+        assert_same_bytes(&bench.path("out"), &bench.path("whole"));
+        fs::remove_dir_all(bench.path("out")).unwrap();
+    }
+    fs::create_dir(bench.path("out")).unwrap();
+    bench.write("out/notes.txt", "mine");
+    let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
+    said.assert_refused(2, &["holds no run to go on with"]);
+}
+
+#[test]
+fn a_folder_in_use_is_refused_until_it_is_free() {
+    let bench = Bench::with_case(SMALL);
+    fs::create_dir(bench.path("out")).unwrap();
+    let held = File::create(bench.path("out/in_use")).unwrap();
+    held.lock().unwrap();
+    for more in [&[][..], &["--resume"]] {
+        let said = bench.say(&[&["run", "case.toml", "--out", "out"], more].concat());
+        let words = ["out: another run is writing into this folder", "--out"];
+        said.assert_refused(2, &words);
+        assert_eq!(files_but_wall_time_of_names(&bench), ["in_use"]);
+    }
+    drop(held);
+    bench.run_into("out");
 }

@@ -117,6 +117,22 @@ fn the_words_of_an_interrupt_name_what_was_changed() {
 }
 
 #[test]
+fn a_run_does_not_write_into_the_folder_of_another() {
+    let bench = Bench::with_case(LONGER);
+    let mut first = begun(&bench, false);
+    wait_for(&bench.path("out/checkpoint"), &mut first);
+    signal(&first, "-STOP");
+    for more in [&[][..], &["--resume"]] {
+        let said = bench.say(&[&["run", "case.toml", "--out", "out"], more].concat());
+        said.assert_refused(2, &["another run is writing into this folder"]);
+    }
+    signal(&first, "-CONT");
+    assert!(first.wait().unwrap().success());
+    bench.run_into("whole");
+    assert_same_bytes(&bench.path("out"), &bench.path("whole"));
+}
+
+#[test]
 fn killed_again_and_again_it_still_reaches_the_same_bytes() {
     let bench = Bench::with_case(LONGER);
     let mut kills = 0;

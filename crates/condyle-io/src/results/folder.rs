@@ -11,6 +11,7 @@ use thiserror::Error;
 use super::{
     checkpoint::{Checkpoint, CheckpointError},
     insert_series::{insert_file_name, insert_pvd, insert_vtu},
+    lock::{FolderLock, LOCK},
     replace::{beside, replace_file, replace_file_durably},
     summary::Summary,
     tables::{kinematics_csv, wear_csv},
@@ -31,6 +32,16 @@ pub enum ResultsError {
         folder: PathBuf,
         /// A file of the run.
         file: &'static str,
+    },
+    /// Another run is writing.
+    #[error(
+        "{}: another run is writing into this folder; \
+         wait until it has ended, or give another folder with --out",
+        folder.display()
+    )]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
     },
     /// A file stands where the folder should be.
     #[error("{}: this is a file and no folder; give another folder with --out", path.display())]
@@ -145,6 +156,23 @@ impl ResultsFolder {
         }
     }
 
+    /// The lock of the folder at `path`, so that no other run writes into it; none where there is
+    /// no such folder.
+    ///
+    /// # Errors
+    /// Another run that has it, or a folder that cannot be written.
+    pub fn lock(path: &Path) -> Result<Option<FolderLock>, ResultsError> {
+        if !path.is_dir() {
+            return Ok(None);
+        }
+        let taken = FolderLock::take(path).map_err(|source| ResultsError::Refused {
+            file: path.to_owned(),
+            source,
+        })?;
+        let folder = path.to_owned();
+        taken.map(Some).ok_or(ResultsError::InUse { folder })
+    }
+
     /// A folder for a run, made if it is not there.
     ///
     /// # Errors
@@ -173,6 +201,7 @@ impl ResultsFolder {
         if !folder.file("checkpoint").exists() {
             return match fs::read_to_string(folder.file("case.toml")) {
                 Ok(text) if text == case_toml => Ok(Found::Case),
+                Err(_) if folder.was_only_made() => Ok(Found::Nothing),
                 Ok(_) | Err(_) => Err(ResultsError::HoldsNone {
                     folder: folder.path,
                 }),
@@ -196,6 +225,16 @@ impl ResultsFolder {
             Some(summary) if done => Found::Done(summary),
             Some(_) | None => Found::Checkpoint(Box::new(checkpoint), folder.time_spent_s()),
         })
+    }
+
+    /// Whether it is there and holds nothing but what a run has before its first file is whole.
+    fn was_only_made(&self) -> bool {
+        let begun = beside(Path::new("case.toml"));
+        let is_of_beginning = |entry: io::Result<fs::DirEntry>| {
+            let name = entry.map(|entry| entry.file_name());
+            name.is_ok_and(|name| name == LOCK || *name == begun)
+        };
+        fs::read_dir(&self.path).is_ok_and(|mut entries| entries.all(is_of_beginning))
     }
 
     fn checkpoint(&self) -> Result<Checkpoint, ResultsError> {

@@ -6,6 +6,8 @@ mod error_estimate;
 mod folder;
 mod insert_series;
 #[cfg(feature = "file-system")]
+mod lock;
+#[cfg(feature = "file-system")]
 mod replace;
 mod summary;
 mod tables;
@@ -21,5 +23,7 @@ pub use error_estimate::{ErrorEstimate, ErrorParts, Part};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
+#[cfg(feature = "file-system")]
+pub use lock::FolderLock;
 pub use summary::{Summary, SummaryInput};
 pub use tables::{kinematics_csv, wear_csv};

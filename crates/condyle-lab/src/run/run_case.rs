@@ -5,7 +5,7 @@ use std::{ops::ControlFlow, path::Path, time::Duration};
 use condyle::evolve::March;
 use condyle_io::{
     case::{Assignment, Case, Side},
-    results::{Checkpoint, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
+    results::{Checkpoint, FolderLock, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
 };
 
 use super::{
@@ -59,12 +59,13 @@ pub fn run_case(
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
+    let lock = ResultsFolder::lock(&options.out)?;
     let checkpoint = match found(case, options, &inputs_blake3)? {
         Found::Done(summary) => return done_before(summary, options),
         Found::Checkpoint(checkpoint, spent_s) => Some((*checkpoint, spent_s)),
         Found::Case | Found::Nothing => None,
     };
-    let mut run = Run::begin(case, options, checkpoint, inputs_blake3, on_event)?;
+    let mut run = Run::begin(case, options, (checkpoint, lock), inputs_blake3, on_event)?;
     if run.march_on(on_event)?.is_break() {
         return Ok(Outcome::Interrupted(Reached::by(&run.march)));
     }
@@ -78,15 +79,33 @@ pub fn run_case(
     Ok(Outcome::Done(Box::new(summary)))
 }
 
-/// What the folder holds; an error if it is not free, or with `resume` if there is no run in it.
+/// What the folder holds; an error if a new run cannot be written to it, or with `resume` if there is
+/// no run in it.
 fn found(case: &Case, options: &RunOptions, inputs_blake3: &str) -> Result<Found, ResultsError> {
+    let out = &options.out;
     if options.resume {
         let cycles = case.march.cycles as f64;
-        let case_toml = case.to_toml_in(&options.out);
-        ResultsFolder::reopen(&options.out, &case_toml, inputs_blake3, cycles)
+        ResultsFolder::reopen(out, &case.to_toml_in(out), inputs_blake3, cycles)
     } else {
-        ResultsFolder::free(&options.out).map(|()| Found::Nothing)
+        ResultsFolder::free(out).map(|()| Found::Nothing)
     }
+}
+
+/// A folder for a new run, with the case in it, and its lock.
+fn new_folder(
+    case: &Case,
+    options: &RunOptions,
+    lock: Option<FolderLock>,
+) -> Result<(ResultsFolder, Option<FolderLock>), ResultsError> {
+    let folder = ResultsFolder::create(&options.out)?;
+    let was_there = lock.is_some();
+    let lock = lock.map_or_else(|| ResultsFolder::lock(folder.path()), |lock| Ok(Some(lock)))?;
+    // Another run may have come first since the folder was found not to be there.
+    if !was_there {
+        ResultsFolder::free(folder.path())?;
+    }
+    folder.write_case(&case.to_toml_in(folder.path()))?;
+    Ok((folder, lock))
 }
 
 /// A run that is done already. It may have been stopped before it wrote the page; the same folder gives
@@ -104,6 +123,8 @@ struct Run<'a> {
     inputs_blake3: String,
     warnings: Vec<String>,
     folder: ResultsFolder,
+    /// Held until the run has ended.
+    _lock: Option<FolderLock>,
     march: March,
     clock: Clock,
 }
@@ -113,7 +134,7 @@ impl<'a> Run<'a> {
     fn begin(
         case: &'a Case,
         options: &'a RunOptions,
-        checkpoint: Option<(Checkpoint, f64)>,
+        (checkpoint, lock): (Option<(Checkpoint, f64)>, Option<FolderLock>),
         inputs_blake3: String,
         on_event: &mut Listener<'_>,
     ) -> Result<Self, RunError> {
@@ -131,12 +152,10 @@ impl<'a> Run<'a> {
             }
             None => clock.time(|| start(case, built.test))?,
         };
-        let folder = if is_new {
-            let folder = ResultsFolder::create(&options.out)?;
-            folder.write_case(&case.to_toml_in(folder.path()))?;
-            folder
+        let (folder, lock) = if is_new {
+            new_folder(case, options, lock)?
         } else {
-            ResultsFolder::existing(&options.out)
+            (ResultsFolder::existing(&options.out), lock)
         };
         let run = Self {
             case,
@@ -144,6 +163,7 @@ impl<'a> Run<'a> {
             inputs_blake3,
             warnings,
             folder,
+            _lock: lock,
             march,
             clock,
         };
