@@ -48,6 +48,9 @@ pub struct Run {
     /// Go on with the run that was stopped in that folder.
     #[arg(long)]
     pub resume: bool,
+    /// Write over the run that is in that folder.
+    #[arg(long, conflicts_with = "resume")]
+    pub force: bool,
     /// Change a value of the case: a dotted path such as contact.friction=0.05, or the last word of one. May be given
     /// several times.
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Assignment::parse)]

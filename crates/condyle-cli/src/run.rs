@@ -29,6 +29,7 @@ pub fn run(arguments: &Run) -> ExitCode {
             .clone()
             .unwrap_or_else(|| default_folder(arguments)),
         resume: arguments.resume,
+        force: arguments.force,
         threads: usize::from(arguments.threads),
         cache: Cache::of_user(),
     };

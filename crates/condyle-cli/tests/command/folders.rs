@@ -150,6 +150,64 @@ fn the_default_folder_has_the_name_of_the_case() {
 }
 
 #[test]
+fn what_is_said_of_a_folder_fits_the_run_in_it() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    let said = || bench.say(&["run", "case.toml", "--out", "out"]);
+    said().assert_refused(2, &["a run, which is done", "--out", "--force"]);
+    assert!(!said().err.contains("go on with --resume"));
+    fs::remove_file(bench.path("out/summary.json")).unwrap();
+    said().assert_refused(
+        2,
+        &["already holds a run", "go on with --resume", "--force"],
+    );
+}
+
+#[test]
+fn a_run_is_written_over_where_that_is_asked_for() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    assert_eq!(bench.say(&["report", "out", "--pictures"]).code, Some(0));
+    bench.write("out/notes.txt", "mine");
+    bench.write("case.toml", &SMALL.replace("updates = 3", "updates = 1"));
+    let said = bench.say(&["run", "case.toml", "--out", "out", "--force"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let notes = fs::read_to_string(bench.path("out/notes.txt")).unwrap();
+    assert_eq!(notes, "mine");
+    fs::remove_file(bench.path("out/notes.txt")).unwrap();
+    bench.run_into("anew");
+    assert_same_bytes(&bench.path("out"), &bench.path("anew"));
+}
+
+#[test]
+fn a_case_that_cannot_start_leaves_the_run_that_it_would_write_over() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    let before = files_but_wall_time(&bench.path("out"));
+    let apart = "[femur]\nshape = \"sphere\"\nstart_mm = [90.0, 0.0]\n";
+    for wrong in ["[march]\nupdates = 0\n", apart] {
+        bench.write("case.toml", wrong);
+        let said = bench.say(&["run", "case.toml", "--out", "out", "--force"]);
+        assert_eq!(said.code, Some(2), "{}", said.err);
+        assert_eq!(files_but_wall_time(&bench.path("out")), before);
+    }
+}
+
+#[test]
+fn what_may_be_no_run_is_not_written_over() {
+    let bench = Bench::with_case(SMALL);
+    let said = bench.say(&["run", "case.toml", "--out", ".", "--force"]);
+    said.assert_refused(2, &["case.toml is there, but no checkpoint", "--out"]);
+    bench.run_into("out");
+    let said = bench.say(&["run", "out/case.toml", "--out", "out", "--force"]);
+    said.assert_refused(2, &["the run reads out/case.toml of the folder", "--out"]);
+    assert_eq!(fs::read_to_string(bench.path("case.toml")).unwrap(), SMALL);
+    assert!(bench.path("out/summary.json").exists());
+    let both = ["run", "case.toml", "--out", "out", "--force", "--resume"];
+    assert_eq!(bench.say(&both).code, Some(2));
+}
+
+#[test]
 fn a_run_stopped_before_its_first_file_is_gone_on_with() {
     let bench = Bench::with_case(SMALL);
     bench.run_into("whole");
@@ -174,7 +232,7 @@ fn a_folder_in_use_is_refused_until_it_is_free() {
     fs::create_dir(bench.path("out")).unwrap();
     let held = File::create(bench.path("out/in_use")).unwrap();
     held.lock().unwrap();
-    for more in [&[][..], &["--resume"]] {
+    for more in [&[][..], &["--resume"], &["--force"]] {
         let said = bench.say(&[&["run", "case.toml", "--out", "out"], more].concat());
         let words = ["out: another run is writing into this folder", "--out"];
         said.assert_refused(2, &words);

@@ -122,7 +122,7 @@ fn a_run_does_not_write_into_the_folder_of_another() {
     let mut first = begun(&bench, false);
     wait_for(&bench.path("out/checkpoint"), &mut first);
     signal(&first, "-STOP");
-    for more in [&[][..], &["--resume"]] {
+    for more in [&[][..], &["--resume"], &["--force"]] {
         let said = bench.say(&[&["run", "case.toml", "--out", "out"], more].concat());
         said.assert_refused(2, &["another run is writing into this folder"]);
     }

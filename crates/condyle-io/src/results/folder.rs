@@ -24,7 +24,7 @@ pub enum ResultsError {
     /// A run is already in it.
     #[error(
         "{}: the folder already holds a run ({file} is there); \
-         give another folder with --out, or go on with --resume",
+         give another folder with --out, go on with --resume, or write over it with --force",
         folder.display()
     )]
     HoldsRun {
@@ -32,6 +32,41 @@ pub enum ResultsError {
         folder: PathBuf,
         /// A file of the run.
         file: &'static str,
+    },
+    /// A run that is done is in it.
+    #[error(
+        "{}: the folder already holds a run, which is done (summary.json is there); \
+         give another folder with --out, or write over it with --force: there is nothing left to --resume",
+        folder.display()
+    )]
+    HoldsDoneRun {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Files that a run would replace, and no run that they are of.
+    #[error(
+        "{}: {file} is there, but no checkpoint, so that it may be something else than a run; \
+         give another folder with --out, or take the file away yourself",
+        folder.display()
+    )]
+    HoldsNoWholeRun {
+        /// The folder.
+        folder: PathBuf,
+        /// The file.
+        file: &'static str,
+    },
+    /// A run that would be written over by one that reads it.
+    #[error(
+        "{}: the run reads {} of the folder that it would write over; \
+         give another folder with --out",
+        folder.display(),
+        file.display()
+    )]
+    HoldsInput {
+        /// The folder.
+        folder: PathBuf,
+        /// What is read.
+        file: PathBuf,
     },
     /// Another run is writing.
     #[error(
@@ -102,7 +137,7 @@ pub struct ResultsFolder {
 }
 
 /// Files of a run that are never written over by another; the one written first comes first.
-const SIGNS_OF_A_RUN: [&str; 8] = [
+pub(super) const SIGNS_OF_A_RUN: [&str; 8] = [
     "case.toml",
     "checkpoint",
     "summary.json",
@@ -115,7 +150,7 @@ const SIGNS_OF_A_RUN: [&str; 8] = [
 
 /// Seconds spent by the parts of a run that is not done; gone once it is, so that what is left
 /// is the same bytes whether it was stopped or not.
-const TIME_SPENT: &str = "time_spent_s";
+pub(super) const TIME_SPENT: &str = "time_spent_s";
 
 /// What a folder holds of a run to go on with.
 #[derive(Debug)]
@@ -140,13 +175,21 @@ impl ResultsFolder {
     /// Whether a new run can be written to `path`; nothing is made.
     ///
     /// # Errors
-    /// A folder that holds a run, or a file in its place.
+    /// A folder that holds a run, done or not, or a file in its place.
     pub fn free(path: &Path) -> Result<(), ResultsError> {
         let folder = Self::existing(path);
         if path.exists() && !path.is_dir() {
             return Err(ResultsError::NoFolder { path: folder.path });
         }
         let is_there = |name: &&&str| folder.file(name).exists();
+        if ["checkpoint", "summary.json"]
+            .iter()
+            .all(|name| is_there(&name))
+        {
+            return Err(ResultsError::HoldsDoneRun {
+                folder: folder.path,
+            });
+        }
         match SIGNS_OF_A_RUN.iter().find(is_there) {
             Some(&file) => Err(ResultsError::HoldsRun {
                 folder: folder.path,

@@ -11,6 +11,8 @@ mod lock;
 mod replace;
 mod summary;
 mod tables;
+#[cfg(feature = "file-system")]
+mod write_over;
 
 /// What the columns of `kinematics.csv` are.
 pub use condyle::machine::{

@@ -5,6 +5,7 @@ use std::{ops::ControlFlow, path::Path, time::Duration};
 use condyle::evolve::March;
 use condyle_io::{
     case::{Assignment, Case, Side},
+    keyed::DataFile,
     results::{Checkpoint, FolderLock, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
 };
 
@@ -46,7 +47,8 @@ pub fn run_changed(
     options: &RunOptions,
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
-    run_case(&changed(case_path, changes)?, options, on_event)
+    let case = changed(case_path, changes)?;
+    run_read(&case, Some(case_path), options, on_event)
 }
 
 /// Runs a case that is read already, as [`run`] does.
@@ -58,9 +60,19 @@ pub fn run_case(
     options: &RunOptions,
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
+    run_read(case, None, options, on_event)
+}
+
+/// Runs a case that was read from `case_path`, if from a file.
+fn run_read(
+    case: &Case,
+    case_path: Option<&Path>,
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
     let lock = ResultsFolder::lock(&options.out)?;
-    let checkpoint = match found(case, options, &inputs_blake3)? {
+    let checkpoint = match found(case, case_path, options, &inputs_blake3)? {
         Found::Done(summary) => return done_before(summary, options),
         Found::Checkpoint(checkpoint, spent_s) => Some((*checkpoint, spent_s)),
         Found::Case | Found::Nothing => None,
@@ -81,11 +93,21 @@ pub fn run_case(
 
 /// What the folder holds; an error if a new run cannot be written to it, or with `resume` if there is
 /// no run in it.
-fn found(case: &Case, options: &RunOptions, inputs_blake3: &str) -> Result<Found, ResultsError> {
+fn found(
+    case: &Case,
+    case_path: Option<&Path>,
+    options: &RunOptions,
+    inputs_blake3: &str,
+) -> Result<Found, ResultsError> {
     let out = &options.out;
     if options.resume {
         let cycles = case.march.cycles as f64;
         ResultsFolder::reopen(out, &case.to_toml_in(out), inputs_blake3, cycles)
+    } else if options.force {
+        let meshes = [case.femur.file(), case.insert.file()];
+        let meshes = meshes.into_iter().flatten().map(DataFile::path);
+        let read: Vec<&Path> = case_path.into_iter().chain(meshes).collect();
+        ResultsFolder::may_be_written_over(out, &read).map(|()| Found::Nothing)
     } else {
         ResultsFolder::free(out).map(|()| Found::Nothing)
     }
@@ -103,6 +125,9 @@ fn new_folder(
     // Another run may have come first since the folder was found not to be there.
     if !was_there {
         ResultsFolder::free(folder.path())?;
+    }
+    if options.force {
+        folder.clear()?;
     }
     folder.write_case(&case.to_toml_in(folder.path()))?;
     Ok((folder, lock))
