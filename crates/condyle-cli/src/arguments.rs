@@ -11,7 +11,7 @@ use condyle_io::case::{Assignment, Preset};
 #[command(
     name = "condyle",
     version,
-    after_help = "Exit codes: 0 done, 2 bad input, 3 the physics could not be solved, 130 interrupted and resumable."
+    after_help = "Exit codes: 0 done, 2 bad input or no room for output, 3 the physics could not be solved, 130 interrupted and resumable."
 )]
 pub struct Arguments {
     #[command(subcommand)]

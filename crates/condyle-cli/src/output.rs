@@ -22,13 +22,27 @@ pub fn print_beside(text: &str, folder: &Path) -> ExitCode {
     ended(write(text), &kept)
 }
 
-/// A reader that has gone, as `head` does, has read all that it wanted: that is no error.
+/// Prints what the parser of the command line says, such as its help, and gives the exit code.
+pub fn print_from_parser(words: &clap::Error) -> ExitCode {
+    match words.print().or_else(forgive_a_closed_pipe) {
+        Err(error) if !words.use_stderr() => ended(Err(error), ""),
+        Ok(()) | Err(_) => {
+            ExitCode::from(u8::try_from(words.exit_code()).unwrap_or(exit::BAD_INPUT))
+        }
+    }
+}
+
 fn write(text: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    match written {
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        other => other,
+    written.or_else(forgive_a_closed_pipe)
+}
+
+/// A reader that has gone, as `head` does, has read all that it wanted: that is no error.
+fn forgive_a_closed_pipe(error: io::Error) -> io::Result<()> {
+    match error.kind() {
+        ErrorKind::BrokenPipe => Ok(()),
+        _ => Err(error),
     }
 }
 

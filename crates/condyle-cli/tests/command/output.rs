@@ -9,6 +9,9 @@ use crate::bench::{Bench, SMALL, Said};
 
 /// Commands that print something.
 const COMMANDS: &[&[&str]] = &[
+    &["--help"],
+    &["run", "--help"],
+    &["--version"],
     &["check", "case.toml"],
     &["check", "case.toml", "--print"],
     &["run", "case.toml", "--out", "table"],
