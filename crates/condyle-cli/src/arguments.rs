@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use condyle_io::case::Preset;
+use condyle_io::case::{Assignment, Preset};
 
 /// A virtual wear test of a joint replacement: from an implant to its wear.
 #[derive(Parser)]
 #[command(
     name = "condyle",
     version,
-    after_help = "Exit codes: 0 done, 2 bad input, 3 the physics could not be solved, 130 interrupted and resumable."
+    after_help = "Exit codes: 0 done, 2 bad input or no room for output, 3 the physics could not be solved, 130 interrupted and resumable."
 )]
 pub struct Arguments {
     #[command(subcommand)]
@@ -43,11 +43,18 @@ pub struct Run {
     /// The case file.
     pub case: PathBuf,
     /// Folder for the results [default: results/ and the case's name].
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Go on with the run that was stopped in that folder.
     #[arg(long)]
     pub resume: bool,
+    /// Write over the run that is in that folder.
+    #[arg(long, conflicts_with = "resume")]
+    pub force: bool,
+    /// Change a value of the case: a dotted path such as contact.friction=0.05, or the last word of one. May be given
+    /// several times.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Assignment::parse)]
+    pub changes: Vec<Assignment>,
     /// Threads for the one-time work on a mesh; the results are the same on any number.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
@@ -60,6 +67,10 @@ pub struct Run {
 pub struct Check {
     /// The case file.
     pub case: PathBuf,
+    /// Change a value of the case: a dotted path such as contact.friction=0.05, or the last word of one. May be given
+    /// several times.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Assignment::parse)]
+    pub changes: Vec<Assignment>,
     /// Print the case as it would run, every default written out.
     #[arg(long)]
     pub print: bool,
@@ -79,7 +90,7 @@ pub struct Export {
     /// The case file.
     pub case: PathBuf,
     /// The Abaqus input file to write; it must not be there yet.
-    #[arg(long, value_name = "FILE.inp")]
+    #[arg(short, long, value_name = "FILE.inp")]
     pub out: PathBuf,
     /// An elastic insert under hard contact, rather than a rigid one under the pressure law.
     #[arg(long)]
@@ -113,7 +124,7 @@ pub struct Converge {
     )]
     pub over: String,
     /// Folder for the table, the picture and the results of every run; it must be empty.
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub out: PathBuf,
     /// Go on with the study that was stopped in that folder.
     #[arg(long)]
@@ -133,7 +144,7 @@ pub struct Compare {
     /// The TOML file that names the measured data.
     pub measured: PathBuf,
     /// Folder for compare.json, the pictures and the table of depths [default: compare in the results folder].
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print compare.json, and nothing else on standard output.
     #[arg(long)]

@@ -4,20 +4,27 @@ use std::process::ExitCode;
 
 use condyle_lab::measured::{CalibrateError, Calibration, Trial, calibrate};
 
-use crate::{arguments::CalibrateWear, compare, exit};
+use crate::{
+    arguments::CalibrateWear,
+    compare, exit,
+    output::{self, Lines},
+    standard_error::tell,
+};
 
 pub fn calibrate_wear(arguments: &CalibrateWear) -> ExitCode {
     let mut tried = |trial: &Trial| {
-        eprintln!(
+        tell(format_args!(
             "{:.4e} mm3/(N m): {:.3} mg per million cycles",
             trial.wear_factor_mm3_per_nm, trial.mg_per_million_cycles
-        );
+        ));
     };
     match calibrate(&arguments.results, &arguments.measured, &mut tried) {
-        Ok(calibration) => {
-            print(&calibration, arguments.json);
-            ExitCode::SUCCESS
+        Ok(calibration) if arguments.json => {
+            let text = serde_json::to_string_pretty(&calibration);
+            let text = text.expect("numbers and text always serialise");
+            output::print(&(text + "\n"))
         }
+        Ok(calibration) => output::print(table(&calibration).text()),
         Err(error) => fail(&error),
     }
 }
@@ -31,14 +38,10 @@ fn fail(error: &CalibrateError) -> ExitCode {
     }
 }
 
-fn print(calibration: &Calibration, json: bool) {
-    if json {
-        let text = serde_json::to_string_pretty(calibration);
-        println!("{}", text.expect("numbers and text always serialise"));
-        return;
-    }
+fn table(calibration: &Calibration) -> Lines {
+    let mut lines = Lines::default();
     let rate = calibration.measured_mg_per_million_cycles;
-    println!(
+    lines.line(format_args!(
         "measured rate ({})  {rate:.3} mg per million cycles{}",
         calibration.measured_by,
         ends(
@@ -46,8 +49,8 @@ fn print(calibration: &Calibration, json: bool) {
             calibration.interval_mg_per_million_cycles,
             |end| format!("{end:.3}")
         )
-    );
-    println!(
+    ));
+    lines.line(format_args!(
         "wear factor  {:.4e} mm3/(N m){}; the run had {:.4e}",
         calibration.wear_factor_mm3_per_nm,
         ends(
@@ -56,11 +59,12 @@ fn print(calibration: &Calibration, json: bool) {
             |end| format!("{end:.4e}")
         ),
         calibration.run_with_mm3_per_nm,
-    );
-    println!(
+    ));
+    lines.line(format_args!(
         "for the case: [wear] wear_factor_mm3_per_nm = {:.4e}",
         calibration.wear_factor_mm3_per_nm
-    );
+    ));
+    lines
 }
 
 fn ends(

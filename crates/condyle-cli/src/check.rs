@@ -2,20 +2,21 @@
 
 use std::process::ExitCode;
 
-use crate::{arguments::Check, exit};
+use crate::{arguments::Check, exit, output, standard_error::tell};
 
 pub fn check(arguments: &Check) -> ExitCode {
-    let (case, warnings) = match condyle_lab::check(&arguments.case, 1) {
+    let (case, warnings) = match condyle_lab::check_changed(&arguments.case, &arguments.changes, 1)
+    {
         Ok(checked) => checked,
         Err(error) => return exit::fail_run(&error),
     };
     warnings
         .iter()
-        .for_each(|warning| eprintln!("warning: {warning}"));
+        .for_each(|warning| tell(format_args!("warning: {warning}")));
     if arguments.print {
-        print!("{}", case.to_toml());
+        output::print(&case.to_toml())
     } else {
-        println!("{}: the case is good", arguments.case.display());
+        let case = arguments.case.display();
+        output::print(&format!("{case}: the case is good\n"))
     }
-    ExitCode::SUCCESS
 }

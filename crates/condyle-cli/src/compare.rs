@@ -8,7 +8,11 @@ use condyle_lab::measured::{
     NodeDepths, Rate, SurfaceComparison, SurfaceErrors, compare as study,
 };
 
-use crate::{arguments::Compare, exit};
+use crate::{
+    arguments::Compare,
+    exit,
+    output::{self, Lines},
+};
 
 pub fn compare(arguments: &Compare) -> ExitCode {
     let comparison = match study(&arguments.results, &arguments.measured) {
@@ -16,18 +20,22 @@ pub fn compare(arguments: &Compare) -> ExitCode {
         Err(error) => return fail(&error),
     };
     let out = arguments.out.clone();
-    let written = match comparison.write(&out.unwrap_or_else(|| default_folder(arguments))) {
+    let out = out.unwrap_or_else(|| default_folder(arguments));
+    let written = match comparison.write(&out) {
         Ok(written) => written,
         Err(error) => return fail(&error),
     };
     if arguments.json {
-        print!("{}", comparison.json());
-    } else {
-        print_tables(&comparison);
-        let files = written.iter().map(|path| path.display().to_string());
-        println!("wrote {}", files.collect::<Vec<_>>().join(", "));
+        return output::print_beside(&comparison.json(), &out);
     }
-    ExitCode::SUCCESS
+    let mut lines = Lines::default();
+    add_tables(&comparison, &mut lines);
+    let files = written.iter().map(|path| path.display().to_string());
+    lines.line(format_args!(
+        "wrote {}",
+        files.collect::<Vec<_>>().join(", ")
+    ));
+    output::print_beside(lines.text(), &out)
 }
 
 /// `compare` in the results folder.
@@ -43,49 +51,53 @@ pub fn fail(error: &CompareError) -> ExitCode {
     }
 }
 
-fn print_tables(comparison: &Comparison) {
+fn add_tables(comparison: &Comparison, lines: &mut Lines) {
     if let Some(kinematics) = &comparison.kinematics {
-        print_kinematics(kinematics);
+        add_kinematics(kinematics, lines);
     }
     if let Some(gravimetric) = &comparison.gravimetric {
-        print_gravimetric(gravimetric);
+        add_gravimetric(gravimetric, lines);
     }
     if let Some(surface) = &comparison.surface {
-        print_surface(surface);
+        add_surface(surface, lines);
     }
 }
 
-fn print_kinematics(kinematics: &KinematicsComparison) {
+fn add_kinematics(kinematics: &KinematicsComparison, lines: &mut Lines) {
     let aligned = match kinematics.align {
         "mean" => "; the mean difference is taken out of the errors",
         _ => "",
     };
-    println!(
+    lines.line(format_args!(
         "Kinematics, {} cycle: predicted minus measured{aligned}",
         kinematics.cycle
-    );
-    println!(
+    ));
+    lines.line(format_args!(
         "{:<28}{:>10}{:>10}{:>10}{:>8}{:>10}",
         "", "mean abs", "rms", "largest", "at %", "mean"
-    );
+    ));
     for column in &kinematics.columns {
         let mean = format!("{:>10.3}", column.mean_difference);
-        println!("{:<28}{}{mean}", column.column, errors(&column.errors));
+        lines.line(format_args!(
+            "{:<28}{}{mean}",
+            column.column,
+            errors(&column.errors)
+        ));
         for phase in &column.phases {
             let (start, end) = (phase.start_percent, phase.end_percent);
             let name = format!("  {} {start}-{end} %", phase.phase);
             let text = phase.errors.as_ref().map(errors);
-            println!(
+            lines.line(format_args!(
                 "{name:<28}{}",
                 text.unwrap_or_else(|| "      not measured".to_owned())
-            );
+            ));
         }
         if column.compared < column.instants {
             let (compared, all) = (column.compared, column.instants);
-            println!("  measured at {compared} of {all} instants");
+            lines.line(format_args!("  measured at {compared} of {all} instants"));
         }
     }
-    println!();
+    lines.line("");
 }
 
 fn errors(errors: &Errors) -> String {
@@ -98,51 +110,54 @@ fn errors(errors: &Errors) -> String {
     format!("{mean_absolute:>10.3}{rms:>10.3}{largest:>10.3}{largest_at_percent:>8.1}")
 }
 
-fn print_gravimetric(gravimetric: &GravimetricComparison) {
-    println!("Wear by weighing, {}", soak(gravimetric.soak_controls));
-    println!(
+fn add_gravimetric(gravimetric: &GravimetricComparison, lines: &mut Lines) {
+    lines.line(format_args!(
+        "Wear by weighing, {}",
+        soak(gravimetric.soak_controls)
+    ));
+    lines.line(format_args!(
         "{:<28}{:>12}  {:>19}{:>10}",
         "",
         "mg/10^6",
         format!("{} % interval", gravimetric.confidence_percent),
         "R2"
-    );
+    ));
     let all = gravimetric.specimens.iter();
     all.chain([
         &gravimetric.all,
         &gravimetric.mean_of_specimens,
         &gravimetric.predicted,
     ])
-    .for_each(print_rate);
-    println!(
+    .for_each(|rate| add_rate(rate, lines));
+    lines.line(format_args!(
         "predicted is {:+.1} % of the measured rate, the line through all weighings",
         gravimetric.predicted_above_measured_percent
-    );
+    ));
     let range = &gravimetric.range_of_specimens_mg_per_million_cycles;
-    println!(
+    lines.line(format_args!(
         "the prediction is {} the range of the specimens, {}",
         inside(gravimetric.inside_range_of_specimens),
         interval(range)
-    );
-    println!(
+    ));
+    lines.line(format_args!(
         "  {} the interval of the line through all weighings",
         inside(gravimetric.inside_interval_of_weighings)
-    );
+    ));
     if let Some(is_inside) = gravimetric.inside_interval_of_specimens {
-        println!(
+        lines.line(format_args!(
             "  {} the interval of the mean of the specimens",
             inside(is_inside)
-        );
+        ));
     }
     let after = gravimetric.weighings.iter();
     let missed = after.filter(|weighing| weighing.in_line && weighing.predicted_loss_mg.is_none());
     match missed.count() {
         0 => {}
-        count => println!(
+        count => lines.line(format_args!(
             "note: the run ends before {count} of the weighings, which the prediction's line leaves out"
-        ),
+        )),
     }
-    println!();
+    lines.line("");
 }
 
 fn soak(controls: usize) -> String {
@@ -153,14 +168,16 @@ fn soak(controls: usize) -> String {
     }
 }
 
-fn print_rate(rate: &Rate) {
+fn add_rate(rate: &Rate, lines: &mut Lines) {
     let ends = rate.interval_mg_per_million_cycles;
     let ends = ends.as_ref().map_or_else(|| "-".to_owned(), interval);
     let r_squared = rate
         .r_squared
         .map_or_else(String::new, |r| format!("{r:.4}"));
     let (name, value) = (&rate.name, rate.mg_per_million_cycles);
-    println!("{name:<28}{value:>12.3}  {ends:>19}{r_squared:>10}");
+    lines.line(format_args!(
+        "{name:<28}{value:>12.3}  {ends:>19}{r_squared:>10}"
+    ));
 }
 
 fn interval(interval: &Interval) -> String {
@@ -171,49 +188,51 @@ fn inside(is_inside: bool) -> &'static str {
     if is_inside { "inside" } else { "OUTSIDE" }
 }
 
-fn print_surface(surface: &SurfaceComparison) {
+fn add_surface(surface: &SurfaceComparison, lines: &mut Lines) {
     let registration = &surface.registration;
-    println!("Worn surface: scanned minus predicted depth, mm");
-    println!(
+    lines.line("Worn surface: scanned minus predicted depth, mm");
+    lines.line(format_args!(
         "  laid on with a turn of {:.3} deg and a shift of {:.3} mm; {} points fitted, {:.4} mm rms left, uncertain by {:.4} mm",
         registration.angle_deg,
         registration.shift_mm,
         registration.points,
         registration.residual_rms_mm,
         registration.weakest_standard_error_mm,
-    );
-    println!(
+    ));
+    lines.line(format_args!(
         "{:<28}{:>10}{:>10}{:>10}{:>12}",
         "", "mean", "mean abs", "rms", "area mm2"
-    );
-    print_errors("everywhere", &surface.everywhere);
+    ));
+    add_errors("everywhere", &surface.everywhere, lines);
     if let Some(scars) = &surface.in_scars {
-        print_errors("in the scars", scars);
+        add_errors("in the scars", scars, lines);
     }
-    print_place("worst difference", &surface.worst);
-    print_place("deepest predicted", &surface.deepest_predicted);
-    print_place("deepest scanned", &surface.deepest_scanned);
-    println!(
+    add_place("worst difference", &surface.worst, lines);
+    add_place("deepest predicted", &surface.deepest_predicted, lines);
+    add_place("deepest scanned", &surface.deepest_scanned, lines);
+    lines.line(format_args!(
         "volume over the area scanned: {:.2} mm3 scanned, {:.2} mm3 predicted",
         surface.scanned_volume_mm3, surface.predicted_volume_mm3
-    );
+    ));
     for note in &surface.notes {
-        println!("note: {note}");
+        lines.line(format_args!("note: {note}"));
     }
-    println!();
+    lines.line("");
 }
 
-fn print_errors(name: &str, errors: &SurfaceErrors) {
+fn add_errors(name: &str, errors: &SurfaceErrors, lines: &mut Lines) {
     let SurfaceErrors {
         mean_mm,
         mean_absolute_mm,
         rms_mm,
         area_mm2,
     } = errors;
-    println!("{name:<28}{mean_mm:>10.4}{mean_absolute_mm:>10.4}{rms_mm:>10.4}{area_mm2:>12.0}");
+    lines.line(format_args!(
+        "{name:<28}{mean_mm:>10.4}{mean_absolute_mm:>10.4}{rms_mm:>10.4}{area_mm2:>12.0}"
+    ));
 }
 
-fn print_place(name: &str, place: &NodeDepths) {
+fn add_place(name: &str, place: &NodeDepths, lines: &mut Lines) {
     let NodeDepths {
         x_mm,
         z_mm,
@@ -222,7 +241,7 @@ fn print_place(name: &str, place: &NodeDepths) {
         difference_mm,
         ..
     } = place;
-    println!(
+    lines.line(format_args!(
         "{name:<28}{difference_mm:>+10.4} at x {x_mm:.1}, z {z_mm:.1} (scanned {scanned_mm:.4}, predicted {predicted_mm:.4})"
-    );
+    ));
 }

@@ -18,7 +18,7 @@ use condyle_lab::{
     },
 };
 
-use crate::{arguments::Converge, exit, run::stop_on_interrupt};
+use crate::{arguments::Converge, exit, output, run::stop_on_interrupt, standard_error::tell};
 
 /// Width of a column of the table.
 const COLUMN: usize = 15;
@@ -46,8 +46,8 @@ pub fn converge(arguments: &Converge) -> ExitCode {
     match outcome {
         Ok(Converged::Done(convergence)) => print(&convergence, arguments),
         Ok(Converged::Interrupted) => {
-            eprintln!(
-                "interrupted: what was computed is kept; go on with the same command and --resume"
+            tell(
+                "interrupted: what was computed is kept; go on with the same command and --resume",
             );
             ExitCode::from(exit::INTERRUPTED)
         }
@@ -64,7 +64,7 @@ fn fail(error: &ConvergeError) -> ExitCode {
     match error {
         ConvergeError::Case(in_case) => exit::fail_case(in_case),
         ConvergeError::Run { number, source } => {
-            eprintln!("in the run with {number}:");
+            tell(format_args!("in the run with {number}:"));
             exit::fail_run(source)
         }
         other => exit::fail(other, exit::BAD_INPUT),
@@ -74,17 +74,17 @@ fn fail(error: &ConvergeError) -> ExitCode {
 /// A line a run, and every warning once.
 fn show(on_event: &ConvergeHappening<'_>, told: &Mutex<BTreeSet<String>>) {
     match on_event {
-        ConvergeHappening::Ran(run, summary) => eprintln!(
+        ConvergeHappening::Ran(run, summary) => tell(format_args!(
             "{} = {}: {:.3} mg worn, {:.4} mm deep",
             run.number.path(),
             run.number.text(),
             summary.mass_loss_mg,
             summary.max_depth_mm
-        ),
+        )),
         ConvergeHappening::In(_, RunEvent::Warning(warning)) => {
             let mut told = told.lock().expect("no thread panics with it");
             if told.insert(warning.clone()) {
-                eprintln!("warning: {warning}");
+                tell(format_args!("warning: {warning}"));
             }
         }
         ConvergeHappening::In(..) => {}
@@ -96,20 +96,18 @@ fn print(convergence: &Convergence, arguments: &Converge) -> ExitCode {
     if arguments.json {
         let path = out.join("converge.json");
         return match fs::read_to_string(&path) {
-            Ok(text) => {
-                print!("{text}");
-                ExitCode::SUCCESS
-            }
+            Ok(text) => output::print_beside(&text, out),
             Err(error) => exit::fail(format!("{}: {error}", path.display()), exit::BAD_INPUT),
         };
     }
-    print!("{}", table(convergence));
-    println!(
-        "results in {}; open {}",
+    let picture = out.join("converge.svg");
+    let text = format!(
+        "{}results in {}; open {}\n",
+        table(convergence),
         out.display(),
-        out.join("converge.svg").display()
+        picture.display()
     );
-    ExitCode::SUCCESS
+    output::print_beside(&text, out)
 }
 
 fn table(convergence: &Convergence) -> String {

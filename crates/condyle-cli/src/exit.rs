@@ -9,6 +9,8 @@ use std::{
 use condyle_io::keyed::{Problems, RenderStyle};
 use condyle_lab::RunError;
 
+use crate::standard_error::{show, tell};
+
 /// Bad input.
 pub const BAD_INPUT: u8 = 2;
 /// The physics could not be solved.
@@ -18,7 +20,7 @@ pub const INTERRUPTED: u8 = 130;
 
 /// Prints an error and gives the exit code.
 pub fn fail(error: impl Display, code: u8) -> ExitCode {
-    eprintln!("error: {error}");
+    tell(format_args!("error: {error}"));
     ExitCode::from(code)
 }
 
@@ -33,13 +35,13 @@ pub fn fail_run(error: &RunError) -> ExitCode {
     let Some(in_case) = error.in_case() else {
         return fail(error, code);
     };
-    eprint!("{}", in_case.render(style()));
+    show(&in_case.render(style()));
     ExitCode::from(code)
 }
 
 /// Prints what is wrong with a case file, with carets, and gives the exit code.
 pub fn fail_case(error: &Problems) -> ExitCode {
-    eprint!("{}", error.render(style()));
+    show(&error.render(style()));
     ExitCode::from(BAD_INPUT)
 }
 

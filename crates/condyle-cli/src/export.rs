@@ -8,7 +8,7 @@ use condyle_io::{
 };
 use condyle_lab::RunError;
 
-use crate::{arguments::Export, exit};
+use crate::{arguments::Export, exit, output, standard_error::tell};
 
 pub fn export(arguments: &Export) -> ExitCode {
     let case = match Case::read(&arguments.case) {
@@ -24,7 +24,7 @@ pub fn export(arguments: &Export) -> ExitCode {
         Ok(warnings) => {
             warnings
                 .iter()
-                .for_each(|warning| eprintln!("warning: {warning}"));
+                .for_each(|warning| tell(format_args!("warning: {warning}")));
             save(arguments, &text)
         }
         Err(error) => fail(&case, error),
@@ -51,10 +51,7 @@ fn save(arguments: &Export, text: &[u8]) -> ExitCode {
     let path = &arguments.out;
     let written = File::create_new(path).and_then(|mut file| file.write_all(text));
     match written {
-        Ok(()) => {
-            println!("wrote {}", path.display());
-            ExitCode::SUCCESS
-        }
+        Ok(()) => output::print(&format!("wrote {}\n", path.display())),
         Err(error) => exit::fail(
             format!("{}: {error}; choose another name or folder", path.display()),
             exit::BAD_INPUT,

@@ -8,10 +8,12 @@ mod converge;
 mod exit;
 mod export;
 mod new;
+mod output;
 mod processor;
 mod progress;
 mod report;
 mod run;
+mod standard_error;
 
 use std::process::ExitCode;
 
@@ -29,7 +31,14 @@ fn main() -> ExitCode {
 /// Apart, so that no vector is used before the processor is looked at.
 #[inline(never)]
 fn run_command() -> ExitCode {
-    match Arguments::parse().command {
+    match Arguments::try_parse() {
+        Ok(arguments) => obey(arguments.command),
+        Err(words) => output::print_from_parser(&words),
+    }
+}
+
+fn obey(command: Command) -> ExitCode {
+    match command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::New(arguments) => new::new(&arguments),

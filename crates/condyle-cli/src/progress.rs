@@ -5,6 +5,8 @@ use std::io::{IsTerminal, stderr};
 use condyle_lab::{Reached, RunEvent};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::standard_error::tell;
+
 /// Ticks of the bar for the whole test.
 const TICKS: f64 = 1000.0;
 
@@ -24,7 +26,7 @@ impl Progress {
 
     pub fn show(&mut self, on_event: &RunEvent<'_>) {
         match on_event {
-            RunEvent::Warning(warning) => eprintln!("warning: {warning}"),
+            RunEvent::Warning(warning) => tell(format_args!("warning: {warning}")),
             RunEvent::Started(reached) => self.start(*reached),
             RunEvent::Solved(progress) => {
                 if let Some(bar) = &self.bar {
@@ -39,10 +41,10 @@ impl Progress {
             }
             RunEvent::Updated(update) => {
                 if self.bar.is_none() {
-                    eprintln!(
+                    tell(format_args!(
                         "{:.0} cycles: {:.3} mg worn, {:.4} mm deep",
                         update.cycles, update.mass_loss_mg, update.max_depth_mm
-                    );
+                    ));
                 }
             }
         }
@@ -67,7 +69,7 @@ impl Progress {
             bar.set_position(self.ticks(reached.cycles));
             self.bar = Some(bar);
         } else if reached.updates > 0 {
-            eprintln!("going on: {}", in_words(&reached));
+            tell(format_args!("going on: {}", in_words(&reached)));
         }
     }
 }

@@ -2,7 +2,11 @@
 
 use std::process::ExitCode;
 
-use crate::{arguments::Report, exit};
+use crate::{
+    arguments::Report,
+    exit,
+    output::{self, Lines},
+};
 
 pub fn report(arguments: &Report) -> ExitCode {
     let folder = &arguments.results;
@@ -12,11 +16,12 @@ pub fn report(arguments: &Report) -> ExitCode {
         written.push(condyle_report::write_wear_curve(folder));
         written.push(condyle_report::write_kinematics(folder));
     }
+    let mut lines = Lines::default();
     for file in written {
         match file {
-            Ok(path) => println!("wrote {}", path.display()),
+            Ok(path) => lines.line(format_args!("wrote {}", path.display())),
             Err(error) => return exit::fail(error, exit::BAD_INPUT),
         }
     }
-    ExitCode::SUCCESS
+    output::print(lines.text())
 }

@@ -17,7 +17,9 @@ use condyle_lab::{Outcome, RunOptions};
 use crate::{
     arguments::Run,
     exit,
+    output::{self, Lines},
     progress::{Progress, in_words},
+    standard_error::tell,
 };
 
 pub fn run(arguments: &Run) -> ExitCode {
@@ -27,39 +29,52 @@ pub fn run(arguments: &Run) -> ExitCode {
             .clone()
             .unwrap_or_else(|| default_folder(arguments)),
         resume: arguments.resume,
+        force: arguments.force,
         threads: usize::from(arguments.threads),
         cache: Cache::of_user(),
     };
     let stop = stop_on_interrupt();
     let mut progress = Progress::new();
-    let outcome = condyle_lab::run(&arguments.case, &options, &mut |on_event| {
-        progress.show(&on_event);
-        if stop.load(Ordering::Relaxed) {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
-    });
+    let outcome = condyle_lab::run_changed(
+        &arguments.case,
+        &arguments.changes,
+        &options,
+        &mut |on_event| {
+            progress.show(&on_event);
+            if stop.load(Ordering::Relaxed) {
+                return ControlFlow::Break(());
+            }
+            ControlFlow::Continue(())
+        },
+    );
     progress.finish();
     match outcome {
-        Ok(Outcome::Done(summary)) => {
-            print_summary(&summary, &options, arguments.json);
-            ExitCode::SUCCESS
-        }
+        Ok(Outcome::Done(summary)) => print_summary(&summary, &options, arguments.json),
         Ok(Outcome::DoneBefore(summary)) => {
-            eprintln!("this run is done already: nothing was computed");
-            print_summary(&summary, &options, arguments.json);
-            ExitCode::SUCCESS
+            tell("this run is done already: nothing was computed");
+            print_summary(&summary, &options, arguments.json)
         }
         Ok(Outcome::Interrupted(reached)) => {
-            let (case, out) = (arguments.case.display(), options.out.display());
-            eprintln!(
-                "interrupted: {}, and kept; go on with: condyle run {case} --out {out} --resume",
-                in_words(&reached)
-            );
+            tell(format_args!(
+                "interrupted: {}, and kept; go on with: {}",
+                in_words(&reached),
+                command_to_go_on(arguments, &options)
+            ));
             ExitCode::from(exit::INTERRUPTED)
         }
         Err(error) => exit::fail_run(&error),
     }
+}
+
+/// The command that goes on with a run, as a shell takes it.
+fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
+    let (case, out) = (arguments.case.display(), options.out.display());
+    let changes = arguments.changes.iter().map(|change| {
+        let quoted = change.to_string().replace('\'', r"'\''");
+        format!(" --set '{quoted}'")
+    });
+    let changes: String = changes.collect();
+    format!("condyle run {case} --out {out} --resume{changes}")
 }
 
 /// `results/` and the case's name, beside where the command runs.
@@ -77,33 +92,48 @@ pub fn stop_on_interrupt() -> Arc<AtomicBool> {
         }
     });
     if let Err(error) = set {
-        eprintln!("warning: Ctrl-C will end the run at once: {error}");
+        tell(format_args!(
+            "warning: Ctrl-C will end the run at once: {error}"
+        ));
     }
     stop
 }
 
-fn print_summary(summary: &Summary, options: &RunOptions, json: bool) {
+fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCode {
+    let out = &options.out;
     if json {
-        println!(
-            "{}",
-            serde_json::to_string_pretty(summary).expect("numbers and text always serialise")
-        );
-        return;
+        let text = serde_json::to_string_pretty(summary);
+        let text = text.expect("numbers and text always serialise");
+        return output::print_beside(&(text + "\n"), out);
     }
-    for doubt in &summary.plausibility {
-        println!("doubtful: {}\n          {}", doubt.message, doubt.advice);
-    }
+    let mut lines = Lines::default();
+    add_doubts(summary, &mut lines);
     for (what, value) in rows(summary) {
-        println!("{what:<28}{value}");
+        lines.line(format_args!("{what:<28}{value}"));
     }
-    for (part, why) in not_estimated(summary) {
-        println!("warning: the error from {part} could not be estimated: {why}");
-    }
-    println!(
+    add_warnings(summary, &mut lines);
+    lines.line(format_args!(
         "results in {}; open {}",
-        options.out.display(),
-        options.out.join("report.html").display()
-    );
+        out.display(),
+        out.join("report.html").display()
+    ));
+    output::print_beside(lines.text(), out)
+}
+
+/// What makes the run doubtful comes before its numbers.
+fn add_doubts(summary: &Summary, lines: &mut Lines) {
+    for doubt in &summary.plausibility {
+        lines.line(format_args!("doubtful: {}", doubt.message));
+        lines.line(format_args!("          {}", doubt.advice));
+    }
+}
+
+fn add_warnings(summary: &Summary, lines: &mut Lines) {
+    for (part, why) in not_estimated(summary) {
+        lines.line(format_args!(
+            "warning: the error from {part} could not be estimated: {why}"
+        ));
+    }
 }
 
 /// Parts of the error that have no estimate, and why.

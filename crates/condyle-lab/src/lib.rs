@@ -6,4 +6,7 @@ mod plausibility;
 mod run;
 pub mod studies;
 
-pub use run::{Outcome, Reached, RunError, RunEvent, RunOptions, check, run, run_case};
+pub use run::{
+    Outcome, Reached, RunError, RunEvent, RunOptions, check, check_changed, run, run_case,
+    run_changed,
+};

@@ -29,6 +29,7 @@ fn run(case: &Case) -> Summary {
     let options = RunOptions {
         out,
         resume,
+        force: false,
         threads,
         cache: Cache::off(),
     };

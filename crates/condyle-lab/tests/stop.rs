@@ -30,6 +30,7 @@ fn options(out: PathBuf, resume: bool) -> RunOptions {
     RunOptions {
         out,
         resume,
+        force: false,
         threads: 1,
         cache: Cache::off(),
     }

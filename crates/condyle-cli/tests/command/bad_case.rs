@@ -141,6 +141,37 @@ fn every_problem_is_said_at_once() {
 }
 
 #[test]
+fn of_very_many_problems_the_rest_is_counted() {
+    let keys: String = (0..20_000)
+        .map(|key| format!("wrong_{key} = 1\n"))
+        .collect();
+    let said = Bench::with_case(&format!("[march]\n{keys}")).say(&["check", "case.toml"]);
+    said.assert_refused(2, &["`wrong_0`", "and 19980 more problems"]);
+    assert!(said.err.lines().count() < 200, "{}", said.err);
+}
+
+#[test]
+fn control_characters_are_shown_as_escapes() {
+    let said = |text: &str| Bench::with_case(text).say(&["check", "case.toml"]);
+    let key = said("[contact]\n\"\\u001b[31mfriction\" = 0.07\n");
+    key.assert_refused(2, &["`\\u{1b}[31mfriction`"]);
+    let value = said("[contact]\nlaw = \"\\u0007linear\"\n");
+    value.assert_refused(2, &["\\u{7}linear"]);
+    let bench = Bench::with_case("");
+    let name = bench.say(&["check", "no\u{1b}[31m.toml"]);
+    name.assert_refused(2, &["no\\u{1b}[31m.toml"]);
+    for said in [key, value, name] {
+        assert!(!said.err.contains(['\u{1b}', '\u{7}']), "{:?}", said.err);
+    }
+}
+
+#[test]
+fn another_word_for_a_key() {
+    let words = ["[contact] has no key `mu`", "did you mean `friction`?"];
+    assert_refused("[contact]\nmu = 0.07\n", "case.toml:2:1", &words);
+}
+
+#[test]
 fn words_the_command_does_not_know() {
     let bench = Bench::new();
     for arguments in [

@@ -1,6 +1,6 @@
 //! The results folder: a run that is in it is never lost.
 
-use std::fs;
+use std::fs::{self, File};
 
 use crate::bench::{Bench, SMALL, assert_same_bytes, files_but_wall_time};
 
@@ -147,4 +147,97 @@ fn the_default_folder_has_the_name_of_the_case() {
     let bench = Bench::with_case(SMALL);
     assert_eq!(bench.say(&["run", "case.toml"]).code, Some(0));
     assert!(bench.path("results/case/summary.json").exists());
+}
+
+#[test]
+fn what_is_said_of_a_folder_fits_the_run_in_it() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    let said = || bench.say(&["run", "case.toml", "--out", "out"]);
+    said().assert_refused(2, &["a run, which is done", "--out", "--force"]);
+    assert!(!said().err.contains("go on with --resume"));
+    fs::remove_file(bench.path("out/summary.json")).unwrap();
+    said().assert_refused(
+        2,
+        &["already holds a run", "go on with --resume", "--force"],
+    );
+}
+
+#[test]
+fn a_run_is_written_over_where_that_is_asked_for() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    assert_eq!(bench.say(&["report", "out", "--pictures"]).code, Some(0));
+    bench.write("out/notes.txt", "mine");
+    bench.write("case.toml", &SMALL.replace("updates = 3", "updates = 1"));
+    let said = bench.say(&["run", "case.toml", "--out", "out", "--force"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let notes = fs::read_to_string(bench.path("out/notes.txt")).unwrap();
+    assert_eq!(notes, "mine");
+    fs::remove_file(bench.path("out/notes.txt")).unwrap();
+    bench.run_into("anew");
+    assert_same_bytes(&bench.path("out"), &bench.path("anew"));
+}
+
+#[test]
+fn a_case_that_cannot_start_leaves_the_run_that_it_would_write_over() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    let before = files_but_wall_time(&bench.path("out"));
+    let apart = "[femur]\nshape = \"sphere\"\nstart_mm = [90.0, 0.0]\n";
+    for wrong in ["[march]\nupdates = 0\n", apart] {
+        bench.write("case.toml", wrong);
+        let said = bench.say(&["run", "case.toml", "--out", "out", "--force"]);
+        assert_eq!(said.code, Some(2), "{}", said.err);
+        assert_eq!(files_but_wall_time(&bench.path("out")), before);
+    }
+}
+
+#[test]
+fn what_may_be_no_run_is_not_written_over() {
+    let bench = Bench::with_case(SMALL);
+    let said = bench.say(&["run", "case.toml", "--out", ".", "--force"]);
+    said.assert_refused(2, &["case.toml is there, but no checkpoint", "--out"]);
+    bench.run_into("out");
+    let said = bench.say(&["run", "out/case.toml", "--out", "out", "--force"]);
+    said.assert_refused(2, &["the run reads out/case.toml of the folder", "--out"]);
+    assert_eq!(fs::read_to_string(bench.path("case.toml")).unwrap(), SMALL);
+    assert!(bench.path("out/summary.json").exists());
+    let both = ["run", "case.toml", "--out", "out", "--force", "--resume"];
+    assert_eq!(bench.say(&both).code, Some(2));
+}
+
+#[test]
+fn a_run_stopped_before_its_first_file_is_gone_on_with() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("whole");
+    for left in [&[][..], &["in_use"], &["in_use", "case.toml.part"]] {
+        fs::create_dir(bench.path("out")).unwrap();
+        for name in left {
+            bench.write(&format!("out/{name}"), "");
+        }
+        bench.resume("out");
+        assert_same_bytes(&bench.path("out"), &bench.path("whole"));
+        fs::remove_dir_all(bench.path("out")).unwrap();
+    }
+    fs::create_dir(bench.path("out")).unwrap();
+    bench.write("out/notes.txt", "mine");
+    let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
+    said.assert_refused(2, &["holds no run to go on with"]);
+}
+
+#[test]
+fn a_folder_in_use_is_refused_until_it_is_free() {
+    let bench = Bench::with_case(SMALL);
+    fs::create_dir(bench.path("out")).unwrap();
+    let held = File::create(bench.path("out/in_use")).unwrap();
+    held.lock().unwrap();
+    for more in [&[][..], &["--resume"], &["--force"]] {
+        let said = bench.say(&[&["run", "case.toml", "--out", "out"], more].concat());
+        let words = ["out: another run is writing into this folder", "--out"];
+        said.assert_refused(2, &words);
+        assert_eq!(files_but_wall_time_of_names(&bench), ["in_use"]);
+    }
+    drop(held);
+    bench.run_into("out");
 }

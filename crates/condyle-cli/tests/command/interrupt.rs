@@ -103,6 +103,36 @@ fn the_words_of_an_interrupt_say_how_to_go_on() {
 }
 
 #[test]
+fn the_words_of_an_interrupt_name_what_was_changed() {
+    let bench = Bench::with_case(LONGER);
+    let mut command = bench.command(&["run", "case.toml", "-o", "out", "--set", "title=it's"]);
+    command.stderr(Stdio::piped()).stdout(Stdio::null());
+    let mut child = command.spawn().unwrap();
+    wait_for(&bench.path("out/insert_0001.vtu"), &mut child);
+    signal(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    let err = String::from_utf8(output.stderr).unwrap();
+    let words = r"--out out --resume --set 'title=it'\''s'";
+    assert!(err.contains(words), "{err}");
+}
+
+#[test]
+fn a_run_does_not_write_into_the_folder_of_another() {
+    let bench = Bench::with_case(LONGER);
+    let mut first = begun(&bench, false);
+    wait_for(&bench.path("out/checkpoint"), &mut first);
+    signal(&first, "-STOP");
+    for more in [&[][..], &["--resume"], &["--force"]] {
+        let said = bench.say(&[&["run", "case.toml", "--out", "out"], more].concat());
+        said.assert_refused(2, &["another run is writing into this folder"]);
+    }
+    signal(&first, "-CONT");
+    assert!(first.wait().unwrap().success());
+    bench.run_into("whole");
+    assert_same_bytes(&bench.path("out"), &bench.path("whole"));
+}
+
+#[test]
 fn killed_again_and_again_it_still_reaches_the_same_bytes() {
     let bench = Bench::with_case(LONGER);
     let mut kills = 0;

@@ -92,4 +92,12 @@ impl Femur {
             Self::Generic(_) | Self::Sphere(_) | Self::Cylinder(_) => None,
         }
     }
+
+    #[cfg(feature = "file-system")]
+    pub(super) fn file_mut(&mut self) -> Option<&mut DataFile> {
+        match self {
+            Self::Mesh(mesh) => Some(&mut mesh.file),
+            Self::Generic(_) | Self::Sphere(_) | Self::Cylinder(_) => None,
+        }
+    }
 }

@@ -112,4 +112,13 @@ impl Insert {
             Self::Generic(_) | Self::Flat(_) => None,
         }
     }
+
+    #[cfg(feature = "file-system")]
+    pub(super) fn file_mut(&mut self) -> Option<&mut DataFile> {
+        match self {
+            Self::Mesh(mesh) => Some(&mut mesh.file),
+            Self::Hexahedra(mesh) => Some(&mut mesh.file),
+            Self::Generic(_) | Self::Flat(_) => None,
+        }
+    }
 }

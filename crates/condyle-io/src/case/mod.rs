@@ -4,6 +4,7 @@
 //! last step, where a case is built.
 
 mod accuracy;
+mod assignment;
 mod axes;
 mod build;
 mod channel;
@@ -38,6 +39,7 @@ mod wear;
 mod write;
 
 pub use accuracy::Accuracy;
+pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
 pub use build::{BuildError, BuildWarning, Built};
 pub use channel::CaseChannel;

@@ -59,11 +59,13 @@ impl Case {
     }
 }
 
-fn leaf(path: &str) -> &str {
+/// The last word of a dotted path.
+pub(super) fn leaf(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }
 
-fn is_called(name: &str, written: &str) -> bool {
+/// Whether `written` is the name of a key, with or without its unit.
+pub(super) fn is_called(name: &str, written: &str) -> bool {
     name == written || split_unit(name).0 == written
 }
 

@@ -1,7 +1,9 @@
 //! Cases read from the disk.
 
+use std::fs;
 use std::path::Path;
 
+use super::assignment::{Assignment, ChangeError};
 use super::contents::Case;
 use super::overriding::Override;
 use super::reader::CaseReader;
@@ -31,11 +33,33 @@ impl Case {
         CaseReader::default().read_with(path, number)
     }
 
+    /// Reads the case file at `path` with some of its values changed.
+    ///
+    /// # Errors
+    /// As [`CaseReader::read_changed`].
+    pub fn read_changed(path: &Path, changes: &[Assignment]) -> Result<Self, ChangeError> {
+        CaseReader::default().read_changed(path, changes)
+    }
+
     /// Reads a case from `text`, called `name` in messages; paths count from `folder`.
     ///
     /// # Errors
     /// As [`CaseReader::parse`].
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Problems> {
         CaseReader::default().parse(text, name, folder)
+    }
+
+    /// The case as [`Self::to_toml`] has it, to be kept in `folder`, which is there: its files by
+    /// their paths counted from that folder, so that nothing in it names a place of one machine.
+    pub fn to_toml_in(&self, folder: &Path) -> String {
+        let Ok(folder) = fs::canonicalize(folder) else {
+            return self.to_toml();
+        };
+        let mut case = self.clone();
+        let files = [case.femur.file_mut(), case.insert.file_mut()];
+        for file in files.into_iter().flatten() {
+            *file = file.named_from(&folder);
+        }
+        case.to_toml()
     }
 }

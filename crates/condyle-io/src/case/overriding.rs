@@ -88,18 +88,24 @@ impl Override {
 
     /// The text of a case with this number in it; a text that is not TOML stays as it is.
     pub(super) fn applied_to(&self, case: &str) -> String {
-        let Ok(mut document) = case.parse::<DocumentMut>() else {
-            return case.to_owned();
-        };
-        let (tables, key) = self.path.rsplit_once('.').unwrap_or(("", &self.path));
-        let names = tables.split('.').filter(|name| !name.is_empty());
-        let table = names.fold(
-            document.as_table_mut() as &mut dyn TableLike,
-            |above, name| table_in(above, name),
-        );
-        set(table, key, self.text.parse().unwrap_or(self.value.into()));
-        document.to_string()
+        let value = self.text.parse().unwrap_or(self.value.into());
+        with_value(case, &self.path, value)
     }
+}
+
+/// The text of a case with `value` at the dotted `path`; a text that is not TOML stays as it is.
+pub(super) fn with_value(case: &str, path: &str, value: Value) -> String {
+    let Ok(mut document) = case.parse::<DocumentMut>() else {
+        return case.to_owned();
+    };
+    let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
+    let names = tables.split('.').filter(|name| !name.is_empty());
+    let table = names.fold(
+        document.as_table_mut() as &mut dyn TableLike,
+        |above, name| table_in(above, name),
+    );
+    set(table, key, value);
+    document.to_string()
 }
 
 /// The table `name`, put there if it is not; a reader then says what should be there instead.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use condyle::wear::WEAR_LAWS;
 use miette::NamedSource;
 
+use super::assignment::{Assignment, ChangeError};
 use super::contents::Case;
 use super::overriding::Override;
 use super::read::read_case;
@@ -53,6 +54,40 @@ impl CaseReader {
         let name = format!("{} with {} = {}", file.name(), number.path(), number.text());
         let source = Arc::new(NamedSource::new(name, number.applied_to(file.inner())));
         self.case_of(&source, Base::of(&self.files, path))
+    }
+
+    /// Reads the case file at `path` with some of its values changed, the last of several for the
+    /// same key. Messages show the changed text, and say so in its name.
+    ///
+    /// # Errors
+    /// As [`Self::read`]; a key that the case does not have, or more than once.
+    pub fn read_changed(&self, path: &Path, changes: &[Assignment]) -> Result<Case, ChangeError> {
+        if changes.is_empty() {
+            return Ok(self.read(path)?);
+        }
+        let changes = self.placed(path, changes)?;
+        let file = self.source(path)?;
+        let said: Vec<String> = changes.iter().map(Assignment::in_words).collect();
+        let name = format!("{} with {}", file.name(), said.join(", "));
+        let apply = |text: String, change: &Assignment| change.applied_to(&text);
+        let text = changes.iter().fold(file.inner().clone(), apply);
+        let source = Arc::new(NamedSource::new(name, text));
+        Ok(self.case_of(&source, Base::of(&self.files, path))?)
+    }
+
+    /// The same changes with the dotted paths of their keys; the case is read as it is where they
+    /// do not tell themselves.
+    fn placed(&self, path: &Path, changes: &[Assignment]) -> Result<Vec<Assignment>, ChangeError> {
+        if changes.iter().all(Assignment::is_placed) {
+            return Ok(changes.to_vec());
+        }
+        let case = self.read(path)?;
+        let placed = |change: &Assignment| match change.is_placed() {
+            true => Ok(change.clone()),
+            false => change.placed_in(&case),
+        };
+        let all: Result<Vec<_>, _> = changes.iter().map(placed).collect();
+        Ok(all?)
     }
 
     /// Reads a case from `text`, called `name` in messages; paths count from `folder`.

@@ -5,8 +5,12 @@
 mod disk;
 mod interface;
 mod memory;
+#[cfg(feature = "file-system")]
+mod path_from;
 
 #[cfg(feature = "file-system")]
 pub use disk::Disk;
 pub use interface::Files;
 pub use memory::MemoryFiles;
+#[cfg(feature = "file-system")]
+pub(crate) use path_from::path_from;

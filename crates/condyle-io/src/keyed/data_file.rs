@@ -15,6 +15,8 @@ use super::source::{Source, read_source};
 use super::value::quoted;
 use super::words::wrong_type;
 use crate::files::Files;
+#[cfg(feature = "file-system")]
+use crate::files::path_from;
 
 /// A file that another names, and that was there when that one was read.
 ///
@@ -24,6 +26,8 @@ pub struct DataFile {
     files: Arc<dyn Files>,
     /// Absolute on a disk, without `..` or links.
     path: PathBuf,
+    /// How a file that names it says where it is.
+    written: PathBuf,
 }
 
 impl PartialEq for DataFile {
@@ -39,7 +43,23 @@ impl DataFile {
     /// The path that was looked at, where there is no such file.
     pub fn find(files: &Arc<dyn Files>, written: &str, folder: &Path) -> Result<Self, PathBuf> {
         let (path, files) = (files.find(written, folder)?, Arc::clone(files));
-        Ok(Self { files, path })
+        let written = path.clone();
+        Ok(Self {
+            files,
+            path,
+            written,
+        })
+    }
+
+    /// The same as files in `folder`, an absolute path without links, are to name it: by its path
+    /// counted from there, where it has one.
+    #[cfg(feature = "file-system")]
+    pub(crate) fn named_from(&self, folder: &Path) -> Self {
+        let mut file = self.clone();
+        if let Some(written) = path_from(folder, &self.path) {
+            file.written = written;
+        }
+        file
     }
 
     /// What it is kept in, and read from.
@@ -94,6 +114,6 @@ impl Setting for DataFile {
     }
 
     fn text(&self) -> Option<String> {
-        Some(quoted(&self.path.display().to_string()))
+        Some(quoted(&self.written.display().to_string()))
     }
 }

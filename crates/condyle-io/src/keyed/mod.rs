@@ -25,11 +25,14 @@ mod render;
 pub(crate) mod section;
 pub(crate) mod setting;
 pub(crate) mod settings;
+mod shown;
 mod source;
+mod synonyms;
 mod unit;
 mod unknown;
 pub(crate) mod value;
 pub(crate) mod variants;
+mod visible;
 pub(crate) mod words;
 pub(crate) mod writer;
 
@@ -51,6 +54,7 @@ pub use setting::Setting;
 pub use settings::Settings;
 pub use unit::unit_of;
 pub use variants::Variants;
+pub use visible::visible;
 pub use writer::Writer;
 
 pub(crate) use choice::choice;
@@ -63,8 +67,10 @@ pub(crate) use page::Page;
 pub(crate) use problem::Placed;
 pub(crate) use settings::{read_table, settings};
 pub(crate) use source::{Source, read_source};
+#[cfg(test)]
+pub(crate) use synonyms::SYNONYMS;
 pub(crate) use unit::split_unit;
-pub(crate) use unknown::nearest;
+pub(crate) use unknown::{likeliest, nearest};
 pub(crate) use value::{number, quoted, quoted_list};
 pub(crate) use variants::variants;
 pub(crate) use words::{read_word, wrong_type};

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
+use miette::{GraphicalReportHandler, GraphicalTheme};
 
-use super::problem::Problem;
 use super::problems::Problems;
+use super::shown::Shown;
 
 /// How problems are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,8 +22,12 @@ pub enum RenderStyle {
 /// Width of text that goes to no terminal, columns.
 const PLAIN_WIDTH: usize = 100;
 
+/// Problems shown at most. Each is looked for from the start of its file, and nobody reads on for longer.
+const MOST_SHOWN: usize = 20;
+
 impl Problems {
-    /// Every problem with its place, a caret under the spot, and what to do.
+    /// The first problems, each with its place, a caret under the spot, and what to do; of more than
+    /// twenty, how many more there are.
     pub fn render(&self, style: RenderStyle) -> String {
         let (theme, width) = match style {
             RenderStyle::Plain => (GraphicalTheme::none(), PLAIN_WIDTH),
@@ -33,11 +37,20 @@ impl Problems {
             .with_width(width)
             .with_links(false);
         let mut text = String::new();
-        for problem in self.problems() {
-            let shown = handler.render_report(&mut text, problem);
+        for problem in self.problems().iter().take(MOST_SHOWN) {
+            let shown = handler.render_report(&mut text, &Shown::new(problem));
             debug_assert!(shown.is_ok(), "writing to a String does not fail");
         }
-        text
+        text + &of_the_rest(self.problems().len())
+    }
+}
+
+/// What is said of the problems that are not shown, where there are `all`.
+fn of_the_rest(all: usize) -> String {
+    match all.saturating_sub(MOST_SHOWN) {
+        0 => String::new(),
+        1 => "and 1 more problem; correct these first\n".to_owned(),
+        more => format!("and {more} more problems; correct these first\n"),
     }
 }
 
@@ -48,18 +61,3 @@ impl fmt::Display for Problems {
 }
 
 impl std::error::Error for Problems {}
-
-impl Diagnostic for Problem {
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        Some(Box::new(self.reason.advice()?))
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(self.source.as_deref()?)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = LabeledSpan::underline(self.span.clone()?);
-        Some(Box::new(std::iter::once(label)))
-    }
-}

@@ -4,6 +4,7 @@ use toml::de::DeValue;
 
 use super::key_reason::KeyReason;
 use super::limits::plain;
+use super::synonyms::meant;
 use super::unit::{split_unit, unit_of};
 use super::value::number;
 
@@ -40,7 +41,7 @@ pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&st
     wrong_unit(key, value, keys).unwrap_or_else(|| KeyReason::UnknownKey {
         key: key.to_owned(),
         section: section.to_owned(),
-        near: nearest(key, keys.iter().copied()),
+        near: likeliest(key, keys),
         keys: keys.iter().map(|&key| key.to_owned()).collect(),
     })
 }
@@ -58,6 +59,18 @@ fn wrong_unit(key: &str, value: &DeValue<'_>, keys: &[&str]) -> Option<KeyReason
         unit: unit_of(meant)?,
         converted: number(value).and_then(|number| convert(key, meant, number)),
     })
+}
+
+/// The one of `keys` that is likely to be meant by `key`.
+pub(crate) fn likeliest(key: &str, keys: &[&str]) -> Option<String> {
+    synonym(key, keys).or_else(|| nearest(key, keys.iter().copied()))
+}
+
+/// The one of `keys` that `key` is another word for, with or without a unit at its end.
+fn synonym(key: &str, keys: &[&str]) -> Option<String> {
+    let written = key.to_lowercase();
+    let mut words = std::iter::once(written.as_str()).chain(bases(&written));
+    words.find_map(|word| meant(word, keys)).map(str::to_owned)
 }
 
 /// `key` without each unit that its end could be.

@@ -11,6 +11,7 @@ use thiserror::Error;
 use super::{
     checkpoint::{Checkpoint, CheckpointError},
     insert_series::{insert_file_name, insert_pvd, insert_vtu},
+    lock::{FolderLock, LOCK},
     replace::{beside, replace_file, replace_file_durably},
     summary::Summary,
     tables::{kinematics_csv, wear_csv},
@@ -23,7 +24,7 @@ pub enum ResultsError {
     /// A run is already in it.
     #[error(
         "{}: the folder already holds a run ({file} is there); \
-         give another folder with --out, or go on with --resume",
+         give another folder with --out, go on with --resume, or write over it with --force",
         folder.display()
     )]
     HoldsRun {
@@ -31,6 +32,51 @@ pub enum ResultsError {
         folder: PathBuf,
         /// A file of the run.
         file: &'static str,
+    },
+    /// A run that is done is in it.
+    #[error(
+        "{}: the folder already holds a run, which is done (summary.json is there); \
+         give another folder with --out, or write over it with --force: there is nothing left to --resume",
+        folder.display()
+    )]
+    HoldsDoneRun {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Files that a run would replace, and no run that they are of.
+    #[error(
+        "{}: {file} is there, but no checkpoint, so that it may be something else than a run; \
+         give another folder with --out, or take the file away yourself",
+        folder.display()
+    )]
+    HoldsNoWholeRun {
+        /// The folder.
+        folder: PathBuf,
+        /// The file.
+        file: &'static str,
+    },
+    /// A run that would be written over by one that reads it.
+    #[error(
+        "{}: the run reads {} of the folder that it would write over; \
+         give another folder with --out",
+        folder.display(),
+        file.display()
+    )]
+    HoldsInput {
+        /// The folder.
+        folder: PathBuf,
+        /// What is read.
+        file: PathBuf,
+    },
+    /// Another run is writing.
+    #[error(
+        "{}: another run is writing into this folder; \
+         wait until it has ended, or give another folder with --out",
+        folder.display()
+    )]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
     },
     /// A file stands where the folder should be.
     #[error("{}: this is a file and no folder; give another folder with --out", path.display())]
@@ -91,7 +137,7 @@ pub struct ResultsFolder {
 }
 
 /// Files of a run that are never written over by another; the one written first comes first.
-const SIGNS_OF_A_RUN: [&str; 8] = [
+pub(super) const SIGNS_OF_A_RUN: [&str; 8] = [
     "case.toml",
     "checkpoint",
     "summary.json",
@@ -104,7 +150,7 @@ const SIGNS_OF_A_RUN: [&str; 8] = [
 
 /// Seconds spent by the parts of a run that is not done; gone once it is, so that what is left
 /// is the same bytes whether it was stopped or not.
-const TIME_SPENT: &str = "time_spent_s";
+pub(super) const TIME_SPENT: &str = "time_spent_s";
 
 /// What a folder holds of a run to go on with.
 #[derive(Debug)]
@@ -129,13 +175,21 @@ impl ResultsFolder {
     /// Whether a new run can be written to `path`; nothing is made.
     ///
     /// # Errors
-    /// A folder that holds a run, or a file in its place.
+    /// A folder that holds a run, done or not, or a file in its place.
     pub fn free(path: &Path) -> Result<(), ResultsError> {
         let folder = Self::existing(path);
         if path.exists() && !path.is_dir() {
             return Err(ResultsError::NoFolder { path: folder.path });
         }
         let is_there = |name: &&&str| folder.file(name).exists();
+        if ["checkpoint", "summary.json"]
+            .iter()
+            .all(|name| is_there(&name))
+        {
+            return Err(ResultsError::HoldsDoneRun {
+                folder: folder.path,
+            });
+        }
         match SIGNS_OF_A_RUN.iter().find(is_there) {
             Some(&file) => Err(ResultsError::HoldsRun {
                 folder: folder.path,
@@ -143,6 +197,23 @@ impl ResultsFolder {
             }),
             None => Ok(()),
         }
+    }
+
+    /// The lock of the folder at `path`, so that no other run writes into it; none where there is
+    /// no such folder.
+    ///
+    /// # Errors
+    /// Another run that has it, or a folder that cannot be written.
+    pub fn lock(path: &Path) -> Result<Option<FolderLock>, ResultsError> {
+        if !path.is_dir() {
+            return Ok(None);
+        }
+        let taken = FolderLock::take(path).map_err(|source| ResultsError::Refused {
+            file: path.to_owned(),
+            source,
+        })?;
+        let folder = path.to_owned();
+        taken.map(Some).ok_or(ResultsError::InUse { folder })
     }
 
     /// A folder for a run, made if it is not there.
@@ -173,6 +244,7 @@ impl ResultsFolder {
         if !folder.file("checkpoint").exists() {
             return match fs::read_to_string(folder.file("case.toml")) {
                 Ok(text) if text == case_toml => Ok(Found::Case),
+                Err(_) if folder.was_only_made() => Ok(Found::Nothing),
                 Ok(_) | Err(_) => Err(ResultsError::HoldsNone {
                     folder: folder.path,
                 }),
@@ -196,6 +268,16 @@ impl ResultsFolder {
             Some(summary) if done => Found::Done(summary),
             Some(_) | None => Found::Checkpoint(Box::new(checkpoint), folder.time_spent_s()),
         })
+    }
+
+    /// Whether it is there and holds nothing but what a run has before its first file is whole.
+    fn was_only_made(&self) -> bool {
+        let begun = beside(Path::new("case.toml"));
+        let is_of_beginning = |entry: io::Result<fs::DirEntry>| {
+            let name = entry.map(|entry| entry.file_name());
+            name.is_ok_and(|name| name == LOCK || *name == begun)
+        };
+        fs::read_dir(&self.path).is_ok_and(|mut entries| entries.all(is_of_beginning))
     }
 
     fn checkpoint(&self) -> Result<Checkpoint, ResultsError> {

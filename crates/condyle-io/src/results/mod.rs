@@ -5,11 +5,15 @@ mod error_estimate;
 #[cfg(feature = "file-system")]
 mod folder;
 mod insert_series;
+#[cfg(feature = "file-system")]
+mod lock;
 mod plausibility;
 #[cfg(feature = "file-system")]
 mod replace;
 mod summary;
 mod tables;
+#[cfg(feature = "file-system")]
+mod write_over;
 
 /// What the columns of `kinematics.csv` are.
 pub use condyle::machine::{
@@ -22,6 +26,8 @@ pub use error_estimate::{ErrorEstimate, ErrorParts, Part};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
+#[cfg(feature = "file-system")]
+pub use lock::FolderLock;
 pub use plausibility::PlausibilityWarning;
 pub use summary::{Summary, SummaryInput};
 pub use tables::{kinematics_csv, wear_csv};

@@ -3,7 +3,11 @@
 use std::{io, path::PathBuf};
 
 use condyle::evolve::{MarchError, PlacementError};
-use condyle_io::{case::BuildError, keyed::Problems, results::ResultsError};
+use condyle_io::{
+    case::{AssignmentError, BuildError},
+    keyed::Problems,
+    results::ResultsError,
+};
 use thiserror::Error;
 
 /// Why a run failed.
@@ -12,6 +16,9 @@ pub enum RunError {
     /// The case file.
     #[error(transparent)]
     Case(#[from] Problems),
+    /// A change of the case that cannot be made.
+    #[error(transparent)]
+    Change(#[from] AssignmentError),
     /// The bodies that the case describes.
     #[error("{shown}")]
     Build {
@@ -66,7 +73,11 @@ impl RunError {
             Self::Case(shown) | Self::Build { shown, .. } | Self::Placement { shown, .. } => {
                 Some(shown)
             }
-            Self::Inputs(_) | Self::Results(_) | Self::Report(_) | Self::March { .. } => None,
+            Self::Change(_)
+            | Self::Inputs(_)
+            | Self::Results(_)
+            | Self::Report(_)
+            | Self::March { .. } => None,
         }
     }
 }

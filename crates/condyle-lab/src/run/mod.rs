@@ -10,6 +10,6 @@ mod run_case;
 pub use error::RunError;
 pub use event::{Outcome, Reached, RunEvent};
 pub use options::RunOptions;
-pub use prepare::check;
 pub(crate) use prepare::{build, start};
-pub use run_case::{run, run_case};
+pub use prepare::{check, check_changed};
+pub use run_case::{run, run_case, run_changed};

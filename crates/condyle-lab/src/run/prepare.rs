@@ -5,7 +5,7 @@ use std::path::Path;
 use condyle::evolve::{March, WearTest};
 use condyle_io::{
     cache::Cache,
-    case::{BuildWarning, Built, Case},
+    case::{Assignment, BuildWarning, Built, Case, ChangeError},
 };
 
 use super::error::RunError;
@@ -16,10 +16,30 @@ use super::error::RunError;
 /// # Errors
 /// Those of a run that cannot start.
 pub fn check(case_path: &Path, threads: usize) -> Result<(Case, Vec<BuildWarning>), RunError> {
-    let case = Case::read(case_path)?;
+    check_changed(case_path, &[], threads)
+}
+
+/// Checks the case at `case_path` with some of its values changed, as [`check`] does.
+///
+/// # Errors
+/// As [`check`], and a change that cannot be made.
+pub fn check_changed(
+    case_path: &Path,
+    changes: &[Assignment],
+    threads: usize,
+) -> Result<(Case, Vec<BuildWarning>), RunError> {
+    let case = changed(case_path, changes)?;
     let built = build(&case, threads, &Cache::off())?;
     start(&case, built.test)?;
     Ok((case, built.warnings))
+}
+
+/// The case at `case_path` with some of its values changed.
+pub(super) fn changed(case_path: &Path, changes: &[Assignment]) -> Result<Case, RunError> {
+    Case::read_changed(case_path, changes).map_err(|error| match error {
+        ChangeError::Case(problems) => RunError::Case(problems),
+        ChangeError::Assignment(error) => RunError::Change(error),
+    })
 }
 
 pub(crate) fn build(case: &Case, threads: usize, cache: &Cache) -> Result<Built, RunError> {

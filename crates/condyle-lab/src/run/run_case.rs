@@ -4,8 +4,9 @@ use std::{ops::ControlFlow, path::Path, time::Duration};
 
 use condyle::evolve::March;
 use condyle_io::{
-    case::{Case, Side},
-    results::{Checkpoint, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
+    case::{Assignment, Case, Side},
+    keyed::DataFile,
+    results::{Checkpoint, FolderLock, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
 };
 
 use super::{
@@ -13,7 +14,7 @@ use super::{
     error::RunError,
     event::{Outcome, Reached, RunEvent},
     options::RunOptions,
-    prepare::{build, start},
+    prepare::{build, changed, start},
 };
 use crate::{accuracy, plausibility};
 
@@ -33,7 +34,21 @@ pub fn run(
     options: &RunOptions,
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
-    run_case(&Case::read(case_path)?, options, on_event)
+    run_changed(case_path, &[], options, on_event)
+}
+
+/// Runs the case at `case_path` with some of its values changed, as [`run`] does.
+///
+/// # Errors
+/// As [`run`], and a change that cannot be made.
+pub fn run_changed(
+    case_path: &Path,
+    changes: &[Assignment],
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
+    let case = changed(case_path, changes)?;
+    run_read(&case, Some(case_path), options, on_event)
 }
 
 /// Runs a case that is read already, as [`run`] does.
@@ -45,13 +60,24 @@ pub fn run_case(
     options: &RunOptions,
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
+    run_read(case, None, options, on_event)
+}
+
+/// Runs a case that was read from `case_path`, if from a file.
+fn run_read(
+    case: &Case,
+    case_path: Option<&Path>,
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
-    let checkpoint = match found(case, options, &inputs_blake3)? {
+    let lock = ResultsFolder::lock(&options.out)?;
+    let checkpoint = match found(case, case_path, options, &inputs_blake3)? {
         Found::Done(summary) => return done_before(summary, options),
         Found::Checkpoint(checkpoint, spent_s) => Some((*checkpoint, spent_s)),
         Found::Case | Found::Nothing => None,
     };
-    let mut run = Run::begin(case, options, checkpoint, inputs_blake3, on_event)?;
+    let mut run = Run::begin(case, options, (checkpoint, lock), inputs_blake3, on_event)?;
     if run.march_on(on_event)?.is_break() {
         return Ok(Outcome::Interrupted(Reached::by(&run.march)));
     }
@@ -65,14 +91,46 @@ pub fn run_case(
     Ok(Outcome::Done(Box::new(summary)))
 }
 
-/// What the folder holds; an error if it is not free, or with `resume` if there is no run in it.
-fn found(case: &Case, options: &RunOptions, inputs_blake3: &str) -> Result<Found, ResultsError> {
+/// What the folder holds; an error if a new run cannot be written to it, or with `resume` if there is
+/// no run in it.
+fn found(
+    case: &Case,
+    case_path: Option<&Path>,
+    options: &RunOptions,
+    inputs_blake3: &str,
+) -> Result<Found, ResultsError> {
+    let out = &options.out;
     if options.resume {
         let cycles = case.march.cycles as f64;
-        ResultsFolder::reopen(&options.out, &case.to_toml(), inputs_blake3, cycles)
+        ResultsFolder::reopen(out, &case.to_toml_in(out), inputs_blake3, cycles)
+    } else if options.force {
+        let meshes = [case.femur.file(), case.insert.file()];
+        let meshes = meshes.into_iter().flatten().map(DataFile::path);
+        let read: Vec<&Path> = case_path.into_iter().chain(meshes).collect();
+        ResultsFolder::may_be_written_over(out, &read).map(|()| Found::Nothing)
     } else {
-        ResultsFolder::free(&options.out).map(|()| Found::Nothing)
+        ResultsFolder::free(out).map(|()| Found::Nothing)
     }
+}
+
+/// A folder for a new run, with the case in it, and its lock.
+fn new_folder(
+    case: &Case,
+    options: &RunOptions,
+    lock: Option<FolderLock>,
+) -> Result<(ResultsFolder, Option<FolderLock>), ResultsError> {
+    let folder = ResultsFolder::create(&options.out)?;
+    let was_there = lock.is_some();
+    let lock = lock.map_or_else(|| ResultsFolder::lock(folder.path()), |lock| Ok(Some(lock)))?;
+    // Another run may have come first since the folder was found not to be there.
+    if !was_there {
+        ResultsFolder::free(folder.path())?;
+    }
+    if options.force {
+        folder.clear()?;
+    }
+    folder.write_case(&case.to_toml_in(folder.path()))?;
+    Ok((folder, lock))
 }
 
 /// A run that is done already. It may have been stopped before it wrote the page; the same folder gives
@@ -90,6 +148,8 @@ struct Run<'a> {
     inputs_blake3: String,
     warnings: Vec<String>,
     folder: ResultsFolder,
+    /// Held until the run has ended.
+    _lock: Option<FolderLock>,
     march: March,
     clock: Clock,
 }
@@ -99,7 +159,7 @@ impl<'a> Run<'a> {
     fn begin(
         case: &'a Case,
         options: &'a RunOptions,
-        checkpoint: Option<(Checkpoint, f64)>,
+        (checkpoint, lock): (Option<(Checkpoint, f64)>, Option<FolderLock>),
         inputs_blake3: String,
         on_event: &mut Listener<'_>,
     ) -> Result<Self, RunError> {
@@ -117,12 +177,10 @@ impl<'a> Run<'a> {
             }
             None => clock.time(|| start(case, built.test))?,
         };
-        let folder = if is_new {
-            let folder = ResultsFolder::create(&options.out)?;
-            folder.write_case(&case.to_toml())?;
-            folder
+        let (folder, lock) = if is_new {
+            new_folder(case, options, lock)?
         } else {
-            ResultsFolder::existing(&options.out)
+            (ResultsFolder::existing(&options.out), lock)
         };
         let run = Self {
             case,
@@ -130,6 +188,7 @@ impl<'a> Run<'a> {
             inputs_blake3,
             warnings,
             folder,
+            _lock: lock,
             march,
             clock,
         };

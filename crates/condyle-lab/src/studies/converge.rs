@@ -217,6 +217,7 @@ fn run_one(run: &Planned, options: &ConvergeOptions, listener: &Listener<'_>) ->
     let options = RunOptions {
         out,
         resume,
+        force: false,
         threads: 1,
         cache: options.cache.clone(),
     };

@@ -87,13 +87,13 @@ pub enum BuildWarning {
     /// The mesh came inside-out.
     #[error("{}: the triangles faced inwards and were turned round", file.display())]
     TurnedRound {
-        /// The file.
+        /// The file, without its folder.
         file: PathBuf,
     },
     /// Some triangles faced the other way than their neighbours.
     #[error("{}: {count} triangles were turned to face as their neighbours do", file.display())]
     MadeConsistent {
-        /// The file.
+        /// The file, without its folder.
         file: PathBuf,
         /// How many.
         count: usize,
@@ -104,7 +104,7 @@ pub enum BuildWarning {
         file.display()
     )]
     Wrinkles {
-        /// The file.
+        /// The file, without its folder.
         file: PathBuf,
         /// How many pairs.
         count: usize,
@@ -112,7 +112,7 @@ pub enum BuildWarning {
     /// Some triangles had no area.
     #[error("{}: {count} triangles without area were left out", file.display())]
     RemovedDegenerate {
-        /// The file.
+        /// The file, without its folder.
         file: PathBuf,
         /// How many.
         count: usize,

@@ -107,7 +107,7 @@ fn from_mesh(
 ) -> Result<BuiltFemur, BuildError> {
     let placing = Placing::new(femur.length_unit, &femur.axes, side)?;
     let PreparedFemur { shell, field } = prepared(&femur.file, &placing, preparing)?;
-    warn(femur.file.path(), &shell, warnings);
+    warn(&femur.file, &shell, warnings);
     let flexion_axis_mm = match femur.flexion_axis_mm {
         Some([x, y]) => (x, y),
         None => shell.mesh.posterior_arc_centre_mm(),

@@ -1,6 +1,6 @@
 //! Triangles of a file as a shell in the frame of a right knee, mm.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use condyle::geometry::{CheckedShell, TriangleMesh, checked_shell};
 use condyle::{Mat3, Vec3};
@@ -74,7 +74,7 @@ pub(super) fn shell(
 ) -> Result<CheckedShell, BuildError> {
     let bytes = surface_bytes(file.files(), file.path())?;
     let shell = parsed_shell(file.path(), &bytes, placing, open_faces)?;
-    warn(file.path(), &shell, warnings);
+    warn(file, &shell, warnings);
     Ok(shell)
 }
 
@@ -97,9 +97,9 @@ pub(super) fn parsed_shell(
     Ok(shell)
 }
 
-/// Says what was put right in a file.
-pub(super) fn warn(path: &Path, shell: &CheckedShell, warnings: &mut Vec<BuildWarning>) {
-    let file = || path.to_path_buf();
+/// Says what was put right in a file, by its name alone: results say so too, and name no folder.
+pub(super) fn warn(file: &DataFile, shell: &CheckedShell, warnings: &mut Vec<BuildWarning>) {
+    let file = || PathBuf::from(file.name());
     if shell.turned_round {
         warnings.push(BuildWarning::TurnedRound { file: file() });
     }

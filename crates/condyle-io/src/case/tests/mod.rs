@@ -3,6 +3,7 @@
 mod errors;
 mod files;
 mod memory;
+mod messages;
 mod round_trip;
 mod wear;
 

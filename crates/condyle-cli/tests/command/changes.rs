@@ -1,0 +1,75 @@
+//! Values of a case changed on the command line.
+
+use std::fs;
+
+use crate::bench::{Bench, SMALL, assert_same_bytes};
+
+#[test]
+fn a_changed_case_runs_as_if_it_were_written_so() {
+    let bench = Bench::with_case(SMALL);
+    let changed = ["--set", "updates=2", "--set", "contact.law = logarithmic"];
+    let said = bench.say(&[&["run", "case.toml", "-o", "set"][..], &changed].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert_eq!(bench.summary("set").updates, 2);
+    let written = SMALL.replace("updates = 3", "updates = 2");
+    bench.write(
+        "case.toml",
+        &format!("{written}[contact]\nlaw = \"logarithmic\"\n"),
+    );
+    bench.run_into("written");
+    assert_same_bytes(&bench.path("set"), &bench.path("written"));
+    let case = fs::read_to_string(bench.path("set/case.toml")).unwrap();
+    assert!(case.contains("updates = 2") && case.contains("law = \"logarithmic\""));
+}
+
+#[test]
+fn a_changed_case_is_checked_and_stays_as_it_is() {
+    let bench = Bench::with_case(SMALL);
+    let said = bench.say(&["check", "case.toml", "--print", "--set", "friction=0.05"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(said.out.contains("friction = 0.05"), "{}", said.out);
+    let said = bench.say(&["check", "case.toml", "--set", "title=a = b"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert_eq!(fs::read_to_string(bench.path("case.toml")).unwrap(), SMALL);
+}
+
+#[test]
+fn a_change_that_cannot_be_made_is_refused() {
+    let bench = Bench::with_case(SMALL);
+    for (change, words) in [
+        ("updates", "`updates` is no key with a value"),
+        ("=3", "`=3` is no key with a value"),
+        ("updates=", "`updates=` is no key with a value"),
+        ("updatse=3", "did you mean `updates`?"),
+        ("mu=0.1", "did you mean `friction`?"),
+        ("xyz=3", "give its dotted path, such as `march.updates`"),
+        (
+            "spacing_mm=45",
+            "write `femur.spacing_mm` or `insert.spacing_mm`",
+        ),
+        ("march.updatse=3", "[march] has no key `updatse`"),
+        ("march.updates=0", "case.toml with march.updates = 0"),
+        (
+            "friction=rough",
+            "`friction` must be a number, this is text in quotes",
+        ),
+    ] {
+        for command in ["check", "run"] {
+            let said = bench.say(&[command, "case.toml", "--set", change]);
+            said.assert_refused(2, &[words]);
+        }
+    }
+    assert!(!bench.path("results").exists());
+}
+
+#[test]
+fn a_run_of_a_changed_case_is_gone_on_with_by_the_same_changes() {
+    let bench = Bench::with_case(SMALL);
+    let begin = ["run", "case.toml", "-o", "out", "--set", "updates=2"];
+    let first = bench.say(&begin);
+    let resume = [&begin[..], &["--resume"]].concat();
+    let again = bench.say(&resume);
+    assert_eq!((again.code, &again.out), (Some(0), &first.out));
+    let other = bench.say(&["run", "case.toml", "-o", "out", "--resume"]);
+    other.assert_refused(2, &["one of another case"]);
+}

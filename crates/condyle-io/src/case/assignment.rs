@@ -1,0 +1,146 @@
+//! Any value of a case set from outside, before the case is read.
+
+use std::fmt;
+
+use thiserror::Error;
+use toml_edit::Value;
+
+use super::contents::Case;
+use super::number_keys::{is_called, leaf};
+use super::overriding::with_value;
+use crate::keyed::{Problems, likeliest};
+
+/// A value to be taken in place of the one that the case file gives, or leaves out.
+#[derive(Clone, Debug)]
+pub struct Assignment {
+    key: String,
+    text: String,
+}
+
+/// Why a value of a case cannot be set from outside.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum AssignmentError {
+    /// Not written as a key with a value.
+    #[error("`{written}` is no key with a value; write them as `march.updates=5`")]
+    NotKeyAndValue {
+        /// As written.
+        written: String,
+    },
+    /// No key of the case is called so.
+    #[error(
+        "the case has no key called `{key}`; {}",
+        match near {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "give its dotted path, such as `march.updates`".to_owned(),
+        }
+    )]
+    UnknownKey {
+        /// As written.
+        key: String,
+        /// One that is likely to be meant.
+        near: Option<String>,
+    },
+    /// Several keys of the case are called so.
+    #[error("the case has more than one key called `{key}`; write `{}`", paths.join("` or `"))]
+    ManyKeys {
+        /// As written.
+        key: String,
+        /// Their dotted paths.
+        paths: Vec<String>,
+    },
+}
+
+/// Why a case cannot be read with values set from outside.
+#[derive(Clone, Debug, Error)]
+pub enum ChangeError {
+    /// What is wrong with the case, as it is or changed.
+    #[error(transparent)]
+    Case(#[from] Problems),
+    /// A value that cannot be set.
+    #[error(transparent)]
+    Assignment(#[from] AssignmentError),
+}
+
+impl Assignment {
+    /// The one written as `key=value`: the key a dotted path, or the last word of one, with or
+    /// without its unit; the value as in a case, but a word needs no quotes.
+    ///
+    /// # Errors
+    /// A text without a key or without a value.
+    pub fn parse(written: &str) -> Result<Self, AssignmentError> {
+        let (key, text) = written.split_once('=').unwrap_or_default();
+        let (key, text) = (key.trim().to_owned(), text.trim().to_owned());
+        if key.is_empty() || text.is_empty() {
+            let written = written.to_owned();
+            return Err(AssignmentError::NotKeyAndValue { written });
+        }
+        Ok(Self { key, text })
+    }
+
+    /// Whether its key is a dotted path, which says where it stands without a look at the case.
+    pub(super) fn is_placed(&self) -> bool {
+        self.key.contains('.')
+    }
+
+    /// The same with the dotted path of its key in `case`.
+    pub(super) fn placed_in(&self, case: &Case) -> Result<Self, AssignmentError> {
+        let key = path_of_key(case, &self.key)?;
+        let text = self.text.clone();
+        Ok(Self { key, text })
+    }
+
+    /// The text of a case with this value in it; a text that is not TOML stays as it is.
+    pub(super) fn applied_to(&self, case: &str) -> String {
+        let value = self.text.parse::<Value>();
+        with_value(
+            case,
+            &self.key,
+            value.unwrap_or_else(|_| self.text.as_str().into()),
+        )
+    }
+
+    /// The key and the value, as messages name them.
+    pub(super) fn in_words(&self) -> String {
+        format!("{} = {}", self.key, self.text)
+    }
+}
+
+impl fmt::Display for Assignment {
+    /// As [`Assignment::parse`] reads it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.key, self.text)
+    }
+}
+
+/// The dotted path of the key of `case` that is called `written`.
+fn path_of_key(case: &Case, written: &str) -> Result<String, AssignmentError> {
+    let table: toml::Table = case.to_toml().parse().unwrap_or_default();
+    let mut all = Vec::new();
+    add_paths(&table, "", &mut all);
+    let is_meant = |path: &&String| is_called(leaf(path), written);
+    let paths: Vec<String> = all.iter().filter(is_meant).cloned().collect();
+    let key = written.to_owned();
+    match <[String; 1]>::try_from(paths) {
+        Ok([path]) => Ok(path),
+        Err(paths) if paths.is_empty() => {
+            let names: Vec<&str> = all.iter().map(|path| leaf(path)).collect();
+            let near = likeliest(written, &names);
+            Err(AssignmentError::UnknownKey { key, near })
+        }
+        Err(paths) => Err(AssignmentError::ManyKeys { key, paths }),
+    }
+}
+
+/// Adds the dotted path of every key that is no table.
+fn add_paths(table: &toml::Table, above: &str, paths: &mut Vec<String>) {
+    for (name, value) in table {
+        let path = match above {
+            "" => name.clone(),
+            above => format!("{above}.{name}"),
+        };
+        match value {
+            toml::Value::Table(inside) => add_paths(inside, &path, paths),
+            _ => paths.push(path),
+        }
+    }
+}

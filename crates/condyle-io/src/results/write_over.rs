@@ -1,0 +1,92 @@
+//! A folder whose run is written over by another, because somebody asked for it.
+
+use std::{
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+};
+
+use super::{
+    folder::{ResultsError, ResultsFolder, SIGNS_OF_A_RUN, TIME_SPENT},
+    replace::beside,
+};
+
+/// What `condyle report` adds to a run on request.
+const PICTURES: [&str; 3] = ["wear_map.svg", "wear.svg", "kinematics.svg"];
+
+impl ResultsFolder {
+    /// Whether a new run, which reads the files `read`, can be written over what `path` holds;
+    /// nothing is changed.
+    ///
+    /// # Errors
+    /// A folder with files of a run's names that has no checkpoint, so that they may be somebody's
+    /// own; one of whose files the new run reads; a file in its place.
+    pub fn may_be_written_over(path: &Path, read: &[&Path]) -> Result<(), ResultsError> {
+        let folder = path.to_owned();
+        match Self::free(path) {
+            Err(ResultsError::HoldsRun { file, .. }) if !path.join("checkpoint").exists() => {
+                Err(ResultsError::HoldsNoWholeRun { folder, file })
+            }
+            Err(ResultsError::HoldsRun { .. } | ResultsError::HoldsDoneRun { .. }) => {
+                let files = Self::existing(path).files_of_a_run();
+                match read.iter().find(|file| is_among(file, &files)) {
+                    Some(file) => Err(ResultsError::HoldsInput {
+                        folder,
+                        file: file.to_path_buf(),
+                    }),
+                    None => Ok(()),
+                }
+            }
+            other => other,
+        }
+    }
+
+    /// Takes away every file of a run, the checkpoint last: until then the folder can be written
+    /// over again.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn clear(&self) -> Result<(), ResultsError> {
+        for file in self.files_of_a_run() {
+            match fs::remove_file(&file) {
+                Err(source) if source.kind() != ErrorKind::NotFound => {
+                    return Err(ResultsError::Refused { file, source });
+                }
+                Ok(()) | Err(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The files that a run may have left, whether they are there or not, the checkpoint last.
+    fn files_of_a_run(&self) -> Vec<PathBuf> {
+        let entries = fs::read_dir(self.path()).into_iter().flatten().flatten();
+        let inserts = entries.filter_map(|entry| entry.file_name().into_string().ok());
+        let inserts = inserts.filter(|name| is_insert(name));
+        let others = SIGNS_OF_A_RUN
+            .into_iter()
+            .chain(PICTURES)
+            .chain([TIME_SPENT]);
+        let named = others
+            .filter(|name| *name != "checkpoint")
+            .map(str::to_owned);
+        let names = named.chain(inserts).chain(["checkpoint".to_owned()]);
+        let files = names.map(|name| self.path().join(name));
+        files.flat_map(|file| [beside(&file), file]).collect()
+    }
+}
+
+/// Whether a name is that of an insert after some update.
+fn is_insert(name: &str) -> bool {
+    let number = name
+        .strip_prefix("insert_")
+        .and_then(|rest| rest.strip_suffix(".vtu"));
+    number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+/// Whether `file` is one of `files`, by whatever path.
+fn is_among(file: &Path, files: &[PathBuf]) -> bool {
+    let place = |path: &Path| fs::canonicalize(path).ok();
+    let found = place(file);
+    found.is_some() && files.iter().any(|other| place(other) == found)
+}
