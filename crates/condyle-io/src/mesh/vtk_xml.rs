@@ -230,7 +230,9 @@ impl<'a> VtkDocument<'a> {
                 .iter()
                 .position(|&byte| byte == b'=')
                 .unwrap_or(rest.len());
-            let (segment, after) = rest.split_at(padding.next_multiple_of(4).min(rest.len()));
+            // At least one group of four, so that a padding out of place is decoded, and refused.
+            let end = padding.next_multiple_of(4).max(4).min(rest.len());
+            let (segment, after) = rest.split_at(end);
             STANDARD
                 .decode_vec(segment, &mut bytes)
                 .map_err(|error| self.at(node, format!("an array's base64 is broken: {error}")))?;

@@ -240,4 +240,16 @@ mod tests {
         let broken = encoded("", None, |_| b"a*c=".to_vec());
         assert!(message(read(&broken)).contains("base64 is broken"));
     }
+
+    #[test]
+    fn a_padding_out_of_place_is_named() {
+        for stray in ["=", "==", "====", "=AAA"] {
+            let stray = |data: &[u8]| [stray.as_bytes(), &base64(&counted(data))].concat();
+            let said = message(read(&encoded("", None, stray)));
+            assert!(
+                said.starts_with("a.vtp:1: an array's base64 is broken"),
+                "{said}"
+            );
+        }
+    }
 }
