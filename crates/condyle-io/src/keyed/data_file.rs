@@ -22,7 +22,7 @@ use crate::files::Files;
 #[derive(Clone, Debug)]
 pub struct DataFile {
     files: Arc<dyn Files>,
-    /// Absolute on a disk, without `..` or links.
+    /// Absolute on a disk, its folder without `..` or links.
     path: PathBuf,
 }
 
