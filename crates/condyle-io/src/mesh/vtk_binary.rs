@@ -40,7 +40,7 @@ impl BinaryLayout {
     }
 
     /// The bytes of the array that base64 starts with; what is encoded behind it is left.
-    pub(super) fn from_base64(&self, encoded: &[u8]) -> Result<Vec<u8>, String> {
+    pub(super) fn decoded(&self, encoded: &[u8]) -> Result<Vec<u8>, String> {
         let mut wanted = self.count_bytes;
         loop {
             let bytes = base64_bytes(encoded, wanted)?;

@@ -10,6 +10,8 @@ use super::text;
 use super::vtk_binary::BinaryLayout;
 
 const APPENDED: &[u8] = b"<AppendedData";
+/// Longest tag: the parser compares every attribute of a tag with every other.
+const TAG_BYTES: usize = 8192;
 /// Arrays may overlap and unpack to far more than the file has, so that its length bounds them
 /// all: those of a mesh are seldom packed to a tenth of a byte a value.
 const VALUES_A_BYTE: usize = 16;
@@ -56,6 +58,42 @@ fn find(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
         .position(|window| window == pattern)
 }
 
+/// Where a tag starts that is longer than any of a mesh.
+fn long_tag(xml: &str) -> Option<usize> {
+    let mut at = 0;
+    while let Some(found) = xml[at..].find('<') {
+        let start = at + found;
+        let (length, is_tag) = markup(&xml[start..]);
+        if is_tag && length > TAG_BYTES {
+            return Some(start);
+        }
+        at = start + length;
+    }
+    None
+}
+
+/// Length of the markup that `xml` starts with, and whether it is a tag with attributes.
+fn markup(xml: &str) -> (usize, bool) {
+    for (open, close) in [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")] {
+        if xml.starts_with(open) {
+            let end = xml.find(close).map_or(xml.len(), |at| at + close.len());
+            return (end, false);
+        }
+    }
+    let mut quote = None;
+    let end = xml.bytes().position(|byte| match quote {
+        Some(open) => {
+            quote = Some(open).filter(|_| byte != open);
+            false
+        }
+        None => {
+            quote = Some(byte).filter(|byte| matches!(byte, b'"' | b'\''));
+            byte == b'>'
+        }
+    });
+    (end.map_or(xml.len(), |end| end + 1), true)
+}
+
 /// The parsed XML with what is needed to decode its arrays.
 pub(crate) struct VtkDocument<'a> {
     path: &'a Path,
@@ -97,6 +135,13 @@ impl<'a> VtkDocument<'a> {
         source: &'a VtkSource<'a>,
         kind: &str,
     ) -> Result<Self, MeshFileError> {
+        let newlines = source.xml.match_indices('\n').map(|(at, _)| at + 1);
+        let line_starts: Vec<usize> = std::iter::once(0).chain(newlines).collect();
+        if let Some(start) = long_tag(&source.xml) {
+            let line = line_starts.partition_point(|&line| line <= start);
+            let what = format!("has a tag of more than {TAG_BYTES} bytes; is this a VTK file?");
+            return Err(FileLine::line(path, line).error(what));
+        }
         let document = Document::parse(&source.xml).map_err(|error| {
             let line = error.pos().row as usize;
             FileLine::line(path, line).error(format!("is not XML: {error}"))
@@ -108,12 +153,11 @@ impl<'a> VtkDocument<'a> {
             return Err(FileLine::file(path).error(what));
         }
         let layout = layout(root).map_err(|what| FileLine::file(path).error(what))?;
-        let newlines = source.xml.match_indices('\n').map(|(at, _)| at + 1);
         Ok(Self {
             path,
             document,
             source,
-            line_starts: std::iter::once(0).chain(newlines).collect(),
+            line_starts,
             layout,
             values_left: Cell::new(VALUES_OF_ANY_FILE + VALUES_A_BYTE * source.length),
         })
@@ -220,7 +264,7 @@ impl<'a> VtkDocument<'a> {
         kind: &str,
         encoded: &[u8],
     ) -> Result<Vec<f64>, MeshFileError> {
-        let bytes = self.layout.from_base64(encoded);
+        let bytes = self.layout.decoded(encoded);
         self.binary_values(node, kind, &bytes.map_err(|what| self.at(node, what))?)
     }
 

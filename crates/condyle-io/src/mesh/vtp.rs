@@ -264,6 +264,17 @@ mod tests {
     }
 
     #[test]
+    fn a_tag_of_far_too_many_attributes_is_refused() {
+        let attributes: String = (0..90_000).map(|i| format!(" a{i}='>'")).collect();
+        let many = TEXT.replace("<Points>", &format!("<Points{attributes}>"));
+        let expected = "a.vtp:4: has a tag of more than 8192 bytes; is this a VTK file?";
+        assert_eq!(message(read(many.as_bytes())), expected);
+        let comment = format!("<!-- it's > {attributes} --><Points>");
+        let commented = TEXT.replace("<Points>", &comment);
+        assert_eq!(read(commented.as_bytes()).unwrap(), tetrahedron());
+    }
+
+    #[test]
     fn strips_alternate_their_sense() {
         let strip = TEXT.replace("Polys>", "Strips>").replace("3 6 9 12", "4");
         let strip = strip.replace("0 2 1 0 1 3 1 2 3 2 0 3", "0 1 2 3");
