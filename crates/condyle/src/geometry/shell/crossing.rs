@@ -1,5 +1,7 @@
 //! Pairs of triangles that pass through one another.
 
+use std::ops::ControlFlow;
+
 use super::{
     box_tree::BoxTree,
     edges::{EdgeUse, edge_uses},
@@ -89,14 +91,15 @@ fn crossing_pairs(mesh: &TriangleMesh, shallow: f64) -> Vec<CrossingPair> {
     let mut pairs = Vec::new();
     let mut deep = 0;
     BoxTree::new(mesh).for_close_pairs(|one, other| {
-        if deep == Crossings::MANY {
-            return;
-        }
         let triangles = [one.min(other), one.max(other)];
         if let Some(depth) = crossing_depth(mesh, triangles) {
             deep += usize::from(depth > shallow);
             pairs.push(CrossingPair { triangles, depth });
         }
+        if deep == Crossings::MANY {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
     });
     pairs
 }
