@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use condyle::evolve::PlacementError;
-use condyle::geometry::ShellInsertError;
+use condyle::geometry::{InsertError, ShellInsertError};
 use condyle::machine::knee;
 use thiserror::Error;
 use toml::de::DeTable;
@@ -62,9 +62,13 @@ impl Case {
 
     fn culprit_of_build(&self, error: &BuildError) -> Culprit {
         let keys: &[&str] = match error {
-            BuildError::MeshFile(_) | BuildError::Shell { .. } => &["file"],
+            BuildError::MeshFile(_) | BuildError::StrayPiece { .. } | BuildError::Shell { .. } => {
+                &["file"]
+            }
+            BuildError::Size { .. } | BuildError::TooManyNodes { .. } => &["length_unit", "file"],
             BuildError::ShellInsert { source, .. } => match source {
                 ShellInsertError::NoColumns { .. } => &["edge_mm", "file"],
+                ShellInsertError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "file"],
                 ShellInsertError::OpenWithoutThickness | ShellInsertError::Insert(_) => &["file"],
             },
             BuildError::ThicknessOfClosed { .. } => &["thickness_mm"],
@@ -72,6 +76,7 @@ impl Case {
                 "backside" => &["backside"],
                 _ => &["articulating_surface"],
             },
+            BuildError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "layers"],
             BuildError::Insert(_) => &["backside", "articulating_surface", "file", "edge_mm"],
             BuildError::Axes(_) => &["axes"],
         };

@@ -24,7 +24,7 @@ use crate::files::path_from;
 #[derive(Clone, Debug)]
 pub struct DataFile {
     files: Arc<dyn Files>,
-    /// Absolute on a disk, without `..` or links.
+    /// Absolute on a disk, its folder without `..` or links.
     path: PathBuf,
     /// How a file that names it says where it is.
     written: PathBuf,

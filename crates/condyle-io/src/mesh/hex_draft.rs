@@ -1,5 +1,6 @@
 //! A hexahedral mesh as it is being read: labels become numbers from 0, everything is checked.
 
+use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -16,8 +17,10 @@ pub(crate) struct HexDraft<'a> {
     node_of_label: HashMap<u64, usize>,
     hexes: Vec<DraftHex>,
     hex_of_label: HashMap<u64, usize>,
-    surfaces: Vec<DraftSet<(Option<usize>, [u64; 4])>>,
-    node_sets: Vec<DraftSet<u64>>,
+    /// How many hexahedra have each face, counted when it is first asked for.
+    uses_of_quad: OnceCell<HashMap<[u64; 4], usize>>,
+    surfaces: DraftSets<(Option<usize>, [u64; 4])>,
+    node_sets: DraftSets<u64>,
 }
 
 /// One hexahedron by the labels of its nodes, in VTK order.
@@ -34,9 +37,39 @@ impl DraftHex {
     }
 }
 
+/// Sets in the order of the file.
+struct DraftSets<T> {
+    sets: Vec<DraftSet<T>>,
+    /// By the name in capitals, since names do not know their case.
+    set_of_name: HashMap<String, usize>,
+}
+
 struct DraftSet<T> {
     name: String,
     members: Vec<T>,
+}
+
+impl<T> DraftSets<T> {
+    fn new() -> Self {
+        Self {
+            sets: Vec::new(),
+            set_of_name: HashMap::new(),
+        }
+    }
+
+    /// Members of the set of that name, which is begun where there is none.
+    fn members(&mut self, name: &str) -> &mut Vec<T> {
+        let next = self.sets.len();
+        let known = self.set_of_name.entry(name.to_ascii_uppercase());
+        let index = *known.or_insert(next);
+        if index == next {
+            self.sets.push(DraftSet {
+                name: name.to_string(),
+                members: Vec::new(),
+            });
+        }
+        &mut self.sets[index].members
+    }
 }
 
 impl<'a> HexDraft<'a> {
@@ -47,8 +80,9 @@ impl<'a> HexDraft<'a> {
             node_of_label: HashMap::new(),
             hexes: Vec::new(),
             hex_of_label: HashMap::new(),
-            surfaces: Vec::new(),
-            node_sets: Vec::new(),
+            uses_of_quad: OnceCell::new(),
+            surfaces: DraftSets::new(),
+            node_sets: DraftSets::new(),
         }
     }
 
@@ -84,6 +118,7 @@ impl<'a> HexDraft<'a> {
             );
             return Err(FileLine::new(self.path, hex.line).error(what));
         }
+        self.uses_of_quad.take();
         self.hexes.push(hex);
         Ok(())
     }
@@ -98,14 +133,12 @@ impl<'a> HexDraft<'a> {
 
     /// Adds a face, in any sense of turning, to the surface of that name.
     pub(crate) fn quad(&mut self, surface: &str, line: Option<usize>, nodes: [u64; 4]) {
-        set_named(&mut self.surfaces, surface)
-            .members
-            .push((line, nodes));
+        self.surfaces.members(surface).push((line, nodes));
     }
 
     /// Adds nodes to the set of that name.
     pub(crate) fn set_nodes(&mut self, set: &str, nodes: impl IntoIterator<Item = u64>) {
-        set_named(&mut self.node_sets, set).members.extend(nodes);
+        self.node_sets.members(set).extend(nodes);
     }
 
     /// Faces of these hexahedra that no other hexahedron of the mesh shares.
@@ -113,12 +146,17 @@ impl<'a> HexDraft<'a> {
         &self,
         hexes: impl IntoIterator<Item = &'h DraftHex>,
     ) -> Vec<[u64; 4]> {
-        let mut uses: HashMap<[u64; 4], usize> = HashMap::new();
+        let uses = self.uses_of_quad.get_or_init(|| self.count_quads());
+        let quads = hexes.into_iter().flat_map(DraftHex::quads);
+        quads.filter(|&quad| uses[&sorted(quad)] == 1).collect()
+    }
+
+    fn count_quads(&self) -> HashMap<[u64; 4], usize> {
+        let mut uses = HashMap::new();
         for quad in self.hexes.iter().flat_map(DraftHex::quads) {
             *uses.entry(sorted(quad)).or_default() += 1;
         }
-        let quads = hexes.into_iter().flat_map(DraftHex::quads);
-        quads.filter(|&quad| uses[&sorted(quad)] == 1).collect()
+        uses
     }
 
     /// The mesh with its sets; an error for whatever cannot be calculated with.
@@ -131,7 +169,7 @@ impl<'a> HexDraft<'a> {
         self.check_shapes(&full)?;
         let (mesh, kept) = without_unused_nodes(&full);
         let number = |label: &u64| kept[*self.node_of_label.get(label)?];
-        let node_sets = self.node_sets.iter().map(|set| {
+        let node_sets = self.node_sets.sets.iter().map(|set| {
             let mut nodes: Vec<u32> = set.members.iter().filter_map(number).collect();
             nodes.sort_unstable();
             nodes.dedup();
@@ -198,7 +236,7 @@ impl<'a> HexDraft<'a> {
             .map(|quad| (sorted(quad), quad))
             .collect();
         let mut surfaces = Vec::new();
-        for set in &self.surfaces {
+        for set in &self.surfaces.sets {
             let name = set.name.clone();
             let mut quads = Vec::with_capacity(set.members.len());
             let mut seen = HashSet::new();
@@ -221,21 +259,6 @@ impl<'a> HexDraft<'a> {
         }
         Ok(surfaces)
     }
-}
-
-fn set_named<'s, T>(sets: &'s mut Vec<DraftSet<T>>, name: &str) -> &'s mut DraftSet<T> {
-    let index = sets
-        .iter()
-        .position(|set| set.name.eq_ignore_ascii_case(name));
-    let index = index.unwrap_or_else(|| {
-        let name = name.to_string();
-        sets.push(DraftSet {
-            name,
-            members: Vec::new(),
-        });
-        sets.len() - 1
-    });
-    &mut sets[index]
 }
 
 /// The mesh without nodes that no hexahedron uses, and the new number of each old node.

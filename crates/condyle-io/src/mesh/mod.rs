@@ -22,6 +22,7 @@ mod stl;
 mod surface;
 mod surface_draft;
 mod text;
+mod vtk_binary;
 mod vtk_xml;
 mod vtp;
 mod vtu;

@@ -34,7 +34,10 @@ fn joined_rows(content: &str) -> Vec<(usize, String)> {
             .strip_suffix('\\')
             .map_or((text, false), |text| (text, true));
         match rows.last_mut().filter(|_| open) {
-            Some((_, row)) => *row = format!("{row} {text}"),
+            Some((_, row)) => {
+                row.push(' ');
+                row.push_str(text);
+            }
             None => rows.push((line, text.to_string())),
         }
         open = continues;
@@ -90,6 +93,13 @@ mod tests {
             3,
             "the point no triangle uses is dropped"
         );
+    }
+
+    #[test]
+    fn a_row_of_many_lines_is_read_in_time() {
+        let blank = "\\\n".repeat(450_000);
+        let mesh = read(&format!("{SQUARE}f 1 2 {blank} 3\n")).unwrap();
+        assert_eq!(mesh.triangles, [[0, 1, 2]]);
     }
 
     #[test]

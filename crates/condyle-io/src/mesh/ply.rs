@@ -69,6 +69,7 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileE
         .read_header(&mut reader)
         .map_err(|error| in_words(path, &error))?;
     check_columns(path, &header)?;
+    check_counts(path, bytes, &header)?;
     let mut draft = SurfaceDraft::new(path, 0);
     for element in header.elements.values() {
         let first_line = reader.line();
@@ -104,6 +105,36 @@ fn check_columns(path: &Path, header: &Header) -> Result<(), MeshFileError> {
     }
     let path = path.to_path_buf();
     Err(MeshFileError::NoTriangles { path })
+}
+
+/// A row takes at least a byte. One without properties takes none in a binary file, so that only
+/// this bounds how many there may be.
+fn check_counts(path: &Path, bytes: &[u8], header: &Header) -> Result<(), MeshFileError> {
+    let mut left = bytes.len();
+    for (name, element) in &header.elements {
+        left = left.checked_sub(element.count).ok_or_else(|| {
+            let what = format!(
+                "announces {} rows of element {name}, more than a file of {} bytes can hold; \
+                 was it cut off?",
+                element.count,
+                bytes.len()
+            );
+            FileLine::new(path, header_line(bytes, name)).error(what)
+        })?;
+    }
+    Ok(())
+}
+
+/// The line of the header that announces an element.
+fn header_line(bytes: &[u8], element: &str) -> Option<usize> {
+    let announces = |row: &[u8]| {
+        let mut words = row
+            .split(u8::is_ascii_whitespace)
+            .filter(|word| !word.is_empty());
+        words.next() == Some(b"element") && words.next() == Some(element.as_bytes())
+    };
+    let row = bytes.split(|&byte| byte == b'\n').position(announces);
+    row.map(|row| row + 1)
 }
 
 /// The parser's message in one line, without the line number, which the place already says.
@@ -187,6 +218,44 @@ mod tests {
     fn a_cut_off_binary_file_is_an_error() {
         let bytes = binary("little", f64::to_le_bytes, u32::to_le_bytes);
         assert!(message(read(&bytes[..bytes.len() - 5])).starts_with("a.ply"));
+    }
+
+    #[test]
+    fn rows_that_the_file_cannot_hold_are_refused() {
+        let bytes = binary("little", f64::to_le_bytes, u32::to_le_bytes);
+        let header = |from: &str, to: &str| {
+            let end = bytes
+                .windows(10)
+                .position(|word| word == b"end_header")
+                .unwrap();
+            let text = String::from_utf8(bytes[..end].to_vec()).unwrap();
+            [text.replace(from, to).as_bytes(), &bytes[end..]].concat()
+        };
+        let said = message(read(&header(
+            "element face",
+            "element empty 4000000000\nelement face",
+        )));
+        let expected = "a.ply:7: announces 4000000000 rows of element empty, more than a file of \
+            344 bytes can hold; was it cut off?";
+        assert_eq!(said, expected);
+        let many = message(read(&header("vertex 4", "vertex 4000000000")));
+        assert!(
+            many.starts_with("a.ply:3: announces 4000000000 rows"),
+            "{many}"
+        );
+        let rows = ["a", "b"]
+            .map(|name| format!("element {name} 300\n"))
+            .concat();
+        let sum = message(read(&header(
+            "element face",
+            &format!("{rows}element face"),
+        )));
+        assert!(
+            sum.starts_with("a.ply:8: announces 300 rows of element b"),
+            "{sum}"
+        );
+        let none = header("element face", "element none 0\nelement face");
+        assert_eq!(read(&none).unwrap(), tetrahedron());
     }
 
     #[test]

@@ -1,36 +1,42 @@
 //! The XML container of VTK's files: data arrays as text, base64 or appended bytes.
-//!
-//! Layout after VTK's "File Formats" document: a binary array is a byte count and the values;
-//! a compressed one is the number of blocks, the size of a block, the size of the last block,
-//! the compressed sizes, and the blocks.
 
-use std::io::Read;
+use std::cell::Cell;
 use std::path::Path;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use roxmltree::{Document, Node};
 
 use super::error::{FileLine, MeshFileError};
 use super::text;
+use super::vtk_binary::BinaryLayout;
 
 const APPENDED: &[u8] = b"<AppendedData";
+/// Longest tag: the parser compares every attribute of a tag with every other.
+const TAG_BYTES: usize = 8192;
+/// Arrays may overlap and unpack to far more than the file has, so that its length bounds them
+/// all: those of a mesh are seldom packed to a tenth of a byte a value.
+const VALUES_A_BYTE: usize = 16;
+/// Short files may hold what packs well.
+const VALUES_OF_ANY_FILE: usize = 4_000_000;
 
 /// A file cut into its XML and the bytes appended to it, which may be no XML at all.
 pub(crate) struct VtkSource<'a> {
     xml: String,
     appended: Option<&'a [u8]>,
     appended_is_raw: bool,
+    /// Bytes of the whole file.
+    length: usize,
 }
 
 impl<'a> VtkSource<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        let length = bytes.len();
         let Some(start) = find(bytes, APPENDED) else {
             let xml = text::decode(bytes).into_owned();
             return Self {
                 xml,
                 appended: None,
                 appended_is_raw: false,
+                length,
             };
         };
         let xml = format!("{}</VTKFile>", text::decode(&bytes[..start]));
@@ -41,6 +47,7 @@ impl<'a> VtkSource<'a> {
             xml,
             appended: Some(&bytes[data_start..]),
             appended_is_raw,
+            length,
         }
     }
 }
@@ -51,14 +58,52 @@ fn find(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
         .position(|window| window == pattern)
 }
 
+/// Where a tag starts that is longer than any of a mesh.
+fn long_tag(xml: &str) -> Option<usize> {
+    let mut at = 0;
+    while let Some(found) = xml[at..].find('<') {
+        let start = at + found;
+        let (length, is_tag) = markup(&xml[start..]);
+        if is_tag && length > TAG_BYTES {
+            return Some(start);
+        }
+        at = start + length;
+    }
+    None
+}
+
+/// Length of the markup that `xml` starts with, and whether it is a tag with attributes.
+fn markup(xml: &str) -> (usize, bool) {
+    for (open, close) in [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")] {
+        if xml.starts_with(open) {
+            let end = xml.find(close).map_or(xml.len(), |at| at + close.len());
+            return (end, false);
+        }
+    }
+    let mut quote = None;
+    let end = xml.bytes().position(|byte| match quote {
+        Some(open) => {
+            quote = Some(open).filter(|_| byte != open);
+            false
+        }
+        None => {
+            quote = Some(byte).filter(|byte| matches!(byte, b'"' | b'\''));
+            byte == b'>'
+        }
+    });
+    (end.map_or(xml.len(), |end| end + 1), true)
+}
+
 /// The parsed XML with what is needed to decode its arrays.
 pub(crate) struct VtkDocument<'a> {
     path: &'a Path,
     document: Document<'a>,
     source: &'a VtkSource<'a>,
-    count_bytes: usize,
-    big_endian: bool,
-    zlib: bool,
+    /// Where each line of the XML starts.
+    line_starts: Vec<usize>,
+    layout: BinaryLayout,
+    /// How many values all arrays still to be read may have.
+    values_left: Cell<usize>,
 }
 
 /// One array, whatever its type, as double precision.
@@ -90,6 +135,13 @@ impl<'a> VtkDocument<'a> {
         source: &'a VtkSource<'a>,
         kind: &str,
     ) -> Result<Self, MeshFileError> {
+        let newlines = source.xml.match_indices('\n').map(|(at, _)| at + 1);
+        let line_starts: Vec<usize> = std::iter::once(0).chain(newlines).collect();
+        if let Some(start) = long_tag(&source.xml) {
+            let line = line_starts.partition_point(|&line| line <= start);
+            let what = format!("has a tag of more than {TAG_BYTES} bytes; is this a VTK file?");
+            return Err(FileLine::line(path, line).error(what));
+        }
         let document = Document::parse(&source.xml).map_err(|error| {
             let line = error.pos().row as usize;
             FileLine::line(path, line).error(format!("is not XML: {error}"))
@@ -100,27 +152,14 @@ impl<'a> VtkDocument<'a> {
             let what = format!("is not a VTKFile of type {kind} but {found:?}");
             return Err(FileLine::file(path).error(what));
         }
-        let zlib = match root.attribute("compressor") {
-            None => false,
-            Some("vtkZLibDataCompressor") => true,
-            Some(other) => {
-                let what = format!("is compressed by {other}; save it with zlib or uncompressed");
-                return Err(FileLine::file(path).error(what));
-            }
-        };
-        let count_bytes = if root.attribute("header_type") == Some("UInt64") {
-            8
-        } else {
-            4
-        };
-        let big_endian = root.attribute("byte_order") == Some("BigEndian");
+        let layout = layout(root).map_err(|what| FileLine::file(path).error(what))?;
         Ok(Self {
             path,
             document,
             source,
-            count_bytes,
-            big_endian,
-            zlib,
+            line_starts,
+            layout,
+            values_left: Cell::new(VALUES_OF_ANY_FILE + VALUES_A_BYTE * source.length),
         })
     }
 
@@ -142,7 +181,8 @@ impl<'a> VtkDocument<'a> {
     }
 
     fn line_of(&self, node: Node) -> usize {
-        self.document.text_pos_at(node.range().start).row as usize
+        let at = node.range().start;
+        self.line_starts.partition_point(|&start| start <= at)
     }
 
     /// All arrays of one group of a piece, such as `Cells`; none where the group is missing.
@@ -168,8 +208,8 @@ impl<'a> VtkDocument<'a> {
         let values = match node.attribute("format") {
             Some("ascii") => self.text_values(node)?,
             Some("binary") => {
-                let bytes = self.base64(node, node.text().unwrap_or_default().as_bytes())?;
-                self.binary_values(node, kind, &bytes)?
+                let encoded = node.text().unwrap_or_default().as_bytes();
+                self.base64_values(node, kind, encoded)?
             }
             Some("appended") => self.appended_values(node, kind)?,
             _ => return Err(self.at(node, "an array's format is none of ascii, binary, appended")),
@@ -212,31 +252,20 @@ impl<'a> VtkDocument<'a> {
             .and_then(|offset| self.source.appended?.get(offset..))
             .ok_or_else(|| self.at(node, "an array's offset lies outside the appended data"))?;
         if self.source.appended_is_raw {
-            return self.binary_values(node, kind, bytes);
+            self.binary_values(node, kind, bytes)
+        } else {
+            self.base64_values(node, kind, bytes)
         }
-        let end = find(bytes, b"<").unwrap_or(bytes.len());
-        let bytes = self.base64(node, &bytes[..end])?;
-        self.binary_values(node, kind, &bytes)
     }
 
-    /// Decodes base64; the byte count and the values may each be padded on their own.
-    fn base64(&self, node: Node, encoded: &[u8]) -> Result<Vec<u8>, MeshFileError> {
-        let mut rest = encoded.to_vec();
-        rest.retain(|byte| !byte.is_ascii_whitespace());
-        let mut rest = rest.as_slice();
-        let mut bytes = Vec::with_capacity(rest.len() / 4 * 3);
-        while !rest.is_empty() {
-            let padding = rest
-                .iter()
-                .position(|&byte| byte == b'=')
-                .unwrap_or(rest.len());
-            let (segment, after) = rest.split_at(padding.next_multiple_of(4).min(rest.len()));
-            STANDARD
-                .decode_vec(segment, &mut bytes)
-                .map_err(|error| self.at(node, format!("an array's base64 is broken: {error}")))?;
-            rest = after;
-        }
-        Ok(bytes)
+    fn base64_values(
+        &self,
+        node: Node,
+        kind: &str,
+        encoded: &[u8],
+    ) -> Result<Vec<f64>, MeshFileError> {
+        let bytes = self.layout.decoded(encoded);
+        self.binary_values(node, kind, &bytes.map_err(|what| self.at(node, what))?)
     }
 
     fn binary_values(
@@ -245,81 +274,29 @@ impl<'a> VtkDocument<'a> {
         kind: &str,
         bytes: &[u8],
     ) -> Result<Vec<f64>, MeshFileError> {
-        let cut_off = || {
-            self.at(
-                node,
-                "an array ends before its announced length; was it cut off?",
-            )
-        };
-        let decode = decoder(kind)
-            .ok_or_else(|| self.at(node, format!("an array's type {kind:?} is not known")))?;
-        let inflated;
-        let data = if self.zlib {
-            inflated = self.inflate(bytes).ok_or_else(cut_off)?;
-            inflated.as_slice()
-        } else {
-            let length = self.count(bytes, 0).ok_or_else(cut_off)?;
-            let end = length.checked_add(self.count_bytes).ok_or_else(cut_off)?;
-            bytes.get(self.count_bytes..end).ok_or_else(cut_off)?
-        };
-        Ok(decode(data, self.big_endian))
-    }
-
-    fn count(&self, bytes: &[u8], index: usize) -> Option<usize> {
-        let start = index.checked_mul(self.count_bytes)?;
-        let bytes = bytes.get(start..start.checked_add(self.count_bytes)?)?;
-        let fold = |value: usize, &byte: &u8| value << 8 | usize::from(byte);
-        Some(if self.big_endian {
-            bytes.iter().fold(0, fold)
-        } else {
-            bytes.iter().rev().fold(0, fold)
-        })
-    }
-
-    fn inflate(&self, bytes: &[u8]) -> Option<Vec<u8>> {
-        let blocks = self.count(bytes, 0)?;
-        if blocks == 0 {
-            return Some(Vec::new());
-        }
-        let mut start = blocks.checked_add(3)?.checked_mul(self.count_bytes)?;
-        let mut data = Vec::new();
-        for block in 0..blocks {
-            let end = start.checked_add(self.count(bytes, 3 + block)?)?;
-            let mut decoder = flate2::read::ZlibDecoder::new(bytes.get(start..end)?);
-            decoder.read_to_end(&mut data).ok()?;
-            start = end;
-        }
-        Some(data)
+        let left = self.values_left.get();
+        let values = self.layout.values(kind, bytes, left);
+        let values = values.map_err(|what| self.at(node, what))?;
+        self.values_left.set(left - values.len());
+        Ok(values)
     }
 }
 
-type Decoder = fn(&[u8], bool) -> Vec<f64>;
-
-fn decoder(kind: &str) -> Option<Decoder> {
-    macro_rules! of {
-        ($number:ty) => {
-            |bytes, big_endian| {
-                let values = bytes.as_chunks::<{ size_of::<$number>() }>().0.iter();
-                let from = if big_endian {
-                    <$number>::from_be_bytes
-                } else {
-                    <$number>::from_le_bytes
-                };
-                values.map(|&value| from(value) as f64).collect()
-            }
-        };
-    }
-    Some(match kind {
-        "Float32" => of!(f32),
-        "Float64" => of!(f64),
-        "Int8" => of!(i8),
-        "UInt8" => of!(u8),
-        "Int16" => of!(i16),
-        "UInt16" => of!(u16),
-        "Int32" => of!(i32),
-        "UInt32" => of!(u32),
-        "Int64" => of!(i64),
-        "UInt64" => of!(u64),
-        _ => return None,
+/// How the file that `root` describes lays out its binary arrays.
+fn layout(root: Node) -> Result<BinaryLayout, String> {
+    let zlib = match root.attribute("compressor") {
+        None => false,
+        Some("vtkZLibDataCompressor") => true,
+        Some(other) => {
+            return Err(format!(
+                "is compressed by {other}; save it with zlib or uncompressed"
+            ));
+        }
+    };
+    let is_long = root.attribute("header_type") == Some("UInt64");
+    Ok(BinaryLayout {
+        count_bytes: if is_long { 8 } else { 4 },
+        big_endian: root.attribute("byte_order") == Some("BigEndian"),
+        zlib,
     })
 }

@@ -148,6 +148,8 @@ mod tests {
             .into_bytes()
     }
 
+    const ZLIB: &str = "compressor=\"vtkZLibDataCompressor\"";
+
     fn zlib_header_and_block(data: &[u8]) -> (Vec<u8>, Vec<u8>) {
         use std::io::Write;
         let mut encoder =
@@ -184,13 +186,12 @@ mod tests {
 
     #[test]
     fn zlib_is_read_and_other_compressors_are_refused() {
-        let zlib = "compressor=\"vtkZLibDataCompressor\"";
-        let inline = encoded(zlib, None, |data| {
+        let inline = encoded(ZLIB, None, |data| {
             let (header, block) = zlib_header_and_block(data);
             [base64(&header), base64(&block)].concat()
         });
         assert_eq!(read(&inline).unwrap(), tetrahedron());
-        let raw = encoded(zlib, Some("raw"), |data| {
+        let raw = encoded(ZLIB, Some("raw"), |data| {
             let (header, block) = zlib_header_and_block(data);
             [header, block].concat()
         });
@@ -201,6 +202,76 @@ mod tests {
             said,
             "a.vtp: is compressed by vtkLZ4DataCompressor; save it with zlib or uncompressed"
         );
+    }
+
+    #[test]
+    fn a_compressed_block_ends_at_its_announced_size() {
+        let short = encoded(ZLIB, Some("raw"), |data| {
+            let (mut header, block) = zlib_header_and_block(data);
+            header[4..8].copy_from_slice(&(data.len() as u32 - 1).to_le_bytes());
+            [header, block].concat()
+        });
+        let expected = "a.vtp:1: an array has a compressed block of more than its announced 95 \
+            bytes; save the file again";
+        assert_eq!(message(read(&short)), expected);
+    }
+
+    #[test]
+    fn arrays_that_unpack_to_far_more_than_the_file_are_refused() {
+        let zeros = vec![0; 100_000_000];
+        let (header, block) = zlib_header_and_block(&zeros);
+        let honest = encoded(ZLIB, Some("raw"), |_| [&header[..], &block].concat());
+        let said = message(read(&honest));
+        assert!(
+            said.starts_with("a.vtp:1: an array unpacks to more values"),
+            "{said}"
+        );
+        let data = [&200_000u64.to_le_bytes()[..], &zeros[..200_000]].concat();
+        let all_the_same: String = (0..4_000)
+            .map(|_| "<DataArray type=\"UInt8\" format=\"appended\" offset=\"0\"/>")
+            .collect();
+        let mut overlapping = TEXT
+            .trim_end()
+            .replace("<Points>", &format!("<Points>{all_the_same}"))
+            .replace("</VTKFile>", "<AppendedData encoding=\"raw\">_")
+            .into_bytes();
+        overlapping.extend(data);
+        let said = message(read(&overlapping));
+        assert!(
+            said.starts_with("a.vtp:4: an array unpacks to more values"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn many_arrays_are_read_in_time() {
+        let empty = "<DataArray type=\"Int32\" format=\"ascii\"/>".repeat(25_000);
+        let many = TEXT.replace(
+            "</DataArray></Points>",
+            &format!("</DataArray>{empty}</Points>"),
+        );
+        assert_eq!(read(many.as_bytes()).unwrap(), tetrahedron());
+        let data = base64(&counted(&vec![0; 300_000]));
+        let encoded = "<DataArray type=\"UInt8\" format=\"appended\" offset=\"99996\"/>";
+        let many = TEXT
+            .replace(
+                "</DataArray></Points>",
+                &format!("</DataArray>{}</Points>", encoded.repeat(8_000)),
+            )
+            .replace("</VTKFile>", "<AppendedData encoding=\"base64\">_");
+        let many = [many.as_bytes(), &data, b"</AppendedData></VTKFile>"].concat();
+        assert_eq!(read(&many).unwrap(), tetrahedron());
+    }
+
+    #[test]
+    fn a_tag_of_far_too_many_attributes_is_refused() {
+        let attributes: String = (0..90_000).map(|i| format!(" a{i}='>'")).collect();
+        let many = TEXT.replace("<Points>", &format!("<Points{attributes}>"));
+        let expected = "a.vtp:4: has a tag of more than 8192 bytes; is this a VTK file?";
+        assert_eq!(message(read(many.as_bytes())), expected);
+        let comment = format!("<!-- it's > {attributes} --><Points>");
+        let commented = TEXT.replace("<Points>", &comment);
+        assert_eq!(read(commented.as_bytes()).unwrap(), tetrahedron());
     }
 
     #[test]
@@ -239,5 +310,17 @@ mod tests {
         assert!(message(read(&raw)).contains("was it cut off?"));
         let broken = encoded("", None, |_| b"a*c=".to_vec());
         assert!(message(read(&broken)).contains("base64 is broken"));
+    }
+
+    #[test]
+    fn a_padding_out_of_place_is_named() {
+        for stray in ["=", "==", "====", "=AAA"] {
+            let stray = |data: &[u8]| [stray.as_bytes(), &base64(&counted(data))].concat();
+            let said = message(read(&encoded("", None, stray)));
+            assert!(
+                said.starts_with("a.vtp:1: an array's base64 is broken"),
+                "{said}"
+            );
+        }
     }
 }

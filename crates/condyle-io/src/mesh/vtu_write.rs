@@ -1,6 +1,9 @@
 //! VTK unstructured grids (`.vtu`), out: appended raw bytes, the same bytes for the same mesh.
-
-use std::fmt::Write as _;
+//!
+//! The blocks of bytes stand in the opposite order to the arrays that name them by their offsets.
+//! meshio 5.3 takes block after block, gives the first array that has the block's offset, and lets
+//! the array have another offset from then on, which may well be that of a later block. Where the
+//! array of the later block stands first, it is found first.
 
 use condyle_fem::HexMesh;
 
@@ -39,10 +42,10 @@ impl PointValues<'_> {
         }
     }
 
-    fn append(self, appended: &mut Appended) -> usize {
+    fn bytes(self) -> Vec<u8> {
         match self {
-            Self::Float64(values) => appended.block(values.iter().map(|value| value.to_le_bytes())),
-            Self::UInt8(values) => appended.block(values.iter().map(|value| [*value])),
+            Self::Float64(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            Self::UInt8(values) => values.to_vec(),
         }
     }
 }
@@ -55,9 +58,12 @@ pub fn vtu_bytes(mesh: &HexMesh, arrays: &[PointArray]) -> Result<Vec<u8>, MeshF
     for array in arrays {
         check_length(mesh, array)?;
     }
-    let mut appended = Appended::default();
-    let mut bytes = xml(mesh, arrays, &mut appended).into_bytes();
-    bytes.extend_from_slice(&appended.bytes);
+    let data = data_arrays(mesh, arrays);
+    let mut bytes = xml(mesh, &data, arrays.len()).into_bytes();
+    for array in data.iter().rev() {
+        bytes.extend_from_slice(&(array.bytes.len() as u64).to_le_bytes());
+        bytes.extend_from_slice(&array.bytes);
+    }
     bytes.extend_from_slice(b"\n</AppendedData>\n</VTKFile>\n");
     Ok(bytes)
 }
@@ -75,78 +81,83 @@ fn check_length(mesh: &HexMesh, array: &PointArray) -> Result<(), MeshFileError>
     })
 }
 
-/// The blocks behind the XML: each a byte count of eight bytes, then the bytes.
-#[derive(Default)]
-struct Appended {
+/// An array as its element in the XML names it, and its bytes behind the XML.
+struct DataArray {
+    kind: &'static str,
+    name: String,
+    components: usize,
     bytes: Vec<u8>,
 }
 
-impl Appended {
-    /// Adds a block and gives its offset.
-    fn block<const N: usize>(&mut self, values: impl ExactSizeIterator<Item = [u8; N]>) -> usize {
-        let offset = self.bytes.len();
-        let length = values.len() * N;
-        self.bytes.reserve(length + 8);
-        self.bytes.extend_from_slice(&(length as u64).to_le_bytes());
-        values.for_each(|value| self.bytes.extend_from_slice(&value));
-        offset
+impl DataArray {
+    /// Length of its block: a byte count of eight bytes, then the bytes.
+    fn block_length(&self) -> usize {
+        8 + self.bytes.len()
+    }
+
+    fn element(&self, offset: usize) -> String {
+        // Readers take an array without a count for a plain list, one with a count of 1 for a column.
+        let count = match self.components {
+            1 => String::new(),
+            components => format!(" NumberOfComponents=\"{components}\""),
+        };
+        format!(
+            "<DataArray type=\"{}\" Name=\"{}\"{count} format=\"appended\" offset=\"{offset}\"/>\n",
+            self.kind,
+            escaped(&self.name)
+        )
     }
 }
 
-fn xml(mesh: &HexMesh, arrays: &[PointArray], appended: &mut Appended) -> String {
-    let (nodes, hexes) = (mesh.nodes.len(), mesh.hexes.len());
-    let mut xml = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
-         byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n",
-    );
-    let _ = writeln!(
-        xml,
-        "<Piece NumberOfPoints=\"{nodes}\" NumberOfCells=\"{hexes}\">"
-    );
-    xml.push_str("<PointData>\n");
-    for array in arrays {
-        let offset = array.values.append(appended);
-        data_array(
-            &mut xml,
-            array.values.kind(),
-            &escaped(array.name),
-            1,
-            offset,
-        );
-    }
-    xml.push_str("</PointData>\n<Points>\n");
-    let offset = appended.block(coordinates(mesh).iter().map(|value| value.to_le_bytes()));
-    data_array(&mut xml, "Float64", "Points", 3, offset);
-    xml.push_str("</Points>\n<Cells>\n");
-    let corners = mesh.hexes.as_flattened().iter();
-    let offset = appended.block(corners.map(|&node| i64::from(node).to_le_bytes()));
-    data_array(&mut xml, "Int64", "connectivity", 1, offset);
-    let ends: Vec<i64> = (1..=hexes as i64).map(|hex| 8 * hex).collect();
-    let offset = appended.block(ends.iter().map(|end| end.to_le_bytes()));
-    data_array(&mut xml, "Int64", "offsets", 1, offset);
-    let offset = appended.block(vec![[12]; hexes].into_iter());
-    data_array(&mut xml, "UInt8", "types", 1, offset);
-    xml.push_str("</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
-    xml
-}
-
-fn coordinates(mesh: &HexMesh) -> Vec<f64> {
-    mesh.nodes
-        .iter()
-        .flat_map(|node| [node.x, node.y, node.z])
-        .collect()
-}
-
-fn data_array(xml: &mut String, kind: &str, name: &str, components: usize, offset: usize) {
-    // Readers take an array without a count for a plain list, one with a count of 1 for a column.
-    let count = match components {
-        1 => String::new(),
-        _ => format!(" NumberOfComponents=\"{components}\""),
+/// All arrays in the order of the XML: values at the nodes, points, cells.
+fn data_arrays(mesh: &HexMesh, arrays: &[PointArray]) -> Vec<DataArray> {
+    let array = |kind, name: &str, components, bytes| DataArray {
+        kind,
+        name: name.to_owned(),
+        components,
+        bytes,
     };
-    let _ = writeln!(
-        xml,
-        "<DataArray type=\"{kind}\" Name=\"{name}\"{count} format=\"appended\" offset=\"{offset}\"/>"
-    );
+    let integers = |numbers: &mut dyn Iterator<Item = i64>| -> Vec<u8> {
+        numbers.flat_map(i64::to_le_bytes).collect()
+    };
+    let hexes = mesh.hexes.len();
+    let mut corners = mesh.hexes.as_flattened().iter().map(|&node| node.into());
+    let mut ends = (1..=hexes as i64).map(|hex| 8 * hex);
+    let at_nodes = arrays
+        .iter()
+        .map(|given| array(given.values.kind(), given.name, 1, given.values.bytes()));
+    let of_mesh = [
+        array("Float64", "Points", 3, coordinates(mesh)),
+        array("Int64", "connectivity", 1, integers(&mut corners)),
+        array("Int64", "offsets", 1, integers(&mut ends)),
+        array("UInt8", "types", 1, vec![12; hexes]),
+    ];
+    at_nodes.chain(of_mesh).collect()
+}
+
+/// Everything before the bytes; the first `at_nodes` of the arrays are values at the nodes.
+fn xml(mesh: &HexMesh, data: &[DataArray], at_nodes: usize) -> String {
+    let (nodes, hexes) = (mesh.nodes.len(), mesh.hexes.len());
+    let mut offset: usize = data.iter().map(DataArray::block_length).sum();
+    let mut elements = data.iter().map(|array| {
+        offset -= array.block_length();
+        array.element(offset)
+    });
+    let mut next = |count: usize| elements.by_ref().take(count).collect::<String>();
+    let (point_data, points, cells) = (next(at_nodes), next(1), next(3));
+    format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+         byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n\
+         <Piece NumberOfPoints=\"{nodes}\" NumberOfCells=\"{hexes}\">\n\
+         <PointData>\n{point_data}</PointData>\n<Points>\n{points}</Points>\n\
+         <Cells>\n{cells}</Cells>\n</Piece>\n</UnstructuredGrid>\n\
+         <AppendedData encoding=\"raw\">\n_"
+    )
+}
+
+fn coordinates(mesh: &HexMesh) -> Vec<u8> {
+    let values = mesh.nodes.iter().flat_map(|node| [node.x, node.y, node.z]);
+    values.flat_map(f64::to_le_bytes).collect()
 }
 
 /// Text as the value of an XML attribute.
@@ -175,6 +186,52 @@ mod tests {
         let file = read_vtu_points(&path).unwrap();
         assert_eq!(file.mesh, two_cubes());
         assert_eq!(file.values("a<b & \"c\"").unwrap(), values);
+    }
+
+    /// As meshio 5.3 finds the arrays of the blocks: the first with the offset of a block is its
+    /// array, and has from then on the offset of its base64.
+    fn names_of_blocks(bytes: &[u8]) -> Vec<String> {
+        let start = bytes.windows(2).position(|pair| pair == b"\n_").unwrap() + 2;
+        let xml = std::str::from_utf8(&bytes[..start]).unwrap();
+        let mut arrays: Vec<(String, usize)> = xml
+            .lines()
+            .filter_map(|row| {
+                let quoted = |key: &str| row.split_once(key)?.1.split('"').next();
+                Some((
+                    quoted(" Name=\"")?.to_owned(),
+                    quoted(" offset=\"")?.parse().ok()?,
+                ))
+            })
+            .collect();
+        let (mut at, mut in_base64, mut names) = (0, 0, Vec::new());
+        while names.len() < arrays.len() {
+            let array = arrays.iter_mut().find(|(_, offset)| *offset == at).unwrap();
+            array.1 = in_base64;
+            names.push(array.0.clone());
+            let count = bytes[start + at..][..8].try_into().unwrap();
+            let block = 8 + u64::from_le_bytes(count) as usize;
+            at += block;
+            in_base64 += block.div_ceil(3) * 4;
+        }
+        names
+    }
+
+    #[test]
+    fn meshio_finds_the_array_of_each_block_whatever_the_number_of_points() {
+        for more in 0..9 {
+            let mut mesh = two_cubes();
+            mesh.nodes.extend(vec![condyle::Vec3::zeros(); more]);
+            let values = vec![0.5; mesh.nodes.len()];
+            let names = ["a_mm", "b_mm", "c_mm", "d_mm", "e_mm"];
+            let arrays = names.map(|name| PointArray {
+                name,
+                values: PointValues::Float64(&values),
+            });
+            let mut found = names_of_blocks(&vtu_bytes(&mesh, &arrays).unwrap());
+            found.reverse();
+            let of_mesh = ["Points", "connectivity", "offsets", "types"];
+            assert_eq!(found, [&names[..], &of_mesh].concat(), "{more} points more");
+        }
     }
 
     #[test]

@@ -2,7 +2,11 @@
 
 use condyle_fem::HexMesh;
 
+use super::insert::error::InsertError;
 use crate::Vec3;
+
+/// Nodes of an insert that take 2 GB, at 250 bytes for all that is known of each.
+const MOST_NODES: usize = 8_000_000;
 
 /// A rectangular grid over the transverse plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +61,20 @@ impl ColumnGrid {
     /// How many grid points there are.
     pub fn point_count(&self) -> usize {
         (self.cells.0 + 1) * (self.cells.1 + 1)
+    }
+
+    /// Refuses a grid whose columns of `layers` hexahedra would not fit into memory.
+    ///
+    /// # Errors
+    /// [`InsertError::TooManyNodes`].
+    pub fn check_node_count(&self, layers: usize) -> Result<(), InsertError> {
+        let (nx, nz) = self.cells;
+        let nodes = (nx as f64 + 1.0) * (nz as f64 + 1.0) * (layers as f64 + 1.0);
+        if nodes <= MOST_NODES as f64 {
+            return Ok(());
+        }
+        let most = MOST_NODES;
+        Err(InsertError::TooManyNodes { nodes, most })
     }
 
     /// Hexahedra in `layers` layers over every cell with a column at all four corners.

@@ -45,7 +45,7 @@ pub enum ShellInsertError {
 /// columns at the rim are left out, so the outline follows the grid.
 ///
 /// # Errors
-/// An open shell without a thickness, or one in which no column fits.
+/// An open shell without a thickness, one in which no column fits, or more nodes than memory holds.
 pub fn insert_from_shell(
     shell: &TriangleMesh,
     is_closed: bool,
@@ -55,6 +55,7 @@ pub fn insert_from_shell(
     let edge_mm = meshing.edge_mm;
     let (low, high) = shell.bounds();
     let grid = ColumnGrid::filling((low.x, low.z), (high.x, high.z), edge_mm);
+    grid.check_node_count(meshing.layers)?;
     let mut columns = columns_through(shell, &grid);
     if !is_closed {
         let thickness_mm = thickness_mm.ok_or(ShellInsertError::OpenWithoutThickness)?;

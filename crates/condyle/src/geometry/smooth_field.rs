@@ -44,6 +44,11 @@ pub struct SmoothField {
 }
 
 impl SmoothField {
+    /// How many nodes the grid of the field of `mesh` has; making it takes some 40 bytes a node.
+    pub fn node_count(mesh: &TriangleMesh) -> usize {
+        NodeGrid::around(mesh.bounds()).node_count()
+    }
+
     /// The field of a surface whose triangles face outwards, made on `threads` threads.
     ///
     /// The bytes of the result do not depend on `threads`; with one, none is started.

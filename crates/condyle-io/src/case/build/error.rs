@@ -6,6 +6,8 @@ use condyle::geometry::{InsertError, ShellError, ShellInsertError};
 use thiserror::Error;
 
 use super::super::axes::AxesError;
+use super::super::mesh_file::LengthUnit;
+use super::pieces::StrayPiece;
 use crate::mesh::MeshFileError;
 
 /// Why a good case makes no wear test.
@@ -14,6 +16,43 @@ pub enum BuildError {
     /// A mesh file that cannot be read.
     #[error(transparent)]
     MeshFile(#[from] MeshFileError),
+    /// A body that is too small or too large for a knee.
+    #[error(
+        "{}: the body is {} mm long, and a knee's is 5 mm to 500 mm; {}",
+        file.display(),
+        rounded(*size_mm),
+        in_better_unit(*better)
+    )]
+    Size {
+        /// The file.
+        file: PathBuf,
+        /// Its longest extent along an axis, mm.
+        size_mm: f64,
+        /// The unit of length that makes it as long as a knee's, and how long, mm.
+        better: Option<(LengthUnit, f64)>,
+    },
+    /// A piece so far from the body that the whole is too large for a knee.
+    #[error("{}: {piece}, too far for a knee; delete it", file.display())]
+    StrayPiece {
+        /// The file.
+        file: PathBuf,
+        /// The piece.
+        piece: StrayPiece,
+    },
+    /// A femur so large that its field would not fit into memory.
+    #[error(
+        "{}: the distance field would have {nodes} nodes, and more than {most} take more than \
+         2 GB; cut away what never touches the insert, and check length_unit",
+        file.display()
+    )]
+    TooManyNodes {
+        /// The file.
+        file: PathBuf,
+        /// How many.
+        nodes: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// Triangles that are no shell.
     #[error("{}: {source}", file.display())]
     Shell {
@@ -64,12 +103,34 @@ impl BuildError {
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::MeshFile(error) => error.path(),
-            Self::Shell { file, .. }
+            Self::Size { file, .. }
+            | Self::StrayPiece { file, .. }
+            | Self::TooManyNodes { file, .. }
+            | Self::Shell { file, .. }
             | Self::ShellInsert { file, .. }
             | Self::ThicknessOfClosed { file }
             | Self::NoSurface { file, .. } => Some(file),
             Self::Insert(_) | Self::Axes(_) => None,
         }
+    }
+}
+
+/// Three digits, for sizes from nanometres to kilometres.
+fn rounded(size_mm: f64) -> String {
+    if (0.1..1e5).contains(&size_mm) {
+        format!("{size_mm:.1}")
+    } else {
+        format!("{size_mm:.2e}")
+    }
+}
+
+fn in_better_unit(better: Option<(LengthUnit, f64)>) -> String {
+    match better {
+        Some((unit, size_mm)) => format!(
+            "write length_unit = \"{}\", with which it is {size_mm:.1} mm long",
+            unit.word()
+        ),
+        None => "check length_unit and the mesh".to_owned(),
     }
 }
 
@@ -81,9 +142,17 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-/// What was put right in a mesh.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+/// What was put right in a mesh, or looks wrong.
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum BuildWarning {
+    /// Part of the mesh lies far from the rest.
+    #[error("{}: {piece}; delete it unless it is part of it", file.display())]
+    StrayPiece {
+        /// The file.
+        file: PathBuf,
+        /// The piece.
+        piece: StrayPiece,
+    },
     /// The mesh came inside-out.
     #[error("{}: the triangles faced inwards and were turned round", file.display())]
     TurnedRound {

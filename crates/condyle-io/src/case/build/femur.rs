@@ -1,5 +1,7 @@
 //! The femoral component as the contact sees it.
 
+use std::path::Path;
+
 use condyle::Vec3;
 use condyle::geometry::{
     CheckedShell, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, SmoothField,
@@ -139,9 +141,22 @@ fn prepared(
     let inputs = [ending.as_encoded_bytes(), &placing.bytes(), &bytes];
     kept(preparing.keep, "femur", &inputs, || {
         let shell = parsed_shell(path, &bytes, placing, Faces::Down)?;
+        check_node_count(path, &shell.mesh)?;
         let field = SmoothField::new(&shell.mesh, preparing.threads);
         Ok(PreparedFemur { shell, field })
     })
+}
+
+/// Nodes of a field that take 2 GB while it is made.
+const MOST_NODES: usize = 50_000_000;
+
+fn check_node_count(file: &Path, mesh: &TriangleMesh) -> Result<(), BuildError> {
+    let nodes = SmoothField::node_count(mesh);
+    if nodes <= MOST_NODES {
+        return Ok(());
+    }
+    let (file, most) = (file.to_path_buf(), MOST_NODES);
+    Err(BuildError::TooManyNodes { file, nodes, most })
 }
 
 /// How far anterior of the frame's origin the flexion axis lies in the insert frame.

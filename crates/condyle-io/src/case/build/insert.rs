@@ -7,6 +7,7 @@ use condyle_fem::HexMesh;
 use super::super::contents::Case;
 use super::super::heading::Side;
 use super::super::insert::{HexahedralInsert, Insert, MeshInsert};
+use super::body_size::check_points;
 use super::error::{BuildError, BuildWarning};
 use super::meshes::{Faces, Placing, shell};
 use crate::mesh::{HexFile, read_hexahedra};
@@ -90,6 +91,7 @@ fn from_hexahedra(insert: &HexahedralInsert, side: Side) -> Result<geometry::Ins
     let path = insert.file.path();
     let mut file = read_hexahedra(insert.file.files(), path)?;
     place(&mut file, &placing);
+    check_points(path, &file.mesh.nodes, insert.length_unit)?;
     let surface = |key, name: &Option<String>, up: f64| match name {
         Some(name) => named(&file, key, name, insert),
         None => Ok(facing(&file.mesh, up)),

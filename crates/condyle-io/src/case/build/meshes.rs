@@ -8,12 +8,15 @@ use condyle::{Mat3, Vec3};
 use super::super::axes::Axes;
 use super::super::heading::Side;
 use super::super::mesh_file::LengthUnit;
+use super::body_size::check_triangles;
 use super::error::{BuildError, BuildWarning};
+use super::pieces::stray_piece;
 use crate::keyed::DataFile;
 use crate::mesh::{parse_surface, surface_bytes};
 
 /// From the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.
 pub(super) struct Placing {
+    pub unit: LengthUnit,
     linear: Mat3,
     /// A left knee is mirrored, so that faces must be turned round.
     pub mirrors: bool,
@@ -25,7 +28,11 @@ impl Placing {
         let mirrors = side == Side::Left;
         let mirror = Mat3::from_diagonal(&Vec3::new(1.0, 1.0, if mirrors { -1.0 } else { 1.0 }));
         let linear = mirror * turned;
-        Ok(Self { linear, mirrors })
+        Ok(Self {
+            unit,
+            linear,
+            mirrors,
+        })
     }
 
     /// Its bytes, the same for the same placing.
@@ -78,7 +85,7 @@ pub(super) fn shell(
     Ok(shell)
 }
 
-/// The same from the bytes of the file, without a word of what was put right.
+/// The same from the bytes of the file, without a word of what was put right or looks wrong.
 pub(super) fn parsed_shell(
     file: &Path,
     bytes: &[u8],
@@ -86,6 +93,7 @@ pub(super) fn parsed_shell(
     open_faces: Faces,
 ) -> Result<CheckedShell, BuildError> {
     let mesh = placing.mesh(parse_surface(file, bytes)?);
+    check_triangles(file, &mesh, placing.unit)?;
     let mut shell = checked_shell(mesh).map_err(|source| BuildError::Shell {
         file: file.to_path_buf(),
         source,
@@ -97,9 +105,13 @@ pub(super) fn parsed_shell(
     Ok(shell)
 }
 
-/// Says what was put right in a file, by its name alone: results say so too, and name no folder.
+/// Says what was put right in a file, and what looks wrong, by its name alone: results say so too, and name no folder.
 pub(super) fn warn(file: &DataFile, shell: &CheckedShell, warnings: &mut Vec<BuildWarning>) {
     let file = || PathBuf::from(file.name());
+    if let Some(piece) = stray_piece(&shell.mesh) {
+        let file = file();
+        warnings.push(BuildWarning::StrayPiece { file, piece });
+    }
     if shell.turned_round {
         warnings.push(BuildWarning::TurnedRound { file: file() });
     }

@@ -281,3 +281,108 @@ fn open_femur_that_faces_up_is_turned_to_face_down() {
     let (x, y) = built.test.flexion_axis_mm;
     assert!(x.abs() < 0.5 && y.abs() < 0.5, "{x} {y}");
 }
+
+/// A block and another one, `away_mm` further along z.
+fn two_blocks(away_mm: f64) -> TriangleMesh {
+    let mut mesh = block();
+    let other = block().mapped(|vertex| vertex / 3.0 + Vec3::new(0.0, 0.0, away_mm));
+    let first = mesh.vertices.len() as u32;
+    mesh.vertices.extend(other.vertices);
+    let triangles = other.triangles.iter();
+    let moved = triangles.map(|corners| corners.map(|corner| first + corner));
+    mesh.triangles.extend(moved.collect::<Vec<_>>());
+    mesh
+}
+
+#[test]
+fn a_body_that_is_no_size_for_a_knee_is_refused_with_the_unit_to_write() {
+    let folder = with_stl("a.stl", &block());
+    let said = |unit: &str| {
+        let unit = format!("{MESH_INSERT}length_unit = \"{unit}\"\n");
+        let said = refusal(&unit, folder.path());
+        said.split_once("a.stl: ").unwrap().1.to_owned()
+    };
+    assert_eq!(
+        said("m"),
+        "the body is 30000.0 mm long, and a knee's is 5 mm to 500 mm; \
+         write length_unit = \"mm\", with which it is 30.0 mm long"
+    );
+    assert!(said("in").contains("the body is 762.0 mm long"));
+    let in_metres = with_stl("a.stl", &block().mapped(|vertex| vertex / 1000.0));
+    let small = refusal(MESH_INSERT, in_metres.path());
+    assert!(
+        small.contains("the body is 3.00e-2 mm long") && small.contains("length_unit = \"m\""),
+        "{small}"
+    );
+    let shell_of_femur = "[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\nlength_unit = \"m\"\n";
+    assert!(refusal(shell_of_femur, folder.path()).contains("the body is 30000.0 mm"));
+    let odd = with_stl("a.stl", &block().mapped(|vertex| vertex * 1e6));
+    let said = refusal(MESH_INSERT, odd.path());
+    assert!(
+        said.ends_with("5 mm to 500 mm; check length_unit and the mesh"),
+        "{said}"
+    );
+}
+
+#[test]
+fn hexahedra_that_are_no_size_for_a_knee_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let node = |i: usize| {
+        let at = |axis: usize| if i >> axis & 1 == 0 { 0 } else { 10_000_000 };
+        format!("{}, {}, {}, {}\n", i + 1, at(0), at(1), at(2))
+    };
+    let nodes: String = (0..8).map(node).collect();
+    let deck = format!("*NODE\n{nodes}*ELEMENT, TYPE=C3D8\n1, 1, 2, 4, 3, 5, 6, 8, 7\n");
+    fs::write(folder.path().join("a.inp"), deck).unwrap();
+    let text = "[insert]\nshape = \"hexahedra\"\nfile = \"a.inp\"\n";
+    let said = refusal(text, folder.path());
+    assert!(said.contains("the body is 1.00e7 mm long"), "{said}");
+}
+
+#[test]
+fn a_piece_far_from_the_body_is_warned_of_and_one_too_far_refused() {
+    let near = with_stl("a.stl", &two_blocks(100.0));
+    let warnings = built(MESH_INSERT, near.path()).unwrap().warnings;
+    let [warning] = &warnings[..] else {
+        panic!("{warnings:?}");
+    };
+    let warning = warning.to_string();
+    assert!(
+        warning.ends_with(
+            "a.stl: a piece of 12 triangles at (0, 1, 100) mm lies 80 mm from the body; \
+             delete it unless it is part of it"
+        ),
+        "{warning}"
+    );
+    let far = with_stl("a.stl", &two_blocks(1e5));
+    let said = refusal(MESH_INSERT, far.path());
+    assert!(
+        said.ends_with(
+            "(0, 1, 100000) mm lies 99980 mm from the body, too far for a knee; delete it"
+        ),
+        "{said}"
+    );
+    let beside = with_stl("a.stl", &two_blocks(25.0));
+    assert_eq!(built(MESH_INSERT, beside.path()).unwrap().warnings, []);
+}
+
+#[test]
+fn more_nodes_than_memory_should_hold_are_refused() {
+    let large = block().mapped(|vertex| Vec3::new(vertex.x * 16.0, vertex.y, vertex.z * 16.0));
+    let folder = with_stl("a.stl", &large);
+    let fine = MESH_INSERT.replace("edge_mm = 1.0", "edge_mm = 0.1\nlayers = 40");
+    let said = refusal(&fine, folder.path());
+    assert!(
+        said.contains("the insert would have 630088041 nodes") && said.contains("a larger edge_mm"),
+        "{said}"
+    );
+    let cube =
+        block().mapped(|vertex| Vec3::new(vertex.x * 24.0, vertex.y * 60.0, vertex.z * 16.0));
+    let folder = with_stl("a.stl", &cube);
+    let femur = "[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\n";
+    let said = refusal(femur, folder.path());
+    assert!(
+        said.contains("the distance field would have 61629875 nodes, and more than 50000000"),
+        "{said}"
+    );
+}

@@ -23,7 +23,7 @@ const NOT_FOLLOWED: [&str; 10] = [
 ];
 
 pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError> {
-    let mut reading = Reading::new(path);
+    let mut reading = Reading::new(path, bytes.len());
     let content = text::decode(bytes);
     let keywords = keywords(path, &content)?;
     for keyword in &keywords {
@@ -192,6 +192,7 @@ mod tests {
     fn sets_and_surfaces_that_are_wrong_are_named_with_their_line() {
         assert!(said(" bottom, 33", " botom, 33").contains("\"botom\" is neither"));
         assert!(said(" 1, 3, 1", " 3, 1, 1").contains("GENERATE takes"));
+        assert!(said(" 1, 3, 1", " 1, 3, 0").contains("GENERATE takes"));
         assert!(said("Solid, S2", "Solid, S7").contains("\"S7\" is not a face"));
         assert!(said(" last, S4", " 9, S4").contains("element 9 of this surface"));
         let inside = said(" last, S4", " last, S6");
@@ -200,6 +201,64 @@ mod tests {
             "{inside}"
         );
         assert!(said("SURFACE, NAME=Skin", "SURFACE").contains("*SURFACE needs NAME=name"));
+    }
+
+    #[test]
+    fn a_range_without_a_bound_is_refused() {
+        let expected = "a.inp:23: with the 18446744073709551615 members of this row, the sets of \
+            the file have more than 1004744, which a file of its length does not need; name only \
+            nodes and elements that there are";
+        assert_eq!(said(" 1, 3, 1", " 1, 18446744073709551615, 1"), expected);
+        let all = said(" 1, 3, 1", " 0, 18446744073709551615");
+        assert!(
+            all.starts_with("a.inp:23: with the 18446744073709551615 members"),
+            "{all}"
+        );
+        let elements = said(
+            "ELSET=Last\n 8,",
+            "ELSET=Last, GENERATE\n 8, 99999999999, 3",
+        );
+        assert!(
+            elements.starts_with("a.inp:28: with the 33333333331 members"),
+            "{elements}"
+        );
+    }
+
+    #[test]
+    fn a_long_step_ends_after_its_first_member() {
+        let stepped = TEXT.replace(" 1, 3, 1", " 1, 18446744073709551614, 18446744073709551614");
+        let bottom = read(&stepped).unwrap();
+        assert_eq!(bottom.node_set("bottom").unwrap().nodes, [0, 3, 4, 5]);
+    }
+
+    #[test]
+    fn sets_that_double_and_double_are_refused() {
+        let mut doubling = String::from("*NSET, NSET=D\n bottom\n");
+        for _ in 0..40 {
+            doubling += "*NSET, NSET=D\n D, D\n";
+        }
+        let nodes = said("*ELSET,", &format!("{doubling}*ELSET,"));
+        assert!(
+            nodes.contains("the sets of the file have more than"),
+            "{nodes}"
+        );
+    }
+
+    #[test]
+    fn many_sets_and_free_surfaces_are_read_in_time() {
+        let sets: String = (0..30_000)
+            .map(|set| format!("*NSET, NSET=N{set}\n 1\n"))
+            .collect();
+        let faces = " Solid,\n".repeat(30_000);
+        let many = TEXT
+            .replace("*ELSET, ELSET=Last", &format!("{sets}*ELSET, ELSET=Last"))
+            .replace(
+                "*SURFACE, NAME=Skin\n",
+                &format!("*SURFACE, NAME=Skin\n{faces}"),
+            );
+        let file = read(&many).unwrap();
+        assert_eq!(file.node_sets.len(), 30_003);
+        assert_eq!(file.surface("skin").unwrap().quads.len(), 10);
     }
 
     #[test]

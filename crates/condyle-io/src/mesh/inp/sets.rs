@@ -15,8 +15,8 @@ impl Reading<'_> {
             let labels = self
                 .element_sets
                 .get(&plain(elements))
-                .cloned()
-                .unwrap_or_default();
+                .map_or(&[][..], Vec::as_slice);
+            self.count_members(keyword.line, 8 * labels.len() as u64)?;
             let hexes = labels
                 .iter()
                 .filter_map(|&label| self.draft.labelled_hex(label));
@@ -56,7 +56,10 @@ impl Reading<'_> {
             }
             for field in fields(row) {
                 match sets.get(&plain(field)) {
-                    Some(set) => members.extend(set),
+                    Some(set) => {
+                        self.count_members(line, set.len() as u64)?;
+                        members.extend(set);
+                    }
                     None => members.push(self.label(line, field)?),
                 }
             }
@@ -72,15 +75,16 @@ impl Reading<'_> {
         let numbers: Result<Vec<u64>, _> = fields(row)
             .map(|field| text::number(self.path, line, field))
             .collect();
-        match numbers?[..] {
-            [first, last] if first <= last => Ok((first..=last).step_by(1)),
-            [first, last, step] if first <= last && step > 0 => {
-                Ok((first..=last).step_by(step as usize))
-            }
+        let (first, last, step) = match numbers?[..] {
+            [first, last] if first <= last => (first, last, 1),
+            [first, last, step] if first <= last && step > 0 => (first, last, step),
             _ => {
                 let what = "GENERATE takes first, last and a step above 0, with first up to last";
-                Err(self.at(line).error(what))
+                return Err(self.at(line).error(what));
             }
-        }
+        };
+        self.count_members(line, ((last - first) / step).saturating_add(1))?;
+        let step = usize::try_from(step).unwrap_or(usize::MAX);
+        Ok((first..=last).step_by(step))
     }
 }

@@ -21,6 +21,7 @@ impl Reading<'_> {
                 Some(elements) => elements.clone(),
                 None => vec![self.label(line, set)?],
             };
+            self.count_members(line, elements.len() as u64)?;
             let quads = match words.next() {
                 Some(side) => self.side(line, &elements, side)?,
                 None => self.free_faces(line, &elements)?,

@@ -57,7 +57,7 @@ impl Groups {
 
     /// Name of a group; its number where it has none. A negative number means turned round.
     pub(super) fn name(&self, dimension: i64, group: i64) -> String {
-        let group = group.abs();
+        let group = group.saturating_abs();
         let name = self.names.get(&(dimension, group));
         name.cloned().unwrap_or_else(|| group.to_string())
     }

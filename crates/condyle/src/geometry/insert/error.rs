@@ -11,6 +11,16 @@ pub enum InsertError {
         /// What is missing.
         what: &'static str,
     },
+    /// More nodes than memory should hold.
+    #[error(
+        "the insert would have {nodes:.0} nodes, and more than {most} take more than 2 GB; use a larger edge_mm or fewer layers"
+    )]
+    TooManyNodes {
+        /// How many.
+        nodes: f64,
+        /// How many there may be.
+        most: usize,
+    },
     /// A hexahedron that is inverted or flat.
     #[error(
         "hexahedron {hex} of the insert is inverted or flat (scaled Jacobian {quality:.3}); mend the mesh or use a larger edge"

@@ -1,5 +1,7 @@
 //! Triangles that are near one another, found with a tree of boxes.
 
+use std::ops::ControlFlow;
+
 use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
 
 /// Triangles in a leaf: fewer make the tree deep, more make the leaves slow.
@@ -96,8 +98,8 @@ impl BoxTree {
         number as u32
     }
 
-    /// Calls `visit` with each pair of different triangles whose boxes meet, once.
-    pub(super) fn for_close_pairs(&self, mut visit: impl FnMut(usize, usize)) {
+    /// Calls `visit` with each pair of different triangles whose boxes meet, once, until it breaks.
+    pub(super) fn for_close_pairs(&self, mut visit: impl FnMut(usize, usize) -> ControlFlow<()>) {
         let mut open = vec![[0, 0]];
         while let Some([one, other]) = open.pop().filter(|_| !self.nodes.is_empty()) {
             let (a, b) = (&self.nodes[one as usize], &self.nodes[other as usize]);
@@ -112,7 +114,11 @@ impl BoxTree {
                     open.extend([[left, other], [right, other]]);
                 }
                 (_, Some([left, right])) => open.extend([[one, left], [one, right]]),
-                _ => self.visit_leaves(a, b, one == other, &mut visit),
+                _ => {
+                    if self.visit_leaves(a, b, one == other, &mut visit).is_break() {
+                        return;
+                    }
+                }
             }
         }
     }
@@ -122,17 +128,18 @@ impl BoxTree {
         a: &BoxNode,
         b: &BoxNode,
         same: bool,
-        visit: &mut impl FnMut(usize, usize),
-    ) {
+        visit: &mut impl FnMut(usize, usize) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         for i in a.start..a.end {
             let from = if same { i + 1 } else { b.start };
             for j in from..b.end {
                 let [one, other] = [i, j].map(|at| self.order[at as usize] as usize);
                 if self.bounds[one].meets(&self.bounds[other]) {
-                    visit(one, other);
+                    visit(one, other)?;
                 }
             }
         }
+        ControlFlow::Continue(())
     }
 }
 
@@ -150,7 +157,10 @@ mod tests {
         let mesh = strip(40, 0.1);
         let tree = BoxTree::new(&mesh);
         let mut pairs = Vec::new();
-        tree.for_close_pairs(|a, b| pairs.push((a.min(b), a.max(b))));
+        tree.for_close_pairs(|a, b| {
+            pairs.push((a.min(b), a.max(b)));
+            ControlFlow::Continue(())
+        });
         pairs.sort_unstable();
         let mut expected = Vec::new();
         for a in 0..mesh.triangles.len() {

@@ -1,5 +1,7 @@
 //! Pairs of triangles that pass through one another.
 
+use std::ops::ControlFlow;
+
 use super::{
     box_tree::BoxTree,
     edges::{EdgeUse, edge_uses},
@@ -19,7 +21,7 @@ pub struct Crossing {
 /// How a mesh crosses itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Crossings {
-    /// The crossing of the lowest triangle numbers that is no wrinkle.
+    /// The crossing of the lowest triangle numbers that is no wrinkle, of the first ten thousand.
     pub first: Option<Crossing>,
     /// Pairs of triangles that cross as part of a wrinkle.
     pub wrinkles: usize,
@@ -39,6 +41,9 @@ impl Crossings {
     /// surface around is sound, and a contact patch does not feel them.
     pub const WRINKLE_DEPTH: f64 = 1.0 / 500.0;
 
+    /// So many deep crossings are no flaw of a surface but no surface: no more are looked for.
+    const MANY: usize = 10_000;
+
     /// Part of a triangle left out at the corner that it shares with another: there they touch
     /// as they should.
     const LEFT_OUT: f64 = 0.05;
@@ -52,13 +57,13 @@ impl Crossings {
 /// the other or joined to one by an edge, and it is no deeper than [`Crossings::WRINKLE_DEPTH`]:
 /// two sheets that cross are never such neighbours all along.
 pub fn crossings(mesh: &TriangleMesh) -> Crossings {
-    let pairs = crossing_pairs(mesh);
+    let (low, high) = mesh.bounds();
+    let shallow = Crossings::WRINKLE_DEPTH * (high - low).norm();
+    let pairs = crossing_pairs(mesh, shallow);
     if pairs.is_empty() {
         return Crossings::default();
     }
     let uses = edge_uses(mesh);
-    let (low, high) = mesh.bounds();
-    let shallow = Crossings::WRINKLE_DEPTH * (high - low).norm();
     let is_wrinkle = |pair: &CrossingPair| {
         pair.depth <= shallow && are_neighbours(&uses, pair.triangles.map(|t| mesh.triangles[t]))
     };
@@ -81,12 +86,20 @@ struct CrossingPair {
     depth: f64,
 }
 
-fn crossing_pairs(mesh: &TriangleMesh) -> Vec<CrossingPair> {
+/// The pairs that cross, until [`Crossings::MANY`] are deeper than `shallow`.
+fn crossing_pairs(mesh: &TriangleMesh, shallow: f64) -> Vec<CrossingPair> {
     let mut pairs = Vec::new();
+    let mut deep = 0;
     BoxTree::new(mesh).for_close_pairs(|one, other| {
         let triangles = [one.min(other), one.max(other)];
-        let depth = crossing_depth(mesh, triangles);
-        pairs.extend(depth.map(|depth| CrossingPair { triangles, depth }));
+        if let Some(depth) = crossing_depth(mesh, triangles) {
+            deep += usize::from(depth > shallow);
+            pairs.push(CrossingPair { triangles, depth });
+        }
+        if deep == Crossings::MANY {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
     });
     pairs
 }
@@ -163,6 +176,24 @@ mod tests {
         // The edges of the bar meet the top only on its diagonal.
         let bar = block(Vec3::new(0.25, 0.25, 0.5), Vec3::new(0.75, 0.75, 1.5));
         assert!(crossings(&joined(unit_block(), bar)).first.is_some());
+    }
+
+    #[test]
+    fn of_millions_of_crossings_enough_are_found() {
+        let (mut mesh, along) = (TriangleMesh::default(), |i: u32| f64::from(i) * 1e-3);
+        for i in 0..3000 {
+            let upright = [[0.0, -9.0, -9.0], [0.0, 9.0, -9.0], [0.0, 0.0, 9.0]];
+            let level = [[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [0.0, 9.0, 0.0]];
+            let upright = upright.map(|corner| Vec3::from(corner) + Vec3::x() * along(i));
+            let level = level.map(|corner| Vec3::from(corner) + Vec3::z() * along(i));
+            let first = mesh.vertices.len() as u32;
+            mesh.vertices.extend(upright.into_iter().chain(level));
+            let corners = [first, first + 1, first + 2];
+            mesh.triangles
+                .extend([corners, corners.map(|corner| corner + 3)]);
+        }
+        assert_eq!(crossing_pairs(&mesh, 0.05).len(), Crossings::MANY);
+        assert!(crossings(&mesh).first.is_some());
     }
 
     #[test]

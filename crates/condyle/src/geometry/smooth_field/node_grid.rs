@@ -27,7 +27,7 @@ impl NodeGrid {
         let margin = Vec3::repeat(BAND_MM + 2.0 * SPACING_MM);
         let origin = low - margin;
         let size = high + margin - origin;
-        let count = |axis: usize| (size[axis] / SPACING_MM).ceil() as usize + 1;
+        let count = |axis: usize| ((size[axis] / SPACING_MM).ceil() as usize).saturating_add(1);
         Self {
             origin,
             counts: [0, 1, 2].map(count),
@@ -40,9 +40,10 @@ impl NodeGrid {
         [1, self.counts[0], self.counts[0] * self.counts[1]]
     }
 
-    /// How many nodes there are.
+    /// How many nodes there are; of more than a number can hold, that number.
     pub fn node_count(&self) -> usize {
-        self.counts.iter().product()
+        let counts = self.counts.iter();
+        counts.fold(1, |product: usize, &count| product.saturating_mul(count))
     }
 
     /// Where node (i, j, k) is, mm.

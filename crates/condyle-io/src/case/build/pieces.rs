@@ -1,0 +1,111 @@
+//! Pieces of a triangle mesh that hang together, and one that lies far from the body.
+
+use std::fmt;
+
+use condyle::Vec3;
+use condyle::geometry::TriangleMesh;
+
+/// Triangles that share vertices with one another and with no others.
+struct Piece {
+    triangles: usize,
+    low: Vec3,
+    high: Vec3,
+}
+
+/// A piece of a mesh that lies far from the largest one, the body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrayPiece {
+    /// How many triangles it has.
+    pub triangles: usize,
+    /// Its middle, mm, in the frame of the body.
+    pub at_mm: Vec3,
+    /// How far its box is from that of the body, mm.
+    pub away_mm: f64,
+    /// Longest edge of the body's box, mm.
+    pub body_mm: f64,
+}
+
+impl fmt::Display for StrayPiece {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (at, away) = (self.at_mm, self.away_mm);
+        write!(
+            out,
+            "a piece of {} triangles at ({:.0}, {:.0}, {:.0}) mm lies {away:.0} mm from the body",
+            self.triangles, at.x, at.y, at.z
+        )
+    }
+}
+
+impl Piece {
+    fn none() -> Self {
+        Self {
+            triangles: 0,
+            low: Vec3::repeat(f64::INFINITY),
+            high: Vec3::repeat(f64::NEG_INFINITY),
+        }
+    }
+
+    fn add(&mut self, corners: &[Vec3; 3]) {
+        self.triangles += 1;
+        for corner in corners {
+            (self.low, self.high) = (self.low.inf(corner), self.high.sup(corner));
+        }
+    }
+
+    fn diagonal_mm(&self) -> f64 {
+        (self.high - self.low).norm()
+    }
+
+    fn distance_mm(&self, other: &Self) -> f64 {
+        let apart = (self.low - other.high).sup(&(other.low - self.high));
+        apart.sup(&Vec3::zeros()).norm()
+    }
+}
+
+/// The piece farthest from the largest, if more than half as far as that is large: the two
+/// condyles or plateaus of a knee in two parts are nearer to one another.
+pub(super) fn stray_piece(mesh: &TriangleMesh) -> Option<StrayPiece> {
+    let pieces = pieces(mesh);
+    let larger = |a: &&Piece, b: &&Piece| a.diagonal_mm().total_cmp(&b.diagonal_mm());
+    let body = pieces.iter().max_by(larger)?;
+    let away_mm = |piece: &Piece| piece.distance_mm(body);
+    let farther = |a: &&Piece, b: &&Piece| away_mm(a).total_cmp(&away_mm(b));
+    let farthest = pieces.iter().max_by(farther)?;
+    (away_mm(farthest) > body.diagonal_mm() / 2.0).then(|| StrayPiece {
+        triangles: farthest.triangles,
+        at_mm: (farthest.low + farthest.high) / 2.0,
+        away_mm: away_mm(farthest),
+        body_mm: (body.high - body.low).max(),
+    })
+}
+
+fn pieces(mesh: &TriangleMesh) -> Vec<Piece> {
+    let mut parents: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+    for &[a, b, c] in &mesh.triangles {
+        for other in [b, c] {
+            let (from, to) = (root(&mut parents, a), root(&mut parents, other));
+            parents[from as usize] = to;
+        }
+    }
+    let mut of_root: Vec<Option<usize>> = vec![None; mesh.vertices.len()];
+    let mut pieces = Vec::new();
+    for (triangle, &[vertex, ..]) in mesh.triangles.iter().enumerate() {
+        let place = &mut of_root[root(&mut parents, vertex) as usize];
+        let piece = *place.get_or_insert_with(|| {
+            pieces.push(Piece::none());
+            pieces.len() - 1
+        });
+        pieces[piece].add(&mesh.corners(triangle));
+    }
+    pieces
+}
+
+/// The vertex that stands for all that hang together with this one; ways there are shortened.
+fn root(parents: &mut [u32], mut vertex: u32) -> u32 {
+    while parents[vertex as usize] != vertex {
+        let parent = parents[vertex as usize];
+        parents[vertex as usize] = parents[parent as usize];
+        vertex = parent;
+    }
+    vertex
+}
