@@ -102,7 +102,7 @@ fn response(insert: &Insert, motion: &RelativeMotion) -> (Vec6, Tangent) {
 /// The lateral dish, every node placed anew.
 fn insert(place: impl Fn(&Vec3) -> Vec3) -> Insert {
     let shape = GenericInsertShape::default();
-    let grid = ColumnGrid::filling((-20.0, 6.0), (20.0, 40.0), 1.0);
+    let grid = ColumnGrid::filling((-20.0, 6.0), (20.0, 40.0), 1.0, 1).expect("a grid");
     let column = |i, k| {
         let (x, z) = grid.place_mm(i, k);
         Some((-shape.thickness_mm, shape.height_mm(x, z)))

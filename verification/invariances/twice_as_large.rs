@@ -76,7 +76,7 @@ slip_tolerance_mm_per_s = {:?}
 /// The middle of the generic insert's dishes, which the contact does not leave.
 fn insert(factor: f64) -> Insert {
     let shape = GenericInsertShape::default();
-    let grid = ColumnGrid::filling((-22.0, -34.0), (20.0, 34.0), 1.5);
+    let grid = ColumnGrid::filling((-22.0, -34.0), (20.0, 34.0), 1.5, 1).expect("a grid");
     let column = |i, k| {
         let (x, z) = grid.place_mm(i, k);
         (-factor * shape.thickness_mm, factor * shape.height_mm(x, z))

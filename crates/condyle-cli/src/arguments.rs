@@ -51,10 +51,8 @@ pub struct Run {
     /// Write over the run that is in that folder.
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
-    /// Change a value of the case: a dotted path such as contact.friction=0.05, or the last word of one. May be given
-    /// several times.
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Assignment::parse)]
-    pub changes: Vec<Assignment>,
+    #[command(flatten)]
+    pub changes: Changes,
     /// Threads for the one-time work on a mesh; the results are the same on any number.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
@@ -63,14 +61,21 @@ pub struct Run {
     pub json: bool,
 }
 
+/// What is changed of a case before it is read.
+#[derive(Args)]
+pub struct Changes {
+    /// Change a value of the case: a dotted path such as contact.friction=0.05, or the last word of one. May be given
+    /// several times.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = Assignment::parse)]
+    pub set: Vec<Assignment>,
+}
+
 #[derive(Args)]
 pub struct Check {
     /// The case file.
     pub case: PathBuf,
-    /// Change a value of the case: a dotted path such as contact.friction=0.05, or the last word of one. May be given
-    /// several times.
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Assignment::parse)]
-    pub changes: Vec<Assignment>,
+    #[command(flatten)]
+    pub changes: Changes,
     /// Print the case as it would run, every default written out.
     #[arg(long)]
     pub print: bool,

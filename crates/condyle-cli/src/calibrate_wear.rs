@@ -19,11 +19,7 @@ pub fn calibrate_wear(arguments: &CalibrateWear) -> ExitCode {
         ));
     };
     match calibrate(&arguments.results, &arguments.measured, &mut tried) {
-        Ok(calibration) if arguments.json => {
-            let text = serde_json::to_string_pretty(&calibration);
-            let text = text.expect("numbers and text always serialise");
-            output::print(&(text + "\n"))
-        }
+        Ok(calibration) if arguments.json => output::print(&output::json(&calibration)),
         Ok(calibration) => output::print(table(&calibration).text()),
         Err(error) => fail(&error),
     }

@@ -5,11 +5,11 @@ use std::process::ExitCode;
 use crate::{arguments::Check, exit, output, standard_error::tell};
 
 pub fn check(arguments: &Check) -> ExitCode {
-    let (case, warnings) = match condyle_lab::check_changed(&arguments.case, &arguments.changes, 1)
-    {
-        Ok(checked) => checked,
-        Err(error) => return exit::fail_run(&error),
-    };
+    let (case, warnings) =
+        match condyle_lab::check_changed(&arguments.case, &arguments.changes.set, 1) {
+            Ok(checked) => checked,
+            Err(error) => return exit::fail_run(&error),
+        };
     warnings
         .iter()
         .for_each(|warning| tell(format_args!("warning: {warning}")));

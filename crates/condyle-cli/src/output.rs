@@ -8,6 +8,7 @@ use std::{
 };
 
 use condyle_io::keyed::visible;
+use serde::Serialize;
 
 use crate::exit;
 
@@ -57,6 +58,12 @@ fn ended(written: io::Result<()>, kept: &str) -> ExitCode {
             exit::BAD_INPUT,
         ),
     }
+}
+
+/// A result as JSON, with a line end.
+pub fn json(result: &impl Serialize) -> String {
+    let text = serde_json::to_string_pretty(result);
+    text.expect("numbers and text always serialise") + "\n"
 }
 
 /// Text for standard output, line by line.

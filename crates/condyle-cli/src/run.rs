@@ -37,7 +37,7 @@ pub fn run(arguments: &Run) -> ExitCode {
     let mut progress = Progress::new();
     let outcome = condyle_lab::run_changed(
         &arguments.case,
-        &arguments.changes,
+        &arguments.changes.set,
         &options,
         &mut |on_event| {
             progress.show(&on_event);
@@ -69,7 +69,7 @@ pub fn run(arguments: &Run) -> ExitCode {
 /// The command that goes on with a run, as a shell takes it.
 fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
     let (case, out) = (arguments.case.display(), options.out.display());
-    let changes = arguments.changes.iter().map(|change| {
+    let changes = arguments.changes.set.iter().map(|change| {
         let quoted = change.to_string().replace('\'', r"'\''");
         format!(" --set '{quoted}'")
     });
@@ -102,9 +102,7 @@ pub fn stop_on_interrupt() -> Arc<AtomicBool> {
 fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCode {
     let out = &options.out;
     if json {
-        let text = serde_json::to_string_pretty(summary);
-        let text = text.expect("numbers and text always serialise");
-        return output::print_beside(&(text + "\n"), out);
+        return output::print_beside(&output::json(summary), out);
     }
     let mut lines = Lines::default();
     add_doubts(summary, &mut lines);

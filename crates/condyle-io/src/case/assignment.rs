@@ -6,7 +6,7 @@ use thiserror::Error;
 use toml_edit::Value;
 
 use super::contents::Case;
-use super::number_keys::{is_called, leaf};
+use super::key_names::{KeyNameError, path_called};
 use super::overriding::with_value;
 use crate::keyed::{Problems, likeliest};
 
@@ -26,28 +26,9 @@ pub enum AssignmentError {
         /// As written.
         written: String,
     },
-    /// No key of the case is called so.
-    #[error(
-        "the case has no key called `{key}`; {}",
-        match near {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => "give its dotted path, such as `march.updates`".to_owned(),
-        }
-    )]
-    UnknownKey {
-        /// As written.
-        key: String,
-        /// One that is likely to be meant.
-        near: Option<String>,
-    },
-    /// Several keys of the case are called so.
-    #[error("the case has more than one key called `{key}`; write `{}`", paths.join("` or `"))]
-    ManyKeys {
-        /// As written.
-        key: String,
-        /// Their dotted paths.
-        paths: Vec<String>,
-    },
+    /// A name that is not that of one key.
+    #[error(transparent)]
+    Name(#[from] KeyNameError),
 }
 
 /// Why a case cannot be read with values set from outside.
@@ -84,7 +65,9 @@ impl Assignment {
 
     /// The same with the dotted path of its key in `case`.
     pub(super) fn placed_in(&self, case: &Case) -> Result<Self, AssignmentError> {
-        let key = path_of_key(case, &self.key)?;
+        let paths: Vec<String> = case.keys().into_iter().map(|(path, _)| path).collect();
+        let near = |names: &[&str]| likeliest(&self.key, names);
+        let key = path_called("key", &self.key, &paths, near)?;
         let text = self.text.clone();
         Ok(Self { key, text })
     }
@@ -109,38 +92,5 @@ impl fmt::Display for Assignment {
     /// As [`Assignment::parse`] reads it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}={}", self.key, self.text)
-    }
-}
-
-/// The dotted path of the key of `case` that is called `written`.
-fn path_of_key(case: &Case, written: &str) -> Result<String, AssignmentError> {
-    let table: toml::Table = case.to_toml().parse().unwrap_or_default();
-    let mut all = Vec::new();
-    add_paths(&table, "", &mut all);
-    let is_meant = |path: &&String| is_called(leaf(path), written);
-    let paths: Vec<String> = all.iter().filter(is_meant).cloned().collect();
-    let key = written.to_owned();
-    match <[String; 1]>::try_from(paths) {
-        Ok([path]) => Ok(path),
-        Err(paths) if paths.is_empty() => {
-            let names: Vec<&str> = all.iter().map(|path| leaf(path)).collect();
-            let near = likeliest(written, &names);
-            Err(AssignmentError::UnknownKey { key, near })
-        }
-        Err(paths) => Err(AssignmentError::ManyKeys { key, paths }),
-    }
-}
-
-/// Adds the dotted path of every key that is no table.
-fn add_paths(table: &toml::Table, above: &str, paths: &mut Vec<String>) {
-    for (name, value) in table {
-        let path = match above {
-            "" => name.clone(),
-            above => format!("{above}.{name}"),
-        };
-        match value {
-            toml::Value::Table(inside) => add_paths(inside, &path, paths),
-            _ => paths.push(path),
-        }
     }
 }

@@ -16,6 +16,7 @@ mod femur;
 mod fingerprint;
 mod heading;
 mod insert;
+mod key_names;
 mod machine;
 mod machine_keys;
 mod machine_write;
@@ -50,6 +51,7 @@ pub use drive_reason::DriveReason;
 pub use femur::{CylinderFemur, Femur, GenericFemur, MeshFemur, SphereFemur};
 pub use heading::{Heading, Side};
 pub use insert::{FlatInsert, GenericInsert, HexahedralInsert, Insert, MeshInsert};
+pub use key_names::KeyNameError;
 pub use machine::{Freedom, Freedoms, Machine, Waveforms};
 pub use machine_keys::{
     DriveWord, MachineSettings, Preset, Rotation, Sign, Springs, StiffnessOf, Translation,

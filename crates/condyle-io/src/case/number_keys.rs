@@ -1,8 +1,9 @@
 //! The numbers that a case has, and how they are called.
 
 use super::contents::Case;
+use super::key_names::{KeyNameError, path_called};
 use super::overriding::OverrideError;
-use crate::keyed::{nearest, split_unit};
+use crate::keyed::nearest;
 
 /// A number that a case has.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,10 +17,8 @@ pub struct NumberKey {
 impl Case {
     /// Every number of the case, defaults too, in the order they are written.
     pub fn number_keys(&self) -> Vec<NumberKey> {
-        let mut keys = Vec::new();
-        let written: toml::Table = self.to_toml().parse().unwrap_or_default();
-        add_numbers(&written, "", &mut keys);
-        keys
+        let keys = self.keys().into_iter();
+        keys.filter_map(NumberKey::of).collect()
     }
 
     /// The dotted path of the number that `written` means: a dotted path as it is, or the name of
@@ -31,25 +30,14 @@ impl Case {
         if written.contains('.') {
             return Ok(written.to_owned());
         }
-        let keys = self.number_keys();
-        let is_meant = |key: &&NumberKey| is_called(leaf(&key.path), written);
-        let paths: Vec<String> = keys
-            .iter()
-            .filter(is_meant)
-            .map(|key| key.path.clone())
-            .collect();
-        let key = written.to_owned();
-        match <[String; 1]>::try_from(paths) {
-            Ok([path]) => Ok(path),
-            Err(paths) if paths.is_empty() && key == "updates" => {
-                Err(OverrideError::UpdatesAreFound)
+        let paths: Vec<String> = self.number_keys().into_iter().map(|key| key.path).collect();
+        let near = |names: &[&str]| nearest(written, names.iter().copied());
+        path_called("number", written, &paths, near).map_err(|error| match error {
+            KeyNameError::Unknown { name, .. } if name == "updates" => {
+                OverrideError::UpdatesAreFound
             }
-            Err(paths) if paths.is_empty() => {
-                let near = nearest(written, keys.iter().map(|key| leaf(&key.path)));
-                Err(OverrideError::UnknownKey { key, near })
-            }
-            Err(paths) => Err(OverrideError::ManyKeys { key, paths }),
-        }
+            error => error.into(),
+        })
     }
 
     /// Whether the number at the dotted `path` counts something.
@@ -59,30 +47,11 @@ impl Case {
     }
 }
 
-/// The last word of a dotted path.
-pub(super) fn leaf(path: &str) -> &str {
-    path.rsplit('.').next().unwrap_or(path)
-}
-
-/// Whether `written` is the name of a key, with or without its unit.
-pub(super) fn is_called(name: &str, written: &str) -> bool {
-    name == written || split_unit(name).0 == written
-}
-
-fn add_numbers(table: &toml::Table, above: &str, keys: &mut Vec<NumberKey>) {
-    for (name, value) in table {
-        let path = match above {
-            "" => name.clone(),
-            above => format!("{above}.{name}"),
-        };
-        match value {
-            toml::Value::Table(inside) => add_numbers(inside, &path, keys),
-            toml::Value::Integer(_) | toml::Value::Float(_) => keys.push(NumberKey {
-                is_whole: value.is_integer(),
-                path,
-            }),
-            _ => {}
-        }
+impl NumberKey {
+    /// That of a key; none where its value is no number.
+    fn of((path, value): (String, toml::Value)) -> Option<Self> {
+        let is_whole = value.is_integer();
+        (is_whole || value.is_float()).then_some(Self { path, is_whole })
     }
 }
 

@@ -3,6 +3,8 @@
 use thiserror::Error;
 use toml_edit::{DocumentMut, Item, TableLike, Value};
 
+use super::key_names::KeyNameError;
+
 /// A number to be taken in place of the one that the case file gives, or leaves out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Override {
@@ -14,34 +16,15 @@ pub struct Override {
 /// Why a key or a value cannot stand in for one of a case.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum OverrideError {
-    /// No number of the case is called so.
-    #[error(
-        "the case has no number called `{key}`; {}",
-        match near {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => "give its dotted path, such as `march.updates`".to_owned(),
-        }
-    )]
-    UnknownKey {
-        /// As written.
-        key: String,
-        /// One that looks like it.
-        near: Option<String>,
-    },
+    /// A name that is not that of one number.
+    #[error(transparent)]
+    Name(#[from] KeyNameError),
     /// Updates of a march that finds them itself.
     #[error(
         "the march of this case finds its updates itself, since it has update = \"auto\"; refine what it goes by, such as \
          depth_tolerance_fraction=0.1,0.03,0.01, or write update = \"fixed\""
     )]
     UpdatesAreFound,
-    /// Several numbers of the case are called so.
-    #[error("the case has more than one number called `{key}`; write `{}`", paths.join("` or `"))]
-    ManyKeys {
-        /// As written.
-        key: String,
-        /// Their dotted paths.
-        paths: Vec<String>,
-    },
     /// A value that is no number.
     #[error("`{text}` is no value for `{path}`; write a number, such as 10 or 0.5")]
     NotNumber {

@@ -82,9 +82,12 @@ impl CaseReader {
             return Ok(changes.to_vec());
         }
         let case = self.read(path)?;
-        let placed = |change: &Assignment| match change.is_placed() {
-            true => Ok(change.clone()),
-            false => change.placed_in(&case),
+        let placed = |change: &Assignment| {
+            if change.is_placed() {
+                Ok(change.clone())
+            } else {
+                change.placed_in(&case)
+            }
         };
         let all: Result<Vec<_>, _> = changes.iter().map(placed).collect();
         Ok(all?)

@@ -97,29 +97,22 @@ pub(super) fn cycles_not_repeating(finished: &Finished<'_>) -> Option<Plausibili
 
 /// AP range of the first cycle.
 pub(super) fn ap_range(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    large_motion("ap_range", finished.summary.ap_range_mm, MOST_AP_MM, "mm")
+    large_motion("AP", finished.summary.ap_range_mm, MOST_AP_MM, "mm")
 }
 
 /// IE range of the first cycle.
 pub(super) fn ie_range(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    large_motion(
-        "ie_range",
-        finished.summary.ie_range_deg,
-        MOST_IE_DEG,
-        "degrees",
-    )
+    large_motion("IE", finished.summary.ie_range_deg, MOST_IE_DEG, "degrees")
 }
 
-fn large_motion(check: &str, range: f64, most: f64, unit: &str) -> Option<PlausibilityWarning> {
-    let (joint, _) = check.split_at(2);
+fn large_motion(joint: &str, range: f64, most: f64, unit: &str) -> Option<PlausibilityWarning> {
     (range > most).then(|| PlausibilityWarning {
-        check: check.to_owned(),
+        check: format!("{}_range", joint.to_lowercase()),
         value: range,
         limit: most,
         unit: unit.to_owned(),
         message: format!(
-            "{} moves by {range:.1} {unit} in the first cycle; knees stay below {most:.0}",
-            joint.to_uppercase()
+            "{joint} moves by {range:.1} {unit} in the first cycle; knees stay below {most:.0}"
         ),
         advice: "See the loads, the springs and their free play, and whether the femur is held by the dishes at all."
             .to_owned(),

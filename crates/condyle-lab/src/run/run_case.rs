@@ -77,7 +77,7 @@ fn run_read(
         Found::Checkpoint(checkpoint, spent_s) => Some((*checkpoint, spent_s)),
         Found::Case | Found::Nothing => None,
     };
-    let mut run = Run::begin(case, options, (checkpoint, lock), inputs_blake3, on_event)?;
+    let mut run = Run::begin(case, options, checkpoint, lock, inputs_blake3, on_event)?;
     if run.march_on(on_event)?.is_break() {
         return Ok(Outcome::Interrupted(Reached::by(&run.march)));
     }
@@ -159,7 +159,8 @@ impl<'a> Run<'a> {
     fn begin(
         case: &'a Case,
         options: &'a RunOptions,
-        (checkpoint, lock): (Option<(Checkpoint, f64)>, Option<FolderLock>),
+        checkpoint: Option<(Checkpoint, f64)>,
+        lock: Option<FolderLock>,
         inputs_blake3: String,
         on_event: &mut Listener<'_>,
     ) -> Result<Self, RunError> {

@@ -33,16 +33,30 @@ pub struct ColumnMesh {
 }
 
 impl ColumnGrid {
-    /// A grid of cells of about `edge_mm` that fills the rectangle from `low` to `high`, (x, z).
-    pub fn filling(low: (f64, f64), high: (f64, f64), edge_mm: f64) -> Self {
+    /// A grid of cells of about `edge_mm` that fills the rectangle from `low` to `high`, (x, z), for columns of
+    /// `layers` hexahedra.
+    ///
+    /// # Errors
+    /// [`InsertError::TooManyNodes`] where these would not fit into memory.
+    pub fn filling(
+        low: (f64, f64),
+        high: (f64, f64),
+        edge_mm: f64,
+        layers: usize,
+    ) -> Result<Self, InsertError> {
         let cells = |length: f64| (length / edge_mm).round().max(1.0);
         let (width, depth) = (high.0 - low.0, high.1 - low.1);
         let (nx, nz) = (cells(width), cells(depth));
-        Self {
+        let nodes = (nx + 1.0) * (nz + 1.0) * (layers as f64 + 1.0);
+        if nodes > MOST_NODES as f64 {
+            let most = MOST_NODES;
+            return Err(InsertError::TooManyNodes { nodes, most });
+        }
+        Ok(Self {
             origin_mm: low,
             step_mm: (width / nx, depth / nz),
             cells: (nx as usize, nz as usize),
-        }
+        })
     }
 
     /// Place (x, z) of grid point (i, k), mm.
@@ -61,20 +75,6 @@ impl ColumnGrid {
     /// How many grid points there are.
     pub fn point_count(&self) -> usize {
         (self.cells.0 + 1) * (self.cells.1 + 1)
-    }
-
-    /// Refuses a grid whose columns of `layers` hexahedra would not fit into memory.
-    ///
-    /// # Errors
-    /// [`InsertError::TooManyNodes`].
-    pub fn check_node_count(&self, layers: usize) -> Result<(), InsertError> {
-        let (nx, nz) = self.cells;
-        let nodes = (nx as f64 + 1.0) * (nz as f64 + 1.0) * (layers as f64 + 1.0);
-        if nodes <= MOST_NODES as f64 {
-            return Ok(());
-        }
-        let most = MOST_NODES;
-        Err(InsertError::TooManyNodes { nodes, most })
     }
 
     /// Hexahedra in `layers` layers over every cell with a column at all four corners.
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn verify_block_of_columns() {
-        let grid = ColumnGrid::filling((-2.0, 0.0), (2.0, 3.0), 0.9);
+        let grid = ColumnGrid::filling((-2.0, 0.0), (2.0, 3.0), 0.9, 2).unwrap();
         assert_eq!(grid.cells, (4, 3));
         let block = grid.hexahedra(&vec![Some((-5.0, 1.0)); grid.point_count()], 2);
         assert_eq!(block.mesh.hexes.len(), 4 * 3 * 2);
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn cells_without_a_column_are_left_out() {
-        let grid = ColumnGrid::filling((0.0, 0.0), (3.0, 1.0), 1.0);
+        let grid = ColumnGrid::filling((0.0, 0.0), (3.0, 1.0), 1.0, 1).unwrap();
         let mut columns = vec![Some((0.0, 1.0)); grid.point_count()];
         columns[grid.number(3, 0)] = None;
         let part = grid.hexahedra(&columns, 1);

@@ -72,8 +72,7 @@ impl GenericInsertShape {
     /// # Errors
     /// As [`Insert::new`], and too many nodes; none other for measures that make a dish.
     pub fn insert(&self, meshing: Meshing) -> Result<Insert, InsertError> {
-        let grid = ColumnGrid::filling(LOW_MM, HIGH_MM, meshing.edge_mm);
-        grid.check_node_count(meshing.layers)?;
+        let grid = ColumnGrid::filling(LOW_MM, HIGH_MM, meshing.edge_mm, meshing.layers)?;
         let mut columns = vec![None; grid.point_count()];
         for i in 0..=grid.cells.0 {
             for k in 0..=grid.cells.1 {
@@ -98,8 +97,7 @@ pub fn flat_insert(
     meshing: Meshing,
 ) -> Result<Insert, InsertError> {
     let (x, z) = (size_mm.0 / 2.0, size_mm.1 / 2.0);
-    let grid = ColumnGrid::filling((-x, -z), (x, z), meshing.edge_mm);
-    grid.check_node_count(meshing.layers)?;
+    let grid = ColumnGrid::filling((-x, -z), (x, z), meshing.edge_mm, meshing.layers)?;
     let columns = vec![Some((-thickness_mm, 0.0)); grid.point_count()];
     let built = grid.hexahedra(&columns, meshing.layers);
     Insert::new(built.mesh, &built.articulating, &built.backside)

@@ -54,8 +54,8 @@ pub fn insert_from_shell(
 ) -> Result<Insert, ShellInsertError> {
     let edge_mm = meshing.edge_mm;
     let (low, high) = shell.bounds();
-    let grid = ColumnGrid::filling((low.x, low.z), (high.x, high.z), edge_mm);
-    grid.check_node_count(meshing.layers)?;
+    let (low, high) = ((low.x, low.z), (high.x, high.z));
+    let grid = ColumnGrid::filling(low, high, edge_mm, meshing.layers)?;
     let mut columns = columns_through(shell, &grid);
     if !is_closed {
         let thickness_mm = thickness_mm.ok_or(ShellInsertError::OpenWithoutThickness)?;

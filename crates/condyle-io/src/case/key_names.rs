@@ -1,0 +1,86 @@
+//! Which key of a case a name is that of.
+
+use thiserror::Error;
+
+use super::contents::Case;
+use crate::keyed::split_unit;
+
+/// Why a name is that of no one key.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum KeyNameError {
+    /// Nothing is called so.
+    #[error(
+        "the case has no {what} called `{name}`; {}",
+        match near {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "give its dotted path, such as `march.updates`".to_owned(),
+        }
+    )]
+    Unknown {
+        /// What was looked for, such as "number".
+        what: &'static str,
+        /// As written.
+        name: String,
+        /// One that is likely to be meant.
+        near: Option<String>,
+    },
+    /// Several are called so.
+    #[error("the case has more than one {what} called `{name}`; write `{}`", paths.join("` or `"))]
+    Many {
+        /// What was looked for.
+        what: &'static str,
+        /// As written.
+        name: String,
+        /// Their dotted paths.
+        paths: Vec<String>,
+    },
+}
+
+impl Case {
+    /// The dotted path of every key with its value, defaults too, in the order they are written.
+    pub(super) fn keys(&self) -> Vec<(String, toml::Value)> {
+        let mut keys = Vec::new();
+        add_keys(self.to_toml().parse().unwrap_or_default(), "", &mut keys);
+        keys
+    }
+}
+
+fn add_keys(table: toml::Table, above: &str, keys: &mut Vec<(String, toml::Value)>) {
+    for (name, value) in table {
+        let path = match above {
+            "" => name,
+            above => format!("{above}.{name}"),
+        };
+        match value {
+            toml::Value::Table(inside) => add_keys(inside, &path, keys),
+            value => keys.push((path, value)),
+        }
+    }
+}
+
+/// The one of `paths` whose last word is `name`, with or without its unit; `what` they are, and which of their
+/// last words is near to a name that none has, is for the message.
+pub(super) fn path_called(
+    what: &'static str,
+    name: &str,
+    paths: &[String],
+    near: impl FnOnce(&[&str]) -> Option<String>,
+) -> Result<String, KeyNameError> {
+    let is_meant = |path: &&String| leaf(path) == name || split_unit(leaf(path)).0 == name;
+    let meant: Vec<String> = paths.iter().filter(is_meant).cloned().collect();
+    let name = name.to_owned();
+    match <[String; 1]>::try_from(meant) {
+        Ok([path]) => Ok(path),
+        Err(meant) if meant.is_empty() => {
+            let leaves: Vec<&str> = paths.iter().map(|path| leaf(path)).collect();
+            let near = near(&leaves);
+            Err(KeyNameError::Unknown { what, name, near })
+        }
+        Err(paths) => Err(KeyNameError::Many { what, name, paths }),
+    }
+}
+
+/// The last word of a dotted path.
+fn leaf(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
