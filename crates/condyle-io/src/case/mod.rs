@@ -42,7 +42,7 @@ mod write;
 pub use accuracy::Accuracy;
 pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
-pub use build::{BuildError, BuildWarning, Built, StrayPiece};
+pub use build::{Body, BuildError, BuildWarning, Built, StrayPiece, WrongAxes};
 pub use channel::CaseChannel;
 pub use contact::{Contact, Finding, Friction, PressureLawChoice, SearchWord};
 pub use contents::Case;

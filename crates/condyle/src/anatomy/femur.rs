@@ -1,7 +1,5 @@
 //! What tells the top, the front and the right of a femoral component.
 
-use std::cmp::Ordering;
-
 use super::{
     numbers::{beyond, mean},
     orientation::Orientation,
@@ -73,7 +71,7 @@ impl FemurSigns {
             + 4.0 * self.open_above
             + 20.0 * self.two_condyles
             + 8.0 * self.notch_behind
-            + 15.0 * self.curl_behind.clamp(-0.2, 0.2)
+            + 20.0 * self.curl_behind.clamp(-0.15, 0.15)
     }
 }
 
@@ -123,26 +121,28 @@ fn at_the_lowest(below: &Picture) -> f64 {
     )
 }
 
-/// How much more steeply the lower outline, seen from the side, rises behind its lowest point than in front of it.
+/// Rows count as lowest that lie no higher than this above the lowest.
+const FLAT: f64 = 0.003;
+
+/// How much more steeply the lower outline, seen from the side, rises behind its lowest rows than in
+/// front of them.
 ///
 /// The sagittal radius of the condyles falls from distal to posterior in every design.
 fn curl_behind(below: &Picture) -> f64 {
     let outline = |row: usize| below.across(row, 0.0, 1.0).reduce(f64::max);
-    let lower = |a: &usize, b: &usize| {
-        outline(*a)
-            .partial_cmp(&outline(*b))
-            .unwrap_or(Ordering::Equal)
-    };
-    let Some(lowest) = (0..below.rows).max_by(lower) else {
+    let Some(lowest) = (0..below.rows).filter_map(outline).reduce(f64::max) else {
         return 0.0;
     };
-    let reach = lowest.min(below.rows - 1 - lowest);
+    let is_lowest = |row: &usize| outline(*row).is_some_and(|height| height >= lowest - FLAT);
+    let first = (0..below.rows).find(is_lowest).unwrap_or(0);
+    let last = (0..below.rows).rev().find(is_lowest).unwrap_or(0);
+    let reach = first.min(below.rows - 1 - last);
     let steeper = |away: usize| {
-        let (behind, in_front) = (outline(lowest - away)?, outline(lowest + away)?);
+        let (behind, in_front) = (outline(first - away)?, outline(last + away)?);
         Some((in_front - behind) / away as f64 * below.rows as f64)
     };
     mean(
-        (reach * 2 / 3..=reach)
+        (reach / 2..=reach)
             .filter(|&away| away > 0)
             .filter_map(steeper),
     )

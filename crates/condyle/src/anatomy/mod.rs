@@ -10,9 +10,11 @@ mod insert;
 mod numbers;
 mod orientation;
 mod recognition;
+mod start;
 mod views;
 
 pub use orientation::Orientation;
 pub use recognition::{Recognition, Sureness};
+pub use start::start_over_the_dishes_mm;
 #[cfg(test)]
 mod tests;

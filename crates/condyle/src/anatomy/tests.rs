@@ -1,4 +1,4 @@
-use super::{Orientation, Recognition, Sureness};
+use super::{Orientation, Recognition, Sureness, start_over_the_dishes_mm};
 use crate::{
     Vec3,
     geometry::{
@@ -111,4 +111,13 @@ fn one_side_alone_is_not_accused() {
     };
     assert!(Recognition::of_femur(&half(generic_femur())).is_none());
     assert!(Recognition::of_insert(&half(generic_insert())).is_none());
+}
+
+/// The distal arc's centre, 16 mm out at 20 degrees behind straight down, leans 7 degrees further forward.
+#[test]
+fn verify_the_generic_femur_starts_with_its_lowest_points_over_the_dishes() {
+    let (femur, insert) = (generic_femur(), generic_insert());
+    let (x, z) = start_over_the_dishes_mm(&femur, &insert, -7f64.to_radians()).unwrap();
+    let expected = -16.0 * 27f64.to_radians().sin();
+    assert!((x - expected).abs() < 1.0 && z.abs() < 1e-6, "{x} {z}");
 }

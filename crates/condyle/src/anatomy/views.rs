@@ -3,8 +3,8 @@
 use super::orientation::AxisDirection;
 use crate::{Vec3, geometry::TriangleMesh};
 
-/// Cells along the longest extent of a body: of some 1.5 mm on a knee's.
-const CELLS: f64 = 48.0;
+/// Cells along the longest extent of a body: of some 1 mm on a knee's.
+const CELLS: f64 = 72.0;
 
 /// Lowest and highest place of a body along an axis, where a line along it meets the body.
 type Span = Option<(f64, f64)>;
@@ -15,6 +15,8 @@ type Span = Option<(f64, f64)>;
 /// Only what lines meet counts, so that it does not matter how the surface is cut into triangles,
 /// which way they face, or what lies inside.
 pub(super) struct Views {
+    low: Vec3,
+    size: f64,
     cells: [usize; 3],
     /// Seen along each axis; the other two follow it in cyclic order, the second runs fastest.
     spans: [Vec<Span>; 3],
@@ -31,7 +33,12 @@ impl Views {
         let extent = (high - low) / size;
         let cells = [0, 1, 2].map(|axis| (extent[axis] * CELLS).ceil().max(1.0) as usize);
         let spans = [0, 1, 2].map(|axis| vec![None; cells[(axis + 1) % 3] * cells[(axis + 2) % 3]]);
-        let mut views = Self { cells, spans };
+        let mut views = Self {
+            low,
+            size,
+            cells,
+            spans,
+        };
         for triangle in 0..mesh.triangles.len() {
             let corners = mesh.corners(triangle).map(|corner| (corner - low) / size);
             (0..3).for_each(|axis| views.add(axis, &corners));
@@ -59,6 +66,11 @@ impl Views {
                 }
             }
         }
+    }
+
+    /// Where a place along an axis lies that is so many cells from the low end.
+    pub(super) fn place(&self, axis: usize, cells: f64) -> f64 {
+        self.low[axis] + cells / CELLS * self.size
     }
 
     /// Cells along a direction.
