@@ -11,6 +11,8 @@ mod channel;
 mod contact;
 mod contents;
 mod culprit;
+#[cfg(feature = "file-system")]
+mod draft;
 mod drive_reason;
 mod femur;
 mod fingerprint;
@@ -47,6 +49,8 @@ pub use channel::CaseChannel;
 pub use contact::{Contact, Finding, Friction, PressureLawChoice, SearchWord};
 pub use contents::Case;
 pub use culprit::Unfit;
+#[cfg(feature = "file-system")]
+pub use draft::{Draft, DraftError, Drafted};
 pub use drive_reason::DriveReason;
 pub use femur::{CylinderFemur, Femur, GenericFemur, MeshFemur, SphereFemur};
 pub use heading::{Heading, Side};

@@ -15,4 +15,6 @@ mod tests;
 pub use assemble::Built;
 pub use error::{BuildError, BuildWarning};
 pub use lie::{Body, WrongAxes};
+#[cfg(feature = "file-system")]
+pub(super) use lie::{longest_mm, usual_unit};
 pub use pieces::StrayPiece;
