@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use condyle_io::case::{Assignment, Preset};
+use condyle_io::case::{Assignment, Preset, Side};
 
 /// A virtual wear test of a joint replacement: from an implant to its wear.
 #[derive(Parser)]
@@ -88,6 +88,15 @@ pub struct New {
     /// Which simulator.
     #[arg(long, default_value = Preset::StanmoreForce.word(), value_parser = presets())]
     pub preset: Preset,
+    /// A mesh of the femoral component: its unit and axes are concluded from the shape.
+    #[arg(long, value_name = "MESH", requires = "insert")]
+    pub femur: Option<PathBuf>,
+    /// A mesh of the insert, closed or its articulating surface.
+    #[arg(long, value_name = "MESH", requires = "femur")]
+    pub insert: Option<PathBuf>,
+    /// Which knee: right or left; the shapes do not tell.
+    #[arg(long, default_value = Side::Right.word(), value_parser = sides(), requires = "femur")]
+    pub side: Side,
 }
 
 #[derive(Args)]
@@ -165,6 +174,13 @@ pub struct CalibrateWear {
     /// Print the factor, its interval and every trial as JSON, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Right and left, with what each is.
+fn sides() -> impl TypedValueParser<Value = Side> {
+    let possible = |side: &Side| PossibleValue::new(side.word()).help(side.about());
+    PossibleValuesParser::new(Side::ALL.iter().map(possible))
+        .try_map(|word| Side::from_word(&word).ok_or("it is neither side"))
 }
 
 /// The presets of a case, with what each is.

@@ -3,6 +3,7 @@
 //! No terminal, no files, no global state. Millimetre, newton, second, MPa, tonne and radian
 //! everywhere inside; frames and signs are in `NOTATION.md`.
 
+pub mod anatomy;
 pub mod contact;
 pub mod evolve;
 pub mod geometry;

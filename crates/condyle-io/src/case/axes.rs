@@ -61,6 +61,12 @@ impl Axes {
         words: ["anterior", "superior", "right"],
     };
 
+    /// The axes of which [`Axes::rotation`] is `rotation`, in words that do not depend on the side.
+    pub fn of(rotation: &Mat3) -> Self {
+        let words = [0, 1, 2].map(|axis| word(rotation.column(axis).into()));
+        Self { words }
+    }
+
     /// The words for x, y and z.
     pub fn words(&self) -> [&'static str; 3] {
         self.words
@@ -100,6 +106,20 @@ fn direction(word: &str, side: Side) -> Vec3 {
         "left" => -Vec3::z(),
         "lateral" => right,
         _ => -right,
+    }
+}
+
+/// The word of the direction that is nearest to one in x anterior, y superior, z right.
+fn word(toward: Vec3) -> &'static str {
+    let [forward, backward] = match toward.iamax() {
+        0 => ["anterior", "posterior"],
+        1 => ["superior", "inferior"],
+        _ => ["right", "left"],
+    };
+    if toward[toward.iamax()] > 0.0 {
+        forward
+    } else {
+        backward
     }
 }
 
@@ -148,6 +168,17 @@ mod tests {
         };
         let turned = axes.rotation(Side::Right).unwrap() * Vec3::new(1.0, 2.0, 3.0);
         assert_eq!(turned, Vec3::new(-1.0, 2.0, -3.0));
+    }
+
+    #[test]
+    fn verify_words_of_a_rotation_are_those_it_comes_from() {
+        for words in [
+            ["posterior", "superior", "left"],
+            ["right", "anterior", "superior"],
+        ] {
+            let axes = Axes { words };
+            assert_eq!(Axes::of(&axes.rotation(Side::Left).unwrap()), axes);
+        }
     }
 
     #[test]

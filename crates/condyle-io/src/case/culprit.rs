@@ -65,7 +65,9 @@ impl Case {
             BuildError::MeshFile(_) | BuildError::StrayPiece { .. } | BuildError::Shell { .. } => {
                 &["file"]
             }
-            BuildError::Size { .. } | BuildError::TooManyNodes { .. } => &["length_unit", "file"],
+            BuildError::Size { .. }
+            | BuildError::WrongUnit { .. }
+            | BuildError::TooManyNodes { .. } => &["length_unit", "file"],
             BuildError::ShellInsert { source, .. } => match source {
                 ShellInsertError::NoColumns { .. } => &["edge_mm", "file"],
                 ShellInsertError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "file"],
@@ -79,6 +81,7 @@ impl Case {
             BuildError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "layers"],
             BuildError::Insert(_) => &["backside", "articulating_surface", "file", "edge_mm"],
             BuildError::Axes(_) => &["axes"],
+            BuildError::WrongAxes { .. } => &["axes", "file"],
         };
         let file = error.file();
         let is_of_femur = file.is_some() && file == self.femur.file().map(DataFile::path);

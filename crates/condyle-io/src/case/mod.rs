@@ -11,6 +11,8 @@ mod channel;
 mod contact;
 mod contents;
 mod culprit;
+#[cfg(feature = "file-system")]
+mod draft;
 mod drive_reason;
 mod femur;
 mod fingerprint;
@@ -42,11 +44,13 @@ mod write;
 pub use accuracy::Accuracy;
 pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
-pub use build::{BuildError, BuildWarning, Built, StrayPiece};
+pub use build::{Body, BuildError, BuildWarning, Built, StrayPiece, WrongAxes};
 pub use channel::CaseChannel;
 pub use contact::{Contact, Finding, Friction, PressureLawChoice, SearchWord};
 pub use contents::Case;
 pub use culprit::Unfit;
+#[cfg(feature = "file-system")]
+pub use draft::{Draft, DraftError, Drafted};
 pub use drive_reason::DriveReason;
 pub use femur::{CylinderFemur, Femur, GenericFemur, MeshFemur, SphereFemur};
 pub use heading::{Heading, Side};

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::assignment::{Assignment, ChangeError};
 use super::contents::Case;
+use super::machine_write::write_name;
 use super::overriding::Override;
 use super::reader::CaseReader;
 use crate::files::Disk;
@@ -52,14 +53,23 @@ impl Case {
     /// The case as [`Self::to_toml`] has it, to be kept in `folder`, which is there: its files by
     /// their paths counted from that folder, so that nothing in it names a place of one machine.
     pub fn to_toml_in(&self, folder: &Path) -> String {
-        let Ok(folder) = fs::canonicalize(folder) else {
-            return self.to_toml();
-        };
+        self.named_from(folder).to_toml()
+    }
+
+    /// The same, with waveforms by their names, as a case to go on from.
+    pub(super) fn as_draft_in(&self, folder: &Path) -> String {
+        self.named_from(folder).written(write_name)
+    }
+
+    /// The case with its files named from `folder`.
+    fn named_from(&self, folder: &Path) -> Self {
         let mut case = self.clone();
-        let files = [case.femur.file_mut(), case.insert.file_mut()];
-        for file in files.into_iter().flatten() {
-            *file = file.named_from(&folder);
+        if let Ok(folder) = fs::canonicalize(folder) {
+            let files = [case.femur.file_mut(), case.insert.file_mut()];
+            for file in files.into_iter().flatten() {
+                *file = file.named_from(&folder);
+            }
         }
-        case.to_toml()
+        case
     }
 }

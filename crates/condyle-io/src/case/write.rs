@@ -16,7 +16,7 @@ impl Case {
         self.written(write_knots)
     }
 
-    fn written(&self, write_waveform: WriteWaveform) -> String {
+    pub(super) fn written(&self, write_waveform: WriteWaveform) -> String {
         let mut out = Writer::default();
         self.heading.write(&mut out);
         out.table("femur");

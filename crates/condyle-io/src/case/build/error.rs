@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::super::axes::AxesError;
 use super::super::mesh_file::LengthUnit;
+use super::lie::{Body, WrongAxes};
 use super::pieces::StrayPiece;
 use crate::mesh::MeshFileError;
 
@@ -30,6 +31,31 @@ pub enum BuildError {
         size_mm: f64,
         /// The unit of length that makes it as long as a knee's, and how long, mm.
         better: Option<(LengthUnit, f64)>,
+    },
+    /// A body of a whole knee that another unit makes as large as a knee's.
+    #[error(
+        "{}: this {body} is {} mm long, and that of a whole knee is 40 mm to 120 mm; {}",
+        file.display(),
+        rounded(*size_mm),
+        in_better_unit(Some(*better))
+    )]
+    WrongUnit {
+        /// The file.
+        file: PathBuf,
+        /// Which body.
+        body: Body,
+        /// Its longest extent along an axis, mm.
+        size_mm: f64,
+        /// The unit of length that makes it as long as a knee's, and how long, mm.
+        better: (LengthUnit, f64),
+    },
+    /// A body that lies otherwise than its axes say, for certain.
+    #[error("{}: this {} lies {}; {wrong}", file.display(), wrong.body, wrong.how)]
+    WrongAxes {
+        /// The file.
+        file: PathBuf,
+        /// How it lies.
+        wrong: WrongAxes,
     },
     /// A piece so far from the body that the whole is too large for a knee.
     #[error("{}: {piece}, too far for a knee; delete it", file.display())]
@@ -104,6 +130,8 @@ impl BuildError {
         match self {
             Self::MeshFile(error) => error.path(),
             Self::Size { file, .. }
+            | Self::WrongUnit { file, .. }
+            | Self::WrongAxes { file, .. }
             | Self::StrayPiece { file, .. }
             | Self::TooManyNodes { file, .. }
             | Self::Shell { file, .. }
@@ -145,6 +173,28 @@ fn listed(names: &[String]) -> String {
 /// What was put right in a mesh, or looks wrong.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum BuildWarning {
+    /// A body that likely lies otherwise than its axes say.
+    #[error("{}: this {} likely lies {}; {wrong}", file.display(), wrong.body, wrong.how)]
+    WrongAxes {
+        /// The file, without its folder.
+        file: PathBuf,
+        /// How it lies.
+        wrong: WrongAxes,
+    },
+    /// A body of a whole knee that is too small or too large for one in any unit.
+    #[error(
+        "{}: this {body} is {} mm long, and that of a whole knee is 40 mm to 120 mm; check length_unit",
+        file.display(),
+        rounded(*size_mm)
+    )]
+    UnusualSize {
+        /// The file, without its folder.
+        file: PathBuf,
+        /// Which body.
+        body: Body,
+        /// Its longest extent along an axis, mm.
+        size_mm: f64,
+    },
     /// Part of the mesh lies far from the rest.
     #[error("{}: {piece}; delete it unless it is part of it", file.display())]
     StrayPiece {

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::super::femur::{Femur, MeshFemur};
 use super::super::heading::Side;
 use super::error::{BuildError, BuildWarning};
+use super::lie::{Body, check_lie};
 use super::meshes::{Faces, Placing, parsed_shell, shell, warn};
 use crate::cache::{Keep, kept};
 use crate::keyed::DataFile;
@@ -110,6 +111,7 @@ fn from_mesh(
     let placing = Placing::new(femur.length_unit, &femur.axes, side)?;
     let PreparedFemur { shell, field } = prepared(&femur.file, &placing, preparing)?;
     warn(&femur.file, &shell, warnings);
+    check_lie(Body::Femur, &femur.file, &shell.mesh, &placing, warnings)?;
     let flexion_axis_mm = match femur.flexion_axis_mm {
         Some([x, y]) => (x, y),
         None => shell.mesh.posterior_arc_centre_mm(),

@@ -9,6 +9,7 @@ use super::super::heading::Side;
 use super::super::insert::{HexahedralInsert, Insert, MeshInsert};
 use super::body_size::check_points;
 use super::error::{BuildError, BuildWarning};
+use super::lie::{Body, check_lie, check_lie_of_hexahedra};
 use super::meshes::{Faces, Placing, shell};
 use crate::mesh::{HexFile, read_hexahedra};
 
@@ -55,7 +56,7 @@ impl Insert {
                 meshing(insert.edge_mm, insert.layers),
             )?,
             Self::Mesh(insert) => from_mesh(insert, side, warnings)?,
-            Self::Hexahedra(insert) => from_hexahedra(insert, side)?,
+            Self::Hexahedra(insert) => from_hexahedra(insert, side, warnings)?,
         })
     }
 }
@@ -77,6 +78,7 @@ fn from_mesh(
     if shell.closed && insert.thickness_mm.is_some() {
         return Err(BuildError::ThicknessOfClosed { file: file() });
     }
+    check_lie(Body::Insert, &insert.file, &shell.mesh, &placing, warnings)?;
     let meshing = meshing(insert.edge_mm, insert.layers);
     insert_from_shell(&shell.mesh, shell.closed, insert.thickness_mm, meshing).map_err(|source| {
         BuildError::ShellInsert {
@@ -86,12 +88,17 @@ fn from_mesh(
     })
 }
 
-fn from_hexahedra(insert: &HexahedralInsert, side: Side) -> Result<geometry::Insert, BuildError> {
+fn from_hexahedra(
+    insert: &HexahedralInsert,
+    side: Side,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<geometry::Insert, BuildError> {
     let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
     let path = insert.file.path();
     let mut file = read_hexahedra(insert.file.files(), path)?;
     place(&mut file, &placing);
     check_points(path, &file.mesh.nodes, insert.length_unit)?;
+    check_lie_of_hexahedra(&insert.file, &file.mesh, &placing, warnings)?;
     let surface = |key, name: &Option<String>, up: f64| match name {
         Some(name) => named(&file, key, name, insert),
         None => Ok(facing(&file.mesh, up)),

@@ -7,6 +7,8 @@ use condyle::machine::{
 };
 
 use super::super::channel::CaseChannel;
+#[cfg(feature = "file-system")]
+use super::super::contents::Case;
 use super::super::machine::{self as case, Freedom};
 use super::super::machine_keys::{DriveWord, Springs, StiffnessOf};
 
@@ -108,6 +110,14 @@ fn springs(springs: &Springs) -> Vec<Spring> {
         free_play_mm: springs.free_play_mm,
     };
     vec![spring(1.0), spring(-1.0)]
+}
+
+#[cfg(feature = "file-system")]
+impl Case {
+    /// Flexion at the start of the cycle, whatever the bodies are.
+    pub(in crate::case) fn start_flexion_rad(&self) -> f64 {
+        start_flexion_rad(&self.machine.build(Vec3::zeros()))
+    }
 }
 
 /// Flexion at the start of the cycle, rad.

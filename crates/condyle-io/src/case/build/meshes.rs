@@ -17,6 +17,7 @@ use crate::mesh::{parse_surface, surface_bytes};
 /// From the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.
 pub(super) struct Placing {
     pub unit: LengthUnit,
+    axes: Mat3,
     linear: Mat3,
     /// A left knee is mirrored, so that faces must be turned round.
     pub mirrors: bool,
@@ -24,15 +25,21 @@ pub(super) struct Placing {
 
 impl Placing {
     pub(super) fn new(unit: LengthUnit, axes: &Axes, side: Side) -> Result<Self, BuildError> {
-        let turned = axes.rotation(side)? * unit.in_mm();
+        let axes = axes.rotation(side)?;
         let mirrors = side == Side::Left;
-        let mirror = Mat3::from_diagonal(&Vec3::new(1.0, 1.0, if mirrors { -1.0 } else { 1.0 }));
-        let linear = mirror * turned;
+        let linear = mirror(mirrors) * (axes * unit.in_mm());
         Ok(Self {
             unit,
+            axes,
             linear,
             mirrors,
         })
+    }
+
+    /// The axes of a file whose body, placed so, is yet to be turned.
+    pub(super) fn axes_turned(&self, turn: &Mat3) -> Axes {
+        let mirror = mirror(self.mirrors);
+        Axes::of(&(mirror * turn * mirror * self.axes))
     }
 
     /// Its bytes, the same for the same placing.
@@ -54,6 +61,11 @@ impl Placing {
         }
         placed
     }
+}
+
+/// What makes a right knee of a left one, or changes nothing.
+fn mirror(mirrors: bool) -> Mat3 {
+    Mat3::from_diagonal(&Vec3::new(1.0, 1.0, if mirrors { -1.0 } else { 1.0 }))
 }
 
 /// Lets every triangle face the other way.

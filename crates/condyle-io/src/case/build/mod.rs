@@ -5,6 +5,7 @@ mod body_size;
 mod error;
 mod femur;
 mod insert;
+mod lie;
 mod machine;
 mod meshes;
 mod pieces;
@@ -13,4 +14,7 @@ mod tests;
 
 pub use assemble::Built;
 pub use error::{BuildError, BuildWarning};
+pub use lie::{Body, WrongAxes};
+#[cfg(feature = "file-system")]
+pub(super) use lie::{longest_mm, usual_unit};
 pub use pieces::StrayPiece;

@@ -1,0 +1,215 @@
+//! Whether a body lies as its `axes` say, and is as large as its `length_unit` makes it: told from its shape.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use condyle::anatomy::{Orientation, Recognition, Sureness};
+use condyle::geometry::TriangleMesh;
+use condyle::{Mat3, Vec3};
+use condyle_fem::HexMesh;
+
+use super::super::axes::Axes;
+use super::super::mesh_file::LengthUnit;
+use super::error::{BuildError, BuildWarning};
+use super::meshes::Placing;
+use crate::keyed::DataFile;
+
+/// Longest extent of a femoral component or an insert of a whole knee, mm: from the smallest sizes on
+/// the market, rounded down, to the largest, rounded up.
+const WHOLE_KNEE_MM: std::ops::RangeInclusive<f64> = 40.0..=120.0;
+
+/// One of the two bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// The femoral component.
+    Femur,
+    /// The tibial insert.
+    Insert,
+}
+
+impl fmt::Display for Body {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Femur => "femur",
+            Self::Insert => "insert",
+        })
+    }
+}
+
+impl Body {
+    /// What the body lies like, from triangles in any frame and unit.
+    pub(crate) fn recognise(self, mesh: &TriangleMesh) -> Option<Recognition> {
+        match self {
+            Self::Femur => Recognition::of_femur(mesh),
+            Self::Insert => Recognition::of_insert(mesh),
+        }
+    }
+
+    fn signs(self) -> &'static str {
+        match self {
+            Self::Femur => {
+                "the box open above, the trochlea in front and the notch between the condyles behind"
+            }
+            Self::Insert => {
+                "two dishes above, the flat backside below, the notch or the lower lip behind"
+            }
+        }
+    }
+}
+
+/// A body that lies otherwise than its axes say.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrongAxes {
+    /// Which.
+    pub body: Body,
+    /// How it lies in the case's frame, such as "upside down".
+    pub how: &'static str,
+    /// The axes that its shape shows.
+    pub better: Axes,
+}
+
+impl fmt::Display for WrongAxes {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.better.words();
+        write!(
+            out,
+            "write axes = [\"{x}\", \"{y}\", \"{z}\"], which its shape shows ({})",
+            self.body.signs()
+        )
+    }
+}
+
+/// Tells a body that lies, or is measured, otherwise than the case says: an error where it is certain.
+pub(super) fn check_lie(
+    body: Body,
+    file: &DataFile,
+    mesh: &TriangleMesh,
+    placing: &Placing,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<(), BuildError> {
+    let Some(recognition) = body.recognise(mesh) else {
+        return Ok(());
+    };
+    check_unit(body, file, mesh, placing.unit, warnings)?;
+    let Some(sureness) = recognition.against(&Orientation::ISB) else {
+        return Ok(());
+    };
+    let turn = recognition.nearest().rotation();
+    let wrong = WrongAxes {
+        body,
+        how: lies(&turn),
+        better: placing.axes_turned(&turn),
+    };
+    if sureness == Sureness::Certain {
+        let file = file.path().to_path_buf();
+        return Err(BuildError::WrongAxes { file, wrong });
+    }
+    let file = PathBuf::from(file.name());
+    warnings.push(BuildWarning::WrongAxes { file, wrong });
+    Ok(())
+}
+
+/// The same for an insert in hexahedra.
+pub(super) fn check_lie_of_hexahedra(
+    file: &DataFile,
+    mesh: &HexMesh,
+    placing: &Placing,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<(), BuildError> {
+    let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let boundary = TriangleMesh {
+        vertices: mesh.nodes.clone(),
+        triangles: mesh.boundary_quads().into_iter().flat_map(cut).collect(),
+    };
+    check_lie(Body::Insert, file, &boundary, placing, warnings)
+}
+
+/// A whole knee's body that is too small or too large for one is so for certain where another unit
+/// makes it right.
+fn check_unit(
+    body: Body,
+    file: &DataFile,
+    mesh: &TriangleMesh,
+    unit: LengthUnit,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<(), BuildError> {
+    let size_mm = longest_mm(mesh);
+    if WHOLE_KNEE_MM.contains(&size_mm) {
+        return Ok(());
+    }
+    if let Some(better) = usual_unit(size_mm / unit.in_mm()) {
+        let file = file.path().to_path_buf();
+        return Err(BuildError::WrongUnit {
+            file,
+            body,
+            size_mm,
+            better,
+        });
+    }
+    let file = PathBuf::from(file.name());
+    warnings.push(BuildWarning::UnusualSize {
+        file,
+        body,
+        size_mm,
+    });
+    Ok(())
+}
+
+/// The unit that makes a body that is `size` long in it as long as a knee's, and how long, mm.
+pub(crate) fn usual_unit(size: f64) -> Option<(LengthUnit, f64)> {
+    let in_mm = |unit: LengthUnit| (unit, size * unit.in_mm());
+    let is_usual = |(_, size_mm): &(LengthUnit, f64)| WHOLE_KNEE_MM.contains(size_mm);
+    LengthUnit::ALL.iter().copied().map(in_mm).find(is_usual)
+}
+
+/// Longest extent along an axis.
+pub(crate) fn longest_mm(mesh: &TriangleMesh) -> f64 {
+    let (low, high) = mesh.bounds();
+    (high - low).max()
+}
+
+/// How a body lies that `turn` puts right.
+fn lies(turn: &Mat3) -> &'static str {
+    let up = turn * Vec3::y();
+    let front = turn * Vec3::x();
+    if up.y < -0.5 {
+        "upside down"
+    } else if up.y < 0.5 {
+        "on its side"
+    } else if front.x < -0.5 {
+        "back to front"
+    } else {
+        "turned by a quarter about the vertical"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn how_a_body_lies_is_said_in_words() {
+        let of = |x, y, z| lies(&Mat3::from_diagonal(&Vec3::new(x, y, z)));
+        assert_eq!(of(1.0, -1.0, -1.0), "upside down");
+        assert_eq!(of(-1.0, 1.0, -1.0), "back to front");
+        let quarter = quarter_turn;
+        assert_eq!(lies(&quarter(Vec3::x())), "on its side");
+        assert_eq!(
+            lies(&quarter(Vec3::y())),
+            "turned by a quarter about the vertical"
+        );
+    }
+
+    fn quarter_turn(axis: Vec3) -> Mat3 {
+        let cross = axis.cross_matrix();
+        Mat3::identity() + cross + cross * cross
+    }
+
+    #[test]
+    fn units_of_a_knee_are_told_apart() {
+        for (size, unit) in [(0.0795, "m"), (7.95, "cm"), (79.5, "mm"), (3.13, "in")] {
+            assert_eq!(usual_unit(size).unwrap().0.word(), unit);
+        }
+        assert_eq!(usual_unit(0.5), None);
+    }
+}

@@ -1,0 +1,252 @@
+//! A case drafted from two mesh files: unit, axes and start are concluded from the shapes.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use condyle::Mat3;
+use condyle::anatomy::{Orientation, Recognition, Sureness, start_over_the_dishes_mm};
+use condyle::geometry::{GenericInsertShape, ShellError, TriangleMesh, checked_shell};
+use thiserror::Error;
+
+use super::axes::Axes;
+use super::build::{Body, longest_mm, usual_unit};
+use super::contents::Case;
+use super::heading::Side;
+use super::machine_keys::Preset;
+use super::mesh_file::LengthUnit;
+use crate::files::Disk;
+use crate::keyed::{Problems, quoted};
+use crate::mesh::{MeshFileError, parse_surface, surface_bytes};
+
+/// What a case is drafted from.
+#[derive(Clone, Copy, Debug)]
+pub struct Draft<'a> {
+    /// Which simulator.
+    pub preset: Preset,
+    /// Which knee.
+    pub side: Side,
+    /// Mesh of the femoral component.
+    pub femur: &'a Path,
+    /// Mesh of the insert, closed or an open articulating surface.
+    pub insert: &'a Path,
+}
+
+/// A case drafted from meshes.
+#[derive(Clone, Debug)]
+pub struct Drafted {
+    /// The case file, with what was concluded and how sure it is as remarks.
+    pub text: String,
+    /// What was concluded, one thing a line.
+    pub remarks: Vec<String>,
+}
+
+/// Why no case can be drafted from two files.
+#[derive(Debug, Error)]
+pub enum DraftError {
+    /// A file that cannot be read.
+    #[error(transparent)]
+    MeshFile(#[from] MeshFileError),
+    /// Triangles that are no shell.
+    #[error("{}: {source}", file.display())]
+    Shell {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: ShellError,
+    },
+    /// A body that no unit makes as large as a knee's.
+    #[error(
+        "{}: this {body} is {size:.4} long in the unit of the file, and none of mm, cm, m and in makes it \
+         40 mm to 120 mm long, as that of a whole knee is; scale it, or write the case by hand",
+        file.display()
+    )]
+    NoUnit {
+        /// The file.
+        file: PathBuf,
+        /// Which body.
+        body: Body,
+        /// Its longest extent, in the unit of the file.
+        size: f64,
+    },
+    /// The draft is no case.
+    #[error(transparent)]
+    Case(#[from] Problems),
+}
+
+impl Draft<'_> {
+    /// The case, to be kept in `folder`.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no shell, or by its size no part of a knee.
+    pub fn drafted(&self, folder: &Path) -> Result<Drafted, DraftError> {
+        let femur = Concluded::from(Body::Femur, self.femur)?;
+        let insert = Concluded::from(Body::Insert, self.insert)?;
+        let femur_lies = femur.orientation(insert.one_orientation());
+        let insert_lies = insert.orientation(femur.recognition.is_some().then_some(femur_lies));
+        let bodies = [
+            self.body("femur", &femur, &femur_lies),
+            self.body("insert", &insert, &insert_lies),
+        ];
+        let (femur_mm, insert_mm) = (femur.placed(&femur_lies), insert.placed(&insert_lies));
+        let start_mm = self.start_mm(&femur_mm, &insert_mm);
+        let case = Case::parse(&self.keys(&bodies, start_mm), "draft", folder)?;
+        let remarks = [femur.remarks(&femur_lies), insert.remarks(&insert_lies)];
+        let text = case.as_draft_in(folder);
+        Ok(Drafted {
+            text: with_remarks(text, &remarks),
+            remarks: remarks.concat(),
+        })
+    }
+
+    /// The keys of a table of the case that were concluded.
+    fn body(&self, table: &str, body: &Concluded<'_>, lies: &Orientation) -> String {
+        let file = quoted(&body.file.display().to_string());
+        let [x, y, z] = Axes::of(&lies.rotation()).words();
+        let unit = body.unit.word();
+        let mut keys = format!(
+            "[{table}]\nshape = \"mesh\"\nfile = {file}\nlength_unit = \"{unit}\"\naxes = [\"{x}\", \"{y}\", \"{z}\"]\n"
+        );
+        if body.body == Body::Insert && !body.is_closed {
+            let thickness_mm = GenericInsertShape::default().thickness_mm;
+            let _ = writeln!(keys, "thickness_mm = {thickness_mm:?}");
+        }
+        keys
+    }
+
+    fn keys(&self, [femur, insert]: &[String; 2], (x, z): (f64, f64)) -> String {
+        let (side, preset) = (self.side.word(), self.preset.word());
+        format!(
+            "title = \"Untitled\"\nside = \"{side}\"\n{femur}start_mm = [{x:.1}, {z:.1}]\n{insert}[machine]\npreset = \"{preset}\"\n"
+        )
+    }
+
+    /// Where the femoral frame starts, in the frame of the knee that it is.
+    fn start_mm(&self, femur: &TriangleMesh, insert: &TriangleMesh) -> (f64, f64) {
+        let machine = format!("[machine]\npreset = \"{}\"\n", self.preset.word());
+        let case = Case::parse(&machine, "machine", Path::new(""));
+        let flexion_rad = case.map_or(0.0, |case| case.start_flexion_rad());
+        start_over_the_dishes_mm(femur, insert, flexion_rad).unwrap_or_default()
+    }
+}
+
+/// A body of the draft, and what its shape tells.
+struct Concluded<'a> {
+    body: Body,
+    file: PathBuf,
+    written: &'a Path,
+    mesh: TriangleMesh,
+    is_closed: bool,
+    unit: LengthUnit,
+    recognition: Option<Recognition>,
+}
+
+impl<'a> Concluded<'a> {
+    fn from(body: Body, written: &'a Path) -> Result<Self, DraftError> {
+        let file = std::path::absolute(written).unwrap_or_else(|_| written.to_path_buf());
+        let mesh = parse_surface(&file, &surface_bytes(&Disk, &file)?)?;
+        let size = longest_mm(&mesh);
+        let Some((unit, _)) = usual_unit(size) else {
+            return Err(DraftError::NoUnit { file, body, size });
+        };
+        let mesh = mesh.mapped(|vertex| vertex * unit.in_mm());
+        let shell = checked_shell(mesh).map_err(|source| DraftError::Shell {
+            file: file.clone(),
+            source,
+        })?;
+        Ok(Self {
+            body,
+            file,
+            written,
+            recognition: body.recognise(&shell.mesh),
+            mesh: shell.mesh,
+            is_closed: shell.closed,
+            unit,
+        })
+    }
+
+    /// The orientation, where the shape leaves no other.
+    fn one_orientation(&self) -> Option<Orientation> {
+        let recognition = self.recognition.as_ref()?;
+        recognition.sureness().map(|_| recognition.nearest())
+    }
+
+    /// How it lies: as the other body where it may, since files of one implant mostly share their axes.
+    fn orientation(&self, other: Option<Orientation>) -> Orientation {
+        let Some(recognition) = &self.recognition else {
+            return other.unwrap_or(Orientation::ISB);
+        };
+        let as_other = recognition.best().find(|&best| Some(best) == other);
+        as_other.unwrap_or_else(|| recognition.nearest())
+    }
+
+    /// Its triangles in mm, x anterior, y superior, z right.
+    fn placed(&self, lies: &Orientation) -> TriangleMesh {
+        let rotation: Mat3 = lies.rotation();
+        self.mesh.clone().mapped(|vertex| rotation * vertex)
+    }
+
+    fn remarks(&self, lies: &Orientation) -> Vec<String> {
+        let (low, high) = self.placed(lies).bounds();
+        let size = high - low;
+        let mut remarks = vec![
+            format!(
+                "{}, concluded from the shape of {}:",
+                self.body,
+                self.written.display()
+            ),
+            format!(
+                "  length_unit \"{}\", which makes it {:.1} mm from back to front, {:.1} mm high and {:.1} mm wide;",
+                self.unit.word(),
+                size.x,
+                size.y,
+                size.z
+            ),
+            format!("  axes {}.", self.how_sure(lies)),
+        ];
+        if self.body == Body::Femur {
+            let start = "  start_mm: the lowest points of the condyles over those of the dishes.";
+            remarks.push(start.to_owned());
+        } else if !self.is_closed {
+            let thickness =
+                "  The surface is open: thickness_mm is assumed, write that of the insert.";
+            remarks.push(thickness.to_owned());
+        }
+        remarks
+    }
+
+    fn how_sure(&self, lies: &Orientation) -> String {
+        let Some(recognition) = &self.recognition else {
+            return "could not be told, since the shape is not that of a whole knee: check them"
+                .to_owned();
+        };
+        match recognition.sureness() {
+            Some(Sureness::Certain) => "for certain".to_owned(),
+            Some(Sureness::Likely) => {
+                "likely, since one sign of the shape tells back from front: check them".to_owned()
+            }
+            None => {
+                let others = recognition.best().filter(|other| other != lies);
+                let others: Vec<String> = others
+                    .map(|other| format!("{:?}", Axes::of(&other.rotation()).words()))
+                    .collect();
+                format!(
+                    "not for certain, since {} fits about as well: check them",
+                    others.join(" or ")
+                )
+            }
+        }
+    }
+}
+
+/// The case with remarks above the tables of its bodies.
+fn with_remarks(text: String, [femur, insert]: &[Vec<String>; 2]) -> String {
+    let above = |table: &str, remarks: &[String]| {
+        let lines: String = remarks.iter().map(|line| format!("# {line}\n")).collect();
+        (format!("\n[{table}]\n"), format!("\n{lines}[{table}]\n"))
+    };
+    [above("femur", femur), above("insert", insert)]
+        .into_iter()
+        .fold(text, |text, (table, remarked)| {
+            text.replacen(&table, &remarked, 1)
+        })
+}

@@ -1,0 +1,123 @@
+use super::{Orientation, Recognition, Sureness, start_over_the_dishes_mm};
+use crate::{
+    Vec3,
+    geometry::{
+        GenericFemur, GenericFemurShape, GenericInsertShape, Meshing, TriangleMesh, flat_insert,
+    },
+};
+
+fn generic_femur() -> TriangleMesh {
+    GenericFemur::new(GenericFemurShape::default()).surface_mesh(1.0)
+}
+
+/// The generic insert as a closed shell of triangles.
+fn generic_insert() -> TriangleMesh {
+    let (edge_mm, layers) = (2.0, 1);
+    let insert = GenericInsertShape::default().insert(Meshing { edge_mm, layers });
+    boundary(insert.unwrap().mesh())
+}
+
+fn boundary(mesh: &condyle_fem::HexMesh) -> TriangleMesh {
+    let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    TriangleMesh {
+        vertices: mesh.nodes.clone(),
+        triangles: mesh.boundary_quads().into_iter().flat_map(cut).collect(),
+    }
+}
+
+/// The shape as a file has it whose axes point as `orientation` says.
+fn turned(mesh: &TriangleMesh, orientation: &Orientation) -> TriangleMesh {
+    let back = orientation.rotation().transpose();
+    mesh.clone().mapped(|vertex| back * vertex)
+}
+
+fn told(mesh: &TriangleMesh, recognise: fn(&TriangleMesh) -> Option<Recognition>) -> usize {
+    let in_each = |orientation: Orientation| recognise(&turned(mesh, &orientation)).unwrap();
+    let all = Orientation::all().map(in_each);
+    all.filter(|recognition| recognition.against(&Orientation::ISB).is_some())
+        .count()
+}
+
+#[test]
+fn a_femur_lying_any_other_way_is_told_and_the_right_one_is_not() {
+    let femur = generic_femur();
+    assert_eq!(told(&femur, Recognition::of_femur), 23);
+    let right = Recognition::of_femur(&femur).unwrap();
+    assert_eq!(right.against(&Orientation::ISB), None);
+}
+
+#[test]
+fn an_insert_with_equal_ends_is_told_but_for_back_to_front() {
+    let insert = generic_insert();
+    assert_eq!(told(&insert, Recognition::of_insert), 22);
+    let right = Recognition::of_insert(&insert).unwrap();
+    assert_eq!(right.against(&Orientation::ISB), None);
+    assert_eq!(right.best().count(), 2);
+    assert_eq!(right.sureness(), None);
+}
+
+#[test]
+fn what_was_turned_is_turned_back() {
+    let femur = generic_femur();
+    for orientation in Orientation::all() {
+        let recognition = Recognition::of_femur(&turned(&femur, &orientation)).unwrap();
+        let best: Vec<_> = recognition.best().collect();
+        assert_eq!(best, [orientation]);
+        assert!(recognition.sureness() >= Some(Sureness::Likely));
+    }
+}
+
+#[test]
+fn neither_size_nor_place_nor_cutting_nor_side_matters() {
+    let shift = Vec3::new(3.0, -40.0, 9.0);
+    let changes: [fn(&Vec3) -> Vec3; 3] =
+        [|v| v / 1000.0, |v| v * 12.0, |v| Vec3::new(v.x, v.y, -v.z)];
+    for change in changes {
+        let femur = generic_femur().mapped(|v| change(v) + shift);
+        assert_eq!(told(&femur, Recognition::of_femur), 23);
+    }
+    let coarse = GenericFemur::new(GenericFemurShape::default()).surface_mesh(4.0);
+    assert_eq!(told(&coarse, Recognition::of_femur), 23);
+}
+
+#[test]
+fn shapes_of_no_knee_are_not_accused() {
+    let (edge_mm, layers) = (2.0, 1);
+    let block = flat_insert((46.0, 72.0), 9.0, Meshing { edge_mm, layers }).unwrap();
+    let block = boundary(block.mesh());
+    assert!(Recognition::of_insert(&block).is_none());
+    assert!(Recognition::of_femur(&block).is_none());
+    let insert = generic_insert();
+    assert!(Recognition::of_femur(&insert).is_none());
+    assert!(Recognition::of_femur(&TriangleMesh::default()).is_none());
+    assert!(Recognition::of_insert(&generic_femur()).is_none());
+}
+
+/// One condyle, or one dish, is a knee's as well, and told neither right nor wrong.
+#[test]
+fn one_side_alone_is_not_accused() {
+    let half = |mut mesh: TriangleMesh| {
+        let is_lateral = |corner: &u32| mesh.vertices[*corner as usize].z > 0.0;
+        mesh.triangles
+            .retain(|triangle| triangle.iter().all(is_lateral));
+        let vertices = &mesh.vertices;
+        let corners = mesh.triangles.iter().flatten();
+        TriangleMesh {
+            vertices: corners.map(|&corner| vertices[corner as usize]).collect(),
+            triangles: (0..mesh.triangles.len() as u32)
+                .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+                .collect(),
+        }
+    };
+    assert!(Recognition::of_femur(&half(generic_femur())).is_none());
+    assert!(Recognition::of_insert(&half(generic_insert())).is_none());
+}
+
+/// The distal arc's centre, 16 mm out at 20 degrees behind straight down, leans 7 degrees further forward.
+#[test]
+fn verify_the_generic_femur_starts_with_its_lowest_points_over_the_dishes() {
+    let (femur, insert) = (generic_femur(), generic_insert());
+    let (x, z) = start_over_the_dishes_mm(&femur, &insert, -7f64.to_radians()).unwrap();
+    let expected = -16.0 * 27f64.to_radians().sin();
+    assert!((x - expected).abs() < 1.0 && z.abs() < 1e-6, "{x} {z}");
+}

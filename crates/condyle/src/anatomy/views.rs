@@ -1,0 +1,207 @@
+//! A body seen from its six sides.
+
+use super::orientation::AxisDirection;
+use crate::{Vec3, geometry::TriangleMesh};
+
+/// Cells along the longest extent of a body: of some 1 mm on a knee's.
+const CELLS: f64 = 72.0;
+
+/// Lowest and highest place of a body along an axis, where a line along it meets the body.
+type Span = Option<(f64, f64)>;
+
+/// A body seen along the three axes of its frame, on a grid. Lengths are shares of its longest
+/// extent, so that no unit is needed.
+///
+/// Only what lines meet counts, so that it does not matter how the surface is cut into triangles,
+/// which way they face, or what lies inside.
+pub(super) struct Views {
+    low: Vec3,
+    size: f64,
+    cells: [usize; 3],
+    /// Seen along each axis; the other two follow it in cyclic order, the second runs fastest.
+    spans: [Vec<Span>; 3],
+}
+
+impl Views {
+    /// None of a mesh without extent.
+    pub(super) fn new(mesh: &TriangleMesh) -> Option<Self> {
+        let (low, high) = mesh.bounds();
+        let size = (high - low).max();
+        if !(size.is_finite() && size > 0.0) {
+            return None;
+        }
+        let extent = (high - low) / size;
+        let cells = [0, 1, 2].map(|axis| (extent[axis] * CELLS).ceil().max(1.0) as usize);
+        let spans = [0, 1, 2].map(|axis| vec![None; cells[(axis + 1) % 3] * cells[(axis + 2) % 3]]);
+        let mut views = Self {
+            low,
+            size,
+            cells,
+            spans,
+        };
+        for triangle in 0..mesh.triangles.len() {
+            let corners = mesh.corners(triangle).map(|corner| (corner - low) / size);
+            (0..3).for_each(|axis| views.add(axis, &corners));
+        }
+        Some(views)
+    }
+
+    /// Widens the spans at the middles of those cells that the triangle covers, seen along `axis`.
+    fn add(&mut self, axis: usize, corners: &[Vec3; 3]) {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let [a, b, c] = corners.map(|corner| (corner[u] * CELLS - 0.5, corner[v] * CELLS - 0.5));
+        let area = cross(a, b, c);
+        if area == 0.0 {
+            return;
+        }
+        let [at_a, at_b, at_c] = corners.map(|corner| corner[axis]);
+        for i in between([a.0, b.0, c.0], self.cells[u]) {
+            for k in between([a.1, b.1, c.1], self.cells[v]) {
+                let place = (i as f64, k as f64);
+                let weights = [cross(place, b, c), cross(a, place, c), cross(a, b, place)];
+                let [of_a, of_b, of_c] = weights.map(|weight| weight / area);
+                if of_a >= 0.0 && of_b >= 0.0 && of_c >= 0.0 {
+                    let height = of_a * at_a + of_b * at_b + of_c * at_c;
+                    widen(&mut self.spans[axis][i * self.cells[v] + k], height);
+                }
+            }
+        }
+    }
+
+    /// Where a place along an axis lies that is so many cells from the low end.
+    pub(super) fn place(&self, axis: usize, cells: f64) -> f64 {
+        self.low[axis] + cells / CELLS * self.size
+    }
+
+    /// Cells along a direction.
+    pub(super) fn cells(&self, direction: AxisDirection) -> f64 {
+        self.cells[direction.axis] as f64
+    }
+
+    /// The body seen by who looks against `toward`: rows go on along `rows`, columns along `columns`.
+    pub(super) fn picture(
+        &self,
+        toward: AxisDirection,
+        rows: AxisDirection,
+        columns: AxisDirection,
+    ) -> Picture {
+        let spans = &self.spans[toward.axis];
+        let (row_count, column_count) = (self.cells[rows.axis], self.cells[columns.axis]);
+        let rows_run_fastest = (toward.axis + 2) % 3 == rows.axis;
+        let height = |row: usize, column: usize| {
+            let (row, column) = (
+                place(rows, row, row_count),
+                place(columns, column, column_count),
+            );
+            let cell = if rows_run_fastest {
+                column * row_count + row
+            } else {
+                row * column_count + column
+            };
+            let highest = |(low, high): (f64, f64)| if toward.is_forward { high } else { -low };
+            spans[cell].map(highest)
+        };
+        let heights =
+            (0..row_count).flat_map(|row| (0..column_count).map(move |column| (row, column)));
+        Picture {
+            rows: row_count,
+            columns: column_count,
+            heights: heights.map(|(row, column)| height(row, column)).collect(),
+        }
+    }
+}
+
+/// Where the cell number `at` in a direction stands along the axis.
+fn place(direction: AxisDirection, at: usize, count: usize) -> usize {
+    if direction.is_forward {
+        at
+    } else {
+        count - 1 - at
+    }
+}
+
+/// Twice the area of a triangle, with its sign.
+fn cross(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> f64 {
+    (b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)
+}
+
+/// The whole numbers below `count` that lie between the smallest and the largest of three.
+fn between(ends: [f64; 3], count: usize) -> std::ops::Range<usize> {
+    let low = ends.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let last = (high.floor() + 1.0).max(0.0) as usize;
+    low.ceil().max(0.0) as usize..last.min(count)
+}
+
+fn widen(span: &mut Span, height: f64) {
+    let (low, high) = span.unwrap_or((height, height));
+    *span = Some((low.min(height), high.max(height)));
+}
+
+/// A body seen from one side: how far each cell stands out towards the viewer.
+pub(super) struct Picture {
+    pub rows: usize,
+    pub columns: usize,
+    heights: Vec<Option<f64>>,
+}
+
+impl Picture {
+    /// None where nothing is seen.
+    pub(super) fn height(&self, row: usize, column: usize) -> Option<f64> {
+        self.heights[row * self.columns + column]
+    }
+
+    /// What is seen in a row from one share of the width to another.
+    pub(super) fn across(&self, row: usize, from: f64, to: f64) -> impl Iterator<Item = f64> {
+        part(self.columns, from, to).filter_map(move |column| self.height(row, column))
+    }
+
+    /// What is seen in a column from one share of the length to another.
+    pub(super) fn along(&self, column: usize, from: f64, to: f64) -> impl Iterator<Item = f64> {
+        part(self.rows, from, to).filter_map(move |row| self.height(row, column))
+    }
+
+    /// Share of what is seen that is not matched by its mirror image with left for right: nothing there,
+    /// or `off` higher or lower.
+    pub(super) fn asymmetry(&self, off: f64) -> f64 {
+        let (mut seen, mut unmatched) = (0.0, 0.0);
+        for row in 0..self.rows {
+            for column in 0..self.columns {
+                let Some(height) = self.height(row, column) else {
+                    continue;
+                };
+                seen += 1.0;
+                let mirrored = self.height(row, self.columns - 1 - column);
+                if mirrored.is_none_or(|mirrored| (mirrored - height).abs() > off) {
+                    unmatched += 1.0;
+                }
+            }
+        }
+        unmatched / f64::max(seen, 1.0)
+    }
+
+    /// Share of the picture's area that water would fill if it rained down the columns: what lies
+    /// below some of the shadow on both sides.
+    pub(super) fn water(&self) -> f64 {
+        let tops: Vec<usize> = (0..self.columns).map(|column| self.top(column)).collect();
+        let highest = |tops: &[usize]| tops.iter().copied().max().unwrap_or(0);
+        let depth = |column: usize| {
+            let level = highest(&tops[..=column]).min(highest(&tops[column..]));
+            level - tops[column]
+        };
+        let filled: usize = (0..self.columns).map(depth).sum();
+        filled as f64 / (self.rows * self.columns) as f64
+    }
+
+    /// How many rows lie below the last that is seen in a column.
+    pub(super) fn top(&self, column: usize) -> usize {
+        let seen = |row: &usize| self.height(*row, column).is_some();
+        (0..self.rows).rev().find(seen).map_or(0, |row| row + 1)
+    }
+}
+
+/// The numbers below `count` from one share of it to another.
+pub(super) fn part(count: usize, from: f64, to: f64) -> std::ops::Range<usize> {
+    let at = |share: f64| (share * count as f64).round() as usize;
+    at(from)..at(to).max(at(from) + 1).min(count)
+}
