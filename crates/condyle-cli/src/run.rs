@@ -177,22 +177,67 @@ fn rows_of_wear(summary: &Summary) -> [SummaryLine; 3] {
     ]
 }
 
-fn rows_of_contact(summary: &Summary) -> [SummaryLine; 2] {
-    let pressure = format!("{:.1} MPa", summary.peak_pressure_mpa);
-    let area = format!("{:.0} mm2", summary.peak_contact_area_mm2);
-    [("peak pressure", pressure), ("largest contact area", area)]
+fn rows_of_contact(summary: &Summary) -> [SummaryLine; 4] {
+    let error = summary.error.as_ref();
+    let pressure = with_error(
+        summary.peak_pressure_mpa,
+        1,
+        "MPa",
+        error.map(|error| &error.peak_pressure_percent),
+    );
+    let area = with_error(
+        summary.peak_contact_area_mm2,
+        0,
+        "mm2",
+        error.map(|error| &error.peak_contact_area_percent),
+    );
+    [
+        (
+            "peak pressure",
+            format!("{pressure}, {}", when(summary.peak_pressure_cycle)),
+        ),
+        (
+            "  first and last cycle",
+            format!(
+                "{:.1} and {:.1} MPa",
+                summary.first_cycle_peak_pressure_mpa, summary.last_cycle_peak_pressure_mpa
+            ),
+        ),
+        (
+            "largest contact area",
+            format!("{area}, {}", when(summary.peak_contact_area_cycle)),
+        ),
+        (
+            "  first and last cycle",
+            format!(
+                "{:.0} and {:.0} mm2",
+                summary.first_cycle_contact_area_mm2, summary.last_cycle_contact_area_mm2
+            ),
+        ),
+    ]
+}
+
+/// Which cycle, by the cycles before it.
+fn when(cycles_before: f64) -> String {
+    if cycles_before == 0.0 {
+        return "in the first cycle".to_owned();
+    }
+    format!("after {cycles_before:.0} cycles")
 }
 
 fn rows_of_motion(summary: &Summary) -> [SummaryLine; 3] {
     let share = 100.0 * summary.medial_load_share;
+    let error = summary.error.as_ref();
+    let ap_parts = error.map(|error| &error.ap_range_percent);
+    let ie_parts = error.map(|error| &error.ie_range_percent);
     [
         (
             "AP range, first cycle",
-            format!("{:.2} mm", summary.ap_range_mm),
+            with_error(summary.ap_range_mm, 2, "mm", ap_parts),
         ),
         (
             "IE range, first cycle",
-            format!("{:.2} deg", summary.ie_range_deg),
+            with_error(summary.ie_range_deg, 2, "deg", ie_parts),
         ),
         ("medial share of the load", format!("{share:.1} %")),
     ]

@@ -1,25 +1,36 @@
-//! How far a run's mass loss and maximum depth lie from what finer steps and meshes would give.
+//! How far a run's numbers lie from what finer steps and meshes would give.
 //!
 //! Two cycles on the way are solved again with finer increments, and with a looser slip tolerance;
 //! the first one, on the unworn insert, with a coarser mesh. By how much what they wear changes
 //! tells the error of the run, from the order at which it falls. What the length of the march's
 //! steps costs is known from the march itself.
+//!
+//! Ranges of motion are those of the first cycle, which is solved again with each of the changes, and so is a peak
+//! that the first cycle has. A peak of a later cycle is looked at in the later of the two on the way: solved again as
+//! well on a coarser mesh that is as deep, and with the surface lowered by what the march's steps have missed.
+
+mod worn_surface;
 
 use std::{ops::ControlFlow, sync::Arc};
 
 use condyle::{
     contact::ContactLaw,
     evolve::{
-        March, MarchError, MarchState, PlacementError, Schedule, Snapshot, StepRecord, WearTest,
-        mean_over_volume, weight_of_depth,
+        March, MarchError, MarchState, PlacementError, Schedule, Snapshot, StepRecord,
+        UpdateRecord, WearTest, mean_over_volume,
     },
     geometry::Insert,
-    machine::MachineState,
+    machine::{
+        MachineState,
+        knee::{AP, IE},
+    },
 };
 use condyle_io::{
     case::Case,
-    results::{ErrorEstimate, Part},
+    results::{ErrorEstimate, Part, QuantityErrors, Summary, joint_range},
 };
+
+use worn_surface::WornSurface;
 
 /// Error of a run from the change that twice the increments make: 1 / (1 - 1/2^2), second order.
 const FINER_INCREMENTS: f64 = 4.0 / 3.0;
@@ -27,6 +38,8 @@ const FINER_INCREMENTS: f64 = 4.0 / 3.0;
 const LOOSER_SLIP: f64 = -1.0;
 /// From the change that twice the edge makes: second order.
 const COARSER_MESH: f64 = -1.0 / 3.0;
+/// From the change that the errors of the steps so far make.
+const MISSED: f64 = 1.0;
 
 /// Why a part has no estimate.
 enum Without {
@@ -36,39 +49,96 @@ enum Without {
     Reason(String),
 }
 
-/// What a changed test finds of volume loss and maximum depth, %; or why nothing.
-type Found = Result<[f64; 2], Without>;
+/// What a changed test finds, or why nothing.
+type Found<T> = Result<T, Without>;
+
+/// What a changed test finds, or why nothing in words.
+type Stated<T> = Result<T, String>;
+
+/// Errors of volume loss and maximum depth, %.
+type OfWear = [f64; 2];
+
+/// Highest pressure and largest area of a cycle, or errors of them, %.
+type Peaks = [f64; 2];
+
+/// The peaks of the first cycle, and its ranges of AP and IE; or errors of them, %.
+type FirstCycle = [f64; 4];
+
+/// What a cycle on the way tells of errors, %.
+struct OnTheWay {
+    wear: OfWear,
+    peaks: Peaks,
+}
+
+/// What one part is told by.
+struct Told {
+    wear: Stated<OfWear>,
+    /// Of the later cycle on the way.
+    later: Stated<Peaks>,
+    first: Stated<FirstCycle>,
+}
+
+impl Told {
+    /// Of every number of the summary.
+    fn errors(self, summary: &Summary) -> QuantityErrors {
+        let [mass, depth] = each(self.wear);
+        let [later_pressure, later_area] = each(self.later);
+        let [pressure, area, ap, ie] = each(self.first);
+        let of_peak = |cycle: f64, first, later| if cycle > 0.0 { later } else { first };
+        [
+            mass,
+            depth,
+            of_peak(summary.peak_pressure_cycle, pressure, later_pressure),
+            of_peak(summary.peak_contact_area_cycle, area, later_area),
+            ap,
+            ie,
+        ]
+    }
+}
+
+fn each<const N: usize>(stated: Stated<[f64; N]>) -> [Stated<f64>; N] {
+    match stated {
+        Ok(values) => values.map(Ok),
+        Err(why) => std::array::from_fn(|_| Err(why.clone())),
+    }
+}
 
 /// The estimated error of a march that is done, none of one that did nothing; a break if `watch` asks to
 /// stop.
 pub(crate) fn estimate(
     case: &Case,
     march: &March,
+    summary: &Summary,
     watch: &mut dyn FnMut() -> ControlFlow<()>,
 ) -> ControlFlow<(), Option<ErrorEstimate>> {
-    let (Some(last), Some(mut again)) = (march.state().updates.last(), Again::of(march, watch))
-    else {
+    let Some(mut again) = Again::of(march, watch) else {
         return ControlFlow::Continue(None);
     };
-    let test = again.as_run();
-    let finer = stated(again.on_the_way(FINER_INCREMENTS, &finer(test.clone())))?;
-    let looser = stated(again.once(LOOSER_SLIP, &with_contact(test.clone(), looser(case))))?;
-    let coarser = match case.coarser_insert() {
-        Ok(insert) => stated(again.unworn(COARSER_MESH, with_insert(test, insert)))?,
-        Err(why) => Err(why),
-    };
+    let coarser = case.coarser_insert().map(Arc::new);
+    let law: Arc<dyn ContactLaw> = looser(case);
+    let (mesh, base) = again.by_mesh(&coarser, summary)?;
+    let finer = again.by_increments(&base)?;
+    let looser = again.by_slip(&base, &law)?;
+    let updates = again.by_updates(summary)?;
     let parts = [
-        (Part::Increments, finer),
-        (Part::Updates, of_updates(march.state())),
-        (Part::Mesh, coarser),
-        (Part::SlipTolerance, looser),
+        (Part::Increments, finer.errors(summary)),
+        (Part::Updates, updates.errors(summary)),
+        (Part::Mesh, mesh.errors(summary)),
+        (Part::SlipTolerance, looser.errors(summary)),
     ];
-    let estimate = ErrorEstimate::of(last.mass_loss_mg, last.max_depth_mm, parts);
-    ControlFlow::Continue(Some(estimate))
+    let values = [
+        summary.mass_loss_mg,
+        summary.max_depth_mm,
+        summary.peak_pressure_mpa,
+        summary.peak_contact_area_mm2,
+        summary.ap_range_mm,
+        summary.ie_range_deg,
+    ];
+    ControlFlow::Continue(Some(ErrorEstimate::of(values, parts)))
 }
 
 /// What was found, or why not in words.
-fn stated(found: Found) -> ControlFlow<(), Result<[f64; 2], String>> {
+fn stated<T>(found: Found<T>) -> ControlFlow<(), Stated<T>> {
     match found {
         Ok(percent) => ControlFlow::Continue(Ok(percent)),
         Err(Without::Reason(why)) => ControlFlow::Continue(Err(why)),
@@ -91,13 +161,17 @@ fn with_contact(test: WearTest, contact: Arc<dyn ContactLaw>) -> WearTest {
     WearTest { contact, ..test }
 }
 
-fn with_insert(test: WearTest, insert: Insert) -> WearTest {
-    let insert = Arc::new(insert);
+fn with_insert(test: WearTest, insert: Arc<Insert>) -> WearTest {
     WearTest { insert, ..test }
 }
 
+/// Whether a peak is not of the first cycle.
+fn has_later_peak(summary: &Summary) -> bool {
+    summary.peak_pressure_cycle > 0.0 || summary.peak_contact_area_cycle > 0.0
+}
+
 /// What the march knows of the error of its own steps, % of volume loss and of maximum depth.
-fn of_updates(state: &MarchState) -> Result<[f64; 2], String> {
+fn of_updates(state: &MarchState) -> Stated<OfWear> {
     let (Some(last), Some(_)) = (state.updates.last(), state.updates.get(1)) else {
         return Err("one update has no other to be compared with".to_owned());
     };
@@ -106,6 +180,12 @@ fn of_updates(state: &MarchState) -> Result<[f64; 2], String> {
         100.0 * error.volume_mm3 / last.volume_loss_mm3,
         100.0 * error.max_depth_mm / last.max_depth_mm,
     ])
+}
+
+/// A test whose first cycle the changes of it are compared with, and what that cycle is like.
+struct Base {
+    test: WearTest,
+    first: FirstCycle,
 }
 
 /// Cycles of a run, solved again.
@@ -117,7 +197,7 @@ struct Again<'a> {
     snapshots: Vec<&'a Snapshot>,
     worn: WornSurface,
     /// By what power of the rates volume loss and maximum depth grow.
-    growth: [f64; 2],
+    growth: OfWear,
     watch: &'a mut dyn FnMut() -> ControlFlow<()>,
 }
 
@@ -143,57 +223,231 @@ impl<'a> Again<'a> {
         }
     }
 
-    /// Errors of mass loss and maximum depth in %: `factor` times what a changed test makes on the way,
-    /// the mean of the snapshots.
-    fn on_the_way(&mut self, factor: f64, changed: &WearTest) -> Found {
+    /// The run's own first cycle.
+    fn own_base(&self) -> Base {
+        Base {
+            test: self.as_run(),
+            first: first_cycle(self.march.state()),
+        }
+    }
+
+    /// What a coarser mesh tells; and a test whose first cycle is solved quickly, on that mesh if there is one.
+    fn by_mesh(
+        &mut self,
+        coarser: &Stated<Arc<Insert>>,
+        summary: &Summary,
+    ) -> ControlFlow<(), (Told, Base)> {
+        let own = self.own_base();
+        let insert = match coarser {
+            Ok(insert) => insert,
+            Err(why) => return ControlFlow::Continue((untold(why), own)),
+        };
+        let test = with_insert(self.as_run(), Arc::clone(insert));
+        let unworn = stated(self.unworn(&test))?;
+        let later = if has_later_peak(summary) {
+            stated(self.worn_on(&test))?
+        } else {
+            Ok([0.0; 2])
+        };
+        ControlFlow::Continue(match unworn {
+            Err(why) => (untold(&why), own),
+            Ok((wear, first)) => {
+                let told = Told {
+                    wear: Ok(wear),
+                    later,
+                    first: Ok(errors(COARSER_MESH, first, own.first)),
+                };
+                (told, Base { test, first })
+            }
+        })
+    }
+
+    fn by_increments(&mut self, base: &Base) -> ControlFlow<(), Told> {
+        let test = finer(self.as_run());
+        let on_the_way = stated(self.on_the_way(FINER_INCREMENTS, &test))?;
+        let first = stated(self.again_first(FINER_INCREMENTS, finer(base.test.clone()), base))?;
+        ControlFlow::Continue(told(on_the_way, first))
+    }
+
+    fn by_slip(&mut self, base: &Base, looser: &Arc<dyn ContactLaw>) -> ControlFlow<(), Told> {
+        let test = with_contact(self.as_run(), Arc::clone(looser));
+        let on_the_way = stated(self.once(LOOSER_SLIP, &test))?;
+        let test = with_contact(base.test.clone(), Arc::clone(looser));
+        let first = stated(self.again_first(LOOSER_SLIP, test, base))?;
+        ControlFlow::Continue(told(on_the_way, first))
+    }
+
+    /// The first cycle knows nothing of updates.
+    fn by_updates(&mut self, summary: &Summary) -> ControlFlow<(), Told> {
+        let later = if has_later_peak(summary) {
+            stated(self.as_deep_as_exact())?
+        } else {
+            Ok([0.0; 2])
+        };
+        ControlFlow::Continue(Told {
+            wear: of_updates(self.march.state()),
+            later,
+            first: Ok([0.0; 4]),
+        })
+    }
+
+    /// Errors in %: `factor` times what a changed test makes on the way; of the wear the mean of the snapshots, of
+    /// the peaks that of the later one.
+    fn on_the_way(&mut self, factor: f64, changed: &WearTest) -> Found<OnTheWay> {
         let count = self.snapshots.len();
-        let mut mean = [0.0; 2];
+        let (mut mean, mut peaks) = ([0.0; 2], [0.0; 2]);
         for snapshot in 0..count {
             let here = self.at(snapshot, factor, changed)?;
-            mean = [0, 1].map(|i| mean[i] + here[i] / count as f64);
+            mean = [0, 1].map(|i| mean[i] + here.wear[i] / count as f64);
+            peaks = here.peaks;
         }
-        Ok(mean)
+        Ok(OnTheWay { wear: mean, peaks })
     }
 
     /// The same at the last snapshot alone, for a change that makes much the same all the way.
-    fn once(&mut self, factor: f64, changed: &WearTest) -> Found {
+    fn once(&mut self, factor: f64, changed: &WearTest) -> Found<OnTheWay> {
         self.at(self.snapshots.len() - 1, factor, changed)
     }
 
-    fn at(&mut self, snapshot: usize, factor: f64, changed: &WearTest) -> Found {
+    fn at(&mut self, snapshot: usize, factor: f64, changed: &WearTest) -> Found<OnTheWay> {
         let snapshot = self.snapshots[snapshot];
-        let zero_mm = self.march.state().zero_mm;
-        let march = March::from_snapshot(changed.clone(), snapshot, zero_mm);
+        let march = self.solved(self.from_snapshot(changed, snapshot))?;
         let weights = self.worn.weights();
         let reference = worn(&snapshot.step, &weights);
-        self.solved(march, &weights, reference, factor)
+        let peaks = peaks_of(&self.march.state().updates[snapshot.update]);
+        Ok(OnTheWay {
+            wear: self.errors_of_wear(factor, &march, &weights, reference),
+            peaks: errors(factor, first_peaks(march.state()), peaks),
+        })
     }
 
-    /// The same of another mesh, unworn.
-    fn unworn(&mut self, factor: f64, changed: WearTest) -> Found {
-        let march = March::start(changed)?;
-        let (step, machines) = self.first;
-        let reference = worn(step, &self.worn.weights());
-        let weights = self.worn.weights_on(&march);
-        self.solved(march.in_motion(machines), &weights, reference, factor)
+    fn from_snapshot(&self, test: &WearTest, snapshot: &Snapshot) -> March {
+        March::from_snapshot(test.clone(), snapshot, self.march.state().zero_mm)
     }
 
-    fn solved(
+    /// Errors of the peaks in the later cycle on the way, in %: of a surface that is as deep as the march makes it,
+    /// less what it would be if its steps were exact.
+    fn as_deep_as_exact(&mut self) -> Found<Peaks> {
+        let test = self.as_run();
+        let Some(snapshot) = self.snapshots.last().copied() else {
+            return Ok([0.0; 2]);
+        };
+        let exact = snapshot.lowered(&test.insert, snapshot.step.error_mm.clone());
+        self.peaks_at(MISSED, &test, &exact, snapshot.update)
+    }
+
+    /// Errors of the peaks in the later cycle on the way, in %, told by a coarser mesh that is worn as deep.
+    fn worn_on(&mut self, coarser: &WearTest) -> Found<Peaks> {
+        let Some(snapshot) = self.snapshots.last().copied() else {
+            return Ok([0.0; 2]);
+        };
+        let depths_mm = snapshot.depths.total_mm();
+        let worn = WornSurface::with(&self.march.test().insert, &depths_mm);
+        let depths_mm = worn.depths_on(&coarser.insert);
+        let coarse = snapshot.on(&coarser.insert, depths_mm);
+        self.peaks_at(COARSER_MESH, coarser, &coarse, snapshot.update)
+    }
+
+    fn peaks_at(
         &mut self,
-        mut march: March,
-        weights: &[f64],
-        reference: [f64; 2],
         factor: f64,
-    ) -> Found {
+        test: &WearTest,
+        snapshot: &Snapshot,
+        update: usize,
+    ) -> Found<Peaks> {
+        let march = self.solved(self.from_snapshot(test, snapshot))?;
+        let reference = peaks_of(&self.march.state().updates[update]);
+        Ok(errors(factor, first_peaks(march.state()), reference))
+    }
+
+    /// Errors of wear in % told by a coarser mesh, unworn; and what its first cycle is like.
+    fn unworn(&mut self, coarser: &WearTest) -> Found<(OfWear, FirstCycle)> {
+        let march = self.started(coarser.clone())?;
+        let reference = worn(&self.first.0, &self.worn.weights());
+        let weights = self.worn.weights_on(march.insert());
+        let wear = self.errors_of_wear(COARSER_MESH, &march, &weights, reference);
+        Ok((wear, first_cycle(march.state())))
+    }
+
+    /// Errors of the first cycle in %, told by a change of a test's own first cycle.
+    fn again_first(&mut self, factor: f64, changed: WearTest, base: &Base) -> Found<FirstCycle> {
+        let march = self.started(changed)?;
+        Ok(errors(factor, first_cycle(march.state()), base.first))
+    }
+
+    /// A test from its start, its first cycle solved.
+    fn started(&mut self, test: WearTest) -> Found<March> {
+        let march = March::start(test)?.in_motion(&self.first.1);
+        self.solved(march)
+    }
+
+    fn solved(&mut self, mut march: March) -> Found<March> {
         if march.update(&mut |_| (self.watch)())?.is_break() {
             return Err(Without::Stopped);
         }
+        Ok(march)
+    }
+
+    fn errors_of_wear(
+        &self,
+        factor: f64,
+        march: &March,
+        weights: &[f64],
+        reference: OfWear,
+    ) -> OfWear {
         let now = match &march.state().first_step {
             Some((step, _)) => worn(step, weights),
             None => [0.0; 2],
         };
-        Ok([0, 1].map(|i| self.growth[i] * 100.0 * factor * (now[i] / reference[i] - 1.0)))
+        [0, 1].map(|i| self.growth[i] * 100.0 * factor * (now[i] / reference[i] - 1.0))
     }
+}
+
+/// A part of which nothing can be told.
+fn untold(why: &str) -> Told {
+    Told {
+        wear: Err(why.to_owned()),
+        later: Err(why.to_owned()),
+        first: Err(why.to_owned()),
+    }
+}
+
+/// What cycles on the way and the first one tell.
+fn told(on_the_way: Stated<OnTheWay>, first: Stated<FirstCycle>) -> Told {
+    let (wear, later) = match on_the_way {
+        Ok(OnTheWay { wear, peaks }) => (Ok(wear), Ok(peaks)),
+        Err(why) => (Err(why.clone()), Err(why)),
+    };
+    Told { wear, later, first }
+}
+
+/// Errors in %: `factor` times by how much `now` differs from what it was; nothing of what does not change.
+fn errors<const N: usize>(factor: f64, now: [f64; N], reference: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| {
+        if now[i] == reference[i] {
+            return 0.0;
+        }
+        100.0 * factor * (now[i] / reference[i] - 1.0)
+    })
+}
+
+/// Highest pressure and largest area of the cycles of an update.
+fn peaks_of(update: &UpdateRecord) -> Peaks {
+    [update.peak_pressure_mpa, update.peak_contact_area_mm2]
+}
+
+/// The peaks of the first cycle of a march.
+fn first_peaks(state: &MarchState) -> Peaks {
+    state.updates.first().map_or([0.0; 2], peaks_of)
+}
+
+/// The peaks of the first cycle of a march, and the ranges of its motion, in the units of files.
+fn first_cycle(state: &MarchState) -> FirstCycle {
+    let [pressure, area] = first_peaks(state);
+    let cycles = state.activities.first().map(|own| &own.first_and_last);
+    let first = cycles.and_then(|cycles| cycles.as_ref());
+    let range = |joint| first.map_or(0.0, |(first, _)| joint_range(&first.rows, joint));
+    [pressure, area, range(AP), range(IE)]
 }
 
 fn snapshots(state: &MarchState) -> Vec<&Snapshot> {
@@ -236,45 +490,4 @@ fn growth(state: &MarchState, worn_surface: &WornSurface) -> Option<[f64; 2]> {
         volume_mm3 * last.cycles / last.volume_loss_mm3,
         depth_mm * last.cycles / so_far_mm,
     ])
-}
-
-/// Where the insert is worn in the end: (x, z) of its nodes, and their depth as a part of the largest.
-struct WornSurface(Vec<([f64; 2], f64)>);
-
-impl WornSurface {
-    fn of(march: &March) -> Self {
-        let worn_mm = march.state().depths.wear_mm();
-        let deepest = worn_mm.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let depths = worn_mm.iter().map(|depth| depth / deepest);
-        Self(places(march).zip(depths).collect())
-    }
-
-    /// How much every node counts for the maximum depth.
-    fn weights(&self) -> Vec<f64> {
-        let depths = self.0.iter().map(|(_, depth)| depth);
-        depths.map(|depth| weight_of_depth(*depth)).collect()
-    }
-
-    /// The same on another mesh, whose nodes are as deep as the nearest one here.
-    fn weights_on(&self, march: &March) -> Vec<f64> {
-        let depth = |[x, z]: [f64; 2]| {
-            let apart2 = |[a, b]: [f64; 2]| (a - x).powi(2) + (b - z).powi(2);
-            let nodes = self.0.iter().map(|(place, depth)| (apart2(*place), *depth));
-            let nearest = nodes.min_by(|a, b| a.0.total_cmp(&b.0));
-            nearest.map_or(0.0, |(_, depth)| depth)
-        };
-        places(march)
-            .map(|place| weight_of_depth(depth(place)))
-            .collect()
-    }
-}
-
-/// (x, z) of the nodes of the articulating surface.
-fn places(march: &March) -> impl Iterator<Item = [f64; 2]> {
-    let insert = march.insert();
-    let nodes = insert.surface_nodes().iter();
-    nodes.map(|&node| {
-        let node = insert.mesh().nodes[node as usize];
-        [node.x, node.z]
-    })
 }

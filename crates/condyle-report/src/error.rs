@@ -87,6 +87,9 @@ pub enum ReportError {
         /// The picture that needs them.
         picture: &'static str,
     },
+    /// A mesh is no longer what the run wrote.
+    #[error(transparent)]
+    Damaged(#[from] condyle_io::results::DamagedFile),
     /// A mesh is damaged.
     #[error(transparent)]
     Mesh(#[from] condyle_io::mesh::MeshFileError),

@@ -207,6 +207,53 @@ fn an_insert_worn_through_is_physics_and_what_was_computed_is_kept() {
     assert_eq!(again.code, Some(3));
 }
 
+/// On a mesh so coarse the load rests on few nodes, between which Newton's method went to and fro for ever; found
+/// among random designs.
+#[test]
+fn a_femur_settles_on_few_nodes() {
+    let bench = Bench::with_case(
+        "[femur]\ndistal_radius_mm = 16.723\nposterior_radius_mm = 12.443\ntransition_deg = 16.31\n\
+         coronal_radius_mm = 58.76\nspacing_mm = 37.214\n[insert]\nsagittal_radius_mm = 32.127\n\
+         coronal_radius_mm = 63.363\nspacing_mm = 37.214\nthickness_mm = 14.168\nedge_mm = 2.375\nlayers = 1\n\
+         [machine]\nflexion_offset_deg = 1.118\nvv_axis_medial_mm = 6.427\n\
+         [machine.axial_force]\nknots_n = [[0, 98.228], [13, 1523.7], [60, 98.228]]\n",
+    );
+    let said = bench.say(&["check", "case.toml"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+}
+
+/// Friction so steep that the steps asked for need many times the machine's inertia.
+const HEAVY: &str = "\
+[contact]
+friction = 0.259
+slip_tolerance_mm_per_s = 0.07
+[insert]
+edge_mm = 2.5
+layers = 1
+[march]
+updates = 1
+[time]
+increments = 23
+integrator = \"explicit\"
+explicit_step_s = 1e-4
+[accuracy]
+estimate = false
+";
+
+#[test]
+fn inertia_that_explicit_steps_were_given_is_not_passed_over() {
+    let bench = Bench::with_case(HEAVY);
+    let said = bench.say(&["run", "case.toml", "--out", "out"]);
+    if said.code == Some(0) {
+        let doubts = bench.summary("out").plausibility;
+        assert!(doubts.iter().any(|doubt| doubt.check == "added_inertia"));
+    }
+    for words in ["times the machine's inertia added to it", "explicit_step_s"] {
+        let all = format!("{}{}", said.out, said.err);
+        assert!(all.contains(words), "{words}: {all}");
+    }
+}
+
 #[test]
 fn a_femur_that_falls_off_in_the_cycle_is_physics() {
     let pushed = "[machine.ap_force]\nknots_n = [[0, 0], [50, 2000], [100, 0]]\n";
@@ -217,6 +264,12 @@ fn a_femur_that_falls_off_in_the_cycle_is_physics() {
         3,
         &[
             "update 1: the femur touches the insert nowhere",
+            "start_mm (0.0, 0.0)",
+            "ends at AP ",
+            " mm, ML ",
+            " deg, VV ",
+            "the AP force and its sign, and the springs",
+            "vv_axis_medial_mm",
             "kept in out",
         ],
     );

@@ -60,6 +60,14 @@ fn the_summary_states_the_discretisation_error_by_its_parts() {
         "mass_loss_mg",
         "max_depth_percent",
         "max_depth_mm",
+        "peak_pressure_percent",
+        "peak_pressure_mpa",
+        "peak_contact_area_percent",
+        "peak_contact_area_mm2",
+        "ap_range_percent",
+        "ap_range_mm",
+        "ie_range_percent",
+        "ie_range_deg",
     ] {
         for part in ["increments", "updates", "mesh", "slip_tolerance", "total"] {
             let number = summary["error"][table][part].as_f64();
@@ -74,6 +82,40 @@ fn the_summary_states_the_discretisation_error_by_its_parts() {
     ] {
         assert!(said.out.contains(words), "{words}: {}", said.out);
     }
+}
+
+#[test]
+fn peaks_say_of_which_cycle_they_are() {
+    let bench = done();
+    let summary = bench.summary("out");
+    let table = text(&bench, "wear.csv");
+    let rows: Vec<Vec<f64>> = table
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let cycles_before = |row: usize| row.checked_sub(1).map_or(0.0, |row| rows[row][0]);
+    let row_of = |cycle| {
+        (0..rows.len())
+            .find(|&row| cycles_before(row) == cycle)
+            .unwrap()
+    };
+    assert_eq!(
+        rows[row_of(summary.peak_pressure_cycle)][4],
+        summary.peak_pressure_mpa
+    );
+    assert_eq!(
+        rows[row_of(summary.peak_contact_area_cycle)][5],
+        summary.peak_contact_area_mm2
+    );
+    let (first, last) = (&rows[0], &rows[row_of(summary.last_cycle)]);
+    assert_eq!(last, rows.last().unwrap());
+    assert_eq!(first[4], summary.first_cycle_peak_pressure_mpa);
+    assert_eq!(last[4], summary.last_cycle_peak_pressure_mpa);
+    assert_eq!(first[5], summary.first_cycle_contact_area_mm2);
+    assert_eq!(last[5], summary.last_cycle_contact_area_mm2);
+    let said = bench.say(&["run", "case.toml", "--out", "again"]).out;
+    assert!(said.contains(", in the first cycle\n"), "{said}");
 }
 
 #[test]
@@ -97,6 +139,7 @@ fn the_folder_has_the_files_of_the_contract_and_no_others() {
     let expected = [
         "case.toml",
         "checkpoint",
+        "checksums",
         "insert.pvd",
         "insert_0000.vtu",
         "insert_0001.vtu",

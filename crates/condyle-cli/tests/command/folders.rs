@@ -143,6 +143,32 @@ fn a_damaged_checkpoint_is_refused_with_advice() {
 }
 
 #[test]
+fn a_damaged_mesh_is_found_by_name_wherever_it_is_read() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    let file = bench.path("out/insert_0003.vtu");
+    let mut bytes = fs::read(&file).unwrap();
+    // A digit of a number far into the data: still a mesh, and another one.
+    let place = bytes.len() - bytes.len() / 3;
+    bytes[place] ^= 1;
+    fs::write(&file, &bytes).unwrap();
+    let commands: [&[&str]; 2] = [
+        &["report", "out"],
+        &["run", "case.toml", "--out", "out", "--resume"],
+    ];
+    for command in commands {
+        let said = bench.say(command);
+        assert_ne!(said.code, Some(0), "{command:?}");
+        for words in ["insert_0003.vtu: the file is damaged", "--force"] {
+            assert!(said.err.contains(words), "{words}: {}", said.err);
+        }
+    }
+    fs::remove_file(bench.path("out/summary.json")).unwrap();
+    let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
+    said.assert_refused(2, &["insert_0003.vtu: the file is damaged"]);
+}
+
+#[test]
 fn the_default_folder_has_the_name_of_the_case() {
     let bench = Bench::with_case(SMALL);
     assert_eq!(bench.say(&["run", "case.toml"]).code, Some(0));

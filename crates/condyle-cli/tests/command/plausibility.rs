@@ -67,6 +67,31 @@ fn wear_at_the_rim_comes_first_wherever_the_run_is_read() {
 }
 
 #[test]
+fn a_femur_that_rides_off_is_told_by_the_rim_the_springs_and_the_motion() {
+    let loose = "[machine.springs]\nposterior_n_per_mm = 3.0\nanterior_n_per_mm = 3.0\n";
+    let text = ON_THE_RIM.replace("[machine.springs]\n", loose);
+    let bench = Bench::with_case(&text);
+    bench.run_into("out");
+    let found = checks(&bench, "out");
+    for check in ["femur_beyond_rim", "springs_far", "ap_range"] {
+        assert!(
+            found.iter().any(|found| found == check),
+            "{check}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn a_side_that_carries_nothing_is_told() {
+    let bench = Bench::with_case(&format!(
+        "[machine]\nvv_axis_medial_mm = 30.0\n{SMALL}[accuracy]\nestimate = false\n"
+    ));
+    bench.run_into("out");
+    let found = checks(&bench, "out");
+    assert!(found.iter().any(|found| found == "lift_off"), "{found:?}");
+}
+
+#[test]
 fn pressure_beyond_yield_is_told_with_area_and_time() {
     let bench = Bench::with_case(SMALL);
     bench.run_into("out");
@@ -80,6 +105,9 @@ fn pressure_beyond_yield_is_told_with_area_and_time() {
         warning.message.contains("mm2 are pressed harder"),
         "{warning:?}"
     );
+    for cycle in ["in the first cycle", "in the last cycle"] {
+        assert!(warning.message.contains(cycle), "{warning:?}");
+    }
 }
 
 /// Nothing of what the checks look at is lost with the process that computed it.

@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use super::{
     checkpoint::{Checkpoint, CheckpointError},
+    checksums::{CHECKSUMS, DamagedFile, check_all, is_listed, write_checksum},
     insert_series::{insert_file_name, insert_pvd, insert_vtu},
     lock::{FolderLock, LOCK},
     replace::{beside, replace_file, replace_file_durably},
@@ -125,6 +126,9 @@ pub enum ResultsError {
         /// Why.
         source: io::Error,
     },
+    /// A mesh of the run that is no longer what the run wrote.
+    #[error(transparent)]
+    Damaged(#[from] DamagedFile),
     /// An insert that cannot be written.
     #[error(transparent)]
     Insert(#[from] MeshFileError),
@@ -137,7 +141,7 @@ pub struct ResultsFolder {
 }
 
 /// Files of a run that are never written over by another; the one written first comes first.
-pub(super) const SIGNS_OF_A_RUN: [&str; 8] = [
+pub(super) const SIGNS_OF_A_RUN: [&str; 9] = [
     "case.toml",
     "checkpoint",
     "summary.json",
@@ -146,6 +150,7 @@ pub(super) const SIGNS_OF_A_RUN: [&str; 8] = [
     "insert.pvd",
     "insert_0000.vtu",
     "report.html",
+    CHECKSUMS,
 ];
 
 /// Seconds spent by the parts of a run that is not done; gone once it is, so that what is left
@@ -233,7 +238,7 @@ impl ResultsFolder {
     /// `case_toml` is the case as [`Self::write_case`] would write it.
     ///
     /// # Errors
-    /// A folder without a run, with one of other inputs, or with a damaged checkpoint.
+    /// A folder without a run, with one of other inputs, or with a damaged checkpoint or mesh.
     pub fn reopen(
         path: &Path,
         case_toml: &str,
@@ -262,6 +267,7 @@ impl ResultsFolder {
                 version: checkpoint.version,
             });
         }
+        check_all(&folder.path)?;
         let last = checkpoint.state.updates.last();
         let done = last.is_some_and(|last| last.cycles >= cycles);
         Ok(match folder.summary() {
@@ -393,7 +399,15 @@ impl ResultsFolder {
 
     fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {
         let file = self.file(name);
-        replace_file(&file, bytes).map_err(|source| ResultsError::Refused { file, source })
+        let refused = |source| ResultsError::Refused {
+            file: self.file(name),
+            source,
+        };
+        replace_file(&file, bytes).map_err(refused)?;
+        if is_listed(name) {
+            write_checksum(&self.path, name, bytes).map_err(refused)?;
+        }
+        Ok(())
     }
 
     fn file(&self, name: &str) -> PathBuf {

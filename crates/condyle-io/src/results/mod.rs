@@ -1,6 +1,8 @@
 //! The results folder: what a run writes, one file a table, all readable without condyle.
 
 mod checkpoint;
+#[cfg(feature = "file-system")]
+mod checksums;
 mod error_estimate;
 #[cfg(feature = "file-system")]
 mod folder;
@@ -22,12 +24,14 @@ pub use condyle::machine::{
 };
 
 pub use checkpoint::{Checkpoint, CheckpointError};
-pub use error_estimate::{ErrorEstimate, ErrorParts, Part};
+#[cfg(feature = "file-system")]
+pub use checksums::{DamagedFile, check_file};
+pub use error_estimate::{ErrorEstimate, ErrorParts, Part, Quantity, QuantityErrors};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
 #[cfg(feature = "file-system")]
 pub use lock::FolderLock;
 pub use plausibility::PlausibilityWarning;
-pub use summary::{Summary, SummaryInput};
+pub use summary::{Summary, SummaryInput, joint_range};
 pub use tables::{kinematics_csv, wear_csv};

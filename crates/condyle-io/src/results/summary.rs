@@ -52,8 +52,29 @@ pub struct Summary {
     pub error: Option<ErrorEstimate>,
     /// Highest pressure anywhere, between nodes too, in any cycle, MPa.
     pub peak_pressure_mpa: f64,
+    /// Cycles done before the cycle that has it.
+    #[serde(default)]
+    pub peak_pressure_cycle: f64,
+    /// Highest pressure of the first cycle, MPa.
+    #[serde(default)]
+    pub first_cycle_peak_pressure_mpa: f64,
+    /// Highest pressure of the last cycle solved, MPa.
+    #[serde(default)]
+    pub last_cycle_peak_pressure_mpa: f64,
     /// Largest contact area in any cycle, mm2.
     pub peak_contact_area_mm2: f64,
+    /// Cycles done before the cycle that has it.
+    #[serde(default)]
+    pub peak_contact_area_cycle: f64,
+    /// Largest contact area of the first cycle, mm2.
+    #[serde(default)]
+    pub first_cycle_contact_area_mm2: f64,
+    /// Largest contact area of the last cycle solved, mm2.
+    #[serde(default)]
+    pub last_cycle_contact_area_mm2: f64,
+    /// Cycles done before the last cycle solved.
+    #[serde(default)]
+    pub last_cycle: f64,
     /// Range of AP in the first cycle, mm.
     pub ap_range_mm: f64,
     /// Range of IE in the first cycle, degrees.
@@ -111,8 +132,9 @@ impl Summary {
         let explicit = Some(&state.counters).filter(|counters| counters.explicit_steps > 0);
         let cycles_solved: f64 = updates.iter().map(|update| update.cycles_solved).sum();
         let per_cycle = |work: u64| work as f64 / cycles_solved;
-        let largest =
-            |value: fn(&UpdateRecord) -> f64| updates.iter().map(value).fold(0.0, f64::max);
+        let first = updates.first()?;
+        let pressure = Largest::of(state, |update| update.peak_pressure_mpa);
+        let area = Largest::of(state, |update| update.peak_contact_area_mm2);
         Some(Self {
             plausibility: Vec::new(),
             cycles: last.cycles,
@@ -121,10 +143,17 @@ impl Summary {
             volume_loss_mesh_mm3: last.volume_loss_mesh_mm3,
             max_depth_mm: last.max_depth_mm,
             error: input.error,
-            peak_pressure_mpa: largest(|update| update.peak_pressure_mpa),
-            peak_contact_area_mm2: largest(|update| update.peak_contact_area_mm2),
-            ap_range_mm: range(first_cycle, AP),
-            ie_range_deg: range(first_cycle, IE),
+            peak_pressure_mpa: pressure.value,
+            peak_pressure_cycle: pressure.cycle,
+            first_cycle_peak_pressure_mpa: first.peak_pressure_mpa,
+            last_cycle_peak_pressure_mpa: last.peak_pressure_mpa,
+            peak_contact_area_mm2: area.value,
+            peak_contact_area_cycle: area.cycle,
+            first_cycle_contact_area_mm2: first.peak_contact_area_mm2,
+            last_cycle_contact_area_mm2: last.peak_contact_area_mm2,
+            last_cycle: state.cycles_before(updates.len() - 1),
+            ap_range_mm: joint_range(first_cycle, AP),
+            ie_range_deg: joint_range(first_cycle, IE),
             medial_load_share: medial_load_share(first_cycle),
             updates: updates.len(),
             increments: input.increments,
@@ -151,8 +180,31 @@ impl Summary {
     }
 }
 
+/// The largest value of any cycle solved.
+struct Largest {
+    value: f64,
+    /// Cycles done before the first cycle that has it.
+    cycle: f64,
+}
+
+impl Largest {
+    fn of(state: &MarchState, value: fn(&UpdateRecord) -> f64) -> Self {
+        let mut largest = Self {
+            value: 0.0,
+            cycle: 0.0,
+        };
+        for (number, update) in state.updates.iter().enumerate() {
+            if value(update) > largest.value {
+                largest.value = value(update);
+                largest.cycle = state.cycles_before(number);
+            }
+        }
+        largest
+    }
+}
+
 /// Largest less smallest position of a joint, in the unit of files.
-fn range(rows: &[CycleRow], joint: JointIndex) -> f64 {
+pub fn joint_range(rows: &[CycleRow], joint: JointIndex) -> f64 {
     let values = || rows.iter().map(|row| joint.of(&row.positions));
     let (low, high) = (
         values().fold(f64::INFINITY, f64::min),

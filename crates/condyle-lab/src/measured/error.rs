@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use condyle_io::keyed::Problems;
-use condyle_io::mesh::MeshFileError;
+use condyle_io::{mesh::MeshFileError, results::DamagedFile};
 use condyle_report::ReportError;
 use thiserror::Error;
 
@@ -16,6 +16,9 @@ pub enum CompareError {
     /// The results folder.
     #[error(transparent)]
     Results(#[from] ReportError),
+    /// A mesh of the results folder that is no longer what the run wrote.
+    #[error(transparent)]
+    Damaged(#[from] DamagedFile),
     /// A mesh of the results folder.
     #[error(transparent)]
     Mesh(#[from] MeshFileError),

@@ -50,43 +50,60 @@ pub(super) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
     })
 }
 
-/// The node that is pressed hardest lies within 1.5 mm of the rim.
+/// The node that is pressed hardest, in the first or the last cycle, lies within 1.5 mm of the rim.
 pub(super) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let pressure_mpa = finished.march.fields().peak_pressure_mpa.iter();
-    let (node, &highest) = pressure_mpa.enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
-    let from_rim_mm = finished.distance_to_rim_mm(node);
-    (highest > 0.0 && from_rim_mm < NEAR_RIM_MM).then(|| {
-        let place = finished.surface.positions[node];
-        PlausibilityWarning {
-            check: "pressure_at_rim".to_owned(),
-            value: from_rim_mm,
-            limit: NEAR_RIM_MM,
-            unit: "mm".to_owned(),
-            message: format!(
-                "the last cycle's highest pressure, {highest:.1} MPa, is {from_rim_mm:.2} mm from the rim, at x {:.1} mm, z \
-                 {:.1} mm",
-                place.x, place.z
-            ),
-            advice: "The femur rides on an edge: see the placement of the bodies, their axes and sides."
+    let at_rim = pressures(finished)
+        .into_iter()
+        .filter_map(|(cycle, pressures)| {
+            let pressed = pressures.iter().copied().enumerate();
+            let (node, highest) = pressed.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let from_rim_mm = finished.distance_to_rim_mm(node);
+            let is_at_rim = highest > 0.0 && from_rim_mm < NEAR_RIM_MM;
+            is_at_rim.then_some((from_rim_mm, highest, node, cycle))
+        });
+    let (from_rim_mm, highest, node, cycle) = at_rim.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let place = finished.surface.positions[node];
+    Some(PlausibilityWarning {
+        check: "pressure_at_rim".to_owned(),
+        value: from_rim_mm,
+        limit: NEAR_RIM_MM,
+        unit: "mm".to_owned(),
+        message: format!(
+            "the {cycle} cycle's highest pressure, {highest:.1} MPa, is {from_rim_mm:.2} mm from the rim, at x {:.1} mm, z \
+             {:.1} mm",
+            place.x, place.z
+        ),
+        advice:
+            "The femur rides on an edge: see the placement of the bodies, their axes and sides."
                 .to_owned(),
-        }
     })
+}
+
+/// Highest pressure at every surface node in the first and in the last cycle, MPa; once where they are the same.
+fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
+    let state = finished.march.state();
+    let last = state.fields.as_ref().filter(|_| state.updates.len() > 1);
+    let last = last.map(|fields| ("last", fields.peak_pressure_mpa.as_slice()));
+    let first = ("first", state.first_pressure_mpa.as_slice());
+    [first].into_iter().chain(last).collect()
 }
 
 /// Pressure beyond what polyethylene bears without yielding below the surface.
 pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FIRST_YIELD * YIELD_MPA;
     let peak = finished.summary.peak_pressure_mpa;
+    let cycles = pressures(finished).into_iter();
+    let extents: Vec<_> = cycles
+        .map(|(cycle, pressures)| extent(finished, cycle, pressures, limit))
+        .collect();
     (peak > limit).then(|| PlausibilityWarning {
         check: "pressure_beyond_yield".to_owned(),
         value: peak,
         limit,
         unit: "MPa".to_owned(),
         message: format!(
-            "the highest pressure is {peak:.1} MPa, and polyethylene yields below the surface from about {limit:.1} MPa; in \
-             the last cycle {:.0} mm2 are pressed harder than that, in {:.0} % of the first one",
-            area_above_mm2(finished, limit),
-            time_above_percent(finished, limit)
+            "the highest pressure is {peak:.1} MPa, and polyethylene yields below the surface from about {limit:.1} MPa; {}",
+            extents.join("; ")
         ),
         advice: "A layer of springs does not yield: take pressure there as an upper bound, and wear, which goes by \
                  force times sliding, as less affected."
@@ -94,25 +111,22 @@ pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
     })
 }
 
-/// Area whose highest pressure in the last cycle is above a limit, mm2.
-fn area_above_mm2(finished: &Finished<'_>, limit_mpa: f64) -> f64 {
-    let pressures = &finished.march.fields().peak_pressure_mpa;
+/// Which area is pressed harder than a limit in a cycle, and how long, in words.
+fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f64) -> String {
     let shares = pressures.iter().zip(&finished.surface.shares);
     let above = shares.filter(|(pressure_mpa, _)| **pressure_mpa > limit_mpa);
-    above.map(|(_, share)| share.area_mm2).sum()
+    let area_mm2: f64 = above.map(|(_, share)| share.area_mm2).sum();
+    format!(
+        "in the {cycle} cycle {area_mm2:.0} mm2 are pressed harder than that, for {:.0} % of it",
+        time_above_percent(finished, cycle, limit_mpa)
+    )
 }
 
-/// Part of the first cycle with a pressure above a limit, in the activity that has most of it, %.
-fn time_above_percent(finished: &Finished<'_>, limit_mpa: f64) -> f64 {
-    let activities = finished.march.state().activities.iter();
-    let first_cycles = activities.filter_map(|activity| activity.first_and_last.as_ref());
-    let percents = first_cycles.map(|(first, _)| {
-        let above = first
-            .rows
-            .iter()
-            .filter(|row| row.peak_pressure_mpa > limit_mpa);
-        100.0 * above.count() as f64 / first.rows.len() as f64
-    });
+/// Part of the first or the last cycle with a pressure above a limit, in the activity that has most of it, %.
+fn time_above_percent(finished: &Finished<'_>, cycle: &str, limit_mpa: f64) -> f64 {
+    let solved = finished.cycles().filter(|solved| solved.name == cycle);
+    let percents =
+        solved.map(|solved| solved.percent_of_rows(|row| row.peak_pressure_mpa > limit_mpa));
     percents.fold(0.0, f64::max)
 }
 

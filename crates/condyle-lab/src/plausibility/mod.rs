@@ -6,34 +6,48 @@
 
 mod bodies;
 mod finished;
+mod loads;
+mod motions;
 mod numbers;
+mod rim;
 
 use condyle::evolve::March;
 use condyle_io::results::{PlausibilityWarning, Summary};
 
 use finished::Finished;
 
-/// A check: none where the run is as it should be.
+/// A check of one number: none where the run is as it should be.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
-/// Every check, that which spoils the answer most first.
-const CHECKS: [Check; 11] = [
+/// Where the femur is on the insert.
+const PLACE: [Check; 3] = [
     bodies::wear_at_rim,
+    rim::femur_beyond_rim,
     bodies::pressure_at_rim,
+];
+
+/// What the polyethylene bears, and how well the model was solved.
+const REST: [Check; 8] = [
     bodies::pressure_beyond_yield,
     bodies::thin_polyethylene,
     numbers::mesh_quality,
     numbers::counts_of_volume,
     numbers::error_of_mass,
     numbers::error_of_depth,
+    numbers::added_inertia,
     numbers::cycles_not_repeating,
-    numbers::ap_range,
-    numbers::ie_range,
 ];
 
 /// What makes a finished march doubtful, the worst first.
 pub(crate) fn warnings(march: &March, summary: &Summary) -> Vec<PlausibilityWarning> {
     let finished = Finished::new(march, summary);
-    let warnings = CHECKS.iter().filter_map(|check| check(&finished));
-    warnings.collect()
+    let one = |check: &Check| check(&finished);
+    let mut warnings = Vec::new();
+    warnings.extend(PLACE.iter().filter_map(one));
+    warnings.extend(loads::not_reached(&finished));
+    warnings.extend(loads::springs_far(&finished));
+    warnings.extend(motions::ranges(&finished));
+    warnings.extend(motions::lift_off(&finished));
+    warnings.extend(REST.iter().filter_map(one));
+    warnings
 }

@@ -246,7 +246,8 @@ impl<'a> Run<'a> {
         if self.case.accuracy.estimate {
             let mut watch = || on_event(RunEvent::Estimating);
             let mut clock = Clock::default();
-            let error = clock.time(|| accuracy::estimate(self.case, &self.march, &mut watch))?;
+            let error =
+                clock.time(|| accuracy::estimate(self.case, &self.march, &summary, &mut watch))?;
             summary.error = error.map(|mut error| {
                 error.wall_s = clock.spent.as_secs_f64();
                 error

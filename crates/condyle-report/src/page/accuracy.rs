@@ -9,17 +9,25 @@ use crate::results::contents::Results;
 /// The table of estimated errors.
 #[derive(Serialize)]
 pub(super) struct Accuracy {
-    rows: Vec<ErrorPart>,
+    rows: Vec<Row>,
+    parts: Vec<PartOfError>,
     /// Why parts have no estimate, a sentence each.
     missing: Vec<String>,
 }
 
-/// An error of mass loss and of maximum depth: %, mg, %, mm.
+/// Where an error comes from, and what would take it away.
 #[derive(Serialize)]
-struct ErrorPart {
+struct PartOfError {
     name: &'static str,
-    values: [String; 4],
     meaning: &'static str,
+}
+
+/// The errors of a number: its parts and all of them together in %, and that in its unit.
+#[derive(Serialize)]
+struct Row {
+    name: &'static str,
+    percents: [String; PARTS.len()],
+    in_unit: String,
 }
 
 /// Parts of the error: key in the summary, name, and what would take the error away.
@@ -39,31 +47,50 @@ const PARTS: [(&str, &str, &str); 5] = [
     ("total", "Together", "root of the sum of squares"),
 ];
 
+/// Numbers that have an error: name with unit, and the keys of that in % and in the unit.
+const NUMBERS: [(&str, &str, &str); 6] = [
+    ("Mass loss, mg", "mass_loss_percent", "mass_loss_mg"),
+    ("Maximum depth, mm", "max_depth_percent", "max_depth_mm"),
+    (
+        "Peak pressure, MPa",
+        "peak_pressure_percent",
+        "peak_pressure_mpa",
+    ),
+    (
+        "Largest contact area, mm\u{b2}",
+        "peak_contact_area_percent",
+        "peak_contact_area_mm2",
+    ),
+    ("AP range, mm", "ap_range_percent", "ap_range_mm"),
+    ("IE range, degrees", "ie_range_percent", "ie_range_deg"),
+];
+
 /// What the summary estimates; none where it estimates nothing.
 pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
     let error = results.summary.as_ref()?.object("error")?;
-    let part = |(key, name, meaning): &(&'static str, &'static str, &'static str)| ErrorPart {
-        name,
-        values: values(error, key),
-        meaning,
-    };
+    let stated = NUMBERS
+        .iter()
+        .filter(|(_, percent, _)| error.contains_key(*percent));
+    let parts = PARTS.iter();
     Some(Accuracy {
-        rows: PARTS.iter().map(part).collect(),
+        rows: stated.map(|number| row(error, number)).collect(),
+        parts: parts
+            .map(|&(_, name, meaning)| PartOfError { name, meaning })
+            .collect(),
         missing: missing(error),
     })
 }
 
-fn values(error: &Map<String, Value>, part: &str) -> [String; 4] {
-    let number = |quantity: &str| error.get(quantity)?.get(part)?.as_f64();
-    let shown = |quantity: &str, digits: fn(f64) -> String| {
-        number(quantity).map_or_else(|| String::from("unknown"), digits)
+fn row(error: &Map<String, Value>, &(name, percent, in_unit): &(&'static str, &str, &str)) -> Row {
+    let shown = |table: &str, part: &str, digits: fn(f64) -> String| {
+        let number = error.get(table).and_then(|table| table.get(part)?.as_f64());
+        number.map_or_else(|| String::from("unknown"), digits)
     };
-    [
-        shown("mass_loss_percent", |percent| fixed(percent, 2)),
-        shown("mass_loss_mg", |mass| significant(mass, 2)),
-        shown("max_depth_percent", |percent| fixed(percent, 2)),
-        shown("max_depth_mm", |depth| significant(depth, 2)),
-    ]
+    Row {
+        name,
+        percents: PARTS.map(|(part, ..)| shown(percent, part, |error| fixed(error, 2))),
+        in_unit: shown(in_unit, "total", |error| significant(error, 2)),
+    }
 }
 
 fn missing(error: &Map<String, Value>) -> Vec<String> {

@@ -98,10 +98,52 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "Largest contact pressure anywhere, between the nodes of the mesh too, and at any instant.",
             ),
             known(
+                "peak_pressure_cycle",
+                "Cycles before that peak",
+                "",
+                "After how many cycles the cycle with that pressure comes; 0 is the first.",
+            ),
+            known(
+                "first_cycle_peak_pressure_mpa",
+                "Peak pressure, first cycle",
+                "MPa",
+                "Of the unworn insert.",
+            ),
+            known(
+                "last_cycle_peak_pressure_mpa",
+                "Peak pressure, last cycle",
+                "MPa",
+                "Of the last cycle that was solved.",
+            ),
+            known(
                 "peak_contact_area_mm2",
                 "Largest contact area",
                 "mm\u{b2}",
                 "Largest area in contact at any instant, both sides together.",
+            ),
+            known(
+                "peak_contact_area_cycle",
+                "Cycles before that area",
+                "",
+                "After how many cycles the cycle with that area comes; 0 is the first.",
+            ),
+            known(
+                "first_cycle_contact_area_mm2",
+                "Largest contact area, first cycle",
+                "mm\u{b2}",
+                "Of the unworn insert.",
+            ),
+            known(
+                "last_cycle_contact_area_mm2",
+                "Largest contact area, last cycle",
+                "mm\u{b2}",
+                "Of the last cycle that was solved.",
+            ),
+            known(
+                "last_cycle",
+                "Cycles before the last one solved",
+                "",
+                "The last interval of the march is worn by that cycle.",
             ),
             known(
                 "medial_load_share",

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle_io::mesh::read_vtu_points;
+use condyle_io::{mesh::read_vtu_points, results::check_file};
 
 use super::{
     case::side, contents::Results, side::Side, summary::Summary, surface::SurfaceFields,
@@ -51,6 +51,7 @@ fn surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
     let Some(path) = last_mesh(folder)? else {
         return Ok(None);
     };
+    check_file(&path)?;
     let file = read_vtu_points(&path)?;
     SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path).map(Some)
 }

@@ -288,13 +288,20 @@ impl March {
         );
         self.state.updates.push(record);
         self.state.counters = solved.counters;
-        self.state.fields = Some(NodeFields::of(
+        let fields = NodeFields::of(
             &with_activities(&self.test, &solved.cycles),
             &rates,
             &self.insert,
             &self.state.depths,
-        ));
+        );
+        if self.state.fields.is_none() {
+            self.state
+                .first_pressure_mpa
+                .clone_from(&fields.peak_pressure_mpa);
+        }
+        self.state.fields = Some(fields);
         let snapshot = Snapshot {
+            update: self.state.updates.len() - 1,
             step: step.record(rates),
             mesh_nodes: before.mesh_nodes,
             depths: before.depths,
@@ -315,11 +322,11 @@ impl March {
         if rows().any(|row| row.axial_force_n != 0.0) {
             return Ok(());
         }
-        let (activity, cycle) = (&self.test.activities[0], &solved.cycles[0]);
         Err(MarchError::lost_contact(
             self.state.updates.len() + 1,
-            &activity.machine,
-            &cycle.end,
+            &self.test,
+            &solved.cycles[0].end,
+            solved.counters.added_inertia,
         ))
     }
 

@@ -3,11 +3,14 @@
 use condyle_fem::HexMesh;
 use thiserror::Error;
 
-use super::PlacementError;
+use super::{PlacementError, WearTest};
 use crate::{
     Vec3,
-    machine::{CycleError, Machine, MachineState},
+    machine::{CycleError, MachineState, Readings},
 };
+
+/// A machine with more inertia added than this, as a multiple of its own, moves by that and not by its loads.
+const HEAVY: f64 = 1.0;
 
 /// Why a march ended early.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -27,16 +30,32 @@ pub enum MarchError {
     },
     /// The femur fell off the insert.
     #[error(
-        "update {update}: the femur touches the insert nowhere in the whole cycle, and ends it at {joint} {at_mm:.1} mm; \
-         check loads, springs, axes and start_mm"
+        "update {update}: the femur touches the insert nowhere in the whole cycle, which it began lowered at start_mm \
+         ({start_x:.1}, {start_z:.1}) and ends at {readings}; where AP or ML is far, see start_mm, axes and sides, the AP force \
+         and its sign, and the springs that hold it, where VV is, vv_axis_medial_mm"
     )]
     LostContact {
         /// Which update, from 1.
         update: usize,
-        /// The joint along which the femur leaves, as messages call it.
-        joint: &'static str,
-        /// Where that is at the end of the cycle.
-        at_mm: f64,
+        /// Where the femur was lowered, along x.
+        start_x: f64,
+        /// Where the femur was lowered, along z.
+        start_z: f64,
+        /// Where the joints are at the end of the cycle.
+        readings: Readings,
+    },
+    /// Inertia that explicit steps were given threw the femur off.
+    #[error(
+        "update {update}: the femur touches the insert nowhere in the whole cycle: the steps of explicit_step_s are stable \
+         only with {added_inertia:.0} times the machine's inertia added to it, so steeply does friction rise with the speed, and \
+         that much throws the femur off; set a shorter explicit_step_s (0 takes the longest stable step), a larger \
+         slip_tolerance_mm_per_s, or integrator = \"implicit\""
+    )]
+    ThrownOff {
+        /// Which update, from 1.
+        update: usize,
+        /// The most inertia that was added, as a multiple of the machine's own.
+        added_inertia: f64,
     },
     /// The insert wore through.
     #[error(
@@ -85,15 +104,25 @@ impl MarchError {
         }
     }
 
-    /// That of a femur that has left the insert; along the first joint in files that settling zeroes.
-    pub(super) fn lost_contact(update: usize, machine: &Machine, end: &MachineState) -> Self {
-        let mechanism = machine.mechanism;
-        let mut in_files = mechanism.in_files.into_iter();
-        let leaving = in_files.find(|&index| mechanism.joint(index).is_zeroed);
+    /// That of a femur that has left the insert in a test, at the end of a cycle.
+    pub(super) fn lost_contact(
+        update: usize,
+        test: &WearTest,
+        end: &MachineState,
+        added_inertia: f64,
+    ) -> Self {
+        if added_inertia > HEAVY {
+            return Self::ThrownOff {
+                update,
+                added_inertia,
+            };
+        }
+        let (start_x, start_z) = test.start_mm;
         Self::LostContact {
             update,
-            joint: leaving.map_or("", |index| mechanism.joint(index).symbol),
-            at_mm: leaving.map_or(0.0, |index| index.of(&end.now.positions)),
+            start_x,
+            start_z,
+            readings: Readings::new(test.machine().mechanism, &end.now.positions),
         }
     }
 }

@@ -32,7 +32,7 @@ pub enum PlacementError {
     /// The femur slides off or tips over.
     #[error(
         "the femur does not settle on the insert under the axial load: {residual_n:.3e} N are left over at \
-         {}; check axes and start_mm",
+         {}; check axes and start_mm, and take a smaller edge_mm where the load rests on few nodes",
         listed(shifts_mm)
     )]
     NotSettled {

@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    CycleRecord, DepthFields, NodeFields, UpdateRecord, accumulated_error::AccumulatedError,
-    step_record::StepRecord,
+    CycleRecord, DepthField, DepthFields, NodeFields, UpdateRecord,
+    accumulated_error::AccumulatedError, step_record::StepRecord,
 };
 use crate::{
     Vec3,
     contact::ContactState,
+    geometry::Insert,
     machine::{MachineState, SolverCounters, WarmStart},
 };
 
@@ -19,6 +20,8 @@ pub const SNAPSHOT_PARTS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594
 /// A step on the way, and what it began with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
+    /// Which of the updates it led to, from 0.
+    pub update: usize,
     /// The step.
     pub step: StepRecord,
     /// Nodes of the mesh before it.
@@ -29,6 +32,33 @@ pub struct Snapshot {
     pub contact: ContactState,
     /// The machine of every activity at the end of its cycle.
     pub machines: Vec<MachineState>,
+}
+
+impl Snapshot {
+    /// The same of the insert of its test with the surface lower by `down_mm` at every node, where that is not
+    /// negative, and else higher.
+    pub fn lowered(&self, unworn: &Insert, down_mm: Vec<f64>) -> Self {
+        let mut insert = unworn.clone();
+        insert.restore(self.mesh_nodes.clone(), &self.depths.total_mm());
+        self.worn_on(insert, self.depths.clone(), down_mm)
+    }
+
+    /// The same on another insert, which is lowered from unworn by `down_mm` at once.
+    pub fn on(&self, unworn: &Insert, down_mm: Vec<f64>) -> Self {
+        let depths = DepthFields::none(down_mm.len());
+        self.worn_on(unworn.clone(), depths, down_mm)
+    }
+
+    fn worn_on(&self, mut insert: Insert, mut depths: DepthFields, down_mm: Vec<f64>) -> Self {
+        insert.wear_down(&insert.surface(), &down_mm);
+        depths.add(&[DepthField::wear(down_mm)]);
+        Self {
+            mesh_nodes: insert.mesh().nodes.clone(),
+            depths,
+            contact: ContactState::default(),
+            ..self.clone()
+        }
+    }
 }
 
 /// The machine of an activity, and what it did.
@@ -60,6 +90,8 @@ pub struct MarchState {
     pub updates: Vec<UpdateRecord>,
     /// What the last of them found at every node of the surface; none before the first.
     pub fields: Option<NodeFields>,
+    /// Highest pressure of the first cycle at every node of the surface, MPa; none before the first update.
+    pub first_pressure_mpa: Vec<f64>,
     /// Nodes of the mesh as worn.
     pub mesh_nodes: Vec<Vec3>,
     /// How deep the surface has gone down, and by what.
@@ -96,6 +128,7 @@ impl MarchState {
         Self {
             updates: Vec::new(),
             fields: None,
+            first_pressure_mpa: Vec::new(),
             mesh_nodes,
             depths,
             contact,
@@ -108,6 +141,12 @@ impl MarchState {
             settled_error: AccumulatedError::default(),
             step_error: AccumulatedError::default(),
         }
+    }
+
+    /// Cycles done before an update, from 0.
+    pub fn cycles_before(&self, update: usize) -> f64 {
+        let before = update.checked_sub(1);
+        before.map_or(0.0, |before| self.updates[before].cycles)
     }
 
     /// Remembers a step that began when this part of the cycles was done.

@@ -22,8 +22,9 @@ pub enum CycleError {
     },
     /// Explicit steps whose motion left all bounds.
     #[error(
-        "explicit steps leave all bounds at {percent:.2} % of the cycle, past {readings}; check loads and springs there, or \
-         take the implicit integrator"
+        "explicit steps leave all bounds at {percent:.2} % of the cycle, past {readings}; where friction rises steeply \
+         with the speed or the load jumps no step is short enough: take a larger slip_tolerance_mm_per_s, a shorter explicit_step_s, or \
+         integrator = \"implicit\""
     )]
     Unstable {
         /// Place in the cycle, %.

@@ -13,6 +13,9 @@ const MOST_ITERATIONS: usize = 2000;
 const LONGEST_CORRECTION_MM: f64 = 0.2;
 /// Motion that the first iteration allows for the whole load, mm.
 const FIRST_MOTION_MM: f64 = 0.05;
+/// By how much more damping grows where the residual does. Where the load rests on few nodes of a coarse mesh the
+/// femur may go to and fro between them for ever; there it is tried again, and grows until the femur creeps.
+const GROWTHS: [f64; 2] = [1.0, 4.0];
 /// Lever on which damping slows a turn, mm: about how far the contact is from the axes, so that the
 /// surfaces move against each other at the same pace whether the femur turns or shifts. It changes how the
 /// machine gets to rest, and not where that is.
@@ -43,6 +46,35 @@ pub fn settle(
     counters: &mut SolverCounters,
 ) -> Result<[f64; 6], NotSettled> {
     let machine = settling(machine);
+    let mut settled = Err(NotSettled {
+        positions: [0.0; 6],
+        residual_n: f64::INFINITY,
+    });
+    for growth in GROWTHS {
+        settled = settle_by(
+            &machine,
+            chain,
+            contact,
+            force_tolerance_n,
+            growth,
+            counters,
+        );
+        if settled.is_ok() {
+            break;
+        }
+    }
+    settled
+}
+
+/// As [`settle`], of a machine that settles, by damping that grows so where the residual does.
+fn settle_by(
+    machine: &Machine,
+    chain: &Chain,
+    contact: &mut dyn ContactModel,
+    force_tolerance_n: f64,
+    growth: f64,
+    counters: &mut SolverCounters,
+) -> Result<[f64; 6], NotSettled> {
     let (loads, levers) = (machine.loads_at(0.0), machine.levers());
     let mut positions = [0.0; 6];
     machine.drive(0.0, &mut positions, &mut [0.0; 6]);
@@ -50,7 +82,7 @@ pub fn settle(
     let mut last_residual_n = f64::INFINITY;
     for _ in 0..MOST_ITERATIONS {
         let still = Kinematics::at_rest(positions);
-        let balance = Balance::new(&machine, chain, contact, still);
+        let balance = Balance::new(machine, chain, contact, still);
         counters.contact_evaluations += 1;
         let residual = balance.residual(&loads);
         let residual_n = residual.largest_n(&levers);
@@ -58,10 +90,11 @@ pub fn settle(
             return Ok(positions);
         }
         if last_residual_n.is_finite() {
-            damping *= (residual_n / last_residual_n).clamp(0.3, 2.0);
+            let change = residual_n / last_residual_n;
+            damping *= change.clamp(0.3, 2.0) * if change > 1.0 { growth } else { 1.0 };
         }
         last_residual_n = residual_n;
-        let damped = balance.tangent(StepSlopes::STILL) + damping_of(&machine, damping);
+        let damped = balance.tangent(StepSlopes::STILL) + damping_of(machine, damping);
         let Some(correction) = damped.correction(&residual) else {
             break;
         };

@@ -10,7 +10,7 @@ use std::path::Path;
 use condyle::Vec3;
 use condyle_io::measured::Scan;
 use condyle_io::mesh::read_vtu_points;
-use condyle_io::results::insert_file_name;
+use condyle_io::results::{check_file, insert_file_name};
 use condyle_report::SurfaceFields;
 
 use super::CompareError;
@@ -71,6 +71,7 @@ fn surface(folder: &Path, update: usize) -> Result<SurfaceFields, CompareError> 
         let table = "surface";
         return Err(CompareError::MissingFile { path, table });
     }
+    check_file(&path)?;
     let file = read_vtu_points(&path)?;
     Ok(SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path)?)
 }

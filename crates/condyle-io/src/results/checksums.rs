@@ -1,0 +1,135 @@
+//! `checksums`: the hash of every mesh of a run, so that one that was damaged is found.
+//!
+//! A mesh stays as it is once it is written, so its hash is written with it, before the checkpoint that remembers
+//! it. Each line is one of `b3sum`: `b3sum --check checksums` looks at them all.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use thiserror::Error;
+
+use super::replace::replace_file;
+
+/// Name of the file.
+pub(super) const CHECKSUMS: &str = "checksums";
+/// Between hash and name.
+const GAP: &str = "  ";
+
+/// A mesh of a run that is no longer what the run wrote.
+#[derive(Debug, Error)]
+pub enum DamagedFile {
+    /// Other bytes.
+    #[error(
+        "{}: the file is damaged: its bytes are not those that the run wrote (its hash is in {CHECKSUMS}); put it back \
+         from a copy, or run the case anew with --force",
+        file.display()
+    )]
+    Changed {
+        /// The file.
+        file: PathBuf,
+    },
+    /// Not there, or not to be read.
+    #[error(
+        "{}: the run wrote this file, and it cannot be read: {source}; put it back from a copy, or run the case anew with \
+         --force",
+        file.display()
+    )]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// Whether a file has the bytes that the run wrote; nothing is known of one that its folder has no hash of.
+///
+/// # Errors
+/// One that was changed, or that is gone.
+pub fn check_file(file: &Path) -> Result<(), DamagedFile> {
+    let name = file.file_name().and_then(|name| name.to_str());
+    let listed = listed(file.parent().unwrap_or(Path::new("")));
+    let mut listed = listed.iter();
+    match listed.find(|(_, other)| Some(other.as_str()) == name) {
+        Some((hash, _)) => check(file, hash),
+        None => Ok(()),
+    }
+}
+
+/// Whether all files that a folder has a hash of are what the run wrote.
+pub(super) fn check_all(folder: &Path) -> Result<(), DamagedFile> {
+    let listed = listed(folder);
+    let mut files = listed.iter();
+    files.try_for_each(|(hash, name)| check(&folder.join(name), hash))
+}
+
+/// Whether files of this name have their hash written.
+pub(super) fn is_listed(name: &str) -> bool {
+    [".vtu", ".vtp"].iter().any(|ending| name.ends_with(ending))
+}
+
+/// Writes the hash of a file's bytes in place of the one it had.
+pub(super) fn write_checksum(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<()> {
+    let mut lines = listed(folder);
+    lines.retain(|(_, other)| other != name);
+    lines.push((blake3::hash(bytes).to_hex().to_string(), name.to_owned()));
+    lines.sort_by(|a, b| a.1.cmp(&b.1));
+    let lines = lines
+        .iter()
+        .map(|(hash, name)| format!("{hash}{GAP}{name}\n"));
+    replace_file(
+        &folder.join(CHECKSUMS),
+        lines.collect::<String>().as_bytes(),
+    )
+}
+
+fn check(file: &Path, hash: &str) -> Result<(), DamagedFile> {
+    let bytes = fs::read(file).map_err(|source| DamagedFile::Unreadable {
+        file: file.to_owned(),
+        source,
+    })?;
+    if blake3::hash(&bytes).to_hex().as_str() == hash {
+        return Ok(());
+    }
+    Err(DamagedFile::Changed {
+        file: file.to_owned(),
+    })
+}
+
+/// Hash and name of every file that a folder has one of.
+fn listed(folder: &Path) -> Vec<(String, String)> {
+    let text = fs::read_to_string(folder.join(CHECKSUMS)).unwrap_or_default();
+    let lines = text.lines().filter_map(|line| line.split_once(GAP));
+    lines
+        .map(|(hash, name)| (hash.to_owned(), name.to_owned()))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_changed_by_one_bit_is_found_and_one_written_again_is_not() {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let file = folder.path().join("insert_0001.vtu");
+        fs::write(&file, b"mesh").expect("it can be written");
+        check_file(&file).expect("nothing is known of it");
+        write_checksum(folder.path(), "insert_0001.vtu", b"mess").expect("it can be written");
+        let said = check_file(&file).expect_err("it differs").to_string();
+        assert!(
+            said.contains("insert_0001.vtu: the file is damaged"),
+            "{said}"
+        );
+        assert!(check_all(folder.path()).is_err());
+        write_checksum(folder.path(), "insert_0001.vtu", b"mesh").expect("it can be written");
+        check_all(folder.path()).expect("it is as it was written");
+        fs::remove_file(&file).expect("it is there");
+        let said = check_all(folder.path())
+            .expect_err("it is gone")
+            .to_string();
+        assert!(said.contains("cannot be read"), "{said}");
+    }
+}

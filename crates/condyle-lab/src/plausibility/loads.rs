@@ -1,0 +1,280 @@
+//! Checks of what the machine applies: loads that it reaches, and springs that have not come to their end.
+
+use condyle::machine::{
+    CycleRow, Drive, JointIndex, JointKind, Machine, Spring, Waveform,
+    knee::{AP, IE, IS, KNEE},
+};
+use condyle_io::results::PlausibilityWarning;
+
+use super::finished::{Finished, SolvedCycle};
+
+/// A load of the machine, and how it has to be reached.
+struct Applied {
+    joint: JointIndex,
+    name: &'static str,
+    /// It is reached where what is left of it is within this part of its largest.
+    within: f64,
+    /// Part of a cycle in which it may not be, %.
+    most_percent: f64,
+}
+
+/// Choices of ours: the axial force hardly feels inertia, the others do where friction lets go.
+const APPLIED: [Applied; 3] = [
+    Applied {
+        joint: IS,
+        name: "axial force",
+        within: 0.1,
+        most_percent: 5.0,
+    },
+    Applied {
+        joint: AP,
+        name: "AP force",
+        within: 0.3,
+        most_percent: 10.0,
+    },
+    Applied {
+        joint: IE,
+        name: "IE torque",
+        within: 0.3,
+        most_percent: 10.0,
+    },
+];
+/// Farther beyond its free play than springs of machines are made to go, mm: a choice of ours, for the model's
+/// springs have no end.
+const FARTHEST_MM: f64 = 10.0;
+
+/// A load of the machine that contact and springs do not balance.
+struct Missed {
+    /// Part of the cycle, %.
+    percent: f64,
+    /// Most of the load that is missed, N or N mm.
+    most: f64,
+    /// The largest load, N or N mm.
+    load: f64,
+    cycle: &'static str,
+}
+
+/// Loads that contact and springs do not balance.
+pub(super) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
+    let missed = APPLIED.iter().filter_map(|applied| {
+        let cycles = finished.cycles();
+        let missed = cycles.filter_map(|cycle| missed(finished.machine(&cycle), &cycle, applied));
+        let worst = missed.max_by(|a, b| a.percent.total_cmp(&b.percent))?;
+        (worst.percent > applied.most_percent).then(|| not_reached_by(applied, &worst))
+    });
+    missed.collect()
+}
+
+fn not_reached_by(applied: &Applied, missed: &Missed) -> PlausibilityWarning {
+    let (per_unit, unit) = match KNEE.joint(applied.joint).kind() {
+        JointKind::Rotation => (1000.0, "N m"),
+        JointKind::Translation => (1.0, "N"),
+    };
+    let (most, load) = (missed.most / per_unit, missed.load / per_unit);
+    let (percent, cycle, name) = (missed.percent, missed.cycle, applied.name);
+    let within_percent = 100.0 * applied.within;
+    PlausibilityWarning {
+        check: "load_not_reached".to_owned(),
+        value: percent,
+        limit: applied.most_percent,
+        unit: "%".to_owned(),
+        message: format!(
+            "for {percent:.0} % of the {cycle} cycle contact and springs leave over {within_percent:.0} % of the {name}: up to \
+             {most:.1} {unit} of {load:.1} {unit}, which inertia and damping take"
+        ),
+        advice: "The femur leaves the insert, or is thrown or dragged about: see that the load does not jump, the \
+                 frequency, and inertia and damping of the machine."
+            .to_owned(),
+    }
+}
+
+/// How a load of a machine is missed in a cycle; none where the joint has none.
+fn missed(machine: &Machine, cycle: &SolvedCycle<'_>, applied: &Applied) -> Option<Missed> {
+    let joint = applied.joint;
+    let Drive::Loaded(waveform) = &machine.joint(joint).drive else {
+        return None;
+    };
+    let loads = || cycle.rows.iter().map(|row| load(waveform, row).abs());
+    let largest = loads().fold(0.0, f64::max);
+    let missed: Vec<f64> = (0..cycle.rows.len())
+        .map(|row| missing(machine, cycle.rows, row, joint, waveform).abs())
+        .collect();
+    let beyond = missed
+        .iter()
+        .filter(|missed| **missed > applied.within * largest);
+    (largest > 0.0).then(|| Missed {
+        percent: 100.0 * beyond.count() as f64 / cycle.rows.len() as f64,
+        most: missed.iter().copied().fold(0.0, f64::max),
+        load: largest,
+        cycle: cycle.name,
+    })
+}
+
+fn load(waveform: &Waveform, row: &CycleRow) -> f64 {
+    waveform.at(row.percent / 100.0).0
+}
+
+/// What of a load contact and springs leave, N or N mm: of the axial force what the contact does not carry, of
+/// another what inertia and damping take, M a + C v.
+fn missing(
+    machine: &Machine,
+    rows: &[CycleRow],
+    row: usize,
+    index: JointIndex,
+    waveform: &Waveform,
+) -> f64 {
+    if index == IS {
+        return load(waveform, &rows[row]).abs() - rows[row].axial_force_n;
+    }
+    let (count, joint) = (rows.len(), machine.joint(index));
+    let at = |row: usize| index.of(&rows[row % count].positions);
+    let (before, now, after) = (at(row + count - 1), at(row), at(row + 1));
+    let per_s = machine.frequency_hz * count as f64;
+    let rate = (after - before) / 2.0 * per_s;
+    let acceleration = (after - 2.0 * now + before) * per_s * per_s;
+    joint.inertia * acceleration + joint.damping * rate
+}
+
+/// How far a spring is pulled beyond its free play.
+struct Pulled {
+    beyond_mm: f64,
+    force_n: f64,
+    at_percent: f64,
+    cycle: &'static str,
+}
+
+/// A spring farther beyond its free play than springs of machines go.
+pub(super) fn springs_far(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let pulled = finished.cycles().flat_map(|cycle| {
+        let machine = finished.machine(&cycle);
+        let springs = machine.springs.iter();
+        // Where the motion is given a spring changes nothing.
+        let springs = springs.filter(|spring| machine.joint(spring.along).is_loaded());
+        springs
+            .flat_map(|spring| cycle.rows.iter().map(|row| pulled(spring, row, cycle.name)))
+            .collect::<Vec<_>>()
+    });
+    let held = pulled.filter(|pulled| pulled.force_n > 0.0);
+    let farthest = held.max_by(|a, b| a.beyond_mm.total_cmp(&b.beyond_mm));
+    let beyond = farthest.filter(|farthest| farthest.beyond_mm > FARTHEST_MM);
+    beyond.map(far)
+}
+
+fn pulled(spring: &Spring, row: &CycleRow, cycle: &'static str) -> Pulled {
+    let turn = spring.about.of(&row.positions);
+    let moved_mm = spring.along.of(&row.positions) + spring.offset_mm * turn.sin();
+    Pulled {
+        beyond_mm: moved_mm.abs() - spring.free_play_mm,
+        force_n: spring.force(moved_mm).0.abs(),
+        at_percent: row.percent,
+        cycle,
+    }
+}
+
+fn far(pulled: Pulled) -> PlausibilityWarning {
+    let Pulled {
+        beyond_mm,
+        force_n,
+        at_percent,
+        cycle,
+    } = pulled;
+    PlausibilityWarning {
+        check: "springs_far".to_owned(),
+        value: beyond_mm,
+        limit: FARTHEST_MM,
+        unit: "mm".to_owned(),
+        message: format!(
+            "a spring is {beyond_mm:.1} mm beyond its free play and holds with {force_n:.0} N, at {at_percent:.0} % of the \
+             {cycle} cycle; the model's springs have no end, a machine's come to theirs after some {FARTHEST_MM:.0} mm"
+        ),
+        advice: "See the AP force and IE torque with their signs, and stiffness and free play in [machine.springs]."
+            .to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(percent: f64, axial_force_n: f64, ap_mm: f64) -> CycleRow {
+        let mut positions = [0.0; 6];
+        positions[AP.place()] = ap_mm;
+        CycleRow {
+            percent,
+            positions,
+            axial_force_n,
+            contact_area_mm2: 0.0,
+            peak_pressure_mpa: 0.0,
+            region_force_n: Default::default(),
+        }
+    }
+
+    fn loaded(index: JointIndex, load: f64) -> Machine {
+        let mut machine = Machine::new(&KNEE);
+        let joint = machine.joint_mut(index);
+        joint.drive = Drive::Loaded(Waveform::constant(load));
+        (joint.inertia, joint.damping) = (0.005, 0.0);
+        machine
+    }
+
+    #[test]
+    fn verify_what_inertia_takes_of_a_load() {
+        // AP = sin(2 pi t) mm: of it M w^2 = 0.005 x 39.5 N is taken at most.
+        let count = 400;
+        let turn = std::f64::consts::TAU;
+        let at = |k: usize| (k + 1) as f64 / f64::from(count);
+        let rows: Vec<_> = (0..400)
+            .map(|k| row(100.0 * at(k), 0.0, (turn * at(k)).sin()))
+            .collect();
+        let cycle = SolvedCycle {
+            name: "first",
+            activity: 0,
+            rows: &rows,
+        };
+        let machine = loaded(AP, 0.5);
+        let missed = missed(&machine, &cycle, &APPLIED[1]).expect("AP is loaded");
+        assert!((missed.most / (0.005 * turn * turn) - 1.0).abs() < 1e-3);
+        // |sin| > 0.1/0.197 for two thirds of the cycle.
+        let expected = 100.0 * (1.0 - 2.0 / std::f64::consts::PI * (0.1 / missed.most).asin());
+        assert!(
+            (missed.percent - expected).abs() < 1.0,
+            "{}",
+            missed.percent
+        );
+    }
+
+    #[test]
+    fn a_femur_in_the_air_misses_its_load_and_one_that_is_pressed_does_not() {
+        let rows = [row(50.0, 0.0, 0.0), row(100.0, 1000.0, 0.0)];
+        let cycle = |rows| SolvedCycle {
+            name: "first",
+            activity: 0,
+            rows,
+        };
+        let machine = loaded(IS, -1000.0);
+        let in_the_air = missed(&machine, &cycle(&rows), &APPLIED[0]).expect("it is loaded");
+        assert_eq!((in_the_air.percent, in_the_air.most), (50.0, 1000.0));
+        let pressed = missed(&machine, &cycle(&rows[1..]), &APPLIED[0]).expect("it is loaded");
+        assert_eq!(pressed.percent, 0.0);
+        assert!(
+            missed(&machine, &cycle(&rows), &APPLIED[1]).is_none(),
+            "AP is locked"
+        );
+    }
+
+    #[test]
+    fn a_spring_is_as_far_as_its_point_has_moved() {
+        let spring = Spring {
+            along: AP,
+            about: IE,
+            offset_mm: 28.0,
+            positive_n_per_mm: 7.24,
+            negative_n_per_mm: 33.8,
+            free_play_mm: 2.5,
+        };
+        let pulled = pulled(&spring, &row(10.0, 0.0, 14.0), "first");
+        assert_eq!(pulled.beyond_mm, 11.5);
+        assert!((pulled.force_n - 83.26).abs() < 1e-9);
+        assert!(far(pulled).message.contains("11.5 mm beyond its free play"));
+    }
+}
