@@ -26,6 +26,8 @@ pub enum Command {
     Check(Check),
     /// Write a new case file to start from.
     New(New),
+    /// Print a JSON schema of case files, with which an editor completes their keys and underlines what is wrong.
+    Schema,
     /// Write a case as an Abaqus input file, to check condyle against Abaqus.
     Export(Export),
     /// Write the report page of a results folder again.

@@ -13,6 +13,7 @@ mod processor;
 mod progress;
 mod report;
 mod run;
+mod schema;
 mod standard_error;
 
 use std::process::ExitCode;
@@ -42,6 +43,7 @@ fn obey(command: Command) -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::New(arguments) => new::new(&arguments),
+        Command::Schema => schema::schema(),
         Command::Export(arguments) => export::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Converge(arguments) => converge::converge(&arguments),

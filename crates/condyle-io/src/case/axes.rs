@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::heading::Side;
-use crate::keyed::{Key, Log, Reason, Setting, quoted_list, read_word, wrong_type};
+use crate::keyed::{Key, Kind, Log, Reason, Setting, read_word, wrong_type};
 
 /// Where x, y and z of a file point, in words of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,8 +124,8 @@ fn word(toward: Vec3) -> &'static str {
 }
 
 impl Setting for Axes {
-    fn kind() -> String {
-        format!("three words of {}", quoted_list(WORDS))
+    fn kind() -> Kind {
+        Kind::ThreeWords(WORDS)
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {

@@ -75,6 +75,11 @@ impl CaseChannel {
         within(self.0.least, self.0.most)
     }
 
+    /// The words for the named waveforms it can have.
+    pub(super) fn words(self) -> Vec<&'static str> {
+        self.named().iter().map(|named| named.word).collect()
+    }
+
     /// The named waveforms it can have.
     pub(super) fn named(self) -> &'static [NamedWaveform] {
         const AXIAL_FORCE: &[NamedWaveform] = &[

@@ -27,7 +27,7 @@ pub enum DriveReason {
         /// As written.
         drive: &'static str,
         /// Drives it can have.
-        drives: &'static str,
+        drives: String,
     },
 }
 

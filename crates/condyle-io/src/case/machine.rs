@@ -8,7 +8,7 @@ use super::machine_keys::{
     DriveWord, MachineSettings, Preset, Rotation, Springs, Start, Translation,
 };
 use super::waveform;
-use crate::keyed::{KeyReason, Log, Section, Settings, names, read_table};
+use crate::keyed::{Key, KeyReason, Log, Section, Settings, names, quoted_list, read_table};
 
 /// The simulator.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,13 +94,12 @@ fn allows(joint: &JointDescription, drive: DriveWord) -> bool {
 }
 
 /// The drives that a joint can have.
-fn drive_words(joint: &JointDescription) -> &'static str {
-    match (joint.motion.is_some(), joint.can_be_free()) {
-        (true, true) => "\"locked\", \"prescribed\" or \"loaded\"",
-        (true, false) => "\"locked\" or \"prescribed\"",
-        (false, true) => "\"locked\" or \"loaded\"",
-        (false, false) => "\"locked\"",
-    }
+fn drive_words(joint: &JointDescription) -> Vec<&'static str> {
+    let drives = DriveWord::ALL.iter().copied();
+    drives
+        .filter(|drive| allows(joint, *drive))
+        .map(DriveWord::word)
+        .collect()
 }
 
 /// The waveform that a drive of a joint needs.
@@ -119,6 +118,19 @@ impl Freedom {
             JointKind::Translation => read_table(section, joint.name, log).map(Self::Translation),
             JointKind::Rotation => read_table(section, joint.name, log).map(Self::Rotation),
         }
+    }
+
+    /// The keys that the freedom of `joint` has.
+    pub(super) fn keys(joint: &JointDescription) -> Vec<Key> {
+        let keys = match joint.kind() {
+            JointKind::Translation => Translation::keys(),
+            JointKind::Rotation => Rotation::keys(),
+        };
+        let narrowed = |key: Key| match key.name {
+            "drive" => key.of_words(drive_words(joint)),
+            _ => key,
+        };
+        keys.into_iter().map(narrowed).collect()
     }
 
     /// What moves it.
@@ -161,7 +173,7 @@ impl Freedom {
             let reason = DriveReason::NoSuchDrive {
                 freedom: joint.name,
                 drive: drive.word(),
-                drives: drive_words(joint),
+                drives: quoted_list(&drive_words(joint)),
             };
             log.problem(row.value_span("drive"), reason);
         }

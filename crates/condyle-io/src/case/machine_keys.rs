@@ -4,7 +4,7 @@ use condyle::machine::knee;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::keyed::{Key, Log, Setting, choice, number, settings, within, wrong_type};
+use crate::keyed::{Key, Kind, Log, Setting, choice, number, settings, within, wrong_type};
 
 choice! {
     /// A simulator to start from.
@@ -118,8 +118,8 @@ impl Sign {
 }
 
 impl Setting for Sign {
-    fn kind() -> String {
-        "1 or -1".to_owned()
+    fn kind() -> Kind {
+        Kind::Sign
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {

@@ -18,6 +18,7 @@ mod femur;
 mod fingerprint;
 mod heading;
 mod insert;
+mod json_schema;
 mod key_names;
 mod machine;
 mod machine_keys;
@@ -55,6 +56,7 @@ pub use drive_reason::DriveReason;
 pub use femur::{CylinderFemur, Femur, GenericFemur, MeshFemur, SphereFemur};
 pub use heading::{Heading, Side};
 pub use insert::{FlatInsert, GenericInsert, HexahedralInsert, Insert, MeshInsert};
+pub use json_schema::json_schema;
 pub use key_names::KeyNameError;
 pub use machine::{Freedom, Freedoms, Machine, Waveforms};
 pub use machine_keys::{

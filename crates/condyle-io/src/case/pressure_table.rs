@@ -4,14 +4,16 @@ use condyle::contact::{PressureTable, PressureTableError};
 use thiserror::Error;
 
 use crate::keyed::{
-    Cell, ColumnReason, Columns, DataFile, Key, KeyReason, Log, Placed, Reason, Section, Setting,
-    Settings, WhereSilent, Writer, pairs,
+    Cell, ColumnReason, Columns, DataFile, Key, KeyReason, Kind, Log, Placed, Reason, Section,
+    Setting, Settings, WhereSilent, Writer, pairs,
 };
 
 /// Points in the case file.
 const TABLE: &str = "table";
 /// A CSV file of points.
 const TABLE_FILE: &str = "table_file";
+/// The keys of which one gives the points.
+pub(super) const WAYS: [&str; 2] = [TABLE, TABLE_FILE];
 /// Header of a file of points.
 const HEADER: [&str; 2] = ["overclosure_mm", "pressure_mpa"];
 
@@ -36,7 +38,7 @@ impl Settings for PressureTable {
         let points = Key {
             name: TABLE,
             doc: "Points [overclosure in mm, pressure in MPa], rising from [0.0, 0.0].",
-            kind: "a list of pairs of numbers".to_owned(),
+            kind: Kind::Pairs,
             silent: WhereSilent::LeftOut,
             limits: None,
         };

@@ -25,6 +25,11 @@ A case is a TOML file. Every key that has a default may be left out; every numbe
 its name; paths count from the folder of the case file. This page is made from the declarations
 that the program reads a case with.
 
+Editors complete the keys, show what each means, its unit and range, and underline what is wrong, by the schema that
+`condyle schema > condyle.schema.json` writes. A case names it in its first line, `#:schema condyle.schema.json`, as the
+shipped cases do; taplo and the extension Even Better TOML of VS Code read that line. `condyle check` knows more than the
+schema: files that must be there, and values that do not fit each other.
+
 ## Top of the file
 
 ";
@@ -120,14 +125,13 @@ fn freedoms(kind: JointKind) -> String {
 
 fn waveform_row(channel: CaseChannel) -> String {
     let key = knots_key(channel);
-    let words: Vec<&str> = channel.named().iter().map(|named| named.word).collect();
     format!(
         "| `{}` | `{}` | {} | {} | {} | {} |\n",
         channel.name(),
         key.name,
         unit_of(key.name).unwrap_or_default(),
         channel.limits(),
-        words.join(", "),
+        channel.words().join(", "),
         channel.about(),
     )
 }

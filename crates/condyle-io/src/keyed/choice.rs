@@ -38,8 +38,8 @@ macro_rules! choice {
         }
 
         impl $crate::keyed::setting::Setting for $name {
-            fn kind() -> String {
-                $crate::keyed::value::quoted_list(Self::WORDS)
+            fn kind() -> $crate::keyed::kind::Kind {
+                $crate::keyed::kind::Kind::Word(Self::WORDS.to_vec())
             }
 
             fn read(

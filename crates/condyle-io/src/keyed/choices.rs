@@ -2,9 +2,9 @@
 
 use super::key::{Key, WhereSilent, names};
 use super::key_reason::KeyReason;
+use super::kind::Kind;
 use super::log::Log;
 use super::section::Section;
-use super::value::quoted_list;
 use super::words::read_word;
 
 /// A key whose word decides which other keys a table has.
@@ -35,12 +35,12 @@ impl Choices {
         default: &'static str,
         offered: Vec<Offered>,
     ) -> Self {
-        let words: Vec<&str> = offered.iter().map(|offer| offer.word).collect();
+        let words: Vec<&'static str> = offered.iter().map(|offer| offer.word).collect();
         debug_assert!(words.contains(&default), "{name} offers its default");
         let by = Key {
             name,
             doc,
-            kind: quoted_list(&words),
+            kind: Kind::Word(words),
             silent: WhereSilent::Takes(format!("{default:?}")),
             limits: None,
         };

@@ -8,6 +8,7 @@ use toml::de::DeValue;
 
 use super::file_reason::FileReason;
 use super::key::Key;
+use super::kind::Kind;
 use super::log::Log;
 use super::section::Section;
 use super::setting::Setting;
@@ -93,8 +94,8 @@ impl DataFile {
 }
 
 impl Setting for DataFile {
-    fn kind() -> String {
-        "a path in quotes".to_owned()
+    fn kind() -> Kind {
+        Kind::Path
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {

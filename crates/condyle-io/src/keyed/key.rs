@@ -1,5 +1,6 @@
 //! What is known of a key before any file is read.
 
+use super::kind::Kind;
 use super::limits::Limits;
 
 /// What is known of a key before any file is read.
@@ -9,12 +10,20 @@ pub struct Key {
     pub name: &'static str,
     /// What it means.
     pub doc: &'static str,
-    /// What may be written, in words.
-    pub kind: String,
+    /// What may be written.
+    pub kind: Kind,
     /// What is taken where the file is silent.
     pub silent: WhereSilent,
     /// What a number may be.
     pub limits: Option<Limits>,
+}
+
+impl Key {
+    /// The same where only some words can be written.
+    pub(crate) fn of_words(self, words: Vec<&'static str>) -> Self {
+        let kind = Kind::Word(words);
+        Self { kind, ..self }
+    }
 }
 
 /// What is taken where a file does not give a key.

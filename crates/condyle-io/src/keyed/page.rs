@@ -55,7 +55,7 @@ impl Page {
         let unit = unit_of(key.name).unwrap_or("");
         let range = match &key.limits {
             Some(limits) => format!("{}, {limits}", key.kind),
-            None => key.kind.clone(),
+            None => key.kind.to_string(),
         };
         let default = match &key.silent {
             WhereSilent::Takes(text) => format!("`{text}`"),

@@ -105,7 +105,7 @@ impl<'a> Section<'a> {
             let reason = KeyReason::MissingKey {
                 key: key.name.to_owned(),
                 section: self.name(),
-                wanted: key.kind.clone(),
+                wanted: key.kind.to_string(),
             };
             log.problem(self.span(), reason);
         }

@@ -5,6 +5,7 @@ use toml::de::DeValue;
 
 use super::key::Key;
 use super::key_reason::KeyReason;
+use super::kind::Kind;
 use super::log::Log;
 use super::unit::unit_of;
 use super::value::{number, quoted};
@@ -12,8 +13,8 @@ use super::words::wrong_type;
 
 /// A value that stands behind a key.
 pub trait Setting: Sized {
-    /// What may be written, in words: "a number".
-    fn kind() -> String;
+    /// What may be written.
+    fn kind() -> Kind;
 
     /// The value, or nothing and the reason in `log`.
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self>;
@@ -44,8 +45,8 @@ fn limited(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option
 }
 
 impl Setting for f64 {
-    fn kind() -> String {
-        "a number".to_owned()
+    fn kind() -> Kind {
+        Kind::Number
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
@@ -58,8 +59,8 @@ impl Setting for f64 {
 }
 
 impl Setting for u64 {
-    fn kind() -> String {
-        "a whole number".to_owned()
+    fn kind() -> Kind {
+        Kind::WholeNumber
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
@@ -77,8 +78,8 @@ impl Setting for u64 {
 }
 
 impl Setting for bool {
-    fn kind() -> String {
-        "true or false".to_owned()
+    fn kind() -> Kind {
+        Kind::Truth
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
@@ -95,8 +96,8 @@ impl Setting for bool {
 }
 
 impl Setting for String {
-    fn kind() -> String {
-        "text in quotes".to_owned()
+    fn kind() -> Kind {
+        Kind::Text
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
@@ -113,8 +114,8 @@ impl Setting for String {
 }
 
 impl Setting for [f64; 2] {
-    fn kind() -> String {
-        "a list of two numbers".to_owned()
+    fn kind() -> Kind {
+        Kind::TwoNumbers
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
@@ -134,7 +135,7 @@ impl Setting for [f64; 2] {
 }
 
 impl<T: Setting> Setting for Option<T> {
-    fn kind() -> String {
+    fn kind() -> Kind {
         T::kind()
     }
 
@@ -148,8 +149,8 @@ impl<T: Setting> Setting for Option<T> {
 }
 
 impl Setting for [f64; 3] {
-    fn kind() -> String {
-        "a list of three numbers".to_owned()
+    fn kind() -> Kind {
+        Kind::ThreeNumbers
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {

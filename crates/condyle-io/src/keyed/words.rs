@@ -13,7 +13,7 @@ use super::value::{quoted_list, type_name};
 pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
     let reason = KeyReason::WrongType {
         key: key.name.to_owned(),
-        wanted: key.kind.clone(),
+        wanted: key.kind.to_string(),
         found: type_name(value.get_ref()),
     };
     log.problem(value.span(), reason);

@@ -3,15 +3,15 @@
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::keyed::{Key, Log, Setting, quoted, wrong_type};
+use crate::keyed::{Key, Kind, Log, Setting, quoted, wrong_type};
 
 /// Names of columns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names(pub Vec<String>);
 
 impl Setting for Names {
-    fn kind() -> String {
-        "a list of names in quotes".to_owned()
+    fn kind() -> Kind {
+        Kind::Names
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {

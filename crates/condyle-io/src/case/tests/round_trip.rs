@@ -7,7 +7,8 @@ use condyle::wear::WEAR_LAWS;
 
 use super::{cases, has_dm_data, parsed};
 use crate::case::{
-    Case, CaseChannel, DriveWord, Femur, Insert, Preset, Side, schema_markdown, template,
+    Case, CaseChannel, DriveWord, Femur, Insert, Preset, Side, json_schema, schema_markdown,
+    template,
 };
 
 fn shipped(name: &str) -> Case {
@@ -167,6 +168,14 @@ fn page_of_keys_has_unit_range_default_and_meaning() {
     assert!(page.contains(row), "{page}");
     assert!(page.contains("| `file` |  | a path in quotes | must be given |"));
     assert!(page.contains("| `axial_force` | `knots_n` | N | 0 to 20000 | iso-like, paper-like |"));
+}
+
+#[test]
+fn schema_beside_the_cases_is_up_to_date() {
+    let path = cases().join("condyle.schema.json");
+    let schema = std::fs::read_to_string(path).unwrap_or_default();
+    let advice = "run: condyle schema > cases/condyle.schema.json";
+    assert!(schema == json_schema(WEAR_LAWS), "{advice}");
 }
 
 #[test]

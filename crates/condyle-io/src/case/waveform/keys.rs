@@ -3,7 +3,7 @@
 use condyle::machine::Interpolation;
 
 use super::super::channel::CaseChannel;
-use crate::keyed::{DataFile, Key, WhereSilent, choice, settings, within};
+use crate::keyed::{DataFile, Key, Kind, Settings, WhereSilent, choice, settings, within};
 
 choice! {
     /// How a waveform goes from point to point.
@@ -59,12 +59,28 @@ settings! {
 /// The waveform taken where a case gives none.
 pub(crate) const DEFAULT_WAVEFORM: &str = "iso-like";
 
+/// The keys that give the points of `channel`, of which a table has one: by name, from a file, or
+/// in the case itself.
+pub(crate) fn ways(channel: CaseChannel) -> [&'static str; 3] {
+    ["waveform", "file", channel.knots_key()]
+}
+
+/// The keys of the table of `channel`.
+pub(crate) fn waveform_keys(channel: CaseChannel) -> Vec<Key> {
+    let named = |key: Key| match key.name {
+        "waveform" => key.of_words(channel.words()),
+        _ => key,
+    };
+    let source = WaveformSource::keys().into_iter().map(named);
+    source.chain([knots_key(channel)]).collect()
+}
+
 /// The key that gives the points in the case file itself.
 pub(crate) fn knots_key(channel: CaseChannel) -> Key {
     Key {
         name: channel.knots_key(),
         doc: "Points [percent of the cycle, value] in the case file itself.",
-        kind: "a list of pairs of numbers".to_owned(),
+        kind: Kind::Pairs,
         silent: WhereSilent::LeftOut,
         limits: Some(channel.limits()),
     }

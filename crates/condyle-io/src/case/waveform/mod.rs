@@ -10,5 +10,5 @@ mod samples;
 pub use keys::InterpolationWord;
 pub use reason::WaveformReason;
 
-pub(super) use keys::{DEFAULT_WAVEFORM, WaveformSource, knots_key};
+pub(super) use keys::{DEFAULT_WAVEFORM, WaveformSource, knots_key, waveform_keys, ways};
 pub(super) use read::read;

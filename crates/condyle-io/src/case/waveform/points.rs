@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::super::channel::{CaseChannel, NamedWaveform};
-use super::keys::{DEFAULT_WAVEFORM, WaveformSource};
+use super::keys::{DEFAULT_WAVEFORM, WaveformSource, ways};
 use super::samples::{Choice, Samples, choose_column, column_points, csv_points};
 use crate::keyed::{
     DataFile, KeyReason, Log, Placed, Section, Source, nearest, pairs, quoted_list,
@@ -30,7 +30,7 @@ pub(super) fn points(
     source: &WaveformSource,
     log: &mut Log<'_>,
 ) -> Option<Points> {
-    let ways = ["waveform", "file", channel.knots_key()];
+    let ways = ways(channel);
     let given: Vec<&str> = ways
         .into_iter()
         .filter(|way| section.value(way).is_some())
@@ -73,7 +73,7 @@ fn by_name(
     let word = word.unwrap_or(DEFAULT_WAVEFORM);
     let named = channel.named();
     let Some(shipped) = named.iter().find(|named| named.word == word) else {
-        let words: Vec<&str> = named.iter().map(|named| named.word).collect();
+        let words = channel.words();
         let reason = KeyReason::UnknownWord {
             key: "waveform".to_owned(),
             word: word.to_owned(),

@@ -1,0 +1,11 @@
+//! `condyle schema`.
+
+use std::process::ExitCode;
+
+use condyle_io::case::Case;
+
+use crate::output;
+
+pub fn schema() -> ExitCode {
+    output::print(&Case::json_schema())
+}
