@@ -22,7 +22,7 @@ pub struct Arguments {
 pub enum Command {
     /// Run a case into a results folder.
     Run(Run),
-    /// Check a case without running it.
+    /// Check a case without running it: its bodies, where they settle, what a run will need.
     Check(Check),
     /// Write a new case file to start from.
     New(New),
@@ -79,8 +79,17 @@ pub struct Check {
     #[command(flatten)]
     pub changes: Changes,
     /// Print the case as it would run, every default written out.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "json")]
     pub print: bool,
+    /// Print what is found as JSON, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
+    /// Also draw both bodies in place from three sides, as an SVG file.
+    #[arg(long, value_name = "FILE.svg")]
+    pub picture: Option<PathBuf>,
+    /// Threads for the one-time work on a mesh; what is found is the same on any number.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: u16,
 }
 
 #[derive(Args)]

@@ -1,11 +1,15 @@
 //! Runs of cases, and studies over them.
 
 mod accuracy;
+mod at_rest;
 pub mod measured;
 mod plausibility;
+mod preview;
 mod run;
 pub mod studies;
 
+pub use at_rest::AtRest;
+pub use preview::{Expected, FemurFacts, InsertFacts, Preview};
 pub use run::{
     Outcome, Reached, RunError, RunEvent, RunOptions, check, check_changed, run, run_case,
     run_changed,

@@ -4,6 +4,7 @@
 //! The pictures on it can also be had alone, as SVG files on white, for a README or a book.
 //! The same results folder gives the same bytes: the page names no path, no date and no wall time.
 
+pub mod bodies;
 mod error;
 mod figure;
 mod file;

@@ -93,6 +93,16 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     ("condyle_report::plots", &["condyle_report::figure"]),
     (
+        "condyle_report::bodies",
+        &[
+            "condyle_report::error",
+            "condyle_report::figure",
+            "condyle_report::file",
+            "condyle_report::results",
+            "condyle_fem",
+        ],
+    ),
+    (
         "condyle_report::page",
         &[
             "condyle_report::figure",

@@ -7,7 +7,6 @@ use condyle::machine::{JointIndex, knee};
 use condyle_fem::HexMesh;
 
 use super::error::ExportError;
-use super::femur;
 use super::options::AbaqusOptions;
 use super::placing::Placing;
 use crate::case::Case;
@@ -57,7 +56,9 @@ impl<'a> Model<'a> {
             .nodes
             .iter_mut()
             .for_each(|node| *node = placing.insert_point(node));
-        let femur = femur::triangles(case, test)?.mapped(|vertex| placing.femur.to_insert(vertex));
+        let femur = case
+            .femur_triangles(test)?
+            .mapped(|vertex| placing.femur.to_insert(vertex));
         let labels = Labels::new(&insert, &femur);
         Ok(Self {
             case,

@@ -5,10 +5,12 @@ use super::contact::Contact;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
+use super::limits::Limits;
 use super::machine::Machine;
 use super::march::March;
 use super::material::Material;
 use super::origin::Origin;
+use super::placement::{FemurPlacement, InsertPlacement};
 use super::time::Time;
 use super::wear::Wear;
 
@@ -19,8 +21,12 @@ pub struct Case {
     pub heading: Heading,
     /// The femoral component.
     pub femur: Femur,
+    /// How it sits on its bone.
+    pub femur_placement: FemurPlacement,
     /// The tibial insert.
     pub insert: Insert,
+    /// How it sits in its holder.
+    pub insert_placement: InsertPlacement,
     /// Polyethylene of the insert.
     pub material: Material,
     /// Pressure law and friction.
@@ -35,5 +41,7 @@ pub struct Case {
     pub time: Time,
     /// What a run tells of its own accuracy.
     pub accuracy: Accuracy,
+    /// What a run may take of the computer.
+    pub limits: Limits,
     pub(super) origin: Origin,
 }

@@ -12,6 +12,7 @@ use toml::de::DeTable;
 
 use super::build::BuildError;
 use super::contents::Case;
+use super::limits::Limits;
 use super::machine_keys::DriveWord;
 use crate::files::{Files, MemoryFiles};
 use crate::keyed::{Base, DataFile, Log, Problem, Problems, Reason, Section, Source};
@@ -60,6 +61,20 @@ impl Case {
         self.error_at(&culprit, error.to_string())
     }
 
+    /// A run of this case that needs more memory than it allows, at the key that allows it or else at the insert's mesh.
+    pub fn memory_at_its_key(&self, message: String) -> Problems {
+        let limits = Culprit {
+            table: "limits",
+            keys: &["memory_gb"],
+        };
+        let insert = Culprit {
+            table: "insert",
+            keys: &["edge_mm", "layers", "file"],
+        };
+        let is_given = self.limits.memory_gb != Limits::DEFAULT_GB;
+        self.error_at(if is_given { &limits } else { &insert }, message)
+    }
+
     fn culprit_of_build(&self, error: &BuildError) -> Culprit {
         let keys: &[&str] = match error {
             BuildError::MeshFile(_) | BuildError::StrayPiece { .. } | BuildError::Shell { .. } => {
@@ -73,6 +88,7 @@ impl Case {
                 ShellInsertError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "file"],
                 ShellInsertError::OpenWithoutThickness | ShellInsertError::Insert(_) => &["file"],
             },
+            BuildError::InsertTooFine { .. } => &["edge_mm", "layers", "file", "length_unit"],
             BuildError::ThicknessOfClosed { .. } => &["thickness_mm"],
             BuildError::NoSurface { key, .. } => match *key {
                 "backside" => &["backside"],

@@ -5,7 +5,8 @@ use condyle::geometry::GenericFemurShape;
 use super::axes::{self, Axes};
 use super::heading::Side;
 use super::mesh_file::LengthUnit;
-use crate::keyed::{DataFile, Log, Section, Variants, settings, variants, within};
+use super::placement::FemurPlacement;
+use crate::keyed::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
 
 settings! {
     /// A pair of condyles, each a piece of torus.
@@ -78,7 +79,7 @@ impl Femur {
         side: Side,
         log: &mut Log<'_>,
     ) -> Option<Self> {
-        let femur = Self::read(section, &[], log)?;
+        let femur = Self::read(section, &FemurPlacement::keys(), log)?;
         if let Self::Mesh(mesh) = &femur {
             axes::check(&mesh.axes, side, section.value_span("axes"), log);
         }

@@ -5,7 +5,8 @@ use condyle::geometry::{GenericInsertShape, Meshing};
 use super::axes::{self, Axes};
 use super::heading::Side;
 use super::mesh_file::LengthUnit;
-use crate::keyed::{DataFile, Log, Section, Variants, settings, variants, within};
+use super::placement::InsertPlacement;
+use crate::keyed::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
 
 settings! {
     /// Two dishes with an eminence between.
@@ -88,7 +89,7 @@ impl Insert {
         side: Side,
         log: &mut Log<'_>,
     ) -> Option<Self> {
-        let insert = Self::read(section, &[], log)?;
+        let insert = Self::read(section, &InsertPlacement::keys(), log)?;
         if let Some(axes) = insert.axes() {
             axes::check(axes, side, section.value_span("axes"), log);
         }

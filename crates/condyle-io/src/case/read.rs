@@ -8,12 +8,14 @@ use super::insert::Insert;
 use super::machine::Machine;
 use super::march::March;
 use super::origin::Origin;
+use super::placement::{FemurPlacement, InsertPlacement};
 use super::wear::{Wear, WearLaws};
 use crate::keyed::{Log, Section, Settings, names, read_table};
 
 /// Every table of a case, in the order they are written.
-const TABLES: [&str; 9] = [
+const TABLES: [&str; 10] = [
     "femur", "insert", "material", "contact", "machine", "wear", "march", "time", "accuracy",
+    "limits",
 ];
 
 /// Reads every table before giving up on any, so that all problems are found at once.
@@ -26,8 +28,12 @@ pub(super) fn read_case(
     root.check_keys(&known, log);
     let heading = Heading::read(root, log);
     let side = heading.as_ref().map_or(Side::Right, |heading| heading.side);
-    let femur = Femur::read_checked(&root.table("femur", log), side, log);
-    let insert = Insert::read_checked(&root.table("insert", log), side, log);
+    let section = root.table("femur", log);
+    let femur = Femur::read_checked(&section, side, log);
+    let femur_placement = FemurPlacement::read_checked(&section, femur.as_ref(), log);
+    let section = root.table("insert", log);
+    let insert = Insert::read_checked(&section, side, log);
+    let insert_placement = InsertPlacement::read_checked(&section, insert.as_ref(), log);
     let material = read_table(root, "material", log);
     let contact = Contact::read(&root.table("contact", log), log);
     let machine = Machine::read(&root.table("machine", log), log);
@@ -35,10 +41,13 @@ pub(super) fn read_case(
     let march = March::read(&root.table("march", log), log);
     let time = read_table(root, "time", log);
     let accuracy = read_table(root, "accuracy", log);
+    let limits = read_table(root, "limits", log);
     Some(Case {
         heading: heading?,
         femur: femur?,
+        femur_placement: femur_placement?,
         insert: insert?,
+        insert_placement: insert_placement?,
         material: material?,
         contact: contact?,
         machine: machine?,
@@ -46,6 +55,7 @@ pub(super) fn read_case(
         march: march?,
         time: time?,
         accuracy: accuracy?,
+        limits: limits?,
         origin: Origin::of(log.source()),
     })
 }

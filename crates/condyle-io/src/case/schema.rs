@@ -10,13 +10,15 @@ use super::contact::{Contact, PressureLawChoice};
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
+use super::limits::Limits;
 use super::machine_keys::{MachineSettings, Rotation, Springs, Start, Translation};
 use super::march::{March, Update};
 use super::material::Material;
+use super::placement::{FemurPlacement, InsertPlacement};
 use super::time::Time;
 use super::waveform::{WaveformSource, knots_key};
 use super::wear::{Wear, WearLaws};
-use crate::keyed::{Page, Settings, Variants, unit_of};
+use crate::keyed::{Key, Page, Settings, Variants, unit_of};
 
 const OPENING: &str = "\
 # The case file
@@ -51,8 +53,11 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
     let mut page = Page::new(OPENING);
     page.table(&Heading::keys());
     let (femur, insert) = (Femur::choices(), Insert::choices());
-    page.chosen("`[femur]`", std::slice::from_ref(&femur.by), &femur);
-    page.chosen("`[insert]`", std::slice::from_ref(&insert.by), &insert);
+    let with = |by: &Key, placement: Vec<Key>| [vec![by.clone()], placement].concat();
+    let of_femur = with(&femur.by, FemurPlacement::keys());
+    page.chosen("`[femur]`", &of_femur, &femur);
+    let of_insert = with(&insert.by, InsertPlacement::keys());
+    page.chosen("`[insert]`", &of_insert, &insert);
     page.section("`[material]`", &Material::keys());
     page.chosen(
         "`[contact]`",
@@ -64,6 +69,7 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
     page.chosen("`[march]`", &March::keys(), &Update::choices());
     page.section("`[time]`", &Time::keys());
     page.section("`[accuracy]`", &Accuracy::keys());
+    page.section("`[limits]`", &Limits::keys());
     page.into_text()
 }
 

@@ -21,8 +21,10 @@ impl Case {
         self.heading.write(&mut out);
         out.table("femur");
         self.femur.write(&mut out);
+        self.femur_placement.write(&mut out);
         out.table("insert");
         self.insert.write(&mut out);
+        self.insert_placement.write(&mut out);
         out.table("material");
         self.material.write(&mut out);
         out.table("contact");
@@ -36,6 +38,8 @@ impl Case {
         self.time.write(&mut out);
         out.table("accuracy");
         self.accuracy.write(&mut out);
+        out.table("limits");
+        self.limits.write(&mut out);
         out.into_text()
     }
 }

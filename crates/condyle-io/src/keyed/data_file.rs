@@ -74,7 +74,7 @@ impl DataFile {
     }
 
     /// Its name without its folder.
-    pub(crate) fn name(&self) -> String {
+    pub fn name(&self) -> String {
         let name = self.path.file_name().unwrap_or_default();
         name.to_string_lossy().into_owned()
     }

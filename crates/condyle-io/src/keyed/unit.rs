@@ -12,6 +12,7 @@ const UNITS: &[(&str, &str)] = &[
     ("_mpa", "MPa"),
     ("_deg", "degrees"),
     ("_kg", "kg"),
+    ("_gb", "GB"),
     ("_hz", "Hz"),
     ("_nm", "N m"),
     ("_mm", "mm"),

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 /// Time spent on the solver alone.
 #[derive(Default)]
-pub(super) struct Clock {
+pub(crate) struct Clock {
     pub spent: Duration,
 }
 

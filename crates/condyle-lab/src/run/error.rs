@@ -4,7 +4,7 @@ use std::{io, path::PathBuf};
 
 use condyle::evolve::{MarchError, PlacementError};
 use condyle_io::{
-    case::{AssignmentError, BuildError},
+    case::{AssignmentError, BuildError, Case},
     keyed::Problems,
     results::ResultsError,
 };
@@ -44,6 +44,14 @@ pub enum RunError {
         /// The same at the key of the case that is behind it.
         shown: Problems,
     },
+    /// A run that needs more memory than its case allows.
+    #[error("{shown}")]
+    Memory {
+        /// What it needs, GB.
+        needed_gb: f64,
+        /// The same at the key of the case that is behind it.
+        shown: Problems,
+    },
     /// The physics.
     #[error("{source}; what was computed is kept in {}", out.display())]
     March {
@@ -55,6 +63,27 @@ pub enum RunError {
 }
 
 impl RunError {
+    /// Bodies that `case` does not make.
+    pub(crate) fn of_build(case: &Case, source: BuildError) -> Self {
+        Self::Build {
+            shown: case.at_its_key(&source),
+            source,
+        }
+    }
+
+    /// A run of `case` that needs too much memory.
+    pub(crate) fn memory(case: &Case, needed_gb: f64) -> Self {
+        let allowed_gb = case.limits.memory_gb;
+        let message = format!(
+            "a run needs about {needed_gb:.1} GB of memory, and [limits] memory_gb allows {allowed_gb} GB; use a larger \
+             edge_mm, fewer layers or fewer increments, or allow more"
+        );
+        Self::Memory {
+            needed_gb,
+            shown: case.memory_at_its_key(message),
+        }
+    }
+
     /// Whether the physics could not be solved, rather than the input being wrong.
     pub fn is_physics(&self) -> bool {
         matches!(
@@ -70,9 +99,10 @@ impl RunError {
     /// The error with its place in the case file, where it has one.
     pub fn in_case(&self) -> Option<&Problems> {
         match self {
-            Self::Case(shown) | Self::Build { shown, .. } | Self::Placement { shown, .. } => {
-                Some(shown)
-            }
+            Self::Case(shown)
+            | Self::Build { shown, .. }
+            | Self::Placement { shown, .. }
+            | Self::Memory { shown, .. } => Some(shown),
             Self::Change(_)
             | Self::Inputs(_)
             | Self::Results(_)

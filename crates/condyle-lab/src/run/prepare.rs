@@ -8,7 +8,7 @@ use condyle_io::{
     case::{Assignment, BuildWarning, Built, Case, ChangeError},
 };
 
-use super::error::RunError;
+use super::{error::RunError, memory::check_memory};
 
 /// Checks the case at `case_path` as far as a run would go before its first cycle: the file, the
 /// meshes, and that the femur settles on the insert. Gives the case and what was put right.
@@ -35,7 +35,7 @@ pub fn check_changed(
 }
 
 /// The case at `case_path` with some of its values changed.
-pub(super) fn changed(case_path: &Path, changes: &[Assignment]) -> Result<Case, RunError> {
+pub(crate) fn changed(case_path: &Path, changes: &[Assignment]) -> Result<Case, RunError> {
     Case::read_changed(case_path, changes).map_err(|error| match error {
         ChangeError::Case(problems) => RunError::Case(problems),
         ChangeError::Assignment(error) => RunError::Change(error),
@@ -44,15 +44,13 @@ pub(super) fn changed(case_path: &Path, changes: &[Assignment]) -> Result<Case, 
 
 pub(crate) fn build(case: &Case, threads: usize, cache: &Cache) -> Result<Built, RunError> {
     case.build_kept(threads, cache)
-        .map_err(|source| RunError::Build {
-            shown: case.at_its_key(&source),
-            source,
-        })
+        .map_err(|source| RunError::of_build(case, source))
 }
 
 pub(crate) fn start(case: &Case, test: WearTest) -> Result<March, RunError> {
-    March::start(test).map_err(|source| RunError::Placement {
+    let march = March::start(test).map_err(|source| RunError::Placement {
         shown: case.placement_at_its_key(&source),
         source,
-    })
+    })?;
+    check_memory(case, &march).map(|()| march)
 }

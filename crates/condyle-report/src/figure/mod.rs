@@ -10,6 +10,7 @@ mod sheet;
 mod style;
 
 pub(crate) use axis::Axis;
+pub(crate) use escape::escape;
 pub(crate) use map::{ColourRange, Map, Shades};
 pub(crate) use panel::{Curve, Panel};
 pub(crate) use sheet::{alone, sheet};

@@ -2,7 +2,8 @@
 
 use super::{
     curvature_bounds::CurvatureBounds, cylinder::Cylinder, generic_femur::GenericFemur,
-    smooth_field::SmoothField, surface_sample::SurfaceSample, torus::Torus,
+    placed_femur::PlacedFemur, smooth_field::SmoothField, surface_sample::SurfaceSample,
+    torus::Torus,
 };
 use crate::{Vec3, Vector, number::Number};
 
@@ -13,6 +14,8 @@ use crate::{Vec3, Vector, number::Number};
 pub enum FemoralSurface {
     /// A pair of condyles made of pieces of torus.
     Generic(GenericFemur),
+    /// The same, turned and shifted in the femoral frame.
+    Placed(PlacedFemur),
     /// One ball, for verification.
     Sphere(Torus),
     /// One cylinder about the z axis, for verification.
@@ -32,6 +35,7 @@ impl FemoralSurface {
     pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
         match self {
             Self::Generic(femur) => femur.gap_mm(point),
+            Self::Placed(femur) => femur.gap_mm(point),
             Self::Sphere(sphere) => sphere.splat().gap_mm(point),
             Self::Cylinder(cylinder) => cylinder.gap_mm(point),
             Self::Mesh(field) => field.gap_mm(point),
@@ -48,6 +52,7 @@ impl FemoralSurface {
     pub fn sample<T: Number>(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
         match self {
             Self::Generic(femur) => femur.sample(point, spread_mm2),
+            Self::Placed(femur) => femur.sample(point, spread_mm2),
             Self::Sphere(sphere) => sphere.splat().sample(point, spread_mm2),
             Self::Cylinder(cylinder) => cylinder.sample(point, spread_mm2),
             Self::Mesh(field) => field.sample(point),
@@ -59,6 +64,7 @@ impl FemoralSurface {
     pub fn reach_mm(&self) -> f64 {
         match self {
             Self::Generic(femur) => femur.reach_mm(),
+            Self::Placed(femur) => femur.reach_mm(),
             Self::Sphere(ball) => ball.centre.norm() + ball.tube_radius_mm,
             Self::Cylinder(cylinder) => cylinder.radius_mm,
             Self::Mesh(field) => field.reach_mm(),
@@ -70,6 +76,7 @@ impl FemoralSurface {
     pub fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
         match self {
             Self::Generic(femur) => femur.curvature_bounds(points),
+            Self::Placed(femur) => femur.curvature_bounds(points),
             Self::Sphere(ball) => {
                 CurvatureBounds::convex(1.0 / ball.tube_radius_mm, CurvatureBounds::FARTHEST_MM)
             }

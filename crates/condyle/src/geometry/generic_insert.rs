@@ -4,6 +4,7 @@ use super::{
     columns::ColumnGrid,
     insert::{Insert, error::InsertError},
 };
+use crate::Vec3;
 
 /// Measures of the generic insert, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +56,9 @@ const HIGH_MM: (f64, f64) = (22.0, 36.0);
 const EMINENCE_MM: f64 = 8.0;
 
 impl GenericInsertShape {
+    /// Length and width of every generic insert, mm.
+    pub const SIZE_MM: (f64, f64) = (HIGH_MM.0 - LOW_MM.0, HIGH_MM.1 - LOW_MM.1);
+
     /// Height of the articulating surface above its lowest points, mm.
     ///
     /// D(z) = (Rs - Rc) + sqrt(Rc^2 - (|z| - spacing/2)^2) is the distance from the medio-lateral
@@ -72,6 +76,18 @@ impl GenericInsertShape {
     /// # Errors
     /// As [`Insert::new`], and too many nodes; none other for measures that make a dish.
     pub fn insert(&self, meshing: Meshing) -> Result<Insert, InsertError> {
+        self.insert_moved(meshing, Vec3::clone)
+    }
+
+    /// The same insert with every point where `place` takes it, which keeps shape and side.
+    ///
+    /// # Errors
+    /// As [`GenericInsertShape::insert`].
+    pub fn insert_moved(
+        &self,
+        meshing: Meshing,
+        place: impl Fn(&Vec3) -> Vec3,
+    ) -> Result<Insert, InsertError> {
         let grid = ColumnGrid::filling(LOW_MM, HIGH_MM, meshing.edge_mm, meshing.layers)?;
         let mut columns = vec![None; grid.point_count()];
         for i in 0..=grid.cells.0 {
@@ -80,7 +96,9 @@ impl GenericInsertShape {
                 columns[grid.number(i, k)] = Some((-self.thickness_mm, self.height_mm(x, z)));
             }
         }
-        let built = grid.hexahedra(&columns, meshing.layers);
+        let mut built = grid.hexahedra(&columns, meshing.layers);
+        let nodes = built.mesh.nodes.iter_mut();
+        nodes.for_each(|node| *node = place(node));
         Insert::new(built.mesh, &built.articulating, &built.backside)
     }
 }

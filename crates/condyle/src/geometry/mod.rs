@@ -7,12 +7,14 @@
 //!    [`CurvedMesh`] reads its facets as samples of a curved surface.
 //! 2. **The femur becomes a surface** that gives gap, normal and curvature at any point, a
 //!    [`SurfaceSample`], and [`CurvatureBounds`] around it. [`FemoralSurface`] is one of several:
-//!    [`GenericFemur`] of pieces of [`Torus`], one ball, one [`Cylinder`], or the [`SmoothField`] of
-//!    a mesh, which is gaps at the nodes of a grid and a spline through them.
+//!    [`GenericFemur`] of pieces of [`Torus`], the same turned ([`PlacedFemur`]), one ball, one
+//!    [`Cylinder`], or the [`SmoothField`] of a mesh, which is gaps at the nodes of a grid and a
+//!    spline through them.
 //! 3. **The insert becomes hexahedra**: of measures ([`GenericInsertShape`]), of a shell
 //!    ([`insert_from_shell`]), both in the columns of a [`ColumnGrid`], or read from a file.
 //!    [`Insert`] holds them, worn or not, with what does not wear: [`SurfaceRegions`],
-//!    [`FacesAround`] its nodes, and the nodes in [`NodeBlock`]s.
+//!    [`FacesAround`] its nodes, and the nodes in [`NodeBlock`]s. Its [`Dishes`] say where it is
+//!    lowest on either side.
 //! 4. **The contact asks for the surface as it is now**: [`ArticulatingSurface`], with the
 //!    [`Share`] of it that each node stands for.
 //!
@@ -23,12 +25,14 @@ mod columns;
 mod curvature_bounds;
 mod curved_mesh;
 mod cylinder;
+mod dishes;
 mod faces_around;
 mod femoral_surface;
 mod generic_femur;
 mod generic_insert;
 mod insert;
 mod node_blocks;
+mod placed_femur;
 mod share;
 mod shell;
 mod shell_insert;
@@ -44,12 +48,14 @@ pub use columns::{Column, ColumnGrid, ColumnMesh};
 pub use curvature_bounds::{CurvatureBounds, MOST_GAP_SLOPE};
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use cylinder::Cylinder;
+pub use dishes::Dishes;
 pub use faces_around::FacesAround;
 pub use femoral_surface::FemoralSurface;
 pub use generic_femur::{GenericFemur, GenericFemurShape};
 pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};
 pub use insert::{Insert, error::InsertError};
 pub use node_blocks::NodeBlock;
+pub use placed_femur::PlacedFemur;
 pub use share::Share;
 pub use shell::{
     CheckedShell, Crossing, Crossings, ShellError, ShellReport, checked_shell, crossings,

@@ -40,12 +40,17 @@ impl Case {
     /// As [`Case::build`].
     pub fn build_kept(&self, threads: usize, keep: &dyn Keep) -> Result<Built, BuildError> {
         let mut warnings = Vec::new();
-        let insert = self.insert.build(self.heading.side, &mut warnings)?;
+        let insert = self.built_insert(&self.insert, &mut warnings)?;
         let machine = self.machine.build(insert.dish_low_point_mm());
         let femur = self.femur.build(
+            &self.femur_placement,
             self.heading.side,
             start_flexion_rad(&machine),
-            Preparing { threads, keep },
+            Preparing {
+                threads,
+                keep,
+                limits: &self.limits,
+            },
             &mut warnings,
         )?;
         let test = WearTest {

@@ -67,8 +67,9 @@ pub enum BuildError {
     },
     /// A femur so large that its field would not fit into memory.
     #[error(
-        "{}: the distance field would have {nodes} nodes, and more than {most} take more than \
-         2 GB; cut away what never touches the insert, and check length_unit",
+        "{}: the distance field would have {nodes} nodes, and more than {most} take more than the \
+         {memory_gb} GB that [limits] memory_gb allows; cut away what never touches the insert, check length_unit, or \
+         allow more",
         file.display()
     )]
     TooManyNodes {
@@ -78,6 +79,21 @@ pub enum BuildError {
         nodes: usize,
         /// How many there may be.
         most: usize,
+        /// Memory that the case allows.
+        memory_gb: f64,
+    },
+    /// An insert of so many nodes that a run would not fit into memory.
+    #[error(
+        "the insert would have {nodes:.0} nodes, and more than {most} take more than the {memory_gb} GB that [limits] \
+         memory_gb allows; use a larger edge_mm or fewer layers, check length_unit, or allow more"
+    )]
+    InsertTooFine {
+        /// How many.
+        nodes: f64,
+        /// How many there may be.
+        most: usize,
+        /// Memory that the case allows.
+        memory_gb: f64,
     },
     /// Triangles that are no shell.
     #[error("{}: {source}", file.display())]
@@ -138,7 +154,7 @@ impl BuildError {
             | Self::ShellInsert { file, .. }
             | Self::ThicknessOfClosed { file }
             | Self::NoSurface { file, .. } => Some(file),
-            Self::Insert(_) | Self::Axes(_) => None,
+            Self::InsertTooFine { .. } | Self::Insert(_) | Self::Axes(_) => None,
         }
     }
 }
@@ -160,6 +176,23 @@ fn in_better_unit(better: Option<(LengthUnit, f64)>) -> String {
         ),
         None => "check length_unit and the mesh".to_owned(),
     }
+}
+
+fn off_origin(anterior_mm: f64, lateral_mm: f64) -> String {
+    let (along, across) = (anterior_mm.abs(), lateral_mm.abs());
+    let (front, side) = (
+        if anterior_mm < 0.0 {
+            "posterior"
+        } else {
+            "anterior"
+        },
+        if lateral_mm < 0.0 {
+            "medial"
+        } else {
+            "lateral"
+        },
+    );
+    format!("{along:.1} mm {front} and {across:.1} mm {side} of the origin")
 }
 
 fn listed(names: &[String]) -> String {
@@ -194,6 +227,25 @@ pub enum BuildWarning {
         body: Body,
         /// Its longest extent along an axis, mm.
         size_mm: f64,
+    },
+    /// The dishes of an insert lie off the origin, where the machine's axes are.
+    #[error(
+        "{}: the dishes have their middle {}, where the machine's axes are; up to {} mm in front or behind and {} mm \
+         to a side would be sound; write origin = \"centre\" in [insert], or move the file's origin",
+        file.display(),
+        off_origin(*anterior_mm, *lateral_mm),
+        most_mm.0,
+        most_mm.1
+    )]
+    OffCentre {
+        /// The file, without its folder.
+        file: PathBuf,
+        /// How far anterior of the origin, mm.
+        anterior_mm: f64,
+        /// How far lateral of it, mm.
+        lateral_mm: f64,
+        /// How far they may lie to the front or back, and to a side, mm.
+        most_mm: (f64, f64),
     },
     /// Part of the mesh lies far from the rest.
     #[error("{}: {piece}; delete it unless it is part of it", file.display())]

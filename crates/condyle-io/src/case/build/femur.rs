@@ -4,18 +4,20 @@ use std::path::Path;
 
 use condyle::Vec3;
 use condyle::geometry::{
-    CheckedShell, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, SmoothField,
-    TriangleMesh,
+    CheckedShell, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, PlacedFemur,
+    SmoothField, TriangleMesh,
 };
 use serde::{Deserialize, Serialize};
 
 use super::super::femur::{Femur, MeshFemur};
 use super::super::heading::Side;
+use super::super::limits::Limits;
+use super::super::placement::FemurPlacement;
 use super::error::{BuildError, BuildWarning};
 use super::lie::{Body, check_lie};
 use super::meshes::{Faces, Placing, parsed_shell, shell, warn};
+use super::rigid_motion::RigidMotion;
 use crate::cache::{Keep, kept};
-use crate::keyed::DataFile;
 use crate::mesh::surface_bytes;
 
 /// A femoral surface, the axis it flexes about and where that starts over the insert.
@@ -32,12 +34,14 @@ pub(super) struct BuiltFemur {
 pub(super) struct Preparing<'a> {
     pub threads: usize,
     pub keep: &'a dyn Keep,
+    pub limits: &'a Limits,
 }
 
 impl Femur {
     /// The femur, which starts the cycle flexed by `flexion_rad`.
     pub(super) fn build(
         &self,
+        placement: &FemurPlacement,
         side: Side,
         flexion_rad: f64,
         preparing: Preparing<'_>,
@@ -54,7 +58,7 @@ impl Femur {
                     spacing_mm: femur.spacing_mm,
                 };
                 BuiltFemur {
-                    surface: FemoralSurface::Generic(GenericFemur::new(shape)),
+                    surface: placed(GenericFemur::new(shape), placement.motion((0.0, 0.0))),
                     flexion_axis_mm: (0.0, 0.0),
                     start_mm: start(femur.start_mm).unwrap_or(over_the_dish(&shape, flexion_rad)),
                 }
@@ -71,16 +75,104 @@ impl Femur {
                 flexion_axis_mm: (0.0, 0.0),
                 start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
             },
-            Self::Mesh(femur) => from_mesh(femur, side, flexion_rad, preparing, warnings)?,
+            Self::Mesh(femur) => {
+                let prepared = femur.prepared(placement, side, preparing)?;
+                warn(&femur.file, &prepared.shell, warnings);
+                femur.check_lie(&prepared.shell.mesh, side, warnings)?;
+                femur.over_the_insert(prepared, side, flexion_rad)
+            }
         })
     }
 }
 
 impl MeshFemur {
-    /// Its triangles as a checked shell in the femoral frame of a right knee, mm.
-    pub(crate) fn triangles(&self, side: Side) -> Result<TriangleMesh, BuildError> {
+    /// Its triangles as a checked shell, placed in the femoral frame of a right knee, mm.
+    pub(crate) fn triangles(
+        &self,
+        placement: &FemurPlacement,
+        side: Side,
+    ) -> Result<TriangleMesh, BuildError> {
         let placing = Placing::new(self.length_unit, &self.axes, side)?;
-        Ok(shell(&self.file, &placing, Faces::Down, &mut Vec::new())?.mesh)
+        let mesh = shell(&self.file, &placing, Faces::Down, &mut Vec::new())?.mesh;
+        Ok(self.moved(mesh, placement))
+    }
+
+    /// Tells a component that lies otherwise than its axes say; `mesh` is as it lies in its file.
+    fn check_lie(
+        &self,
+        mesh: &TriangleMesh,
+        side: Side,
+        warnings: &mut Vec<BuildWarning>,
+    ) -> Result<(), BuildError> {
+        let placing = Placing::new(self.length_unit, &self.axes, side)?;
+        check_lie(Body::Femur, &self.file, mesh, &placing, warnings)
+    }
+
+    /// The flexion axis (x, y) in the femoral frame, of the component as it lies in its file.
+    fn axis_mm(&self, mesh: &TriangleMesh) -> (f64, f64) {
+        match self.flexion_axis_mm {
+            Some([x, y]) => (x, y),
+            None => mesh.posterior_arc_centre_mm(),
+        }
+    }
+
+    /// Its triangles where the placement puts them.
+    fn moved(&self, mesh: TriangleMesh, placement: &FemurPlacement) -> TriangleMesh {
+        match placement.motion(self.axis_mm(&mesh)) {
+            Some(motion) => motion.mesh(mesh),
+            None => mesh,
+        }
+    }
+
+    /// What a placement follows from, the same bytes for the same one; none where the component stays.
+    fn placement_bytes(&self, placement: &FemurPlacement) -> Option<Vec<u8>> {
+        let axis = self.flexion_axis_mm.into_iter().flatten();
+        let numbers = placement.numbers().into_iter().chain(axis);
+        let bytes = || numbers.flat_map(f64::to_le_bytes).collect();
+        placement.is_moved().then(bytes)
+    }
+
+    /// The shell in its file and the field of that as it is placed, computed or kept from a run before.
+    fn prepared(
+        &self,
+        placement: &FemurPlacement,
+        side: Side,
+        preparing: Preparing<'_>,
+    ) -> Result<PreparedFemur, BuildError> {
+        let placing = Placing::new(self.length_unit, &self.axes, side)?;
+        let path = self.file.path();
+        let bytes = surface_bytes(self.file.files(), path)?;
+        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let (placing_bytes, placed) = (placing.bytes(), self.placement_bytes(placement));
+        let mut inputs = vec![ending.as_encoded_bytes(), &placing_bytes, &bytes];
+        inputs.extend(placed.as_deref());
+        kept(preparing.keep, "femur", &inputs, || {
+            let shell = parsed_shell(path, &bytes, &placing, Faces::Down)?;
+            let mesh = self.moved(shell.mesh.clone(), placement);
+            check_node_count(path, &mesh, preparing.limits)?;
+            let field = SmoothField::new(&mesh, preparing.threads);
+            Ok(PreparedFemur { shell, field })
+        })
+    }
+
+    fn over_the_insert(&self, prepared: PreparedFemur, side: Side, flexion_rad: f64) -> BuiltFemur {
+        let flexion_axis_mm = self.axis_mm(&prepared.shell.mesh);
+        let (x, z) = on_the_right(self.start_mm.unwrap_or_default(), side);
+        BuiltFemur {
+            surface: FemoralSurface::Mesh(prepared.field),
+            flexion_axis_mm,
+            start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
+        }
+    }
+}
+
+/// The generic femur where `motion` takes it.
+fn placed(femur: GenericFemur, motion: Option<RigidMotion>) -> FemoralSurface {
+    match motion {
+        Some(motion) => {
+            FemoralSurface::Placed(PlacedFemur::new(femur, motion.rotation, motion.shift_mm))
+        }
+        None => FemoralSurface::Generic(femur),
     }
 }
 
@@ -101,29 +193,6 @@ fn over_the_dish(shape: &GenericFemurShape, flexion_rad: f64) -> (f64, f64) {
     (-to_centre_mm * anterior_rad.sin(), 0.0)
 }
 
-fn from_mesh(
-    femur: &MeshFemur,
-    side: Side,
-    flexion_rad: f64,
-    preparing: Preparing<'_>,
-    warnings: &mut Vec<BuildWarning>,
-) -> Result<BuiltFemur, BuildError> {
-    let placing = Placing::new(femur.length_unit, &femur.axes, side)?;
-    let PreparedFemur { shell, field } = prepared(&femur.file, &placing, preparing)?;
-    warn(&femur.file, &shell, warnings);
-    check_lie(Body::Femur, &femur.file, &shell.mesh, &placing, warnings)?;
-    let flexion_axis_mm = match femur.flexion_axis_mm {
-        Some([x, y]) => (x, y),
-        None => shell.mesh.posterior_arc_centre_mm(),
-    };
-    let (x, z) = on_the_right(femur.start_mm.unwrap_or_default(), side);
-    Ok(BuiltFemur {
-        surface: FemoralSurface::Mesh(field),
-        flexion_axis_mm,
-        start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
-    })
-}
-
 /// The one-time work on a mesh femur.
 #[derive(Serialize, Deserialize)]
 struct PreparedFemur {
@@ -131,34 +200,21 @@ struct PreparedFemur {
     field: SmoothField,
 }
 
-/// The shell in a file and its field, computed or kept from a run before.
-fn prepared(
-    file: &DataFile,
-    placing: &Placing,
-    preparing: Preparing<'_>,
-) -> Result<PreparedFemur, BuildError> {
-    let path = file.path();
-    let bytes = surface_bytes(file.files(), path)?;
-    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
-    let inputs = [ending.as_encoded_bytes(), &placing.bytes(), &bytes];
-    kept(preparing.keep, "femur", &inputs, || {
-        let shell = parsed_shell(path, &bytes, placing, Faces::Down)?;
-        check_node_count(path, &shell.mesh)?;
-        let field = SmoothField::new(&shell.mesh, preparing.threads);
-        Ok(PreparedFemur { shell, field })
-    })
-}
+/// What a node of a field takes while that is made.
+const BYTES_A_NODE: f64 = 40.0;
 
-/// Nodes of a field that take 2 GB while it is made.
-const MOST_NODES: usize = 50_000_000;
-
-fn check_node_count(file: &Path, mesh: &TriangleMesh) -> Result<(), BuildError> {
-    let nodes = SmoothField::node_count(mesh);
-    if nodes <= MOST_NODES {
+fn check_node_count(file: &Path, mesh: &TriangleMesh, limits: &Limits) -> Result<(), BuildError> {
+    let (nodes, most) = (SmoothField::node_count(mesh), limits.most(BYTES_A_NODE));
+    if nodes <= most {
         return Ok(());
     }
-    let (file, most) = (file.to_path_buf(), MOST_NODES);
-    Err(BuildError::TooManyNodes { file, nodes, most })
+    let (file, memory_gb) = (file.to_path_buf(), limits.memory_gb);
+    Err(BuildError::TooManyNodes {
+        file,
+        nodes,
+        most,
+        memory_gb,
+    })
 }
 
 /// How far anterior of the frame's origin the flexion axis lies in the insert frame.

@@ -1,17 +1,23 @@
 //! The insert in hexahedra.
 
+use std::collections::BTreeSet;
+
 use condyle::Vec3;
 use condyle::geometry::{self, GenericInsertShape, Meshing, flat_insert, insert_from_shell};
 use condyle_fem::HexMesh;
 
 use super::super::contents::Case;
 use super::super::heading::Side;
-use super::super::insert::{HexahedralInsert, Insert, MeshInsert};
+use super::super::insert::{FlatInsert, GenericInsert, HexahedralInsert, Insert, MeshInsert};
+use super::super::limits::Limits;
+use super::super::placement::InsertPlacement;
 use super::body_size::check_points;
 use super::error::{BuildError, BuildWarning};
 use super::lie::{Body, check_lie, check_lie_of_hexahedra};
 use super::meshes::{Faces, Placing, shell};
-use crate::mesh::{HexFile, read_hexahedra};
+use super::off_centre::off_centre;
+use super::rigid_motion::{middle_of_mesh, middle_of_points};
+use crate::mesh::{HexFile, parse_surface, read_hexahedra, surface_bytes};
 
 /// Length and width of the flat block, mm, about those of the generic insert.
 const FLAT_SIZE_MM: (f64, f64) = (46.0, 72.0);
@@ -31,33 +37,61 @@ impl Case {
                 return Err("an insert read as hexahedra has no coarser mesh".to_owned());
             }
         }
-        let built = coarser.build(self.heading.side, &mut Vec::new());
+        let built = self.built_insert(&coarser, &mut Vec::new());
         built.map_err(|why| why.to_string())
+    }
+
+    /// How many triangles the file of its insert has; none where it is not made from triangles.
+    pub fn insert_triangle_count(&self) -> Option<usize> {
+        let Insert::Mesh(insert) = &self.insert else {
+            return None;
+        };
+        let path = insert.file.path();
+        let bytes = surface_bytes(insert.file.files(), path).ok()?;
+        let mesh = parse_surface(path, &bytes).ok()?;
+        Some(mesh.triangles.len())
+    }
+
+    /// An insert of any mesh, placed as that of this case.
+    pub(super) fn built_insert(
+        &self,
+        insert: &Insert,
+        warnings: &mut Vec<BuildWarning>,
+    ) -> Result<geometry::Insert, BuildError> {
+        let placement = &self.insert_placement;
+        let around = Surroundings {
+            placement,
+            side: self.heading.side,
+            limits: &self.limits,
+        };
+        let built = insert.build(around, warnings)?;
+        if let Some(file) = insert.file() {
+            warnings.extend(off_centre(file, placement, &built));
+        }
+        Ok(built)
     }
 }
 
+/// What an insert is built with, besides its own keys.
+#[derive(Clone, Copy)]
+struct Surroundings<'a> {
+    placement: &'a InsertPlacement,
+    side: Side,
+    limits: &'a Limits,
+}
+
 impl Insert {
-    pub(super) fn build(
+    fn build(
         &self,
-        side: Side,
+        around: Surroundings<'_>,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
-        Ok(match self {
-            Self::Generic(insert) => GenericInsertShape {
-                sagittal_radius_mm: insert.sagittal_radius_mm,
-                coronal_radius_mm: insert.coronal_radius_mm,
-                spacing_mm: insert.spacing_mm,
-                thickness_mm: insert.thickness_mm,
-            }
-            .insert(meshing(insert.edge_mm, insert.layers))?,
-            Self::Flat(insert) => flat_insert(
-                FLAT_SIZE_MM,
-                insert.thickness_mm,
-                meshing(insert.edge_mm, insert.layers),
-            )?,
-            Self::Mesh(insert) => from_mesh(insert, side, warnings)?,
-            Self::Hexahedra(insert) => from_hexahedra(insert, side, warnings)?,
-        })
+        match self {
+            Self::Generic(insert) => generic(insert, around),
+            Self::Flat(insert) => flat(insert, around.limits),
+            Self::Mesh(insert) => from_mesh(insert, around, warnings),
+            Self::Hexahedra(insert) => from_hexahedra(insert, around, warnings),
+        }
     }
 }
 
@@ -66,12 +100,63 @@ fn meshing(edge_mm: f64, layers: u64) -> Meshing {
     Meshing { edge_mm, layers }
 }
 
+/// What all that a run knows of a node of an insert takes, but for its contact.
+const BYTES_A_NODE: f64 = 800.0;
+
+/// Refuses hexahedra that would not fit into memory, before there are any: `size_mm` long and wide, in a mesh.
+fn check_node_count(
+    (length_mm, width_mm): (f64, f64),
+    meshing: Meshing,
+    limits: &Limits,
+) -> Result<(), BuildError> {
+    let points = |length_mm: f64| (length_mm / meshing.edge_mm).round().max(1.0) + 1.0;
+    let nodes = points(length_mm) * points(width_mm) * (meshing.layers as f64 + 1.0);
+    check_nodes(nodes, limits)
+}
+
+fn check_nodes(nodes: f64, limits: &Limits) -> Result<(), BuildError> {
+    let (most, memory_gb) = (limits.most(BYTES_A_NODE), limits.memory_gb);
+    if nodes <= most as f64 {
+        return Ok(());
+    }
+    Err(BuildError::InsertTooFine {
+        nodes,
+        most,
+        memory_gb,
+    })
+}
+
+fn flat(insert: &FlatInsert, limits: &Limits) -> Result<geometry::Insert, BuildError> {
+    let meshing = meshing(insert.edge_mm, insert.layers);
+    check_node_count(FLAT_SIZE_MM, meshing, limits)?;
+    Ok(flat_insert(FLAT_SIZE_MM, insert.thickness_mm, meshing)?)
+}
+
+fn generic(
+    insert: &GenericInsert,
+    around: Surroundings<'_>,
+) -> Result<geometry::Insert, BuildError> {
+    let shape = GenericInsertShape {
+        sagittal_radius_mm: insert.sagittal_radius_mm,
+        coronal_radius_mm: insert.coronal_radius_mm,
+        spacing_mm: insert.spacing_mm,
+        thickness_mm: insert.thickness_mm,
+    };
+    let meshing = meshing(insert.edge_mm, insert.layers);
+    check_node_count(GenericInsertShape::SIZE_MM, meshing, around.limits)?;
+    // Its dishes have their middle at its origin.
+    Ok(match around.placement.motion(Vec3::zeros) {
+        Some(motion) => shape.insert_moved(meshing, |point| motion.point(point))?,
+        None => shape.insert(meshing)?,
+    })
+}
+
 fn from_mesh(
     insert: &MeshInsert,
-    side: Side,
+    around: Surroundings<'_>,
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<geometry::Insert, BuildError> {
-    let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
+    let placing = Placing::new(insert.length_unit, &insert.axes, around.side)?;
     let path = insert.file.path();
     let shell = shell(&insert.file, &placing, Faces::Up, warnings)?;
     let file = || path.to_path_buf();
@@ -79,8 +164,14 @@ fn from_mesh(
         return Err(BuildError::ThicknessOfClosed { file: file() });
     }
     check_lie(Body::Insert, &insert.file, &shell.mesh, &placing, warnings)?;
+    let mesh = match around.placement.motion(|| middle_of_mesh(&shell.mesh)) {
+        Some(motion) => motion.mesh(shell.mesh),
+        None => shell.mesh,
+    };
     let meshing = meshing(insert.edge_mm, insert.layers);
-    insert_from_shell(&shell.mesh, shell.closed, insert.thickness_mm, meshing).map_err(|source| {
+    let (low, high) = mesh.bounds();
+    check_node_count((high.x - low.x, high.z - low.z), meshing, around.limits)?;
+    insert_from_shell(&mesh, shell.closed, insert.thickness_mm, meshing).map_err(|source| {
         BuildError::ShellInsert {
             file: file(),
             source,
@@ -90,14 +181,15 @@ fn from_mesh(
 
 fn from_hexahedra(
     insert: &HexahedralInsert,
-    side: Side,
+    around: Surroundings<'_>,
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<geometry::Insert, BuildError> {
-    let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
+    let placing = Placing::new(insert.length_unit, &insert.axes, around.side)?;
     let path = insert.file.path();
     let mut file = read_hexahedra(insert.file.files(), path)?;
     place(&mut file, &placing);
     check_points(path, &file.mesh.nodes, insert.length_unit)?;
+    check_nodes(file.mesh.nodes.len() as f64, around.limits)?;
     check_lie_of_hexahedra(&insert.file, &file.mesh, &placing, warnings)?;
     let surface = |key, name: &Option<String>, up: f64| match name {
         Some(name) => named(&file, key, name, insert),
@@ -105,7 +197,19 @@ fn from_hexahedra(
     };
     let articulating = surface("articulating_surface", &insert.articulating_surface, 1.0)?;
     let backside = surface("backside", &insert.backside, -1.0)?;
+    let middle = || middle_of_points(&corners(&file.mesh, &articulating));
+    if let Some(motion) = around.placement.motion(middle) {
+        let nodes = file.mesh.nodes.iter_mut();
+        nodes.for_each(|node| *node = motion.point(node));
+    }
     Ok(geometry::Insert::new(file.mesh, &articulating, &backside)?)
+}
+
+/// The nodes of some quads, each once.
+fn corners(mesh: &HexMesh, quads: &[[u32; 4]]) -> Vec<Vec3> {
+    let nodes: BTreeSet<u32> = quads.iter().flatten().copied().collect();
+    let nodes = nodes.into_iter();
+    nodes.map(|node| mesh.nodes[node as usize]).collect()
 }
 
 /// Moves nodes into the frame; where that mirrors, turns hexahedra and faces the right way again.

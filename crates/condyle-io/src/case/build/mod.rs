@@ -4,11 +4,14 @@ mod assemble;
 mod body_size;
 mod error;
 mod femur;
+mod femur_triangles;
 mod insert;
 mod lie;
 mod machine;
 mod meshes;
+mod off_centre;
 mod pieces;
+mod rigid_motion;
 #[cfg(test)]
 mod tests;
 

@@ -363,7 +363,8 @@ fn a_piece_far_from_the_body_is_warned_of_and_one_too_far_refused() {
         "{said}"
     );
     let beside = with_stl("a.stl", &two_blocks(25.0));
-    assert_eq!(built(MESH_INSERT, beside.path()).unwrap().warnings, []);
+    let centred = format!("{MESH_INSERT}origin = \"centre\"\n");
+    assert_eq!(built(&centred, beside.path()).unwrap().warnings, []);
 }
 
 #[test]
@@ -384,5 +385,46 @@ fn more_nodes_than_memory_should_hold_are_refused() {
     assert!(
         said.contains("the distance field would have 61629875 nodes, and more than 50000000"),
         "{said}"
+    );
+}
+
+#[test]
+fn an_origin_off_the_dishes_is_told_and_centred() {
+    let off = block().mapped(|vertex| vertex + Vec3::new(0.0, 3.0, 5.0));
+    let folder = with_stl("a.stl", &off);
+    let told = built(MESH_INSERT, folder.path()).unwrap().warnings;
+    let told = told[0].to_string();
+    for words in [
+        "a.stl: the dishes have their middle",
+        "and 5.0 mm lateral of the origin",
+        "2.5 mm to a side",
+        "write origin = \"centre\" in [insert]",
+    ] {
+        assert!(told.contains(words), "{told}");
+    }
+    let centred = format!("{MESH_INSERT}origin = \"centre\"\n");
+    let built = built(&centred, folder.path()).unwrap();
+    assert_eq!(built.warnings, []);
+    let (low, high) = (-15.0, 15.0);
+    for node in &built.test.insert.mesh().nodes {
+        assert!(
+            (low - 1e-6..high + 1e-6).contains(&node.z) && node.y < 1e-6,
+            "{node}"
+        );
+    }
+}
+
+#[test]
+fn placement_of_a_shape_that_has_none_is_idle() {
+    let said = |text: &str| match Case::parse(text, "case.toml", Path::new("")) {
+        Ok(_) => panic!("this is a good case:\n{text}"),
+        Err(error) => error.to_string(),
+    };
+    let ball = said("[femur]\nshape = \"sphere\"\nvarus_deg = 1.0\n");
+    assert!(ball.contains("`varus_deg` means nothing here"), "{ball}");
+    let flat = said("[insert]\nshape = \"flat\"\nposterior_slope_deg = 1.0\n");
+    assert!(
+        flat.contains("`posterior_slope_deg` means nothing here"),
+        "{flat}"
     );
 }

@@ -4,22 +4,33 @@ use condyle::Vec3;
 use condyle::evolve::WearTest;
 use condyle::geometry::{FemoralSurface, GenericFemur, TriangleMesh};
 
-use crate::case::{BuildError, Case, Femur};
+use super::super::contents::Case;
+use super::super::femur::Femur;
+use super::error::BuildError;
 
 /// Triangles of a femur that is not a mesh already, as many as Knight 2007 has.
 const TRIANGLES: f64 = 25_000.0;
 /// Halvings of an icosahedron's edges: 20 * 4^5 triangles.
 const HALVINGS: usize = 5;
 
-/// The femur's surface in the femoral frame, triangles anticlockwise seen from outside.
-pub(super) fn triangles(case: &Case, test: &WearTest) -> Result<TriangleMesh, BuildError> {
-    match (&case.femur, test.femur.as_ref()) {
-        (Femur::Mesh(femur), _) => femur.triangles(case.heading.side),
-        (_, FemoralSurface::Generic(femur)) => Ok(generic(femur)),
-        (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm)),
-        (Femur::Cylinder(cylinder), _) => Ok(tube(cylinder.radius_mm)),
-        (Femur::Generic(_), _) => {
-            unreachable!("a generic femur is built as one")
+impl Case {
+    /// The surface of the femur of `test`, which this case built, in the femoral frame of a right knee, mm; triangles
+    /// anticlockwise seen from outside.
+    ///
+    /// # Errors
+    /// A mesh that can no longer be read.
+    pub fn femur_triangles(&self, test: &WearTest) -> Result<TriangleMesh, BuildError> {
+        match (&self.femur, test.femur.as_ref()) {
+            (Femur::Mesh(femur), _) => femur.triangles(&self.femur_placement, self.heading.side),
+            (_, FemoralSurface::Generic(femur)) => Ok(generic(femur)),
+            (_, FemoralSurface::Placed(placed)) => {
+                Ok(generic(placed.femur()).mapped(|point| placed.to_frame(point)))
+            }
+            (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm)),
+            (Femur::Cylinder(cylinder), _) => Ok(tube(cylinder.radius_mm)),
+            (Femur::Generic(_), _) => {
+                unreachable!("a generic femur is built as one")
+            }
         }
     }
 }

@@ -1,0 +1,37 @@
+//! Whether an insert's dishes lie about the origin, where the machine's axes are.
+
+use std::path::PathBuf;
+
+use condyle::{Vec3, geometry};
+
+use super::super::placement::InsertPlacement;
+use super::error::BuildWarning;
+use super::rigid_motion::middle_of_points;
+use crate::keyed::DataFile;
+
+/// The dishes may have their middle so far to a side of the origin, mm: each mm moves 2 % of the load to one of them ...
+const MOST_ACROSS_MM: f64 = 2.5;
+/// ... and so far in front or behind, mm: dishes that are nearly flat are lowest at no certain place.
+const MOST_ALONG_MM: f64 = 6.0;
+
+/// A warning where the dishes lie off the origin before they are turned by the case's own keys.
+pub(super) fn off_centre(
+    file: &DataFile,
+    placement: &InsertPlacement,
+    insert: &geometry::Insert,
+) -> Option<BuildWarning> {
+    let rotation = placement.rotation();
+    let nodes = insert.surface().positions;
+    let unturned: Vec<Vec3> = nodes
+        .iter()
+        .map(|node| rotation.transpose() * node)
+        .collect();
+    let middle = rotation * middle_of_points(&unturned);
+    let is_off = middle.z.abs() > MOST_ACROSS_MM || middle.x.abs() > MOST_ALONG_MM;
+    is_off.then(|| BuildWarning::OffCentre {
+        file: PathBuf::from(file.name()),
+        anterior_mm: middle.x,
+        lateral_mm: middle.z,
+        most_mm: (MOST_ALONG_MM, MOST_ACROSS_MM),
+    })
+}

@@ -1,0 +1,21 @@
+//! What a run may take of the computer.
+
+use crate::keyed::{settings, within};
+
+settings! {
+    /// What a run may take of the computer.
+    Limits {
+        /// Memory that a run may need; a case that needs more is refused before it begins.
+        memory_gb: f64 = Limits::DEFAULT_GB, in within(0.1, 10_000.0);
+    }
+}
+
+impl Limits {
+    /// Memory that a run may need where the case does not say.
+    pub(super) const DEFAULT_GB: f64 = 2.0;
+
+    /// How many things of so many bytes each the memory has room for.
+    pub(super) fn most(&self, bytes_each: f64) -> usize {
+        (self.memory_gb * 1e9 / bytes_each) as usize
+    }
+}

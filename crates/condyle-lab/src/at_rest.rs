@@ -1,0 +1,83 @@
+//! The settled femur on the insert: where it stands, and how it presses.
+
+use condyle::{
+    Vec3,
+    contact::{ContactMemory, TouchedNode},
+    evolve::March,
+    machine::{
+        Chain,
+        knee::{KNEE, MEDIAL, VV},
+    },
+    spatial::{Pose, RelativeMotion},
+};
+use serde::Serialize;
+
+/// The settled femur on the insert, in the insert frame of a right knee.
+#[derive(Debug, Serialize)]
+pub struct AtRest {
+    /// Where the middle of the flexion axis stands: anterior, superior and lateral of the insert's origin, mm.
+    pub flexion_axis_mm: [f64; 3],
+    /// Flexion at the start of the cycle, degrees.
+    pub flexion_deg: f64,
+    /// Varus of the insert, degrees.
+    pub vv_deg: f64,
+    /// Load that the contact carries, N.
+    pub axial_force_n: f64,
+    /// Part of it on the medial side.
+    pub medial_load_share: f64,
+    /// Area in contact, mm2.
+    pub contact_area_mm2: f64,
+    /// Highest pressure, MPa.
+    pub peak_pressure_mpa: f64,
+    #[serde(skip)]
+    pub(crate) pose: Pose,
+    #[serde(skip)]
+    pub(crate) touched: Vec<TouchedNode>,
+}
+
+impl AtRest {
+    /// The bodies of a march that has not begun.
+    pub(crate) fn of(march: &March) -> Self {
+        let test = march.test();
+        let positions = settled(march);
+        let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
+        let motion = RelativeMotion::at_rest(chain.at(&positions).pose);
+        let surface = march.insert().surface();
+        let bodies = march.bodies(&surface);
+        let mut contact = test.contact.contact(bodies, ContactMemory::default());
+        contact.respond(&motion);
+        let landing = contact.land(&motion);
+        let sum = |value: fn(&TouchedNode) -> f64| landing.touched.iter().map(value).sum::<f64>();
+        let axial_force_n = sum(|node| -node.force_n.y);
+        let medial_n = sum(|node| {
+            let is_medial = usize::from(node.region) == MEDIAL;
+            if is_medial { -node.force_n.y } else { 0.0 }
+        });
+        let (x, y) = test.flexion_axis_mm;
+        let in_files = |joint: condyle::machine::JointIndex| {
+            KNEE.joint(joint).kind().in_files(joint.of(&positions))
+        };
+        Self {
+            flexion_axis_mm: motion.pose.to_insert(&Vec3::new(x, y, 0.0)).into(),
+            flexion_deg: in_files(condyle::machine::knee::FLEXION),
+            vv_deg: in_files(VV),
+            axial_force_n,
+            medial_load_share: medial_n / axial_force_n,
+            contact_area_mm2: sum(|node| node.covered_mm2),
+            peak_pressure_mpa: landing.peak_pressure_mpa,
+            pose: motion.pose,
+            touched: landing.touched,
+        }
+    }
+}
+
+/// Positions after settling, and not yet where a cycle leads them.
+fn settled(march: &March) -> [f64; 6] {
+    let mut positions = march.state().activities[0].machine.now.positions;
+    for (position, joint) in positions.iter_mut().zip(&march.test().machine().joints) {
+        if joint.description.settles_at_zero() {
+            *position = 0.0;
+        }
+    }
+    positions
+}

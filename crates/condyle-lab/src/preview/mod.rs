@@ -1,0 +1,90 @@
+//! What a case comes to before it runs: its bodies, where the femur settles, and what a run will need.
+
+mod bodies;
+mod expected;
+mod picture;
+
+use std::path::Path;
+
+use condyle::evolve::March;
+use condyle_io::{
+    cache::Cache,
+    case::{Assignment, Case},
+};
+use serde::Serialize;
+
+use crate::at_rest::AtRest;
+use crate::run::{Clock, RunError, build, changed, start};
+
+pub use bodies::{FemurFacts, InsertFacts};
+pub use expected::Expected;
+
+/// What a case comes to before it runs; units are in the names.
+#[derive(Debug, Serialize)]
+pub struct Preview {
+    /// Title of the case.
+    pub title: String,
+    /// Which knee it is.
+    pub side: &'static str,
+    /// What was put right or looks doubtful.
+    pub warnings: Vec<String>,
+    /// The femoral component.
+    pub femur: FemurFacts,
+    /// The insert.
+    pub insert: InsertFacts,
+    /// The settled femur on the insert.
+    pub at_rest: AtRest,
+    /// What a run will need.
+    pub expected: Expected,
+    /// The case, checked.
+    #[serde(skip)]
+    pub case: Case,
+    /// Both bodies from three sides, as the text of an SVG file.
+    #[serde(skip)]
+    pub picture_svg: String,
+}
+
+impl Preview {
+    /// Goes with the case at `case_path`, some of its values changed, as far as a run goes before its first cycle:
+    /// the file, the meshes, and that the femur settles on the insert.
+    ///
+    /// # Errors
+    /// Those of a run that cannot start.
+    pub fn of(case_path: &Path, changes: &[Assignment], threads: usize) -> Result<Self, RunError> {
+        let case = changed(case_path, changes)?;
+        let mut clock = Clock::default();
+        let built = clock.time(|| build(&case, threads, &Cache::off()))?;
+        let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
+        let march = clock.time(|| start(&case, built.test))?;
+        let triangles = case.femur_triangles(march.test());
+        let triangles = triangles.map_err(|source| RunError::of_build(&case, source))?;
+        let at_rest = AtRest::of(&march);
+        let (femur, insert) = (
+            FemurFacts::of(&case, &triangles, &warnings),
+            InsertFacts::of(&case, &march, &warnings),
+        );
+        Ok(Self {
+            title: case.heading.title.clone(),
+            side: case.heading.side.word(),
+            expected: Expected::of(&case, &march, clock.spent),
+            picture_svg: picture::svg(&case, &march, &triangles, &at_rest),
+            warnings,
+            femur,
+            insert,
+            at_rest,
+            case,
+        })
+    }
+}
+
+/// What a file's name begins a warning of it with is left out: what was found in that file.
+fn found_in(file: &str, warnings: &[String]) -> Vec<String> {
+    let start = format!("{file}: ");
+    let of_file = warnings.iter().filter_map(|said| said.strip_prefix(&start));
+    of_file.map(str::to_owned).collect()
+}
+
+/// The insert of a march, in which nothing is worn yet.
+fn unworn(march: &March) -> &condyle::geometry::Insert {
+    &march.test().insert
+}
