@@ -71,6 +71,7 @@ impl Case {
                 ShellInsertError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "file"],
                 ShellInsertError::OpenWithoutThickness | ShellInsertError::Insert(_) => &["file"],
             },
+            BuildError::ClipMisses { .. } => &["clip_below_mm"],
             BuildError::ThicknessOfClosed { .. } => &["thickness_mm"],
             BuildError::NoSurface { key, .. } => match *key {
                 "backside" => &["backside"],

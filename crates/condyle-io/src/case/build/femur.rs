@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::super::femur::{Femur, MeshFemur};
 use super::super::heading::Side;
 use super::error::{BuildError, BuildWarning};
-use super::meshes::{Faces, Placing, parsed_shell, shell, warn};
+use super::meshes::{Placing, ShellOf, parsed_shell, shell, warn};
 use crate::cache::{Keep, kept};
 use crate::keyed::DataFile;
 use crate::mesh::surface_bytes;
@@ -79,7 +79,7 @@ impl MeshFemur {
     /// Its triangles as a checked shell in the femoral frame of a right knee, mm.
     pub(crate) fn triangles(&self, side: Side) -> Result<TriangleMesh, BuildError> {
         let placing = Placing::new(self.length_unit, &self.axes, side)?;
-        Ok(shell(&self.file, &placing, Faces::Down, &mut Vec::new())?.mesh)
+        Ok(shell(&self.file, &placing, ShellOf::FEMUR, &mut Vec::new())?.mesh)
     }
 }
 
@@ -140,7 +140,7 @@ fn prepared(
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     let inputs = [ending.as_encoded_bytes(), &placing.bytes(), &bytes];
     kept(preparing.keep, "femur", &inputs, || {
-        let shell = parsed_shell(path, &bytes, placing, Faces::Down)?;
+        let shell = parsed_shell(path, &bytes, placing, ShellOf::FEMUR)?;
         check_node_count(path, &shell.mesh)?;
         let field = SmoothField::new(&shell.mesh, preparing.threads);
         Ok(PreparedFemur { shell, field })

@@ -9,7 +9,7 @@ use super::super::heading::Side;
 use super::super::insert::{HexahedralInsert, Insert, MeshInsert};
 use super::body_size::check_points;
 use super::error::{BuildError, BuildWarning};
-use super::meshes::{Faces, Placing, shell};
+use super::meshes::{Placing, ShellOf, shell};
 use crate::mesh::{HexFile, read_hexahedra};
 
 /// Length and width of the flat block, mm, about those of the generic insert.
@@ -72,7 +72,12 @@ fn from_mesh(
 ) -> Result<geometry::Insert, BuildError> {
     let placing = Placing::new(insert.length_unit, &insert.axes, side)?;
     let path = insert.file.path();
-    let shell = shell(&insert.file, &placing, Faces::Up, warnings)?;
+    let shell = shell(
+        &insert.file,
+        &placing,
+        ShellOf::insert(insert.clip_below_mm),
+        warnings,
+    )?;
     let file = || path.to_path_buf();
     if shell.closed && insert.thickness_mm.is_some() {
         return Err(BuildError::ThicknessOfClosed { file: file() });
