@@ -54,9 +54,10 @@ fn march(text: &str, folder: &Path) -> March {
 
 /// Mass worn, deepest wear and the medial part of the load, of a short march.
 fn worn(mut march: March) -> [f64; 3] {
-    march
+    let went_on = march
         .update(&mut |_| ControlFlow::Continue(()))
         .unwrap_or_else(|error| panic!("{error}"));
+    assert!(went_on.is_continue());
     let update = march.state().updates.last().unwrap();
     let (first, _) = march.state().activities[0].first_and_last.as_ref().unwrap();
     let sum = |value: fn(&CycleRow) -> f64| first.rows.iter().map(value).sum::<f64>();

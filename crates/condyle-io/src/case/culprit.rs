@@ -89,6 +89,7 @@ impl Case {
                 ShellInsertError::OpenWithoutThickness | ShellInsertError::Insert(_) => &["file"],
             },
             BuildError::InsertTooFine { .. } => &["edge_mm", "layers", "file", "length_unit"],
+            BuildError::ClipMisses { .. } => &["clip_below_mm"],
             BuildError::ThicknessOfClosed { .. } => &["thickness_mm"],
             BuildError::NoSurface { key, .. } => match *key {
                 "backside" => &["backside"],

@@ -37,6 +37,8 @@ settings! {
         edge_mm: f64 = Meshing::default().edge_mm, in within(0.1, 10.0);
         /// Hexahedra through the thickness.
         layers: u64 = Meshing::default().layers as u64, in within(1.0, 40.0);
+        /// Height along y of the insert frame below which the mesh is cut away and closed flat: for an insert that its file fuses with the tray.
+        clip_below_mm: Option<f64> = None, in within(-500.0, 500.0);
         /// Thickness where it is thinnest: only for an open articulating surface, which has none of its own.
         thickness_mm: Option<f64> = None, in within(1.0, 50.0);
     }

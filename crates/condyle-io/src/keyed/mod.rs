@@ -9,6 +9,7 @@ mod choice;
 pub(crate) mod choices;
 mod column_reason;
 mod columns;
+mod cropped;
 mod data_file;
 mod document;
 mod file_reason;

@@ -105,6 +105,10 @@ pub(crate) fn nearest<'a>(written: &str, known: impl Iterator<Item = &'a str>) -
 
 /// How alike two words are: a key without its unit is as good as the key.
 fn likeness(written: &str, known: &str) -> f64 {
+    // A character has four bytes at most: this one is longer, and the comparison takes its length times the other's.
+    if written.len() > 4 * 2 * known.len() {
+        return 0.0;
+    }
     let written = written.to_lowercase();
     let whole = strsim::normalized_damerau_levenshtein(&written, known);
     let base = strsim::normalized_damerau_levenshtein(&written, split_unit(known).0);

@@ -58,8 +58,8 @@ pub use node_blocks::NodeBlock;
 pub use placed_femur::PlacedFemur;
 pub use share::Share;
 pub use shell::{
-    CheckedShell, Crossing, Crossings, ShellError, ShellReport, checked_shell, crossings,
-    shell_report,
+    CheckedShell, Crossing, Crossings, Defect, DefectKind, ShellChecks, ShellError, ShellReport,
+    Touching, checked_shell, crossings, shell_report,
 };
 pub use shell_insert::{ShellInsertError, insert_from_shell};
 pub use smooth_field::SmoothField;

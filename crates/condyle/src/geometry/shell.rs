@@ -2,16 +2,29 @@
 
 mod box_tree;
 mod checked;
+mod clip;
 mod crossing;
+mod defect;
 mod degenerate;
+mod doubled;
 mod edges;
 mod error;
+mod fill;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod holes;
+mod joints;
+mod judge;
+mod mend;
 mod orientation;
 mod separation;
+mod slivers;
+mod touching;
+mod weld;
 
-pub use checked::{CheckedShell, checked_shell};
+pub use checked::{CheckedShell, ShellChecks, checked_shell};
 pub use crossing::{Crossing, Crossings, crossings};
+pub use defect::{Defect, DefectKind};
 pub use edges::{ShellReport, shell_report};
 pub use error::ShellError;
+pub use touching::Touching;

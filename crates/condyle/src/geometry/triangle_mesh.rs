@@ -21,8 +21,13 @@ impl TriangleMesh {
 
     /// Volume inside a closed surface; negative where the triangles face inwards.
     pub fn signed_volume(&self) -> f64 {
+        self.volume_of(0..self.triangles.len())
+    }
+
+    /// The same of some of its triangles.
+    pub(super) fn volume_of(&self, triangles: impl Iterator<Item = usize>) -> f64 {
         let origin = self.vertices.first().copied().unwrap_or_default();
-        (0..self.triangles.len())
+        triangles
             .map(|triangle| {
                 let [a, b, c] = self.corners(triangle).map(|corner| corner - origin);
                 a.dot(&b.cross(&c)) / 6.0

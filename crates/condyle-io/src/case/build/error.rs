@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle::geometry::{InsertError, ShellError, ShellInsertError};
+use condyle::geometry::{Defect, InsertError, ShellError, ShellInsertError};
 use thiserror::Error;
 
 use super::super::axes::AxesError;
@@ -103,6 +103,21 @@ pub enum BuildError {
         /// Why.
         source: ShellError,
     },
+    /// A height to cut at that the body does not pass.
+    #[error(
+        "{}: `clip_below_mm` = {height_mm} cuts nothing off or all: with its axes turned, the body reaches from y = {low_mm:.2} mm to {high_mm:.2} mm",
+        file.display()
+    )]
+    ClipMisses {
+        /// The file.
+        file: PathBuf,
+        /// The height.
+        height_mm: f64,
+        /// The lowest point of the body.
+        low_mm: f64,
+        /// The highest point of the body.
+        high_mm: f64,
+    },
     /// A shell that makes no insert.
     #[error("{}: {source}", file.display())]
     ShellInsert {
@@ -151,6 +166,7 @@ impl BuildError {
             | Self::StrayPiece { file, .. }
             | Self::TooManyNodes { file, .. }
             | Self::Shell { file, .. }
+            | Self::ClipMisses { file, .. }
             | Self::ShellInsert { file, .. }
             | Self::ThicknessOfClosed { file }
             | Self::NoSurface { file, .. } => Some(file),
@@ -288,4 +304,21 @@ pub enum BuildWarning {
         /// How many.
         count: usize,
     },
+    /// What was mended, and what was left because nothing touches there.
+    #[error("{}: defects that contact does not feel: {}", file.display(), defects_listed(defects))]
+    Defects {
+        /// The file, without its folder.
+        file: PathBuf,
+        /// Kinds, counts and places, mm in the frame of the body.
+        defects: Vec<Defect>,
+    },
+}
+
+/// Kinds and counts, with the first three places of each.
+fn defects_listed(defects: &[Defect]) -> String {
+    let said: Vec<String> = defects
+        .iter()
+        .map(|defect| defect.listed_with_repair(3))
+        .collect();
+    said.join("; ")
 }

@@ -15,7 +15,7 @@ use super::super::limits::Limits;
 use super::super::placement::FemurPlacement;
 use super::error::{BuildError, BuildWarning};
 use super::lie::{Body, check_lie};
-use super::meshes::{Faces, Placing, parsed_shell, shell, warn};
+use super::meshes::{Placing, ShellOf, parsed_shell, shell, warn};
 use super::rigid_motion::RigidMotion;
 use crate::cache::{Keep, kept};
 use crate::mesh::surface_bytes;
@@ -93,7 +93,7 @@ impl MeshFemur {
         side: Side,
     ) -> Result<TriangleMesh, BuildError> {
         let placing = Placing::new(self.length_unit, &self.axes, side)?;
-        let mesh = shell(&self.file, &placing, Faces::Down, &mut Vec::new())?.mesh;
+        let mesh = shell(&self.file, &placing, ShellOf::FEMUR, &mut Vec::new())?.mesh;
         Ok(self.moved(mesh, placement))
     }
 
@@ -147,7 +147,7 @@ impl MeshFemur {
         let mut inputs = vec![ending.as_encoded_bytes(), &placing_bytes, &bytes];
         inputs.extend(placed.as_deref());
         kept(preparing.keep, "femur", &inputs, || {
-            let shell = parsed_shell(path, &bytes, &placing, Faces::Down)?;
+            let shell = parsed_shell(path, &bytes, &placing, ShellOf::FEMUR)?;
             let mesh = self.moved(shell.mesh.clone(), placement);
             check_node_count(path, &mesh, preparing.limits)?;
             let field = SmoothField::new(&mesh, preparing.threads);

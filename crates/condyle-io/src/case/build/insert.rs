@@ -14,7 +14,7 @@ use super::super::placement::InsertPlacement;
 use super::body_size::check_points;
 use super::error::{BuildError, BuildWarning};
 use super::lie::{Body, check_lie, check_lie_of_hexahedra};
-use super::meshes::{Faces, Placing, shell};
+use super::meshes::{Placing, ShellOf, shell};
 use super::off_centre::off_centre;
 use super::rigid_motion::{middle_of_mesh, middle_of_points};
 use crate::mesh::{HexFile, parse_surface, read_hexahedra, surface_bytes};
@@ -158,7 +158,12 @@ fn from_mesh(
 ) -> Result<geometry::Insert, BuildError> {
     let placing = Placing::new(insert.length_unit, &insert.axes, around.side)?;
     let path = insert.file.path();
-    let shell = shell(&insert.file, &placing, Faces::Up, warnings)?;
+    let shell = shell(
+        &insert.file,
+        &placing,
+        ShellOf::insert(insert.clip_below_mm),
+        warnings,
+    )?;
     let file = || path.to_path_buf();
     if shell.closed && insert.thickness_mm.is_some() {
         return Err(BuildError::ThicknessOfClosed { file: file() });

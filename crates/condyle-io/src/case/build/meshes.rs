@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle::geometry::{CheckedShell, TriangleMesh, checked_shell};
+use condyle::geometry::{CheckedShell, ShellChecks, Touching, TriangleMesh};
 use condyle::{Mat3, Vec3};
 
 use super::super::axes::Axes;
@@ -75,12 +75,40 @@ fn turn_round(mesh: &mut TriangleMesh) {
         .for_each(|triangle| triangle.swap(1, 2));
 }
 
-/// Which way an open surface must face on the whole.
+/// What a surface is to be, and what is done with it before it is checked.
+#[derive(Clone, Copy)]
+pub(super) struct ShellOf {
+    /// Which way an open surface must face on the whole.
+    faces: Faces,
+    checks: ShellChecks,
+}
+
+impl ShellOf {
+    /// Of a femur, which faces down.
+    pub(super) const FEMUR: Self = Self {
+        faces: Faces::Down,
+        checks: ShellChecks {
+            touching: Touching::FromBelowAndBehind,
+            clip_below_mm: None,
+        },
+    };
+
+    /// Of an insert, which faces up, cut away below a height.
+    pub(super) fn insert(clip_below_mm: Option<f64>) -> Self {
+        Self {
+            faces: Faces::Up,
+            checks: ShellChecks {
+                touching: Touching::FromAbove,
+                clip_below_mm,
+            },
+        }
+    }
+}
+
+/// Up or down.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Faces {
-    /// Up, as an insert's.
+enum Faces {
     Up,
-    /// Down, as a femur's.
     Down,
 }
 
@@ -88,11 +116,11 @@ pub(super) enum Faces {
 pub(super) fn shell(
     file: &DataFile,
     placing: &Placing,
-    open_faces: Faces,
+    of: ShellOf,
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<CheckedShell, BuildError> {
     let bytes = surface_bytes(file.files(), file.path())?;
-    let shell = parsed_shell(file.path(), &bytes, placing, open_faces)?;
+    let shell = parsed_shell(file.path(), &bytes, placing, of)?;
     warn(file, &shell, warnings);
     Ok(shell)
 }
@@ -102,19 +130,40 @@ pub(super) fn parsed_shell(
     file: &Path,
     bytes: &[u8],
     placing: &Placing,
-    open_faces: Faces,
+    of: ShellOf,
 ) -> Result<CheckedShell, BuildError> {
     let mesh = placing.mesh(parse_surface(file, bytes)?);
     check_triangles(file, &mesh, placing.unit)?;
-    let mut shell = checked_shell(mesh).map_err(|source| BuildError::Shell {
+    check_clip(file, &mesh, of.checks.clip_below_mm)?;
+    let mut shell = of.checks.check(mesh).map_err(|source| BuildError::Shell {
         file: file.to_path_buf(),
         source,
     })?;
-    if !shell.closed && faces(&shell.mesh) != open_faces {
+    if !shell.closed && faces(&shell.mesh) != of.faces {
         turn_round(&mut shell.mesh);
         shell.turned_round = true;
     }
     Ok(shell)
+}
+
+/// Refuses a height that the mesh does not pass.
+fn check_clip(
+    file: &Path,
+    mesh: &TriangleMesh,
+    clip_below_mm: Option<f64>,
+) -> Result<(), BuildError> {
+    let (low, high) = mesh.bounds();
+    match clip_below_mm {
+        Some(height_mm) if height_mm <= low.y || height_mm >= high.y => {
+            Err(BuildError::ClipMisses {
+                file: file.to_path_buf(),
+                height_mm,
+                low_mm: low.y,
+                high_mm: high.y,
+            })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Says what was put right in a file, and what looks wrong, by its name alone: results say so too, and name no folder.
@@ -146,6 +195,13 @@ pub(super) fn warn(file: &DataFile, shell: &CheckedShell, warnings: &mut Vec<Bui
         warnings.push(BuildWarning::RemovedDegenerate {
             file: file(),
             count,
+        });
+    }
+    if !shell.defects.is_empty() {
+        let defects = shell.defects.clone();
+        warnings.push(BuildWarning::Defects {
+            file: file(),
+            defects,
         });
     }
 }

@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use super::assemble::Built;
 use super::error::BuildError;
-use super::meshes::{Faces, Placing, shell};
+use super::meshes::{Placing, ShellOf, shell};
 use crate::cache::Cache;
 use crate::case::tests::{cases, has_dm_data};
 use crate::case::{Case, Femur, Side};
@@ -87,7 +87,7 @@ fn dm_cases_build_and_lie_the_right_way_round() {
         panic!("it is a mesh");
     };
     let placing = Placing::new(femur.length_unit, &femur.axes, Side::Right).unwrap();
-    let shell = shell(&femur.file, &placing, Faces::Down, &mut Vec::new()).unwrap();
+    let shell = shell(&femur.file, &placing, ShellOf::FEMUR, &mut Vec::new()).unwrap();
     let (low, high) = shell.mesh.bounds();
     let (x, y) = shell.mesh.posterior_arc_centre_mm();
     // The posterior condyles lie behind, and the flexion axis inside them.
@@ -199,7 +199,7 @@ fn mesh_that_is_no_shell_or_no_mesh_names_its_file() {
     doubled.triangles.push([0, 1, 7]);
     let shown = refusal(MESH_INSERT, with_stl("a.stl", &doubled).path());
     assert!(
-        shown.contains("a.stl: 3 triangles share the edge"),
+        shown.contains("a.stl: the surface is not sound where bodies can touch: 3 edges of three"),
         "{shown}"
     );
     let folder = tempfile::tempdir().unwrap();
@@ -427,4 +427,58 @@ fn placement_of_a_shape_that_has_none_is_idle() {
         flat.contains("`posterior_slope_deg` means nothing here"),
         "{flat}"
     );
+}
+/// The block with a peg through its underside, which crosses it.
+fn block_on_a_peg() -> TriangleMesh {
+    let mut mesh = block();
+    let peg = block().mapped(|at| Vec3::new(at.x / 5.0, at.y * 1.5 - 8.0, at.z / 5.0));
+    let first = mesh.vertices.len() as u32;
+    mesh.vertices.extend(peg.vertices);
+    let triangles = peg.triangles.iter();
+    let moved: Vec<_> = triangles
+        .map(|corners| corners.map(|corner| first + corner))
+        .collect();
+    mesh.triangles.extend(moved);
+    mesh
+}
+
+#[test]
+fn defects_that_contact_does_not_feel_are_told_in_one_warning() {
+    let folder = with_stl("a.stl", &block_on_a_peg());
+    let built = built(MESH_INSERT, folder.path()).unwrap();
+    let [warning] = &built.warnings[..] else {
+        panic!("{:?}", built.warnings);
+    };
+    let warning = warning.to_string();
+    assert!(
+        warning.starts_with("a.stl: defects that contact does not feel: ")
+            && warning.contains(" pairs of triangles that cross (left) at (")
+            && warning.contains(" more"),
+        "{warning}"
+    );
+}
+
+#[test]
+fn an_insert_fused_with_a_peg_is_cut_at_a_height() {
+    let folder = with_stl("a.stl", &block_on_a_peg());
+    let cut = format!("{MESH_INSERT}clip_below_mm = 6.0\n");
+    let built = built(&cut, folder.path()).unwrap();
+    assert_eq!(built.warnings, []);
+    let volume = built.test.insert.mesh().volume();
+    assert!((volume - 20.0 * 30.0 * 2.0).abs() < 1.0, "{volume}");
+}
+
+#[test]
+fn a_cut_that_misses_the_body_points_to_its_key() {
+    let folder = with_stl("a.stl", &block());
+    let misses = format!("{MESH_INSERT}clip_below_mm = -1.0\n");
+    let said = refusal(&misses, folder.path());
+    assert!(
+        said.ends_with(
+            "a.stl: `clip_below_mm` = -1 cuts nothing off or all: with its axes turned, \
+             the body reaches from y = 0.00 mm to 8.00 mm"
+        ),
+        "{said}"
+    );
+    assert_eq!(place(&misses, folder.path()), Some((5, 17)));
 }

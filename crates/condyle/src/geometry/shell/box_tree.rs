@@ -23,6 +23,13 @@ impl Bounds {
         }
     }
 
+    fn wider_by(self, margin: f64) -> Self {
+        Self {
+            low: self.low.add_scalar(-margin),
+            high: self.high.add_scalar(margin),
+        }
+    }
+
     fn joined(&self, other: &Self) -> Self {
         Self {
             low: self.low.inf(&other.low),
@@ -54,8 +61,14 @@ pub(super) struct BoxTree {
 impl BoxTree {
     /// The tree of a mesh's triangles.
     pub(super) fn new(mesh: &TriangleMesh) -> Self {
+        Self::with_margin(mesh, 0.0)
+    }
+
+    /// The same with boxes that reach `margin` farther on every side.
+    pub(super) fn with_margin(mesh: &TriangleMesh, margin: f64) -> Self {
         let count = mesh.triangles.len();
-        let bounds: Vec<Bounds> = (0..count).map(|t| Bounds::of(&mesh.corners(t))).collect();
+        let bounds = (0..count).map(|t| Bounds::of(&mesh.corners(t)).wider_by(margin));
+        let bounds: Vec<Bounds> = bounds.collect();
         let order = (0..count as u32).collect();
         let mut tree = Self {
             bounds,
@@ -98,29 +111,47 @@ impl BoxTree {
         number as u32
     }
 
+    /// Pairs and boxes that are looked at, for each triangle and at least: the surface of an implant has some
+    /// 20 a triangle, and a file of 1 MB is looked through within half a second.
+    const MOST_LOOKS: (usize, usize) = (100, 4_000_000);
+
     /// Calls `visit` with each pair of different triangles whose boxes meet, once, until it breaks.
-    pub(super) fn for_close_pairs(&self, mut visit: impl FnMut(usize, usize) -> ControlFlow<()>) {
+    ///
+    /// Triangles that all lie on one another are given up on. Of a search that did not come to its end, two
+    /// triangles are given where it ended.
+    pub(super) fn for_close_pairs(
+        &self,
+        mut visit: impl FnMut(usize, usize) -> ControlFlow<()>,
+    ) -> Option<[usize; 2]> {
+        let (each, least) = Self::MOST_LOOKS;
+        let mut left = least.max(each * self.order.len());
         let mut open = vec![[0, 0]];
         while let Some([one, other]) = open.pop().filter(|_| !self.nodes.is_empty()) {
             let (a, b) = (&self.nodes[one as usize], &self.nodes[other as usize]);
             if one != other && !a.bounds.meets(&b.bounds) {
+                left = left.saturating_sub(1);
                 continue;
             }
             match (a.below, b.below) {
-                (Some([left, right]), _) if one == other => {
-                    open.extend([[left, left], [right, right], [left, right]]);
+                (Some([first, second]), _) if one == other => {
+                    open.extend([[first, first], [second, second], [first, second]]);
                 }
-                (Some([left, right]), _) if b.below.is_none() || size(a) >= size(b) => {
-                    open.extend([[left, other], [right, other]]);
+                (Some([first, second]), _) if b.below.is_none() || size(a) >= size(b) => {
+                    open.extend([[first, other], [second, other]]);
                 }
-                (_, Some([left, right])) => open.extend([[one, left], [one, right]]),
+                (_, Some([first, second])) => open.extend([[one, first], [one, second]]),
                 _ => {
+                    left = left.saturating_sub(LEAF * LEAF);
                     if self.visit_leaves(a, b, one == other, &mut visit).is_break() {
-                        return;
+                        left = 0;
                     }
                 }
             }
+            if left == 0 {
+                return Some([a, b].map(|node| self.order[node.start as usize] as usize));
+            }
         }
+        None
     }
 
     fn visit_leaves(

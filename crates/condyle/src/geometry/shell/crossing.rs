@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::{
     box_tree::BoxTree,
     edges::{EdgeUse, edge_uses},
-    separation::{Corners, depth_above, meeting_point},
+    separation::{Corners, are_parted_by_a_plane, depth_above, meeting_point},
 };
 use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
 
@@ -21,8 +21,10 @@ pub struct Crossing {
 /// How a mesh crosses itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Crossings {
-    /// The crossing of the lowest triangle numbers that is no wrinkle, of the first ten thousand.
-    pub first: Option<Crossing>,
+    /// Crossings that are no wrinkle, by the numbers of their triangles.
+    pub found: Vec<Crossing>,
+    /// Where the search ended because too many triangles lie on one another, in the unit of the mesh.
+    pub gave_up_at_mm: Option<Vec3>,
     /// Pairs of triangles that cross as part of a wrinkle.
     pub wrinkles: usize,
 }
@@ -59,26 +61,31 @@ impl Crossings {
 pub fn crossings(mesh: &TriangleMesh) -> Crossings {
     let (low, high) = mesh.bounds();
     let shallow = Crossings::WRINKLE_DEPTH * (high - low).norm();
-    let pairs = crossing_pairs(mesh, shallow);
-    if pairs.is_empty() {
+    let (pairs, gave_up) = crossing_pairs(mesh, shallow);
+    if pairs.is_empty() && gave_up.is_none() {
         return Crossings::default();
     }
     let uses = edge_uses(mesh);
     let is_wrinkle = |pair: &CrossingPair| {
         pair.depth <= shallow && are_neighbours(&uses, pair.triangles.map(|t| mesh.triangles[t]))
     };
-    let crossing = pairs
+    let (wrinkles, deep): (Vec<_>, Vec<_>) = pairs.iter().partition(|pair| is_wrinkle(pair));
+    let mut found: Vec<Crossing> = deep
         .iter()
-        .filter(|pair| !is_wrinkle(pair))
-        .map(|pair| pair.triangles)
-        .min();
-    let first = crossing.map(|triangles| {
-        let [one, other] = triangles.map(|triangle| mesh.corners(triangle));
-        let at_mm = meeting_point(&one, &other);
-        Crossing { triangles, at_mm }
-    });
-    let wrinkles = pairs.iter().filter(|pair| is_wrinkle(pair)).count();
-    Crossings { first, wrinkles }
+        .map(|pair| crossing(mesh, pair.triangles))
+        .collect();
+    found.sort_unstable_by_key(|crossing| crossing.triangles);
+    Crossings {
+        found,
+        gave_up_at_mm: gave_up.map(|[one, other]| crossing(mesh, [one, other]).at_mm),
+        wrinkles: wrinkles.len(),
+    }
+}
+
+fn crossing(mesh: &TriangleMesh, triangles: [usize; 2]) -> Crossing {
+    let [one, other] = triangles.map(|triangle| mesh.corners(triangle));
+    let at_mm = meeting_point(&one, &other);
+    Crossing { triangles, at_mm }
 }
 
 struct CrossingPair {
@@ -86,11 +93,11 @@ struct CrossingPair {
     depth: f64,
 }
 
-/// The pairs that cross, until [`Crossings::MANY`] are deeper than `shallow`.
-fn crossing_pairs(mesh: &TriangleMesh, shallow: f64) -> Vec<CrossingPair> {
+/// The pairs that cross, until [`Crossings::MANY`] are deeper than `shallow`, and where the search was given up.
+fn crossing_pairs(mesh: &TriangleMesh, shallow: f64) -> (Vec<CrossingPair>, Option<[usize; 2]>) {
     let mut pairs = Vec::new();
     let mut deep = 0;
-    BoxTree::new(mesh).for_close_pairs(|one, other| {
+    let gave_up = BoxTree::new(mesh).for_close_pairs(|one, other| {
         let triangles = [one.min(other), one.max(other)];
         if let Some(depth) = crossing_depth(mesh, triangles) {
             deep += usize::from(depth > shallow);
@@ -101,7 +108,7 @@ fn crossing_pairs(mesh: &TriangleMesh, shallow: f64) -> Vec<CrossingPair> {
         }
         ControlFlow::Continue(())
     });
-    pairs
+    (pairs, gave_up)
 }
 
 /// A corner of one is a corner of the other, or an edge joins the two.
@@ -119,6 +126,9 @@ fn crossing_depth(mesh: &TriangleMesh, pair: [usize; 2]) -> Option<f64> {
     let [one, other] = pair.map(|triangle| mesh.triangles[triangle]);
     let shared = one.map(|vertex| other.contains(&vertex));
     let corners = pair.map(|triangle| mesh.corners(triangle));
+    if are_parted_by_a_plane(&corners[0], &corners[1]) {
+        return None;
+    }
     let least = Crossings::LEAST_DEPTH * longest_edge(&corners[0]).min(longest_edge(&corners[1]));
     let [first, second] = match shared.iter().filter(|&&is_shared| is_shared).count() {
         0 => corners,
@@ -175,7 +185,7 @@ mod tests {
     fn a_cut_through_the_diagonals_of_faces_is_found() {
         // The edges of the bar meet the top only on its diagonal.
         let bar = block(Vec3::new(0.25, 0.25, 0.5), Vec3::new(0.75, 0.75, 1.5));
-        assert!(crossings(&joined(unit_block(), bar)).first.is_some());
+        assert!(!crossings(&joined(unit_block(), bar)).found.is_empty());
     }
 
     #[test]
@@ -192,8 +202,23 @@ mod tests {
             mesh.triangles
                 .extend([corners, corners.map(|corner| corner + 3)]);
         }
-        assert_eq!(crossing_pairs(&mesh, 0.05).len(), Crossings::MANY);
-        assert!(crossings(&mesh).first.is_some());
+        assert_eq!(crossing_pairs(&mesh, 0.05).0.len(), Crossings::MANY);
+        assert!(!crossings(&mesh).found.is_empty());
+    }
+
+    #[test]
+    fn of_sheets_that_lie_on_one_another_the_search_ends_and_says_where() {
+        let mut mesh = TriangleMesh::default();
+        for i in 0..19_000 {
+            let corners = [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]];
+            // Tilted, so that no box is flat.
+            let lifted = corners.map(|[x, y]| Vec3::new(x, y, x + y + 1e-6 * f64::from(i)));
+            let first = mesh.vertices.len() as u32;
+            mesh.vertices.extend(lifted);
+            mesh.triangles.push([first, first + 1, first + 2]);
+        }
+        let crossings = crossings(&mesh);
+        assert!(crossings.found.is_empty() && crossings.gave_up_at_mm.is_some());
     }
 
     #[test]
@@ -209,7 +234,7 @@ mod tests {
             vertices: vertices.map(Vec3::from).to_vec(),
             triangles: vec![[0, 1, 2], [0, 3, 4]],
         };
-        let crossing = crossings(&mesh).first.unwrap();
+        let crossing = crossings(&mesh).found.remove(0);
         assert_eq!(crossing.triangles, [0, 1]);
         assert!(crossing.at_mm.z.abs() < 1e-14 && crossing.at_mm.y.abs() < 1e-14);
         let apart = mesh.clone().mapped(|v| {
@@ -223,9 +248,9 @@ mod tests {
     }
 
     #[test]
-    fn the_first_of_many_crossings_is_given() {
+    fn crossings_come_by_the_numbers_of_their_triangles() {
         let wall = block(Vec3::new(-1.0, 0.4, -50.0), Vec3::new(30.5, 0.6, 50.0));
-        let crossing = crossings(&joined(strip(40, 0.1), wall)).first.unwrap();
+        let crossing = crossings(&joined(strip(40, 0.1), wall)).found.remove(0);
         assert_eq!(crossing.triangles[0], 0);
     }
 
@@ -256,8 +281,8 @@ mod tests {
     #[test]
     fn a_knot_of_neighbours_is_a_wrinkle_on_a_fine_mesh_and_a_crossing_on_a_coarse_one() {
         let fine = crossings(&wrinkled(100));
-        assert!(fine.first.is_none() && fine.wrinkles > 0, "{fine:?}");
+        assert!(fine.found.is_empty() && fine.wrinkles > 0, "{fine:?}");
         let coarse = crossings(&wrinkled(4));
-        assert!(coarse.first.is_some(), "{coarse:?}");
+        assert!(!coarse.found.is_empty(), "{coarse:?}");
     }
 }

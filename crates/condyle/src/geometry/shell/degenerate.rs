@@ -1,5 +1,7 @@
 //! Triangles without area, taken out so that no gap is left.
 
+use std::collections::HashMap;
+
 use crate::geometry::triangle_mesh::TriangleMesh;
 
 /// Height over longest edge below which a triangle has no area: rounding of double precision.
@@ -10,8 +12,6 @@ const ROUNDS: usize = 8;
 /// A mesh without degenerate triangles.
 pub(super) struct Cleaned {
     pub(super) mesh: TriangleMesh,
-    /// For each triangle its number in the mesh that came in.
-    pub(super) came_from: Vec<usize>,
     pub(super) removed: usize,
 }
 
@@ -19,20 +19,19 @@ pub(super) struct Cleaned {
 /// along the longest edge of the latter is split at the middle corner, so that the shell stays
 /// as closed as it was.
 pub(super) fn without_degenerate(mesh: TriangleMesh) -> Cleaned {
-    let came_from = (0..mesh.triangles.len()).collect();
-    let mut cleaned = Cleaned {
-        mesh,
-        came_from,
-        removed: 0,
-    };
+    let mut cleaned = Cleaned { mesh, removed: 0 };
     cleaned.drop_where(|mesh, index| {
         let [a, b, c] = mesh.triangles[index];
         a == b || b == c || c == a
     });
     for _ in 0..ROUNDS {
-        let merged = (0..cleaned.mesh.triangles.len())
-            .filter(|&index| cleaned.merge_if_flat(index))
-            .count();
+        let flat: Vec<usize> = (0..cleaned.mesh.triangles.len())
+            .filter(|&index| is_flat(&cleaned.mesh, index))
+            .collect();
+        if flat.is_empty() {
+            break;
+        }
+        let merged = cleaned.merge(&flat);
         cleaned.removed += merged;
         if merged == 0 {
             break;
@@ -44,27 +43,29 @@ pub(super) fn without_degenerate(mesh: TriangleMesh) -> Cleaned {
 
 impl Cleaned {
     fn drop_where(&mut self, is_bad: impl Fn(&TriangleMesh, usize) -> bool) {
-        let kept: Vec<usize> = (0..self.came_from.len())
+        let kept: Vec<[u32; 3]> = (0..self.mesh.triangles.len())
             .filter(|&index| !is_bad(&self.mesh, index))
+            .map(|index| self.mesh.triangles[index])
             .collect();
-        self.removed += self.came_from.len() - kept.len();
-        self.mesh.triangles = kept
-            .iter()
-            .map(|&index| self.mesh.triangles[index])
-            .collect();
-        self.came_from = kept.iter().map(|&index| self.came_from[index]).collect();
+        self.removed += self.mesh.triangles.len() - kept.len();
+        self.mesh.triangles = kept;
+    }
+
+    /// Merges flat triangles into their neighbours; gives how many.
+    fn merge(&mut self, flat: &[usize]) -> usize {
+        let mut on_edge = TrianglesOnEdges::new(&self.mesh);
+        flat.iter()
+            .filter(|&&index| self.merge_one(index, &mut on_edge))
+            .count()
     }
 
     /// Gives a flat triangle the half of its neighbour beyond its middle corner.
-    fn merge_if_flat(&mut self, index: usize) -> bool {
+    fn merge_one(&mut self, index: usize, on_edge: &mut TrianglesOnEdges) -> bool {
         if !is_flat(&self.mesh, index) {
             return false;
         }
         let [end, middle, other_end] = longest_edge_last(&self.mesh, index);
-        let has_both = |t: &[u32; 3]| t.contains(&end) && t.contains(&other_end);
-        let neighbour = (0..self.came_from.len())
-            .find(|&other| other != index && has_both(&self.mesh.triangles[other]));
-        let Some(neighbour) = neighbour else {
+        let Some(neighbour) = on_edge.first_other(&self.mesh, index, [end, other_end]) else {
             return false;
         };
         let whole = self.mesh.triangles[neighbour];
@@ -74,9 +75,47 @@ impl Cleaned {
         let with_middle_for = |old: u32| whole.map(|v| if v == old { middle } else { v });
         self.mesh.triangles[neighbour] = with_middle_for(end);
         self.mesh.triangles[index] = with_middle_for(other_end);
-        self.came_from[index] = self.came_from[neighbour];
+        on_edge.add(&self.mesh, neighbour);
+        on_edge.add(&self.mesh, index);
         true
     }
+}
+
+/// The triangles that have, or had before they were split, an edge.
+struct TrianglesOnEdges(HashMap<[u32; 2], Vec<usize>>);
+
+impl TrianglesOnEdges {
+    fn new(mesh: &TriangleMesh) -> Self {
+        let mut on_edge = Self(HashMap::with_capacity(2 * mesh.triangles.len()));
+        (0..mesh.triangles.len()).for_each(|index| on_edge.add(mesh, index));
+        on_edge
+    }
+
+    fn add(&mut self, mesh: &TriangleMesh, index: usize) {
+        let [a, b, c] = mesh.triangles[index];
+        for ends in [[a, b], [b, c], [c, a]] {
+            self.0.entry(sorted(ends)).or_default().push(index);
+        }
+    }
+
+    /// The triangle of the lowest number that has an edge, but for one.
+    fn first_other(&self, mesh: &TriangleMesh, index: usize, ends: [u32; 2]) -> Option<usize> {
+        // An edge of more triangles is no surface's; they are not searched for a neighbour again and again.
+        const MOST: usize = 16;
+        let round = self
+            .0
+            .get(&sorted(ends))
+            .filter(|round| round.len() <= MOST)?;
+        let has_both = |t: &[u32; 3]| ends.iter().all(|end| t.contains(end));
+        let others = round.iter().copied().filter(|&other| other != index);
+        others
+            .filter(|&other| has_both(&mesh.triangles[other]))
+            .min()
+    }
+}
+
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// Twice the area against the longest edge squared is the height over the longest edge.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::error::ShellError;
 use crate::geometry::triangle_mesh::TriangleMesh;
 
 /// One side of one triangle.
@@ -32,21 +31,6 @@ pub(super) fn edge_uses(mesh: &TriangleMesh) -> Vec<EdgeUse> {
 /// The uses, edge by edge.
 pub(super) fn by_edge(uses: &[EdgeUse]) -> impl Iterator<Item = &[EdgeUse]> {
     uses.chunk_by(|one, other| one.ends == other.ends)
-}
-
-pub(super) fn check_manifold(mesh: &TriangleMesh, uses: &[EdgeUse]) -> Result<(), ShellError> {
-    match by_edge(uses).find(|edge| edge.len() > 2) {
-        None => Ok(()),
-        Some(edge) => {
-            let [from_mm, to_mm] = edge[0].ends.map(|vertex| mesh.vertices[vertex as usize]);
-            let triangles = edge.len();
-            Err(ShellError::NonManifoldEdge {
-                from_mm,
-                to_mm,
-                triangles,
-            })
-        }
-    }
 }
 
 /// How the triangles of a mesh hang together, without any repair.

@@ -38,6 +38,13 @@ pub(super) fn depth_above(least: f64, first: &Corners, second: &Corners) -> Opti
     Some(depth)
 }
 
+/// Whether the plane of the first triangle has the second on one side; most pairs end here.
+pub(super) fn are_parted_by_a_plane(first: &Corners, second: &Corners) -> bool {
+    let normal = (first[1] - first[0]).cross(&(first[2] - first[0]));
+    let [a, b, c] = second.map(|corner| normal.dot(&(corner - first[0])));
+    (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0)
+}
+
 fn edges([a, b, c]: &Corners) -> [Vec3; 3] {
     [b - a, c - b, a - c]
 }

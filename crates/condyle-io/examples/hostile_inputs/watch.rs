@@ -1,0 +1,126 @@
+//! One input at a time under watch: time, memory and panics.
+
+use std::{
+    fs,
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::{Path, PathBuf},
+    process::exit,
+    sync::{Arc, Mutex, PoisonError},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// What an input may take.
+const MOST_SECONDS: f64 = 1.0;
+const MOST_BYTES: u64 = 1 << 30;
+/// An input that takes longer than this is not waited for.
+const HANGS: Duration = Duration::from_secs(20);
+/// Other programs may hold up one reading, and not three.
+const READINGS: usize = 3;
+
+/// The input being read.
+struct Current {
+    name: String,
+    bytes: Vec<u8>,
+    since: Instant,
+}
+
+/// Watches inputs and keeps those that fail.
+pub struct Watch {
+    failures: PathBuf,
+    current: Arc<Mutex<Option<Current>>>,
+    pub failed: usize,
+    pub slowest_s: f64,
+}
+
+impl Watch {
+    /// Failing inputs are written into the folder.
+    pub fn new(failures: &Path) -> Self {
+        let current = Arc::new(Mutex::new(None));
+        let (watched, folder) = (Arc::clone(&current), failures.to_path_buf());
+        thread::spawn(move || {
+            loop {
+                thread::sleep(Duration::from_millis(10));
+                end_if_out_of_bounds(&watched, &folder);
+            }
+        });
+        Self {
+            failures: failures.to_path_buf(),
+            current,
+            failed: 0,
+            slowest_s: 0.0,
+        }
+    }
+
+    /// Reads an input, and keeps it if it panics or takes too long.
+    pub fn read(&mut self, name: &str, bytes: &[u8], read: &dyn Fn(&[u8])) {
+        let mut least_s = f64::INFINITY;
+        for _ in 0..READINGS {
+            self.set(Some((name, bytes)));
+            let began = Instant::now();
+            let ended = catch_unwind(AssertUnwindSafe(|| read(bytes)));
+            self.set(None);
+            least_s = least_s.min(began.elapsed().as_secs_f64());
+            if ended.is_err() {
+                return self.fail(name, bytes, "panics");
+            }
+            if least_s <= MOST_SECONDS {
+                self.slowest_s = self.slowest_s.max(least_s);
+                return;
+            }
+        }
+        self.fail(name, bytes, &format!("takes {least_s:.1} s"));
+    }
+
+    fn set(&self, input: Option<(&str, &[u8])>) {
+        let input = input.map(|(name, bytes)| Current {
+            name: name.to_owned(),
+            bytes: bytes.to_vec(),
+            since: Instant::now(),
+        });
+        *self.current.lock().unwrap_or_else(PoisonError::into_inner) = input;
+    }
+
+    fn fail(&mut self, name: &str, bytes: &[u8], what: &str) {
+        self.failed += 1;
+        keep(&self.failures, name, bytes, what);
+    }
+}
+
+fn end_if_out_of_bounds(current: &Mutex<Option<Current>>, failures: &Path) {
+    let current = current.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(input) = current.as_ref() else {
+        return;
+    };
+    let memory = resident_bytes();
+    if input.since.elapsed() > HANGS {
+        keep(failures, &input.name, &input.bytes, "hangs");
+        exit(1);
+    }
+    if memory > MOST_BYTES {
+        keep(failures, &input.name, &input.bytes, "takes more than 1 GB");
+        exit(1);
+    }
+}
+
+/// Memory that the process holds; 0 where the system does not say.
+fn resident_bytes() -> u64 {
+    let pages = fs::read_to_string("/proc/self/statm")
+        .ok()
+        .and_then(|statm| {
+            let resident = statm.split_ascii_whitespace().nth(1)?;
+            resident.parse::<u64>().ok()
+        });
+    pages.unwrap_or(0) * 4096
+}
+
+fn keep(folder: &Path, name: &str, bytes: &[u8], what: &str) {
+    let path = folder.join(name);
+    let kept = fs::create_dir_all(folder).and_then(|()| fs::write(&path, bytes));
+    eprintln!(
+        "{name} {what}; {} bytes of it in {}: {kept:?}",
+        bytes.len(),
+        path.display()
+    );
+    eprintln!("repeat it by: hostile_inputs --repeat {}", path.display());
+}

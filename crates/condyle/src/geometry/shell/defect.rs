@@ -1,0 +1,154 @@
+//! What is wrong with a triangle mesh: kinds, how many, and where.
+
+use serde::{Deserialize, Serialize};
+
+use crate::Vec3;
+
+/// What can be wrong with a triangle mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum DefectKind {
+    /// Vertices of open edges that rounding keeps apart.
+    Unwelded,
+    /// Vertices that lie on the edge of a triangle which has no corner there.
+    Joint,
+    /// Triangles thinner than rounding.
+    Sliver,
+    /// Triangles of the same three corners.
+    Doubled,
+    /// Edges of three or more triangles.
+    NonManifoldEdge,
+    /// Edges across which the surface comes back turned, as on a Moebius strip.
+    OneSided,
+    /// Pairs of triangles that pass through one another.
+    Crossing,
+    /// Open pieces and inner walls beside a closed body.
+    Fragment,
+    /// Loops of open edges in a surface.
+    Hole,
+    /// Triangles that lie on one another in such numbers that crossings were not looked for to the end.
+    Tangle,
+}
+
+impl DefectKind {
+    /// What it is called, for one and for several, and what was done about it away from where bodies can touch.
+    fn words(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Unwelded => (
+                "vertex apart by rounding",
+                "vertices apart by rounding",
+                "welded",
+            ),
+            Self::Joint => (
+                "vertex on another's edge",
+                "vertices on others' edges",
+                "joined",
+            ),
+            Self::Sliver => ("sliver", "slivers", "taken out where that moves nothing"),
+            Self::Doubled => ("doubled face", "doubled faces", "made single"),
+            Self::NonManifoldEdge => (
+                "edge of three or more triangles",
+                "edges of three or more triangles",
+                "left",
+            ),
+            Self::OneSided => (
+                "edge of a one-sided surface",
+                "edges of a one-sided surface",
+                "left",
+            ),
+            Self::Crossing => (
+                "pair of triangles that cross",
+                "pairs of triangles that cross",
+                "left",
+            ),
+            Self::Fragment => (
+                "open piece or inner wall",
+                "open pieces or inner walls",
+                "left out",
+            ),
+            Self::Hole => ("hole", "holes", "closed"),
+            Self::Tangle => ("tangle of triangles", "tangles of triangles", "left"),
+        }
+    }
+}
+
+/// All defects of one kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Defect {
+    /// What it is.
+    pub kind: DefectKind,
+    /// How many there are.
+    pub count: usize,
+    /// Where the first [`Defect::MOST_PLACES`] are, mm in the frame of the mesh.
+    pub places_mm: Vec<Vec3>,
+}
+
+impl Defect {
+    /// More places help nobody.
+    pub const MOST_PLACES: usize = 20;
+
+    /// Kind, count and the first `most` places: "2 holes at (1.00, 2.00, 3.00), ... mm".
+    pub fn listed(&self, most: usize) -> String {
+        let (one, several, _) = self.kind.words();
+        let name = if self.count == 1 { one } else { several };
+        let places = &self.places_mm[..self.places_mm.len().min(most)];
+        let shown: Vec<String> = places.iter().map(point).collect();
+        let more = match self.count - places.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        format!("{} {name} at {} mm{more}", self.count, shown.join(", "))
+    }
+
+    /// The same with what was done: "2 holes (closed) at ...".
+    pub fn listed_with_repair(&self, most: usize) -> String {
+        let (one, several, done) = self.kind.words();
+        let name = if self.count == 1 { one } else { several };
+        self.listed(most)
+            .replacen(name, &format!("{name} ({done})"), 1)
+    }
+}
+
+fn point(at: &Vec3) -> String {
+    // Adding zero turns -0 into 0.
+    let [x, y, z] = [at.x, at.y, at.z].map(|one| (one * 100.0).round() / 100.0 + 0.0);
+    format!("({x:.2}, {y:.2}, {z:.2})")
+}
+
+/// Counts one more defect at a place.
+pub(super) fn add(defects: &mut Vec<Defect>, kind: DefectKind, at_mm: Vec3) {
+    let index = defects.iter().position(|defect| defect.kind == kind);
+    let index = index.unwrap_or_else(|| {
+        defects.push(Defect {
+            kind,
+            count: 0,
+            places_mm: Vec::new(),
+        });
+        defects.len() - 1
+    });
+    let defect = &mut defects[index];
+    defect.count += 1;
+    if defect.places_mm.len() < Defect::MOST_PLACES {
+        defect.places_mm.push(at_mm);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_defect_is_said_with_its_count_and_first_places() {
+        let mut defects = Vec::new();
+        add(&mut defects, DefectKind::Hole, Vec3::new(1.0, -0.001, 2.5));
+        assert_eq!(defects[0].listed(3), "1 hole at (1.00, 0.00, 2.50) mm");
+        for _ in 0..30 {
+            add(&mut defects, DefectKind::Hole, Vec3::zeros());
+        }
+        let said = defects[0].listed_with_repair(1);
+        assert_eq!(
+            said,
+            "31 holes (closed) at (1.00, 0.00, 2.50) mm and 30 more"
+        );
+        assert_eq!(defects[0].places_mm.len(), Defect::MOST_PLACES);
+    }
+}
