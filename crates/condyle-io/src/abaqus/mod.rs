@@ -8,7 +8,6 @@ mod contact;
 mod drives;
 mod error;
 mod export;
-mod femur;
 mod heading;
 mod machine;
 mod model;

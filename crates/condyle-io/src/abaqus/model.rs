@@ -7,10 +7,12 @@ use condyle::machine::{JointIndex, knee};
 use condyle_fem::HexMesh;
 
 use super::error::ExportError;
-use super::femur;
 use super::options::AbaqusOptions;
 use super::placing::Placing;
 use crate::case::Case;
+
+/// Triangles of a femur that is not a mesh already, as many as Knight 2007 has.
+const FEMUR_TRIANGLES: f64 = 25_000.0;
 
 /// The model that is written.
 pub(super) struct Model<'a> {
@@ -57,7 +59,9 @@ impl<'a> Model<'a> {
             .nodes
             .iter_mut()
             .for_each(|node| *node = placing.insert_point(node));
-        let femur = femur::triangles(case, test)?.mapped(|vertex| placing.femur.to_insert(vertex));
+        let femur = case
+            .femur_triangles(test, FEMUR_TRIANGLES)?
+            .mapped(|vertex| placing.femur.to_insert(vertex));
         let labels = Labels::new(&insert, &femur);
         Ok(Self {
             case,

@@ -9,6 +9,7 @@ use super::machine::Machine;
 use super::march::March;
 use super::material::Material;
 use super::origin::Origin;
+use super::output::Output;
 use super::time::Time;
 use super::wear::Wear;
 
@@ -35,5 +36,7 @@ pub struct Case {
     pub time: Time,
     /// What a run tells of its own accuracy.
     pub accuracy: Accuracy,
+    /// What a run writes besides what it always does.
+    pub output: Output,
     pub(super) origin: Origin,
 }

@@ -27,6 +27,7 @@ mod number_keys;
 #[cfg(feature = "file-system")]
 mod on_disk;
 mod origin;
+mod output;
 mod overriding;
 mod pressure_table;
 mod read;
@@ -60,6 +61,7 @@ pub use march::{AutoUpdates, FixedUpdates, March, Update};
 pub use material::Material;
 pub use mesh_file::LengthUnit;
 pub use number_keys::NumberKey;
+pub use output::Output;
 pub use overriding::{Override, OverrideError};
 pub use pressure_table::PressureTableReason;
 pub use reader::CaseReader;

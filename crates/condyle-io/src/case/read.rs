@@ -12,8 +12,9 @@ use super::wear::{Wear, WearLaws};
 use crate::keyed::{Log, Section, Settings, names, read_table};
 
 /// Every table of a case, in the order they are written.
-const TABLES: [&str; 9] = [
+const TABLES: [&str; 10] = [
     "femur", "insert", "material", "contact", "machine", "wear", "march", "time", "accuracy",
+    "output",
 ];
 
 /// Reads every table before giving up on any, so that all problems are found at once.
@@ -35,6 +36,7 @@ pub(super) fn read_case(
     let march = March::read(&root.table("march", log), log);
     let time = read_table(root, "time", log);
     let accuracy = read_table(root, "accuracy", log);
+    let output = read_table(root, "output", log);
     Some(Case {
         heading: heading?,
         femur: femur?,
@@ -46,6 +48,7 @@ pub(super) fn read_case(
         march: march?,
         time: time?,
         accuracy: accuracy?,
+        output: output?,
         origin: Origin::of(log.source()),
     })
 }

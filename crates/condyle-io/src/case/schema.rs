@@ -13,6 +13,7 @@ use super::insert::Insert;
 use super::machine_keys::{MachineSettings, Rotation, Springs, Start, Translation};
 use super::march::{March, Update};
 use super::material::Material;
+use super::output::Output;
 use super::time::Time;
 use super::waveform::{WaveformSource, knots_key};
 use super::wear::{Wear, WearLaws};
@@ -59,6 +60,7 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
     page.chosen("`[march]`", &March::keys(), &Update::choices());
     page.section("`[time]`", &Time::keys());
     page.section("`[accuracy]`", &Accuracy::keys());
+    page.section("`[output]`", &Output::keys());
     page.into_text()
 }
 

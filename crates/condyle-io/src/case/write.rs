@@ -36,6 +36,8 @@ impl Case {
         self.time.write(&mut out);
         out.table("accuracy");
         self.accuracy.write(&mut out);
+        out.table("output");
+        self.output.write(&mut out);
         out.into_text()
     }
 }

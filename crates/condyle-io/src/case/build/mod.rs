@@ -4,6 +4,7 @@ mod assemble;
 mod body_size;
 mod error;
 mod femur;
+mod femur_triangles;
 mod insert;
 mod machine;
 mod meshes;

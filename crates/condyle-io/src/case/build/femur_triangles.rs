@@ -1,34 +1,39 @@
-//! The femur as triangles.
+//! The femur as triangles, for pictures and other programs.
 
 use condyle::Vec3;
 use condyle::evolve::WearTest;
 use condyle::geometry::{FemoralSurface, GenericFemur, TriangleMesh};
 
-use crate::case::{BuildError, Case, Femur};
+use super::super::contents::Case;
+use super::super::femur::Femur;
+use super::error::BuildError;
 
-/// Triangles of a femur that is not a mesh already, as many as Knight 2007 has.
-const TRIANGLES: f64 = 25_000.0;
-/// Halvings of an icosahedron's edges: 20 * 4^5 triangles.
-const HALVINGS: usize = 5;
+/// Faces of an icosahedron.
+const ICOSAHEDRON: f64 = 20.0;
 
-/// The femur's surface in the femoral frame, triangles anticlockwise seen from outside.
-pub(super) fn triangles(case: &Case, test: &WearTest) -> Result<TriangleMesh, BuildError> {
-    match (&case.femur, test.femur.as_ref()) {
-        (Femur::Mesh(femur), _) => femur.triangles(case.heading.side),
-        (_, FemoralSurface::Generic(femur)) => Ok(generic(femur)),
-        (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm)),
-        (Femur::Cylinder(cylinder), _) => Ok(tube(cylinder.radius_mm)),
-        (Femur::Generic(_), _) => {
-            unreachable!("a generic femur is built as one")
+impl Case {
+    /// The femur's surface in the femoral frame of a right knee, mm, triangles anticlockwise seen from
+    /// outside. A mesh has its own; other shapes get about so many.
+    ///
+    /// # Errors
+    /// A mesh that cannot be read again.
+    pub fn femur_triangles(&self, test: &WearTest, about: f64) -> Result<TriangleMesh, BuildError> {
+        match (&self.femur, test.femur.as_ref()) {
+            (Femur::Mesh(femur), _) => femur.triangles(self.heading.side),
+            (_, FemoralSurface::Generic(femur)) => Ok(generic(femur, about)),
+            (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm, about)),
+            (Femur::Cylinder(cylinder), _) => Ok(tube(cylinder.radius_mm)),
+            (Femur::Generic(_), _) => {
+                unreachable!("a generic femur is built as one")
+            }
         }
     }
 }
 
-/// The generic femur in about [`TRIANGLES`].
-fn generic(femur: &GenericFemur) -> TriangleMesh {
+fn generic(femur: &GenericFemur, about: f64) -> TriangleMesh {
     const COARSE_MM: f64 = 1.0;
     let coarse = femur.surface_mesh(COARSE_MM).triangles.len() as f64;
-    femur.surface_mesh(COARSE_MM * (coarse / TRIANGLES).sqrt())
+    femur.surface_mesh(COARSE_MM * (coarse / about).sqrt())
 }
 
 /// A tube about the z axis, longer than any insert is wide.
@@ -58,9 +63,10 @@ fn tube(radius_mm: f64) -> TriangleMesh {
 }
 
 /// A ball about the origin: an icosahedron, its triangles cut in four again and again.
-fn sphere(radius_mm: f64) -> TriangleMesh {
+fn sphere(radius_mm: f64, about: f64) -> TriangleMesh {
+    let halvings = (about / ICOSAHEDRON).log(4.0).round() as usize;
     let mut ball = icosahedron();
-    for _ in 0..HALVINGS {
+    for _ in 0..halvings {
         ball = in_four(&ball);
     }
     ball.mapped(|vertex| vertex.normalize() * radius_mm)
@@ -136,7 +142,7 @@ mod tests {
 
     #[test]
     fn verify_the_ball_is_closed_faces_out_and_has_its_volume() {
-        let ball = sphere(24.0);
+        let ball = sphere(24.0, 25_000.0);
         assert_eq!(
             (ball.triangles.len(), ball.vertices.len()),
             (20_480, 10_242)
