@@ -2,6 +2,8 @@
 
 /// The texts' baseline below the surface, px.
 const TEXT_BELOW: f64 = 50.0;
+/// A leader leaves the vertical so far below the surface, px: on the surface leaders of different rings stay apart.
+const ELBOW_BELOW: f64 = 6.0;
 /// A leader ends so far above the baseline, px.
 const ABOVE_TEXT: f64 = 13.0;
 /// How far inside its text a leader ends, px, so that one sees whose it is.
@@ -19,6 +21,7 @@ pub(super) struct Marker {
     /// What the text says, a line each; the first is safe SVG.
     pub(super) lines: [String; 2],
     leader_x: f64,
+    elbow_y: f64,
     text_y: f64,
 }
 
@@ -47,6 +50,7 @@ impl TextRow {
                 text_x,
                 lines: lines.clone(),
                 leader_x: self.leader_end(ring.0, text_x),
+                elbow_y: self.bottom + ELBOW_BELOW,
                 text_y: self.bottom + TEXT_BELOW,
             })
             .collect()
@@ -66,7 +70,7 @@ impl TextRow {
         (self.inside(left - over), right - over)
     }
 
-    /// Straight down where the text is below the ring, else to its nearer end.
+    /// Straight below the ring where its text reaches there, else at the nearer end of the text.
     fn leader_end(self, ring_x: f64, text_x: f64) -> f64 {
         let reach = self.half_width - INSIDE_TEXT;
         ring_x.clamp(text_x - reach, text_x + reach)
@@ -78,10 +82,9 @@ impl Marker {
     pub(super) fn svg(&self) -> String {
         let ((x, y), [first, second]) = (self.ring, &self.lines);
         let (text_x, text_y) = (self.text_x, self.text_y);
-        let from_y = y + RING;
-        let from_x = self.leader_at(from_y);
+        let (from_y, elbow_y) = (y + RING, self.elbow_y);
         let (end_x, end_y) = (self.leader_x, self.leader_end_y());
-        let leader = format!("M{from_x:.1} {from_y:.1}L{end_x:.1} {end_y:.1}");
+        let leader = format!("M{x:.1} {from_y:.1}V{elbow_y:.1}L{end_x:.1} {end_y:.1}");
         format!(
             r#"<circle class="halo" cx="{x:.1}" cy="{y:.1}" r="{RING}"/><path class="halo" d="{leader}"/><circle class="mark" cx="{x:.1}" cy="{y:.1}" r="{RING}"/><path class="leader" d="{leader}"/><text x="{text_x:.1}" y="{text_y:.1}" text-anchor="middle">{first}<tspan x="{text_x:.1}" dy="1.35em">{second}</tspan></text>"#
         )
@@ -89,8 +92,8 @@ impl Marker {
 
     /// Where its leader is at a height of the picture, px.
     pub(super) fn leader_at(&self, y: f64) -> f64 {
-        let (x, from) = self.ring;
-        let part = (y - from) / (self.leader_end_y() - from);
+        let x = self.ring.0;
+        let part = (y - self.elbow_y) / (self.leader_end_y() - self.elbow_y);
         x + part.clamp(0.0, 1.0) * (self.leader_x - x)
     }
 

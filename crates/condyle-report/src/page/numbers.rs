@@ -221,7 +221,9 @@ const GROUPS: [(&str, &[Known]); 4] = [
 ];
 
 /// Told elsewhere on the page.
-const TOLD_ELSEWHERE: [&str; 3] = ["error", "warnings", "plausibility"];
+const TOLD_ELSEWHERE: [&str; 4] = ["error", "warnings", "plausibility", NEUTRAL];
+/// Where the femur settled.
+const NEUTRAL: &str = "neutral_pose";
 /// In names of what is told elsewhere, or differs from run to run.
 const NOT_LISTED: [&str; 4] = ["wall_s", "version", "hash", "blake3"];
 
@@ -263,12 +265,48 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
             .collect(),
     };
     let mut groups: Vec<_> = GROUPS.iter().map(group).collect();
+    groups.insert(NEUTRAL_PLACE, neutral(summary));
     groups.push(Group {
         heading: "Other",
         rows: others(summary),
     });
     groups.retain(|group| !group.rows.is_empty());
     groups
+}
+
+/// Where the neutral pose stands among the groups: after the motion that counts from it.
+const NEUTRAL_PLACE: usize = 3;
+
+/// Where the femur stands when AP, ML and IS read zero.
+fn neutral(summary: &Summary) -> Group {
+    let rows = [
+        (
+            "Femoral frame's origin: x, y, z",
+            ["femoral_origin_mm"].as_slice(),
+            "mm",
+            "In the insert frame where the femur settles: there AP, ML and IS read zero. x is anterior, y up, z to the right.",
+        ),
+        (
+            "Flexion, internal rotation, varus",
+            &["flexion_deg", "ie_deg", "vv_deg"],
+            "degrees",
+            "Where the femur settles; zero would be parallel frames.",
+        ),
+    ];
+    let row = |(label, keys, unit, meaning): (&str, &[&str], &'static str, &str)| {
+        let pose = summary.object(NEUTRAL)?;
+        let values: Option<Vec<String>> = keys.iter().map(|key| plain(pose.get(*key)?)).collect();
+        Some(Listed {
+            label: label.to_owned(),
+            value: values?.join(", "),
+            unit,
+            meaning: meaning.to_owned(),
+        })
+    };
+    Group {
+        heading: "Neutral position",
+        rows: rows.into_iter().filter_map(row).collect(),
+    }
 }
 
 fn listed(number: &Known, summary: &Summary) -> Option<Listed> {
