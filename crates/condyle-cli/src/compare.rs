@@ -12,6 +12,7 @@ use crate::{
     arguments::Compare,
     exit,
     output::{self, Lines},
+    report::note_unfinished,
 };
 
 pub fn compare(arguments: &Compare) -> ExitCode {
@@ -19,6 +20,7 @@ pub fn compare(arguments: &Compare) -> ExitCode {
         Ok(comparison) => comparison,
         Err(error) => return fail(&error),
     };
+    note_unfinished(&arguments.results);
     let out = arguments.out.clone();
     let out = out.unwrap_or_else(|| default_folder(arguments));
     let written = match comparison.write(&out) {

@@ -1,11 +1,12 @@
 //! `condyle report`.
 
-use std::process::ExitCode;
+use std::{path::Path, process::ExitCode};
 
 use crate::{
     arguments::Report,
     exit,
     output::{self, Lines},
+    standard_error::tell,
 };
 
 pub fn report(arguments: &Report) -> ExitCode {
@@ -16,6 +17,7 @@ pub fn report(arguments: &Report) -> ExitCode {
         written.push(condyle_report::write_wear_curve(folder));
         written.push(condyle_report::write_kinematics(folder));
     }
+    note_unfinished(folder);
     let mut lines = Lines::default();
     for file in written {
         match file {
@@ -24,4 +26,16 @@ pub fn report(arguments: &Report) -> ExitCode {
         }
     }
     output::print(lines.text())
+}
+
+/// Says of a folder of results that its run is not done, so that what is made from it is not taken for the
+/// whole.
+pub fn note_unfinished(folder: &Path) {
+    let is_begun = folder.join("checkpoint").exists() && !folder.join("summary.json").exists();
+    if is_begun {
+        tell(format_args!(
+            "note: the run in {} is not finished (there is no summary.json); shown is how far it is",
+            folder.display()
+        ));
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::{
     ops::ControlFlow,
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::ExitCode,
     sync::{
         Arc,
@@ -111,11 +111,21 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     }
     add_warnings(summary, &mut lines);
     lines.line(format_args!(
-        "results in {}; open {}",
+        "results in {}; open {}, and in ParaView {}",
         out.display(),
-        out.join("report.html").display()
+        out.join("report.html").display(),
+        for_paraview(out)
     ));
     output::print_beside(lines.text(), out)
+}
+
+/// The files of a run that ParaView plays.
+fn for_paraview(out: &Path) -> String {
+    let series = ["insert.pvd", "cycle_first.pvd", "cycle_last.pvd"];
+    let files = series.map(|name| out.join(name)).into_iter();
+    let there = files.filter(|file| file.exists());
+    let named: Vec<String> = there.map(|file| file.display().to_string()).collect();
+    named.join(", ")
 }
 
 /// What makes the run doubtful comes before its numbers.

@@ -50,19 +50,19 @@ fn run_until(
 }
 
 /// Every file but the summary, which alone has the wall time.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = fs::read_dir(folder).expect("it is there");
-    entries
-        .map(|entry| entry.expect("it can be read"))
-        .map(|entry| {
-            (
-                entry.file_name().to_string_lossy().into_owned(),
-                entry.path(),
-            )
-        })
-        .filter(|(name, _)| name != "summary.json")
-        .map(|(name, path)| (name, fs::read(path).expect("it can be read")))
-        .collect()
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).expect("it is there") {
+        let path = entry.expect("it can be read").path();
+        let name = PathBuf::from(path.file_name().expect("it has a name"));
+        if path.is_dir() {
+            let inner = files(&path).into_iter();
+            found.extend(inner.map(|(file, bytes)| (name.join(file), bytes)));
+        } else if name != Path::new("summary.json") {
+            found.insert(name, fs::read(&path).expect("it can be read"));
+        }
+    }
+    found
 }
 
 #[test]
@@ -73,6 +73,17 @@ fn stopped_at_any_increment_again_and_again() {
 #[test]
 fn a_march_that_finds_its_own_intervals_stopped_at_any_increment() {
     assert_same_bytes_however_stopped(&CASE.replace("updates = 3", "update = \"auto\""));
+}
+
+#[test]
+fn the_frames_of_the_first_and_last_cycle_stopped_at_any_increment() {
+    let case = format!("{CASE}[output]\ncycle_frames = true\n");
+    assert_same_bytes_however_stopped(&case);
+    let (folder, case) = bench(&case);
+    let out = folder.path().join("out");
+    run_until(&case, &options(out.clone(), false), |_| false);
+    let frames = |cycle: &str| files(&out.join(cycle)).len();
+    assert_eq!((frames("cycle_first"), frames("cycle_last")), (80, 80));
 }
 
 fn assert_same_bytes_however_stopped(case: &str) {

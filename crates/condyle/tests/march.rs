@@ -232,3 +232,57 @@ fn a_stop_that_was_asked_for_is_no_error_and_loses_no_update() {
     update(&mut march);
     assert_eq!(march.state().updates.len(), 2);
 }
+
+#[test]
+fn verify_sliding_distance_over_the_surface_is_area_in_contact_times_way() {
+    let mut march = March::start(test()).unwrap();
+    update(&mut march);
+    let cycle = march.last_cycle().expect("one is solved");
+    let shares = cycle.surface.shares.iter();
+    let slid = shares.zip(&march.fields().sliding_distance_mm);
+    let found_mm3: f64 = slid.map(|(share, slid)| share.area_mm2 * slid).sum();
+    let areas = cycle.rows.iter().map(|row| row.contact_area_mm2);
+    let mean_mm2 = areas.sum::<f64>() / cycle.rows.len() as f64;
+    // To and fro by 3 mm about the middle.
+    let expected_mm3 = 12.0 * mean_mm2;
+    assert!(
+        (found_mm3 / expected_mm3 - 1.0).abs() < 0.01,
+        "{found_mm3} {expected_mm3}"
+    );
+}
+
+#[test]
+fn verify_pressures_of_the_last_cycle_carry_its_load_under_its_pose() {
+    let mut march = March::start(test()).unwrap();
+    assert!(march.last_cycle().is_none());
+    update(&mut march);
+    let cycle = march.last_cycle().expect("one is solved");
+    for (increment, row) in cycle.rows.iter().enumerate() {
+        let pressures_mpa = cycle.pressures_mpa(increment);
+        let shares = cycle.surface.shares.iter().zip(&pressures_mpa);
+        let load_n: f64 = shares.map(|(share, p)| share.area_mm2 * p).sum();
+        assert!((load_n / row.axial_force_n - 1.0).abs() < 1e-3, "{load_n}");
+        // A ball on a flat plate presses hardest below its middle.
+        let highest = pressures_mpa.iter().copied().fold(0.0, f64::max);
+        let node = pressures_mpa
+            .iter()
+            .position(|&p| p == highest)
+            .expect("one is");
+        let below = cycle.pose(increment).translation - cycle.surface.positions[node];
+        assert!(
+            below.x.abs() < 1.5 && below.z.abs() < 1.5 && below.y > 23.0,
+            "{below}"
+        );
+    }
+}
+
+#[test]
+fn neutral_is_where_ap_ml_and_is_read_zero() {
+    let march = March::start(test()).unwrap();
+    let pose = march.neutral_pose();
+    assert!((pose.translation - march.state().zero_mm).norm() < 1e-12);
+    assert!(
+        pose.translation.y < 24.0 && pose.translation.y > 23.5,
+        "the ball rests on the plate"
+    );
+}

@@ -32,6 +32,12 @@ fn a_single_file_of_a_run_is_enough_to_refuse() {
         bench.write(&format!("out/{name}"), "mine");
         let said = bench.say(&["run", "case.toml", "--out", "out"]);
         said.assert_refused(2, &["already holds a run", name]);
+        assert_eq!(
+            said.err.contains("--resume"),
+            name == "case.toml",
+            "{}",
+            said.err
+        );
         let left = files_but_wall_time_of_names(&bench);
         assert_eq!(left, [name]);
     }
@@ -187,6 +193,45 @@ fn what_is_said_of_a_folder_fits_the_run_in_it() {
         2,
         &["already holds a run", "go on with --resume", "--force"],
     );
+}
+
+#[test]
+fn what_is_made_from_a_run_that_is_not_finished_says_so() {
+    let bench = Bench::with_case(SMALL);
+    bench.run_into("out");
+    assert_eq!(bench.say(&["report", "out"]).err, "");
+    fs::remove_file(bench.path("out/summary.json")).unwrap();
+    let said = bench.say(&["report", "out"]);
+    assert_eq!(said.code, Some(0));
+    assert!(
+        said.err.contains("the run in out is not finished"),
+        "{}",
+        said.err
+    );
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
+    assert!(page.contains("This run is not finished"));
+}
+
+/// Every increment of the first and last cycle.
+const WITH_FRAMES: &str = "[output]\ncycle_frames = true\n";
+
+#[test]
+fn the_frames_of_both_cycles_go_with_the_run_that_they_are_of() {
+    let bench = Bench::with_case(&format!("{SMALL}{WITH_FRAMES}"));
+    let said = bench.run_into("out");
+    assert!(
+        said.out
+            .contains("out/insert.pvd, out/cycle_first.pvd, out/cycle_last.pvd")
+    );
+    for name in ["cycle_first/insert_0001.vtu", "cycle_last/femur_0040.vtu"] {
+        assert!(bench.path("out").join(name).exists(), "{name}");
+    }
+    bench.write("out/cycle_last/insert_0002.vtu.part", "");
+    bench.write("case.toml", SMALL);
+    let said = bench.say(&["run", "case.toml", "--out", "out", "--force"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    bench.run_into("anew");
+    assert_same_bytes(&bench.path("out"), &bench.path("anew"));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use condyle_fem::HexMesh;
 use super::error::ExportError;
 use super::options::AbaqusOptions;
 use super::placing::Placing;
-use crate::case::Case;
+use crate::case::{Case, FEMUR_TRIANGLES};
 
 /// The model that is written.
 pub(super) struct Model<'a> {
@@ -57,7 +57,7 @@ impl<'a> Model<'a> {
             .iter_mut()
             .for_each(|node| *node = placing.insert_point(node));
         let femur = case
-            .femur_triangles(test)?
+            .femur_triangles(test, FEMUR_TRIANGLES)?
             .mapped(|vertex| placing.femur.to_insert(vertex));
         let labels = Labels::new(&insert, &femur);
         Ok(Self {

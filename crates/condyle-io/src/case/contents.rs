@@ -10,6 +10,7 @@ use super::machine::Machine;
 use super::march::March;
 use super::material::Material;
 use super::origin::Origin;
+use super::output::Output;
 use super::placement::{FemurPlacement, InsertPlacement};
 use super::time::Time;
 use super::wear::Wear;
@@ -43,5 +44,7 @@ pub struct Case {
     pub accuracy: Accuracy,
     /// What a run may take of the computer.
     pub limits: Limits,
+    /// What a run writes besides what it always does.
+    pub output: Output,
     pub(super) origin: Origin,
 }

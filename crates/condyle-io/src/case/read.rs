@@ -13,9 +13,9 @@ use super::wear::{Wear, WearLaws};
 use crate::keyed::{Log, Section, Settings, names, read_table};
 
 /// Every table of a case, in the order they are written.
-const TABLES: [&str; 10] = [
+const TABLES: [&str; 11] = [
     "femur", "insert", "material", "contact", "machine", "wear", "march", "time", "accuracy",
-    "limits",
+    "limits", "output",
 ];
 
 /// Reads every table before giving up on any, so that all problems are found at once.
@@ -42,6 +42,7 @@ pub(super) fn read_case(
     let time = read_table(root, "time", log);
     let accuracy = read_table(root, "accuracy", log);
     let limits = read_table(root, "limits", log);
+    let output = read_table(root, "output", log);
     Some(Case {
         heading: heading?,
         femur: femur?,
@@ -56,6 +57,7 @@ pub(super) fn read_case(
         time: time?,
         accuracy: accuracy?,
         limits: limits?,
+        output: output?,
         origin: Origin::of(log.source()),
     })
 }

@@ -14,6 +14,7 @@ use super::limits::Limits;
 use super::machine_keys::{MachineSettings, Rotation, Springs, Start, Translation};
 use super::march::{March, Update};
 use super::material::Material;
+use super::output::Output;
 use super::placement::{FemurPlacement, InsertPlacement};
 use super::time::Time;
 use super::waveform::{WaveformSource, knots_key};
@@ -70,6 +71,7 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
     page.section("`[time]`", &Time::keys());
     page.section("`[accuracy]`", &Accuracy::keys());
     page.section("`[limits]`", &Limits::keys());
+    page.section("`[output]`", &Output::keys());
     page.into_text()
 }
 

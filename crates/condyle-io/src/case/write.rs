@@ -40,6 +40,8 @@ impl Case {
         self.accuracy.write(&mut out);
         out.table("limits");
         self.limits.write(&mut out);
+        out.table("output");
+        self.output.write(&mut out);
         out.into_text()
     }
 }

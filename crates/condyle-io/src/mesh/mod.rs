@@ -37,10 +37,10 @@ pub use inp_writer::{
 };
 #[cfg(feature = "file-system")]
 pub use on_disk::{read_pvd, read_vtu_points, write_pvd, write_vtu};
-pub use pvd::{parse_pvd, pvd_text};
+pub use pvd::{parse_pvd, pvd_text, pvd_text_of_parts};
 pub use stl::write_stl;
 pub use surface::{parse_surface, read_surface};
 pub use vtu::{VtuFile, parse_vtu_points};
-pub use vtu_write::{PointArray, PointValues, vtu_bytes};
+pub use vtu_write::{Grid, PointArray, PointValues, compact_vtu_bytes, vtu_bytes};
 
 pub(crate) use surface::surface_bytes;

@@ -13,15 +13,22 @@ use super::vtu_write::escaped;
 ///
 /// For a wear test the time is the number of cycles.
 pub fn pvd_text<'a>(series: impl IntoIterator<Item = (f64, &'a str)>) -> String {
+    let parts = series.into_iter().map(|(time, file)| (time, 0, file));
+    pvd_text_of_parts(parts)
+}
+
+/// The text of a `.pvd` file with several parts, such as bodies, at each time: time, number of the part,
+/// and file.
+pub fn pvd_text_of_parts<'a>(series: impl IntoIterator<Item = (f64, usize, &'a str)>) -> String {
     let mut xml = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
          byte_order=\"LittleEndian\">\n<Collection>\n",
     );
-    for (time, file) in series {
+    for (time, part, file) in series {
         let file = escaped(file);
         let _ = writeln!(
             xml,
-            "<DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>"
+            "<DataSet timestep=\"{time}\" part=\"{part}\" file=\"{file}\"/>"
         );
     }
     xml.push_str("</Collection>\n</VTKFile>\n");

@@ -5,6 +5,7 @@
 //! the array have another offset from then on, which may well be that of a later block. Where the
 //! array of the later block stands first, it is found first.
 
+use condyle::Vec3;
 use condyle_fem::HexMesh;
 
 use super::error::MeshFileError;
@@ -14,6 +15,8 @@ use super::error::MeshFileError;
 pub enum PointValues<'a> {
     /// Written as Float64.
     Float64(&'a [f64]),
+    /// Written as Float32.
+    Float32(&'a [f32]),
     /// Written as UInt8; values of 0 and 1 come back as a node set and a surface.
     UInt8(&'a [u8]),
 }
@@ -31,6 +34,7 @@ impl PointValues<'_> {
     fn len(self) -> usize {
         match self {
             Self::Float64(values) => values.len(),
+            Self::Float32(values) => values.len(),
             Self::UInt8(values) => values.len(),
         }
     }
@@ -38,6 +42,7 @@ impl PointValues<'_> {
     fn kind(self) -> &'static str {
         match self {
             Self::Float64(_) => "Float64",
+            Self::Float32(_) => "Float32",
             Self::UInt8(_) => "UInt8",
         }
     }
@@ -45,9 +50,65 @@ impl PointValues<'_> {
     fn bytes(self) -> Vec<u8> {
         match self {
             Self::Float64(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            Self::Float32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
             Self::UInt8(values) => values.to_vec(),
         }
     }
+}
+
+/// Cells of one kind between nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid<'a> {
+    nodes: &'a [Vec3],
+    /// Nodes of the cells, one cell after the other.
+    corners: &'a [u32],
+    corners_of_cell: usize,
+    /// VTK's number of the kind.
+    kind: u8,
+}
+
+impl<'a> Grid<'a> {
+    /// Triangles, anticlockwise seen from outside.
+    pub fn triangles(nodes: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
+        Self {
+            nodes,
+            corners: triangles.as_flattened(),
+            corners_of_cell: 3,
+            kind: 5,
+        }
+    }
+
+    /// Quads, anticlockwise seen from outside.
+    pub fn quads(nodes: &'a [Vec3], quads: &'a [[u32; 4]]) -> Self {
+        Self {
+            nodes,
+            corners: quads.as_flattened(),
+            corners_of_cell: 4,
+            kind: 9,
+        }
+    }
+
+    fn hexahedra(mesh: &'a HexMesh) -> Self {
+        Self {
+            nodes: &mesh.nodes,
+            corners: mesh.hexes.as_flattened(),
+            corners_of_cell: 8,
+            kind: 12,
+        }
+    }
+
+    fn cells(&self) -> usize {
+        self.corners.len() / self.corners_of_cell
+    }
+}
+
+/// How many bytes coordinates and node numbers take.
+#[derive(Clone, Copy)]
+enum Width {
+    /// Eight each.
+    Whole,
+    /// Four each.
+    Compact,
 }
 
 /// A `.vtu` file of the mesh with its arrays, as bytes.
@@ -55,11 +116,23 @@ impl PointValues<'_> {
 /// # Errors
 /// [`MeshFileError::ArrayLength`] where an array does not have one value a node.
 pub fn vtu_bytes(mesh: &HexMesh, arrays: &[PointArray]) -> Result<Vec<u8>, MeshFileError> {
+    grid_bytes(&Grid::hexahedra(mesh), Width::Whole, arrays)
+}
+
+/// A `.vtu` file for pictures, as bytes: coordinates of 32 bits, which is 1e-6 mm in a knee.
+///
+/// # Errors
+/// As [`vtu_bytes`].
+pub fn compact_vtu_bytes(grid: &Grid, arrays: &[PointArray]) -> Result<Vec<u8>, MeshFileError> {
+    grid_bytes(grid, Width::Compact, arrays)
+}
+
+fn grid_bytes(grid: &Grid, width: Width, arrays: &[PointArray]) -> Result<Vec<u8>, MeshFileError> {
     for array in arrays {
-        check_length(mesh, array)?;
+        check_length(grid, array)?;
     }
-    let data = data_arrays(mesh, arrays);
-    let mut bytes = xml(mesh, &data, arrays.len()).into_bytes();
+    let data = data_arrays(grid, width, arrays);
+    let mut bytes = xml(grid, &data, arrays.len()).into_bytes();
     for array in data.iter().rev() {
         bytes.extend_from_slice(&(array.bytes.len() as u64).to_le_bytes());
         bytes.extend_from_slice(&array.bytes);
@@ -68,8 +141,8 @@ pub fn vtu_bytes(mesh: &HexMesh, arrays: &[PointArray]) -> Result<Vec<u8>, MeshF
     Ok(bytes)
 }
 
-fn check_length(mesh: &HexMesh, array: &PointArray) -> Result<(), MeshFileError> {
-    let (values, nodes) = (array.values.len(), mesh.nodes.len());
+fn check_length(grid: &Grid, array: &PointArray) -> Result<(), MeshFileError> {
+    let (values, nodes) = (array.values.len(), grid.nodes.len());
     if values == nodes {
         return Ok(());
     }
@@ -110,34 +183,32 @@ impl DataArray {
 }
 
 /// All arrays in the order of the XML: values at the nodes, points, cells.
-fn data_arrays(mesh: &HexMesh, arrays: &[PointArray]) -> Vec<DataArray> {
+fn data_arrays(grid: &Grid, width: Width, arrays: &[PointArray]) -> Vec<DataArray> {
     let array = |kind, name: &str, components, bytes| DataArray {
         kind,
         name: name.to_owned(),
         components,
         bytes,
     };
-    let integers = |numbers: &mut dyn Iterator<Item = i64>| -> Vec<u8> {
-        numbers.flat_map(i64::to_le_bytes).collect()
-    };
-    let hexes = mesh.hexes.len();
-    let mut corners = mesh.hexes.as_flattened().iter().map(|&node| node.into());
-    let mut ends = (1..=hexes as i64).map(|hex| 8 * hex);
+    let (float, integer) = width.kinds();
+    let cells = grid.cells();
+    let mut corners = grid.corners.iter().map(|&node| node.into());
+    let mut ends = (1..=cells).map(|cell| (grid.corners_of_cell * cell) as i64);
     let at_nodes = arrays
         .iter()
         .map(|given| array(given.values.kind(), given.name, 1, given.values.bytes()));
     let of_mesh = [
-        array("Float64", "Points", 3, coordinates(mesh)),
-        array("Int64", "connectivity", 1, integers(&mut corners)),
-        array("Int64", "offsets", 1, integers(&mut ends)),
-        array("UInt8", "types", 1, vec![12; hexes]),
+        array(float, "Points", 3, width.floats(grid.nodes)),
+        array(integer, "connectivity", 1, width.integers(&mut corners)),
+        array(integer, "offsets", 1, width.integers(&mut ends)),
+        array("UInt8", "types", 1, vec![grid.kind; cells]),
     ];
     at_nodes.chain(of_mesh).collect()
 }
 
 /// Everything before the bytes; the first `at_nodes` of the arrays are values at the nodes.
-fn xml(mesh: &HexMesh, data: &[DataArray], at_nodes: usize) -> String {
-    let (nodes, hexes) = (mesh.nodes.len(), mesh.hexes.len());
+fn xml(grid: &Grid, data: &[DataArray], at_nodes: usize) -> String {
+    let (node_count, cell_count) = (grid.nodes.len(), grid.cells());
     let mut offset: usize = data.iter().map(DataArray::block_length).sum();
     let mut elements = data.iter().map(|array| {
         offset -= array.block_length();
@@ -148,16 +219,36 @@ fn xml(mesh: &HexMesh, data: &[DataArray], at_nodes: usize) -> String {
     format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
          byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n\
-         <Piece NumberOfPoints=\"{nodes}\" NumberOfCells=\"{hexes}\">\n\
+         <Piece NumberOfPoints=\"{node_count}\" NumberOfCells=\"{cell_count}\">\n\
          <PointData>\n{point_data}</PointData>\n<Points>\n{points}</Points>\n\
          <Cells>\n{cells}</Cells>\n</Piece>\n</UnstructuredGrid>\n\
          <AppendedData encoding=\"raw\">\n_"
     )
 }
 
-fn coordinates(mesh: &HexMesh) -> Vec<u8> {
-    let values = mesh.nodes.iter().flat_map(|node| [node.x, node.y, node.z]);
-    values.flat_map(f64::to_le_bytes).collect()
+impl Width {
+    /// VTK's names of the kinds of floating numbers and integers.
+    fn kinds(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Whole => ("Float64", "Int64"),
+            Self::Compact => ("Float32", "Int32"),
+        }
+    }
+
+    fn floats(self, places: &[Vec3]) -> Vec<u8> {
+        let values = places.iter().flat_map(|place| [place.x, place.y, place.z]);
+        match self {
+            Self::Whole => values.flat_map(f64::to_le_bytes).collect(),
+            Self::Compact => values.flat_map(|v| (v as f32).to_le_bytes()).collect(),
+        }
+    }
+
+    fn integers(self, numbers: &mut dyn Iterator<Item = i64>) -> Vec<u8> {
+        match self {
+            Self::Whole => numbers.flat_map(i64::to_le_bytes).collect(),
+            Self::Compact => numbers.flat_map(|n| (n as i32).to_le_bytes()).collect(),
+        }
+    }
 }
 
 /// Text as the value of an XML attribute.
@@ -220,7 +311,7 @@ mod tests {
     fn meshio_finds_the_array_of_each_block_whatever_the_number_of_points() {
         for more in 0..9 {
             let mut mesh = two_cubes();
-            mesh.nodes.extend(vec![condyle::Vec3::zeros(); more]);
+            mesh.nodes.extend(vec![Vec3::zeros(); more]);
             let values = vec![0.5; mesh.nodes.len()];
             let names = ["a_mm", "b_mm", "c_mm", "d_mm", "e_mm"];
             let arrays = names.map(|name| PointArray {

@@ -5,12 +5,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use condyle::evolve::March;
+use condyle::{evolve::March, geometry::TriangleMesh};
 use thiserror::Error;
 
 use super::{
     checkpoint::{Checkpoint, CheckpointError},
     checksums::{CHECKSUMS, DamagedFile, check_all, is_listed, write_checksum},
+    cycle_files::{KeptCycle, cycle_pvd, femur_vtu, frame_name, insert_frame},
+    femur_pose::femur_pose_csv,
     insert_series::{insert_file_name, insert_pvd, insert_vtu},
     lock::{FolderLock, LOCK},
     replace::{beside, replace_file, replace_file_durably},
@@ -29,6 +31,18 @@ pub enum ResultsError {
         folder.display()
     )]
     HoldsRun {
+        /// The folder.
+        folder: PathBuf,
+        /// A file of the run.
+        file: &'static str,
+    },
+    /// Files of a run's names are in it, and nothing to go on from.
+    #[error(
+        "{}: the folder already holds a run or a part of one ({file} is there, and no checkpoint to go on from); \
+         give another folder with --out, or take the file away yourself",
+        folder.display()
+    )]
+    HoldsPartOfRun {
         /// The folder.
         folder: PathBuf,
         /// A file of the run.
@@ -86,7 +100,11 @@ pub enum ResultsError {
         path: PathBuf,
     },
     /// No run is in it to go on with.
-    #[error("{}: the folder holds no run to go on with; leave out --resume", folder.display())]
+    #[error(
+        "{}: the folder holds no run to go on with: there is no checkpoint, and no case.toml of this case; \
+         leave out --resume to begin one",
+        folder.display()
+    )]
     HoldsNone {
         /// The folder.
         folder: PathBuf,
@@ -141,7 +159,7 @@ pub struct ResultsFolder {
 }
 
 /// Files of a run that are never written over by another; the one written first comes first.
-pub(super) const SIGNS_OF_A_RUN: [&str; 9] = [
+pub(super) const SIGNS_OF_A_RUN: [&str; 13] = [
     "case.toml",
     "checkpoint",
     "summary.json",
@@ -151,6 +169,10 @@ pub(super) const SIGNS_OF_A_RUN: [&str; 9] = [
     "insert_0000.vtu",
     "report.html",
     CHECKSUMS,
+    "femur.vtu",
+    "femur_pose.csv",
+    "cycle_first.pvd",
+    "cycle_last.pvd",
 ];
 
 /// Seconds spent by the parts of a run that is not done; gone once it is, so that what is left
@@ -195,13 +217,16 @@ impl ResultsFolder {
                 folder: folder.path,
             });
         }
-        match SIGNS_OF_A_RUN.iter().find(is_there) {
-            Some(&file) => Err(ResultsError::HoldsRun {
-                folder: folder.path,
-                file,
-            }),
-            None => Ok(()),
-        }
+        let Some(&file) = SIGNS_OF_A_RUN.iter().find(is_there) else {
+            return Ok(());
+        };
+        let has_something_to_go_on_from = file == "case.toml" || is_there(&&"checkpoint");
+        let folder = folder.path;
+        Err(if has_something_to_go_on_from {
+            ResultsError::HoldsRun { folder, file }
+        } else {
+            ResultsError::HoldsPartOfRun { folder, file }
+        })
     }
 
     /// The lock of the folder at `path`, so that no other run writes into it; none where there is
@@ -350,6 +375,59 @@ impl ResultsFolder {
         self.replace("case.toml", toml.as_bytes())
     }
 
+    /// Writes the femur as it stands at neutral, in the insert frame.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_femur(
+        &self,
+        march: &March,
+        femur: &TriangleMesh,
+        side: Side,
+    ) -> Result<(), ResultsError> {
+        let bytes = femur_vtu(femur, &march.neutral_pose(), side)?;
+        self.replace("femur.vtu", &bytes)
+    }
+
+    /// Writes the cycle that the march has just solved, increment by increment, where it is the first or the
+    /// last; to be done before [`Self::write_update`], so that a checkpoint never lacks it.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_cycles(
+        &self,
+        march: &March,
+        femur: &TriangleMesh,
+        side: Side,
+    ) -> Result<(), ResultsError> {
+        for cycle in KeptCycle::solved_by(march) {
+            self.write_frames(cycle, march, femur, side)?;
+        }
+        Ok(())
+    }
+
+    fn write_frames(
+        &self,
+        kept: KeptCycle,
+        march: &March,
+        femur: &TriangleMesh,
+        side: Side,
+    ) -> Result<(), ResultsError> {
+        let Some(cycle) = march.last_cycle() else {
+            return Ok(());
+        };
+        let frames = Self::create(&self.file(kept.name()))?;
+        for increment in 0..cycle.rows.len() {
+            let insert = insert_frame(march, &cycle, increment, side)?;
+            frames.replace(&frame_name("insert", increment), &insert)?;
+            let femur = femur_vtu(femur, &cycle.pose(increment), side)?;
+            frames.replace(&frame_name("femur", increment), &femur)?;
+        }
+        let percents: Vec<f64> = cycle.rows.iter().map(|row| row.percent).collect();
+        let pvd = cycle_pvd(kept, &percents);
+        self.replace(&format!("{}.pvd", kept.name()), pvd.as_bytes())
+    }
+
     /// Writes all that the march has found so far, and last of all the checkpoint: whatever it
     /// remembers is then already in the other files.
     ///
@@ -376,6 +454,7 @@ impl ResultsFolder {
             )
             .as_bytes(),
         )?;
+        self.replace("femur_pose.csv", femur_pose_csv(march, side).as_bytes())?;
         let checkpoint = Checkpoint {
             inputs_blake3: inputs_blake3.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -3,7 +3,9 @@
 mod checkpoint;
 #[cfg(feature = "file-system")]
 mod checksums;
+mod cycle_files;
 mod error_estimate;
+mod femur_pose;
 #[cfg(feature = "file-system")]
 mod folder;
 mod insert_series;
@@ -12,6 +14,7 @@ mod lock;
 mod plausibility;
 #[cfg(feature = "file-system")]
 mod replace;
+mod sides;
 mod summary;
 mod tables;
 #[cfg(feature = "file-system")]
@@ -26,7 +29,12 @@ pub use condyle::machine::{
 pub use checkpoint::{Checkpoint, CheckpointError};
 #[cfg(feature = "file-system")]
 pub use checksums::{DamagedFile, check_file};
+pub use cycle_files::{
+    BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pvd, femur_of_frames, femur_vtu, frame_name,
+    insert_frame,
+};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, Quantity, QuantityErrors};
+pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};

@@ -9,7 +9,9 @@ use condyle::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::{error_estimate::ErrorEstimate, plausibility::PlausibilityWarning};
+use super::{
+    error_estimate::ErrorEstimate, femur_pose::NeutralPose, plausibility::PlausibilityWarning,
+};
 
 /// What a summary is made from.
 pub struct SummaryInput<'a> {
@@ -30,6 +32,8 @@ pub struct SummaryInput<'a> {
     pub warnings: Vec<String>,
     /// Estimated discretisation errors; none if the case asks for none.
     pub error: Option<ErrorEstimate>,
+    /// Where the femur settled.
+    pub neutral_pose: NeutralPose,
 }
 
 /// The numbers of a finished run; units are in the names.
@@ -81,6 +85,8 @@ pub struct Summary {
     pub ie_range_deg: f64,
     /// Medial part of the axial force, averaged over the first cycle, weighted by force.
     pub medial_load_share: f64,
+    /// Where the femur settled, in the insert frame: there AP, ML and IS read zero.
+    pub neutral_pose: NeutralPose,
     /// Updates of the geometry.
     pub updates: usize,
     /// Increments a cycle.
@@ -155,6 +161,7 @@ impl Summary {
             ap_range_mm: joint_range(first_cycle, AP),
             ie_range_deg: joint_range(first_cycle, IE),
             medial_load_share: medial_load_share(first_cycle),
+            neutral_pose: input.neutral_pose,
             updates: updates.len(),
             increments: input.increments,
             cycles_solved,

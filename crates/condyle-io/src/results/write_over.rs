@@ -7,6 +7,7 @@ use std::{
 };
 
 use super::{
+    cycle_files::{BODIES, KeptCycle},
     folder::{ResultsError, ResultsFolder, SIGNS_OF_A_RUN, TIME_SPENT},
     replace::beside,
 };
@@ -24,6 +25,9 @@ impl ResultsFolder {
     pub fn may_be_written_over(path: &Path, read: &[&Path]) -> Result<(), ResultsError> {
         let folder = path.to_owned();
         match Self::free(path) {
+            Err(ResultsError::HoldsPartOfRun { file, .. }) => {
+                Err(ResultsError::HoldsNoWholeRun { folder, file })
+            }
             Err(ResultsError::HoldsRun { file, .. }) if !path.join("checkpoint").exists() => {
                 Err(ResultsError::HoldsNoWholeRun { folder, file })
             }
@@ -55,14 +59,16 @@ impl ResultsFolder {
                 Ok(()) | Err(_) => {}
             }
         }
+        for cycle in KeptCycle::BOTH {
+            // Left where somebody has put files of their own into it.
+            let _ = fs::remove_dir(self.path().join(cycle.name()));
+        }
         Ok(())
     }
 
     /// The files that a run may have left, whether they are there or not, the checkpoint last.
     fn files_of_a_run(&self) -> Vec<PathBuf> {
-        let entries = fs::read_dir(self.path()).into_iter().flatten().flatten();
-        let inserts = entries.filter_map(|entry| entry.file_name().into_string().ok());
-        let inserts = inserts.filter(|name| is_insert(name));
+        let inserts = names_in(self.path()).filter(|name| is_numbered(name, "insert"));
         let others = SIGNS_OF_A_RUN
             .into_iter()
             .chain(PICTURES)
@@ -70,16 +76,42 @@ impl ResultsFolder {
         let named = others
             .filter(|name| *name != "checkpoint")
             .map(str::to_owned);
-        let names = named.chain(inserts).chain(["checkpoint".to_owned()]);
+        let frames = KeptCycle::BOTH
+            .into_iter()
+            .flat_map(|cycle| self.frames(cycle));
+        let names = named
+            .chain(inserts)
+            .chain(frames)
+            .chain(["checkpoint".to_owned()]);
         let files = names.map(|name| self.path().join(name));
         files.flat_map(|file| [beside(&file), file]).collect()
     }
+
+    /// The frames of a cycle, by their paths in the folder.
+    fn frames(&self, cycle: KeptCycle) -> Vec<String> {
+        let folder = cycle.name();
+        // One that was being written when the run was stopped has the ending of such files.
+        let whole = |name: String| {
+            name.strip_suffix(".part")
+                .map_or(name.clone(), str::to_owned)
+        };
+        let names = names_in(&self.path().join(folder)).map(whole);
+        let frames = names.filter(|name| BODIES.iter().any(|body| is_numbered(name, body)));
+        frames.map(|name| format!("{folder}/{name}")).collect()
+    }
 }
 
-/// Whether a name is that of an insert after some update.
-fn is_insert(name: &str) -> bool {
+/// The names of what is in a folder; none where there is no such folder.
+fn names_in(folder: &Path) -> impl Iterator<Item = String> + use<> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.filter_map(|entry| entry.file_name().into_string().ok())
+}
+
+/// Whether a name is that of a body after some update or increment.
+fn is_numbered(name: &str, body: &str) -> bool {
     let number = name
-        .strip_prefix("insert_")
+        .strip_prefix(body)
+        .and_then(|rest| rest.strip_prefix('_'))
         .and_then(|rest| rest.strip_suffix(".vtu"));
     number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 use condyle::evolve::March;
 use condyle_io::{
     cache::Cache,
-    case::{Assignment, Case},
+    case::{Assignment, Case, FEMUR_TRIANGLES},
 };
 use serde::Serialize;
 
@@ -56,7 +56,7 @@ impl Preview {
         let built = clock.time(|| build(&case, threads, &Cache::off()))?;
         let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
         let march = clock.time(|| start(&case, built.test))?;
-        let triangles = case.femur_triangles(march.test());
+        let triangles = case.femur_triangles(march.test(), FEMUR_TRIANGLES);
         let triangles = triangles.map_err(|source| RunError::of_build(&case, source))?;
         let at_rest = AtRest::of(&march);
         let (femur, insert) = (

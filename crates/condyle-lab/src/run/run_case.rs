@@ -2,11 +2,14 @@
 
 use std::{ops::ControlFlow, path::Path, time::Duration};
 
-use condyle::evolve::March;
+use condyle::{evolve::March, geometry::TriangleMesh};
 use condyle_io::{
-    case::{Assignment, Case, Side},
+    case::{Assignment, Case, FEMUR_TRIANGLES, Side},
     keyed::DataFile,
-    results::{Checkpoint, FolderLock, Found, ResultsError, ResultsFolder, Summary, SummaryInput},
+    results::{
+        Checkpoint, FRAME_TRIANGLES, FolderLock, Found, NeutralPose, ResultsError, ResultsFolder,
+        Summary, SummaryInput, femur_of_frames,
+    },
 };
 
 use super::{
@@ -151,6 +154,8 @@ struct Run<'a> {
     /// Held until the run has ended.
     _lock: Option<FolderLock>,
     march: March,
+    /// The femur that the frames of the first and last cycle show, where the case asks for them.
+    in_frames: Option<TriangleMesh>,
     clock: Clock,
 }
 
@@ -178,11 +183,19 @@ impl<'a> Run<'a> {
             }
             None => clock.time(|| start(case, built.test))?,
         };
+        let drawn = case.output.cycle_frames;
+        let in_frames = drawn.then(|| femur_triangles(case, &march, FRAME_TRIANGLES));
+        let in_frames = in_frames.transpose()?.map(femur_of_frames);
+        let alone = is_new.then(|| femur_triangles(case, &march, FEMUR_TRIANGLES));
+        let alone = alone.transpose()?;
         let (folder, lock) = if is_new {
             new_folder(case, options, lock)?
         } else {
             (ResultsFolder::existing(&options.out), lock)
         };
+        if let Some(femur) = alone {
+            folder.write_femur(&march, &femur, case.heading.side)?;
+        }
         let run = Self {
             case,
             options,
@@ -191,6 +204,7 @@ impl<'a> Run<'a> {
             folder,
             _lock: lock,
             march,
+            in_frames,
             clock,
         };
         if is_new {
@@ -235,6 +249,9 @@ impl<'a> Run<'a> {
 
     fn write_update(&self) -> Result<(), ResultsError> {
         let side: Side = self.case.heading.side;
+        if let Some(femur) = &self.in_frames {
+            self.folder.write_cycles(&self.march, femur, side)?;
+        }
         self.folder
             .write_update(&self.march, side, &self.inputs_blake3)?;
         self.folder.write_time_spent(self.clock.spent.as_secs_f64())
@@ -267,7 +284,17 @@ impl<'a> Run<'a> {
             inputs_blake3: self.inputs_blake3.clone(),
             warnings: self.warnings.clone(),
             error: None,
+            neutral_pose: NeutralPose::of(&self.march, self.case.heading.side),
         })
         .expect("a march that is done has an update")
     }
+}
+
+/// The femur as triangles: those of its mesh, or about so many.
+fn femur_triangles(case: &Case, march: &March, about: f64) -> Result<TriangleMesh, RunError> {
+    case.femur_triangles(march.test(), about)
+        .map_err(|source| RunError::Build {
+            shown: case.at_its_key(&source),
+            source,
+        })
 }

@@ -4,6 +4,7 @@
 use super::axis::{Axis, round_step};
 use super::contour::{Contours, borders};
 use super::escape::escape;
+use super::marker::{Marker, TextRow};
 use super::path::Path;
 use crate::number::{fixed, significant};
 use crate::results::{
@@ -14,8 +15,10 @@ use crate::results::{
 
 /// Bands between 0 and the largest value, at most.
 const MOST_BANDS: usize = 12;
-/// Half the width of the text below a marker, px.
-const HALF_TEXT_WIDTH: f64 = 80.0;
+/// Half the width of the text below a marker, px, in the large letters of a narrow screen.
+const HALF_TEXT_WIDTH: f64 = 110.0;
+/// Half the width of the name of a direction, px.
+const HALF_DIRECTION: f64 = 40.0;
 /// Distance between the height lines of the bare surface, mm.
 const HEIGHT_STEP: f64 = 1.0;
 /// A largest value below this counts as nothing to show.
@@ -93,13 +96,13 @@ impl Map<'_> {
 
     /// The map as content of a larger picture.
     pub(crate) fn body(&self) -> String {
-        let bands = self.bands();
+        let (bands, markers) = (self.bands(), self.markers());
         [
             self.surface_picture(&bands),
-            self.directions(),
+            self.directions(&markers),
             self.colour_bar(&bands),
             self.scale_bar(),
-            self.markers(),
+            markers.iter().map(Marker::svg).collect(),
         ]
         .concat()
     }
@@ -252,15 +255,27 @@ impl Map<'_> {
         format!(r#"<path class="middle" d="{}"/>"#, line.data())
     }
 
-    fn directions(&self) -> String {
+    fn directions(&self, markers: &[Marker]) -> String {
         let ((width, height), [left, right]) = (self.surface_size(), self.side.regions());
         let (across, down) = (LEFT + width / 2.0, TOP + height / 2.0);
         let (low, far) = (TOP + height + 17.0, LEFT + width + 16.0);
+        let below = self.clear_of_leaders(low, markers);
         format!(
-            r#"<g class="side" text-anchor="middle"><text class="side" x="{across:.1}" y="{:.1}">Anterior</text><text class="side" x="{across:.1}" y="{low:.1}">Posterior</text><text class="side" transform="translate({:.1} {down:.1}) rotate(-90)">{left}</text><text class="side" transform="translate({far:.1} {down:.1}) rotate(-90)">{right}</text></g>"#,
+            r#"<g class="side" text-anchor="middle"><text class="side" x="{across:.1}" y="{:.1}">Anterior</text><text class="side" x="{below:.1}" y="{low:.1}">Posterior</text><text class="side" transform="translate({:.1} {down:.1}) rotate(-90)">{left}</text><text class="side" transform="translate({far:.1} {down:.1}) rotate(-90)">{right}</text></g>"#,
             TOP - 10.0,
             LEFT - 11.0,
         )
+    }
+
+    /// The middle, or where else at that height below the surface no leader passes.
+    fn clear_of_leaders(&self, y: f64, markers: &[Marker]) -> f64 {
+        let at = |part: f64| LEFT + part * self.surface_size().0;
+        let is_clear = |x: &f64| {
+            let mut leaders = markers.iter().map(|marker| marker.leader_at(y));
+            leaders.all(|leader| (leader - x).abs() > HALF_DIRECTION)
+        };
+        let mut places = [0.5, 0.25, 0.75].map(at).into_iter();
+        places.find(is_clear).unwrap_or(at(0.5))
     }
 
     fn colour_bar(&self, bands: &Axis) -> String {
@@ -295,11 +310,12 @@ impl Map<'_> {
         )
     }
 
+    /// Below the colours, where no leader passes.
     fn scale_bar(&self) -> String {
         const LENGTH_MM: f64 = 10.0;
-        let (width, height) = self.surface_size();
-        let (length, y) = (LENGTH_MM * self.px_per_mm, TOP + height + 14.0);
-        let end = LEFT + width;
+        let (_, height) = self.surface_size();
+        let (length, y) = (LENGTH_MM * self.px_per_mm, TOP + height + 26.0);
+        let end = self.size().0 - 1.0;
         let (start, middle) = (end - length, end - length / 2.0);
         format!(
             r#"<path class="leader" d="M{start:.1} {:.1}v7M{start:.1} {y:.1}H{end:.1}M{end:.1} {:.1}v7"/><text x="{middle:.1}" y="{:.1}" text-anchor="middle">{LENGTH_MM} mm</text>"#,
@@ -335,27 +351,26 @@ impl Map<'_> {
         })
     }
 
-    fn markers(&self) -> String {
-        self.extremes()
-            .iter()
-            .map(|(name, extreme)| self.marker(name, extreme))
-            .collect()
+    /// A ring at the largest value of each side, with what it is and where.
+    fn markers(&self) -> Vec<Marker> {
+        let (width, height) = self.surface_size();
+        let row = TextRow {
+            half_width: HALF_TEXT_WIDTH,
+            right: LEFT + width,
+            bottom: TOP + height,
+        };
+        let ring = |(name, extreme): &(&str, Extreme)| {
+            let place = self.place()(extreme.position.x, extreme.position.z);
+            (place, self.marker_lines(name, extreme))
+        };
+        row.markers(&self.extremes().iter().map(ring).collect::<Vec<_>>())
     }
 
-    /// A ring at the place, a leader down to its text below the surface.
-    fn marker(&self, name: &str, extreme: &Extreme) -> String {
-        let (x, y) = self.place()(extreme.position.x, extreme.position.z);
-        let (width, height) = self.surface_size();
-        let text_y = TOP + height + 50.0;
-        // A scar at the rim has its ring there, but its text stays inside the picture.
-        let text_x = x.clamp(HALF_TEXT_WIDTH, (LEFT + width).max(HALF_TEXT_WIDTH));
-        let lines = format!("M{x:.1} {:.1}V{:.1}", y + 4.5, text_y - 13.0);
-        let (value, place) = (self.value_text(extreme.value), place_text(extreme));
-        let largest = self.largest;
-        format!(
-            r#"<circle class="halo" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="halo" d="{lines}"/><circle class="mark" cx="{x:.1}" cy="{y:.1}" r="4.5"/><path class="leader" d="{lines}"/><text x="{text_x:.1}" y="{text_y:.1}" text-anchor="middle">{largest} {}: <tspan class="strong">{value}</tspan><tspan x="{text_x:.1}" dy="1.35em">{place}</tspan></text>"#,
-            name.to_lowercase()
-        )
+    fn marker_lines(&self, name: &str, extreme: &Extreme) -> [String; 2] {
+        let (largest, name) = (self.largest, name.to_lowercase());
+        let value = self.value_text(extreme.value);
+        let first = format!(r#"{largest} {name}: <tspan class="strong">{value}</tspan>"#);
+        [first, place_text(extreme)]
     }
 
     fn value_text(&self, value: f64) -> String {

@@ -4,6 +4,7 @@ mod axis;
 mod contour;
 mod escape;
 mod map;
+mod marker;
 mod panel;
 mod path;
 mod sheet;

@@ -3,98 +3,105 @@
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+use super::key_words::in_words;
 use crate::number::{fixed, significant};
 use crate::results::contents::Results;
 
-/// The table of estimated errors.
+/// The table of estimated errors: a row a quantity, a column a part.
 #[derive(Serialize)]
 pub(super) struct Accuracy {
-    rows: Vec<Row>,
-    parts: Vec<PartOfError>,
+    parts: Vec<String>,
+    rows: Vec<QuantityError>,
+    /// What would take the parts away, in a sentence.
+    cures: String,
     /// Why parts have no estimate, a sentence each.
     missing: Vec<String>,
 }
 
-/// Where an error comes from, and what would take it away.
+/// The error of a quantity, by parts.
 #[derive(Serialize)]
-struct PartOfError {
-    name: &'static str,
-    meaning: &'static str,
+struct QuantityError {
+    name: String,
+    unit: &'static str,
+    values: Vec<String>,
 }
 
-/// The errors of a number: its parts and all of them together in %, and that in its unit.
-#[derive(Serialize)]
-struct Row {
-    name: &'static str,
-    percents: [String; PARTS.len()],
-    in_unit: String,
-}
-
-/// Parts of the error: key in the summary, name, and what would take the error away.
-const PARTS: [(&str, &str, &str); 5] = [
-    (
-        "increments",
-        "Increments",
-        "finer increments of the gait cycle",
-    ),
-    ("updates", "Updates", "more updates of the shape"),
-    ("mesh", "Mesh", "shorter edges of the mesh"),
-    (
-        "slip_tolerance",
-        "Slip tolerance",
-        "friction that sticks rather than creeps",
-    ),
-    ("total", "Together", "root of the sum of squares"),
+/// Parts of the error that the report knows, and what would take them away.
+const CURES: [(&str, &str); 4] = [
+    ("increments", "finer increments of the gait cycle"),
+    ("updates", "more updates of the shape"),
+    ("mesh", "shorter edges of the mesh"),
+    ("slip_tolerance", "friction that sticks rather than creeps"),
 ];
-
-/// Numbers that have an error: name with unit, and the keys of that in % and in the unit.
-const NUMBERS: [(&str, &str, &str); 6] = [
-    ("Mass loss, mg", "mass_loss_percent", "mass_loss_mg"),
-    ("Maximum depth, mm", "max_depth_percent", "max_depth_mm"),
-    (
-        "Peak pressure, MPa",
-        "peak_pressure_percent",
-        "peak_pressure_mpa",
-    ),
-    (
-        "Largest contact area, mm\u{b2}",
-        "peak_contact_area_percent",
-        "peak_contact_area_mm2",
-    ),
-    ("AP range, mm", "ap_range_percent", "ap_range_mm"),
-    ("IE range, degrees", "ie_range_percent", "ie_range_deg"),
-];
+/// The root of the sum of squares of all parts.
+const TOTAL: &str = "total";
 
 /// What the summary estimates; none where it estimates nothing.
 pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
     let error = results.summary.as_ref()?.object("error")?;
-    let stated = NUMBERS
-        .iter()
-        .filter(|(_, percent, _)| error.contains_key(*percent));
-    let parts = PARTS.iter();
+    let parts = parts(error);
+    let row = |(key, value): (&String, &Value)| Some(quantity(key, by_parts(value)?, &parts));
     Some(Accuracy {
-        rows: stated.map(|number| row(error, number)).collect(),
-        parts: parts
-            .map(|&(_, name, meaning)| PartOfError { name, meaning })
-            .collect(),
-        missing: missing(error),
+        rows: error.iter().filter_map(row).collect(),
+        parts: parts.iter().map(|part| part_name(part)).collect(),
+        cures: cures(),
+        missing: not_estimated(results),
     })
 }
 
-fn row(error: &Map<String, Value>, &(name, percent, in_unit): &(&'static str, &str, &str)) -> Row {
-    let shown = |table: &str, part: &str, digits: fn(f64) -> String| {
-        let number = error.get(table).and_then(|table| table.get(part)?.as_f64());
-        number.map_or_else(|| String::from("unknown"), digits)
-    };
-    Row {
-        name,
-        percents: PARTS.map(|(part, ..)| shown(percent, part, |error| fixed(error, 2))),
-        in_unit: shown(in_unit, "total", |error| significant(error, 2)),
+/// A quantity's error as an object of parts; none of what else stands in the estimate.
+fn by_parts(value: &Value) -> Option<&Map<String, Value>> {
+    value.as_object().filter(|parts| parts.contains_key(TOTAL))
+}
+
+/// The parts that stand in the estimate: those known, others, and together.
+fn parts(error: &Map<String, Value>) -> Vec<String> {
+    let known = CURES.iter().map(|(part, _)| (*part).to_owned());
+    let mut parts: Vec<String> = known.collect();
+    for part in error.values().filter_map(by_parts).flat_map(Map::keys) {
+        if part != TOTAL && !parts.contains(part) {
+            parts.push(part.clone());
+        }
+    }
+    parts.push(TOTAL.to_owned());
+    parts
+}
+
+fn part_name(part: &str) -> String {
+    match part {
+        TOTAL => String::from("Together"),
+        part => in_words(part).0,
     }
 }
 
-fn missing(error: &Map<String, Value>) -> Vec<String> {
-    let reasons = error.get("not_estimated").and_then(Value::as_object);
+fn quantity(key: &str, error: &Map<String, Value>, parts: &[String]) -> QuantityError {
+    let (name, unit) = in_words(key);
+    let digits = |value: f64| match unit {
+        "%" => fixed(value, 2),
+        _ => significant(value, 2),
+    };
+    let shown = |part: &String| {
+        let value = error.get(part).and_then(Value::as_f64);
+        value.map_or_else(|| String::from("unknown"), digits)
+    };
+    QuantityError {
+        name,
+        unit,
+        values: parts.iter().map(shown).collect(),
+    }
+}
+
+fn cures() -> String {
+    let cure = |(part, cure): &(&str, &str)| format!("{} with {cure}", part.replace('_', " "));
+    let cures: Vec<String> = CURES.iter().map(cure).collect();
+    format!("They go away: {}.", cures.join(", "))
+}
+
+/// Why parts of the error have no estimate, a sentence each.
+pub(super) fn not_estimated(results: &Results) -> Vec<String> {
+    let summary = results.summary.as_ref();
+    let error = summary.and_then(|summary| summary.object("error"));
+    let reasons = error.and_then(|error| error.get("not_estimated")?.as_object());
     let sentence = |(part, why): (&String, &Value)| {
         let (part, why) = (part.replace('_', " "), why.as_str()?);
         Some(format!(

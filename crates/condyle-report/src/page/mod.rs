@@ -5,9 +5,12 @@ mod captions;
 mod channels;
 mod compartments;
 mod curves;
+mod doubts;
+mod key_words;
 mod maps;
 mod numbers;
 mod ranges;
+mod rate;
 mod story;
 
 pub(crate) use channels::{PlottedColumn, channel, panels as kinematics_panels};
@@ -39,7 +42,10 @@ struct Page<'a> {
     dark: String,
     title: Option<String>,
     lede: Option<String>,
-    doubts: Vec<story::Doubt>,
+    unfinished: Option<&'static str>,
+    doubts: Vec<doubts::Doubt>,
+    warnings: Vec<String>,
+    rate: Option<String>,
     tiles: Vec<numbers::Tile>,
     missing: Vec<&'static str>,
     wear_map: Option<String>,
@@ -66,7 +72,10 @@ impl<'a> Page<'a> {
             dark,
             title: results.case.as_deref().and_then(title),
             lede: story::lede(results),
-            doubts: story::doubts(results),
+            unfinished: story::unfinished(results),
+            doubts: doubts::doubts(results),
+            warnings: doubts::warnings(results),
+            rate: rate::rate(results),
             tiles: numbers::tiles(results),
             missing: story::missing(results),
             wear_map: wear_map(results, LARGE).map(|map| map.svg()),

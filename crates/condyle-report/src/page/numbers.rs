@@ -3,6 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
+use super::key_words::in_words;
 use crate::number::{fixed, significant};
 use crate::results::{contents::Results, summary::Summary};
 
@@ -27,7 +28,7 @@ struct Listed {
     label: String,
     value: String,
     unit: &'static str,
-    meaning: &'static str,
+    meaning: String,
 }
 
 /// A number in large type.
@@ -66,19 +67,19 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "mass_loss_mg",
                 "Mass loss",
                 "mg",
-                "Volume loss from depth times the density of the material.",
+                "Volume loss, from depth, times the density of the material.",
             ),
             known(
                 "volume_loss_mm3",
                 "Volume loss, from depth",
                 "mm\u{b3}",
-                "Wear depth summed over the articulating surface.",
+                "Each update's depth times the area that it wore: what mass is counted from.",
             ),
             known(
                 "volume_loss_mesh_mm3",
                 "Volume loss, from the mesh",
                 "mm\u{b3}",
-                "Volume of the unworn mesh less that of the worn one: a second count of the same thing.",
+                "Volume of the unworn mesh less that of the worn one: a second count, to check the first.",
             ),
             known(
                 "max_depth_mm",
@@ -95,7 +96,7 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "peak_pressure_mpa",
                 "Peak pressure",
                 "MPa",
-                "Largest contact pressure anywhere, between the nodes of the mesh too, and at any instant.",
+                "Largest contact pressure anywhere, between the nodes of the mesh too, at any instant of any cycle solved.",
             ),
             known(
                 "peak_pressure_cycle",
@@ -119,7 +120,7 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "peak_contact_area_mm2",
                 "Largest contact area",
                 "mm\u{b2}",
-                "Largest area in contact at any instant, both sides together.",
+                "Largest area in contact at any instant of any cycle solved, both sides together.",
             ),
             known(
                 "peak_contact_area_cycle",
@@ -149,7 +150,7 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "medial_load_share",
                 "Medial share of the load",
                 "%",
-                "Medial force over total force, averaged over the cycle.",
+                "Medial part of the axial force over the first cycle, weighted by force.",
             ),
         ],
     ),
@@ -160,13 +161,13 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "ap_range_mm",
                 "Anterior\u{2013}posterior range",
                 "mm",
-                "Largest less smallest position of the insert within a cycle.",
+                "Largest less smallest position of the insert in the first cycle.",
             ),
             known(
                 "ie_range_deg",
                 "Internal\u{2013}external range",
                 "degrees",
-                "Largest less smallest rotation of the insert within a cycle.",
+                "Largest less smallest rotation of the insert in the first cycle.",
             ),
         ],
     ),
@@ -184,6 +185,36 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "Increments a cycle",
                 "",
                 "Steps in time that a gait cycle is cut into.",
+            ),
+            known(
+                "cycles_solved",
+                "Cycles solved",
+                "",
+                "Each update solves until the motion repeats itself, which takes a little more than a cycle.",
+            ),
+            known(
+                "cycles_not_repeating",
+                "Updates that do not repeat",
+                "",
+                "Updates whose motion did not repeat itself within the tolerance.",
+            ),
+            known(
+                "step_halvings",
+                "Steps halved",
+                "",
+                "Steps in time that were taken in halves, since they did not converge or were not exact enough.",
+            ),
+            known(
+                "hexahedra",
+                "Hexahedra",
+                "",
+                "Elements of the insert's mesh.",
+            ),
+            known(
+                "articulating_nodes",
+                "Nodes of the articulating surface",
+                "",
+                "Where pressure and wear are known.",
             ),
             known(
                 "newton_iterations",
@@ -231,8 +262,12 @@ const GROUPS: [(&str, &[Known]); 4] = [
     ),
 ];
 
-/// Told elsewhere on the page, or different from run to run.
-const NOT_LISTED: [&str; 3] = ["wall_s", "version", "hash"];
+/// Told elsewhere on the page.
+const TOLD_ELSEWHERE: [&str; 4] = ["error", "warnings", "plausibility", NEUTRAL];
+/// Where the femur settled.
+const NEUTRAL: &str = "neutral_pose";
+/// In names of what is told elsewhere, or differs from run to run.
+const NOT_LISTED: [&str; 4] = ["wall_s", "version", "hash", "blake3"];
 
 /// The numbers that matter most.
 pub(super) fn tiles(results: &Results) -> Vec<Tile> {
@@ -272,6 +307,7 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
             .collect(),
     };
     let mut groups: Vec<_> = GROUPS.iter().map(group).collect();
+    groups.insert(NEUTRAL_PLACE, neutral(summary));
     groups.push(Group {
         heading: "Other",
         rows: others(summary),
@@ -280,31 +316,91 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
     groups
 }
 
+/// Where the neutral pose stands among the groups: after the motion that counts from it.
+const NEUTRAL_PLACE: usize = 3;
+
+/// Where the femur stands when AP, ML and IS read zero.
+fn neutral(summary: &Summary) -> Group {
+    let rows = [
+        (
+            "Femoral frame's origin: x, y, z",
+            ["femoral_origin_mm"].as_slice(),
+            "mm",
+            "In the insert frame where the femur settles: there AP, ML and IS read zero. x is anterior, y up, z to the right.",
+        ),
+        (
+            "Flexion, internal rotation, varus",
+            &["flexion_deg", "ie_deg", "vv_deg"],
+            "degrees",
+            "Where the femur settles; zero would be parallel frames.",
+        ),
+    ];
+    let row = |(label, keys, unit, meaning): (&str, &[&str], &'static str, &str)| {
+        let pose = summary.object(NEUTRAL)?;
+        let values: Option<Vec<String>> = keys.iter().map(|key| plain(pose.get(*key)?)).collect();
+        Some(Listed {
+            label: label.to_owned(),
+            value: values?.join(", "),
+            unit,
+            meaning: meaning.to_owned(),
+        })
+    };
+    Group {
+        heading: "Neutral position",
+        rows: rows.into_iter().filter_map(row).collect(),
+    }
+}
+
 fn listed(number: &Known, summary: &Summary) -> Option<Listed> {
     let value = shown(number, summary.number(number.key)?, 4);
-    let label = number.label.to_owned();
     Some(Listed {
-        label,
+        label: number.label.to_owned(),
         value,
         unit: number.unit,
-        meaning: number.meaning,
+        meaning: number.meaning.to_owned(),
     })
 }
 
+/// What the report does not know, in the words of its key.
 fn others(summary: &Summary) -> Vec<Listed> {
-    summary
+    let unknown = summary
         .entries()
         .filter(|(key, _)| known_by(key).is_none())
-        .filter(|(key, _)| !NOT_LISTED.iter().any(|hidden| key.contains(hidden)))
-        .filter_map(|(key, value)| {
-            Some(Listed {
-                label: key.to_owned(),
-                value: plain(value)?,
-                unit: "",
-                meaning: "",
-            })
-        })
+        .filter(|(key, _)| !TOLD_ELSEWHERE.contains(key));
+    unknown
+        .flat_map(|(key, value)| unlisted(key, key, value))
         .collect()
+}
+
+/// A value that the report does not know; of an object, each of its entries.
+fn unlisted(path: &str, key: &str, value: &Value) -> Vec<Listed> {
+    if NOT_LISTED.iter().any(|hidden| key.contains(hidden)) {
+        return Vec::new();
+    }
+    if let Value::Object(entries) = value {
+        let entry = |(inner, value): (&String, &Value)| {
+            let rows = unlisted(&format!("{path}.{inner}"), inner, value);
+            rows.into_iter().map(|row| under(key, row))
+        };
+        return entries.iter().flat_map(entry).collect();
+    }
+    let (label, unit) = in_words(key);
+    let row = plain(value).map(|value| Listed {
+        label,
+        value,
+        unit,
+        meaning: format!("In summary.json: {path}"),
+    });
+    Vec::from_iter(row)
+}
+
+/// An entry of an object, named after it too.
+fn under(key: &str, row: Listed) -> Listed {
+    let (group, _) = in_words(key);
+    Listed {
+        label: format!("{group}: {}", row.label),
+        ..row
+    }
 }
 
 fn known_by(key: &str) -> Option<&'static Known> {
@@ -317,7 +413,8 @@ fn known_by(key: &str) -> Option<&'static Known> {
 fn shown(number: &Known, value: f64, digits: i32) -> String {
     match (number.key, number.unit) {
         ("medial_load_share", _) => fixed(100.0 * value, 1),
-        ("worst_quality", _) => fixed(value, 3),
+        ("worst_quality" | "added_inertia", _) => fixed(value, 3),
+        ("cycles_solved", _) => fixed(value, 1),
         (_, "") => fixed(value, 0),
         _ => significant(value, digits),
     }
@@ -325,9 +422,21 @@ fn shown(number: &Known, value: f64, digits: i32) -> String {
 
 fn plain(value: &Value) -> Option<String> {
     match value {
-        Value::Number(number) => Some(number.to_string()),
+        Value::Number(number) => number.as_f64().map(in_digits),
         Value::String(text) => Some(text.clone()),
         Value::Bool(yes) => Some(String::from(if *yes { "yes" } else { "no" })),
-        _ => None,
+        Value::Array(values) if !values.is_empty() => {
+            let texts: Option<Vec<String>> = values.iter().map(plain).collect();
+            texts.map(|texts| texts.join(", "))
+        }
+        Value::Null | Value::Array(_) | Value::Object(_) => None,
     }
+}
+
+/// Four digits, but all of a whole number.
+fn in_digits(value: f64) -> String {
+    if value.fract() == 0.0 {
+        return fixed(value, 0);
+    }
+    significant(value, 4)
 }

@@ -2,29 +2,70 @@
 
 use serde::Serialize;
 
+use super::key_words::in_words;
 use crate::number::{cycles, fixed, significant};
-use crate::results::{contents::Results, measure::Region, summary::Summary};
+use crate::results::{case::cycles_asked, contents::Results, measure::Region};
 
-/// The result in two sentences.
+/// The result in two sentences; of a run that is not finished, as far as it is.
 pub(super) fn lede(results: &Results) -> Option<String> {
-    let summary = results.summary.as_ref()?;
-    let (count, mass) = (summary.number("cycles")?, summary.number("mass_loss_mg")?);
+    let reached = Reached::of(results)?;
     let mut text = format!(
         "After {} gait cycles the insert has lost {} mg",
-        cycles(count),
-        significant(mass, 3)
+        reached.cycles_in_words(results),
+        significant(reached.mass_loss_mg, 3)
     );
-    if let Some(volume) = summary.number("volume_loss_mm3") {
+    if let Some(volume) = reached.volume_loss_mm3 {
         text += &format!(" ({} mm\u{b3})", significant(volume, 3));
     }
-    if count > 0.0 {
+    if reached.cycles > 0.0 {
         text += &format!(
-            ", {} mg in a million cycles",
-            significant(mass * 1e6 / count, 3)
+            ", {} mg in a million cycles on average",
+            significant(reached.mass_loss_mg * 1e6 / reached.cycles, 3)
         );
     }
     text += ".";
     Some(text + &deepest(results).unwrap_or_default())
+}
+
+/// How far a run is, and what it has lost.
+struct Reached {
+    cycles: f64,
+    mass_loss_mg: f64,
+    volume_loss_mm3: Option<f64>,
+}
+
+impl Reached {
+    /// As the summary says; without one, as the last row of wear.csv says.
+    fn of(results: &Results) -> Option<Self> {
+        let last = |key: &str| results.wear.as_ref()?.column(key)?.last().copied();
+        let number = |key: &str| match &results.summary {
+            Some(summary) => summary.number(key),
+            None => last(key),
+        };
+        Some(Self {
+            cycles: number("cycles")?,
+            mass_loss_mg: number("mass_loss_mg")?,
+            volume_loss_mm3: number("volume_loss_mm3"),
+        })
+    }
+
+    /// "2 of 5 million", where the case asks for more.
+    fn cycles_in_words(&self, results: &Results) -> String {
+        let asked = results.case.as_deref().and_then(cycles_asked);
+        match asked.filter(|asked| *asked > self.cycles) {
+            Some(asked) => format!("{} of {}", cycles(self.cycles), cycles(asked)),
+            None => cycles(self.cycles),
+        }
+    }
+}
+
+/// That a run has no summary yet, and what to do.
+pub(super) fn unfinished(results: &Results) -> Option<&'static str> {
+    let is_begun = results.wear.is_some() || results.surface.is_some();
+    (results.summary.is_none() && is_begun).then_some(
+        "This run is not finished, or the physics of its next cycle could not be solved: there is no summary.json, and nothing \
+         has judged whether these numbers are to be believed. Go on with condyle run and --resume.",
+    )
 }
 
 fn deepest(results: &Results) -> Option<String> {
@@ -46,34 +87,18 @@ fn deepest(results: &Results) -> Option<String> {
     })
 }
 
-/// How far the two counts of the worn volume differ.
+/// How far the two counts of the worn volume differ, and why.
 pub(super) fn volume_check(results: &Results) -> Option<String> {
     let summary = results.summary.as_ref()?;
     let depth = summary.number("volume_loss_mm3")?;
     let mesh = summary.number("volume_loss_mesh_mm3")?;
     let percent = 100.0 * (mesh - depth).abs() / depth.abs().max(mesh.abs()).max(f64::MIN_POSITIVE);
     Some(format!(
-        "The two counts of the volume differ by {}\u{a0}%.",
+        "The two counts of the volume differ by {}\u{a0}%: depth times area takes each node's share of the surface as large as \
+         it was at the start of its interval, and the mesh is counted as it bends and grows on the way down. Mass is from the \
+         first.",
         fixed(percent, 2)
     ))
-}
-
-/// Why the numbers are to be doubted, and what to do.
-#[derive(Serialize)]
-pub(super) struct Doubt {
-    message: String,
-    advice: String,
-}
-
-/// What makes the run doubtful, as the summary says.
-pub(super) fn doubts(results: &Results) -> Vec<Doubt> {
-    let warnings = results.summary.as_ref().map(Summary::plausibility);
-    let warnings = warnings.unwrap_or_default().into_iter();
-    let doubts = warnings.map(|warning| Doubt {
-        message: first_letter_large(&warning.message),
-        advice: warning.advice,
-    });
-    doubts.collect()
 }
 
 /// A fact about the run's origin.
@@ -90,24 +115,21 @@ pub(super) fn provenance(results: &Results) -> Vec<Fact> {
     };
     let mut facts: Vec<_> = summary
         .entries()
-        .filter(|(key, _)| key.contains("version") || key.contains("hash"))
+        .filter(|(key, _)| key.contains("version") || is_hash(key))
         .filter_map(|(key, value)| {
-            let name = first_letter_large(&key.replace('_', " "));
+            let name = in_words(key).0.replace("blake3", "(BLAKE3)");
             Some(Fact {
                 name,
                 value: value.as_str()?.to_owned(),
             })
         })
         .collect();
-    facts.sort_by_key(|fact| fact.name.to_lowercase().contains("hash"));
+    facts.sort_by_key(|fact| is_hash(&fact.name.to_lowercase()));
     facts
 }
 
-fn first_letter_large(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().collect::<String>() + letters.as_str()
-    })
+fn is_hash(name: &str) -> bool {
+    name.contains("hash") || name.contains("blake3")
 }
 
 /// Files of the contract that the folder does not hold.

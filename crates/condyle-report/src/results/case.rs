@@ -13,6 +13,14 @@ pub(crate) fn title(case: &str) -> Option<String> {
     Some(named.to_owned())
 }
 
+/// The gait cycles that the case asks for.
+pub(crate) fn cycles_asked(case: &str) -> Option<f64> {
+    let case: Table = case.parse().ok()?;
+    let cycles = case.get("march")?.get("cycles")?;
+    let whole = cycles.as_integer().map(|cycles| cycles as f64);
+    whole.or_else(|| cycles.as_float())
+}
+
 /// The side of the knee: left where any table of the case says `side = "left"`, else right.
 pub(super) fn side(case: &str) -> Side {
     match case.parse::<Table>() {
@@ -38,6 +46,12 @@ mod tests {
         assert_eq!(side("[implant]\nside = \"left\"\n"), Side::Left);
         assert_eq!(side("side = \"right\"\n"), Side::Right);
         assert_eq!(side("no toml at all"), Side::Right);
+    }
+
+    #[test]
+    fn the_cycles_are_those_of_the_march() {
+        assert_eq!(cycles_asked("[march]\ncycles = 5_000_000"), Some(5e6));
+        assert_eq!(cycles_asked("[run]\ncycles = 2"), None);
     }
 
     #[test]

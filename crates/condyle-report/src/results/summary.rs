@@ -41,6 +41,13 @@ impl Summary {
         read.unwrap_or_default()
     }
 
+    /// What was put right or looked doubtful on the way in; nothing where that is not said.
+    pub fn warnings(&self) -> Vec<String> {
+        let listed = self.values.get("warnings");
+        let read = listed.and_then(|listed| Vec::deserialize(listed).ok());
+        read.unwrap_or_default()
+    }
+
     /// All entries, sorted by name.
     pub fn entries(&self) -> impl Iterator<Item = (&str, &Value)> {
         self.values.iter().map(|(key, value)| (key.as_str(), value))

@@ -65,6 +65,97 @@ fn every_number_of_the_summary_is_on_the_page() {
 }
 
 #[test]
+fn a_number_that_the_report_does_not_know_has_a_title_and_a_unit() {
+    let mut results = fixture::results();
+    let text = fixture::SUMMARY.replace(
+        "\"peak_memory_mb\": 61.5",
+        "\"peak_memory_mb\": 61.5, \"scar\": {\"width_mm\": 12.25, \"ends_mm\": [1.5, -2]}",
+    );
+    results.summary = Some(Summary::parse(&text).expect("is JSON"));
+    let html = report_html(&results);
+    for row in [
+        "Peak memory</th><td class=\"n\">61.50</td><td class=\"u\">MB</td>",
+        "Scar: Width</th><td class=\"n\">12.25</td><td class=\"u\">mm</td>",
+        "Scar: Ends</th><td class=\"n\">1.500, \u{2212}2</td><td class=\"u\">mm</td>",
+    ] {
+        assert!(html.contains(row), "{row}");
+    }
+}
+
+/// The cells of a row of the table that compares both sides: medial, lateral, both.
+fn sides(html: &str, name: &str) -> [f64; 3] {
+    let start = html.find(name).unwrap_or_else(|| panic!("no row {name}"));
+    let mut cells = html[start..].split("<td class=\"n\">").skip(1);
+    [(); 3].map(|()| {
+        let cell = cells.next().and_then(|cell| cell.split('<').next());
+        cell.and_then(|cell| cell.parse().ok()).expect("a number")
+    })
+}
+
+#[test]
+fn the_volume_of_both_sides_is_the_one_stated() {
+    let html = report_html(&fixture::results());
+    let [medial, lateral, both] = sides(&html, "Volume loss, from depth, shared out");
+    assert_eq!(both, 27.1);
+    assert!((medial + lateral - both).abs() < 0.11, "{medial} {lateral}");
+}
+
+#[test]
+fn the_thinnest_polyethylene_is_shown_under_the_scar_and_anywhere() {
+    let mut results = fixture::results();
+    let surface = results.surface.as_mut().expect("has a mesh");
+    let rim = surface.nodes.len() - 1;
+    let thickness = surface
+        .fields
+        .iter_mut()
+        .find(|(name, _)| name == "thickness_mm");
+    thickness.expect("has it").1[rim] = 0.5;
+    let html = report_html(&results);
+    let [_, _, under_scar] = sides(&html, "Thinnest polyethylene left, under the scar");
+    let [_, lateral, anywhere] = sides(&html, "Thinnest polyethylene left, anywhere");
+    assert!(under_scar > 8.9 && under_scar < 9.5, "{under_scar}");
+    assert_eq!((lateral, anywhere), (0.5, 0.5));
+}
+
+#[test]
+fn all_that_was_said_of_the_run_stands_before_its_numbers() {
+    let mut results = fixture::results();
+    let text = fixture::SUMMARY.replacen(
+        '{',
+        r#"{"warnings": ["tibia.stl: inside out, and turned"], "plausibility": [{"check": "a",
+            "value": 1.0, "limit": 0.5, "unit": "mm", "message": "it slides by 1 mm2", "advice": "Stop it."}], "#,
+        1,
+    );
+    results.summary = Some(Summary::parse(&text).expect("is JSON"));
+    let html = report_html(&results);
+    let top = html.split("class=\"tiles\"").next().expect("has a top");
+    for said in [
+        "<strong>It slides by 1 mm\u{b2}.</strong> Stop it.",
+        "tibia.stl: inside out, and turned.",
+        "The error from mesh could not be estimated",
+    ] {
+        assert!(top.contains(said), "{said}");
+    }
+}
+
+#[test]
+fn a_run_that_is_not_finished_says_so_and_how_far_it_is() {
+    let mut results = fixture::results();
+    results.summary = None;
+    results.case = Some(String::from("[march]\ncycles = 8_000_000\n"));
+    let html = report_html(&results);
+    assert!(html.contains("This run is not finished"));
+    assert!(html.contains("After 5 million of 8 million gait cycles"));
+}
+
+#[test]
+fn a_rate_that_does_not_change_is_said_to_be_the_same_and_never_assumed() {
+    let html = report_html(&fixture::results());
+    assert!(html.contains("Wear per cycle stayed the same, 5.04 mg in a million cycles"));
+    assert!(!html.contains("taken as constant"));
+}
+
+#[test]
 fn the_estimated_error_is_shown_by_its_parts() {
     let page = report_html(&fixture::results());
     for shown in [

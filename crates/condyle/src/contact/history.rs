@@ -21,16 +21,30 @@ impl Moment {
     }
 }
 
+/// An instant of contact as it is recorded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// The node of the articulating surface.
+    pub node: u32,
+    /// Area of the node's share that presses, mm2; in 32 bits it takes no room of its own.
+    pub pressed_mm2: f32,
+    /// What the node feels.
+    pub moment: Moment,
+}
+
 /// All instants at which one node was in contact, and their sums.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeHistory<'a> {
-    records: &'a [(u32, Moment)],
+    records: &'a [Record],
     /// Which of them are the node's, in the order of time.
     own: &'a [u32],
     /// Highest mean pressure on the node's share in the cycle, MPa.
     pub peak_pressure_mpa: f64,
-    /// Distance slid under pressure, S = sum of |ds|, mm.
+    /// Distance slid while any of the node's share presses, sum of |ds|, mm.
     pub sliding_distance_mm: f64,
+    /// Area that presses times distance slid, sum of A' |ds|, mm3. Over the area of the share it is how
+    /// far a place of the share slides under pressure, on the mean.
+    pub pressed_area_slip_mm3: f64,
     /// Pressure times slip, sum of p |ds|, MPa mm.
     pub pressure_slip_mpa_mm: f64,
 }
@@ -40,15 +54,18 @@ pub struct NodeHistory<'a> {
 struct Sums {
     peak_pressure_mpa: f64,
     sliding_distance_mm: f64,
+    pressed_area_slip_mm3: f64,
     pressure_slip_mpa_mm: f64,
 }
 
 impl Sums {
     #[inline(always)]
-    fn add(&mut self, moment: &Moment) {
+    fn add(&mut self, record: &Record) {
+        let moment = &record.moment;
         let distance_mm = moment.distance_mm();
         self.peak_pressure_mpa = self.peak_pressure_mpa.max(moment.pressure_mpa);
         self.sliding_distance_mm += distance_mm;
+        self.pressed_area_slip_mm3 += f64::from(record.pressed_mm2) * distance_mm;
         self.pressure_slip_mpa_mm += moment.pressure_mpa * distance_mm;
     }
 }
@@ -57,7 +74,9 @@ impl<'a> NodeHistory<'a> {
     /// The instants in the order of time; none where the node was never touched.
     pub fn moments(&self) -> impl Iterator<Item = &'a Moment> + use<'a> {
         let records = self.records;
-        self.own.iter().map(|&record| &records[record as usize].1)
+        self.own
+            .iter()
+            .map(|&record| &records[record as usize].moment)
     }
 }
 
@@ -70,8 +89,8 @@ impl<'a> NodeHistory<'a> {
 pub struct CycleHistory {
     /// How many instants will likely be recorded.
     expected: usize,
-    /// Nodes and their moments as they were recorded.
-    records: Vec<(u32, Moment)>,
+    /// As they were recorded.
+    records: Vec<Record>,
     /// Records of node i are those numbered `sorted[first[i]..first[i + 1]]`.
     first: Vec<usize>,
     sorted: Vec<u32>,
@@ -91,7 +110,7 @@ impl CycleHistory {
 
     /// Records an instant: the nodes in contact then. Where it is kept, for
     /// [`CycleHistory::sort`].
-    pub fn record(&mut self, instant: impl Iterator<Item = (u32, Moment)>) -> Range<usize> {
+    pub fn record(&mut self, instant: impl Iterator<Item = Record>) -> Range<usize> {
         let start = self.records.len();
         self.records.extend(instant);
         if start == 0 {
@@ -114,25 +133,31 @@ impl CycleHistory {
         sums.resize(node_count, Sums::default());
         let records = || {
             let counting = instants.iter().flat_map(Range::clone);
-            counting.map(|record| (record as u32, &records[record]))
+            counting.map(|number| (number as u32, &records[number]))
         };
         // Counted two places on: filling then moves every node's end on to where the next begins.
         first.clear();
         first.resize(node_count + 2, 0);
-        for (_, (node, _)) in records() {
-            first[*node as usize + 2] += 1;
+        for (_, record) in records() {
+            first[record.node as usize + 2] += 1;
         }
         for i in 0..=node_count {
             first[i + 1] += first[i];
         }
         sorted.resize(first[node_count + 1], 0);
-        for (record, (node, moment)) in records() {
-            let place = &mut first[*node as usize + 1];
-            sorted[*place] = record;
+        for (number, record) in records() {
+            let node = record.node as usize;
+            let place = &mut first[node + 1];
+            sorted[*place] = number;
             *place += 1;
-            sums[*node as usize].add(moment);
+            sums[node].add(record);
         }
         first.truncate(node_count + 1);
+    }
+
+    /// The nodes in contact at one instant, as [`CycleHistory::record`] kept them.
+    pub fn instant(&self, at: &Range<usize>) -> &[Record] {
+        &self.records[at.clone()]
     }
 
     /// How many nodes the surface has.
@@ -145,6 +170,7 @@ impl CycleHistory {
         let Sums {
             peak_pressure_mpa,
             sliding_distance_mm,
+            pressed_area_slip_mm3,
             pressure_slip_mpa_mm,
         } = self.sums[node];
         NodeHistory {
@@ -152,6 +178,7 @@ impl CycleHistory {
             own: &self.sorted[self.first[node]..self.first[node + 1]],
             peak_pressure_mpa,
             sliding_distance_mm,
+            pressed_area_slip_mm3,
             pressure_slip_mpa_mm,
         }
     }
@@ -167,10 +194,15 @@ mod tests {
             pressure_mpa,
             slip_mm: [1.0, 0.0],
         };
+        let at = |node, pressure_mpa| Record {
+            node,
+            pressed_mm2: 0.25,
+            moment: moment(pressure_mpa),
+        };
         let mut history = CycleHistory::default();
-        let late = history.record([(2, moment(3.0))].into_iter());
-        let forgotten = history.record([(1, moment(9.0))].into_iter());
-        let early = history.record([(2, moment(1.0)), (0, moment(1.0))].into_iter());
+        let late = history.record([at(2, 3.0)].into_iter());
+        let forgotten = history.record([at(1, 9.0)].into_iter());
+        let early = history.record([at(2, 1.0), at(0, 1.0)].into_iter());
         history.sort(3, &[early, late]);
         assert_eq!(history.node_count(), 3);
         let moments = |history: &CycleHistory, node| -> Vec<Moment> {
@@ -180,9 +212,10 @@ mod tests {
         assert!(moments(&history, 1).is_empty() && !forgotten.is_empty());
         assert_eq!(history.node(2).peak_pressure_mpa, 3.0);
         assert_eq!(history.node(2).sliding_distance_mm, 2.0);
+        assert_eq!(history.node(2).pressed_area_slip_mm3, 0.5);
 
         history.clear(1);
-        let only = history.record([(1, moment(2.0))].into_iter());
+        let only = history.record([at(1, 2.0)].into_iter());
         history.sort(2, &[only]);
         assert_eq!(history.node_count(), 2);
         assert!(moments(&history, 0).is_empty());

@@ -22,7 +22,7 @@ mod share_block;
 pub use broad_phase::Search;
 pub use contact_law::{Bodies, ContactLaw};
 pub use foundation::Foundation;
-pub use history::{CycleHistory, Moment, NodeHistory};
+pub use history::{CycleHistory, Moment, NodeHistory, Record};
 pub use memory::{ContactCache, ContactMemory, ContactState, StateField};
 pub use model::{
     ContactModel, Landing, Linearization, MOST_REGIONS, Response, Tangent, TouchedNode,

@@ -1,11 +1,11 @@
 //! The march over millions of cycles: one solved cycle of every activity, its wear, the new surface, and
 //! again.
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use super::{
     Activity, CycleRecord, DepthField, DepthFields, MarchError, MarchState, NodeFields,
-    PlacementError, Progress, Snapshot, UpdateRecord, Updates, WearTest,
+    PlacementError, Progress, Snapshot, SolvedCycle, UpdateRecord, Updates, WearTest,
     depth::{lost_mm, total_mm},
     interval::shared_out,
     mean_over_wear::volume_mm3,
@@ -19,6 +19,7 @@ use crate::{
     contact::{Bodies, ContactCache, ContactMemory, ContactModel, ContactState, CycleHistory},
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     machine::{Chain, Cycle, CycleRow, MachineState, Simulator, SolverCounters, TimeSettings},
+    spatial::Pose,
 };
 
 /// The first and the last cycle, whose motions are kept, repeat themselves within this part of the
@@ -43,8 +44,17 @@ pub struct March {
     unworn_fields: NodeFields,
     /// The histories of the last cycles, for their memory.
     spent: Vec<CycleHistory>,
+    /// What those cycles pressed on; none before the first, or after an update that was stopped.
+    pressed: Option<Pressed>,
     /// What makes the contact of the next update quicker.
     cache: ContactCache,
+}
+
+/// What the last cycles pressed on.
+struct Pressed {
+    surface: ArticulatingSurface,
+    /// Where the moments of each increment are recorded, of every activity.
+    instants: Vec<Vec<Range<usize>>>,
 }
 
 /// One solved cycle of every activity, and the surface that it pressed on.
@@ -73,6 +83,7 @@ impl March {
         let at_rest = |activity: &Activity| MachineState::at_rest(&activity.machine, settled);
         let state = MarchState {
             counters,
+            settled,
             ..MarchState::before(
                 test.insert.mesh().nodes.clone(),
                 DepthFields::none(test.insert.surface_nodes().len()),
@@ -122,6 +133,7 @@ impl March {
             chains: test.activities.iter().map(chain).collect(),
             unworn_fields: NodeFields::unworn(&insert, &state.depths),
             spent: Vec::new(),
+            pressed: None,
             cache: ContactCache::default(),
             femur,
             insert,
@@ -164,6 +176,30 @@ impl March {
         self.state.fields.as_ref().unwrap_or(&self.unworn_fields)
     }
 
+    /// The cycle of the first activity that was solved last; none before the first update of this march.
+    pub fn last_cycle(&self) -> Option<SolvedCycle<'_>> {
+        let pressed = self.pressed.as_ref()?;
+        let (_, last) = self.state.activities[0].first_and_last.as_ref()?;
+        Some(SolvedCycle {
+            rows: &last.rows,
+            surface: &pressed.surface,
+            chain: &self.chains[0],
+            history: &self.spent[0],
+            instants: &pressed.instants[0],
+        })
+    }
+
+    /// Where the femur is in the insert frame with the joints of the first activity at `positions`,
+    /// mm and rad.
+    pub fn pose_at(&self, positions: &[f64; 6]) -> Pose {
+        self.chains[0].at(positions).pose
+    }
+
+    /// Where the femur settled in the insert frame: there AP, ML and IS read zero.
+    pub fn neutral_pose(&self) -> Pose {
+        self.pose_at(&self.state.settled)
+    }
+
     /// Cycles done so far.
     pub fn cycles(&self) -> f64 {
         self.state.updates.last().map_or(0.0, |last| last.cycles)
@@ -187,6 +223,7 @@ impl March {
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), &UpdateRecord>, MarchError> {
         let spent = std::mem::take(&mut self.spent);
+        self.pressed = None;
         let cache = std::mem::take(&mut self.cache);
         match self.solve(spent, cache, watch)? {
             ControlFlow::Break(()) => Ok(ControlFlow::Break(())),
@@ -311,7 +348,7 @@ impl March {
         let part = cycles_before / self.test.schedule.cycles;
         self.state.pass(part, snapshot);
         self.cache = solved.memory.cache;
-        self.keep(solved.cycles, cycles_before);
+        self.keep(solved.cycles, solved.surface, cycles_before);
         let last = self.state.updates.len() - 1;
         Ok(&self.state.updates[last])
     }
@@ -420,15 +457,17 @@ impl March {
         }
     }
 
-    fn keep(&mut self, solved: Vec<Cycle>, cycles: f64) {
+    fn keep(&mut self, solved: Vec<Cycle>, surface: ArticulatingSurface, cycles: f64) {
         let activities = self.state.activities.iter_mut();
         let kept = activities.zip(solved).map(|(activity, cycle)| {
             activity.machine = cycle.end;
             activity.warm_starts = cycle.warm_starts;
             remember(&mut activity.first_and_last, cycles, cycle.rows);
-            cycle.history
+            (cycle.history, cycle.instants)
         });
-        self.spent = kept.collect();
+        let (spent, instants) = kept.unzip();
+        self.spent = spent;
+        self.pressed = Some(Pressed { surface, instants });
     }
 }
 

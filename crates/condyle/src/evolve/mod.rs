@@ -10,7 +10,7 @@
 //! | `extrapolated_step`, `exponential_step` | the rules |
 //! | `accumulated_error` | what the length of the steps costs in accuracy |
 //! | `depth` | how deep the surface has gone down, by what, and what of it is mass lost |
-//! | `records`, `node_fields`, `state` | what is told, and what is remembered |
+//! | `records`, `node_fields`, `state`, `solved_cycle` | what is told, and what is remembered |
 
 mod accumulated_error;
 mod depth;
@@ -26,6 +26,7 @@ mod placement_error;
 mod rates;
 mod records;
 mod schedule;
+mod solved_cycle;
 mod state;
 mod step;
 mod step_record;
@@ -40,6 +41,7 @@ pub use node_fields::NodeFields;
 pub use placement_error::PlacementError;
 pub use records::{CycleRecord, Progress, UpdateRecord};
 pub use schedule::{Schedule, Updates};
+pub use solved_cycle::SolvedCycle;
 pub use state::{ActivityState, MarchState, SNAPSHOT_PARTS, Snapshot};
 pub use step_record::StepRecord;
 pub use wear_test::{Activity, WearTest};

@@ -14,7 +14,8 @@ pub struct NodeFields {
     pub depth_per_cycle_mm: Vec<f64>,
     /// Highest pressure of the cycles, the mean over the node's share, MPa.
     pub peak_pressure_mpa: Vec<f64>,
-    /// Distance slid under pressure in a cycle, the mean over all activities by their shares, mm.
+    /// Distance slid under pressure in a cycle, mm: S = sum of A'/A |ds|, with A' the part of the
+    /// node's share A that presses; the mean over all activities by their shares.
     pub sliding_distance_mm: Vec<f64>,
     /// Thickness left, mm.
     pub thickness_mm: Vec<f64>,
@@ -47,7 +48,7 @@ impl NodeFields {
         };
         let slid = |node| -> f64 {
             let slid = |(activity, of): &(&Activity, &CycleHistory)| {
-                activity.share * of.node(node).sliding_distance_mm
+                activity.share * of.node(node).pressed_area_slip_mm3 / rates.area_mm2[node]
             };
             cycles.iter().map(slid).sum()
         };

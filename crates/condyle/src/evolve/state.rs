@@ -102,6 +102,9 @@ pub struct MarchState {
     pub activities: Vec<ActivityState>,
     /// Where the femoral frame's origin is in the insert frame at neutral, mm.
     pub zero_mm: Vec3,
+    /// Positions of the joints at neutral, mm and rad: 0 but for those that settling does not zero. All
+    /// are 0 in a march from a snapshot, which did not settle.
+    pub settled: [f64; 6],
     /// Work done.
     pub counters: SolverCounters,
     /// The first step, on the unworn insert, and the machines at the end of its cycles.
@@ -134,6 +137,7 @@ impl MarchState {
             contact,
             activities: machines.into_iter().map(ActivityState::before).collect(),
             zero_mm,
+            settled: [0.0; 6],
             counters: SolverCounters::default(),
             first_step: None,
             snapshots: [None, None],

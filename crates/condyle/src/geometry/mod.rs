@@ -21,6 +21,7 @@
 //! Bodies are cheap to clone, and what is large is shared between clones and threads.
 
 mod articulating_surface;
+mod clustered;
 mod columns;
 mod curvature_bounds;
 mod curved_mesh;

@@ -1,5 +1,7 @@
 //! A solved gait cycle.
 
+use std::ops::Range;
+
 use super::{CycleRow, MachineState, WarmStart};
 use crate::contact::CycleHistory;
 
@@ -9,6 +11,8 @@ pub struct Cycle {
     pub rows: Vec<CycleRow>,
     /// What every node of the articulating surface went through.
     pub history: CycleHistory,
+    /// Where the moments of each row are in it.
+    pub instants: Vec<Range<usize>>,
     /// The machine when it was found to repeat itself.
     pub end: MachineState,
     /// How every increment was solved, for a next cycle like it.

@@ -8,7 +8,7 @@ use super::{
     repetition::Repetition, step_error::step_error_mm,
 };
 use crate::{
-    contact::{ContactModel, CycleHistory, Moment, TouchedNode},
+    contact::{ContactModel, CycleHistory, Moment, Record, TouchedNode},
     spatial::RelativeMotion,
 };
 
@@ -132,11 +132,15 @@ impl<'a> Simulator<'a> {
         let percent = 100.0 * (place + 1) as f64 / self.time.increments as f64;
         let landing = self.contact.land(&end.motion);
         let increment_s = self.time.increment_s(self.machine.frequency_hz);
-        let moment = |node: &TouchedNode| Moment {
-            pressure_mpa: node.pressure_mpa,
-            slip_mm: node.sliding_mm_per_s.map(|speed| speed * increment_s),
+        let record = |touched: &TouchedNode| Record {
+            node: touched.node,
+            pressed_mm2: touched.covered_mm2 as f32,
+            moment: Moment {
+                pressure_mpa: touched.pressure_mpa,
+                slip_mm: touched.sliding_mm_per_s.map(|speed| speed * increment_s),
+            },
         };
-        let moments = landing.touched.iter().map(|node| (node.node, moment(node)));
+        let moments = landing.touched.iter().map(record);
         Landed {
             state: end.state,
             row: CycleRow::new(percent, end.state.now.positions, &landing),
@@ -157,6 +161,7 @@ impl<'a> Simulator<'a> {
         Cycle {
             rows: landed().map(|here| here.row).collect(),
             history: std::mem::take(&mut self.history),
+            instants,
             end,
             warm_starts: std::mem::take(&mut self.warm_starts),
             increments_solved: solved,

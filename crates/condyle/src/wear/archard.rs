@@ -52,20 +52,24 @@ impl WearLaw for Archard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{CycleHistory, Moment};
+    use crate::contact::{CycleHistory, Moment, Record};
 
     #[test]
     fn verify_flat_pin_depth_is_kw_p_s() {
         let law = Archard {
             wear_factor_mm3_per_nm: 2.64e-7,
         };
-        let moment = |slip_mm| Moment {
-            pressure_mpa: 10.0,
-            slip_mm,
+        let record = |slip_mm| Record {
+            node: 0,
+            pressed_mm2: 1.0,
+            moment: Moment {
+                pressure_mpa: 10.0,
+                slip_mm,
+            },
         };
         let mut history = CycleHistory::default();
         let slips = [[3.0, 4.0], [-5.0, 0.0]];
-        let instants = slips.map(|slip_mm| history.record([(0, moment(slip_mm))].into_iter()));
+        let instants = slips.map(|slip_mm| history.record([record(slip_mm)].into_iter()));
         history.sort(1, &instants);
         // 10 MPa over 10 mm is 0.1 N m on each square millimetre.
         let depth = law.depth_per_cycle_mm(&history.node(0));

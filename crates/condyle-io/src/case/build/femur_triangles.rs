@@ -1,4 +1,4 @@
-//! The femur as triangles.
+//! The femur as triangles, for pictures and other programs.
 
 use condyle::Vec3;
 use condyle::evolve::WearTest;
@@ -8,25 +8,26 @@ use super::super::contents::Case;
 use super::super::femur::Femur;
 use super::error::BuildError;
 
-/// Triangles of a femur that is not a mesh already, as many as Knight 2007 has.
-const TRIANGLES: f64 = 25_000.0;
-/// Halvings of an icosahedron's edges: 20 * 4^5 triangles.
-const HALVINGS: usize = 5;
+/// Triangles for a femur that is no mesh already, as many as Knight 2007 has: they come within a hundredth of a
+/// millimetre of its surface.
+pub const FEMUR_TRIANGLES: f64 = 25_000.0;
+/// Faces of an icosahedron.
+const ICOSAHEDRON: f64 = 20.0;
 
 impl Case {
-    /// The surface of the femur of `test`, which this case built, in the femoral frame of a right knee, mm; triangles
-    /// anticlockwise seen from outside.
+    /// The surface of the femur of `test`, which this case built, in the femoral frame of a right knee, mm;
+    /// triangles anticlockwise seen from outside. A mesh has its own; other shapes get about so many.
     ///
     /// # Errors
-    /// A mesh that can no longer be read.
-    pub fn femur_triangles(&self, test: &WearTest) -> Result<TriangleMesh, BuildError> {
+    /// A mesh that cannot be read again.
+    pub fn femur_triangles(&self, test: &WearTest, about: f64) -> Result<TriangleMesh, BuildError> {
         match (&self.femur, test.femur.as_ref()) {
             (Femur::Mesh(femur), _) => femur.triangles(&self.femur_placement, self.heading.side),
-            (_, FemoralSurface::Generic(femur)) => Ok(generic(femur)),
+            (_, FemoralSurface::Generic(femur)) => Ok(generic(femur, about)),
             (_, FemoralSurface::Placed(placed)) => {
-                Ok(generic(placed.femur()).mapped(|point| placed.to_frame(point)))
+                Ok(generic(placed.femur(), about).mapped(|point| placed.to_frame(point)))
             }
-            (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm)),
+            (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm, about)),
             (Femur::Cylinder(cylinder), _) => Ok(tube(cylinder.radius_mm)),
             (Femur::Generic(_), _) => {
                 unreachable!("a generic femur is built as one")
@@ -35,11 +36,10 @@ impl Case {
     }
 }
 
-/// The generic femur in about [`TRIANGLES`].
-fn generic(femur: &GenericFemur) -> TriangleMesh {
+fn generic(femur: &GenericFemur, about: f64) -> TriangleMesh {
     const COARSE_MM: f64 = 1.0;
     let coarse = femur.surface_mesh(COARSE_MM).triangles.len() as f64;
-    femur.surface_mesh(COARSE_MM * (coarse / TRIANGLES).sqrt())
+    femur.surface_mesh(COARSE_MM * (coarse / about).sqrt())
 }
 
 /// A tube about the z axis, longer than any insert is wide.
@@ -69,9 +69,10 @@ fn tube(radius_mm: f64) -> TriangleMesh {
 }
 
 /// A ball about the origin: an icosahedron, its triangles cut in four again and again.
-fn sphere(radius_mm: f64) -> TriangleMesh {
+fn sphere(radius_mm: f64, about: f64) -> TriangleMesh {
+    let halvings = (about / ICOSAHEDRON).log(4.0).round() as usize;
     let mut ball = icosahedron();
-    for _ in 0..HALVINGS {
+    for _ in 0..halvings {
         ball = in_four(&ball);
     }
     ball.mapped(|vertex| vertex.normalize() * radius_mm)
@@ -147,7 +148,7 @@ mod tests {
 
     #[test]
     fn verify_the_ball_is_closed_faces_out_and_has_its_volume() {
-        let ball = sphere(24.0);
+        let ball = sphere(24.0, 25_000.0);
         assert_eq!(
             (ball.triangles.len(), ball.vertices.len()),
             (20_480, 10_242)

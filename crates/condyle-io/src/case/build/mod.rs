@@ -17,6 +17,7 @@ mod tests;
 
 pub use assemble::Built;
 pub use error::{BuildError, BuildWarning};
+pub use femur_triangles::FEMUR_TRIANGLES;
 pub use lie::{Body, WrongAxes};
 #[cfg(feature = "file-system")]
 pub(super) use lie::{longest_mm, usual_unit};

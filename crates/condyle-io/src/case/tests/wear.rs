@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use condyle::contact::{CycleHistory, Moment, NodeHistory};
+use condyle::contact::{CycleHistory, Moment, NodeHistory, Record};
 use condyle::parameter::Parameter;
 use condyle::wear::{WEAR_LAWS, WearLaw, WearLawKind};
 
@@ -137,7 +137,12 @@ fn verify_it_is_the_law_that_the_test_wears_by() {
         pressure_mpa: 10.0,
         slip_mm: [10.0, 0.0],
     };
-    let instant = history.record([(0, moment)].into_iter());
+    let record = Record {
+        node: 0,
+        pressed_mm2: 1.0,
+        moment,
+    };
+    let instant = history.record([record].into_iter());
     history.sort(1, &[instant]);
     let depth = test.wear.depth_per_cycle_mm(&history.node(0));
     assert!((depth - 3e-10 * 60.0).abs() < 1e-20, "{depth:e}");
