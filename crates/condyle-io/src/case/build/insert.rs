@@ -9,8 +9,9 @@ use super::super::heading::Side;
 use super::super::insert::{HexahedralInsert, Insert, MeshInsert};
 use super::body_size::check_points;
 use super::error::{BuildError, BuildWarning};
-use super::lie::{Body, check_lie, check_lie_of_hexahedra};
+use super::lie::{check_lie, check_lie_of_hexahedra};
 use super::meshes::{Faces, Placing, shell};
+use super::wrong_axes::Body;
 use crate::mesh::{HexFile, read_hexahedra};
 
 /// Length and width of the flat block, mm, about those of the generic insert.

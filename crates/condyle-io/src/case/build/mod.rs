@@ -11,10 +11,11 @@ mod meshes;
 mod pieces;
 #[cfg(test)]
 mod tests;
+mod wrong_axes;
 
 pub use assemble::Built;
 pub use error::{BuildError, BuildWarning};
-pub use lie::{Body, WrongAxes};
 #[cfg(feature = "file-system")]
 pub(super) use lie::{longest_mm, usual_unit};
 pub use pieces::StrayPiece;
+pub use wrong_axes::{Body, WrongAxes};
