@@ -16,6 +16,7 @@ mod folders;
 mod interrupt;
 mod left_knee;
 mod measured;
+mod new_from_meshes;
 mod output;
 mod physics;
 mod places;

@@ -7,8 +7,8 @@ use thiserror::Error;
 
 use super::super::axes::AxesError;
 use super::super::mesh_file::LengthUnit;
-use super::lie::{Body, WrongAxes};
 use super::pieces::StrayPiece;
+use super::wrong_axes::{Body, WrongAxes};
 use crate::mesh::MeshFileError;
 
 /// Why a good case makes no wear test.

@@ -14,9 +14,10 @@ use super::super::heading::Side;
 use super::super::limits::Limits;
 use super::super::placement::FemurPlacement;
 use super::error::{BuildError, BuildWarning};
-use super::lie::{Body, check_lie};
+use super::lie::check_lie;
 use super::meshes::{Placing, ShellOf, parsed_shell, shell, warn};
 use super::rigid_motion::RigidMotion;
+use super::wrong_axes::Body;
 use crate::cache::{Keep, kept};
 use crate::mesh::surface_bytes;
 

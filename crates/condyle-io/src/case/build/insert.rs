@@ -13,10 +13,11 @@ use super::super::limits::Limits;
 use super::super::placement::InsertPlacement;
 use super::body_size::check_points;
 use super::error::{BuildError, BuildWarning};
-use super::lie::{Body, check_lie, check_lie_of_hexahedra};
+use super::lie::{check_lie, check_lie_of_hexahedra};
 use super::meshes::{Placing, ShellOf, shell};
 use super::off_centre::off_centre;
 use super::rigid_motion::{middle_of_mesh, middle_of_points};
+use super::wrong_axes::Body;
 use crate::mesh::{HexFile, parse_surface, read_hexahedra, surface_bytes};
 
 /// Length and width of the flat block, mm, about those of the generic insert.

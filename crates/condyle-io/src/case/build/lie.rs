@@ -1,83 +1,21 @@
 //! Whether a body lies as its `axes` say, and is as large as its `length_unit` makes it: told from its shape.
 
-use std::fmt;
 use std::path::PathBuf;
 
-use condyle::anatomy::{Orientation, Recognition, Sureness};
+use condyle::anatomy::{Orientation, Sureness};
 use condyle::geometry::TriangleMesh;
 use condyle::{Mat3, Vec3};
 use condyle_fem::HexMesh;
 
-use super::super::axes::Axes;
 use super::super::mesh_file::LengthUnit;
 use super::error::{BuildError, BuildWarning};
 use super::meshes::Placing;
+use super::wrong_axes::{Body, WrongAxes};
 use crate::keyed::DataFile;
 
 /// Longest extent of a femoral component or an insert of a whole knee, mm: from the smallest sizes on
 /// the market, rounded down, to the largest, rounded up.
 const WHOLE_KNEE_MM: std::ops::RangeInclusive<f64> = 40.0..=120.0;
-
-/// One of the two bodies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Body {
-    /// The femoral component.
-    Femur,
-    /// The tibial insert.
-    Insert,
-}
-
-impl fmt::Display for Body {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::Femur => "femur",
-            Self::Insert => "insert",
-        })
-    }
-}
-
-impl Body {
-    /// What the body lies like, from triangles in any frame and unit.
-    pub(crate) fn recognise(self, mesh: &TriangleMesh) -> Option<Recognition> {
-        match self {
-            Self::Femur => Recognition::of_femur(mesh),
-            Self::Insert => Recognition::of_insert(mesh),
-        }
-    }
-
-    fn signs(self) -> &'static str {
-        match self {
-            Self::Femur => {
-                "the box open above, the trochlea in front and the notch between the condyles behind"
-            }
-            Self::Insert => {
-                "two dishes above, the flat backside below, the notch or the lower lip behind"
-            }
-        }
-    }
-}
-
-/// A body that lies otherwise than its axes say.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WrongAxes {
-    /// Which.
-    pub body: Body,
-    /// How it lies in the case's frame, such as "upside down".
-    pub how: &'static str,
-    /// The axes that its shape shows.
-    pub better: Axes,
-}
-
-impl fmt::Display for WrongAxes {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.better.words();
-        write!(
-            out,
-            "write axes = [\"{x}\", \"{y}\", \"{z}\"], which its shape shows ({})",
-            self.body.signs()
-        )
-    }
-}
 
 /// Tells a body that lies, or is measured, otherwise than the case says: an error where it is certain.
 pub(super) fn check_lie(

@@ -14,11 +14,13 @@ mod pieces;
 mod rigid_motion;
 #[cfg(test)]
 mod tests;
+mod wrong_axes;
 
 pub use assemble::Built;
 pub use error::{BuildError, BuildWarning};
 pub use femur_triangles::FEMUR_TRIANGLES;
-pub use lie::{Body, WrongAxes};
+
 #[cfg(feature = "file-system")]
 pub(super) use lie::{longest_mm, usual_unit};
 pub use pieces::StrayPiece;
+pub use wrong_axes::{Body, WrongAxes};

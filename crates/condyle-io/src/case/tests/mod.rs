@@ -2,6 +2,7 @@
 
 mod errors;
 mod files;
+mod lie;
 mod memory;
 mod messages;
 mod round_trip;

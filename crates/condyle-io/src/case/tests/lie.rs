@@ -1,0 +1,182 @@
+//! Which way bodies lie: what is told of it, and what is concluded for a new case.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use condyle::Vec3;
+use condyle::anatomy::{Orientation, Sureness};
+use condyle::geometry::{
+    GenericFemur, GenericFemurShape, GenericInsertShape, Meshing, TriangleMesh,
+};
+use tempfile::TempDir;
+
+use crate::case::{Body, Case, Draft, Preset, Side};
+use crate::files::Disk;
+use crate::mesh::{read_surface, write_stl};
+
+/// A femur and an insert in mm, x anterior, y superior, z right.
+struct Pair {
+    femur: TriangleMesh,
+    insert: TriangleMesh,
+}
+
+fn generic() -> Pair {
+    let (edge_mm, layers) = (1.5, 1);
+    let insert = GenericInsertShape::default().insert(Meshing { edge_mm, layers });
+    let insert = insert.unwrap();
+    let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let quads = insert.mesh().boundary_quads().into_iter();
+    Pair {
+        femur: GenericFemur::new(GenericFemurShape::default()).surface_mesh(1.5),
+        insert: TriangleMesh {
+            vertices: insert.mesh().nodes.clone(),
+            triangles: quads.flat_map(cut).collect(),
+        },
+    }
+}
+
+/// Two real implants beside the repository, not in it; those that are not there are left out by name.
+fn real(test: &str) -> Vec<Pair> {
+    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
+    let pair = |femur: &str, insert: &str, turn: fn(&Vec3) -> Vec3| {
+        let [femur, insert] = [femur, insert].map(|file| data.join(file));
+        if !(femur.is_file() && insert.is_file()) {
+            let in_ci = std::env::var("CI").is_ok_and(|value| value == "true");
+            assert!(
+                !in_ci,
+                "{test}: {} is needed under CI=true",
+                femur.display()
+            );
+            eprintln!("skipped: {test}: {} is not there", femur.display());
+            return None;
+        }
+        let [femur, insert] =
+            [femur, insert].map(|file| read_surface(&Disk, file).unwrap().mapped(turn));
+        Some(Pair { femur, insert })
+    };
+    let dm = pair(
+        "dm-knee/femoral-component.stl",
+        "dm-knee/tibial-insert.stl",
+        |v| 1000.0 * Vec3::new(-v.x, v.y, -v.z),
+    );
+    let cams = pair(
+        "cams-knee/femur_implant_Mplus_JWI_meters_reduce.stl",
+        "cams-knee/tibia_inlay_JWI_meters.stl",
+        |v| 1000.0 * Vec3::new(v.y, v.z, v.x),
+    );
+    [dm, cams].into_iter().flatten().collect()
+}
+
+fn turned(mesh: &TriangleMesh, orientation: &Orientation) -> TriangleMesh {
+    let back = orientation.rotation().transpose();
+    mesh.clone().mapped(|vertex| back * vertex)
+}
+
+#[test]
+fn every_wrong_orientation_of_real_bodies_is_told_and_the_right_one_is_not() {
+    for pair in real("every_wrong_orientation") {
+        for (body, mesh) in [(Body::Femur, &pair.femur), (Body::Insert, &pair.insert)] {
+            for orientation in Orientation::all() {
+                let recognition = body.recognise(&turned(mesh, &orientation)).unwrap();
+                let told = recognition.against(&Orientation::ISB).is_some();
+                assert_eq!(
+                    told,
+                    orientation != Orientation::ISB,
+                    "{body} {orientation:?}"
+                );
+                assert_eq!(recognition.nearest(), orientation, "{body}");
+            }
+        }
+    }
+}
+
+/// Every second vertex of a grid of 2 mm is where the scan may put it.
+#[test]
+fn rough_and_mirrored_real_bodies_are_not_accused() {
+    let snap = |v: &Vec3| v.map(|x| (x / 2.0).round() * 2.0);
+    let mirror = |v: &Vec3| Vec3::new(v.x, v.y, -v.z);
+    for pair in real("rough_and_mirrored") {
+        for (body, mesh) in [(Body::Femur, &pair.femur), (Body::Insert, &pair.insert)] {
+            for change in [&snap as &dyn Fn(&Vec3) -> Vec3, &mirror] {
+                let recognition = body.recognise(&mesh.clone().mapped(change)).unwrap();
+                assert_eq!(recognition.against(&Orientation::ISB), None, "{body}");
+                let upside_down = Orientation::all().filter(|one| one.rotation()[(1, 1)] < -0.5);
+                for other in upside_down {
+                    assert_eq!(
+                        recognition.against(&other),
+                        Some(Sureness::Certain),
+                        "{body}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The pair in files whose axes point as `orientation` says, of which `unit_mm` mm are one.
+fn written(pair: &Pair, orientation: &Orientation, unit_mm: f64) -> (TempDir, PathBuf, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, mesh: &TriangleMesh| {
+        let path = folder.path().join(name);
+        let mesh = turned(mesh, orientation).mapped(|vertex| vertex / unit_mm);
+        write_stl(File::create(&path).unwrap(), &mesh).unwrap();
+        path
+    };
+    let (femur, insert) = (write("f.stl", &pair.femur), write("i.stl", &pair.insert));
+    (folder, femur, insert)
+}
+
+#[test]
+fn a_drafted_case_builds_without_a_word_of_axes_from_any_unit_and_orientation() {
+    let mut pairs = real("a_drafted_case");
+    pairs.push(generic());
+    let orientations: Vec<Orientation> = Orientation::all().collect();
+    let units = [(1.0, "mm"), (10.0, "cm"), (1000.0, "m"), (25.4, "in")];
+    for pair in &pairs {
+        for (i, (unit_mm, word)) in units.into_iter().enumerate() {
+            let (folder, femur, insert) = written(pair, &orientations[7 * i + 1], unit_mm);
+            let draft = Draft {
+                preset: Preset::StanmoreForce,
+                side: if i == 1 { Side::Left } else { Side::Right },
+                femur: &femur,
+                insert: &insert,
+            };
+            let drafted = draft.drafted(folder.path()).unwrap();
+            let unit = format!("length_unit = \"{word}\"");
+            assert_eq!(drafted.text.matches(&unit).count(), 2, "{}", drafted.text);
+            assert!(
+                drafted.text.contains("file = \"f.stl\""),
+                "{}",
+                drafted.text
+            );
+            let case = Case::parse(&drafted.text, "case.toml", folder.path()).unwrap();
+            let built = case.build(1).unwrap();
+            assert_eq!(built.warnings, []);
+        }
+    }
+}
+
+fn refused(pair: &Pair, axes: &str, unit: &str) -> String {
+    let (folder, ..) = written(pair, &Orientation::ISB, 1.0);
+    let keys = |file| format!("shape = \"mesh\"\nfile = \"{file}\"\nlength_unit = \"{unit}\"\n");
+    let (femur, insert) = (keys("f.stl"), keys("i.stl"));
+    let text = format!("[femur]\n{femur}[insert]\n{insert}axes = {axes}\nedge_mm = 3\n");
+    let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
+    match case.build(1) {
+        Ok(built) => format!("{:?}", built.warnings),
+        Err(error) => case.at_its_key(&error).to_string(),
+    }
+}
+
+#[test]
+fn what_is_wrong_for_certain_is_an_error_at_its_key_with_the_line_to_write() {
+    let said = refused(&generic(), r#"["anterior", "inferior", "left"]"#, "mm");
+    assert!(said.contains("lies upside down; write axes ="), "{said}");
+    assert!(said.contains("case.toml:9"), "{said}");
+    let said = refused(&generic(), r#"["superior", "anterior", "left"]"#, "mm");
+    assert!(said.contains("lies on its side; write axes ="), "{said}");
+    let said = refused(&generic(), r#"["anterior", "superior", "right"]"#, "in");
+    assert!(said.contains("write length_unit = \"mm\""), "{said}");
+    let said = refused(&generic(), r#"["posterior", "superior", "left"]"#, "mm");
+    assert_eq!(said, "[]");
+}

@@ -1,0 +1,126 @@
+"""Holds `condyle check` and `condyle run` against every pairing of the 24 orientations of two bodies.
+
+Usage: orientations.py CONDYLE FOLDER, where FOLDER holds femur.stl and insert.stl of the generic pair.
+A pairing is told if `condyle check` refuses it, or warns of a body's axes. Those that are wrong and not
+told are run, and their mass is held against that of the right pairing.
+"""
+
+import itertools
+import json
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+WORDS = ["anterior", "posterior", "superior", "inferior", "right", "left"]
+VECTORS = {
+    "anterior": (1, 0, 0),
+    "posterior": (-1, 0, 0),
+    "superior": (0, 1, 0),
+    "inferior": (0, -1, 0),
+    "right": (0, 0, 1),
+    "left": (0, 0, -1),
+}
+DATA = Path("../shared/data").resolve()
+# Name, femur, insert, unit, axes of both, where the femur starts.
+IMPLANTS = [
+    (
+        "dm-knee",
+        DATA / "dm-knee/femoral-component.stl",
+        DATA / "dm-knee/tibial-insert.stl",
+        "m",
+        ("posterior", "superior", "left"),
+        [7.4, 1.0],
+    ),
+    (
+        "cams-knee",
+        DATA / "cams-knee/femur_implant_Mplus_JWI_meters_reduce.stl",
+        DATA / "cams-knee/tibia_inlay_JWI_meters.stl",
+        "m",
+        ("right", "anterior", "superior"),
+        [-10.8, 0.1],
+    ),
+    ("generic", None, None, "mm", ("anterior", "superior", "right"), [-7.3, 0.0]),
+]
+# A coarser insert: what is told does not depend on it, and a check takes half the time.
+CHECKED = "edge_mm = 3.0\nlayers = 1\n"
+
+
+def determinant(words):
+    a, b, c = (VECTORS[word] for word in words)
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+
+
+def orientations():
+    return [words for words in itertools.permutations(WORDS, 3) if determinant(words) == 1]
+
+
+def case(implant, femur_axes, insert_axes, mesh):
+    _, femur, insert, unit, _, start = implant
+    return (
+        f'[femur]\nshape = "mesh"\nfile = "{femur}"\nlength_unit = "{unit}"\n'
+        f"axes = {json.dumps(femur_axes)}\nstart_mm = {start}\n"
+        f'[insert]\nshape = "mesh"\nfile = "{insert}"\nlength_unit = "{unit}"\n'
+        f"axes = {json.dumps(insert_axes)}\n{mesh}"
+    )
+
+
+def checked(condyle, folder, implant, pairing):
+    """How a pairing is told: error, warning, another error, or nothing."""
+    name = "-".join(pairing[0] + pairing[1])
+    path = folder / f"{implant[0]}-{name}.toml"
+    path.write_text(case(implant, *pairing, CHECKED))
+    done = subprocess.run([condyle, "check", path], capture_output=True, text=True)
+    path.unlink()
+    said = " ".join(done.stderr.split())
+    of_axes = "write axes =" in said
+    if done.returncode != 0:
+        return "error" if of_axes else "other error"
+    return "warning" if of_axes else "nothing"
+
+
+def mass_mg(condyle, folder, implant, pairing):
+    path, out = folder / "run.toml", folder / "out"
+    path.write_text(case(implant, *pairing, "") + "[accuracy]\nestimate = false\n")
+    command = [condyle, "run", path, "--out", out, "--force", "--json"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    return json.loads(done.stdout)["mass_loss_mg"] if done.returncode == 0 else None
+
+
+def row(condyle, folder, implant):
+    right = (implant[4], implant[4])
+    pairings = list(itertools.product(orientations(), repeat=2))
+    with ThreadPoolExecutor(os.cpu_count()) as threads:
+        told = list(threads.map(lambda p: checked(condyle, folder, implant, p), pairings))
+    told = dict(zip(pairings, told))
+    wrong = [how for pairing, how in told.items() if pairing != right]
+    untold = [p for p, how in told.items() if how == "nothing" and p != right]
+    changes = []
+    if untold:
+        true_mg = mass_mg(condyle, folder, implant, right)
+        masses = [mass_mg(condyle, folder, implant, pairing) for pairing in untold]
+        changes = [100 * (mass / true_mg - 1) for mass in masses if mass is not None]
+    largest = max(changes, key=abs, default=None)
+    change = "" if largest is None else f"{largest:+.2f} %"
+    accused = "no" if told[right] == "nothing" else f"yes, {told[right]}"
+    counts = [wrong.count(how) for how in ("error", "warning", "other error", "nothing")]
+    cells = [implant[0], len(wrong), *counts, change, accused]
+    return "| " + " | ".join(map(str, cells)) + " |"
+
+
+def main():
+    condyle, folder = sys.argv[1], Path(sys.argv[2])
+    print("| implant | wrong pairings | told: error | told: warning | another error | not told | which changes the mass by | right one accused |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for implant in IMPLANTS:
+        name, femur, insert, *rest = implant
+        generic = (name, femur or folder / "femur.stl", insert or folder / "insert.stl", *rest)
+        print(row(condyle, folder, generic), flush=True)
+
+
+main()
