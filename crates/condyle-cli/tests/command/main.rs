@@ -20,5 +20,6 @@ mod output;
 mod physics;
 mod places;
 mod plausibility;
+mod sensitivity;
 mod shapes;
 mod words;

@@ -45,7 +45,7 @@ pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
 pub use build::{BuildError, BuildWarning, Built, StrayPiece};
 pub use channel::CaseChannel;
-pub use contact::{Contact, Finding, Friction, PressureLawChoice, SearchWord};
+pub use contact::{Contact, Finding, Friction, PressureLawChoice, SearchWord, SofteningCurve};
 pub use contents::Case;
 pub use culprit::Unfit;
 pub use drive_reason::DriveReason;
