@@ -190,7 +190,7 @@ fn posterior_shift(found: &Findings) -> PaperFigure {
     PaperFigure {
         what: "posterior shift by 5 million",
         paper: "the insert's AP shifts by some 2.3 mm posteriorly in the experiment; the paper's model does not show it",
-        ours: format!("mean AP of the cycle shifts by {shift:+.2} mm posteriorly"),
+        ours: format!("mean AP of the cycle shifts by {shift:+.2} mm, + posterior"),
         verdict: Verdict::of((shift - measured).abs() <= error),
         why: "Held against the experiment, within the paper's mean error of AP. The paper puts it down to what \
               neither model has: creep, plasticity, and friction that changes.",
