@@ -34,6 +34,8 @@ pub enum Command {
     Report(Report),
     /// Run a case over finer and finer values of one of its numbers, and see what changes.
     Converge(Converge),
+    /// Run a case again with each of its assumptions changed, and see which of them its results hang on.
+    Sensitivity(Sensitivity),
     /// Hold a run against measured kinematics, weighed wear and a scanned surface.
     Compare(Compare),
     /// Find the wear factor with which a run wears as fast as the specimens did.
@@ -158,6 +160,18 @@ pub struct Converge {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Print converge.json, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct Sensitivity {
+    /// The case file.
+    pub case: PathBuf,
+    /// Runs at the same time, as many as the machine has cores if not given; the results are the same on any number.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+    /// Print the results and their changes as JSON, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
 }

@@ -30,7 +30,7 @@ pub fn converge(arguments: &Converge) -> ExitCode {
     };
     let options = ConvergeOptions {
         out: arguments.out.clone(),
-        threads: threads(arguments),
+        threads: threads(arguments.threads),
         resume: arguments.resume,
         cache: Cache::of_user(),
     };
@@ -55,9 +55,10 @@ pub fn converge(arguments: &Converge) -> ExitCode {
     }
 }
 
-fn threads(arguments: &Converge) -> usize {
+/// As many threads as are asked for, or as the machine has cores.
+pub fn threads(asked_for: Option<u16>) -> usize {
     let cores = || thread::available_parallelism().map_or(1, usize::from);
-    arguments.threads.map_or_else(cores, usize::from)
+    asked_for.map_or_else(cores, usize::from)
 }
 
 fn fail(error: &ConvergeError) -> ExitCode {

@@ -14,6 +14,7 @@ mod progress;
 mod report;
 mod run;
 mod schema;
+mod sensitivity;
 mod standard_error;
 
 use std::process::ExitCode;
@@ -47,6 +48,7 @@ fn obey(command: Command) -> ExitCode {
         Command::Export(arguments) => export::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Converge(arguments) => converge::converge(&arguments),
+        Command::Sensitivity(arguments) => sensitivity::sensitivity(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::CalibrateWear(arguments) => calibrate_wear::calibrate_wear(&arguments),
     }

@@ -61,7 +61,11 @@ fn every_figure_of_the_paper_has_its_row_and_the_files_are_there() {
         "| change of kinematics by 5 million |",
         "| volume in cycles |",
         "| wear, force against displacement control |",
+        "| posterior shift by 5 million |",
+        "| wear against the specimens |",
+        "| maximum depth over time, force against displacement control |",
         "| scars |",
+        "| lateral scar to the posterior edge |",
         "| cost of 10 x 500k |",
     ] {
         assert!(table.contains(what), "{what} in\n{table}");
@@ -70,10 +74,10 @@ fn every_figure_of_the_paper_has_its_row_and_the_files_are_there() {
     assert_eq!(read("results.md"), table);
     let json: serde_json::Value = serde_json::from_str(&read("results.json")).expect("JSON");
     let findings = &json["findings"];
-    assert_eq!(
-        findings["volume_loss_mm3"].as_array().map(Vec::len),
-        Some(6)
-    );
+    for control in ["displacement_intervals", "force_intervals"] {
+        let volumes = findings[control]["volume_loss_mm3"].as_array();
+        assert_eq!(volumes.map(Vec::len), Some(6));
+    }
     let mass = |name: &str| findings[name].as_f64().expect(name);
     assert!(mass("mass_force_mg") > 0.0);
     assert!((mass("mass_displacement_mg") / mass("mass_force_mg") - 1.0).abs() < 0.2);

@@ -17,8 +17,8 @@ const RADIUS_MM: f64 = 24.0;
 /// Overclosure of a ball of this radius at about 2000 N.
 const OVERCLOSURE_MM: f64 = 0.34;
 
-/// A linear, a logarithmic and a tabulated law.
-fn laws() -> [PressureLaw; 3] {
+/// A linear, a logarithmic, a softening and a tabulated law.
+fn laws() -> [PressureLaw; 4] {
     let table = PressureTable::new(vec![(0.0, 0.0), (0.1, 22.0), (0.25, 58.0), (1.0, 260.0)]);
     [
         PressureLaw::Linear {
@@ -26,6 +26,10 @@ fn laws() -> [PressureLaw; 3] {
         },
         PressureLaw::Logarithmic {
             modulus_mpa: MODULUS_MPA,
+        },
+        PressureLaw::Softening {
+            modulus_mpa: MODULUS_MPA,
+            softening_stress_mpa: 18.4,
         },
         PressureLaw::Tabulated(table.unwrap()),
     ]

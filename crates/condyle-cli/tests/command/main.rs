@@ -22,5 +22,6 @@ mod physics;
 mod places;
 mod plausibility;
 mod preview;
+mod sensitivity;
 mod shapes;
 mod words;

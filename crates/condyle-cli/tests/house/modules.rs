@@ -146,7 +146,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     (
         "condyle_lab::studies",
-        &["condyle_lab::run", "condyle_io", "condyle_report"],
+        &[
+            "condyle_lab::run",
+            "condyle",
+            "condyle_io",
+            "condyle_report",
+        ],
     ),
     (
         "condyle_lab::measured",

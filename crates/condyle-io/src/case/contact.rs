@@ -1,6 +1,6 @@
 //! Pressure law, friction, and how nodes that touch are found.
 
-use condyle::contact::{Foundation, PressureTable, Search};
+use condyle::contact::{Foundation, PressureTable, Search, softening_modulus};
 
 use crate::keyed::{
     Key, Log, Section, Settings, Variants, Writer, choice, settings, variants, within,
@@ -44,6 +44,27 @@ settings! {
     }
 }
 
+settings! {
+    /// How polyethylene softens under one stress: strain = e0/2 (stress/s0 + (stress/s0)^3).
+    SofteningCurve {
+        /// e0, the strain at the softening stress; Young's modulus is then 2 s0/e0, 616 MPa by default, and that of the material is not used. Approximate.
+        softening_strain: f64 = 0.0597, in within(1e-4, 10.0);
+        /// s0, the stress at which the strain is twice what the first modulus gives. Approximate.
+        softening_stress_mpa: f64 = 18.4, in within(0.1, 10_000.0);
+    }
+}
+
+impl SofteningCurve {
+    /// Modulus of a confined layer at no pressure, MPa.
+    pub(super) fn modulus_mpa(&self, poissons_ratio: f64) -> f64 {
+        softening_modulus(
+            self.softening_strain,
+            self.softening_stress_mpa,
+            poissons_ratio,
+        )
+    }
+}
+
 variants! {
     /// Pressure against overclosure; the modulus comes from the material.
     PressureLawChoice by
@@ -53,6 +74,8 @@ variants! {
         Linear = "linear",
         /// p = -K ln(1 - d / h).
         Logarithmic = "logarithmic",
+        /// d / h = (p / K) (1 + (p / s)^2), which softens as polyethylene does.
+        Softening(SofteningCurve) = "softening",
         /// Points of pressure against overclosure.
         Tabulated(PressureTable) = "tabulated",
     }

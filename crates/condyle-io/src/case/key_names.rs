@@ -45,6 +45,37 @@ impl Case {
     }
 }
 
+impl Case {
+    /// The number at the dotted `path`, defaults too; none where the case has no such number.
+    pub fn number_at(&self, path: &str) -> Option<f64> {
+        match self.value_at(path)? {
+            toml::Value::Float(number) => Some(number),
+            toml::Value::Integer(number) => Some(number as f64),
+            _ => None,
+        }
+    }
+
+    /// The word at the dotted `path`, defaults too; none where the case has no such word.
+    pub fn word_at(&self, path: &str) -> Option<String> {
+        self.value_at(path)?.as_str().map(str::to_owned)
+    }
+
+    /// Whether the case has a key or a table at the dotted `path`, defaults too.
+    pub fn has(&self, path: &str) -> bool {
+        let below = |key: &str| key.strip_prefix(path).is_some_and(is_end_or_dot);
+        self.keys().iter().any(|(key, _)| below(key))
+    }
+
+    fn value_at(&self, path: &str) -> Option<toml::Value> {
+        let mut keys = self.keys().into_iter();
+        keys.find_map(|(key, value)| (key == path).then_some(value))
+    }
+}
+
+fn is_end_or_dot(rest: &str) -> bool {
+    rest.is_empty() || rest.starts_with('.')
+}
+
 fn add_keys(table: toml::Table, above: &str, keys: &mut Vec<(String, toml::Value)>) {
     for (name, value) in table {
         let path = match above {

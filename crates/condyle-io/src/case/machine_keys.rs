@@ -73,7 +73,7 @@ settings! {
         lateral_offset_mm: f64 = 28.0, in within(0.0, 100.0);
     }
 
-    /// A freedom that translates. Inertia and damping are choices of ours: no source gives them.
+    /// A freedom that translates. No source gives inertia and damping: the book says why they are so.
     Translation {
         /// What moves it; by the preset if not given.
         drive: Option<DriveWord> = None;
@@ -85,7 +85,7 @@ settings! {
         damping_n_s_per_mm: f64 = knee::DAMPING_N_S_PER_MM, in within(0.0, 1000.0);
     }
 
-    /// A freedom that rotates. Inertia and damping are choices of ours: no source gives them.
+    /// A freedom that rotates. No source gives inertia and damping: the book says why they are so.
     Rotation {
         /// What moves it; by the preset if not given.
         drive: Option<DriveWord> = None;

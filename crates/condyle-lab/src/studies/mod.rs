@@ -5,6 +5,7 @@ mod converge_files;
 mod converge_plan;
 pub mod knight_2007;
 mod observed_order;
+pub mod sensitivity;
 
 pub use converge::{
     ConvergeHappening, ConvergeOptions, Converged, Convergence, Listener, Point, QUANTITIES,

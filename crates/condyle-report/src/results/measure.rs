@@ -25,7 +25,8 @@ pub struct Extreme {
 }
 
 impl Region {
-    fn holds(self, z: f64) -> bool {
+    /// Whether a point with this z, mm, is in it.
+    pub fn holds(self, z: f64) -> bool {
         match self {
             Self::Left => z < 0.0,
             Self::Right => z >= 0.0,

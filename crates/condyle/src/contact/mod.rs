@@ -27,5 +27,5 @@ pub use memory::{ContactCache, ContactMemory, ContactState, StateField};
 pub use model::{
     ContactModel, Landing, Linearization, MOST_REGIONS, Response, Tangent, TouchedNode,
 };
-pub use pressure_law::{PressureLaw, confined_modulus};
+pub use pressure_law::{PressureLaw, confined_modulus, softening_modulus};
 pub use pressure_table::{PressureTable, PressureTableError};

@@ -28,6 +28,13 @@ pub enum PressureLaw {
         /// Modulus K of the confined layer, MPa: see [`confined_modulus`].
         modulus_mpa: f64,
     },
+    /// $d/h = (p/K)(1 + (p/s)^2)$: softens, as polyethylene does.
+    Softening {
+        /// Modulus K of the confined layer at no pressure, MPa: see [`softening_modulus`].
+        modulus_mpa: f64,
+        /// Pressure s at which the layer has given twice what its first modulus gives, MPa.
+        softening_stress_mpa: f64,
+    },
     /// Pressure against overclosure whatever the thickness, as Abaqus tabulates it.
     Tabulated(PressureTable),
 }
@@ -44,6 +51,23 @@ const LOGARITHM_ENDS_AT: f64 = 0.9;
 pub fn confined_modulus(youngs_modulus_mpa: f64, poissons_ratio: f64) -> f64 {
     let v = poissons_ratio;
     (1.0 - v) * youngs_modulus_mpa / ((1.0 + v) * (1.0 - 2.0 * v))
+}
+
+/// Modulus at no pressure, MPa, of a confined layer whose material follows the curve
+/// $\epsilon = \tfrac{1}{2} \epsilon_0 (\sigma/\sigma_0 + (\sigma/\sigma_0)^3)$ under one stress:
+/// [`confined_modulus`] of $E = 2 \sigma_0/\epsilon_0$.
+///
+/// Source: the form of the curve Fregly, Bei and Sylvester 2003; `softening_strain` is
+/// $\epsilon_0$ > 0, `softening_stress_mpa` is $\sigma_0$ > 0.
+pub fn softening_modulus(
+    softening_strain: f64,
+    softening_stress_mpa: f64,
+    poissons_ratio: f64,
+) -> f64 {
+    confined_modulus(
+        2.0 * softening_stress_mpa / softening_strain,
+        poissons_ratio,
+    )
 }
 
 impl PressureLaw {
@@ -67,7 +91,9 @@ impl PressureLaw {
     /// As an overclosure of a layer 1 mm thick it gives the same pressure.
     pub fn measure(&self, overclosure_mm: f64, per_thickness: f64) -> f64 {
         match self {
-            Self::Linear { .. } | Self::Logarithmic { .. } => overclosure_mm * per_thickness,
+            Self::Linear { .. } | Self::Logarithmic { .. } | Self::Softening { .. } => {
+                overclosure_mm * per_thickness
+            }
             Self::Tabulated(_) => overclosure_mm,
         }
     }
@@ -85,6 +111,15 @@ impl PressureLaw {
                 let (value, slope) = minus_log_one_minus(strain);
                 (modulus_mpa * value, modulus_mpa * slope / thickness_mm)
             }
+            Self::Softening {
+                modulus_mpa,
+                softening_stress_mpa,
+            } => {
+                let per_stress = modulus_mpa / softening_stress_mpa;
+                let (value, slope) = root_of_cube(per_stress * overclosure_mm / thickness_mm);
+                let slope_mpa_per_mm = modulus_mpa * slope / thickness_mm;
+                (softening_stress_mpa * value, slope_mpa_per_mm)
+            }
             Self::Tabulated(table) => table.pressure(overclosure_mm),
         }
     }
@@ -97,9 +132,24 @@ fn minus_log_one_minus(x: f64) -> (f64, f64) {
     (-(-end).ln_1p() + (x - end) * slope, slope)
 }
 
+/// The root x of x + x^3 = y for y >= 0, and dx/dy.
+///
+/// With $x = \tfrac{2}{\sqrt 3} \sinh t$ the left side is $\tfrac{2}{3 \sqrt 3} \sinh 3t$.
+fn root_of_cube(y: f64) -> (f64, f64) {
+    let root_of_three = 3f64.sqrt();
+    let third = (1.5 * root_of_three * y).asinh() / 3.0;
+    let x = 2.0 / root_of_three * third.sinh();
+    (x, 1.0 / (1.0 + 3.0 * x * x))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const SOFTENING: PressureLaw = PressureLaw::Softening {
+        modulus_mpa: 2000.0,
+        softening_stress_mpa: 18.4,
+    };
 
     #[test]
     fn verify_stiffness_of_facts_at_six_eight_and_ten_mm() {
@@ -121,6 +171,7 @@ mod tests {
             PressureLaw::Logarithmic {
                 modulus_mpa: 2000.0,
             },
+            SOFTENING,
             PressureLaw::Tabulated(table),
         ];
         for law in laws {
@@ -142,12 +193,31 @@ mod tests {
     }
 
     #[test]
+    fn verify_softening_law_is_the_curve_of_the_material_confined() {
+        let (strain_at, stress_at) = (0.0597, 18.4);
+        let modulus_mpa = softening_modulus(strain_at, stress_at, 0.46);
+        let law = PressureLaw::Softening {
+            modulus_mpa,
+            softening_stress_mpa: stress_at,
+        };
+        let confined = confined_modulus(1.0, 0.46);
+        for pressure in [0.1, 5.0, 18.4, 60.0] {
+            let part: f64 = pressure / stress_at;
+            let strain = 0.5 * strain_at * (part + part.powi(3)) / confined;
+            assert!((law.pressure(9.0 * strain, 9.0).0 / pressure - 1.0).abs() < 1e-13);
+        }
+        assert!((modulus_mpa / 2850.0 - 1.0).abs() < 1e-3);
+        assert!((law.pressure(1e-9, 1.0).1 / modulus_mpa - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
     fn a_layer_of_a_millimetre_with_the_measure_has_the_same_pressure() {
         let table = PressureTable::new(vec![(0.0, 0.0), (0.1, 5.0), (0.4, 60.0)]).unwrap();
         let (modulus_mpa, overclosure, thickness) = (2000.0, 0.3, 9.0);
         for law in [
             PressureLaw::Linear { modulus_mpa },
             PressureLaw::Logarithmic { modulus_mpa },
+            SOFTENING,
             PressureLaw::Tabulated(table),
         ] {
             let pressure = law.pressure(overclosure, thickness).0;

@@ -84,6 +84,10 @@ impl Case {
         let pressure = match &self.contact.law {
             PressureLawChoice::Linear => PressureLaw::Linear { modulus_mpa },
             PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },
+            PressureLawChoice::Softening(curve) => PressureLaw::Softening {
+                modulus_mpa: curve.modulus_mpa(material.poissons_ratio),
+                softening_stress_mpa: curve.softening_stress_mpa,
+            },
             PressureLawChoice::Tabulated(table) => PressureLaw::Tabulated(table.clone()),
         };
         Foundation {

@@ -5,12 +5,15 @@
 
 mod error;
 mod findings;
+mod intervals;
 mod motions;
 mod pictures;
 mod ran;
 mod rows;
+mod scar;
 mod series;
 mod stamp;
+mod verdict;
 
 use std::{
     fs,
@@ -24,14 +27,15 @@ use super::{ConvergeOptions, ConvergePlan, Converged, Listener, converge};
 use ran::{Ran, read_back, reference};
 
 pub use error::StudyError;
-pub use findings::{Findings, Scar};
+pub use findings::Findings;
+pub use intervals::{Excess, Intervals, OverUpdates};
 pub use rows::PaperFigure;
+pub use scar::Scar;
 pub use stamp::Stamp;
+pub use verdict::Verdict;
 
-/// The updates of the force-controlled runs: the paper's 1 x 5M to 40 x 125k, and two between.
+/// The updates of the runs: the paper's 1 x 5M to 40 x 125k, and two between.
 const UPDATES: &str = "updates=1,2,5,10,20,40";
-/// Of the displacement-controlled ones.
-const DISPLACEMENT_UPDATES: &str = "updates=1,10";
 
 /// What a study is made from, and where it goes.
 #[derive(Clone, Debug)]
@@ -75,12 +79,7 @@ pub fn study(
         write(&folder.join(name), &text)?;
     }
     let out = files.runs.join("displacement");
-    let displacement = run(
-        &files.displacement_case,
-        DISPLACEMENT_UPDATES,
-        &out,
-        listener,
-    )?;
+    let displacement = run(&files.displacement_case, UPDATES, &out, listener)?;
     let findings = Findings::of(&force, &displacement)?;
     let rows = rows::rows(&findings);
     let text = rows::markdown(&rows, stamp);

@@ -4,7 +4,7 @@ use condyle_report::{Plot, plots_svg};
 
 use super::{
     error::StudyError,
-    ran::{Ran, TableOf},
+    ran::{Ran, TableOf, reference},
 };
 
 /// Updates of the runs that are shown against the finest.
@@ -13,7 +13,7 @@ const SHOWN: [usize; 2] = [5, 10];
 /// Depth over cycles at two intervals, volume, and volume in displacement control, each against 40 updates.
 pub(super) fn depth_svg(force: &[Ran], displacement: &[Ran]) -> Result<String, StudyError> {
     let finest = &force[force.len() - 1];
-    let held = &displacement[displacement.len() - 1];
+    let held = reference(displacement);
     let mut plots = Vec::new();
     for ran in force.iter().filter(|ran| SHOWN.contains(&ran.updates)) {
         let title = format!("Deepest wear, {}", updates_of(ran));

@@ -16,9 +16,9 @@ pub(super) struct Ran {
 }
 
 /// The run of the paper's interval, 500 000 cycles of 5 million.
-pub(super) fn reference(force: &[Ran]) -> &Ran {
+pub(super) fn reference(runs: &[Ran]) -> &Ran {
     let is_reference = |ran: &&Ran| ran.updates == 10;
-    force.iter().find(is_reference).unwrap_or(&force[0])
+    runs.iter().find(is_reference).unwrap_or(&runs[0])
 }
 
 /// All runs of a study.
@@ -41,6 +41,14 @@ impl Ran {
     /// A column of wear.csv or kinematics.csv.
     pub fn column(&self, table: TableOf, name: &'static str) -> Result<&[f64], StudyError> {
         column_of(&self.results, table, name).ok_or_else(|| self.lacks(name))
+    }
+
+    /// Cycles and deepest wear after every update.
+    pub fn depths(&self) -> Result<(&[f64], &[f64]), StudyError> {
+        Ok((
+            self.column(TableOf::Wear, "cycles")?,
+            self.column(TableOf::Wear, "max_depth_mm")?,
+        ))
     }
 
     /// That it lacks something.
