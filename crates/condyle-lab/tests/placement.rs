@@ -57,7 +57,7 @@ fn worn(mut march: March) -> [f64; 3] {
     march
         .update(&mut |_| ControlFlow::Continue(()))
         .unwrap_or_else(|error| panic!("{error}"));
-    let update = *march.state().updates.last().unwrap();
+    let update = march.state().updates.last().unwrap();
     let (first, _) = march.state().activities[0].first_and_last.as_ref().unwrap();
     let sum = |value: fn(&CycleRow) -> f64| first.rows.iter().map(value).sum::<f64>();
     let medial = sum(|row| row.region_force_n[MEDIAL]) / sum(|row| row.axial_force_n);
