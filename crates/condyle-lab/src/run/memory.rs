@@ -1,6 +1,10 @@
 //! How much memory a run needs, from what it counts.
 
-use condyle::{evolve::March, geometry::FemoralSurface};
+use condyle::{
+    evolve::March,
+    geometry::FemoralSurface,
+    machine::{Drive, knee::IS},
+};
 use condyle_io::case::Case;
 
 use super::error::RunError;
@@ -10,29 +14,54 @@ use crate::at_rest::AtRest;
 const PROGRAM_MB: f64 = 6.0;
 /// Bytes of a node of the insert: positions now and on the way, and what a file of it takes while it is written.
 const BYTES_A_NODE: f64 = 800.0;
-/// Bytes of a touched node at an increment: the history of the cycle, and of the other cycle beside it.
-const BYTES_A_TOUCH: f64 = 120.0;
-/// The estimate of the error keeps a history of twice the increments beside.
-const WITH_ESTIMATE: f64 = 2.5;
-/// What the field of a mesh femur takes while it is made, MB.
-const FIELD_MB: f64 = 12.0;
+/// Bytes of a touched node at an increment: the histories of a cycle and of the one before.
+const BYTES_A_TOUCH: f64 = 230.0;
+/// The estimate of the error keeps histories of twice the increments beside them.
+const WITH_ESTIMATE: f64 = 2.1;
+/// Bytes of a node of a mesh femur's field while it is made.
+const BYTES_A_FIELD_NODE: f64 = 48.0;
+/// Parts of a cycle at which the load is looked at.
+const LOOKED_AT: usize = 50;
 
 /// Memory that a march of `case` needs at its highest, about, MB.
 pub(crate) fn memory_mb(case: &Case, march: &March) -> f64 {
-    let nodes = march.insert().mesh().nodes.len() as f64;
-    let touched = AtRest::of(march).touched.len() as f64;
-    let touches = touched * march.test().time.increments as f64;
+    let at_rest = AtRest::of(march);
+    // The area of a contact on a foundation goes with the root of its load.
+    let larger = (mean_load_n(march) / at_rest.axial_force_n).max(1.0).sqrt();
+    let most = march.insert().surface_nodes().len() as f64;
+    memory_mb_touching(
+        case,
+        march,
+        (at_rest.touched.len() as f64 * larger).min(most),
+    )
+}
+
+/// The same if so many nodes touch at an increment.
+fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64) -> f64 {
     let histories = if case.accuracy.estimate {
         WITH_ESTIMATE
     } else {
         1.0
     };
-    let field_mb = match march.femur() {
-        FemoralSurface::Mesh(_) => FIELD_MB,
+    let touches = nodes_touched * march.test().time.increments as f64;
+    let field_nodes = match march.femur() {
+        FemoralSurface::Mesh(field) => field.nodes() as f64,
         _ => 0.0,
     };
-    let counted = BYTES_A_NODE * nodes + BYTES_A_TOUCH * histories * touches;
-    PROGRAM_MB + field_mb + 1e-6 * counted
+    let bytes = BYTES_A_NODE * march.insert().mesh().nodes.len() as f64
+        + BYTES_A_TOUCH * histories * touches
+        + BYTES_A_FIELD_NODE * field_nodes;
+    PROGRAM_MB + 1e-6 * bytes
+}
+
+/// Mean of the axial force over a cycle, N; none where the femur is not pressed by a waveform.
+fn mean_load_n(march: &March) -> f64 {
+    let Drive::Loaded(load) = &march.test().machine().joint(IS).drive else {
+        return 0.0;
+    };
+    let looked_at = (0..LOOKED_AT).map(|part| part as f64 / LOOKED_AT as f64);
+    let sum: f64 = looked_at.map(|phase| load.at(phase).0.abs()).sum();
+    sum / LOOKED_AT as f64
 }
 
 /// Refuses a march that would need more memory than its case allows.
@@ -40,7 +69,13 @@ pub(crate) fn memory_mb(case: &Case, march: &March) -> f64 {
 /// # Errors
 /// [`RunError::Memory`].
 pub(super) fn check_memory(case: &Case, march: &March) -> Result<(), RunError> {
-    let (needed_gb, allowed_gb) = (1e-3 * memory_mb(case, march), case.limits.memory_gb);
+    let allowed_gb = case.limits.memory_gb;
+    let whole_surface = march.insert().surface_nodes().len() as f64;
+    // Most cases fit even if all of the surface touched, and need no contact solved to know that.
+    if 1e-3 * memory_mb_touching(case, march, whole_surface) <= allowed_gb {
+        return Ok(());
+    }
+    let needed_gb = 1e-3 * memory_mb(case, march);
     if needed_gb <= allowed_gb {
         return Ok(());
     }

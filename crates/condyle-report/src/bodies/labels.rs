@@ -99,21 +99,33 @@ pub(super) fn axes(axes: &MachineAxes, view: &View, frame: &Frame) -> String {
     let on_ie = Vec3::new(ie.0, 0.0, ie.1);
     let zero = Vec3::new(axes.ap_zero_mm, 0.0, 0.0);
     let lines = [
-        ("flexion axis", on_flexion, Vec3::z(), LINE),
-        ("VV axis", on_vv, Vec3::x(), LINE),
-        ("IE axis", on_ie, Vec3::y(), LINE),
+        ("flexion axis", on_flexion, Vec3::z()),
+        ("VV axis", on_vv, Vec3::x()),
+        ("IE axis", on_ie, Vec3::y()),
     ];
-    let drawn = lines.map(|(name, on, along, style)| axis(name, &on, &along, style, view, frame));
-    let zero = match view.from {
-        From::Front => String::new(),
-        From::Right => axis("AP zero", &zero, &Vec3::y(), DASHED, view, frame),
-        From::Above => axis("AP zero", &zero, &Vec3::z(), DASHED, view, frame),
+    let drawn = lines.map(|(name, on, along)| axis(name, &on, &along, view, frame));
+    drawn.concat() + &ap_zero(frame.place(view.seen(&zero)), view, frame)
+}
+
+/// Where AP reads zero under the flexion axis: named at the other ends of lines than axes are.
+fn ap_zero((x, y): (f64, f64), view: &View, frame: &Frame) -> String {
+    let ((left, top), (width, height)) = (frame.corner, frame.size());
+    let (path, at) = match view.from {
+        From::Front => return String::new(),
+        From::Right => (
+            format!("M{x:.1} {top:.1}v{height:.1}"),
+            (x - 3.0, top + 10.0),
+        ),
+        From::Above => (
+            format!("M{left:.1} {y:.1}h{width:.1}"),
+            (left + width - 3.0, y + 12.0),
+        ),
     };
-    drawn.concat() + &zero
+    format!(r#"<path d="{path}" style="{DASHED}"/>"#) + &text("AP zero", at, "end")
 }
 
 /// A line through `on` along `along`, across the view; a ring where it is seen end on.
-fn axis(name: &str, on: &Vec3, along: &Vec3, style: &str, view: &View, frame: &Frame) -> String {
+fn axis(name: &str, on: &Vec3, along: &Vec3, view: &View, frame: &Frame) -> String {
     let [right, up, _] = view.seen(along);
     let (x, y) = frame.place(view.seen(on));
     let ((left, top), (width, height)) = (frame.corner, frame.size());
@@ -134,7 +146,7 @@ fn axis(name: &str, on: &Vec3, along: &Vec3, style: &str, view: &View, frame: &F
             "start",
         )
     };
-    format!(r#"<path d="{path}" style="{style}"/>"#) + &text(name, at, anchor)
+    format!(r#"<path d="{path}" style="{LINE}"/>"#) + &text(name, at, anchor)
 }
 
 fn text(words: &str, (x, y): (f64, f64), anchor: &str) -> String {

@@ -49,6 +49,11 @@ impl SmoothField {
         NodeGrid::around(mesh.bounds()).node_count()
     }
 
+    /// How many nodes its grid has.
+    pub fn nodes(&self) -> usize {
+        self.is_far.len()
+    }
+
     /// The field of a surface whose triangles face outwards, made on `threads` threads.
     ///
     /// The bytes of the result do not depend on `threads`; with one, none is started.

@@ -66,7 +66,11 @@ impl Case {
             limits: &self.limits,
         };
         let built = insert.build(around, warnings)?;
-        if let Some(file) = insert.file() {
+        // With a stray piece the dishes are not where they seem.
+        let is_whole = !warnings
+            .iter()
+            .any(|warning| matches!(warning, BuildWarning::StrayPiece { .. }));
+        if let Some(file) = insert.file().filter(|_| is_whole) {
             warnings.extend(off_centre(file, placement, &built));
         }
         Ok(built)

@@ -19,7 +19,6 @@ mod wrong_axes;
 pub use assemble::Built;
 pub use error::{BuildError, BuildWarning};
 pub use femur_triangles::FEMUR_TRIANGLES;
-
 #[cfg(feature = "file-system")]
 pub(super) use lie::{longest_mm, usual_unit};
 pub use pieces::StrayPiece;

@@ -4,17 +4,18 @@ use std::path::PathBuf;
 
 use condyle::{Vec3, geometry};
 
-use super::super::placement::InsertPlacement;
+use super::super::placement::{InsertOrigin, InsertPlacement};
 use super::error::BuildWarning;
 use super::rigid_motion::middle_of_points;
 use crate::keyed::DataFile;
 
 /// The dishes may have their middle so far to a side of the origin, mm: each mm moves 2 % of the load to one of them ...
 const MOST_ACROSS_MM: f64 = 2.5;
-/// ... and so far in front or behind, mm: dishes that are nearly flat are lowest at no certain place.
-const MOST_ALONG_MM: f64 = 6.0;
+/// ... and so far in front or behind, mm: dishes are lowest behind the middle of an insert, and flat ones at no certain
+/// place.
+const MOST_ALONG_MM: f64 = 10.0;
 
-/// A warning where the dishes lie off the origin before they are turned by the case's own keys.
+/// A warning where the dishes lie off the origin of their file, wherever the case's own keys turn them.
 pub(super) fn off_centre(
     file: &DataFile,
     placement: &InsertPlacement,
@@ -27,8 +28,9 @@ pub(super) fn off_centre(
         .map(|node| rotation.transpose() * node)
         .collect();
     let middle = rotation * middle_of_points(&unturned);
+    let is_of_file = placement.origin == InsertOrigin::File;
     let is_off = middle.z.abs() > MOST_ACROSS_MM || middle.x.abs() > MOST_ALONG_MM;
-    is_off.then(|| BuildWarning::OffCentre {
+    (is_of_file && is_off).then(|| BuildWarning::OffCentre {
         file: PathBuf::from(file.name()),
         anterior_mm: middle.x,
         lateral_mm: middle.z,
