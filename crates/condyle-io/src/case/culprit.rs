@@ -67,9 +67,15 @@ impl Case {
             }
             BuildError::Size { .. } | BuildError::TooManyNodes { .. } => &["length_unit", "file"],
             BuildError::ShellInsert { source, .. } => match source {
-                ShellInsertError::NoColumns { .. } => &["edge_mm", "file"],
-                ShellInsertError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "file"],
-                ShellInsertError::OpenWithoutThickness | ShellInsertError::Insert(_) => &["file"],
+                ShellInsertError::NoColumns { .. }
+                | ShellInsertError::TooCoarse { .. }
+                | ShellInsertError::Insert(InsertError::TooManyNodes { .. }) => {
+                    &["edge_mm", "file"]
+                }
+                ShellInsertError::OpenWithoutThickness
+                | ShellInsertError::Holes { .. }
+                | ShellInsertError::NoColumn { .. }
+                | ShellInsertError::Insert(_) => &["file"],
             },
             BuildError::ThicknessOfClosed { .. } => &["thickness_mm"],
             BuildError::NoSurface { key, .. } => match *key {

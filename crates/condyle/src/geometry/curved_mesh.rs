@@ -67,11 +67,11 @@ impl<'a> CurvedMesh<'a> {
         (weighted(corners, closest_point(corners, point)) - point).norm_squared()
     }
 
-    /// Height of the curved surface over the triangle at a place (x, z), if the triangle covers it.
+    /// The curved surface over the triangle at a place (x, z), if the triangle covers it.
     ///
     /// At a sharp edge, where the vertex normals lean away from the triangle's, and on steep walls,
     /// where a lift sideways has no height, it stays flat.
-    pub fn height_over(&self, triangle: usize, (x, z): (f64, f64)) -> Option<f64> {
+    pub fn over(&self, triangle: usize, (x, z): (f64, f64)) -> Option<Over> {
         const COVERED: f64 = -1e-9;
         let corners = self.corners(triangle);
         let [a, b, c] = corners;
@@ -88,16 +88,24 @@ impl<'a> CurvedMesh<'a> {
         if all == 0.0 || weights.iter().any(|&weight| weight < COVERED) {
             return None;
         }
-        let flat = weighted(&corners, weights);
+        Some(self.lifted(triangle, &corners, weights))
+    }
+
+    fn lifted(&self, triangle: usize, corners: &[Vec3; 3], weights: [f64; 3]) -> Over {
+        let flat = weighted(corners, weights);
+        let facet = self.planes[triangle].0;
         let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
-        let is_smooth = normals
-            .iter()
-            .all(|normal| normal.dot(&self.planes[triangle].0) > LEAST_COSINE);
-        let normal = weighted(&normals, weights);
-        if !is_smooth || normal.y.abs() < LEAST_SLOPE_COSINE * normal.norm() {
-            return Some(flat.y);
-        }
-        Some(flat.y + lift(&corners, &normals, weights, &flat).dot(&normal) / normal.y)
+        let is_smooth_at = |normal: &Vec3| normal.dot(&facet) > LEAST_COSINE;
+        let own = normals.map(|normal| if is_smooth_at(&normal) { normal } else { facet });
+        let normal = weighted(&own, weights);
+        let upward = normal.y / normal.norm();
+        let is_smooth = normals.iter().all(is_smooth_at);
+        let height = if is_smooth && upward.abs() >= LEAST_SLOPE_COSINE {
+            flat.y + lift(corners, &normals, weights, &flat).dot(&normal) / normal.y
+        } else {
+            flat.y
+        };
+        Over { height, upward }
     }
 
     /// Signed distance from a point to the curved surface over the triangle, mm; > 0 outside.
@@ -119,6 +127,15 @@ impl<'a> CurvedMesh<'a> {
             normal: normal.try_normalize(0.0).unwrap_or_default(),
         }
     }
+}
+
+/// The curved surface where a vertical line meets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Over {
+    /// Height, mm.
+    pub height: f64,
+    /// How far its unit normal looks up: the cosine of the slope; less than 0 where it looks down.
+    pub upward: f64,
 }
 
 /// A place on the curved surface over a triangle.

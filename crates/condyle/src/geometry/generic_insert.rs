@@ -73,14 +73,14 @@ impl GenericInsertShape {
     /// As [`Insert::new`], and too many nodes; none other for measures that make a dish.
     pub fn insert(&self, meshing: Meshing) -> Result<Insert, InsertError> {
         let grid = ColumnGrid::filling(LOW_MM, HIGH_MM, meshing.edge_mm, meshing.layers)?;
-        let mut columns = vec![None; grid.point_count()];
+        let mut columns = vec![(0.0, 0.0); grid.point_count()];
         for i in 0..=grid.cells.0 {
             for k in 0..=grid.cells.1 {
                 let (x, z) = grid.place_mm(i, k);
-                columns[grid.number(i, k)] = Some((-self.thickness_mm, self.height_mm(x, z)));
+                columns[grid.number(i, k)] = (-self.thickness_mm, self.height_mm(x, z));
             }
         }
-        let built = grid.hexahedra(&columns, meshing.layers);
+        let built = grid.plan().hexahedra(&columns, meshing.layers);
         Insert::new(built.mesh, &built.articulating, &built.backside)
     }
 }
@@ -98,8 +98,8 @@ pub fn flat_insert(
 ) -> Result<Insert, InsertError> {
     let (x, z) = (size_mm.0 / 2.0, size_mm.1 / 2.0);
     let grid = ColumnGrid::filling((-x, -z), (x, z), meshing.edge_mm, meshing.layers)?;
-    let columns = vec![Some((-thickness_mm, 0.0)); grid.point_count()];
-    let built = grid.hexahedra(&columns, meshing.layers);
+    let columns = vec![(-thickness_mm, 0.0); grid.point_count()];
+    let built = grid.plan().hexahedra(&columns, meshing.layers);
     Insert::new(built.mesh, &built.articulating, &built.backside)
 }
 
