@@ -2,9 +2,12 @@
 
 use std::ops::RangeInclusive;
 
-use crate::geometry::{
-    curved_mesh::{CurvedMesh, Over},
-    triangle_mesh::TriangleMesh,
+use crate::{
+    Vec3,
+    geometry::{
+        curved_mesh::{CurvedMesh, Over},
+        triangle_mesh::TriangleMesh,
+    },
 };
 
 /// Edge of the bins that sort the triangles over the transverse plane, mm.
@@ -16,6 +19,7 @@ const BESIDE_MM: f64 = 1e-4;
 /// The vertical lines through a shell, whose triangles are sorted into square bins.
 pub struct VerticalLines<'a> {
     curved: CurvedMesh<'a>,
+    corner_normals: Vec<[Vec3; 3]>,
     is_closed: bool,
     low: (f64, f64),
     counts: (usize, usize),
@@ -39,8 +43,10 @@ impl<'a> VerticalLines<'a> {
         let (low, high) = shell.bounds();
         let count = |length: f64| (length / BIN_MM) as usize + 1;
         let counts = (count(high.x - low.x), count(high.z - low.z));
+        let curved = CurvedMesh::new(shell);
         let mut lines = Self {
-            curved: CurvedMesh::new(shell),
+            corner_normals: curved.corner_normals(),
+            curved,
             is_closed,
             low: (low.x, low.z),
             counts,
@@ -74,9 +80,12 @@ impl<'a> VerticalLines<'a> {
     fn exactly_at(&self, place: (f64, f64)) -> Option<Through> {
         let (i, k) = self.bin_of(place);
         let bin = &self.bins[i * self.counts.1 + k];
-        let crossings = bin
-            .iter()
-            .filter_map(|&triangle| self.curved.over(triangle as usize, place));
+        let over = |&triangle: &u32| {
+            let triangle = triangle as usize;
+            self.curved
+                .over(triangle, &self.corner_normals[triangle], place)
+        };
+        let crossings = bin.iter().filter_map(over);
         let through = crossings.fold(None, |through: Option<Through>, over| {
             Some(through.map_or_else(|| Through::once(over), |all| all.and(over)))
         });
