@@ -178,19 +178,19 @@ pub fn updates_kept(folder: &Path) -> usize {
     checkpoint.state.updates.len()
 }
 
-/// The folder of subject DM's data; says so and gives nothing where they are not there.
+/// Where the shipped cases are, if the data of subject DM are there; says so if not.
 pub fn dm_cases(test: &str) -> Option<PathBuf> {
+    cases_with_data(test, "dm-knee/tibial-insert.stl")
+}
+
+/// Where the shipped cases are, if a file of the shared data is there; says so if not.
+pub fn cases_with_data(test: &str, file: &str) -> Option<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let there = root
-        .join("../shared/data/dm-knee/tibial-insert.stl")
-        .is_file();
+    let there = root.join("../shared/data").join(file).is_file();
     let in_ci = std::env::var("CI").is_ok_and(|value| value == "true");
-    assert!(
-        there || !in_ci,
-        "{test}: the data of subject DM are needed under CI=true"
-    );
+    assert!(there || !in_ci, "{test}: {file} is needed under CI=true");
     if !there {
-        eprintln!("skipped: {test}: the data of subject DM are not there");
+        eprintln!("skipped: {test}: shared/data/{file} is not there");
     }
     there.then(|| root.join("cases"))
 }

@@ -1,6 +1,6 @@
 //! The same case gives the same bytes, whenever and on however many threads.
 
-use crate::bench::{Bench, SMALL, assert_same_bytes, dm_cases};
+use crate::bench::{Bench, SMALL, assert_same_bytes, cases_with_data, dm_cases};
 use crate::shapes::{FLEXED_A_LITTLE, femur, insert, stl};
 
 /// Runs the bench's case twice on one thread and once on two.
@@ -55,4 +55,24 @@ fn the_implant_of_subject_dm() {
         assert_deterministic(&bench);
         assert!(bench.summary("one").mass_loss_mg > 0.0);
     }
+}
+
+#[test]
+fn a_conforming_implant() {
+    let insert = "cams-knee/tibia_inlay_JWI_meters.stl";
+    let Some(cases) = cases_with_data("a_conforming_implant", insert) else {
+        return;
+    };
+    let data = cases.join("../../shared/data/cams-knee");
+    let text = std::fs::read_to_string(cases.join("cams-knee.toml")).unwrap();
+    let text = text
+        .replace(
+            "../../shared/data/cams-knee",
+            &data.canonicalize().unwrap().to_string_lossy(),
+        )
+        .replace("edge_mm = 1.05", "edge_mm = 2.5")
+        .replace("increments = 200", "increments = 60");
+    let bench = Bench::with_case(&text);
+    assert_deterministic(&bench);
+    assert!(bench.summary("one").mass_loss_mg > 0.0);
 }

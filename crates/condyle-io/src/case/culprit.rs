@@ -84,9 +84,15 @@ impl Case {
             | BuildError::WrongUnit { .. }
             | BuildError::TooManyNodes { .. } => &["length_unit", "file"],
             BuildError::ShellInsert { source, .. } => match source {
-                ShellInsertError::NoColumns { .. } => &["edge_mm", "file"],
-                ShellInsertError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "file"],
-                ShellInsertError::OpenWithoutThickness | ShellInsertError::Insert(_) => &["file"],
+                ShellInsertError::NoColumns { .. }
+                | ShellInsertError::TooCoarse { .. }
+                | ShellInsertError::Insert(InsertError::TooManyNodes { .. }) => {
+                    &["edge_mm", "file"]
+                }
+                ShellInsertError::OpenWithoutThickness
+                | ShellInsertError::Holes { .. }
+                | ShellInsertError::NoColumn { .. }
+                | ShellInsertError::Insert(_) => &["file"],
             },
             BuildError::InsertTooFine { .. } => &["edge_mm", "layers", "file", "length_unit"],
             BuildError::ClipMisses { .. } => &["clip_below_mm"],

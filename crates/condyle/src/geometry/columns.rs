@@ -19,8 +19,17 @@ pub struct ColumnGrid {
     pub cells: (usize, usize),
 }
 
-/// What stands over a grid point: the heights of the backside and of the articulating surface, mm.
-pub type Column = Option<(f64, f64)>;
+/// What stands over a place: the heights of the backside and of the articulating surface, mm.
+pub type Column = (f64, f64);
+
+/// An insert seen from above: where its columns stand, and the quads between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Places (x, z) of the columns, mm.
+    pub places_mm: Vec<(f64, f64)>,
+    /// Columns at the corners of each quad, anticlockwise seen from above.
+    pub quads: Vec<[u32; 4]>,
+}
 
 /// A column mesh with its two faces.
 pub struct ColumnMesh {
@@ -67,6 +76,12 @@ impl ColumnGrid {
         )
     }
 
+    /// Place (x, z) of the grid point with a number, mm.
+    pub fn place_of_mm(&self, number: usize) -> (f64, f64) {
+        let per_row = self.cells.1 + 1;
+        self.place_mm(number / per_row, number % per_row)
+    }
+
     /// Number of grid point (i, k); z runs fastest.
     pub fn number(&self, i: usize, k: usize) -> usize {
         i * (self.cells.1 + 1) + k
@@ -77,67 +92,64 @@ impl ColumnGrid {
         (self.cells.0 + 1) * (self.cells.1 + 1)
     }
 
-    /// Hexahedra in `layers` layers over every cell with a column at all four corners.
-    ///
-    /// `columns`: one a grid point, in the order of [`ColumnGrid::number`].
+    /// Grid points of cell (i, k), anticlockwise seen from above.
+    pub fn corners(&self, i: usize, k: usize) -> [usize; 4] {
+        [
+            self.number(i, k),
+            self.number(i, k + 1),
+            self.number(i + 1, k + 1),
+            self.number(i + 1, k),
+        ]
+    }
+
+    /// The whole rectangle seen from above, its places in the order of [`ColumnGrid::number`].
+    pub fn plan(&self) -> Plan {
+        let (nx, nz) = self.cells;
+        let places = (0..=nx).flat_map(|i| (0..=nz).map(move |k| self.place_mm(i, k)));
+        let cells = (0..nx).flat_map(|i| (0..nz).map(move |k| self.corners(i, k)));
+        Plan {
+            places_mm: places.collect(),
+            quads: cells.map(|cell| cell.map(|point| point as u32)).collect(),
+        }
+    }
+}
+
+impl Plan {
+    /// Hexahedra in `layers` layers over every quad; `columns`: one a place.
     pub fn hexahedra(&self, columns: &[Column], layers: usize) -> ColumnMesh {
-        let cells = self.filled_cells(columns);
         let mut first_node = vec![u32::MAX; columns.len()];
         let mut nodes = Vec::new();
-        for &point in cells.iter().flatten() {
-            if let (u32::MAX, Some(column)) = (first_node[point], columns[point]) {
-                first_node[point] = nodes.len() as u32;
-                nodes.extend(self.stack(point, column, layers));
+        for &column in self.quads.iter().flatten() {
+            let column = column as usize;
+            if first_node[column] == u32::MAX {
+                first_node[column] = nodes.len() as u32;
+                nodes.extend(stack(self.places_mm[column], columns[column], layers));
             }
         }
-        let quad =
-            |cell: &[usize; 4], layer: usize| cell.map(|point| first_node[point] + layer as u32);
-        let hex = |cell: &[usize; 4], layer: usize| {
-            let ([a, b, c, d], [e, f, g, h]) = (quad(cell, layer), quad(cell, layer + 1));
+        let quad = |corners: &[u32; 4], layer: usize| {
+            corners.map(|column| first_node[column as usize] + layer as u32)
+        };
+        let hex = |corners: &[u32; 4], layer: usize| {
+            let ([a, b, c, d], [e, f, g, h]) = (quad(corners, layer), quad(corners, layer + 1));
             [a, b, c, d, e, f, g, h]
         };
-        let hexes = cells
-            .iter()
-            .flat_map(|cell| (0..layers).map(move |layer| hex(cell, layer)));
+        let quads = self.quads.iter();
+        let hexes = quads.flat_map(|corners| (0..layers).map(move |layer| hex(corners, layer)));
+        let hexes = hexes.collect();
+        let quads = self.quads.iter();
+        let backside = quads.clone().map(|corners| reversed(quad(corners, 0)));
         ColumnMesh {
-            articulating: cells.iter().map(|cell| quad(cell, layers)).collect(),
-            backside: cells.iter().map(|cell| reversed(quad(cell, 0))).collect(),
-            mesh: HexMesh {
-                hexes: hexes.collect(),
-                nodes,
-            },
+            articulating: quads.map(|corners| quad(corners, layers)).collect(),
+            backside: backside.collect(),
+            mesh: HexMesh { hexes, nodes },
         }
     }
+}
 
-    /// Grid points of each cell that has a column at all corners, anticlockwise seen from above.
-    fn filled_cells(&self, columns: &[Column]) -> Vec<[usize; 4]> {
-        let (nx, nz) = self.cells;
-        let cell = |i, k| {
-            [
-                self.number(i, k),
-                self.number(i, k + 1),
-                self.number(i + 1, k + 1),
-                self.number(i + 1, k),
-            ]
-        };
-        (0..nx)
-            .flat_map(|i| (0..nz).map(move |k| cell(i, k)))
-            .filter(|points| points.iter().all(|&point| columns[point].is_some()))
-            .collect()
-    }
-
-    /// The nodes of one column, from the backside up.
-    fn stack(
-        &self,
-        point: usize,
-        (low, high): (f64, f64),
-        layers: usize,
-    ) -> impl Iterator<Item = Vec3> {
-        let per_row = self.cells.1 + 1;
-        let (x, z) = self.place_mm(point / per_row, point % per_row);
-        (0..=layers)
-            .map(move |layer| Vec3::new(x, low + (high - low) * layer as f64 / layers as f64, z))
-    }
+/// The nodes of one column, from the backside up.
+fn stack((x, z): (f64, f64), (low, high): Column, layers: usize) -> impl Iterator<Item = Vec3> {
+    (0..=layers)
+        .map(move |layer| Vec3::new(x, low + (high - low) * layer as f64 / layers as f64, z))
 }
 
 fn reversed([a, b, c, d]: [u32; 4]) -> [u32; 4] {
@@ -152,7 +164,9 @@ mod tests {
     fn verify_block_of_columns() {
         let grid = ColumnGrid::filling((-2.0, 0.0), (2.0, 3.0), 0.9, 2).unwrap();
         assert_eq!(grid.cells, (4, 3));
-        let block = grid.hexahedra(&vec![Some((-5.0, 1.0)); grid.point_count()], 2);
+        let block = grid
+            .plan()
+            .hexahedra(&vec![(-5.0, 1.0); grid.point_count()], 2);
         assert_eq!(block.mesh.hexes.len(), 4 * 3 * 2);
         assert!((block.mesh.volume() - 4.0 * 3.0 * 6.0).abs() < 1e-9);
         assert!((block.mesh.worst_quality() - 1.0).abs() < 1e-12);
@@ -165,11 +179,11 @@ mod tests {
     }
 
     #[test]
-    fn cells_without_a_column_are_left_out() {
+    fn places_that_no_quad_names_have_no_nodes() {
         let grid = ColumnGrid::filling((0.0, 0.0), (3.0, 1.0), 1.0, 1).unwrap();
-        let mut columns = vec![Some((0.0, 1.0)); grid.point_count()];
-        columns[grid.number(3, 0)] = None;
-        let part = grid.hexahedra(&columns, 1);
+        let mut plan = grid.plan();
+        plan.quads.pop();
+        let part = plan.hexahedra(&vec![(0.0, 1.0); grid.point_count()], 1);
         assert_eq!(part.mesh.hexes.len(), 2);
         assert_eq!(part.mesh.nodes.len(), 12);
     }

@@ -41,6 +41,62 @@ impl<'a> CurvedMesh<'a> {
         }
     }
 
+    /// Unit normals at the corners of every triangle, each that of the smooth surface the triangle is part of.
+    ///
+    /// Where all triangles around a vertex make one smooth surface that is the vertex normal. At a crease,
+    /// such as the rim of an insert, a mean over all of them would lean across it and raise a ridge
+    /// beside. There the normals of the smooth vertices beside it are mirrored over the middle of the edge
+    /// between, which is exact on a ball.
+    pub fn corner_normals(&self) -> Vec<[Vec3; 3]> {
+        let around = self.triangles_around();
+        let smooth: Vec<bool> = around.iter().map(|star| self.is_smooth(star)).collect();
+        let corner = |triangle: usize, vertex: u32| {
+            if smooth[vertex as usize] {
+                return self.vertex_normals[vertex as usize];
+            }
+            let own = self.planes[triangle].0;
+            let same = |other: &&u32| self.planes[**other as usize].0.dot(&own) > LEAST_COSINE;
+            let fan = around[vertex as usize].iter().filter(same);
+            let beside = fan.flat_map(|&other| self.mesh.triangles[other as usize]);
+            let mirrored = beside
+                .filter(|&other| smooth[other as usize])
+                .map(|other| self.mirrored(other, vertex));
+            mirrored.sum::<Vec3>().try_normalize(0.0).unwrap_or(own)
+        };
+        let triangles = self.mesh.triangles.iter().enumerate();
+        triangles
+            .map(|(triangle, vertices)| vertices.map(|vertex| corner(triangle, vertex)))
+            .collect()
+    }
+
+    fn triangles_around(&self) -> Vec<Vec<u32>> {
+        let mut around = vec![Vec::new(); self.mesh.vertices.len()];
+        for (triangle, vertices) in self.mesh.triangles.iter().enumerate() {
+            for &vertex in vertices {
+                around[vertex as usize].push(triangle as u32);
+            }
+        }
+        around
+    }
+
+    /// Whether no two of some triangles lean from one another.
+    fn is_smooth(&self, triangles: &[u32]) -> bool {
+        let normal = |triangle: &u32| self.planes[*triangle as usize].0;
+        triangles.iter().enumerate().all(|(n, one)| {
+            let mut others = triangles[n + 1..].iter();
+            others.all(|other| normal(one).dot(&normal(other)) > LEAST_COSINE)
+        })
+    }
+
+    /// The normal at vertex `to` if the surface goes on from `from` as a circle.
+    fn mirrored(&self, from: u32, to: u32) -> Vec3 {
+        let [from, to] = [from, to].map(|vertex| vertex as usize);
+        let along = self.mesh.vertices[to] - self.mesh.vertices[from];
+        let along = along.try_normalize(0.0).unwrap_or_default();
+        let normal = self.vertex_normals[from];
+        normal - along * (2.0 * normal.dot(&along))
+    }
+
     /// How many triangles the mesh has.
     pub fn triangle_count(&self) -> usize {
         self.mesh.triangles.len()
@@ -67,11 +123,13 @@ impl<'a> CurvedMesh<'a> {
         (weighted(corners, closest_point(corners, point)) - point).norm_squared()
     }
 
-    /// Height of the curved surface over the triangle at a place (x, z), if the triangle covers it.
+    /// The curved surface over the triangle at a place (x, z), if the triangle covers it.
+    ///
+    /// `normals` are those at its corners, as [`CurvedMesh::corner_normals`] gives them.
     ///
     /// At a sharp edge, where the vertex normals lean away from the triangle's, and on steep walls,
     /// where a lift sideways has no height, it stays flat.
-    pub fn height_over(&self, triangle: usize, (x, z): (f64, f64)) -> Option<f64> {
+    pub fn over(&self, triangle: usize, normals: &[Vec3; 3], (x, z): (f64, f64)) -> Option<Over> {
         const COVERED: f64 = -1e-9;
         let corners = self.corners(triangle);
         let [a, b, c] = corners;
@@ -88,16 +146,29 @@ impl<'a> CurvedMesh<'a> {
         if all == 0.0 || weights.iter().any(|&weight| weight < COVERED) {
             return None;
         }
-        let flat = weighted(&corners, weights);
-        let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
-        let is_smooth = normals
-            .iter()
-            .all(|normal| normal.dot(&self.planes[triangle].0) > LEAST_COSINE);
-        let normal = weighted(&normals, weights);
-        if !is_smooth || normal.y.abs() < LEAST_SLOPE_COSINE * normal.norm() {
-            return Some(flat.y);
-        }
-        Some(flat.y + lift(&corners, &normals, weights, &flat).dot(&normal) / normal.y)
+        Some(self.lifted(triangle, normals, &corners, weights))
+    }
+
+    fn lifted(
+        &self,
+        triangle: usize,
+        normals: &[Vec3; 3],
+        corners: &[Vec3; 3],
+        weights: [f64; 3],
+    ) -> Over {
+        let flat = weighted(corners, weights);
+        let facet = self.planes[triangle].0;
+        let is_smooth_at = |normal: &Vec3| normal.dot(&facet) > LEAST_COSINE;
+        let own = normals.map(|normal| if is_smooth_at(&normal) { normal } else { facet });
+        let normal = weighted(&own, weights);
+        let upward = normal.y / normal.norm();
+        let is_smooth = normals.iter().all(is_smooth_at);
+        let height = if is_smooth && upward.abs() >= LEAST_SLOPE_COSINE {
+            flat.y + lift(corners, normals, weights, &flat).dot(&normal) / normal.y
+        } else {
+            flat.y
+        };
+        Over { height, upward }
     }
 
     /// Signed distance from a point to the curved surface over the triangle, mm; > 0 outside.
@@ -119,6 +190,15 @@ impl<'a> CurvedMesh<'a> {
             normal: normal.try_normalize(0.0).unwrap_or_default(),
         }
     }
+}
+
+/// The curved surface where a vertical line meets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Over {
+    /// Height, mm.
+    pub height: f64,
+    /// How far its unit normal looks up: the cosine of the slope; less than 0 where it looks down.
+    pub upward: f64,
 }
 
 /// A place on the curved surface over a triangle.

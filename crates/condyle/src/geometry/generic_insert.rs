@@ -89,14 +89,14 @@ impl GenericInsertShape {
         place: impl Fn(&Vec3) -> Vec3,
     ) -> Result<Insert, InsertError> {
         let grid = ColumnGrid::filling(LOW_MM, HIGH_MM, meshing.edge_mm, meshing.layers)?;
-        let mut columns = vec![None; grid.point_count()];
+        let mut columns = vec![(0.0, 0.0); grid.point_count()];
         for i in 0..=grid.cells.0 {
             for k in 0..=grid.cells.1 {
                 let (x, z) = grid.place_mm(i, k);
-                columns[grid.number(i, k)] = Some((-self.thickness_mm, self.height_mm(x, z)));
+                columns[grid.number(i, k)] = (-self.thickness_mm, self.height_mm(x, z));
             }
         }
-        let mut built = grid.hexahedra(&columns, meshing.layers);
+        let mut built = grid.plan().hexahedra(&columns, meshing.layers);
         let nodes = built.mesh.nodes.iter_mut();
         nodes.for_each(|node| *node = place(node));
         Insert::new(built.mesh, &built.articulating, &built.backside)
@@ -116,8 +116,8 @@ pub fn flat_insert(
 ) -> Result<Insert, InsertError> {
     let (x, z) = (size_mm.0 / 2.0, size_mm.1 / 2.0);
     let grid = ColumnGrid::filling((-x, -z), (x, z), meshing.edge_mm, meshing.layers)?;
-    let columns = vec![Some((-thickness_mm, 0.0)); grid.point_count()];
-    let built = grid.hexahedra(&columns, meshing.layers);
+    let columns = vec![(-thickness_mm, 0.0); grid.point_count()];
+    let built = grid.plan().hexahedra(&columns, meshing.layers);
     Insert::new(built.mesh, &built.articulating, &built.backside)
 }
 

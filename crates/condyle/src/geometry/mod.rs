@@ -45,7 +45,7 @@ mod triangle;
 mod triangle_mesh;
 
 pub use articulating_surface::ArticulatingSurface;
-pub use columns::{Column, ColumnGrid, ColumnMesh};
+pub use columns::{Column, ColumnGrid, ColumnMesh, Plan};
 pub use curvature_bounds::{CurvatureBounds, MOST_GAP_SLOPE};
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use cylinder::Cylinder;

@@ -1,20 +1,37 @@
 //! An insert from a triangle mesh: hexahedra in columns along y.
 
-mod rim;
-mod through;
+mod backside;
+mod core;
+mod evened;
+mod footprint;
+mod holes;
+mod outline;
+mod ring;
+mod vertical_lines;
 
 use thiserror::Error;
 
+pub use self::holes::Hole;
 use self::{
-    rim::{drop_steep, drop_thin},
-    through::columns_through,
+    backside::ease_steps,
+    core::Core,
+    footprint::Footprint,
+    holes::holes,
+    outline::{Loop, Place, outline},
+    ring::Ring,
 };
 use super::{
-    columns::{Column, ColumnGrid},
+    columns::{Column, ColumnGrid, Plan},
     generic_insert::Meshing,
     insert::{Insert, error::InsertError},
     triangle_mesh::TriangleMesh,
 };
+
+/// Pieces of the insert seen from above that are smaller than this many hexahedra are chips, and left out.
+const LEAST_PIECE: f64 = 4.0;
+/// Where a node on the outline is off the shell by what a chord of the outline is, it is moved by one of
+/// these shares of the way to the next node inside.
+const HAIRS: [f64; 7] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1];
 
 /// Why a shell makes no insert.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -32,6 +49,37 @@ pub enum ShellInsertError {
         /// The edge asked for.
         edge_mm: f64,
     },
+    /// Places inside the outline where no column may stand.
+    #[error(
+        "inside the insert's outline no hexahedra can stand on {}; fill it in the mesh",
+        listed(holes)
+    )]
+    Holes {
+        /// All of them.
+        holes: Vec<Hole>,
+    },
+    /// A place inside the outline where nothing is below or above.
+    #[error(
+        "the insert has a hole at x {x_mm:.2}, z {z_mm:.2} mm, where no column of hexahedra can stand; mend the mesh"
+    )]
+    NoColumn {
+        /// Anterior, mm.
+        x_mm: f64,
+        /// To the right of a right knee, mm.
+        z_mm: f64,
+    },
+    /// A part of the insert in which no cell of the grid fits.
+    #[error(
+        "the insert is too narrow for an edge of {edge_mm} mm around x {x_mm:.1}, z {z_mm:.1} mm; use a smaller edge_mm"
+    )]
+    TooCoarse {
+        /// The edge asked for.
+        edge_mm: f64,
+        /// Middle of that part, anterior, mm.
+        x_mm: f64,
+        /// The same to the right of a right knee, mm.
+        z_mm: f64,
+    },
     /// The columns make no insert.
     #[error(transparent)]
     Insert(#[from] InsertError),
@@ -39,13 +87,16 @@ pub enum ShellInsertError {
 
 /// Hexahedra between the top and the bottom of a shell, or below an open surface.
 ///
-/// A vertical line through every grid point meets the shell; its highest and its lowest point
-/// bound the column. Facets are lifted to the curved surface that the vertex normals imply. Below
-/// an open surface the backside is flat, `thickness_mm` below the lowest point. Thin and steep
-/// columns at the rim are left out, so the outline follows the grid.
+/// Seen from above, the cells of a grid fill what lies well inside the outline, and a ring of quads
+/// with their outer nodes on the outline fills the rest. The outline is that of the part in which the
+/// shell is no wall (steeper than 60 degrees) and thicker than 0.4 of the median. The vertical line
+/// through each place meets the shell; its highest and its lowest point bound the column. Facets
+/// are lifted to the curved surface that the vertex normals imply. Below an open surface the
+/// backside is flat, `thickness_mm` below the lowest point.
 ///
 /// # Errors
-/// An open shell without a thickness, one in which no column fits, or more nodes than memory holds.
+/// An open shell without a thickness, one in which no column fits, a hole inside the outline, an
+/// outline with details finer than the edge, or more nodes than memory holds.
 pub fn insert_from_shell(
     shell: &TriangleMesh,
     is_closed: bool,
@@ -56,17 +107,15 @@ pub fn insert_from_shell(
     let (low, high) = shell.bounds();
     let (low, high) = ((low.x, low.z), (high.x, high.z));
     let grid = ColumnGrid::filling(low, high, edge_mm, meshing.layers)?;
-    let mut columns = columns_through(shell, &grid);
-    if !is_closed {
+    let mut footprint = Footprint::new(shell, is_closed, edge_mm);
+    let (plan, mut columns) = fitted_plan(&grid, &mut footprint, edge_mm)?;
+    if is_closed {
+        ease_steps(&plan, &mut columns);
+    } else {
         let thickness_mm = thickness_mm.ok_or(ShellInsertError::OpenWithoutThickness)?;
         put_on_flat_backside(&mut columns, thickness_mm);
     }
-    drop_thin(&mut columns);
-    drop_steep(&grid, &mut columns, edge_mm);
-    let built = grid.hexahedra(&columns, meshing.layers);
-    if built.mesh.hexes.is_empty() {
-        return Err(ShellInsertError::NoColumns { edge_mm });
-    }
+    let built = plan.hexahedra(&columns, meshing.layers);
     Ok(Insert::new(
         built.mesh,
         &built.articulating,
@@ -74,16 +123,99 @@ pub fn insert_from_shell(
     )?)
 }
 
+/// The plan of the hexahedra with its rim on the outline, and the columns on its places.
+fn fitted_plan(
+    grid: &ColumnGrid,
+    footprint: &mut Footprint<'_>,
+    edge_mm: f64,
+) -> Result<(Plan, Vec<Column>), ShellInsertError> {
+    let outlines = outline(footprint, edge_mm);
+    let holes = holes(footprint, &outlines, edge_mm);
+    if !holes.is_empty() {
+        return Err(ShellInsertError::Holes { holes });
+    }
+    let outer: Vec<&Loop> = outlines
+        .iter()
+        .filter(|outline| outline.area_mm2() > LEAST_PIECE * edge_mm * edge_mm)
+        .collect();
+    let pieces = matched(grid, &outer, Core::pieces(grid, footprint), edge_mm)?;
+    let mut ring = Ring::new(grid, &pieces);
+    ring.even_out();
+    standing(&ring, footprint)
+}
+
+/// For every outline the largest piece of the core inside.
+fn matched<'a>(
+    grid: &ColumnGrid,
+    outlines: &[&'a Loop],
+    mut pieces: Vec<Core>,
+    edge_mm: f64,
+) -> Result<Vec<(Core, &'a Loop)>, ShellInsertError> {
+    if outlines.is_empty() {
+        return Err(ShellInsertError::NoColumns { edge_mm });
+    }
+    pieces.sort_by_key(|piece| std::cmp::Reverse(piece.cells.len()));
+    let of_outline = |outline: &&'a Loop| {
+        let is_inside = |piece: &&Core| {
+            let (x, z) = grid.place_of_mm(piece.cells[0][0]);
+            outline.goes_round(&Place::new(x, z))
+        };
+        match pieces.iter().find(is_inside) {
+            Some(piece) if piece.loops.len() == 1 => Ok((piece.clone(), *outline)),
+            _ => Err(ShellInsertError::TooCoarse {
+                edge_mm,
+                x_mm: outline.middle()[0],
+                z_mm: outline.middle()[1],
+            }),
+        }
+    };
+    outlines.iter().map(of_outline).collect()
+}
+
+/// The columns on every place of a plan; those on the outline stand a hair inside where they must.
+fn standing(
+    ring: &Ring<'_>,
+    footprint: &Footprint<'_>,
+) -> Result<(Plan, Vec<Column>), ShellInsertError> {
+    let mut plan = ring.plan();
+    for (outer, inner) in ring.spokes() {
+        let [outer, inner] = [outer, inner].map(|n| n as usize);
+        let (from, to) = (plan.places_mm[outer], plan.places_mm[inner]);
+        let inward = HAIRS.iter().map(|share| {
+            (
+                from.0 + share * (to.0 - from.0),
+                from.1 + share * (to.1 - from.1),
+            )
+        });
+        let holds = inward.clone().find(|place| footprint.holds(*place));
+        let meets = || { inward }.find(|place| footprint.through(*place).is_some());
+        plan.places_mm[outer] = holds.or_else(meets).unwrap_or(from);
+    }
+    let column = |&place: &(f64, f64)| {
+        let through = footprint.through(place);
+        through
+            .map(|through| (through.bottom, through.top))
+            .ok_or(place)
+    };
+    let columns: Result<_, _> = plan.places_mm.iter().map(column).collect();
+    let columns = columns.map_err(|(x_mm, z_mm)| ShellInsertError::NoColumn { x_mm, z_mm })?;
+    Ok((plan, columns))
+}
+
 /// Ends every column at a plane below the lowest point.
 fn put_on_flat_backside(columns: &mut [Column], thickness_mm: f64) {
     let lowest = columns
         .iter()
-        .flatten()
         .map(|column| column.1)
         .fold(f64::INFINITY, f64::min);
-    for (bottom, _) in columns.iter_mut().flatten() {
+    for (bottom, _) in columns {
         *bottom = lowest - thickness_mm;
     }
+}
+
+fn listed(holes: &[Hole]) -> String {
+    let each: Vec<String> = holes.iter().map(Hole::to_string).collect();
+    each.join(", on ")
 }
 
 #[cfg(test)]
