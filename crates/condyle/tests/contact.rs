@@ -243,7 +243,13 @@ fn exact_ball_force(overclosure: f64) -> f64 {
 
 #[test]
 fn verify_ball_on_a_softening_foundation() {
-    let insert = flat_insert((24.0, 24.0), 9.0, one_millimetre()).unwrap();
+    // A share has the pressure of its mean overclosure, which for a law that bends is 2.4 % of the
+    // force too much at edges of 1 mm, and falls with their square.
+    let fine = Meshing {
+        edge_mm: 0.25,
+        layers: 1,
+    };
+    let insert = flat_insert((24.0, 24.0), 9.0, fine).unwrap();
     let (overclosure, stress) = (overclosure_at_2000_n(), 18.4);
     let pressure = PressureLaw::Softening {
         modulus_mpa: MODULUS_MPA,
