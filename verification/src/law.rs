@@ -1,6 +1,6 @@
-//! The pressure laws on a flat layer of one thickness, and their exact pressures.
+//! The three pressure laws on a flat layer of one thickness, and their exact pressures.
 
-use condyle::contact::{PressureLaw, PressureTable, confined_modulus, softening_modulus};
+use condyle::contact::{PressureLaw, PressureTable, confined_modulus};
 
 /// Thickness of the layer, mm.
 pub(crate) const THICKNESS_MM: f64 = 9.0;
@@ -11,34 +11,6 @@ const TABLE: [(f64, f64); 4] = [(0.0, 0.0), (0.1, 22.0), (0.25, 58.0), (1.0, 260
 /// Modulus of the confined layer of the default material, MPa: E = 463 MPa, v = 0.46.
 pub(crate) fn modulus_mpa() -> f64 {
     confined_modulus(463.0, 0.46)
-}
-
-/// Strain and stress of the softening law, MPa.
-const SOFTENING: (f64, f64) = (0.0597, 18.4);
-
-/// Modulus of the softening law at no pressure, MPa.
-fn softening_modulus_mpa() -> f64 {
-    softening_modulus(SOFTENING.0, SOFTENING.1, 0.46)
-}
-
-/// Overclosure of the softening law at a pressure, mm.
-fn softened_mm(pressure_mpa: f64) -> f64 {
-    let part = pressure_mpa / SOFTENING.1;
-    THICKNESS_MM * pressure_mpa / softening_modulus_mpa() * (1.0 + part * part)
-}
-
-/// Pressure of the softening law at an overclosure, by halving, MPa.
-fn softened_mpa(overclosure_mm: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1e4);
-    for _ in 0..200 {
-        let middle = f64::midpoint(low, high);
-        if softened_mm(middle) < overclosure_mm {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    f64::midpoint(low, high)
 }
 
 /// A law with what is exact of it.
@@ -53,8 +25,8 @@ pub(crate) struct ExactLaw {
     pub integral: fn(f64) -> f64,
 }
 
-/// The linear, the logarithmic, the softening and a tabulated law.
-pub(crate) fn exact_laws() -> [ExactLaw; 4] {
+/// The linear, the logarithmic and a tabulated law.
+pub(crate) fn exact_laws() -> [ExactLaw; 3] {
     let modulus_mpa = modulus_mpa();
     let table = PressureTable::new(TABLE.to_vec()).expect("a table that rises");
     [
@@ -71,19 +43,6 @@ pub(crate) fn exact_laws() -> [ExactLaw; 4] {
             integral: |d| {
                 let x = d / THICKNESS_MM;
                 self::modulus_mpa() * THICKNESS_MM * ((1.0 - x) * (-x).ln_1p() + x)
-            },
-        },
-        ExactLaw {
-            name: "softening",
-            law: PressureLaw::Softening {
-                modulus_mpa: softening_modulus_mpa(),
-                softening_stress_mpa: SOFTENING.1,
-            },
-            pressure_mpa: softened_mpa,
-            integral: |d| {
-                let (pressure, stress) = (softened_mpa(d), SOFTENING.1);
-                let below = pressure.powi(2) / 2.0 + (pressure.powi(2) / stress).powi(2) / 4.0;
-                pressure * d - THICKNESS_MM / softening_modulus_mpa() * below
             },
         },
         ExactLaw {

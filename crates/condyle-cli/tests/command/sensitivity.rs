@@ -54,7 +54,7 @@ fn what_a_case_does_not_use_is_said_to_be_without_effect() {
     let said = Bench::with_case(TINY).say(&["sensitivity", "case.toml"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
     assert!(said.out.starts_with("| assumption "), "{}", said.out);
-    assert!(said.out.contains("| thickness: +1 "), "{}", said.out);
+    assert!(said.out.contains("| thickness: +1 mm "), "{}", said.out);
     let text = format!("{TINY}[machine]\npreset = \"stanmore-displacement\"\n");
     let said = Bench::with_case(&text).say(&["sensitivity", "case.toml"]);
     assert_eq!(said.code, Some(0), "{}", said.err);

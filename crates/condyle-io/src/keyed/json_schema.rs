@@ -52,7 +52,7 @@ impl TableSchema {
         for offer in &choices.offered {
             let then = required(&offer.keys);
             self.rules
-                .extend(then.map(|then| rule(choices, &[offer.word], then)));
+                .extend(then.map(|then| rule(choices, &[offer.word], &then)));
         }
         self
     }
@@ -76,7 +76,7 @@ impl TableSchema {
         word: &str,
         names: &[&str],
     ) -> Self {
-        self.rules.push(rule(choices, &[word], one_of(names)));
+        self.rules.push(rule(choices, &[word], &one_of(names)));
         self
     }
 
@@ -142,11 +142,11 @@ fn words_of(bearers: &[(&str, &Key)], key: &Key, by: &str, own: &str) -> String 
 fn only_under(choices: &Choices, words: &[&str], name: &str) -> Value {
     let others = choices.offered.iter().map(|offer| offer.word);
     let others: Vec<&str> = others.filter(|word| !words.contains(word)).collect();
-    rule(choices, &others, json!({ "properties": { name: false } }))
+    rule(choices, &others, &json!({ "properties": { name: false } }))
 }
 
 /// What holds where a table has one of `words`, of which the default is had by silence.
-fn rule(choices: &Choices, words: &[&str], then: Value) -> Value {
+fn rule(choices: &Choices, words: &[&str], then: &Value) -> Value {
     let by = choices.by.name;
     let mut condition = json!({ "properties": { by: { "enum": words } } });
     if !words.contains(&choices.default) {
@@ -187,12 +187,12 @@ fn of_kind(kind: &Kind, limits: Option<Limits>) -> Value {
         Kind::Truth => json!({ "type": "boolean" }),
         Kind::Text | Kind::Path => json!({ "type": "string" }),
         Kind::Word(words) => json!({ "type": "string", "enum": words }),
-        Kind::ThreeWords(words) => list(json!({ "type": "string", "enum": words }), 3),
+        Kind::ThreeWords(words) => list(&json!({ "type": "string", "enum": words }), 3),
         Kind::Names => json!({ "type": "array", "items": { "type": "string" } }),
-        Kind::TwoNumbers => list(limited("number", limits), 2),
-        Kind::ThreeNumbers => list(limited("number", limits), 3),
+        Kind::TwoNumbers => list(&limited("number", limits), 2),
+        Kind::ThreeNumbers => list(&limited("number", limits), 3),
         // Limits of points hold for what becomes of them, once scaled and offset.
-        Kind::Pairs => json!({ "type": "array", "items": list(json!({ "type": "number" }), 2) }),
+        Kind::Pairs => json!({ "type": "array", "items": list(&json!({ "type": "number" }), 2) }),
     }
 }
 
@@ -205,7 +205,7 @@ fn limited(number: &str, limits: Option<Limits>) -> Value {
     schema
 }
 
-fn list(item: Value, length: usize) -> Value {
+fn list(item: &Value, length: usize) -> Value {
     json!({ "type": "array", "items": item, "minItems": length, "maxItems": length })
 }
 

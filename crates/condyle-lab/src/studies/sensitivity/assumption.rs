@@ -1,6 +1,7 @@
 //! What a case assumes, and what could be assumed instead.
 
 use condyle_io::case::{Assignment, Case};
+use condyle_io::keyed::unit_of;
 
 /// Something that a case assumes, and what is tried in its place.
 struct Assumption {
@@ -144,7 +145,7 @@ const ASSUMPTIONS: &[Assumption] = &[
 pub struct Change {
     /// What is changed, in words.
     pub assumption: &'static str,
-    /// How, in words: `x 0.5`, `+1`, `each`.
+    /// How, in words: `x 0.5`, `+1 mm`, `each`.
     pub change: String,
     /// The keys with their other values.
     pub assignments: Vec<Assignment>,
@@ -170,11 +171,17 @@ impl Assumption {
                 factors.iter().map(times).collect()
             }
             Plus(terms) => {
-                let plus = |term: &f64| by_number(1.0, *term, format!("{term:+}"));
+                let plus = |term: &f64| by_number(1.0, *term, self.step(*term));
                 terms.iter().map(plus).collect()
             }
             Instead(texts) => texts.iter().map(|text| self.instead(case, text)).collect(),
         }
+    }
+
+    /// A step with its unit, such as `+1 mm`.
+    fn step(&self, term: f64) -> String {
+        let unit = self.keys.first().and_then(|key| unit_of(key));
+        unit.map_or_else(|| format!("{term:+}"), |unit| format!("{term:+} {unit}"))
     }
 
     /// The keys that are numbers of the case, where `other` changes them.
