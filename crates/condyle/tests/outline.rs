@@ -204,7 +204,7 @@ fn verify_a_ball_over_a_straight_rim_finds_half_the_force() {
 fn verify_there_is_no_ridge_beside_the_rim() {
     let insert = insert(&OVAL, 0.0, 0.0);
     for position in insert.surface().positions {
-        let Vec3 { x, y, z, .. } = position;
+        let [x, y, z] = position.into();
         if x.hypot(z.abs() - 20.0) < 19.0 && z.abs() > 1.0 {
             let error = y - (OVAL.top_mm)(x, z);
             assert!(error.abs() < 2e-3, "{error} at {position}");
