@@ -92,6 +92,11 @@ impl<'a> Footprint<'a> {
         self.may_stand(self.through(place_mm))
     }
 
+    /// The same without a try beside the place, which would be a hair too wide.
+    pub fn holds_exactly(&self, place_mm: (f64, f64)) -> bool {
+        self.may_stand(self.lines.exactly_at(place_mm))
+    }
+
     fn may_stand(&self, through: Option<Through>) -> bool {
         let is_wall = |through: &Through| through.upward < LEAST_UPWARD;
         let is_thin = |through: &Through| through.top - through.bottom < self.thinnest_mm;
