@@ -7,9 +7,9 @@ use super::footprint::Footprint;
 /// A place (x, z) in the transverse plane, mm.
 pub type Place = Vector2<f64>;
 
-/// Halvings of the distance between two samples that find the outline between them to what the shell
-/// itself is known.
-const HALVINGS: usize = 32;
+/// Halvings of the distance between two samples that find the outline between them to a millionth of a
+/// millimetre: further than that a triangle counts as covering a place beside its edge.
+const HALVINGS: usize = 20;
 /// Points of an outline closer than this are one, mm.
 const ONE_POINT_MM: f64 = 1e-3;
 /// An outline that turns by more than this over an edge has a corner there.
