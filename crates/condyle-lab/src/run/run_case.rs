@@ -176,7 +176,7 @@ impl<'a> Run<'a> {
                 clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
                 clock.time(|| March::resume(built.test, checkpoint.state))
             }
-            None => clock.time(|| start(case, built.test))?,
+            None => clock.time(|| start(case, built.test, &built.warnings))?,
         };
         let (folder, lock) = if is_new {
             new_folder(case, options, lock)?
