@@ -39,7 +39,7 @@ fn fail(case: &Case, error: ExportError) -> ExitCode {
             source,
         },
         ExportError::Placement(source) => RunError::Placement {
-            shown: case.placement_at_its_key(&source),
+            shown: case.placement_at_its_key(&source, &[]),
             source,
         },
         ExportError::Write { .. } => return exit::fail(error, exit::BAD_INPUT),

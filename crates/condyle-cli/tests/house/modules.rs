@@ -32,6 +32,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle::parameter", &[]),
     ("condyle::spatial", &["condyle::number"]),
     ("condyle::geometry", &["condyle::number", "condyle_fem"]),
+    ("condyle::anatomy", &["condyle::geometry"]),
     (
         "condyle::contact",
         &["condyle::number", "condyle::spatial", "condyle::geometry"],

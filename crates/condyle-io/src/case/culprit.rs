@@ -10,7 +10,7 @@ use condyle::machine::knee;
 use thiserror::Error;
 use toml::de::DeTable;
 
-use super::build::BuildError;
+use super::build::{Body, BuildError, BuildWarning};
 use super::contents::Case;
 use super::limits::Limits;
 use super::machine_keys::DriveWord;
@@ -49,16 +49,27 @@ const SOFT_MPA: f64 = 100.0;
 impl Case {
     /// A failed build, at the key of this case that is behind it.
     pub fn at_its_key(&self, error: &BuildError) -> Problems {
-        self.error_at(&self.culprit_of_build(error), error.to_string())
+        self.errors_at(&[(self.culprit_of_build(error), error.to_string())])
     }
 
-    /// A failed placement of this case's bodies, at the key that is behind it.
-    pub fn placement_at_its_key(&self, error: &PlacementError) -> Problems {
+    /// A failed placement of this case's bodies, at the key that is behind it, and axes that `warnings`
+    /// say are likely wrong, which may be why.
+    pub fn placement_at_its_key(
+        &self,
+        error: &PlacementError,
+        warnings: &[BuildWarning],
+    ) -> Problems {
         let culprit = match error {
             PlacementError::DeepOverlap { .. } => self.culprit_of_overlap(),
             _ => START,
         };
-        self.error_at(&culprit, error.to_string())
+        let mut errors = vec![(culprit, error.to_string())];
+        for warning in warnings {
+            if let BuildWarning::WrongAxes { wrong, .. } = warning {
+                errors.push((axes_of(wrong.body), warning.to_string()));
+            }
+        }
+        self.errors_at(&errors)
     }
 
     /// A run of this case that needs more memory than it allows, at the key that allows it or else at the insert's mesh.
@@ -128,11 +139,24 @@ impl Case {
         }
     }
 
-    fn error_at(&self, culprit: &Culprit, message: String) -> Problems {
+    fn errors_at(&self, errors: &[(Culprit, String)]) -> Problems {
         let source = &self.origin.0;
-        let problem = Problem::at(source, span_of(source, culprit), Unfit { message });
-        Problems::new(vec![problem], source)
+        let problem = |(culprit, message): &(Culprit, String)| {
+            let message = message.clone();
+            Problem::at(source, span_of(source, culprit), Unfit { message })
+        };
+        Problems::new(errors.iter().map(problem).collect(), source)
     }
+}
+
+/// The axes of a body.
+fn axes_of(body: Body) -> Culprit {
+    let table = match body {
+        Body::Femur => "femur",
+        Body::Insert => "insert",
+    };
+    let keys = &["axes", "file"];
+    Culprit { table, keys }
 }
 
 /// Where the first key of `culprit` that is given has its value, or else the name of the table.

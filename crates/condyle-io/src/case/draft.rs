@@ -81,8 +81,8 @@ impl Draft<'_> {
     pub fn drafted(&self, folder: &Path) -> Result<Drafted, DraftError> {
         let femur = Concluded::from(Body::Femur, self.femur)?;
         let insert = Concluded::from(Body::Insert, self.insert)?;
-        let femur_lies = femur.orientation(insert.one_orientation());
-        let insert_lies = insert.orientation(femur.recognition.is_some().then_some(femur_lies));
+        let femur_lies = femur.orientation(&insert.best());
+        let insert_lies = insert.orientation(&[femur_lies]);
         let bodies = [
             self.body("femur", &femur, &femur_lies),
             self.body("insert", &insert, &insert_lies),
@@ -164,19 +164,22 @@ impl<'a> Concluded<'a> {
         })
     }
 
-    /// The orientation, where the shape leaves no other.
-    fn one_orientation(&self) -> Option<Orientation> {
-        let recognition = self.recognition.as_ref()?;
-        recognition.sureness().map(|_| recognition.nearest())
+    /// The orientations that its shape leaves, best first.
+    fn best(&self) -> Vec<Orientation> {
+        self.recognition
+            .iter()
+            .flat_map(Recognition::best)
+            .collect()
     }
 
-    /// How it lies: as the other body where it may, since files of one implant mostly share their axes.
-    fn orientation(&self, other: Option<Orientation>) -> Orientation {
+    /// How it lies: as the other body may lie, where its own shape leaves that, since files of one
+    /// implant mostly share their axes.
+    fn orientation(&self, of_other: &[Orientation]) -> Orientation {
         let Some(recognition) = &self.recognition else {
-            return other.unwrap_or(Orientation::ISB);
+            return of_other.first().copied().unwrap_or(Orientation::ISB);
         };
-        let as_other = recognition.best().find(|&best| Some(best) == other);
-        as_other.unwrap_or_else(|| recognition.nearest())
+        let shared = recognition.best().find(|best| of_other.contains(best));
+        shared.unwrap_or_else(|| recognition.nearest())
     }
 
     /// Its triangles in mm, x anterior, y superior, z right.

@@ -263,7 +263,7 @@ impl<'a> Search<'a> {
             source: Box::new(source),
         };
         let built = build(&case, 1, &Cache::off()).map_err(failed)?;
-        let mut march = start(&case, built.test).map_err(failed)?;
+        let mut march = start(&case, built.test, &built.warnings).map_err(failed)?;
         let mut go_on = |_: Progress| ControlFlow::Continue(());
         while !march.is_done() {
             let update = march.update(&mut go_on);

@@ -55,7 +55,7 @@ impl Preview {
         let mut clock = Clock::default();
         let built = clock.time(|| build(&case, threads, &Cache::off()))?;
         let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
-        let march = clock.time(|| start(&case, built.test))?;
+        let march = clock.time(|| start(&case, built.test, &built.warnings))?;
         let triangles = case.femur_triangles(march.test(), FEMUR_TRIANGLES);
         let triangles = triangles.map_err(|source| RunError::of_build(&case, source))?;
         let at_rest = AtRest::of(&march);

@@ -30,7 +30,7 @@ pub fn check_changed(
 ) -> Result<(Case, Vec<BuildWarning>), RunError> {
     let case = changed(case_path, changes)?;
     let built = build(&case, threads, &Cache::off())?;
-    start(&case, built.test)?;
+    start(&case, built.test, &built.warnings)?;
     Ok((case, built.warnings))
 }
 
@@ -47,9 +47,13 @@ pub(crate) fn build(case: &Case, threads: usize, cache: &Cache) -> Result<Built,
         .map_err(|source| RunError::of_build(case, source))
 }
 
-pub(crate) fn start(case: &Case, test: WearTest) -> Result<March, RunError> {
+pub(crate) fn start(
+    case: &Case,
+    test: WearTest,
+    warnings: &[BuildWarning],
+) -> Result<March, RunError> {
     let march = March::start(test).map_err(|source| RunError::Placement {
-        shown: case.placement_at_its_key(&source),
+        shown: case.placement_at_its_key(&source, warnings),
         source,
     })?;
     check_memory(case, &march).map(|()| march)

@@ -181,7 +181,7 @@ impl<'a> Run<'a> {
                 clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
                 clock.time(|| March::resume(built.test, checkpoint.state))
             }
-            None => clock.time(|| start(case, built.test))?,
+            None => clock.time(|| start(case, built.test, &built.warnings))?,
         };
         let drawn = case.output.cycle_frames;
         let in_frames = drawn.then(|| femur_triangles(case, &march, FRAME_TRIANGLES));

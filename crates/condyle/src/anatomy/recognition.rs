@@ -9,6 +9,9 @@ const LIKELY_MARGIN: f64 = 2.0;
 /// The same for it to be wrong for certain: more than any one sign can tell.
 const CERTAIN_MARGIN: f64 = 6.0;
 
+/// Two that differ by less fit equally well.
+const EQUAL_MARGIN: f64 = 0.5;
+
 /// How the 24 orientations fit a body, told from its shape alone.
 #[derive(Clone, Debug)]
 pub struct Recognition {
@@ -86,10 +89,14 @@ impl Recognition {
         }
     }
 
-    /// The one of the best that takes the smallest turn from x anterior, y superior, z right.
+    /// Of those that fit as well as the best, the one that takes the smallest turn from x anterior,
+    /// y superior, z right.
     pub fn nearest(&self) -> Orientation {
         let least_turn = |orientation: &Orientation| orientation.rotation().trace();
-        let best = self.best();
+        let highest = self.scores[0].1;
+        let is_equal = |(_, score): &&(Orientation, f64)| highest - score < EQUAL_MARGIN;
+        let equal = self.scores.iter().take_while(is_equal);
+        let best = equal.map(|(orientation, _)| *orientation);
         best.reduce(|a, b| {
             if least_turn(&b) > least_turn(&a) {
                 b

@@ -2,7 +2,8 @@ use super::{Orientation, Recognition, Sureness, start_over_the_dishes_mm};
 use crate::{
     Vec3,
     geometry::{
-        GenericFemur, GenericFemurShape, GenericInsertShape, Meshing, TriangleMesh, flat_insert,
+        GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing, TriangleMesh,
+        flat_insert,
     },
 };
 
@@ -14,10 +15,11 @@ fn generic_femur() -> TriangleMesh {
 fn generic_insert() -> TriangleMesh {
     let (edge_mm, layers) = (2.0, 1);
     let insert = GenericInsertShape::default().insert(Meshing { edge_mm, layers });
-    boundary(insert.unwrap().mesh())
+    boundary(&insert.unwrap())
 }
 
-fn boundary(mesh: &condyle_fem::HexMesh) -> TriangleMesh {
+fn boundary(insert: &Insert) -> TriangleMesh {
+    let mesh = insert.mesh();
     let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
     TriangleMesh {
         vertices: mesh.nodes.clone(),
@@ -84,7 +86,7 @@ fn neither_size_nor_place_nor_cutting_nor_side_matters() {
 fn shapes_of_no_knee_are_not_accused() {
     let (edge_mm, layers) = (2.0, 1);
     let block = flat_insert((46.0, 72.0), 9.0, Meshing { edge_mm, layers }).unwrap();
-    let block = boundary(block.mesh());
+    let block = boundary(&block);
     assert!(Recognition::of_insert(&block).is_none());
     assert!(Recognition::of_femur(&block).is_none());
     let insert = generic_insert();

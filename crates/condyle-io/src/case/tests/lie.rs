@@ -10,7 +10,7 @@ use condyle::geometry::{
 };
 use tempfile::TempDir;
 
-use crate::case::{Body, Case, Draft, Preset, Side};
+use crate::case::{Body, BuildWarning, Case, Draft, Preset, Side};
 use crate::files::Disk;
 use crate::mesh::{read_surface, write_stl};
 
@@ -90,7 +90,7 @@ fn every_wrong_orientation_of_real_bodies_is_told_and_the_right_one_is_not() {
     }
 }
 
-/// Every second vertex of a grid of 2 mm is where the scan may put it.
+/// Vertices as a coarse scan may have them, on a grid of 2 mm, and the other side's implant.
 #[test]
 fn rough_and_mirrored_real_bodies_are_not_accused() {
     let snap = |v: &Vec3| v.map(|x| (x / 2.0).round() * 2.0);
@@ -151,7 +151,13 @@ fn a_drafted_case_builds_without_a_word_of_axes_from_any_unit_and_orientation() 
             );
             let case = Case::parse(&drafted.text, "case.toml", folder.path()).unwrap();
             let built = case.build(1).unwrap();
-            assert_eq!(built.warnings, []);
+            let of_lie = |warning: &BuildWarning| {
+                matches!(
+                    warning,
+                    BuildWarning::WrongAxes { .. } | BuildWarning::UnusualSize { .. }
+                )
+            };
+            assert!(!built.warnings.iter().any(of_lie), "{:?}", built.warnings);
         }
     }
 }
@@ -164,7 +170,7 @@ fn refused(pair: &Pair, axes: &str, unit: &str) -> String {
     let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
     match case.build(1) {
         Ok(built) => format!("{:?}", built.warnings),
-        Err(error) => case.at_its_key(&error).to_string(),
+        Err(error) => case.at_its_key(&error).to_string().replace("\n  | ", " "),
     }
 }
 
