@@ -358,6 +358,10 @@ fn bad_scans_are_refused_with_their_place() {
         bench.path("out/insert_0003.vtu"),
     )
     .unwrap();
+    let damaged = "insert_0003.vtu: the file is damaged";
+    refuses("file = \"scan.csv\"", &[damaged, "--force"]);
+    // A folder without hashes is read unchecked.
+    std::fs::remove_file(bench.path("out/checksums")).unwrap();
     refuses(
         "file = \"scan.csv\"",
         &[

@@ -73,7 +73,7 @@ fn a_femur_that_rides_off_is_told_by_the_rim_the_springs_and_the_motion() {
     let bench = Bench::with_case(&text);
     bench.run_into("out");
     let found = checks(&bench, "out");
-    for check in ["femur_beyond_rim", "springs_far", "ap_range"] {
+    for check in ["femur_beyond_rim", "springs_far", "vv_range", "ml_range"] {
         assert!(
             found.iter().any(|found| found == check),
             "{check}: {found:?}"
@@ -82,9 +82,24 @@ fn a_femur_that_rides_off_is_told_by_the_rim_the_springs_and_the_motion() {
 }
 
 #[test]
+fn pressure_that_polyethylene_cannot_bear_is_told_apart() {
+    let text = |radius: f64| {
+        format!("[femur]\ncoronal_radius_mm = {radius}\n{SMALL}[accuracy]\nestimate = false\n")
+    };
+    for (radius, is_beyond) in [(6.0, true), (24.0, false)] {
+        let bench = Bench::with_case(&text(radius));
+        bench.run_into("out");
+        let found = checks(&bench, "out");
+        let flows = found.iter().any(|found| found == "pressure_beyond_flow");
+        let peak = bench.summary("out").peak_pressure_mpa;
+        assert_eq!(flows, is_beyond, "{radius} mm: {peak} MPa, {found:?}");
+    }
+}
+
+#[test]
 fn a_side_that_carries_nothing_is_told() {
     let bench = Bench::with_case(&format!(
-        "[machine]\nvv_axis_medial_mm = 30.0\n{SMALL}[accuracy]\nestimate = false\n"
+        "[machine.freedoms.vv]\ndrive = \"locked\"\nlocked_at_deg = 2.0\n{SMALL}[accuracy]\nestimate = false\n"
     ));
     bench.run_into("out");
     let found = checks(&bench, "out");

@@ -43,6 +43,11 @@ const START: Culprit = Culprit {
     keys: &["start_mm", "length_unit", "axes", "file", "shape"],
 };
 
+const FINENESS: Culprit = Culprit {
+    table: "insert",
+    keys: &["edge_mm"],
+};
+
 /// A material softer than this, MPa, is likelier at fault for a deep overlap than the shapes.
 const SOFT_MPA: f64 = 100.0;
 
@@ -61,6 +66,7 @@ impl Case {
     ) -> Problems {
         let culprit = match error {
             PlacementError::DeepOverlap { .. } => self.culprit_of_overlap(),
+            PlacementError::Unsteady { .. } => FINENESS,
             _ => START,
         };
         let mut errors = vec![(culprit, error.to_string())];

@@ -14,6 +14,9 @@ const YIELD_MPA: f64 = 14.0;
 /// Below the middle of a ball's contact the material yields first when the peak pressure is this many times the
 /// yield stress [johnson1985].
 const FIRST_YIELD: f64 = 1.6;
+/// A ball has sunk into material that flows all round it when the mean pressure is 2.8 times the yield stress; the
+/// peak of an elastic contact is 1.5 times its mean [johnson1985].
+const FULL_FLOW: f64 = 1.5 * 2.8;
 /// Under less the stresses in polyethylene rise steeply, mm [bartel1986]; approximate.
 const LEAST_THICKNESS_MM: f64 = 6.0;
 /// Where it is worn deeper than this part of the deepest, there is a scar.
@@ -86,6 +89,26 @@ fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
     let last = last.map(|fields| ("last", fields.peak_pressure_mpa.as_slice()));
     let first = ("first", state.first_pressure_mpa.as_slice());
     [first].into_iter().chain(last).collect()
+}
+
+/// Pressure that polyethylene cannot bear, since it flows under less.
+pub(super) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let limit = FULL_FLOW * YIELD_MPA;
+    let peak = finished.summary.peak_pressure_mpa;
+    (peak > limit).then(|| PlausibilityWarning {
+        check: "pressure_beyond_flow".to_owned(),
+        value: peak,
+        limit,
+        unit: "MPa".to_owned(),
+        message: format!(
+            "the highest pressure is {peak:.1} MPa, after {:.0} cycles; from about {limit:.0} MPa polyethylene flows, and there \
+             is no such pressure",
+            finished.summary.peak_pressure_cycle
+        ),
+        advice: "See that the sizes and units of both bodies, their axes, sides and placement are right, and the load: the \
+                 contact is far smaller than that of a knee."
+            .to_owned(),
+    })
 }
 
 /// Pressure beyond what polyethylene bears without yielding below the surface.

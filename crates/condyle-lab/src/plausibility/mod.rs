@@ -19,11 +19,12 @@ use finished::Finished;
 /// A check of one number: none where the run is as it should be.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
-/// Where the femur is on the insert.
-const PLACE: [Check; 3] = [
+/// Where the femur is on the insert, and pressure that there cannot be.
+const PLACE: [Check; 4] = [
     bodies::wear_at_rim,
     rim::femur_beyond_rim,
     bodies::pressure_at_rim,
+    bodies::pressure_beyond_flow,
 ];
 
 /// What the polyethylene bears, and how well the model was solved.

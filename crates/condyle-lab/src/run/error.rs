@@ -90,7 +90,7 @@ impl RunError {
             self,
             Self::March { .. }
                 | Self::Placement {
-                    source: PlacementError::NotSettled { .. },
+                    source: PlacementError::NotSettled { .. } | PlacementError::Unsteady { .. },
                     ..
                 }
         )

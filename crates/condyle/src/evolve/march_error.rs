@@ -30,9 +30,9 @@ pub enum MarchError {
     },
     /// The femur fell off the insert.
     #[error(
-        "update {update}: the femur touches the insert nowhere in the whole cycle, which it began lowered at start_mm \
-         ({start_x:.1}, {start_z:.1}) and ends at {readings}; where AP or ML is far, see start_mm, axes and sides, the AP force \
-         and its sign, and the springs that hold it, where VV is, vv_axis_medial_mm"
+        "update {update}: the femur touches the insert nowhere in the whole cycle; it was lowered at x {start_x:.1}, z \
+         {start_z:.1} mm and ends at {readings}; where AP or ML is far, check start_mm, axes and sides, the AP force and its \
+         sign, and the springs that hold it; where VV is, vv_axis_medial_mm"
     )]
     LostContact {
         /// Which update, from 1.

@@ -32,7 +32,7 @@ pub enum PlacementError {
     /// The femur slides off or tips over.
     #[error(
         "the femur does not settle on the insert under the axial load: {residual_n:.3e} N are left over at \
-         {}; check axes and start_mm, and take a smaller edge_mm where the load rests on few nodes",
+         {}; check axes and start_mm",
         listed(shifts_mm)
     )]
     NotSettled {
@@ -41,7 +41,25 @@ pub enum PlacementError {
         /// Where it got to: the shifts that settling zeroes, by the names that messages give them.
         shifts_mm: Vec<(&'static str, f64)>,
     },
+    /// The femur rests where the force jumps.
+    #[error(
+        "the femur does not settle on the insert under the axial load: it rests at {}, but there the force jumps by \
+         some {residual_n:.1} N as it moves by {moved_mm:.3} mm; the load rests on few nodes, each of which feels at once \
+         where the femur's curvature changes: take a smaller edge_mm",
+        listed(shifts_mm)
+    )]
+    Unsteady {
+        /// Force left out of balance.
+        residual_n: f64,
+        /// How far it goes to and fro.
+        moved_mm: f64,
+        /// Where it is: the shifts that settling zeroes, by the names that messages give them.
+        shifts_mm: Vec<(&'static str, f64)>,
+    },
 }
+
+/// A femur that moves less in an iteration rests, though its forces do not balance, mm.
+const AT_REST_MM: f64 = 0.1;
 
 /// Shifts as a message tells them, such as `AP 1.00, ML 0.00, IS -0.20 mm`.
 fn listed(shifts_mm: &[(&'static str, f64)]) -> String {
@@ -57,9 +75,18 @@ impl PlacementError {
         let in_files = mechanism.in_files.into_iter();
         let zeroed = in_files.filter(|&index| mechanism.joint(index).is_zeroed);
         let shift = |index| (mechanism.joint(index).symbol, index.of(&failed.positions));
+        let (residual_n, moved_mm) = (failed.residual_n, failed.moved_mm);
+        let shifts_mm = zeroed.map(shift).collect();
+        if moved_mm < AT_REST_MM {
+            return Self::Unsteady {
+                residual_n,
+                moved_mm,
+                shifts_mm,
+            };
+        }
         Self::NotSettled {
-            residual_n: failed.residual_n,
-            shifts_mm: zeroed.map(shift).collect(),
+            residual_n,
+            shifts_mm,
         }
     }
 }

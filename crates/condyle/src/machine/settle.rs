@@ -13,9 +13,6 @@ const MOST_ITERATIONS: usize = 2000;
 const LONGEST_CORRECTION_MM: f64 = 0.2;
 /// Motion that the first iteration allows for the whole load, mm.
 const FIRST_MOTION_MM: f64 = 0.05;
-/// By how much more damping grows where the residual does. Where the load rests on few nodes of a coarse mesh the
-/// femur may go to and fro between them for ever; there it is tried again, and grows until the femur creeps.
-const GROWTHS: [f64; 2] = [1.0, 4.0];
 /// Lever on which damping slows a turn, mm: about how far the contact is from the axes, so that the
 /// surfaces move against each other at the same pace whether the femur turns or shifts. It changes how the
 /// machine gets to rest, and not where that is.
@@ -28,6 +25,8 @@ pub struct NotSettled {
     pub positions: [f64; 6],
     /// Force left out of balance, N.
     pub residual_n: f64,
+    /// How far the last iteration moved, mm, turns on a lever; infinite if none did.
+    pub moved_mm: f64,
 }
 
 /// Positions of static balance under the load at the start of the cycle.
@@ -46,43 +45,14 @@ pub fn settle(
     counters: &mut SolverCounters,
 ) -> Result<[f64; 6], NotSettled> {
     let machine = settling(machine);
-    let mut settled = Err(NotSettled {
-        positions: [0.0; 6],
-        residual_n: f64::INFINITY,
-    });
-    for growth in GROWTHS {
-        settled = settle_by(
-            &machine,
-            chain,
-            contact,
-            force_tolerance_n,
-            growth,
-            counters,
-        );
-        if settled.is_ok() {
-            break;
-        }
-    }
-    settled
-}
-
-/// As [`settle`], of a machine that settles, by damping that grows so where the residual does.
-fn settle_by(
-    machine: &Machine,
-    chain: &Chain,
-    contact: &mut dyn ContactModel,
-    force_tolerance_n: f64,
-    growth: f64,
-    counters: &mut SolverCounters,
-) -> Result<[f64; 6], NotSettled> {
     let (loads, levers) = (machine.loads_at(0.0), machine.levers());
     let mut positions = [0.0; 6];
     machine.drive(0.0, &mut positions, &mut [0.0; 6]);
     let mut damping = loads.largest_n(&levers).max(1.0) / FIRST_MOTION_MM;
-    let mut last_residual_n = f64::INFINITY;
+    let (mut last_residual_n, mut moved_mm) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..MOST_ITERATIONS {
         let still = Kinematics::at_rest(positions);
-        let balance = Balance::new(machine, chain, contact, still);
+        let balance = Balance::new(&machine, chain, contact, still);
         counters.contact_evaluations += 1;
         let residual = balance.residual(&loads);
         let residual_n = residual.largest_n(&levers);
@@ -90,21 +60,22 @@ fn settle_by(
             return Ok(positions);
         }
         if last_residual_n.is_finite() {
-            let change = residual_n / last_residual_n;
-            damping *= change.clamp(0.3, 2.0) * if change > 1.0 { growth } else { 1.0 };
+            damping *= (residual_n / last_residual_n).clamp(0.3, 2.0);
         }
         last_residual_n = residual_n;
-        let damped = balance.tangent(StepSlopes::STILL) + damping_of(machine, damping);
+        let damped = balance.tangent(StepSlopes::STILL) + damping_of(&machine, damping);
         let Some(correction) = damped.correction(&residual) else {
             break;
         };
         counters.newton_iterations += 1;
         let part = correction.part_within(LONGEST_CORRECTION_MM, &levers);
+        moved_mm = (correction * part).longest_mm(&levers);
         (correction * part).move_from(&mut positions);
     }
     Err(NotSettled {
         positions,
         residual_n: last_residual_n,
+        moved_mm,
     })
 }
 
