@@ -328,15 +328,14 @@ pub fn measured(name: &str) -> Vec<Vec<u8>> {
     vec![lines.join("\n").into_bytes()]
 }
 
-/// Of a march that has begun: a sphere on a coarse block.
+/// Of a march that has begun, on a coarse insert.
 pub fn checkpoint() -> Vec<Vec<u8>> {
-    let text = "[femur]\nshape = \"sphere\"\nradius_mm = 24\n[insert]\nshape = \"flat\"\nedge_mm = 10\nlayers = 1\n\
-        [march]\ncycles = 1000\nupdates = 1\n";
+    let text = "[insert]\nedge_mm = 5\nlayers = 1\n[march]\ncycles = 1000\nupdates = 1\n";
     let files = MemoryFiles::default().with("case.toml", text);
     let case = CaseReader::new(files)
         .read("case.toml".as_ref())
         .expect("it is a good case");
-    let test = case.build(1).expect("a sphere on a block").test;
+    let test = case.build(1).expect("the generic implant").test;
     let march = March::start(test).expect("it comes to rest");
     let checkpoint = Checkpoint {
         inputs_blake3: "0".repeat(64),

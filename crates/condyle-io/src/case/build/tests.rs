@@ -394,7 +394,9 @@ fn block_on_a_peg() -> TriangleMesh {
     let first = mesh.vertices.len() as u32;
     mesh.vertices.extend(peg.vertices);
     let triangles = peg.triangles.iter();
-    let moved: Vec<_> = triangles.map(|corners| corners.map(|corner| first + corner)).collect();
+    let moved: Vec<_> = triangles
+        .map(|corners| corners.map(|corner| first + corner))
+        .collect();
     mesh.triangles.extend(moved);
     mesh
 }
