@@ -133,6 +133,20 @@ fn bytes_of<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> Vec<u8> {
     values.flatten().collect()
 }
 
+/// A block's file around three arrays, each the attributes that say where its values are, and the values.
+fn vtp_file(attributes: &str, arrays: [(String, String); 3], tail: &[u8]) -> Vec<u8> {
+    let [points, corners, ends] = arrays;
+    let xml = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\"{attributes}>\n<PolyData><Piece NumberOfPoints=\"8\" NumberOfPolys=\"12\"><Points>\
+         <DataArray type=\"Float64\" NumberOfComponents=\"3\" {}>{}</DataArray></Points><Polys>\
+         <DataArray type=\"Int64\" Name=\"connectivity\" {}>{}</DataArray>\
+         <DataArray type=\"Int64\" Name=\"offsets\" {}>{}</DataArray></Polys></Piece></PolyData>\n",
+        points.0, points.1, corners.0, corners.1, ends.0, ends.1
+    );
+    [xml.as_bytes(), tail, b"</VTKFile>\n"].concat()
+}
+
 pub fn vtp() -> Vec<Vec<u8>> {
     let mesh = block();
     let coordinates = || mesh.vertices.iter().flat_map(|at| [at.x, at.y, at.z]);
@@ -144,18 +158,6 @@ pub fn vtp() -> Vec<Vec<u8>> {
             .map(|&v| i64::from(v).to_le_bytes()),
     );
     let ends = bytes_of((1..=12i64).map(|n| (3 * n).to_le_bytes()));
-    let file = |attributes: &str, arrays: [(String, String); 3], tail: &[u8]| {
-        let [points, corners, ends] = arrays;
-        let xml = format!(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
-             header_type=\"UInt64\"{attributes}>\n<PolyData><Piece NumberOfPoints=\"8\" NumberOfPolys=\"12\"><Points>\
-             <DataArray type=\"Float64\" NumberOfComponents=\"3\" {}>{}</DataArray></Points><Polys>\
-             <DataArray type=\"Int64\" Name=\"connectivity\" {}>{}</DataArray>\
-             <DataArray type=\"Int64\" Name=\"offsets\" {}>{}</DataArray></Polys></Piece></PolyData>\n",
-            points.0, points.1, corners.0, corners.1, ends.0, ends.1
-        );
-        [xml.as_bytes(), tail, b"</VTKFile>\n"].concat()
-    };
     let arrays = [&points, &corners, &ends];
     let joined = |values: Vec<String>| values.join(" ");
     let text = [
@@ -193,10 +195,10 @@ pub fn vtp() -> Vec<Vec<u8>> {
     });
     tail.extend(b"</AppendedData>");
     vec![
-        file("", ascii, b""),
-        file("", inline, b""),
-        file(" compressor=\"vtkZLibDataCompressor\"", zipped, b""),
-        file("", appended, &tail),
+        vtp_file("", ascii, b""),
+        vtp_file("", inline, b""),
+        vtp_file(" compressor=\"vtkZLibDataCompressor\"", zipped, b""),
+        vtp_file("", appended, &tail),
     ]
 }
 
