@@ -205,7 +205,7 @@ def main():
             code, mass, said = runs.run(body, triangles, [f"insert.clip_below_mm={clip:.4f}"] if clip else ())
             off = (mass / clean - 1) * 100 if mass else 0.0
             wrong += abs(off) > MOST_PERCENT
-            shown = " ".join(said.split())[:400].replace("|", "/")
+            shown = " ".join(said.replace(f"{folder}/", "").split())[:400].replace("|", "/")
             numbers = f"{mass:.4f} | {off:+.3f} %" if mass else " | "
             print(f"| {body} | {kind.replace('_', ' ')} | {code} | {numbers} | {shown} |", flush=True)
     return 1 if wrong else 0

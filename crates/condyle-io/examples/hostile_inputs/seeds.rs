@@ -133,6 +133,20 @@ fn bytes_of<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> Vec<u8> {
     values.flatten().collect()
 }
 
+/// A block's file around three arrays, each the attributes that say where its values are, and the values.
+fn vtp_file(attributes: &str, arrays: [(String, String); 3], tail: &[u8]) -> Vec<u8> {
+    let [points, corners, ends] = arrays;
+    let xml = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\"{attributes}>\n<PolyData><Piece NumberOfPoints=\"8\" NumberOfPolys=\"12\"><Points>\
+         <DataArray type=\"Float64\" NumberOfComponents=\"3\" {}>{}</DataArray></Points><Polys>\
+         <DataArray type=\"Int64\" Name=\"connectivity\" {}>{}</DataArray>\
+         <DataArray type=\"Int64\" Name=\"offsets\" {}>{}</DataArray></Polys></Piece></PolyData>\n",
+        points.0, points.1, corners.0, corners.1, ends.0, ends.1
+    );
+    [xml.as_bytes(), tail, b"</VTKFile>\n"].concat()
+}
+
 pub fn vtp() -> Vec<Vec<u8>> {
     let mesh = block();
     let coordinates = || mesh.vertices.iter().flat_map(|at| [at.x, at.y, at.z]);
@@ -144,18 +158,6 @@ pub fn vtp() -> Vec<Vec<u8>> {
             .map(|&v| i64::from(v).to_le_bytes()),
     );
     let ends = bytes_of((1..=12i64).map(|n| (3 * n).to_le_bytes()));
-    let file = |attributes: &str, arrays: [(String, String); 3], tail: &[u8]| {
-        let [points, corners, ends] = arrays;
-        let xml = format!(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" \
-             header_type=\"UInt64\"{attributes}>\n<PolyData><Piece NumberOfPoints=\"8\" NumberOfPolys=\"12\"><Points>\
-             <DataArray type=\"Float64\" NumberOfComponents=\"3\" {}>{}</DataArray></Points><Polys>\
-             <DataArray type=\"Int64\" Name=\"connectivity\" {}>{}</DataArray>\
-             <DataArray type=\"Int64\" Name=\"offsets\" {}>{}</DataArray></Polys></Piece></PolyData>\n",
-            points.0, points.1, corners.0, corners.1, ends.0, ends.1
-        );
-        [xml.as_bytes(), tail, b"</VTKFile>\n"].concat()
-    };
     let arrays = [&points, &corners, &ends];
     let joined = |values: Vec<String>| values.join(" ");
     let text = [
@@ -193,10 +195,10 @@ pub fn vtp() -> Vec<Vec<u8>> {
     });
     tail.extend(b"</AppendedData>");
     vec![
-        file("", ascii, b""),
-        file("", inline, b""),
-        file(" compressor=\"vtkZLibDataCompressor\"", zipped, b""),
-        file("", appended, &tail),
+        vtp_file("", ascii, b""),
+        vtp_file("", inline, b""),
+        vtp_file(" compressor=\"vtkZLibDataCompressor\"", zipped, b""),
+        vtp_file("", appended, &tail),
     ]
 }
 
@@ -328,15 +330,14 @@ pub fn measured(name: &str) -> Vec<Vec<u8>> {
     vec![lines.join("\n").into_bytes()]
 }
 
-/// Of a march that has begun: a sphere on a coarse block.
+/// Of a march that has begun, on a coarse insert.
 pub fn checkpoint() -> Vec<Vec<u8>> {
-    let text = "[femur]\nshape = \"sphere\"\nradius_mm = 24\n[insert]\nshape = \"flat\"\nedge_mm = 10\nlayers = 1\n\
-        [march]\ncycles = 1000\nupdates = 1\n";
+    let text = "[insert]\nedge_mm = 5\nlayers = 1\n[march]\ncycles = 1000\nupdates = 1\n";
     let files = MemoryFiles::default().with("case.toml", text);
     let case = CaseReader::new(files)
         .read("case.toml".as_ref())
         .expect("it is a good case");
-    let test = case.build(1).expect("a sphere on a block").test;
+    let test = case.build(1).expect("the generic implant").test;
     let march = March::start(test).expect("it comes to rest");
     let checkpoint = Checkpoint {
         inputs_blake3: "0".repeat(64),

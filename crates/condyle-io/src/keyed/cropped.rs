@@ -14,7 +14,7 @@ const AFTER: usize = 120;
 pub(super) fn with_short_words(text: &str) -> String {
     let mut short = String::with_capacity(text.len().min(1000));
     for piece in text.split_inclusive(char::is_whitespace) {
-        let length = piece.chars().count();
+        let length = piece.trim_end().chars().count();
         if length <= LONGEST_WORD {
             short.push_str(piece);
         } else {

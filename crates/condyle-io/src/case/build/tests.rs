@@ -200,7 +200,7 @@ fn mesh_that_is_no_shell_or_no_mesh_names_its_file() {
     doubled.triangles.push([0, 1, 7]);
     let shown = refusal(MESH_INSERT, with_stl("a.stl", &doubled).path());
     assert!(
-        shown.contains("a.stl: the surface is not sound where bodies can touch: 3 edges of three"),
+        shown.contains("a.stl: the surface is not sound where bodies can touch: 1 edge of three"),
         "{shown}"
     );
     let folder = tempfile::tempdir().unwrap();

@@ -56,6 +56,8 @@ pub(super) struct BoxTree {
     bounds: Vec<Bounds>,
     order: Vec<u32>,
     nodes: Vec<BoxNode>,
+    /// How many of the triangles a surface of so many vertices can have: about two a vertex.
+    surface_of: usize,
 }
 
 impl BoxTree {
@@ -74,6 +76,7 @@ impl BoxTree {
             bounds,
             order,
             nodes: Vec::with_capacity(count),
+            surface_of: count.min(4 * mesh.vertices.len()),
         };
         if count > 0 {
             tree.build(0, count);
@@ -112,8 +115,8 @@ impl BoxTree {
     }
 
     /// Pairs and boxes that are looked at, for each triangle and at least: the surface of an implant has some
-    /// 20 a triangle, and a file of 1 MB is looked through within half a second.
-    const MOST_LOOKS: (usize, usize) = (100, 4_000_000);
+    /// fifty a triangle, and a file of 1 MB is looked through within a second.
+    const MOST_LOOKS: (usize, usize) = (100, 2_000_000);
 
     /// Calls `visit` with each pair of different triangles whose boxes meet, once, until it breaks.
     ///
@@ -124,7 +127,7 @@ impl BoxTree {
         mut visit: impl FnMut(usize, usize) -> ControlFlow<()>,
     ) -> Option<[usize; 2]> {
         let (each, least) = Self::MOST_LOOKS;
-        let mut left = least.max(each * self.order.len());
+        let mut left = least.max(each * self.surface_of);
         let mut open = vec![[0, 0]];
         while let Some([one, other]) = open.pop().filter(|_| !self.nodes.is_empty()) {
             let (a, b) = (&self.nodes[one as usize], &self.nodes[other as usize]);

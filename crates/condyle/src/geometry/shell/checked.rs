@@ -75,6 +75,7 @@ impl ShellChecks {
     /// # Errors
     /// [`ShellError`]: no triangles, or defects where another body can touch.
     pub fn check(&self, mesh: TriangleMesh) -> Result<CheckedShell, ShellError> {
+        refuse_tangles(&mesh)?;
         let Mended {
             mut mesh,
             defects,
@@ -113,6 +114,27 @@ impl ShellChecks {
             defects: judge.others,
         })
     }
+}
+
+/// Triangles a vertex that are no surface with doubled faces any more: that has two, or some multiple.
+const MOST_TRIANGLES_A_VERTEX: usize = 16;
+/// So few triangles take no time, whatever they are.
+const FEW_TRIANGLES: usize = 1000;
+
+/// Refuses triangles so many times as many as vertices, before anything is done with them.
+fn refuse_tangles(mesh: &TriangleMesh) -> Result<(), ShellError> {
+    let most = FEW_TRIANGLES + MOST_TRIANGLES_A_VERTEX * mesh.vertices.len();
+    if mesh.triangles.len() <= most {
+        return Ok(());
+    }
+    let (low, high) = mesh.bounds();
+    let defect = Defect {
+        kind: DefectKind::Tangle,
+        count: 1,
+        places_mm: vec![(low + high) / 2.0],
+    };
+    let defects = vec![defect];
+    Err(ShellError::Defects { defects })
 }
 
 /// Judges edges of three triangles or more, and those across which the surface comes back turned.
@@ -372,6 +394,20 @@ mod tests {
         assert_eq!(shell.mesh.vertices.len(), sound.vertices.len());
         assert_eq!(kinds(&shell)[0].0, DefectKind::Unwelded);
         assert!((shell.mesh.signed_volume() - 24_000.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn triangles_of_a_handful_of_vertices_are_no_surface() {
+        let mut mesh = unit_block();
+        let once = mesh.triangles.clone();
+        while mesh.triangles.len() < 100_000 {
+            mesh.triangles.extend(once.iter().copied());
+        }
+        let said = checked_shell(mesh).unwrap_err().to_string();
+        assert!(
+            said.contains("1 tangle of triangles at (0.50, 0.50, 0.50) mm"),
+            "{said}"
+        );
     }
 
     #[test]

@@ -43,7 +43,7 @@ impl Crossings {
     /// surface around is sound, and a contact patch does not feel them.
     pub const WRINKLE_DEPTH: f64 = 1.0 / 500.0;
 
-    /// So many deep crossings are no flaw of a surface but no surface: no more are looked for.
+    /// So many crossings are no flaw of a surface but no surface: no more are looked for.
     const MANY: usize = 10_000;
 
     /// Part of a triangle left out at the corner that it shares with another: there they touch
@@ -61,7 +61,7 @@ impl Crossings {
 pub fn crossings(mesh: &TriangleMesh) -> Crossings {
     let (low, high) = mesh.bounds();
     let shallow = Crossings::WRINKLE_DEPTH * (high - low).norm();
-    let (pairs, gave_up) = crossing_pairs(mesh, shallow);
+    let (pairs, gave_up) = crossing_pairs(mesh);
     if pairs.is_empty() && gave_up.is_none() {
         return Crossings::default();
     }
@@ -93,17 +93,15 @@ struct CrossingPair {
     depth: f64,
 }
 
-/// The pairs that cross, until [`Crossings::MANY`] are deeper than `shallow`, and where the search was given up.
-fn crossing_pairs(mesh: &TriangleMesh, shallow: f64) -> (Vec<CrossingPair>, Option<[usize; 2]>) {
+/// The pairs that cross, until they are [`Crossings::MANY`], and where the search was given up.
+fn crossing_pairs(mesh: &TriangleMesh) -> (Vec<CrossingPair>, Option<[usize; 2]>) {
     let mut pairs = Vec::new();
-    let mut deep = 0;
     let gave_up = BoxTree::new(mesh).for_close_pairs(|one, other| {
         let triangles = [one.min(other), one.max(other)];
         if let Some(depth) = crossing_depth(mesh, triangles) {
-            deep += usize::from(depth > shallow);
             pairs.push(CrossingPair { triangles, depth });
         }
-        if deep == Crossings::MANY {
+        if pairs.len() == Crossings::MANY {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
@@ -202,7 +200,7 @@ mod tests {
             mesh.triangles
                 .extend([corners, corners.map(|corner| corner + 3)]);
         }
-        assert_eq!(crossing_pairs(&mesh, 0.05).0.len(), Crossings::MANY);
+        assert_eq!(crossing_pairs(&mesh).0.len(), Crossings::MANY);
         assert!(!crossings(&mesh).found.is_empty());
     }
 

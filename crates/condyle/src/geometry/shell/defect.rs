@@ -11,7 +11,7 @@ pub enum DefectKind {
     Unwelded,
     /// Vertices that lie on the edge of a triangle which has no corner there.
     Joint,
-    /// Triangles thinner than rounding.
+    /// Triangles with an edge shorter than rounding.
     Sliver,
     /// Triangles of the same three corners.
     Doubled,
@@ -43,7 +43,7 @@ impl DefectKind {
                 "vertices on others' edges",
                 "joined",
             ),
-            Self::Sliver => ("sliver", "slivers", "taken out where that moves nothing"),
+            Self::Sliver => ("sliver", "slivers", "taken out"),
             Self::Doubled => ("doubled face", "doubled faces", "made single"),
             Self::NonManifoldEdge => (
                 "edge of three or more triangles",

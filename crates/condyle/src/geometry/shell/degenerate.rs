@@ -24,6 +24,7 @@ pub(super) fn without_degenerate(mesh: TriangleMesh) -> Cleaned {
         let [a, b, c] = mesh.triangles[index];
         a == b || b == c || c == a
     });
+    let mut on_edge = None;
     for _ in 0..ROUNDS {
         let flat: Vec<usize> = (0..cleaned.mesh.triangles.len())
             .filter(|&index| is_flat(&cleaned.mesh, index))
@@ -31,7 +32,8 @@ pub(super) fn without_degenerate(mesh: TriangleMesh) -> Cleaned {
         if flat.is_empty() {
             break;
         }
-        let merged = cleaned.merge(&flat);
+        let on_edge = on_edge.get_or_insert_with(|| TrianglesOnEdges::new(&cleaned.mesh));
+        let merged = cleaned.merge(&flat, on_edge);
         cleaned.removed += merged;
         if merged == 0 {
             break;
@@ -52,10 +54,9 @@ impl Cleaned {
     }
 
     /// Merges flat triangles into their neighbours; gives how many.
-    fn merge(&mut self, flat: &[usize]) -> usize {
-        let mut on_edge = TrianglesOnEdges::new(&self.mesh);
+    fn merge(&mut self, flat: &[usize], on_edge: &mut TrianglesOnEdges) -> usize {
         flat.iter()
-            .filter(|&&index| self.merge_one(index, &mut on_edge))
+            .filter(|&&index| self.merge_one(index, on_edge))
             .count()
     }
 

@@ -9,7 +9,7 @@ use super::{
 use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
 
 /// A split edge may leave triangles with another edge to split; more rounds than this help nobody.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 4;
 
 /// Splits triangles at vertices on their open edges, no farther off than `within`; gives where.
 pub(super) fn join(mesh: &mut TriangleMesh, within: f64) -> Vec<Vec3> {
@@ -44,6 +44,10 @@ fn vertices_on_edges(
         .filter(|edge| edge.len() == 1)
         .map(|edge| edge[0])
         .collect();
+    // Triangles that share no edges are no surface with a few joints.
+    if open.len() > mesh.triangles.len() {
+        return BTreeMap::new();
+    }
     let lines = TriangleMesh {
         vertices: mesh.vertices.clone(),
         triangles: open

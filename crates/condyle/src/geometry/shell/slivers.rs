@@ -10,65 +10,77 @@ const MOST_AROUND: usize = 64;
 /// A collapsed edge keeps those beside it from collapsing in the same round; more rounds help nobody.
 const ROUNDS: usize = 8;
 
-/// Collapses the edges shorter than `thinnest`, where the surface stays what it is; gives where the slivers
-/// are, with those left.
+/// Collapses edges shorter than `thinnest`, where the surface stays what it is; gives where triangles went.
 pub(super) fn collapse_slivers(mesh: &mut TriangleMesh, thinnest: f64) -> Vec<Vec3> {
-    let thin: Vec<usize> = (0..mesh.triangles.len())
-        .filter(|&triangle| is_thin(&mesh.corners(triangle), thinnest))
-        .collect();
-    let places = thin.iter().map(|&t| middle(&mesh.corners(t))).collect();
-    if thin.is_empty() {
-        return places;
-    }
+    let mut places = Vec::new();
     for _ in 0..ROUNDS {
-        if collapse_some(mesh, thinnest) == 0 {
+        let collapsed = collapse_some(mesh, thinnest);
+        if collapsed.is_empty() {
             break;
         }
+        places.extend(collapsed);
     }
     places
 }
 
-/// Twice the area over the longest edge is the height.
-fn is_thin(corners: &[Vec3; 3], thinnest: f64) -> bool {
-    let [a, b, c] = corners;
-    let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-    (b - a).cross(&(c - a)).norm() < thinnest * longest
-}
-
-fn middle([a, b, c]: &[Vec3; 3]) -> Vec3 {
-    (a + b + c) / 3.0
-}
-
-/// Collapses short edges that are not beside one another; gives how many.
-fn collapse_some(mesh: &mut TriangleMesh, thinnest: f64) -> usize {
+/// Collapses short edges that are not beside one another; gives where triangles went.
+fn collapse_some(mesh: &mut TriangleMesh, thinnest: f64) -> Vec<Vec3> {
+    let mut places = Vec::new();
+    let short = short_edges(mesh, thinnest);
+    if short.is_empty() {
+        return places;
+    }
     let around = triangles_around(mesh);
     let mut stands_for: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
     let mut is_settled = vec![false; mesh.vertices.len()];
-    let mut collapsed = 0;
-    for triangle in &mesh.triangles {
-        for [a, b] in [[0, 1], [1, 2], [2, 0]].map(|ends| ends.map(|i: usize| triangle[i])) {
-            let way = mesh.vertices[b as usize] - mesh.vertices[a as usize];
-            let stars = [a, b].map(|end| &around[end as usize]);
-            if a == b || way.norm() >= thinnest || stars.iter().any(|star| star.len() > MOST_AROUND)
-            {
-                continue;
+    for [a, b] in short {
+        let stars = [a, b].map(|end| &around[end as usize]);
+        if stars.iter().any(|star| star.len() > MOST_AROUND) {
+            continue;
+        }
+        let [one, other] = stars.map(|star| neighbours(mesh, star));
+        let mut beside = one.union(&other);
+        let is_free = beside.all(|&vertex| !is_settled[vertex as usize]);
+        if is_free && keeps_the_surface(mesh, stars, [&one, &other], [a, b]) {
+            for &vertex in one.union(&other) {
+                is_settled[vertex as usize] = true;
             }
-            let [one, other] = stars.map(|star| neighbours(mesh, star));
-            let is_free = one
-                .union(&other)
-                .all(|&vertex| !is_settled[vertex as usize]);
-            if is_free && keeps_the_surface(mesh, stars, [&one, &other], [a, b]) {
-                one.union(&other)
-                    .for_each(|&vertex| is_settled[vertex as usize] = true);
-                stands_for[a.max(b) as usize] = a.min(b);
-                collapsed += 1;
-            }
+            stands_for[b as usize] = a;
+            places.extend(on_edge(mesh, stars[0], [a, b]).map(|_| mesh.vertices[a as usize]));
         }
     }
     rename(mesh, &stands_for);
     mesh.triangles
         .retain(|[a, b, c]| a != b && b != c && c != a);
-    collapsed
+    places
+}
+
+/// The lower number first, each once.
+fn short_edges(mesh: &TriangleMesh, thinnest: f64) -> BTreeSet<[u32; 2]> {
+    let sides = mesh
+        .triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let is_short = |[a, b]: &[u32; 2]| {
+        let way = mesh.vertices[*b as usize] - mesh.vertices[*a as usize];
+        way.norm_squared() < thinnest * thinnest
+    };
+    sides
+        .filter(is_short)
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect()
+}
+
+/// The triangles of a star that have both ends.
+fn on_edge<'a>(
+    mesh: &'a TriangleMesh,
+    star: &'a [u32],
+    ends: [u32; 2],
+) -> impl Iterator<Item = [u32; 3]> + 'a {
+    let corners = star
+        .iter()
+        .map(|&triangle| mesh.triangles[triangle as usize]);
+    corners.filter(move |corners| ends.iter().all(|end| corners.contains(end)))
 }
 
 /// The vertices beside both ends are the tips of the triangles on the edge, and no others: then the surface
@@ -79,9 +91,7 @@ fn keeps_the_surface(
     [one, other]: [&BTreeSet<u32>; 2],
     ends: [u32; 2],
 ) -> bool {
-    let on_edge = star.iter().map(|&t| mesh.triangles[t as usize]);
-    let on_edge = on_edge.filter(|corners| ends.iter().all(|end| corners.contains(end)));
-    let tips: BTreeSet<u32> = on_edge
+    let tips: BTreeSet<u32> = on_edge(mesh, star, ends)
         .flatten()
         .filter(|corner| !ends.contains(corner))
         .collect();

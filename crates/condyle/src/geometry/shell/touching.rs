@@ -39,10 +39,10 @@ const CELL_MM: f64 = 0.5;
 /// Depth below what is seen first that still counts as seen, mm: the slope of a dish within a cell.
 const DEPTH_MM: f64 = 1.0;
 /// Lines of sight along one side of a view, at most.
-const MOST_CELLS: f64 = 1000.0;
+const MOST_CELLS: f64 = 400.0;
 /// Lines through a triangle's box for each line or triangle of a view, at most: a shell of a body
 /// covers its view a few times.
-const MOST_LAYERS: usize = 64;
+const MOST_LAYERS: usize = 32;
 
 /// The touching part of one mesh.
 pub(super) struct TouchMap {
