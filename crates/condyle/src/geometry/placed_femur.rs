@@ -48,13 +48,13 @@ impl PlacedFemur {
     /// Gap at a point, mm.
     #[inline(always)]
     pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
-        self.femur.gap_mm(&self.to_component(point))
+        self.femur.gap_mm(&self.in_component(point))
     }
 
     /// Gap, normal and curvature at a point; with the component's own, R G, R n and R K R'.
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
-        let own = self.femur.sample(&self.to_component(point), spread_mm2);
+        let own = self.femur.sample(&self.in_component(point), spread_mm2);
         let rows = self.rows();
         let turned =
             |v: &Vector<T>| Vector::new(dot(&rows[0], v), dot(&rows[1], v), dot(&rows[2], v));
@@ -77,7 +77,7 @@ impl PlacedFemur {
     /// Bounds around points, which turn with the component.
     #[inline(always)]
     pub fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
-        self.femur.curvature_bounds(&self.to_component(points))
+        self.femur.curvature_bounds(&self.in_component(points))
     }
 
     /// The rows of R, in every lane.
@@ -88,7 +88,7 @@ impl PlacedFemur {
 
     /// R' (p - t)
     #[inline(always)]
-    fn to_component<T: Number>(&self, point: &Vector<T>) -> Vector<T> {
+    fn in_component<T: Number>(&self, point: &Vector<T>) -> Vector<T> {
         let from = |axis: usize| point[axis] - T::splat(self.shift_mm[axis]);
         let moved = Vector::new(from(0), from(1), from(2));
         let column = |j: usize| Vector::from_fn(|i, _| T::splat(self.rotation[(i, j)]));
