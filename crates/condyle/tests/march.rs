@@ -259,16 +259,22 @@ fn verify_pressures_of_the_last_cycle_carry_its_load_under_its_pose() {
     let cycle = march.last_cycle().expect("one is solved");
     for (increment, row) in cycle.rows.iter().enumerate() {
         let pressures_mpa = cycle.pressures_mpa(increment);
-        let shares = cycle.surface.shares.iter().zip(&pressures_mpa);
-        let load_n: f64 = shares.map(|(share, p)| share.area_mm2 * p).sum();
-        assert!((load_n / row.axial_force_n - 1.0).abs() < 1e-3, "{load_n}");
+        // Pressure acts along the ball's normal, which leans where the plate is beside its middle.
+        let centre = cycle.pose(increment).translation;
+        let down = |node: usize| -(cycle.surface.positions[node] - centre).normalize().y;
+        let shares = cycle.surface.shares.iter().zip(&pressures_mpa).enumerate();
+        let load_n: f64 = shares
+            .map(|(node, (share, p))| share.area_mm2 * p * down(node))
+            .sum();
+        let load = format!("{load_n} {}", row.axial_force_n);
+        assert!((load_n / row.axial_force_n - 1.0).abs() < 1e-3, "{load}");
         // A ball on a flat plate presses hardest below its middle.
         let highest = pressures_mpa.iter().copied().fold(0.0, f64::max);
         let node = pressures_mpa
             .iter()
             .position(|&p| p == highest)
             .expect("one is");
-        let below = cycle.pose(increment).translation - cycle.surface.positions[node];
+        let below = centre - cycle.surface.positions[node];
         assert!(
             below.x.abs() < 1.5 && below.z.abs() < 1.5 && below.y > 23.0,
             "{below}"

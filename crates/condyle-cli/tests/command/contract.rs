@@ -146,6 +146,8 @@ fn the_folder_has_the_files_of_the_contract_and_no_others() {
         "case.toml",
         "checkpoint",
         "checksums",
+        "femur.vtu",
+        "femur_pose.csv",
         "insert.pvd",
         "insert_0000.vtu",
         "insert_0001.vtu",

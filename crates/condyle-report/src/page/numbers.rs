@@ -337,10 +337,18 @@ fn neutral(summary: &Summary) -> Group {
     ];
     let row = |(label, keys, unit, meaning): (&str, &[&str], &'static str, &str)| {
         let pose = summary.object(NEUTRAL)?;
-        let values: Option<Vec<String>> = keys.iter().map(|key| plain(pose.get(*key)?)).collect();
+        let values = keys.iter().filter_map(|key| pose.get(*key));
+        let numbers = values.flat_map(|value| {
+            value
+                .as_array()
+                .map_or(std::slice::from_ref(value), Vec::as_slice)
+        });
+        let texts: Vec<String> = numbers
+            .filter_map(|number| Some(fixed(number.as_f64()?, 3)))
+            .collect();
         Some(Listed {
             label: label.to_owned(),
-            value: values?.join(", "),
+            value: texts.join(", "),
             unit,
             meaning: meaning.to_owned(),
         })
