@@ -105,11 +105,11 @@ fn insert(place: impl Fn(&Vec3) -> Vec3) -> Insert {
     let grid = ColumnGrid::filling((-20.0, 6.0), (20.0, 40.0), 1.0, 1).expect("a grid");
     let column = |i, k| {
         let (x, z) = grid.place_mm(i, k);
-        Some((-shape.thickness_mm, shape.height_mm(x, z)))
+        (-shape.thickness_mm, shape.height_mm(x, z))
     };
     let points = (0..=grid.cells.0).flat_map(|i| (0..=grid.cells.1).map(move |k| (i, k)));
     let columns: Vec<_> = points.map(|(i, k)| column(i, k)).collect();
-    let mut built = grid.hexahedra(&columns, 1);
+    let mut built = grid.plan().hexahedra(&columns, 1);
     built
         .mesh
         .nodes

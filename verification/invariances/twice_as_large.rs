@@ -82,8 +82,8 @@ fn insert(factor: f64) -> Insert {
         (-factor * shape.thickness_mm, factor * shape.height_mm(x, z))
     };
     let points = (0..=grid.cells.0).flat_map(|i| (0..=grid.cells.1).map(move |k| (i, k)));
-    let columns: Vec<_> = points.map(|(i, k)| Some(column(i, k))).collect();
-    let built = grown(grid, factor).hexahedra(&columns, 1);
+    let columns: Vec<_> = points.map(|(i, k)| column(i, k)).collect();
+    let built = grown(grid, factor).plan().hexahedra(&columns, 1);
     Insert::new(built.mesh, &built.articulating, &built.backside).expect("an insert")
 }
 

@@ -1,8 +1,15 @@
 //! `condyle new`.
 
-use std::{fs::File, io::Write, path::Path, process::ExitCode};
+use std::{
+    fs::{self, File},
+    io::Write,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    thread,
+};
 
 use condyle_io::case::{Draft, DraftError, template};
+use condyle_lab::Preview;
 
 use crate::{arguments::New, exit, output, standard_error::tell};
 
@@ -14,17 +21,35 @@ pub fn new(arguments: &New) -> ExitCode {
     };
     let path = &arguments.case;
     let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
-    match written {
-        Ok(()) => output::print(&format!(
-            "wrote {}; run it with: condyle run {}\n",
-            path.display(),
-            path.display()
-        )),
-        Err(error) => exit::fail(
-            format!("{}: {error}; choose another name", path.display()),
-            exit::BAD_INPUT,
-        ),
+    if let Err(error) = written {
+        let said = format!("{}: {error}; choose another name", path.display());
+        return exit::fail(said, exit::BAD_INPUT);
     }
+    let picture = arguments.femur.as_ref().and_then(|_| drawn(path));
+    let seen = picture.map_or(String::new(), |picture| {
+        format!("look at {}; ", picture.display())
+    });
+    output::print(&format!(
+        "wrote {}; {seen}run it with: condyle run {}\n",
+        path.display(),
+        path.display()
+    ))
+}
+
+/// A picture of the bodies in place, beside the case; where there is none, why is told.
+fn drawn(case: &Path) -> Option<PathBuf> {
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    let picture = case.with_extension("svg");
+    let drawn = Preview::of(case, &[], threads)
+        .map_err(|error| format!("the case does not start yet: {error}"))
+        .and_then(|preview| {
+            fs::write(&picture, preview.picture_svg)
+                .map_err(|error| format!("{}: {error}", picture.display()))
+        });
+    if let Err(why) = &drawn {
+        tell(format_args!("warning: no picture: {why}"));
+    }
+    drawn.is_ok().then_some(picture)
 }
 
 /// The case to write: of two meshes if they are given, and else of the generic implant.

@@ -89,7 +89,7 @@ impl Case {
             keys: &["edge_mm", "layers", "file"],
         };
         let is_given = self.limits.memory_gb != Limits::DEFAULT_GB;
-        self.error_at(if is_given { &limits } else { &insert }, message)
+        self.errors_at(&[(if is_given { limits } else { insert }, message)])
     }
 
     fn culprit_of_build(&self, error: &BuildError) -> Culprit {

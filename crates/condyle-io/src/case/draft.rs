@@ -1,11 +1,10 @@
 //! A case drafted from two mesh files: unit, axes and start are concluded from the shapes.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use condyle::Mat3;
 use condyle::anatomy::{Orientation, Recognition, Sureness, start_over_the_dishes_mm};
-use condyle::geometry::{GenericInsertShape, ShellError, TriangleMesh, checked_shell};
+use condyle::geometry::{CheckedShell, GenericInsertShape, ShellError, TriangleMesh};
 use thiserror::Error;
 
 use super::axes::Axes;
@@ -83,34 +82,22 @@ impl Draft<'_> {
         let insert = Concluded::from(Body::Insert, self.insert)?;
         let femur_lies = femur.orientation(&insert.best());
         let insert_lies = insert.orientation(&[femur_lies]);
+        let (femur_shell, insert_shell) = (femur.shell(&femur_lies)?, insert.shell(&insert_lies)?);
         let bodies = [
-            self.body("femur", &femur, &femur_lies),
-            self.body("insert", &insert, &insert_lies),
+            keys_of("femur", &femur, &femur_lies),
+            keys_of("insert", &insert, &insert_lies) + &thickness(&insert_shell),
         ];
-        let (femur_mm, insert_mm) = (femur.placed(&femur_lies), insert.placed(&insert_lies));
-        let start_mm = self.start_mm(&femur_mm, &insert_mm);
+        let start_mm = self.start_mm(&femur_shell.mesh, &insert_shell.mesh);
         let case = Case::parse(&self.keys(&bodies, start_mm), "draft", folder)?;
-        let remarks = [femur.remarks(&femur_lies), insert.remarks(&insert_lies)];
+        let remarks = [
+            femur.remarks(&femur_lies, &femur_shell),
+            insert.remarks(&insert_lies, &insert_shell),
+        ];
         let text = case.as_draft_in(folder);
         Ok(Drafted {
             text: with_remarks(text, &remarks),
             remarks: remarks.concat(),
         })
-    }
-
-    /// The keys of a table of the case that were concluded.
-    fn body(&self, table: &str, body: &Concluded<'_>, lies: &Orientation) -> String {
-        let file = quoted(&body.file.display().to_string());
-        let [x, y, z] = Axes::of(&lies.rotation()).words();
-        let unit = body.unit.word();
-        let mut keys = format!(
-            "[{table}]\nshape = \"mesh\"\nfile = {file}\nlength_unit = \"{unit}\"\naxes = [\"{x}\", \"{y}\", \"{z}\"]\n"
-        );
-        if body.body == Body::Insert && !body.is_closed {
-            let thickness_mm = GenericInsertShape::default().thickness_mm;
-            let _ = writeln!(keys, "thickness_mm = {thickness_mm:?}");
-        }
-        keys
     }
 
     fn keys(&self, [femur, insert]: &[String; 2], (x, z): (f64, f64)) -> String {
@@ -129,13 +116,31 @@ impl Draft<'_> {
     }
 }
 
+/// The keys of a table of the case that were concluded.
+fn keys_of(table: &str, body: &Concluded<'_>, lies: &Orientation) -> String {
+    let file = quoted(&body.file.display().to_string());
+    let [x, y, z] = Axes::of(&lies.rotation()).words();
+    let unit = body.unit.word();
+    format!(
+        "[{table}]\nshape = \"mesh\"\nfile = {file}\nlength_unit = \"{unit}\"\naxes = [\"{x}\", \"{y}\", \"{z}\"]\n"
+    )
+}
+
+/// The thickness of an open insert, which has none of its own.
+fn thickness(insert: &CheckedShell) -> String {
+    if insert.closed {
+        return String::new();
+    }
+    let thickness_mm = GenericInsertShape::default().thickness_mm;
+    format!("thickness_mm = {thickness_mm:?}\n")
+}
+
 /// A body of the draft, and what its shape tells.
 struct Concluded<'a> {
     body: Body,
     file: PathBuf,
     written: &'a Path,
     mesh: TriangleMesh,
-    is_closed: bool,
     unit: LengthUnit,
     recognition: Option<Recognition>,
 }
@@ -149,17 +154,12 @@ impl<'a> Concluded<'a> {
             return Err(DraftError::NoUnit { file, body, size });
         };
         let mesh = mesh.mapped(|vertex| vertex * unit.in_mm());
-        let shell = checked_shell(mesh).map_err(|source| DraftError::Shell {
-            file: file.clone(),
-            source,
-        })?;
         Ok(Self {
             body,
             file,
             written,
-            recognition: body.recognise(&shell.mesh),
-            mesh: shell.mesh,
-            is_closed: shell.closed,
+            recognition: body.recognise(&mesh),
+            mesh,
             unit,
         })
     }
@@ -188,8 +188,19 @@ impl<'a> Concluded<'a> {
         self.mesh.clone().mapped(|vertex| rotation * vertex)
     }
 
-    fn remarks(&self, lies: &Orientation) -> Vec<String> {
-        let (low, high) = self.placed(lies).bounds();
+    /// The same, mended and checked as a run does it.
+    fn shell(&self, lies: &Orientation) -> Result<CheckedShell, DraftError> {
+        let checks = self.body.checks();
+        checks
+            .check(self.placed(lies))
+            .map_err(|source| DraftError::Shell {
+                file: self.file.clone(),
+                source,
+            })
+    }
+
+    fn remarks(&self, lies: &Orientation, shell: &CheckedShell) -> Vec<String> {
+        let (low, high) = shell.mesh.bounds();
         let size = high - low;
         let mut remarks = vec![
             format!(
@@ -209,7 +220,7 @@ impl<'a> Concluded<'a> {
         if self.body == Body::Femur {
             let start = "  start_mm: the lowest points of the condyles over those of the dishes.";
             remarks.push(start.to_owned());
-        } else if !self.is_closed {
+        } else if !shell.closed {
             let thickness =
                 "  The surface is open: thickness_mm is assumed, write that of the insert.";
             remarks.push(thickness.to_owned());

@@ -10,10 +10,13 @@ use super::contents::Case;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
+use super::limits::Limits;
 use super::machine::Freedom;
 use super::machine_keys::{MachineSettings, Springs, Start};
 use super::march::{March, Update};
 use super::material::Material;
+use super::output::Output;
+use super::placement::{FemurPlacement, InsertPlacement};
 use super::pressure_table;
 use super::time::Time;
 use super::waveform::{waveform_keys, ways};
@@ -30,11 +33,15 @@ pub fn json_schema(wear_laws: WearLaws) -> String {
         .with_keys(&Heading::keys())
         .with_table(
             "femur",
-            TableSchema::new("The femoral component.").with_choices(&Femur::choices()),
+            TableSchema::new("The femoral component.")
+                .with_choices(&Femur::choices())
+                .with_keys(&FemurPlacement::keys()),
         )
         .with_table(
             "insert",
-            TableSchema::new("The tibial insert.").with_choices(&Insert::choices()),
+            TableSchema::new("The tibial insert.")
+                .with_choices(&Insert::choices())
+                .with_keys(&InsertPlacement::keys()),
         )
         .with_table("material", of::<Material>("Polyethylene of the insert."))
         .with_table("contact", contact())
@@ -48,6 +55,14 @@ pub fn json_schema(wear_laws: WearLaws) -> String {
         .with_table(
             "accuracy",
             of::<Accuracy>("What a run tells of its own accuracy."),
+        )
+        .with_table(
+            "limits",
+            of::<Limits>("What a run may take of the computer."),
+        )
+        .with_table(
+            "output",
+            of::<Output>("What a run writes besides what it always does."),
         );
     let mut schema = case.into_schema();
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();

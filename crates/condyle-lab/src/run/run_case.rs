@@ -293,8 +293,5 @@ impl<'a> Run<'a> {
 /// The femur as triangles: those of its mesh, or about so many.
 fn femur_triangles(case: &Case, march: &March, about: f64) -> Result<TriangleMesh, RunError> {
     case.femur_triangles(march.test(), about)
-        .map_err(|source| RunError::Build {
-            shown: case.at_its_key(&source),
-            source,
-        })
+        .map_err(|source| RunError::of_build(case, source))
 }

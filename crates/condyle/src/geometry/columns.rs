@@ -5,8 +5,8 @@ use condyle_fem::HexMesh;
 use super::insert::error::InsertError;
 use crate::Vec3;
 
-/// Nodes of an insert that take 2 GB, at 250 bytes for all that is known of each.
-const MOST_NODES: usize = 8_000_000;
+/// Nodes have numbers of 32 bits, of which the last says that a column has none.
+const MOST_NODES: u32 = u32::MAX - 1;
 
 /// A rectangular grid over the transverse plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,7 @@ impl ColumnGrid {
     /// `layers` hexahedra.
     ///
     /// # Errors
-    /// [`InsertError::TooManyNodes`] where these would not fit into memory.
+    /// [`InsertError::TooManyNodes`] where these cannot be numbered.
     pub fn filling(
         low: (f64, f64),
         high: (f64, f64),
@@ -57,7 +57,7 @@ impl ColumnGrid {
         let (width, depth) = (high.0 - low.0, high.1 - low.1);
         let (nx, nz) = (cells(width), cells(depth));
         let nodes = (nx + 1.0) * (nz + 1.0) * (layers as f64 + 1.0);
-        if nodes > MOST_NODES as f64 {
+        if nodes > f64::from(MOST_NODES) {
             let most = MOST_NODES;
             return Err(InsertError::TooManyNodes { nodes, most });
         }

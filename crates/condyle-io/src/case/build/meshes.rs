@@ -80,7 +80,7 @@ fn turn_round(mesh: &mut TriangleMesh) {
 pub(super) struct ShellOf {
     /// Which way an open surface must face on the whole.
     faces: Faces,
-    checks: ShellChecks,
+    pub checks: ShellChecks,
 }
 
 impl ShellOf {

@@ -17,7 +17,7 @@ use condyle::evolve::MarchError;
 use condyle_io::{
     cache::Cache,
     case::{Case, ChangeError},
-    results::{Summary, SummaryInput},
+    results::{NeutralPose, Summary, SummaryInput},
 };
 use thiserror::Error;
 
@@ -91,7 +91,7 @@ fn first_line(words: &impl ToString) -> String {
 /// The summary of a case whose march is done.
 fn marched(case: &Case) -> Result<Summary, SensitivityError> {
     let built = build(case, 1, &Cache::of_user())?;
-    let mut march = start(case, built.test)?;
+    let mut march = start(case, built.test, &built.warnings)?;
     while !march.is_done() {
         let _ = march.update(&mut |_| ControlFlow::Continue(()))?;
     }
@@ -104,6 +104,7 @@ fn marched(case: &Case) -> Result<Summary, SensitivityError> {
         inputs_blake3: String::new(),
         warnings: Vec::new(),
         error: None,
+        neutral_pose: NeutralPose::of(&march, case.heading.side),
     });
     Ok(summary.expect("a march that is done has an update"))
 }

@@ -11,15 +11,15 @@ pub enum InsertError {
         /// What is missing.
         what: &'static str,
     },
-    /// More nodes than memory should hold.
+    /// More nodes than can be numbered.
     #[error(
-        "the insert would have {nodes:.0} nodes, and more than {most} take more than 2 GB; use a larger edge_mm or fewer layers"
+        "the insert would have {nodes:.0} nodes, and more than {most} cannot be numbered; use a larger edge_mm or fewer layers"
     )]
     TooManyNodes {
         /// How many.
         nodes: f64,
         /// How many there may be.
-        most: usize,
+        most: u32,
     },
     /// A hexahedron that is inverted or flat.
     #[error(
