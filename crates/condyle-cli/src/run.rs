@@ -187,7 +187,7 @@ fn rows_of_wear(summary: &Summary) -> [SummaryLine; 3] {
     ]
 }
 
-fn rows_of_contact(summary: &Summary) -> [SummaryLine; 4] {
+fn rows_of_contact(summary: &Summary) -> [SummaryLine; 3] {
     let error = summary.error.as_ref();
     let pressure = with_error(
         summary.peak_pressure_mpa,
@@ -207,21 +207,17 @@ fn rows_of_contact(summary: &Summary) -> [SummaryLine; 4] {
             format!("{pressure}, {}", when(summary.peak_pressure_cycle)),
         ),
         (
-            "  first and last cycle",
-            format!(
-                "{:.1} and {:.1} MPa",
-                summary.first_cycle_peak_pressure_mpa, summary.last_cycle_peak_pressure_mpa
-            ),
-        ),
-        (
             "largest contact area",
             format!("{area}, {}", when(summary.peak_contact_area_cycle)),
         ),
         (
             "  first and last cycle",
             format!(
-                "{:.0} and {:.0} mm2",
-                summary.first_cycle_contact_area_mm2, summary.last_cycle_contact_area_mm2
+                "{:.1} and {:.1} MPa, {:.0} and {:.0} mm2",
+                summary.first_cycle_peak_pressure_mpa,
+                summary.last_cycle_peak_pressure_mpa,
+                summary.first_cycle_contact_area_mm2,
+                summary.last_cycle_contact_area_mm2
             ),
         ),
     ]

@@ -134,15 +134,27 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     ("condyle_lab::accuracy", &["condyle", "condyle_io"]),
+    ("condyle_lab::at_rest", &["condyle", "condyle_io"]),
     ("condyle_lab::plausibility", &["condyle", "condyle_io"]),
     (
         "condyle_lab::run",
         &[
             "condyle_lab::accuracy",
+            "condyle_lab::at_rest",
             "condyle_lab::plausibility",
             "condyle",
             "condyle_io",
             "condyle_report",
+        ],
+    ),
+    (
+        "condyle_lab::preview",
+        &[
+            "condyle",
+            "condyle_io",
+            "condyle_report",
+            "condyle_lab::at_rest",
+            "condyle_lab::run",
         ],
     ),
     (

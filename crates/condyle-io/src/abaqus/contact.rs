@@ -122,7 +122,8 @@ fn softening_table(
     thickness_mm: f64,
 ) -> Vec<PressureOverclosure> {
     let most = law.pressure(TABLE_ENDS_AT * thickness_mm, thickness_mm).0;
-    let pressures = (0..=ROWS).map(|i| most * i as f64 / ROWS as f64);
+    let rows = 2 * ROWS;
+    let pressures = (0..=rows).map(|i| most * i as f64 / rows as f64);
     pressures
         .map(|pressure| {
             let strain = pressure / modulus_mpa * (1.0 + (pressure / softening_stress_mpa).powi(2));

@@ -234,8 +234,9 @@ mod tests {
         let machine = loaded(AP, 0.5);
         let missed = missed(&machine, &cycle, &APPLIED[1]).expect("AP is loaded");
         assert!((missed.most / (0.005 * turn * turn) - 1.0).abs() < 1e-3);
-        // |sin| > 0.1/0.197 for two thirds of the cycle.
-        let expected = 100.0 * (1.0 - 2.0 / std::f64::consts::PI * (0.1 / missed.most).asin());
+        // |sin| > 0.15/0.197 for 45 % of the cycle.
+        let most = 0.5 * APPLIED[1].within;
+        let expected = 100.0 * (1.0 - 2.0 / std::f64::consts::PI * (most / missed.most).asin());
         assert!(
             (missed.percent - expected).abs() < 1.0,
             "{}",

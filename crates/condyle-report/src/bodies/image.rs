@@ -5,7 +5,7 @@ use std::io::Write as _;
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use flate2::{Compression, Crc, write::ZlibEncoder};
 
-use super::labels::Frame;
+use super::frame::Frame;
 use super::raster::Raster;
 
 type Colour = [f32; 3];

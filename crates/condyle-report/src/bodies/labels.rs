@@ -2,9 +2,9 @@
 
 use condyle_fem::Vec3;
 
-use super::MachineAxes;
-use super::raster::FINENESS;
-use super::view::{Bounds, From, View};
+use super::frame::Frame;
+use super::machine_axes::MachineAxes;
+use super::view::{From, View};
 use crate::figure::escape;
 use crate::results::side::Side;
 
@@ -12,57 +12,6 @@ use crate::results::side::Side;
 const OVER: &str = "paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round";
 const LINE: &str = "stroke:#0b4f7d;stroke-width:1.1;fill:none";
 const DASHED: &str = "stroke:#0b4f7d;stroke-width:1;stroke-dasharray:4 3;fill:none";
-
-/// Where a view lies in the picture.
-pub(super) struct Frame {
-    /// Its upper left corner, px.
-    pub corner: (f64, f64),
-    /// px per mm.
-    scale: f64,
-    bounds: Bounds,
-}
-
-impl Frame {
-    pub fn new(corner: (f64, f64), scale: f64, bounds: Bounds) -> Self {
-        Self {
-            corner,
-            scale,
-            bounds,
-        }
-    }
-
-    /// Width and height, px.
-    pub fn size(&self) -> (f64, f64) {
-        let bounds = &self.bounds;
-        (
-            bounds.width_mm() * self.scale,
-            bounds.height_mm() * self.scale,
-        )
-    }
-
-    /// Width and height of its image, pixels.
-    pub fn pixels(&self) -> (usize, usize) {
-        let (width, height) = self.size();
-        let pixels = |length: f64| (length * FINENESS).ceil() as usize;
-        (pixels(width), pixels(height))
-    }
-
-    /// A point as a view sees it: column and row of the image, and how near it is in the same unit.
-    pub fn pixel(&self, [right, up, near]: [f64; 3]) -> [f64; 3] {
-        let fine = self.scale * FINENESS;
-        let Bounds { low, high } = self.bounds;
-        [(right - low.0) * fine, (high.1 - up) * fine, near * fine]
-    }
-
-    /// The same in px of the picture.
-    fn place(&self, seen: [f64; 3]) -> (f64, f64) {
-        let [column, row, _] = self.pixel(seen);
-        (
-            self.corner.0 + column / FINENESS,
-            self.corner.1 + row / FINENESS,
-        )
-    }
-}
 
 /// Names of the directions around a view, and the side it is seen from above it.
 pub(super) fn directions(view: &View, side: Side, frame: &Frame) -> String {

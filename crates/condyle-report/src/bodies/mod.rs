@@ -3,43 +3,26 @@
 //! Surfaces come as plain triangles. They are drawn into small images by depth, so that sixty thousand triangles
 //! make a file no larger than six hundred; names, axes and scale stand over them as vectors.
 
+mod body_surface;
+mod frame;
 mod image;
 mod labels;
+mod machine_axes;
 mod raster;
 mod view;
 
 use std::path::{Path, PathBuf};
 
-use condyle_fem::Vec3;
-
 use crate::error::ReportError;
 use crate::figure::alone;
 use crate::file::write_text;
 use crate::results::side::Side;
+use frame::Frame;
 use raster::Raster;
 use view::{VIEWS, View};
 
-/// A surface for a picture, in the insert frame: x anterior, y superior, z to the right, mm.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct BodySurface {
-    /// Positions of the vertices, mm.
-    pub vertices: Vec<Vec3>,
-    /// Numbers of the vertices of each triangle, facing either way.
-    pub triangles: Vec<[u32; 3]>,
-}
-
-/// Where the machine's axes lie in the insert frame, mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MachineAxes {
-    /// (x, y) of the flexion axis, which lies along z.
-    pub flexion_mm: (f64, f64),
-    /// (y, z) of the varus-valgus axis, which lies along x.
-    pub vv_mm: (f64, f64),
-    /// (x, z) of the axis of IE rotation, which lies along y.
-    pub ie_mm: (f64, f64),
-    /// x at which AP reads zero under the flexion axis.
-    pub ap_zero_mm: f64,
-}
+pub use body_surface::BodySurface;
+pub use machine_axes::MachineAxes;
 
 /// Femur and insert in place.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +67,7 @@ pub fn bodies_svg(picture: &BodiesPicture<'_>) -> String {
     let (mut body, mut x) = (String::new(), BETWEEN);
     for (view, bounds) in VIEWS.iter().zip(&bounds) {
         let y = ABOVE + (tallest_mm - bounds.height_mm()) * scale / 2.0;
-        let frame = labels::Frame::new((x, y), scale, *bounds);
+        let frame = Frame::new((x, y), scale, *bounds);
         body += &drawn(picture, view, &frame);
         x += bounds.width_mm() * scale + BETWEEN;
     }
@@ -96,7 +79,7 @@ pub fn bodies_svg(picture: &BodiesPicture<'_>) -> String {
 }
 
 /// One view: its image, and what stands over it.
-fn drawn(picture: &BodiesPicture<'_>, view: &View, frame: &labels::Frame) -> String {
+fn drawn(picture: &BodiesPicture<'_>, view: &View, frame: &Frame) -> String {
     let raster = |surface| Raster::new(surface, view, frame);
     let pixels = image::composed(
         &raster(picture.insert),

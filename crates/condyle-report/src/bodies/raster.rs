@@ -2,12 +2,10 @@
 
 use condyle_fem::Vec3;
 
-use super::BodySurface;
-use super::labels::Frame;
+use super::body_surface::BodySurface;
+use super::frame::Frame;
 use super::view::View;
 
-/// Pixels of an image for each px of the picture, both ways, so that edges are smooth.
-pub(super) const FINENESS: f64 = 2.0;
 /// Lightness of a face seen edge on; one that faces the viewer has 1.
 const LEAST_LIGHT: f32 = 0.45;
 

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use condyle_fem::Vec3;
+
 use super::*;
 
 /// A sheet of `count` by `count` quads, 60 mm wide, bent up by `bend` at its ends.

@@ -2,7 +2,7 @@
 
 use condyle_fem::Vec3;
 
-use super::BodySurface;
+use super::body_surface::BodySurface;
 
 /// Margin around the bodies, mm.
 const MARGIN_MM: f64 = 4.0;

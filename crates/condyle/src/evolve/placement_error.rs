@@ -60,6 +60,8 @@ pub enum PlacementError {
 
 /// A femur that moves less in an iteration rests, though its forces do not balance, mm.
 const AT_REST_MM: f64 = 0.1;
+/// A femur that has come farther than this from where it started has slid off what it was to rest on, mm.
+const SLID_OFF_MM: f64 = 20.0;
 
 /// Shifts as a message tells them, such as `AP 1.00, ML 0.00, IS -0.20 mm`.
 fn listed(shifts_mm: &[(&'static str, f64)]) -> String {
@@ -76,8 +78,9 @@ impl PlacementError {
         let zeroed = in_files.filter(|&index| mechanism.joint(index).is_zeroed);
         let shift = |index| (mechanism.joint(index).symbol, index.of(&failed.positions));
         let (residual_n, moved_mm) = (failed.residual_n, failed.moved_mm);
-        let shifts_mm = zeroed.map(shift).collect();
-        if moved_mm < AT_REST_MM {
+        let shifts_mm: Vec<(&str, f64)> = zeroed.map(shift).collect();
+        let has_slid_off = shifts_mm.iter().any(|(_, at_mm)| at_mm.abs() > SLID_OFF_MM);
+        if moved_mm < AT_REST_MM && !has_slid_off {
             return Self::Unsteady {
                 residual_n,
                 moved_mm,

@@ -115,7 +115,12 @@ fn crossing(footprint: &Footprint<'_>, edge: usize) -> Place {
 impl Loop {
     /// The closed line through some points, if they are three or more.
     fn through(mut points: Vec<Place>) -> Option<Self> {
-        points.dedup_by(|a, b| (*a - *b).norm() < ONE_POINT_MM);
+        let is_one = |a: &Place, b: &Place| (a - b).norm() < ONE_POINT_MM;
+        points.dedup_by(|a, b| is_one(a, b));
+        // The line closes: its last point may be its first one again.
+        while points.len() > 1 && is_one(&points[0], &points[points.len() - 1]) {
+            points.pop();
+        }
         if points.len() < 3 {
             return None;
         }
