@@ -36,7 +36,7 @@ fn fail(case: &Case, error: ExportError) -> ExitCode {
     exit::fail_run(&match error {
         ExportError::Build(source) => RunError::Build {
             shown: case.at_its_key(&source),
-            source,
+            source: Box::new(source),
         },
         ExportError::Placement(source) => RunError::Placement {
             shown: case.placement_at_its_key(&source, &[]),

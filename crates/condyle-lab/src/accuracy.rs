@@ -311,7 +311,7 @@ impl<'a> Again<'a> {
 
     fn at(&mut self, snapshot: usize, factor: f64, changed: &WearTest) -> Found<OnTheWay> {
         let snapshot = self.snapshots[snapshot];
-        let march = self.solved(self.from_snapshot(changed, snapshot))?;
+        let march = self.solved(self.march_from(changed, snapshot))?;
         let weights = self.worn.weights();
         let reference = worn(&snapshot.step, &weights);
         let peaks = peaks_of(&self.march.state().updates[snapshot.update]);
@@ -321,7 +321,7 @@ impl<'a> Again<'a> {
         })
     }
 
-    fn from_snapshot(&self, test: &WearTest, snapshot: &Snapshot) -> March {
+    fn march_from(&self, test: &WearTest, snapshot: &Snapshot) -> March {
         March::from_snapshot(test.clone(), snapshot, self.march.state().zero_mm)
     }
 
@@ -355,7 +355,7 @@ impl<'a> Again<'a> {
         snapshot: &Snapshot,
         update: usize,
     ) -> Found<Peaks> {
-        let march = self.solved(self.from_snapshot(test, snapshot))?;
+        let march = self.solved(self.march_from(test, snapshot))?;
         let reference = peaks_of(&self.march.state().updates[update]);
         Ok(errors(factor, first_peaks(march.state()), reference))
     }

@@ -40,26 +40,26 @@ pub fn all(folder: &Path) -> Vec<Reader> {
         Reader::new("msh", seeds::msh(), |bytes| hexahedra("a.msh", bytes)),
         Reader::new("inp", seeds::inp(), |bytes| hexahedra("a.inp", bytes)),
         Reader::new("pvd", seeds::pvd(), |bytes| {
-            drop(parse_pvd(Path::new("a.pvd"), bytes))
+            drop(parse_pvd(Path::new("a.pvd"), bytes));
         }),
         Reader::new("case", seeds::case(), |bytes| case("case.toml", bytes)),
         Reader::new("waveform", seeds::waveform(), |bytes| {
-            case("wave.csv", bytes)
+            case("wave.csv", bytes);
         }),
         Reader::new("pressure_table", seeds::pressure_table(), |bytes| {
-            case("table.csv", bytes)
+            case("table.csv", bytes);
         }),
         Reader::new("measured", seeds::measured("measured.toml"), |bytes| {
-            measured("measured.toml", bytes)
+            measured("measured.toml", bytes);
         }),
         Reader::new("kinematics", seeds::measured("kinematics.csv"), |bytes| {
-            measured("kinematics.csv", bytes)
+            measured("kinematics.csv", bytes);
         }),
         Reader::new("masses", seeds::measured("masses.csv"), |bytes| {
-            measured("masses.csv", bytes)
+            measured("masses.csv", bytes);
         }),
         Reader::new("scan", seeds::measured("scan.csv"), |bytes| {
-            measured("scan.csv", bytes)
+            measured("scan.csv", bytes);
         }),
         Reader::new("checkpoint", seeds::checkpoint(), checkpoint),
         cached(folder),

@@ -136,6 +136,7 @@ fn missing(
 }
 
 /// How far a spring is pulled beyond its free play.
+#[derive(Clone, Copy)]
 struct Pulled {
     beyond_mm: f64,
     force_n: f64,

@@ -23,7 +23,7 @@ pub enum RunError {
     #[error("{shown}")]
     Build {
         /// Why.
-        source: BuildError,
+        source: Box<BuildError>,
         /// The same at the key of the case that is behind it.
         shown: Problems,
     },
@@ -67,7 +67,7 @@ impl RunError {
     pub(crate) fn of_build(case: &Case, source: BuildError) -> Self {
         Self::Build {
             shown: case.at_its_key(&source),
-            source,
+            source: Box::new(source),
         }
     }
 

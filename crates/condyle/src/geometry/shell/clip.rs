@@ -112,10 +112,10 @@ fn walk(beside: &mut BTreeMap<u32, Vec<u32>>, start: u32) -> Vec<u32> {
     let mut around = vec![start];
     let mut at = start;
     while let Some(to) = beside.get_mut(&at).and_then(Vec::pop) {
-        if let Some(back) = beside.get_mut(&to) {
-            if let Some(index) = back.iter().position(|&other| other == at) {
-                back.swap_remove(index);
-            }
+        if let Some(back) = beside.get_mut(&to)
+            && let Some(index) = back.iter().position(|&other| other == at)
+        {
+            back.swap_remove(index);
         }
         if to == start {
             break;

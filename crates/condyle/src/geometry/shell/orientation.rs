@@ -135,7 +135,7 @@ fn flood(
             match is_turned[neighbour as usize] {
                 // Seen from the other side as well: one of the two says so.
                 Some(found) if found != wanted && triangle < neighbour => {
-                    clash([triangle, neighbour])
+                    clash([triangle, neighbour]);
                 }
                 Some(_) => {}
                 None => {
