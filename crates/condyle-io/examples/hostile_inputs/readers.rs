@@ -14,12 +14,15 @@ use condyle_io::{
 
 use super::seeds;
 
+/// What takes the bytes of a file and may refuse them.
+pub type Read = dyn Fn(&[u8]);
+
 /// A reader with good files for it.
 pub struct Reader {
     /// Without a hyphen, which ends it in the names of inputs.
     pub name: &'static str,
     pub corpus: Vec<Vec<u8>>,
-    pub read: Box<dyn Fn(&[u8])>,
+    pub read: Box<Read>,
 }
 
 impl Reader {

@@ -84,7 +84,7 @@ fn what_is_nearer_hides_what_is_behind() {
     let (front, behind) = (sheet(3, 5.0, 0.0), sheet(3, -5.0, 0.0));
     let above = &VIEWS[2];
     let bounds = above.bounds([&front, &behind]);
-    let frame = labels::Frame::new((0.0, 0.0), 1.0, bounds);
+    let frame = Frame::new((0.0, 0.0), 1.0, bounds);
     let mut both = front.clone();
     both.vertices.extend(&behind.vertices);
     let count = front.vertices.len() as u32;

@@ -19,9 +19,9 @@ const EQUAL: f64 = 1e-9;
 /// there are fewer, and farther ones must help.
 const LEAST_NODES: usize = 7;
 
-/// Where the measure falls, from one node of a patch to another, by more than this many times what it reaches
-/// there, the contact is smaller than the nodes resolve, and a quadratic through them would be made up.
-const MOST_FALL: f64 = 10.0;
+/// A quadratic that misses the mean under the top by more than this part of the highest mean follows something
+/// that is none, such as a step of the thickness at the rim; what it says between the nodes is made up.
+const MOST_MISSED: f64 = 0.3;
 
 /// Looks for the highest pressure.
 ///
@@ -29,7 +29,8 @@ const MOST_FALL: f64 = 10.0;
 /// not: at the edge of contact and at the corners of a table. So it is this that is fitted, with a
 /// quadratic over the node that presses most and those around it, whether they touch or not, and
 /// the peak is the law's pressure at its maximum within the share. It is never below the highest
-/// mean over a share, and is that where the nodes do not resolve the contact.
+/// mean over a share, and is that where the quadratic does not follow the
+/// measure.
 ///
 /// Its error falls with the third power of the edge, under a body that is smooth and symmetric about the
 /// peak with the fourth.
@@ -73,10 +74,11 @@ impl PeakSearch<'_> {
             change * change <= distance2_mm2
         };
         let means = patch.iter().filter(is_surface);
-        if !is_resolved(means.clone().map(|at| at.mean)) {
-            return 0.0;
-        }
-        Quadratic::fit(share(top), means.map(|at| (share(at), at.mean)))
+        let highest = means.clone().map(|at| at.mean).fold(top.mean, f64::max);
+        let fit = Quadratic::fit(share(top), means.map(|at| (share(at), at.mean)));
+        let follows =
+            |fit: &Quadratic| (fit.mean() - top.mean).abs() <= MOST_MISSED * highest.abs();
+        fit.filter(follows)
             .map_or(0.0, |fit| self.law.pressure(fit.highest().max(0.0), 1.0).0)
     }
 
@@ -106,15 +108,6 @@ impl PeakSearch<'_> {
         let spread_mm2 = F64x4::from_lanes(|lane| share(lane).spread_mm2);
         self.femur.sample(&place, spread_mm2).gap_mm
     }
-}
-
-fn is_resolved(means: impl Iterator<Item = f64>) -> bool {
-    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for mean in means {
-        lowest = f64::min(lowest, mean);
-        highest = f64::max(highest, mean);
-    }
-    highest - lowest <= MOST_FALL * highest
 }
 
 /// Highest mean over a share in every region, MPa.

@@ -19,6 +19,8 @@ pub(super) struct Quadratic {
     bend: [f64; 3],
     /// Edges of the share.
     edges: [[f64; 2]; 2],
+    /// Mean square of the place along the share, for the mean over it.
+    moment: f64,
 }
 
 /// Directions along a share, and its length.
@@ -39,6 +41,10 @@ impl Plane {
 
     fn flat(&self, vector: &Vec3) -> [f64; 2] {
         self.along.map(|along| along.dot(vector) / self.length_mm)
+    }
+
+    fn moment(&self, share: &Share) -> f64 {
+        2.0 * share.spread_mm2 / (self.length_mm * self.length_mm)
     }
 }
 
@@ -69,7 +75,14 @@ impl Quadratic {
             slope: [x, y],
             bend: [xx, xy, yy],
             edges: [&around.edge_a, &around.edge_b].map(|edge| plane.flat(edge)),
+            moment: plane.moment(around),
         })
+    }
+
+    /// The mean over the share.
+    pub fn mean(&self) -> f64 {
+        let [xx, _, yy] = self.bend;
+        self.constant + self.moment * (xx + yy) / 2.0
     }
 
     /// The largest value within the share.
@@ -102,7 +115,7 @@ impl Quadratic {
 /// How the mean over a share depends on the six coefficients.
 fn row(plane: &Plane, share: &Share, around: &Share) -> SVector<f64, 6> {
     let [x, y] = plane.flat(&(share.centre - around.centre));
-    let moment = 2.0 * share.spread_mm2 / (plane.length_mm * plane.length_mm);
+    let moment = plane.moment(share);
     SVector::from([
         1.0,
         x,
@@ -153,12 +166,14 @@ mod tests {
             7.0 - 0.2 * x * x - 0.05 * y * y - 0.5 * share.spread_mm2
         }
 
-        fn highest(&self, surface: &ArticulatingSurface, nodes: &[usize]) -> f64 {
+        fn fit(&self, surface: &ArticulatingSurface, nodes: &[usize]) -> Quadratic {
             let shares = nodes.iter().map(|&node| &surface.shares[node]);
             let means = shares.map(|share| (share, self.mean(share)));
-            Quadratic::fit(&surface.shares[12], means)
-                .unwrap()
-                .highest()
+            Quadratic::fit(&surface.shares[12], means).unwrap()
+        }
+
+        fn highest(&self, surface: &ArticulatingSurface, nodes: &[usize]) -> f64 {
+            self.fit(surface, nodes).highest()
         }
     }
 
@@ -169,8 +184,10 @@ mod tests {
         for away in [[0.0, 0.0], [0.3, -0.2], [0.5, 0.5], [-0.5, 0.1]] {
             let hill = Hill::on(&surface, away);
             for nodes in [&nine[..], &[12, 6, 7, 11, 13, 17]] {
-                let highest = hill.highest(&surface, nodes);
+                let fit = hill.fit(&surface, nodes);
+                let highest = fit.highest();
                 assert!((highest - 7.0).abs() < 1e-7, "{away:?} {highest}");
+                assert!((fit.mean() - hill.mean(&surface.shares[12])).abs() < 1e-7);
             }
         }
     }
