@@ -80,7 +80,7 @@ fn rows_of_insert(insert: &InsertFacts) -> Vec<Row> {
         rows.push(("  thickness over the dishes", thickness));
     }
     if let Some(middle) = insert.dishes_middle_mm {
-        rows.push(("  middle of the dishes", from_origin(middle)));
+        rows.push(("  dish middle from origin", from_origin(middle)));
     }
     rows
 }
@@ -113,7 +113,7 @@ fn from_origin([along, up, across]: [f64; 3]) -> String {
         format!("{:.1} mm {word}", value.abs())
     };
     format!(
-        "{}, {}, {} of the origin",
+        "{}, {}, {}",
         signed(along, "anterior", "posterior"),
         signed(up, "superior", "inferior"),
         signed(across, "lateral", "medial")
@@ -134,7 +134,10 @@ fn rows_at_rest(at_rest: &AtRest) -> Vec<Row> {
     );
     vec![
         ("settled", flexed),
-        ("  flexion axis", from_origin(at_rest.flexion_axis_mm)),
+        (
+            "  flexion axis from origin",
+            from_origin(at_rest.flexion_axis_mm),
+        ),
         ("  contact", pressed),
     ]
 }

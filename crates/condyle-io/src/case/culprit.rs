@@ -57,8 +57,8 @@ impl Case {
         self.errors_at(&[(self.culprit_of_build(error), error.to_string())])
     }
 
-    /// A failed placement of this case's bodies, at the key that is behind it, and axes that `warnings`
-    /// say are likely wrong, which may be why.
+    /// A failed placement of this case's bodies, at the key that is behind it, after axes that `warnings` say are
+    /// likely wrong, which may be why.
     pub fn placement_at_its_key(
         &self,
         error: &PlacementError,
@@ -69,12 +69,13 @@ impl Case {
             PlacementError::Unsteady { .. } => FINENESS,
             _ => START,
         };
-        let mut errors = vec![(culprit, error.to_string())];
+        let mut errors = Vec::new();
         for warning in warnings {
             if let BuildWarning::WrongAxes { wrong, .. } = warning {
                 errors.push((axes_of(wrong.body), warning.to_string()));
             }
         }
+        errors.push((culprit, error.to_string()));
         self.errors_at(&errors)
     }
 

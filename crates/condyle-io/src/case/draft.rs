@@ -8,7 +8,7 @@ use condyle::geometry::{CheckedShell, GenericInsertShape, ShellError, TriangleMe
 use thiserror::Error;
 
 use super::axes::Axes;
-use super::build::{Body, longest_mm, usual_unit};
+use super::build::{Body, checks_of, longest_mm, usual_unit};
 use super::contents::Case;
 use super::heading::Side;
 use super::machine_keys::Preset;
@@ -190,8 +190,7 @@ impl<'a> Concluded<'a> {
 
     /// The same, mended and checked as a run does it.
     fn shell(&self, lies: &Orientation) -> Result<CheckedShell, DraftError> {
-        let checks = self.body.checks();
-        checks
+        checks_of(self.body)
             .check(self.placed(lies))
             .map_err(|source| DraftError::Shell {
                 file: self.file.clone(),

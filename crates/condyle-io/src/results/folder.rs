@@ -416,12 +416,14 @@ impl ResultsFolder {
         let Some(cycle) = march.last_cycle() else {
             return Ok(());
         };
-        let frames = Self::create(&self.file(kept.name()))?;
+        let folder = kept.name();
+        Self::create(&self.file(folder))?;
+        let frame = |body, increment| format!("{folder}/{}", frame_name(body, increment));
         for increment in 0..cycle.rows.len() {
             let insert = insert_frame(march, &cycle, increment, side)?;
-            frames.replace(&frame_name("insert", increment), &insert)?;
+            self.replace(&frame("insert", increment), &insert)?;
             let femur = femur_vtu(femur, &cycle.pose(increment), side)?;
-            frames.replace(&frame_name("femur", increment), &femur)?;
+            self.replace(&frame("femur", increment), &femur)?;
         }
         let percents: Vec<f64> = cycle.rows.iter().map(|row| row.percent).collect();
         let pvd = cycle_pvd(kept, &percents);

@@ -11,8 +11,6 @@ use condyle_io::{
 };
 use serde::Serialize;
 
-use super::{found_in, unworn};
-
 /// So far around the lowest place of a dish it is thinnest under the femur, mm.
 const AROUND_DISH_MM: f64 = 10.0;
 
@@ -72,7 +70,7 @@ pub struct InsertFacts {
 
 impl InsertFacts {
     pub(super) fn of(case: &Case, march: &March, warnings: &[String]) -> Self {
-        let insert = unworn(march);
+        let insert = march.test().insert.as_ref();
         let file = case.insert.file().map(DataFile::name);
         let (mesh, places) = (insert.mesh(), insert.surface().positions);
         let dishes = Dishes::of(&places);
@@ -111,4 +109,11 @@ fn least_around(dish: &Vec3, places: &[Vec3], values: &[f64]) -> f64 {
         .zip(values)
         .filter(|(place, _)| is_near(place));
     near.map(|(_, value)| *value).fold(f64::INFINITY, f64::min)
+}
+
+/// What a file's name begins a warning of it with is left out: what was found in that file.
+fn found_in(file: &str, warnings: &[String]) -> Vec<String> {
+    let start = format!("{file}: ");
+    let of_file = warnings.iter().filter_map(|said| said.strip_prefix(&start));
+    of_file.map(str::to_owned).collect()
 }

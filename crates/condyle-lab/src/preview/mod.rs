@@ -6,7 +6,6 @@ mod picture;
 
 use std::path::Path;
 
-use condyle::evolve::March;
 use condyle_io::{
     cache::Cache,
     case::{Assignment, Case, FEMUR_TRIANGLES},
@@ -75,16 +74,4 @@ impl Preview {
             case,
         })
     }
-}
-
-/// What a file's name begins a warning of it with is left out: what was found in that file.
-fn found_in(file: &str, warnings: &[String]) -> Vec<String> {
-    let start = format!("{file}: ");
-    let of_file = warnings.iter().filter_map(|said| said.strip_prefix(&start));
-    of_file.map(str::to_owned).collect()
-}
-
-/// The insert of a march, in which nothing is worn yet.
-fn unworn(march: &March) -> &condyle::geometry::Insert {
-    &march.test().insert
 }

@@ -12,13 +12,12 @@ use condyle_report::{
     bodies::{BodiesPicture, BodySurface, MachineAxes, bodies_svg},
 };
 
-use super::unworn;
 use crate::at_rest::AtRest;
 
 /// The picture as the text of an SVG file.
 pub(super) fn svg(case: &Case, march: &March, femur: &TriangleMesh, at_rest: &AtRest) -> String {
     let side = case.heading.side;
-    let insert = unworn(march).mesh();
+    let insert = march.test().insert.mesh();
     let on_insert = |vertex: &Vec3| at_rest.pose.to_insert(vertex);
     let femur = BodySurface {
         vertices: femur.vertices.iter().map(on_insert).collect(),
@@ -60,7 +59,7 @@ fn of_quads(nodes: &[Vec3], quads: &[[u32; 4]]) -> BodySurface {
 /// Faces of the articulating surface of which most corners are pressed.
 fn pressed(march: &March, at_rest: &AtRest) -> BodySurface {
     const MOST_CORNERS: usize = 3;
-    let places = unworn(march).surface().positions;
+    let places = march.test().insert.surface().positions;
     let mut is_pressed = vec![false; places.len()];
     for node in &at_rest.touched {
         is_pressed[node.node as usize] = true;
@@ -70,7 +69,7 @@ fn pressed(march: &March, at_rest: &AtRest) -> BodySurface {
             .filter(|&&node| is_pressed[node as usize])
             .count()
     };
-    let faces = unworn(march).surface_faces().iter().copied();
+    let faces = march.test().insert.surface_faces().iter().copied();
     let faces: Vec<[u32; 4]> = faces.filter(|face| corners(face) >= MOST_CORNERS).collect();
     of_quads(&places, &faces)
 }

@@ -11,6 +11,7 @@ use super::super::mesh_file::LengthUnit;
 use super::body_size::check_triangles;
 use super::error::{BuildError, BuildWarning};
 use super::pieces::stray_piece;
+use super::wrong_axes::Body;
 use crate::keyed::DataFile;
 use crate::mesh::{parse_surface, surface_bytes};
 
@@ -80,7 +81,7 @@ fn turn_round(mesh: &mut TriangleMesh) {
 pub(super) struct ShellOf {
     /// Which way an open surface must face on the whole.
     faces: Faces,
-    pub checks: ShellChecks,
+    checks: ShellChecks,
 }
 
 impl ShellOf {
@@ -102,6 +103,14 @@ impl ShellOf {
                 clip_below_mm,
             },
         }
+    }
+}
+
+/// What the shell of a body is checked for, once it lies in the frame of a knee.
+pub(in crate::case) fn checks_of(body: Body) -> ShellChecks {
+    match body {
+        Body::Femur => ShellOf::FEMUR.checks,
+        Body::Insert => ShellOf::insert(None).checks,
     }
 }
 

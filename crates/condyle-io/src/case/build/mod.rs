@@ -21,5 +21,7 @@ pub use error::{BuildError, BuildWarning};
 pub use femur_triangles::FEMUR_TRIANGLES;
 #[cfg(feature = "file-system")]
 pub(super) use lie::{longest_mm, usual_unit};
+#[cfg(feature = "file-system")]
+pub(super) use meshes::checks_of;
 pub use pieces::StrayPiece;
 pub use wrong_axes::{Body, WrongAxes};

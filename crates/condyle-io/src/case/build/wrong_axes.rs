@@ -3,10 +3,9 @@
 use std::fmt;
 
 use condyle::anatomy::Recognition;
-use condyle::geometry::{ShellChecks, TriangleMesh};
+use condyle::geometry::TriangleMesh;
 
 use super::super::axes::Axes;
-use super::meshes::ShellOf;
 
 /// One of the two bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,14 +31,6 @@ impl Body {
         match self {
             Self::Femur => Recognition::of_femur(mesh),
             Self::Insert => Recognition::of_insert(mesh),
-        }
-    }
-
-    /// What its shell is checked for, once it lies in the frame of a knee.
-    pub(crate) fn checks(self) -> ShellChecks {
-        match self {
-            Self::Femur => ShellOf::FEMUR.checks,
-            Self::Insert => ShellOf::insert(None).checks,
         }
     }
 
