@@ -70,7 +70,8 @@ pub enum ShellInsertError {
     },
     /// A part of the insert in which no cell of the grid fits.
     #[error(
-        "the insert is too narrow for an edge of {edge_mm} mm around x {x_mm:.1}, z {z_mm:.1} mm; use a smaller edge_mm"
+        "the insert is too narrow for an edge of {edge_mm} mm around x {x_mm:.1}, z {z_mm:.1} mm; use a smaller edge_mm, or delete \
+         what lies there if it is no part of the insert"
     )]
     TooCoarse {
         /// The edge asked for.
@@ -89,7 +90,7 @@ pub enum ShellInsertError {
 ///
 /// Seen from above, the cells of a grid fill what lies well inside the outline, and a ring of quads
 /// with their outer nodes on the outline fills the rest. The outline is that of the part in which the
-/// shell is no wall (steeper than 60 degrees) and thicker than 0.4 of the median. The vertical line
+/// shell is no wall (steeper than 56 degrees) and thicker than 0.15 of the median. The vertical line
 /// through each place meets the shell; its highest and its lowest point bound the column. Facets
 /// are lifted to the curved surface that the vertex normals imply. Below an open surface the
 /// backside is flat, `thickness_mm` below the lowest point.

@@ -6,8 +6,8 @@ use super::{
 };
 use crate::geometry::{columns::ColumnGrid, triangle_mesh::TriangleMesh};
 
-/// A shell that is thinner than this share of the median is a lip, or the wedge of a chamfer, that
-/// has no layer of its own below it: its columns would be stiffer than it is.
+/// A shell that is thinner than this share of the median is the wedge of a chamfer, which has no layer of its
+/// own below it: its columns would be stiffer than it is.
 const THINNEST_SHARE: f64 = 0.15;
 /// A surface that rises by more than 1.5 edges over one, 56 degrees, is the side of the insert, and no
 /// longer articulates.
