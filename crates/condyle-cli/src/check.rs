@@ -20,7 +20,7 @@ pub fn check(arguments: &Check) -> ExitCode {
     let warnings = preview.warnings.iter();
     warnings.for_each(|warning| tell(format_args!("warning: {warning}")));
     if let Some(path) = &arguments.picture
-        && let Err(error) = fs::write(path, &preview.picture_svg)
+        && let Err(error) = fs::write(path, preview.picture_svg())
     {
         let said = format!("{}: {error}; choose another name or folder", path.display());
         return exit::fail(said, exit::BAD_INPUT);

@@ -43,7 +43,7 @@ fn drawn(case: &Path) -> Option<PathBuf> {
     let drawn = Preview::of(case, &[], threads)
         .map_err(|error| format!("the case does not start yet: {error}"))
         .and_then(|preview| {
-            fs::write(&picture, preview.picture_svg)
+            fs::write(&picture, preview.picture_svg())
                 .map_err(|error| format!("{}: {error}", picture.display()))
         });
     if let Err(why) = &drawn {

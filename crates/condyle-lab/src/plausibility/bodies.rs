@@ -115,10 +115,11 @@ pub(super) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
 pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FIRST_YIELD * YIELD_MPA;
     let peak = finished.summary.peak_pressure_mpa;
-    let cycles = pressures(finished).into_iter();
-    let extents: Vec<_> = cycles
-        .map(|(cycle, pressures)| extent(finished, cycle, pressures, limit))
-        .collect();
+    let extents = || {
+        let cycles = pressures(finished).into_iter();
+        let extents = cycles.map(|(cycle, pressures)| extent(finished, cycle, pressures, limit));
+        extents.collect::<Vec<_>>().join("; ")
+    };
     (peak > limit).then(|| PlausibilityWarning {
         check: "pressure_beyond_yield".to_owned(),
         value: peak,
@@ -126,7 +127,7 @@ pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
         unit: "MPa".to_owned(),
         message: format!(
             "the highest pressure is {peak:.1} MPa, and polyethylene yields below the surface from about {limit:.1} MPa; {}",
-            extents.join("; ")
+            extents()
         ),
         advice: "A layer of springs does not yield: take pressure there as an upper bound, and wear, which goes by \
                  force times sliding, as less affected."

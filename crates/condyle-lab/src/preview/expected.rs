@@ -30,17 +30,17 @@ pub struct Expected {
 
 impl Expected {
     /// Of a march that was built in `built_in`.
-    pub(super) fn of(case: &Case, march: &March, built_in: Duration) -> Self {
+    pub(super) fn of(case: &Case, march: &March, at_rest: &AtRest, built_in: Duration) -> Self {
         Self {
-            memory_mb: memory_mb(case, march),
+            memory_mb: memory_mb(case, march, at_rest),
             memory_allowed_mb: 1e3 * case.limits.memory_gb,
-            time_s: built_in.as_secs_f64() + solving_s(case, march),
+            time_s: built_in.as_secs_f64() + solving_s(case, march, at_rest),
         }
     }
 }
 
 /// How long the cycles take, by how long the contact at rest takes to answer.
-fn solving_s(case: &Case, march: &March) -> f64 {
+fn solving_s(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
     let updates = match &case.march.update {
         Update::Fixed(fixed) => fixed.updates as f64,
         Update::Auto(_) => OWN_UPDATES,
@@ -48,15 +48,15 @@ fn solving_s(case: &Case, march: &March) -> f64 {
     let increments = march.test().time.increments as f64;
     let evaluations = updates * CYCLES_AN_UPDATE * increments * EVALUATIONS_AN_INCREMENT;
     let again = if case.accuracy.estimate { 1.6 } else { 1.0 };
-    again * evaluations * evaluation_s(march)
+    again * evaluations * evaluation_s(march, at_rest)
 }
 
 /// Seconds in which the contact at rest answers, with its derivatives: the shortest of a few.
-fn evaluation_s(march: &March) -> f64 {
+fn evaluation_s(march: &March, at_rest: &AtRest) -> f64 {
     let surface = march.insert().surface();
     let memory = ContactMemory::default();
     let mut contact = march.test().contact.contact(march.bodies(&surface), memory);
-    let motion = RelativeMotion::at_rest(AtRest::of(march).pose);
+    let motion = RelativeMotion::at_rest(at_rest.pose);
     let mut shortest = Duration::MAX;
     for _ in 0..TIMED {
         let began = Instant::now();

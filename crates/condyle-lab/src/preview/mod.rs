@@ -6,6 +6,7 @@ mod picture;
 
 use std::path::Path;
 
+use condyle::{evolve::March, geometry::TriangleMesh};
 use condyle_io::{
     cache::Cache,
     case::{Assignment, Case, FEMUR_TRIANGLES},
@@ -19,7 +20,7 @@ pub use bodies::{FemurFacts, InsertFacts};
 pub use expected::Expected;
 
 /// What a case comes to before it runs; units are in the names.
-#[derive(Debug, Serialize)]
+#[derive(Serialize)]
 pub struct Preview {
     /// Title of the case.
     pub title: String,
@@ -38,9 +39,10 @@ pub struct Preview {
     /// The case, checked.
     #[serde(skip)]
     pub case: Case,
-    /// Both bodies from three sides, as the text of an SVG file.
     #[serde(skip)]
-    pub picture_svg: String,
+    march: March,
+    #[serde(skip)]
+    femur_triangles: TriangleMesh,
 }
 
 impl Preview {
@@ -65,13 +67,24 @@ impl Preview {
         Ok(Self {
             title: case.heading.title.clone(),
             side: case.heading.side.word(),
-            expected: Expected::of(&case, &march, clock.spent),
-            picture_svg: picture::svg(&case, &march, &triangles, &at_rest),
+            expected: Expected::of(&case, &march, &at_rest, clock.spent),
             warnings,
             femur,
             insert,
             at_rest,
             case,
+            march,
+            femur_triangles: triangles,
         })
+    }
+
+    /// Both bodies from three sides, as the text of an SVG file.
+    pub fn picture_svg(&self) -> String {
+        picture::svg(
+            &self.case,
+            &self.march,
+            &self.femur_triangles,
+            &self.at_rest,
+        )
     }
 }

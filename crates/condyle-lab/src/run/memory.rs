@@ -24,8 +24,7 @@ const BYTES_A_FIELD_NODE: f64 = 48.0;
 const LOOKED_AT: usize = 50;
 
 /// Memory that a march of `case` needs at its highest, about, MB.
-pub(crate) fn memory_mb(case: &Case, march: &March) -> f64 {
-    let at_rest = AtRest::of(march);
+pub(crate) fn memory_mb(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
     // The area of a contact on a foundation goes with the root of its load.
     let larger = (mean_load_n(march) / at_rest.axial_force_n).max(1.0).sqrt();
     let most = march.insert().surface_nodes().len() as f64;
@@ -75,7 +74,7 @@ pub(super) fn check_memory(case: &Case, march: &March) -> Result<(), RunError> {
     if 1e-3 * memory_mb_touching(case, march, whole_surface) <= allowed_gb {
         return Ok(());
     }
-    let needed_gb = 1e-3 * memory_mb(case, march);
+    let needed_gb = 1e-3 * memory_mb(case, march, &AtRest::of(march));
     if needed_gb <= allowed_gb {
         return Ok(());
     }

@@ -16,14 +16,14 @@ use std::{
 use condyle::evolve::MarchError;
 use condyle_io::{
     cache::Cache,
-    case::{Case, ChangeError},
+    case::Case,
     results::{NeutralPose, Summary, SummaryInput},
 };
 use thiserror::Error;
 
 use crate::{
     RunError,
-    run::{build, start},
+    run::{self, build, start},
 };
 use assumption::changes_of;
 
@@ -69,17 +69,10 @@ pub fn sensitivity(
 
 /// What a run with one change found, or why it found nothing; none where the case stays the same.
 fn changed(case_path: &Path, case: &Case, change: &Change) -> Option<Result<Summary, String>> {
-    match Case::read_changed(case_path, &change.assignments) {
+    match run::changed(case_path, &change.assignments) {
         Ok(other) if other == *case => None,
         Ok(other) => Some(marched(&other).map_err(|error| first_line(&error))),
-        Err(error) => Some(Err(why_refused(&error))),
-    }
-}
-
-fn why_refused(error: &ChangeError) -> String {
-    match error {
-        ChangeError::Case(problems) => first_line(problems),
-        ChangeError::Assignment(error) => first_line(error),
+        Err(error) => Some(Err(first_line(&error))),
     }
 }
 
