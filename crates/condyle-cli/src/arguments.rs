@@ -107,9 +107,9 @@ pub struct New {
     /// A mesh of the insert, closed or its articulating surface.
     #[arg(long, value_name = "MESH", requires = "femur")]
     pub insert: Option<PathBuf>,
-    /// Which knee: right or left; the shapes do not tell.
-    #[arg(long, default_value = Side::Right.word(), value_parser = sides(), requires = "femur")]
-    pub side: Side,
+    /// Which knee, right or left; by default as the femur's trochlea shows, which a symmetric one does not.
+    #[arg(long, value_parser = sides(), requires = "femur")]
+    pub side: Option<Side>,
 }
 
 #[derive(Args)]

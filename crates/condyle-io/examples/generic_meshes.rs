@@ -18,16 +18,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     write_stl(File::create(folder.join("femur.stl"))?, &femur)?;
     let (edge_mm, layers) = (EDGE_MM, 4);
     let insert = GenericInsertShape::default().insert(Meshing { edge_mm, layers })?;
-    let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
-    let shell = TriangleMesh {
-        vertices: insert.mesh().nodes.clone(),
-        triangles: insert
-            .mesh()
-            .boundary_quads()
-            .into_iter()
-            .flat_map(cut)
-            .collect(),
-    };
+    let mesh = insert.mesh();
+    let shell = TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads());
     write_stl(File::create(folder.join("insert.stl"))?, &shell)?;
     Ok(())
 }

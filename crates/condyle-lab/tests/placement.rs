@@ -22,12 +22,8 @@ fn dishes(place: impl Fn(&Vec3) -> Vec3) -> TriangleMesh {
         layers: 1,
     };
     let insert = GenericInsertShape::default().insert(meshing).unwrap();
-    let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]];
-    TriangleMesh {
-        vertices: insert.surface().positions,
-        triangles: insert.surface_faces().iter().flat_map(halves).collect(),
-    }
-    .mapped(place)
+    let faces = insert.surface_faces().iter().copied();
+    TriangleMesh::of_quads(insert.surface().positions, faces).mapped(place)
 }
 
 fn condyles(place: impl Fn(&Vec3) -> Vec3) -> TriangleMesh {

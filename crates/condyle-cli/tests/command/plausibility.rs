@@ -106,6 +106,39 @@ fn a_side_that_carries_nothing_is_told() {
     assert!(found.iter().any(|found| found == "lift_off"), "{found:?}");
 }
 
+/// A femur whose condyles bear on an arc that is far from the axis of flexion heaves as it flexes.
+#[test]
+fn a_femur_that_heaves_is_told() {
+    for (transition_deg, heaves) in [(40.0, true), (20.0, false)] {
+        let bench = Bench::with_case(&format!(
+            "[femur]\ndistal_radius_mm = 60.0\nposterior_radius_mm = 24.0\ntransition_deg = {transition_deg}\n\
+             {}{HYPEREXTENDED}[accuracy]\nestimate = false\n",
+            SMALL.replace("[insert]", "[insert]\nsagittal_radius_mm = 100.0"),
+        ));
+        bench.run_into("out");
+        let found = checks(&bench, "out");
+        let told = found.iter().any(|found| found == "is_range");
+        assert_eq!(told, heaves, "{transition_deg} degrees: {found:?}");
+    }
+}
+
+/// Flexion that starts from 20 degrees of hyperextension.
+const HYPEREXTENDED: &str = "[machine.flexion]\nknots_deg = [[0, -13], [70, 58]]\n";
+
+#[test]
+fn explicit_steps_that_need_much_more_inertia_are_told() {
+    for (step_s, is_much) in [(4e-5, true), (1e-5, false)] {
+        let bench = Bench::with_case(&format!(
+            "[contact]\nslip_tolerance_mm_per_s = 1.0\n{SMALL}integrator = \"explicit\"\nexplicit_step_s = {step_s:?}\n\
+             [accuracy]\nestimate = false\n"
+        ));
+        bench.run_into("out");
+        let found = checks(&bench, "out");
+        let told = found.iter().any(|found| found == "added_inertia");
+        assert_eq!(told, is_much, "{step_s} s: {found:?}");
+    }
+}
+
 #[test]
 fn pressure_beyond_yield_is_told_with_area_and_time() {
     let bench = Bench::with_case(SMALL);

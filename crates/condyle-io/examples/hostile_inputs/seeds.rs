@@ -25,13 +25,7 @@ fn block() -> TriangleMesh {
         [0, 2, 3, 1],
         [4, 5, 7, 6],
     ];
-    TriangleMesh {
-        vertices: (0..8).map(corner).collect(),
-        triangles: quads
-            .into_iter()
-            .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect(),
-    }
+    TriangleMesh::of_quads((0..8).map(corner).collect(), quads)
 }
 
 /// An open dish, 5 by 5 squares.

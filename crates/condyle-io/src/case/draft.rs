@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use condyle::Mat3;
-use condyle::anatomy::{Orientation, Recognition, Sureness, start_over_the_dishes_mm};
+use condyle::anatomy::{
+    Orientation, Recognition, Sureness, flange_lead_mm, start_over_the_dishes_mm,
+};
 use condyle::geometry::{CheckedShell, GenericInsertShape, ShellError, TriangleMesh};
 use thiserror::Error;
 
 use super::axes::Axes;
-use super::build::{Body, checks_of, longest_mm, usual_unit};
+use super::build::{Body, checks_of, is_off_centre, longest_mm, middle_of_mesh, usual_unit};
 use super::contents::Case;
 use super::heading::Side;
 use super::machine_keys::Preset;
@@ -22,8 +24,8 @@ use crate::mesh::{MeshFileError, parse_surface, surface_bytes};
 pub struct Draft<'a> {
     /// Which simulator.
     pub preset: Preset,
-    /// Which knee.
-    pub side: Side,
+    /// Which knee; none to tell it from the femur.
+    pub side: Option<Side>,
     /// Mesh of the femoral component.
     pub femur: &'a Path,
     /// Mesh of the insert, closed or an open articulating surface.
@@ -82,16 +84,20 @@ impl Draft<'_> {
         let insert = Concluded::from(Body::Insert, self.insert)?;
         let femur_lies = femur.orientation(&insert.best());
         let insert_lies = insert.orientation(&[femur_lies]);
-        let (femur_shell, insert_shell) = (femur.shell(&femur_lies)?, insert.shell(&insert_lies)?);
+        let femur_shell = femur.shell(&femur_lies)?;
+        let mut insert_shell = insert.shell(&insert_lies)?;
+        let origin = ConcludedOrigin::centred(&mut insert_shell.mesh);
         let bodies = [
             keys_of("femur", &femur, &femur_lies),
-            keys_of("insert", &insert, &insert_lies) + &thickness(&insert_shell),
+            keys_of("insert", &insert, &insert_lies) + origin.key + &thickness(&insert_shell),
         ];
         let start_mm = self.start_mm(&femur_shell.mesh, &insert_shell.mesh);
-        let case = Case::parse(&self.keys(&bodies, start_mm), "draft", folder)?;
+        let side = ConcludedSide::of(&femur_shell.mesh, self.side);
+        let keys = self.keys(side.side, &bodies, start_mm);
+        let case = Case::parse(&keys, "draft", folder)?;
         let remarks = [
-            femur.remarks(&femur_lies, &femur_shell),
-            insert.remarks(&insert_lies, &insert_shell),
+            with(femur.remarks(&femur_lies, &femur_shell), Some(side.remark)),
+            with(insert.remarks(&insert_lies, &insert_shell), origin.remark),
         ];
         let text = case.as_draft_in(folder);
         Ok(Drafted {
@@ -100,8 +106,8 @@ impl Draft<'_> {
         })
     }
 
-    fn keys(&self, [femur, insert]: &[String; 2], (x, z): (f64, f64)) -> String {
-        let (side, preset) = (self.side.word(), self.preset.word());
+    fn keys(&self, side: Side, [femur, insert]: &[String; 2], (x, z): (f64, f64)) -> String {
+        let (side, preset) = (side.word(), self.preset.word());
         format!(
             "title = \"Untitled\"\nside = \"{side}\"\n{femur}start_mm = [{x:.1}, {z:.1}]\n{insert}[machine]\npreset = \"{preset}\"\n"
         )
@@ -124,6 +130,70 @@ fn keys_of(table: &str, body: &Concluded<'_>, lies: &Orientation) -> String {
     format!(
         "[{table}]\nshape = \"mesh\"\nfile = {file}\nlength_unit = \"{unit}\"\naxes = [\"{x}\", \"{y}\", \"{z}\"]\n"
     )
+}
+
+fn with(mut remarks: Vec<String>, remark: Option<String>) -> Vec<String> {
+    remarks.extend(remark);
+    remarks
+}
+
+/// Where the origin of an insert frame is.
+struct ConcludedOrigin {
+    key: &'static str,
+    remark: Option<String>,
+}
+
+impl ConcludedOrigin {
+    /// That of the file, unless the dishes lie off it; then between them, where the insert is moved to.
+    fn centred(insert: &mut TriangleMesh) -> Self {
+        let middle = middle_of_mesh(insert);
+        if !is_off_centre(&middle) {
+            return Self {
+                key: "",
+                remark: None,
+            };
+        }
+        *insert = std::mem::take(insert).mapped(|vertex| vertex - middle);
+        let remark = format!(
+            "  origin \"centre\", since the file has its own {:.0} mm from the middle of the dishes.",
+            middle.norm()
+        );
+        Self {
+            key: "origin = \"centre\"\n",
+            remark: Some(remark),
+        }
+    }
+}
+
+/// Which knee a case is of, and where that comes from.
+struct ConcludedSide {
+    side: Side,
+    remark: String,
+}
+
+impl ConcludedSide {
+    /// Of a femur that lies x anterior, y superior, z right, of which the user may have said the side.
+    fn of(femur: &TriangleMesh, said: Option<Side>) -> Self {
+        let shown = flange_lead_mm(femur).map(|lead| {
+            let side = if lead > 0.0 { Side::Right } else { Side::Left };
+            (side, lead.abs())
+        });
+        let side = said.or(shown.map(|(side, _)| side)).unwrap_or(Side::Right);
+        let of_shape = match shown {
+            Some((shown, lead_mm)) => format!(
+                "likely a {} knee, since one flange of the trochlea stands out by {lead_mm:.1} mm there",
+                shown.word()
+            ),
+            None => "not told by the shape, of which both sides are alike".to_owned(),
+        };
+        let why = match said {
+            Some(_) => "as it was said",
+            None if shown.is_some() => "check it",
+            None => "assumed: check it",
+        };
+        let remark = format!("  side \"{}\", {why}; {of_shape}.", side.word());
+        Self { side, remark }
+    }
 }
 
 /// The thickness of an open insert, which has none of its own.

@@ -12,6 +12,16 @@ choice! {
     }
 }
 
+impl Side {
+    /// The other knee.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Right => Self::Left,
+            Self::Left => Self::Right,
+        }
+    }
+}
+
 settings! {
     /// What stands above the first table of a case.
     Heading {

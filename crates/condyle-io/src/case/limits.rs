@@ -14,6 +14,13 @@ impl Limits {
     /// Memory that a run may need where the case does not say.
     pub(super) const DEFAULT_GB: f64 = 2.0;
 
+    /// Bytes of all that a run knows of a node of an insert, its contact left out: positions now and on the way, and
+    /// what a file of it takes while it is written.
+    pub const BYTES_OF_INSERT_NODE: f64 = 800.0;
+
+    /// Bytes of a node of the distance field of a femur in triangles, while that is made.
+    pub const BYTES_OF_FIELD_NODE: f64 = 48.0;
+
     /// How many things of so many bytes each the memory has room for.
     pub(super) fn most(&self, bytes_each: f64) -> usize {
         (self.memory_gb * 1e9 / bytes_each) as usize

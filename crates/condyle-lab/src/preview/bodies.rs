@@ -3,7 +3,7 @@
 use condyle::{
     Vec3,
     evolve::March,
-    geometry::{Dishes, TriangleMesh},
+    geometry::{Dishes, TriangleMesh, bounds},
 };
 use condyle_io::{
     case::Case,
@@ -95,9 +95,7 @@ fn defects(file: Option<&str>, warnings: &[String]) -> Vec<String> {
 }
 
 fn size_of(points: &[Vec3]) -> [f64; 3] {
-    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-    let wider = |(low, high): (Vec3, Vec3), point: &Vec3| (low.inf(point), high.sup(point));
-    let (low, high) = points.iter().fold(none, wider);
+    let (low, high) = bounds(points);
     (high - low).into()
 }
 

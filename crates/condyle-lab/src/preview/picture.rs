@@ -19,10 +19,7 @@ pub(super) fn svg(case: &Case, march: &March, femur: &TriangleMesh, at_rest: &At
     let side = case.heading.side;
     let insert = march.test().insert.mesh();
     let on_insert = |vertex: &Vec3| at_rest.pose.to_insert(vertex);
-    let femur = BodySurface {
-        vertices: femur.vertices.iter().map(on_insert).collect(),
-        triangles: femur.triangles.clone(),
-    };
+    let femur = of_triangles(femur.clone().mapped(on_insert));
     let insert = of_quads(&insert.nodes, &insert.boundary_quads());
     let [femur, insert, contact] =
         [femur, insert, pressed(march, at_rest)].map(|body| mirrored(body, side));
@@ -47,13 +44,18 @@ fn caption(at_rest: &AtRest) -> String {
     )
 }
 
-/// Quads as triangles.
-fn of_quads(nodes: &[Vec3], quads: &[[u32; 4]]) -> BodySurface {
-    let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]];
+fn of_triangles(mesh: TriangleMesh) -> BodySurface {
     BodySurface {
-        vertices: nodes.to_vec(),
-        triangles: quads.iter().flat_map(halves).collect(),
+        vertices: mesh.vertices,
+        triangles: mesh.triangles,
     }
+}
+
+fn of_quads(nodes: &[Vec3], quads: &[[u32; 4]]) -> BodySurface {
+    of_triangles(TriangleMesh::of_quads(
+        nodes.to_vec(),
+        quads.iter().copied(),
+    ))
 }
 
 /// Faces of the articulating surface of which most corners are pressed.

@@ -5,21 +5,17 @@ use condyle::{
     geometry::FemoralSurface,
     machine::{Drive, knee::IS},
 };
-use condyle_io::case::Case;
+use condyle_io::case::{Case, Limits};
 
 use super::error::RunError;
 use crate::at_rest::AtRest;
 
 /// What the program takes whatever the case, MB.
 const PROGRAM_MB: f64 = 6.0;
-/// Bytes of a node of the insert: positions now and on the way, and what a file of it takes while it is written.
-const BYTES_A_NODE: f64 = 800.0;
 /// Bytes of a touched node at an increment: the histories of a cycle and of the one before.
 const BYTES_A_TOUCH: f64 = 230.0;
 /// The estimate of the error keeps histories of twice the increments beside them.
 const WITH_ESTIMATE: f64 = 2.1;
-/// Bytes of a node of a mesh femur's field while it is made.
-const BYTES_A_FIELD_NODE: f64 = 48.0;
 /// Parts of a cycle at which the load is looked at.
 const LOOKED_AT: usize = 50;
 
@@ -47,9 +43,9 @@ fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64) -> f64 {
         FemoralSurface::Mesh(field) => field.nodes() as f64,
         _ => 0.0,
     };
-    let bytes = BYTES_A_NODE * march.insert().mesh().nodes.len() as f64
+    let bytes = Limits::BYTES_OF_INSERT_NODE * march.insert().mesh().nodes.len() as f64
         + BYTES_A_TOUCH * histories * touches
-        + BYTES_A_FIELD_NODE * field_nodes;
+        + Limits::BYTES_OF_FIELD_NODE * field_nodes;
     PROGRAM_MB + 1e-6 * bytes
 }
 

@@ -20,11 +20,7 @@ fn generic_insert() -> TriangleMesh {
 
 fn boundary(insert: &Insert) -> TriangleMesh {
     let mesh = insert.mesh();
-    let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
-    TriangleMesh {
-        vertices: mesh.nodes.clone(),
-        triangles: mesh.boundary_quads().into_iter().flat_map(cut).collect(),
-    }
+    TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads())
 }
 
 /// The shape as a file has it whose axes point as `orientation` says.

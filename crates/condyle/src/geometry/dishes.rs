@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::bounds::bounds;
 use super::triangle_mesh::TriangleMesh;
 use crate::Vec3;
 
@@ -28,9 +29,7 @@ impl Dishes {
     /// The lowest place of a side is the middle of its points less than 0.3 mm above the lowest one, rim and eminence
     /// left out.
     pub fn of(points: &[Vec3]) -> Option<Self> {
-        let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-        let wider = |(low, high): (Vec3, Vec3), point: &Vec3| (low.inf(point), high.sup(point));
-        let (low, high) = points.iter().fold(none, wider);
+        let (low, high) = bounds(points);
         let size = high - low;
         let inside = |part: f64, (from, to): (f64, f64)| (from..=to).contains(&part);
         let in_dish = |point: &Vec3, from_side_mm: f64| {

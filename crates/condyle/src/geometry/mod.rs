@@ -21,6 +21,7 @@
 //! Bodies are cheap to clone, and what is large is shared between clones and threads.
 
 mod articulating_surface;
+mod bounds;
 mod clustered;
 mod columns;
 mod curvature_bounds;
@@ -45,6 +46,7 @@ mod triangle;
 mod triangle_mesh;
 
 pub use articulating_surface::ArticulatingSurface;
+pub use bounds::bounds;
 pub use columns::{Column, ColumnGrid, ColumnMesh, Plan};
 pub use curvature_bounds::{CurvatureBounds, MOST_GAP_SLOPE};
 pub use curved_mesh::{CurvedMesh, Foot};

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::bounds::bounds;
 use crate::Vec3;
 
 /// A surface of triangles, each anticlockwise seen from outside.
@@ -14,6 +15,16 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
+    /// The surface of quads, each cut from its first corner to its third.
+    pub fn of_quads(vertices: Vec<Vec3>, quads: impl IntoIterator<Item = [u32; 4]>) -> Self {
+        let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+        let triangles = quads.into_iter().flat_map(halves).collect();
+        Self {
+            vertices,
+            triangles,
+        }
+    }
+
     /// Positions of the three corners of triangle `triangle`.
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|vertex| self.vertices[vertex as usize])
@@ -37,9 +48,7 @@ impl TriangleMesh {
 
     /// Lowest and highest coordinate along each axis.
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-        let wider = |(low, high): (Vec3, Vec3), v: &Vec3| (low.inf(v), high.sup(v));
-        self.vertices.iter().fold(none, wider)
+        bounds(&self.vertices)
     }
 
     /// Unit normal at each vertex: the sum over the triangles around of a x b / (a^2 b^2), with a

@@ -6,6 +6,7 @@ use condyle::geometry::{Defect, InsertError, ShellError, ShellInsertError};
 use thiserror::Error;
 
 use super::super::axes::AxesError;
+use super::super::heading::Side;
 use super::super::mesh_file::LengthUnit;
 use super::pieces::StrayPiece;
 use super::wrong_axes::{Body, WrongAxes};
@@ -229,6 +230,24 @@ pub enum BuildWarning {
         file: PathBuf,
         /// How it lies.
         wrong: WrongAxes,
+    },
+    /// A femur that looks like one of the other knee.
+    #[error(
+        "{}: the flange of the trochlea that side = \"{}\" makes the medial one stands out {} mm beyond the lateral one, \
+         as in a {} knee; write side = \"{}\", or see that the axes and the files are of one knee",
+        file.display(),
+        side.word(),
+        rounded(*lead_mm),
+        side.other().word(),
+        side.other().word()
+    )]
+    OtherSide {
+        /// The file, without its folder.
+        file: PathBuf,
+        /// The side that the case says.
+        side: Side,
+        /// How far the medial flange stands out beyond the lateral one, mm.
+        lead_mm: f64,
     },
     /// A body of a whole knee that is too small or too large for one in any unit.
     #[error(

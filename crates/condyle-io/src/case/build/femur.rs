@@ -14,7 +14,7 @@ use super::super::heading::Side;
 use super::super::limits::Limits;
 use super::super::placement::FemurPlacement;
 use super::error::{BuildError, BuildWarning};
-use super::lie::check_lie;
+use super::lie::{check_lie, check_side};
 use super::meshes::{Placing, ShellOf, parsed_shell, shell, warn};
 use super::rigid_motion::RigidMotion;
 use super::wrong_axes::Body;
@@ -106,7 +106,10 @@ impl MeshFemur {
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<(), BuildError> {
         let placing = Placing::new(self.length_unit, &self.axes, side)?;
-        check_lie(Body::Femur, &self.file, mesh, &placing, warnings)
+        if check_lie(Body::Femur, &self.file, mesh, &placing, warnings)? {
+            check_side(&self.file, mesh, side, warnings);
+        }
+        Ok(())
     }
 
     /// The flexion axis (x, y) in the femoral frame, of the component as it lies in its file.
@@ -201,11 +204,9 @@ struct PreparedFemur {
     field: SmoothField,
 }
 
-/// What a node of a field takes while that is made.
-const BYTES_A_NODE: f64 = 40.0;
-
 fn check_node_count(file: &Path, mesh: &TriangleMesh, limits: &Limits) -> Result<(), BuildError> {
-    let (nodes, most) = (SmoothField::node_count(mesh), limits.most(BYTES_A_NODE));
+    let nodes = SmoothField::node_count(mesh);
+    let most = limits.most(Limits::BYTES_OF_FIELD_NODE);
     if nodes <= most {
         return Ok(());
     }

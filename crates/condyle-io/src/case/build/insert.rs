@@ -105,9 +105,6 @@ fn meshing(edge_mm: f64, layers: u64) -> Meshing {
     Meshing { edge_mm, layers }
 }
 
-/// What all that a run knows of a node of an insert takes, but for its contact.
-const BYTES_A_NODE: f64 = 800.0;
-
 /// Refuses hexahedra that would not fit into memory, before there are any: `size_mm` long and wide, in a mesh.
 fn check_node_count(
     (length_mm, width_mm): (f64, f64),
@@ -120,7 +117,7 @@ fn check_node_count(
 }
 
 fn check_nodes(nodes: f64, limits: &Limits) -> Result<(), BuildError> {
-    let (most, memory_gb) = (limits.most(BYTES_A_NODE), limits.memory_gb);
+    let (most, memory_gb) = (limits.most(Limits::BYTES_OF_INSERT_NODE), limits.memory_gb);
     if nodes <= most as f64 {
         return Ok(());
     }

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use condyle::anatomy::{Orientation, Sureness};
+use condyle::anatomy::{Orientation, Sureness, flange_lead_mm};
 use condyle::geometry::TriangleMesh;
 use condyle::{Mat3, Vec3};
 use condyle_fem::HexMesh;
 
+use super::super::heading::Side;
 use super::super::mesh_file::LengthUnit;
 use super::error::{BuildError, BuildWarning};
 use super::meshes::Placing;
@@ -17,20 +18,21 @@ use crate::keyed::DataFile;
 /// the market, rounded down, to the largest, rounded up.
 const WHOLE_KNEE_MM: std::ops::RangeInclusive<f64> = 40.0..=120.0;
 
-/// Tells a body that lies, or is measured, otherwise than the case says: an error where it is certain.
+/// Tells a body that lies, or is measured, otherwise than the case says: an error where it is certain. Whether it
+/// is seen to lie as the case says.
 pub(super) fn check_lie(
     body: Body,
     file: &DataFile,
     mesh: &TriangleMesh,
     placing: &Placing,
     warnings: &mut Vec<BuildWarning>,
-) -> Result<(), BuildError> {
+) -> Result<bool, BuildError> {
     let Some(recognition) = body.recognise(mesh) else {
-        return Ok(());
+        return Ok(false);
     };
     check_unit(body, file, mesh, placing.unit, warnings)?;
     let Some(sureness) = recognition.against(&Orientation::ISB) else {
-        return Ok(());
+        return Ok(true);
     };
     let turn = recognition.nearest().rotation();
     let wrong = WrongAxes {
@@ -44,7 +46,25 @@ pub(super) fn check_lie(
     }
     let file = PathBuf::from(file.name());
     warnings.push(BuildWarning::WrongAxes { file, wrong });
-    Ok(())
+    Ok(false)
+}
+
+/// Tells a femur, as it lies in a right knee, that looks like one of the other knee.
+pub(super) fn check_side(
+    file: &DataFile,
+    mesh: &TriangleMesh,
+    side: Side,
+    warnings: &mut Vec<BuildWarning>,
+) {
+    let lead_mm = -flange_lead_mm(mesh).unwrap_or(0.0);
+    if lead_mm > 0.0 {
+        let file = PathBuf::from(file.name());
+        warnings.push(BuildWarning::OtherSide {
+            file,
+            side,
+            lead_mm,
+        });
+    }
 }
 
 /// The same for an insert in hexahedra.
@@ -53,12 +73,8 @@ pub(super) fn check_lie_of_hexahedra(
     mesh: &HexMesh,
     placing: &Placing,
     warnings: &mut Vec<BuildWarning>,
-) -> Result<(), BuildError> {
-    let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
-    let boundary = TriangleMesh {
-        vertices: mesh.nodes.clone(),
-        triangles: mesh.boundary_quads().into_iter().flat_map(cut).collect(),
-    };
+) -> Result<bool, BuildError> {
+    let boundary = TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads());
     check_lie(Body::Insert, file, &boundary, placing, warnings)
 }
 

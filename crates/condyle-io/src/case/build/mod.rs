@@ -23,5 +23,7 @@ pub use femur_triangles::FEMUR_TRIANGLES;
 pub(super) use lie::{longest_mm, usual_unit};
 #[cfg(feature = "file-system")]
 pub(super) use meshes::checks_of;
+pub(super) use off_centre::is_off_centre;
 pub use pieces::StrayPiece;
+pub(super) use rigid_motion::middle_of_mesh;
 pub use wrong_axes::{Body, WrongAxes};

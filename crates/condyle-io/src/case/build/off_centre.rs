@@ -15,6 +15,11 @@ const MOST_ACROSS_MM: f64 = 2.5;
 /// place.
 const MOST_ALONG_MM: f64 = 10.0;
 
+/// Whether dishes that have their middle there, seen from the origin, lie off it.
+pub(in crate::case) fn is_off_centre(middle_mm: &Vec3) -> bool {
+    middle_mm.z.abs() > MOST_ACROSS_MM || middle_mm.x.abs() > MOST_ALONG_MM
+}
+
 /// A warning where the dishes lie off the origin of their file, wherever the case's own keys turn them.
 pub(super) fn off_centre(
     file: &DataFile,
@@ -29,8 +34,7 @@ pub(super) fn off_centre(
         .collect();
     let middle = rotation * middle_of_points(&unturned);
     let is_of_file = placement.origin == InsertOrigin::File;
-    let is_off = middle.z.abs() > MOST_ACROSS_MM || middle.x.abs() > MOST_ALONG_MM;
-    (is_of_file && is_off).then(|| BuildWarning::OffCentre {
+    (is_of_file && is_off_centre(&middle)).then(|| BuildWarning::OffCentre {
         file: PathBuf::from(file.name()),
         anterior_mm: middle.x,
         lateral_mm: middle.z,

@@ -89,7 +89,7 @@ fn rotation(about_z_deg: f64, about_x_deg: f64, about_y_deg: f64) -> Mat3 {
 }
 
 /// Half-way between the dishes of an insert of triangles; its origin if it has none.
-pub(super) fn middle_of_mesh(mesh: &TriangleMesh) -> Vec3 {
+pub(in crate::case) fn middle_of_mesh(mesh: &TriangleMesh) -> Vec3 {
     middle_of_points(&mesh.seen_from_above(LOOKED_AT_EVERY_MM))
 }
 

@@ -50,11 +50,7 @@ fn block() -> TriangleMesh {
         [0, 2, 3, 1],
         [4, 5, 7, 6],
     ];
-    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
-    TriangleMesh {
-        vertices: (0..8).map(corner).collect(),
-        triangles: quads.into_iter().flat_map(halves).collect(),
-    }
+    TriangleMesh::of_quads((0..8).map(corner).collect(), quads)
 }
 
 const MESH_INSERT: &str = "[insert]\nshape = \"mesh\"\nfile = \"a.stl\"\nedge_mm = 1.0\n";

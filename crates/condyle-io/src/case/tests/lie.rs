@@ -24,14 +24,10 @@ fn generic() -> Pair {
     let (edge_mm, layers) = (1.5, 1);
     let insert = GenericInsertShape::default().insert(Meshing { edge_mm, layers });
     let insert = insert.unwrap();
-    let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
-    let quads = insert.mesh().boundary_quads().into_iter();
+    let mesh = insert.mesh();
     Pair {
         femur: GenericFemur::new(GenericFemurShape::default()).surface_mesh(1.5),
-        insert: TriangleMesh {
-            vertices: insert.mesh().nodes.clone(),
-            triangles: quads.flat_map(cut).collect(),
-        },
+        insert: TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads()),
     }
 }
 
@@ -137,7 +133,7 @@ fn a_drafted_case_builds_without_a_word_of_axes_from_any_unit_and_orientation() 
             let (folder, femur, insert) = written(pair, &orientations[7 * i + 1], unit_mm);
             let draft = Draft {
                 preset: Preset::StanmoreForce,
-                side: if i == 1 { Side::Left } else { Side::Right },
+                side: None,
                 femur: &femur,
                 insert: &insert,
             };
@@ -154,7 +150,9 @@ fn a_drafted_case_builds_without_a_word_of_axes_from_any_unit_and_orientation() 
             let of_lie = |warning: &BuildWarning| {
                 matches!(
                     warning,
-                    BuildWarning::WrongAxes { .. } | BuildWarning::UnusualSize { .. }
+                    BuildWarning::WrongAxes { .. }
+                        | BuildWarning::UnusualSize { .. }
+                        | BuildWarning::OtherSide { .. }
                 )
             };
             assert!(!built.warnings.iter().any(of_lie), "{:?}", built.warnings);
@@ -185,4 +183,98 @@ fn what_is_wrong_for_certain_is_an_error_at_its_key_with_the_line_to_write() {
     assert!(said.contains("write length_unit = \"mm\""), "{said}");
     let said = refused(&generic(), r#"["posterior", "superior", "left"]"#, "mm");
     assert_eq!(said, "[]");
+}
+
+/// The warnings of a case of a pair whose side is said to be `side`.
+fn warned_of_side(pair: &Pair, side: &str) -> Vec<BuildWarning> {
+    let (folder, ..) = written(pair, &Orientation::ISB, 1.0);
+    let keys = |file| format!("shape = \"mesh\"\nfile = \"{file}\"\nlength_unit = \"mm\"\n");
+    let (femur, insert) = (keys("f.stl"), keys("i.stl"));
+    let text = format!("side = \"{side}\"\n[femur]\n{femur}[insert]\n{insert}edge_mm = 3\n");
+    let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
+    let warnings = case.build(1).unwrap().warnings.into_iter();
+    let of_side = |warning: &BuildWarning| matches!(warning, BuildWarning::OtherSide { .. });
+    warnings.filter(of_side).collect()
+}
+
+#[test]
+fn a_knee_of_the_other_side_is_told_where_the_trochlea_shows_it() {
+    for pair in real("other_side") {
+        assert!(warned_of_side(&pair, "right").is_empty());
+        let told = warned_of_side(&pair, "left");
+        let said = told.iter().map(ToString::to_string).collect::<String>();
+        assert!(
+            said.contains("as in a right knee; write side = \"right\""),
+            "{said}"
+        );
+    }
+    for side in ["right", "left"] {
+        assert!(warned_of_side(&generic(), side).is_empty());
+    }
+}
+
+#[test]
+fn a_draft_takes_the_side_that_the_trochlea_shows_unless_it_is_said() {
+    let mirror = |v: &Vec3| Vec3::new(v.x, v.y, -v.z);
+    for pair in real("draft_takes_the_side") {
+        let mirrored = Pair {
+            femur: pair.femur.clone().mapped(mirror),
+            insert: pair.insert.clone().mapped(mirror),
+        };
+        let cases = [
+            (&pair, None, "right", "check it"),
+            (&mirrored, None, "left", "check it"),
+            (&mirrored, Some(Side::Right), "right", "as it was said"),
+        ];
+        for (pair, side, word, why) in cases {
+            let (folder, femur, insert) = written(pair, &Orientation::ISB, 1.0);
+            let draft = Draft {
+                preset: Preset::StanmoreForce,
+                side,
+                femur: &femur,
+                insert: &insert,
+            };
+            let text = draft.drafted(folder.path()).unwrap().text;
+            assert!(text.contains(&format!("\nside = \"{word}\"")), "{text}");
+            assert!(text.contains(&format!("side \"{word}\", {why};")), "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_draft_puts_the_origin_between_dishes_that_lie_off_that_of_their_file() {
+    let pair = generic();
+    let away = Pair {
+        femur: pair
+            .femur
+            .clone()
+            .mapped(|v| v + Vec3::new(-40.0, 10.0, 3.0)),
+        insert: pair
+            .insert
+            .clone()
+            .mapped(|v| v + Vec3::new(30.0, 500.0, -12.0)),
+    };
+    let mut starts = Vec::new();
+    for (pair, is_centred) in [(&pair, false), (&away, true)] {
+        let (folder, femur, insert) = written(pair, &Orientation::ISB, 1.0);
+        let draft = Draft {
+            preset: Preset::StanmoreForce,
+            side: None,
+            femur: &femur,
+            insert: &insert,
+        };
+        let text = draft.drafted(folder.path()).unwrap().text;
+        assert_eq!(text.contains("origin = \"centre\""), is_centred, "{text}");
+        let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
+        let built = case.build(1).unwrap();
+        let off = |warning: &BuildWarning| matches!(warning, BuildWarning::OffCentre { .. });
+        assert!(!built.warnings.iter().any(off), "{:?}", built.warnings);
+        starts.push(built.test.start_mm);
+    }
+    let [at_home, away] = [starts[0], starts[1]];
+    // Of the file that lies at home the dishes' middle is within a millimetre of the origin.
+    assert!(
+        (at_home.0 - away.0).abs() < 1.0 && (at_home.1 - away.1).abs() < 1.0,
+        "{starts:?}"
+    );
 }

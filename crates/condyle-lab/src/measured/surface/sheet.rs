@@ -100,11 +100,7 @@ impl<'a> Sheet<'a> {
 
 /// The triangles of a surface of quads.
 pub(super) fn triangulated(surface: &SurfaceFields) -> TriangleMesh {
-    let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]];
-    TriangleMesh {
-        vertices: surface.nodes.clone(),
-        triangles: surface.quads.iter().flat_map(halves).collect(),
-    }
+    TriangleMesh::of_quads(surface.nodes.clone(), surface.quads.iter().copied())
 }
 
 /// Which nodes have an edge of a single triangle.

@@ -3,7 +3,10 @@
 use super::{
     defect::DefectKind, edges::shell_report, fill::fill, judge::Judge, orientation::Piece,
 };
-use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
+use crate::{
+    Vec3,
+    geometry::{bounds::bounds, triangle_mesh::TriangleMesh},
+};
 
 /// The longest loop of a piece is its rim, and no hole, if it is longer than this share of the piece, corner to corner.
 const RIM: f64 = 1.0 / 3.0;
@@ -62,9 +65,7 @@ fn holes(mesh: &TriangleMesh, pieces: &[Piece]) -> Vec<Vec<u32>> {
 
 /// Diagonal of the box around some vertices.
 fn extent(mesh: &TriangleMesh, vertices: impl Iterator<Item = u32>) -> f64 {
-    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-    let places = vertices.map(|vertex| mesh.vertices[vertex as usize]);
-    let (low, high) = places.fold(none, |(low, high), at| (low.inf(&at), high.sup(&at)));
+    let (low, high) = bounds(vertices.map(|vertex| &mesh.vertices[vertex as usize]));
     (high - low).norm()
 }
 
