@@ -253,13 +253,19 @@ impl<'a> Again<'a> {
             Err(why) => (untold(&why), own),
             Ok((wear, first)) => {
                 let told = Told {
-                    wear: Ok(wear),
+                    wear: Ok(self.between_the_nodes_too(wear)),
                     later,
                     first: Ok(errors(COARSER_MESH, first, own.first)),
                 };
                 (told, Base { test, first })
             }
         })
+    }
+
+    /// Errors of wear by the mesh: of the depth at least what the deepest place between the nodes lies deeper.
+    fn between_the_nodes_too(&self, [mass, depth]: OfWear) -> OfWear {
+        let missed = 100.0 * self.worn.missed_between_nodes();
+        [mass, if missed > depth.abs() { missed } else { depth }]
     }
 
     fn by_increments(&mut self, base: &Base) -> ControlFlow<(), Told> {

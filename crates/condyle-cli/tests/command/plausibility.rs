@@ -113,7 +113,7 @@ fn a_femur_that_heaves_is_told() {
         let bench = Bench::with_case(&format!(
             "[femur]\ndistal_radius_mm = 60.0\nposterior_radius_mm = 24.0\ntransition_deg = {transition_deg}\n\
              {}{HYPEREXTENDED}[accuracy]\nestimate = false\n",
-            SMALL.replace("[insert]", "[insert]\nsagittal_radius_mm = 100.0"),
+            ONE_UPDATE.replace("[insert]", "[insert]\nsagittal_radius_mm = 100.0"),
         ));
         bench.run_into("out");
         let found = checks(&bench, "out");
@@ -122,14 +122,18 @@ fn a_femur_that_heaves_is_told() {
     }
 }
 
+/// The small insert, worn at once.
+const ONE_UPDATE: &str =
+    "[insert]\nedge_mm = 2.5\nlayers = 2\n[march]\nupdates = 1\n[time]\nincrements = 50\n";
+
 /// Flexion that starts from 20 degrees of hyperextension.
 const HYPEREXTENDED: &str = "[machine.flexion]\nknots_deg = [[0, -13], [70, 58]]\n";
 
 #[test]
 fn explicit_steps_that_need_much_more_inertia_are_told() {
-    for (step_s, is_much) in [(4e-5, true), (1e-5, false)] {
+    for (step_s, is_much) in [(5e-5, true), (1e-5, false)] {
         let bench = Bench::with_case(&format!(
-            "[contact]\nslip_tolerance_mm_per_s = 1.0\n{SMALL}integrator = \"explicit\"\nexplicit_step_s = {step_s:?}\n\
+            "[contact]\nslip_tolerance_mm_per_s = 1.0\n{ONE_UPDATE}integrator = \"explicit\"\nexplicit_step_s = {step_s:?}\n\
              [accuracy]\nestimate = false\n"
         ));
         bench.run_into("out");
@@ -137,6 +141,27 @@ fn explicit_steps_that_need_much_more_inertia_are_told() {
         let told = found.iter().any(|found| found == "added_inertia");
         assert_eq!(told, is_much, "{step_s} s: {found:?}");
     }
+}
+
+#[test]
+fn steps_of_the_march_too_long_for_their_own_estimate_are_told() {
+    for (updates, check) in [(1, "single_update"), (3, "updates_too_few"), (12, "")] {
+        let updates = format!("updates = {updates}");
+        let bench = Bench::with_case(&SMALL.replace("updates = 3", &updates));
+        bench.run_into("out");
+        let found = checks(&bench, "out");
+        let of_updates = found.iter().filter(|found| found.contains("update"));
+        let of_updates: Vec<&str> = of_updates.map(String::as_str).collect();
+        let expected: Vec<&str> = Some(check)
+            .into_iter()
+            .filter(|check| !check.is_empty())
+            .collect();
+        assert_eq!(of_updates, expected, "{updates}");
+    }
+    // So few cycles that the surface stays as it was.
+    let bench = Bench::with_case(&SMALL.replace("updates = 3", "cycles = 50_000\nupdates = 1"));
+    bench.run_into("out");
+    assert!(!checks(&bench, "out").contains(&"single_update".to_owned()));
 }
 
 #[test]

@@ -4,9 +4,13 @@ use condyle::{
     evolve::{March, weight_of_depth},
     geometry::Insert,
 };
+use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
 
 /// Nodes whose depths a place between them takes the mean of.
 const NEIGHBOURS: usize = 4;
+
+/// Nodes that a paraboloid is fitted to: a node of a grid and those around it.
+const FITTED: usize = 9;
 
 /// (x, z) of the nodes of a surface, and their depth.
 pub(super) struct WornSurface(Vec<([f64; 2], f64)>);
@@ -49,6 +53,23 @@ impl WornSurface {
         places(insert).map(|place| self.depth_at(place)).collect()
     }
 
+    /// How much deeper the surface is between its nodes than at the deepest of them, as a part of that depth.
+    ///
+    /// The lowest place of the paraboloid that fits the nine nodes around best; none if that is no hollow, or lies
+    /// farther away than they do.
+    pub fn missed_between_nodes(&self) -> f64 {
+        let deepest = self.0.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some(&(place, depth)) = deepest else {
+            return 0.0;
+        };
+        let mut nodes: Vec<&([f64; 2], f64)> = self.0.iter().collect();
+        nodes.sort_by(|a, b| apart2(place, a.0).total_cmp(&apart2(place, b.0)));
+        nodes.truncate(FITTED);
+        let reach2 = nodes.last().map_or(0.0, |(far, _)| apart2(place, *far));
+        let top = Paraboloid::fit(place, &nodes).and_then(|paraboloid| paraboloid.top(reach2));
+        top.map_or(0.0, |top| (top / depth - 1.0).max(0.0))
+    }
+
     fn depth_at(&self, place: [f64; 2]) -> f64 {
         let nodes = self.0.iter();
         let mut nodes: Vec<(f64, f64)> = nodes
@@ -66,6 +87,39 @@ impl WornSurface {
             whole += weight;
         }
         sum / whole
+    }
+}
+
+/// height + slope . u + u . bend u / 2, u from a place.
+struct Paraboloid {
+    height: f64,
+    slope: Vector2<f64>,
+    bend: Matrix2<f64>,
+}
+
+impl Paraboloid {
+    /// The one nearest to heights at places around `middle`; none where they do not tell one.
+    fn fit([x, z]: [f64; 2], nodes: &[&([f64; 2], f64)]) -> Option<Self> {
+        let (mut matrix, mut right) = (Matrix6::zeros(), Vector6::zeros());
+        for &&([node_x, node_z], height) in nodes {
+            let (u, v) = (node_x - x, node_z - z);
+            let row = Vector6::new(1.0, u, v, u * u / 2.0, u * v, v * v / 2.0);
+            matrix += row * row.transpose();
+            right += row * height;
+        }
+        let found = matrix.cholesky()?.solve(&right);
+        Some(Self {
+            height: found[0],
+            slope: Vector2::new(found[1], found[2]),
+            bend: Matrix2::new(found[3], found[4], found[4], found[5]),
+        })
+    }
+
+    /// Its highest place, if it has one that is no farther away than the root of `reach2`.
+    fn top(&self, reach2: f64) -> Option<f64> {
+        let to_top = (-self.bend).cholesky()?.solve(&self.slope);
+        let top = self.height + self.slope.dot(&to_top) / 2.0;
+        (to_top.norm_squared() <= reach2).then_some(top)
     }
 }
 
@@ -88,6 +142,31 @@ mod tests {
     use condyle::geometry::{Meshing, flat_insert};
 
     use super::*;
+
+    #[test]
+    fn verify_the_top_of_a_paraboloid_between_nodes() {
+        let depth = |[x, z]: [f64; 2]| 0.3 - 0.01 * (x - 0.4).powi(2) - 0.02 * (z + 0.3).powi(2);
+        let block = block(1.0);
+        let depths: Vec<f64> = places(&block).map(depth).collect();
+        let deepest = depths.iter().copied().fold(0.0, f64::max);
+        let missed = WornSurface::with(&block, &depths).missed_between_nodes();
+        assert!((missed - (0.3 / deepest - 1.0)).abs() < 1e-9, "{missed}");
+    }
+
+    #[test]
+    fn nothing_is_missed_where_nothing_is_hollow() {
+        let block = block(1.0);
+        for depth in [
+            |[x, _]: [f64; 2]| 1.0 + 0.1 * x,
+            |[x, z]: [f64; 2]| 1.0 + x * x + z * z,
+        ] {
+            let depths: Vec<f64> = places(&block).map(depth).collect();
+            assert_eq!(
+                WornSurface::with(&block, &depths).missed_between_nodes(),
+                0.0
+            );
+        }
+    }
 
     fn block(edge_mm: f64) -> Insert {
         let meshing = Meshing { edge_mm, layers: 1 };

@@ -28,11 +28,13 @@ const PLACE: [Check; 4] = [
 ];
 
 /// What the polyethylene bears, and how well the model was solved.
-const REST: [Check; 8] = [
+const REST: [Check; 10] = [
     bodies::pressure_beyond_yield,
     bodies::thin_polyethylene,
     numbers::mesh_quality,
     numbers::counts_of_volume,
+    numbers::single_update,
+    numbers::updates_too_few,
     numbers::error_of_mass,
     numbers::error_of_depth,
     numbers::added_inertia,

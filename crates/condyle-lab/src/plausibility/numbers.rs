@@ -10,6 +10,11 @@ const COUNTS_PERCENT: f64 = 1.0;
 const LEAST_QUALITY: f64 = 0.1;
 /// Inertia added, as a multiple of the machine's own: a choice of ours.
 const MOST_ADDED_INERTIA: f64 = 1.0;
+/// Wear in one step, as a multiple of what evens out the pressure at the bottom of the scar: a tenth of the depth is
+/// then of the wrong shape at most. A choice of ours.
+const MOST_RELAXED: f64 = 0.2;
+/// Part of the depth's error that is due to updates, %: up to there the estimates of random designs held.
+const MOST_OF_UPDATES_PERCENT: f64 = 2.0;
 /// Discretisation error of mass and depth, %.
 const MOST_ERROR_PERCENT: f64 = 5.0;
 
@@ -75,6 +80,41 @@ fn large_error(check: &str, what: &str, percent: f64) -> Option<PlausibilityWarn
         unit: "%".to_owned(),
         message: format!("the {what} has a discretisation error of {:.1} %", percent.abs()),
         advice: "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.".to_owned(),
+    })
+}
+
+/// One update that digs the scar of the first cycle for all of them, so deep that its pressure would have changed.
+pub(super) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let state = finished.march.state();
+    let step = state.last_step.as_ref()?;
+    let relaxed = step.relaxation_per_cycle * step.interval;
+    (state.updates.len() == 1 && relaxed > MOST_RELAXED).then(|| PlausibilityWarning {
+        check: "single_update".to_owned(),
+        value: relaxed,
+        limit: MOST_RELAXED,
+        unit: String::new(),
+        message: format!(
+            "one update digs the scar of the first cycle for all cycles, {relaxed:.1} times as deep as would even out the \
+             pressure at its bottom; what that costs is not known, and not in the error stated"
+        ),
+        advice: "Take more updates, or update = \"auto\".".to_owned(),
+    })
+}
+
+/// Steps of the march so long that the estimate of what they cost is too small itself.
+pub(super) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let error = finished.summary.error.as_ref()?;
+    let percent = error.max_depth_percent.updates?.abs();
+    (percent > MOST_OF_UPDATES_PERCENT).then(|| PlausibilityWarning {
+        check: "updates_too_few".to_owned(),
+        value: percent,
+        limit: MOST_OF_UPDATES_PERCENT,
+        unit: "%".to_owned(),
+        message: format!(
+            "so few updates cost {percent:.1} % of the deepest wear by the estimate; with steps as long as that the error stated \
+             of mass and depth may be several times too small"
+        ),
+        advice: "Take more updates, or update = \"auto\".".to_owned(),
     })
 }
 
