@@ -181,10 +181,12 @@ fn products<const N: usize>(strips: [&[f64x4]; N], other: &[f64x4]) -> [[f64x4; 
     let mut sums = [[f64x4::ZERO; TILE]; N];
     let strips = strips.map(|strip| &strip[..other.len()]);
     for (k, other) in other.iter().enumerate() {
-        let numbers = other.as_array().map(f64x4::splat);
-        for (sums, strip) in sums.iter_mut().zip(&strips) {
-            for (sum, number) in sums.iter_mut().zip(numbers) {
-                *sum = strip[k].mul_add(number, *sum);
+        let vectors: [f64x4; N] = std::array::from_fn(|i| strips[i][k]);
+        // One number at a time: with three rows of tiles every register is taken.
+        for (j, &number) in other.as_array().iter().enumerate() {
+            let number = f64x4::splat(number);
+            for (sums, vector) in sums.iter_mut().zip(vectors) {
+                sums[j] = vector.mul_add(number, sums[j]);
             }
         }
     }
