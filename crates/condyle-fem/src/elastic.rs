@@ -1,6 +1,7 @@
 //! Isotropic linear elasticity.
 
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::{stress::Stress, vector::Vec3};
@@ -95,8 +96,8 @@ impl Elastic {
 }
 
 /// A symmetric strain: xx, yy, zz, xy, yz, zx, the last three those of the tensor, half of the angles.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Strain(pub(crate) [f64; 6]);
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Strain(pub [f64; 6]);
 
 impl Strain {
     /// The symmetric part of a displacement gradient.
@@ -113,8 +114,18 @@ impl Strain {
     }
 
     /// Change of volume.
-    pub(crate) fn trace(&self) -> f64 {
+    pub fn trace(&self) -> f64 {
         self.0[0] + self.0[1] + self.0[2]
+    }
+
+    /// What is left without a part of it.
+    pub(crate) fn less(&self, part: &Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] - part.0[i]))
+    }
+
+    /// Itself and some of a stress.
+    pub(crate) fn plus(&self, factor: f64, stress: &Stress) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] + factor * stress.0[i]))
     }
 
     /// The same shear with another change of volume.

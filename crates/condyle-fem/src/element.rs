@@ -13,6 +13,7 @@ use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, Vector4};
 
 use crate::{
     elastic::{Elastic, Strain, stiffness_block},
+    plasticity::Softening,
     stress::Stress,
     vector::Vec3,
 };
@@ -53,6 +54,66 @@ struct Point {
     dilatations: [Vec3; FUNCTIONS],
     /// Its share of the volume.
     volume: f64,
+}
+
+/// Stiffness of an element: of its nodes, of its modes by the nodes, and of its modes.
+pub(crate) struct Stiffness {
+    nodal: NodalStiffness,
+    coupling: SMatrix<f64, 9, 24>,
+    modal: Cholesky<f64, nalgebra::Const<9>>,
+}
+
+impl Stiffness {
+    /// That of the nodes after the modes have found their balance.
+    pub(crate) fn condensed(&self) -> NodalStiffness {
+        // With z = L^-1 coupling, coupling^T modal^-1 coupling is z^T z.
+        let lower = self.modal.l_dirty();
+        let z = lower.solve_lower_triangular_unchecked(&self.coupling);
+        self.nodal - z.tr_mul(&z)
+    }
+
+    /// Modes in balance with displacements of the nodes and with forces on the modes.
+    pub(crate) fn modes(&self, nodes: &[Vec3; 8], forces: &Modes) -> Modes {
+        let flat = SMatrix::<f64, 24, 1>::from_fn(|i, _| nodes[i / 3][i % 3]);
+        self.modal.solve(&(forces - self.coupling * flat))
+    }
+
+    /// What forces on the modes come to at the nodes.
+    pub(crate) fn passed_on(&self, forces: &Modes) -> [Vec3; 8] {
+        let passed = self.coupling.tr_mul(&self.modal.solve(forces));
+        std::array::from_fn(|node| passed.fixed_rows::<3>(3 * node).into_owned())
+    }
+}
+
+impl Point {
+    fn add_stiffness(
+        &self,
+        elastic: &Elastic,
+        softening: Option<&Softening>,
+        all: &mut SMatrix<f64, 33, 33>,
+    ) {
+        let lost = softening.map_or(0.0, |softening| 0.5 * softening.deviatoric);
+        let shear = self.volume * (elastic.shear_modulus() - lost);
+        let bulk = self.volume * elastic.bulk_modulus();
+        let of = |f: usize| [&self.gradients[f], &self.dilatations[f]];
+        for b in 0..FUNCTIONS {
+            for a in b..FUNCTIONS {
+                let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
+                place += stiffness_block(shear, bulk, of(a), of(b));
+            }
+        }
+        if let Some(softening) = softening {
+            let along = self
+                .gradients
+                .map(|gradient| softening.flow.times(&gradient));
+            for (a, row) in along.iter().enumerate() {
+                for (b, column) in along[..=a].iter().enumerate() {
+                    let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
+                    place -= row * column.transpose() * (self.volume * softening.along_flow);
+                }
+            }
+        }
+    }
 }
 
 /// Where the map from natural coordinates folds over.
@@ -113,49 +174,44 @@ impl Element {
         }
     }
 
-    /// Stiffness of the nodes after the modes have found their balance, and the modes by the nodes.
-    pub(crate) fn stiffness(&self, elastic: &Elastic) -> NodalStiffness {
-        let (mut nodal, coupling, modal) = self.stiffnesses(elastic);
-        // z = L^-1 coupling, so that coupling^T modal^-1 coupling = z^T z.
-        let z = modal.l().solve_lower_triangular_unchecked(&coupling);
-        nodal -= z.tr_mul(&z);
-        nodal
+    /// Elastic stiffness.
+    pub(crate) fn stiffness(&self, elastic: &Elastic) -> Stiffness {
+        self.softened(elastic, &[None; POINTS])
     }
 
-    /// Amplitudes of the modes under displacements of the nodes, and none but elastic strain.
-    pub(crate) fn modes(&self, elastic: &Elastic, nodes: &[Vec3; 8]) -> Modes {
-        let (_, coupling, modal) = self.stiffnesses(elastic);
-        let flat = SMatrix::<f64, 24, 1>::from_fn(|i, _| nodes[i / 3][i % 3]);
-        -modal.solve(&(coupling * flat))
-    }
-
-    /// Stiffness of nodes, of modes by nodes, and of modes.
-    fn stiffnesses(
+    /// Stiffness of a material that is softer than elastic at some Gauss points.
+    pub(crate) fn softened(
         &self,
         elastic: &Elastic,
-    ) -> (
-        NodalStiffness,
-        SMatrix<f64, 9, 24>,
-        Cholesky<f64, nalgebra::Const<9>>,
-    ) {
+        softenings: &[Option<Softening>; POINTS],
+    ) -> Stiffness {
         let mut all = SMatrix::<f64, 33, 33>::zeros();
-        let (shear, bulk) = (elastic.shear_modulus(), elastic.bulk_modulus());
-        for point in &self.points {
-            let (shear, bulk) = (shear * point.volume, bulk * point.volume);
-            let of = |f: usize| [&point.gradients[f], &point.dilatations[f]];
-            for b in 0..FUNCTIONS {
-                for a in b..FUNCTIONS {
-                    let block = stiffness_block(shear, bulk, of(a), of(b));
-                    let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
-                    place += block;
-                }
-            }
+        for (point, softening) in self.points.iter().zip(softenings) {
+            point.add_stiffness(elastic, softening.as_ref(), &mut all);
         }
         all.fill_upper_triangle_with_lower_triangle();
-        let nodal = all.fixed_view::<24, 24>(0, 0).into_owned();
-        let coupling = all.fixed_view::<9, 24>(24, 0).into_owned();
-        let modal = all.fixed_view::<9, 9>(24, 24).into_owned();
-        (nodal, coupling, Cholesky::new_unchecked(modal))
+        Stiffness {
+            nodal: all.fixed_view::<24, 24>(0, 0).into_owned(),
+            coupling: all.fixed_view::<9, 24>(24, 0).into_owned(),
+            modal: Cholesky::new_unchecked(all.fixed_view::<9, 9>(24, 24).into_owned()),
+        }
+    }
+
+    /// Forces of stresses at the Gauss points on the nodes, and on the modes.
+    pub(crate) fn forces(&self, stresses: &[Stress; POINTS]) -> ([Vec3; 8], Modes) {
+        let mut forces = [Vec3::zeros(); FUNCTIONS];
+        for (point, stress) in self.points.iter().zip(stresses) {
+            let (mean, deviator) = (stress.mean(), stress.deviator());
+            for (f, force) in forces.iter_mut().enumerate() {
+                let work = deviator.times(&point.gradients[f]) + point.dilatations[f] * mean;
+                *force += work * point.volume;
+            }
+        }
+        let [a, b, c, d, e, f, g, h, modes @ ..] = forces;
+        (
+            [a, b, c, d, e, f, g, h],
+            Modes::from_fn(|i, _| modes[i / 3][i % 3]),
+        )
     }
 
     /// Strain at every Gauss point.
@@ -183,11 +239,17 @@ impl Element {
         })
     }
 
-    /// Stress at every Gauss point of an elastic element.
-    pub(crate) fn stresses(&self, elastic: &Elastic, nodes: &[Vec3; 8]) -> [Stress; POINTS] {
-        let modes = self.modes(elastic, nodes);
-        self.strains(nodes, &modes)
-            .map(|strain| elastic.stress(&strain))
+    /// Stress at every Gauss point of an elastic element with eigenstrains.
+    pub(crate) fn stresses(
+        &self,
+        elastic: &Elastic,
+        nodes: &[Vec3; 8],
+        eigenstrains: &[Strain; POINTS],
+    ) -> [Stress; POINTS] {
+        let (_, pull) = self.forces(&eigenstrains.map(|strain| elastic.stress(&strain)));
+        let modes = self.stiffness(elastic).modes(nodes, &pull);
+        let strains = self.strains(nodes, &modes);
+        std::array::from_fn(|p| elastic.stress(&strains[p].less(&eigenstrains[p])))
     }
 
     /// Share of every Gauss point of the volume.
@@ -224,6 +286,7 @@ fn jacobian(corners: &[Vec3; 8], at: [f64; 3]) -> Matrix3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plasticity::{PlasticPoint, tests::material};
     use nalgebra::SymmetricEigen;
 
     fn bent() -> [Vec3; 8] {
@@ -239,7 +302,10 @@ mod tests {
     fn only_rigid_motions_need_no_force() {
         for v in [0.0, 0.3, 0.49] {
             let elastic = Elastic::new(1.0, v).unwrap();
-            let stiffness = Element::new(&bent()).unwrap().stiffness(&elastic);
+            let stiffness = Element::new(&bent())
+                .unwrap()
+                .stiffness(&elastic)
+                .condensed();
             let mut values: Vec<f64> = SymmetricEigen::new(stiffness)
                 .eigenvalues
                 .iter()
@@ -257,7 +323,10 @@ mod tests {
         for corners in [SIGNS.map(|s| Vec3::from_row_slice(&s)), bent()] {
             let stiff = |v: f64| {
                 let elastic = Elastic::new(2.0 * (1.0 + v), v).unwrap();
-                let stiffness = Element::new(&corners).unwrap().stiffness(&elastic);
+                let stiffness = Element::new(&corners)
+                    .unwrap()
+                    .stiffness(&elastic)
+                    .condensed();
                 let mut values: Vec<f64> = SymmetricEigen::new(stiffness)
                     .eigenvalues
                     .iter()
@@ -280,10 +349,46 @@ mod tests {
         let slope = Matrix3::new(0.1, 0.2, -0.3, 0.05, -0.15, 0.07, 0.02, -0.11, 0.21);
         let nodes = bent().map(|corner| slope * corner);
         let exact = elastic.stress(&Strain::of_gradient(&slope));
-        for stress in element.stresses(&elastic, &nodes) {
+        let none = [Strain::default(); POINTS];
+        for stress in element.stresses(&elastic, &nodes, &none) {
             assert!(std::iter::zip(stress.0, exact.0).all(|(a, b)| (a - b).abs() < 1e-11));
         }
-        assert!(element.modes(&elastic, &nodes).norm() < 1e-14);
+        let stiffness = element.stiffness(&elastic);
+        assert!(stiffness.modes(&nodes, &Modes::zeros()).norm() < 1e-14);
+    }
+
+    #[test]
+    fn the_softened_stiffness_is_the_derivative_of_the_forces() {
+        let (material, element) = (material(60.0), Element::new(&bent()).unwrap());
+        let nodes: [Vec3; 8] =
+            std::array::from_fn(|i| Vec3::from_fn(|k, _| 0.1 * ((5 * i + 3 * k) as f64).sin()));
+        let modes = Modes::from_fn(|i, _| 0.02 * (i as f64).cos());
+        let before = PlasticPoint::default();
+        let respond = |nodes: &[Vec3; 8], modes: &Modes| {
+            let strains = element.strains(nodes, modes);
+            strains.map(|strain| material.respond(&strain, &before))
+        };
+        let forces = |nodes: &[Vec3; 8], modes: &Modes| {
+            element.forces(&respond(nodes, modes).map(|response| response.stress))
+        };
+        let softenings = respond(&nodes, &modes).map(|response| response.softening);
+        assert!(softenings.iter().all(Option::is_some));
+        let stiffness = element.softened(&material.elastic, &softenings);
+        let h = 1e-6;
+        for i in 0..24 {
+            let moved = |by: f64| {
+                let mut nodes = nodes;
+                nodes[i / 3][i % 3] += by;
+                forces(&nodes, &modes)
+            };
+            let ((up, modal_up), (down, modal_down)) = (moved(h), moved(-h));
+            for j in 0..24 {
+                let slope = (up[j / 3][j % 3] - down[j / 3][j % 3]) / (2.0 * h);
+                assert!((slope - stiffness.nodal[(j, i)]).abs() < 1e-4);
+            }
+            let slope = (modal_up - modal_down) / (2.0 * h);
+            assert!((slope - stiffness.coupling.column(i)).norm() < 1e-4);
+        }
     }
 
     #[test]
