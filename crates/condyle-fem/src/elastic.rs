@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::{stress::Stress, vector::Vec3};
+use crate::stress::Stress;
 
 /// The two constants of an isotropic, linearly elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,25 +136,6 @@ impl Strain {
         }
         self
     }
-}
-
-/// The block of stiffness between two functions of displacement with gradients `a`, `b` and
-/// divergences by `da`, `db`: force along i on the first by a displacement along j of the second.
-///
-/// $2 G \operatorname{sym}:\operatorname{sym}$ is $G (a \cdot b\, 1 + b \otimes a)$, and of the traces
-/// $-\tfrac{2}{3} G\, a \otimes b + K\, d_a \otimes d_b$ remains.
-#[inline(always)]
-pub(crate) fn stiffness_block(
-    shear: f64,
-    bulk: f64,
-    [a, da]: [&Vec3; 2],
-    [b, db]: [&Vec3; 2],
-) -> Matrix3<f64> {
-    let dot = shear * a.dot(b);
-    Matrix3::from_fn(|i, j| {
-        let unlike = shear * (b[i] * a[j] - 2.0 / 3.0 * a[i] * b[j]) + bulk * da[i] * db[j];
-        if i == j { unlike + dot } else { unlike }
-    })
 }
 
 #[cfg(test)]

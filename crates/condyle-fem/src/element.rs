@@ -10,9 +10,10 @@
 //!   ratio of one half; the linear part cannot, and is kept since bending needs it.
 
 use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, Vector4};
+use wide::f64x4;
 
 use crate::{
-    elastic::{Elastic, Strain, stiffness_block},
+    elastic::{Elastic, Strain},
     plasticity::Softening,
     stress::Stress,
     vector::Vec3,
@@ -69,7 +70,9 @@ impl Stiffness {
         // With z = L^-1 coupling, coupling^T modal^-1 coupling is z^T z.
         let lower = self.modal.l_dirty();
         let z = lower.solve_lower_triangular_unchecked(&self.coupling);
-        self.nodal - z.tr_mul(&z)
+        let mut nodal = self.nodal;
+        nodal.gemm(-1.0, &z.transpose(), &z, 1.0);
+        nodal
     }
 
     /// Modes in balance with displacements of the nodes and with forces on the modes.
@@ -86,33 +89,48 @@ impl Stiffness {
 }
 
 impl Point {
-    fn add_stiffness(
-        &self,
-        elastic: &Elastic,
-        softening: Option<&Softening>,
-        all: &mut SMatrix<f64, 33, 33>,
-    ) {
-        let lost = softening.map_or(0.0, |softening| 0.5 * softening.deviatoric);
-        let shear = self.volume * (elastic.shear_modulus() - lost);
-        let bulk = self.volume * elastic.bulk_modulus();
-        let of = |f: usize| [&self.gradients[f], &self.dilatations[f]];
-        for b in 0..FUNCTIONS {
-            for a in b..FUNCTIONS {
+    /// Takes away what yielding loses along the flow.
+    fn soften(&self, softening: &Softening, all: &mut SMatrix<f64, 33, 33>) {
+        let along = self
+            .gradients
+            .map(|gradient| softening.flow.times(&gradient));
+        for (a, row) in along.iter().enumerate() {
+            for (b, column) in along[..=a].iter().enumerate() {
                 let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
-                place += stiffness_block(shear, bulk, of(a), of(b));
+                place -= row * column.transpose() * (self.volume * softening.along_flow);
             }
         }
-        if let Some(softening) = softening {
-            let along = self
-                .gradients
-                .map(|gradient| softening.flow.times(&gradient));
-            for (a, row) in along.iter().enumerate() {
-                for (b, column) in along[..=a].iter().enumerate() {
-                    let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
-                    place -= row * column.transpose() * (self.volume * softening.along_flow);
-                }
-            }
-        }
+    }
+}
+
+/// A number of every Gauss point, side by side.
+#[derive(Clone, Copy)]
+struct Side([f64x4; 2]);
+
+impl Side {
+    fn of(number: impl Fn(usize) -> f64) -> Self {
+        let four = |first: usize| f64x4::new(std::array::from_fn(|p| number(first + p)));
+        Self([four(0), four(4)])
+    }
+
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self([self.0[0] * other.0[0], self.0[1] * other.0[1]])
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self([self.0[0] + other.0[0], self.0[1] + other.0[1]])
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: f64) -> Self {
+        self.times(Self([f64x4::splat(factor); 2]))
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        (self.0[0] + self.0[1]).reduce_add()
     }
 }
 
@@ -123,27 +141,16 @@ pub(crate) struct Inverted;
 impl Element {
     /// The element with these corners.
     pub(crate) fn new(corners: &[Vec3; 8]) -> Result<Self, Inverted> {
-        let centre = jacobian(corners, [0.0; 3]);
-        let centre_inverse = centre.try_inverse().ok_or(Inverted)?;
-        let centre_volume = centre.determinant();
+        let (centre_volume, centre_inverse) = inverted(&jacobian(corners, [0.0; 3]))?;
         let mut points = Vec::with_capacity(POINTS);
         for at in gauss_points() {
-            let jacobian = jacobian(corners, at);
-            let volume = jacobian.determinant();
-            if !(volume > 0.0 && centre_volume > 0.0) {
-                return Err(Inverted);
-            }
-            let inverse = jacobian.try_inverse().ok_or(Inverted)?;
-            let mode_scale = centre_volume / volume;
+            let (volume, inverse) = inverted(&jacobian(corners, at))?;
+            let mode = |k: usize| {
+                centre_inverse.row(k).transpose() * (-2.0 * at[k] * centre_volume / volume)
+            };
+            let nodal = |corner: usize| inverse.tr_mul(&corner_slope(corner, at));
             points.push(Point {
-                gradients: std::array::from_fn(|function| {
-                    if function < 8 {
-                        inverse.tr_mul(&corner_slope(function, at))
-                    } else {
-                        centre_inverse.row(function - 8).transpose()
-                            * (-2.0 * at[function - 8] * mode_scale)
-                    }
-                }),
+                gradients: std::array::from_fn(|f| if f < 8 { nodal(f) } else { mode(f - 8) }),
                 dilatations: [Vec3::zeros(); FUNCTIONS],
                 volume,
             });
@@ -152,6 +159,17 @@ impl Element {
         let mut element = Self { points };
         element.project_dilatations();
         Ok(element)
+    }
+
+    /// Whether an element with these corners has a volume everywhere.
+    pub(crate) fn check(corners: &[Vec3; 8]) -> Result<(), Inverted> {
+        let places = gauss_points().into_iter().chain([[0.0; 3]]);
+        for at in places {
+            if jacobian(corners, at).determinant() <= 0.0 {
+                return Err(Inverted);
+            }
+        }
+        Ok(())
     }
 
     /// Replaces the divergences by their best fits, the shares of the volume as weights.
@@ -186,8 +204,11 @@ impl Element {
         softenings: &[Option<Softening>; POINTS],
     ) -> Stiffness {
         let mut all = SMatrix::<f64, 33, 33>::zeros();
+        self.add_stiffness(elastic, softenings, &mut all);
         for (point, softening) in self.points.iter().zip(softenings) {
-            point.add_stiffness(elastic, softening.as_ref(), &mut all);
+            if let Some(softening) = softening {
+                point.soften(softening, &mut all);
+            }
         }
         all.fill_upper_triangle_with_lower_triangle();
         Stiffness {
@@ -195,6 +216,45 @@ impl Element {
             coupling: all.fixed_view::<9, 24>(24, 0).into_owned(),
             modal: Cholesky::new_unchecked(all.fixed_view::<9, 9>(24, 24).into_owned()),
         }
+    }
+
+    /// The lower triangle of the stiffness, without what is lost along the flow.
+    ///
+    /// $2 G \operatorname{dev}:\operatorname{dev}$ between displacements along i and j of functions with gradients $a$ and $b$
+    /// is $G (a \cdot b\, \delta_{ij} + b_i a_j - \tfrac{2}{3} a_i b_j)$, and $K$ goes with the projected divergences.
+    fn add_stiffness(
+        &self,
+        elastic: &Elastic,
+        softenings: &[Option<Softening>; POINTS],
+        all: &mut SMatrix<f64, 33, 33>,
+    ) {
+        let lost = softenings.map(|s| s.map_or(0.0, |softening| 0.5 * softening.deviatoric));
+        let shear = Side::of(|p| (elastic.shear_modulus() - lost[p]) * self.points[p].volume);
+        let bulk = Side::of(|p| elastic.bulk_modulus() * self.points[p].volume);
+        let gradients = self.sides(|point, f, k| point.gradients[f][k]);
+        let dilatations = self.sides(|point, f, k| point.dilatations[f][k]);
+        for b in 0..FUNCTIONS {
+            let stiff_gradient = gradients[b].map(|side| side.times(shear));
+            let stiff_dilatation = dilatations[b].map(|side| side.times(bulk));
+            for a in b..FUNCTIONS {
+                let product = |i: usize, j: usize| gradients[a][i].times(stiff_gradient[j]);
+                let dot = product(0, 0).plus(product(1, 1)).plus(product(2, 2));
+                for j in 0..3 {
+                    for i in 0..3 {
+                        let volumetric = dilatations[a][i].times(stiff_dilatation[j]);
+                        let shear = product(j, i).plus(product(i, j).scaled(-2.0 / 3.0));
+                        let block = shear.plus(volumetric);
+                        let block = if i == j { block.plus(dot) } else { block };
+                        all[(3 * a + i, 3 * b + j)] = block.sum();
+                    }
+                }
+            }
+        }
+    }
+
+    /// Numbers of every function and axis, all Gauss points side by side.
+    fn sides(&self, of: impl Fn(&Point, usize, usize) -> f64) -> [[Side; 3]; FUNCTIONS] {
+        std::array::from_fn(|f| std::array::from_fn(|k| Side::of(|p| of(&self.points[p], f, k))))
     }
 
     /// Forces of stresses at the Gauss points on the nodes, and on the modes.
@@ -261,6 +321,13 @@ impl Element {
 /// Natural coordinates of the Gauss points, in the order of the corners.
 fn gauss_points() -> [[f64; 3]; POINTS] {
     SIGNS.map(|sign| sign.map(|s| s / 3f64.sqrt()))
+}
+
+/// Determinant and inverse of a Jacobian, if it does not fold over.
+fn inverted(jacobian: &Matrix3<f64>) -> Result<(f64, Matrix3<f64>), Inverted> {
+    let volume = jacobian.determinant();
+    let inverse = jacobian.try_inverse().filter(|_| volume > 0.0);
+    Ok((volume, inverse.ok_or(Inverted)?))
 }
 
 /// How the function of a corner rises along the natural coordinates.

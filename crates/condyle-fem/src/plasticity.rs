@@ -53,16 +53,6 @@ pub(crate) struct Softening {
     pub(crate) flow: Stress,
 }
 
-impl Softening {
-    /// The stress that is missing under a strain.
-    pub(crate) fn stress(&self, strain: &Strain) -> Stress {
-        let deviator = Stress(strain.0).deviator();
-        let along = self.along_flow * self.flow.dot(&deviator);
-        let flow = Stress::default().plus(along, &self.flow);
-        flow.plus(self.deviatoric, &deviator)
-    }
-}
-
 impl ElasticPlastic {
     /// The response to a strain after what the material remembers.
     ///
@@ -120,6 +110,14 @@ pub(crate) mod tests {
         }
     }
 
+    /// The stress that yielding takes away under a small strain.
+    fn lost(softening: &Softening, strain: &Strain) -> Stress {
+        let deviator = Stress(strain.0).deviator();
+        let along = softening.along_flow * softening.flow.dot(&deviator);
+        let flow = Stress::default().plus(along, &softening.flow);
+        flow.plus(softening.deviatoric, &deviator)
+    }
+
     #[test]
     fn the_consistent_tangent_is_the_derivative_of_the_stress() {
         let material = material(60.0);
@@ -138,7 +136,7 @@ pub(crate) mod tests {
                 let mut unit = Strain::default();
                 unit.0[i] = 1.0;
                 let elastic = material.elastic.stress(&unit);
-                let tangent = elastic.plus(-1.0, &softening.stress(&unit));
+                let tangent = elastic.plus(-1.0, &lost(&softening, &unit));
                 let (up, down) = (stress(1e-6), stress(-1e-6));
                 for j in 0..6 {
                     let slope = (up.0[j] - down.0[j]) / 2e-6;

@@ -109,7 +109,7 @@ impl ElasticSolid {
         let held = checked_supports(mesh, supports)?;
         for element in 0..mesh.hexes.len() {
             let corners = mesh.corners(element);
-            Element::new(&corners).map_err(|_| SolidError::inverted(element, &corners))?;
+            Element::check(&corners).map_err(|_| SolidError::inverted(element, &corners))?;
         }
         let factor = factorise(mesh, elastic, &held).map_err(|Loose { node }| {
             let place = mesh.nodes[node as usize];

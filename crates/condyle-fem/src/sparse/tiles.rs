@@ -39,12 +39,19 @@ fn start_of_row(t: usize) -> usize {
 }
 
 impl Triangle {
-    /// Of zeros.
-    pub(crate) fn new(size: usize) -> Self {
+    /// Of zeros, in memory that was another's.
+    pub(crate) fn zeros(size: usize, mut memory: Vec<f64x4>) -> Self {
+        memory.clear();
+        memory.resize(start_of_row(size / TILE), f64x4::ZERO);
         Self {
             size,
-            vectors: vec![f64x4::ZERO; start_of_row(size / TILE)],
+            vectors: memory,
         }
+    }
+
+    /// Its memory, for another.
+    pub(crate) fn into_memory(self) -> Vec<f64x4> {
+        self.vectors
     }
 
     /// Row `t` of tiles: its columns up to the diagonal.
@@ -204,7 +211,7 @@ mod tests {
         let random = |i: usize, j: usize| ((i * 37 + j * 101) as f64).sin();
         let half = DMatrix::from_fn(size, size, random);
         let full = &half * half.transpose() + DMatrix::identity(size, size);
-        let mut triangle = Triangle::new(size);
+        let mut triangle = Triangle::zeros(size, Vec::new());
         for j in 0..size {
             for i in j..size {
                 *triangle.at_mut(i, j) = full[(i, j)];
