@@ -30,14 +30,24 @@
 //! assert!(mesh.worst_quality() > 0.99);
 //! ```
 
+mod compliance;
+mod elastic;
+mod element;
 mod follow;
 mod hex;
 mod mesh;
 mod neighbours;
 mod quality;
+mod solid;
+mod sparse;
+mod stress;
 mod vector;
 
+pub use compliance::Compliance;
+pub use elastic::{Elastic, ElasticError};
 pub use follow::InteriorFollower;
 pub use hex::{HEX_FACES, trilinear_volume, volume_below};
 pub use mesh::HexMesh;
+pub use solid::{ElasticSolid, SolidError};
+pub use stress::Stress;
 pub use vector::Vec3;

@@ -1,0 +1,169 @@
+//! Isotropic linear elasticity.
+
+use nalgebra::Matrix3;
+use thiserror::Error;
+
+use crate::{stress::Stress, vector::Vec3};
+
+/// The two constants of an isotropic, linearly elastic material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastic {
+    /// Young's modulus, in the unit of stress (condyle: MPa).
+    pub youngs_modulus: f64,
+    /// Poisson's ratio.
+    pub poissons_ratio: f64,
+}
+
+/// Constants that no elastic material of ours has.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ElasticError {
+    /// The modulus is not a positive number.
+    #[error("Young's modulus is {youngs_modulus}; it must be a positive number")]
+    Modulus {
+        /// The modulus given.
+        youngs_modulus: f64,
+    },
+    /// At a ratio of one half the volume cannot change, and pressure does not follow from strain.
+    #[error(
+        "Poisson's ratio is 0.5: the material would be incompressible, which these elements cannot be; 0.49 is near enough for polyethylene"
+    )]
+    Incompressible,
+    /// The ratio is none that a solid of ours has.
+    #[error("Poisson's ratio is {poissons_ratio}; it must be at least 0 and below 0.5")]
+    Ratio {
+        /// The ratio given.
+        poissons_ratio: f64,
+    },
+}
+
+impl Elastic {
+    /// A material of these constants.
+    ///
+    /// # Errors
+    /// If the modulus is not positive, or Poisson's ratio not in `0 <= v < 0.5`.
+    pub fn new(youngs_modulus: f64, poissons_ratio: f64) -> Result<Self, ElasticError> {
+        let material = Self {
+            youngs_modulus,
+            poissons_ratio,
+        };
+        material.checked()
+    }
+
+    /// Itself, if its constants are possible.
+    pub(crate) fn checked(self) -> Result<Self, ElasticError> {
+        let Self {
+            youngs_modulus,
+            poissons_ratio,
+        } = self;
+        if !(youngs_modulus > 0.0 && youngs_modulus.is_finite()) {
+            return Err(ElasticError::Modulus { youngs_modulus });
+        }
+        if poissons_ratio == 0.5 {
+            return Err(ElasticError::Incompressible);
+        }
+        if !(0.0..0.5).contains(&poissons_ratio) {
+            return Err(ElasticError::Ratio { poissons_ratio });
+        }
+        Ok(self)
+    }
+
+    /// Shear modulus $G = E/(2 (1 + \nu))$.
+    pub fn shear_modulus(&self) -> f64 {
+        self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+    }
+
+    /// Bulk modulus $K = E/(3 (1 - 2 \nu))$.
+    pub fn bulk_modulus(&self) -> f64 {
+        self.youngs_modulus / (3.0 * (1.0 - 2.0 * self.poissons_ratio))
+    }
+
+    /// Stress $2 G \operatorname{dev} \varepsilon + K \operatorname{tr} \varepsilon\, 1$ of a strain.
+    pub(crate) fn stress(&self, strain: &Strain) -> Stress {
+        let (g, mean) = (self.shear_modulus(), strain.trace() / 3.0);
+        let pressure = 3.0 * self.bulk_modulus() * mean;
+        let normal = |strain: f64| 2.0 * g * (strain - mean) + pressure;
+        let e = &strain.0;
+        Stress([
+            normal(e[0]),
+            normal(e[1]),
+            normal(e[2]),
+            2.0 * g * e[3],
+            2.0 * g * e[4],
+            2.0 * g * e[5],
+        ])
+    }
+}
+
+/// A symmetric strain: xx, yy, zz, xy, yz, zx, the last three those of the tensor, half of the angles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Strain(pub(crate) [f64; 6]);
+
+impl Strain {
+    /// The symmetric part of a displacement gradient.
+    pub(crate) fn of_gradient(gradient: &Matrix3<f64>) -> Self {
+        let both = |i, j| 0.5 * (gradient[(i, j)] + gradient[(j, i)]);
+        Self([
+            both(0, 0),
+            both(1, 1),
+            both(2, 2),
+            both(0, 1),
+            both(1, 2),
+            both(2, 0),
+        ])
+    }
+
+    /// Change of volume.
+    pub(crate) fn trace(&self) -> f64 {
+        self.0[0] + self.0[1] + self.0[2]
+    }
+
+    /// The same shear with another change of volume.
+    pub(crate) fn with_trace(mut self, trace: f64) -> Self {
+        let add = (trace - self.trace()) / 3.0;
+        for normal in &mut self.0[..3] {
+            *normal += add;
+        }
+        self
+    }
+}
+
+/// The block of stiffness between two functions of displacement with gradients `a`, `b` and
+/// divergences by `da`, `db`: force along i on the first by a displacement along j of the second.
+///
+/// $2 G \operatorname{sym}:\operatorname{sym}$ is $G (a \cdot b\, 1 + b \otimes a)$, and of the traces
+/// $-\tfrac{2}{3} G\, a \otimes b + K\, d_a \otimes d_b$ remains.
+#[inline(always)]
+pub(crate) fn stiffness_block(
+    shear: f64,
+    bulk: f64,
+    [a, da]: [&Vec3; 2],
+    [b, db]: [&Vec3; 2],
+) -> Matrix3<f64> {
+    let dot = shear * a.dot(b);
+    Matrix3::from_fn(|i, j| {
+        let unlike = shear * (b[i] * a[j] - 2.0 / 3.0 * a[i] * b[j]) + bulk * da[i] * db[j];
+        if i == j { unlike + dot } else { unlike }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moduli_are_those_of_steel() {
+        let steel = Elastic::new(210e3, 0.3).unwrap();
+        assert!((steel.shear_modulus() - 80_769.2).abs() < 0.1);
+        assert!((steel.bulk_modulus() - 175e3).abs() < 1e-6);
+    }
+
+    #[test]
+    fn impossible_constants_are_named() {
+        let error = |e, v| Elastic::new(e, v).unwrap_err().to_string();
+        assert!(error(-3.0, 0.3).starts_with("Young's modulus is -3;"));
+        assert!(error(f64::NAN, 0.3).contains("positive"));
+        assert!(error(1.0, 0.5).contains("incompressible"));
+        assert!(error(1.0, 0.51).starts_with("Poisson's ratio is 0.51;"));
+        assert!(error(1.0, -0.1).contains("at least 0"));
+    }
+}

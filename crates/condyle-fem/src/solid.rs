@@ -1,0 +1,422 @@
+//! An elastic solid, held somewhere: displacements under forces.
+
+use thiserror::Error;
+
+use crate::{
+    elastic::{Elastic, ElasticError},
+    element::Element,
+    mesh::HexMesh,
+    sparse::{Dissection, Factor, Loose, Rhs},
+    stress::Stress,
+    vector::Vec3,
+};
+
+/// A mesh of an elastic material, held at some nodes, with its stiffness factorised.
+///
+/// Small displacements: force and displacement are proportional, and no place moves for the next load.
+pub struct ElasticSolid {
+    mesh: HexMesh,
+    elastic: Elastic,
+    /// Axes along which each node cannot move.
+    held: Vec<[bool; 3]>,
+    pub(crate) factor: Factor,
+}
+
+/// A solid that cannot be solved.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SolidError {
+    /// The material is none.
+    #[error(transparent)]
+    Elastic(#[from] ElasticError),
+    /// An element names a node that the mesh has not.
+    #[error("element {element} names node {node}, but the mesh has {nodes} nodes, numbered from 0")]
+    NoSuchNode {
+        /// Number of the element, from 0.
+        element: usize,
+        /// The node that it names.
+        node: u32,
+        /// How many nodes there are.
+        nodes: usize,
+    },
+    /// A node that is to be held is none of the mesh.
+    #[error("node {node} is to be held, but the mesh has {nodes} nodes, numbered from 0")]
+    NoSuchHeldNode {
+        /// The node.
+        node: u32,
+        /// How many nodes there are.
+        nodes: usize,
+    },
+    /// An element is flat or folded over.
+    #[error("element {element} around ({:.4}, {:.4}, {:.4}) is flat or inverted: its corners must be in VTK order, and it must have a volume everywhere", place.x, place.y, place.z)]
+    Inverted {
+        /// Number of the element, from 0.
+        element: usize,
+        /// Its centre.
+        place: Vec3,
+    },
+    /// No node is held.
+    #[error("nothing holds the solid: hold some nodes, such as its backside")]
+    NotHeld,
+    /// A part moves as a rigid body.
+    #[error("a part of the solid can move without force, as around node {node} at ({:.4}, {:.4}, {:.4}): hold three of its nodes that are not in a line, or join it to what is held", place.x, place.y, place.z)]
+    Loose {
+        /// A node of that part.
+        node: u32,
+        /// Where it is.
+        place: Vec3,
+    },
+}
+
+impl ElasticSolid {
+    /// A solid whose nodes `held` cannot move in any direction, as on a bonded backside.
+    ///
+    /// Nodes of no element are as held.
+    ///
+    /// # Errors
+    /// If the material is none, an element is flat, inverted or names a node that there is not, or if a part
+    /// of the solid is not held.
+    pub fn new(
+        mesh: &HexMesh,
+        elastic: Elastic,
+        held: impl IntoIterator<Item = u32>,
+    ) -> Result<Self, SolidError> {
+        let held = held.into_iter().map(|node| (node, [true; 3]));
+        Self::with_supports(mesh, elastic, held)
+    }
+
+    /// A solid whose nodes cannot move along the axes said, as on a plane of symmetry; a node that comes more
+    /// than once is held along all that are said.
+    ///
+    /// # Errors
+    /// As of [`Self::new`].
+    pub fn with_supports(
+        mesh: &HexMesh,
+        elastic: Elastic,
+        supports: impl IntoIterator<Item = (u32, [bool; 3])>,
+    ) -> Result<Self, SolidError> {
+        let elastic = elastic.checked()?;
+        let held = checked_supports(mesh, supports)?;
+        for element in 0..mesh.hexes.len() {
+            let corners = mesh.corners(element);
+            Element::new(&corners).map_err(|_| SolidError::Inverted {
+                element,
+                place: corners.iter().sum::<Vec3>() / 8.0,
+            })?;
+        }
+        let factor = factorise(mesh, elastic, &held).map_err(|Loose { node }| {
+            let place = mesh.nodes[node as usize];
+            SolidError::Loose { node, place }
+        })?;
+        Ok(Self {
+            mesh: mesh.clone(),
+            elastic,
+            held,
+            factor,
+        })
+    }
+
+    /// The mesh as it was factorised.
+    pub fn mesh(&self) -> &HexMesh {
+        &self.mesh
+    }
+
+    /// The material.
+    pub fn elastic(&self) -> Elastic {
+        self.elastic
+    }
+
+    /// Numbers that the factor holds, of 8 bytes each.
+    pub fn factor_len(&self) -> usize {
+        self.factor.len()
+    }
+
+    /// Displacement of all nodes under forces on nodes; a node may come more than once.
+    ///
+    /// A force along a direction that is held goes into the support.
+    ///
+    /// # Panics
+    /// If there is no such node.
+    pub fn displacements(&self, forces: &[(u32, Vec3)]) -> Vec<Vec3> {
+        let mut x = Rhs::<1>::new(self.factor.freedoms());
+        for (node, force) in forces {
+            if let Some(place) = self.factor.dissection.place(*node) {
+                let force = self.felt(*node, *force);
+                for i in 0..3 {
+                    *x.at_mut(3 * place as usize + i, 0) += force[i];
+                }
+            }
+        }
+        self.factor.solve(&mut x);
+        let mut displacements = vec![Vec3::zeros(); self.mesh.nodes.len()];
+        for (place, &node) in self.factor.dissection.order.iter().enumerate() {
+            displacements[node as usize] = Vec3::from_fn(|i, _| x.at(3 * place + i, 0));
+        }
+        displacements
+    }
+
+    /// What of a force on a node does not go into its support.
+    pub(crate) fn felt(&self, node: u32, force: Vec3) -> Vec3 {
+        let held = self.held[node as usize];
+        Vec3::from_fn(|i, _| if held[i] { 0.0 } else { force[i] })
+    }
+
+    /// Stress at the eight Gauss points of every element under displacements of the nodes, the points in
+    /// the order of the corners.
+    ///
+    /// # Panics
+    /// If there are fewer displacements than nodes.
+    pub fn gauss_stresses(&self, displacements: &[Vec3]) -> Vec<[Stress; 8]> {
+        self.elements()
+            .map(|(hex, element)| element.stresses(&self.elastic, &moved(hex, displacements)))
+            .collect()
+    }
+
+    /// Mean stress of every element under displacements of the nodes: that of its centre, where stress is
+    /// most exact.
+    ///
+    /// # Panics
+    /// If there are fewer displacements than nodes.
+    pub fn stresses(&self, displacements: &[Vec3]) -> Vec<Stress> {
+        self.elements()
+            .map(|(hex, element)| {
+                let stresses = element.stresses(&self.elastic, &moved(hex, displacements));
+                let volumes = element.volumes();
+                let volume: f64 = volumes.iter().sum();
+                Stress::weighted(volumes.map(|part| part / volume).into_iter().zip(stresses))
+            })
+            .collect()
+    }
+
+    /// Every element and its nodes; all were checked to be good.
+    fn elements(&self) -> impl Iterator<Item = (&[u32; 8], Element)> {
+        let elements = (0..self.mesh.hexes.len()).map(|e| Element::new(&self.mesh.corners(e)));
+        self.mesh.hexes.iter().zip(elements.flatten())
+    }
+}
+
+fn moved(hex: &[u32; 8], displacements: &[Vec3]) -> [Vec3; 8] {
+    hex.map(|node| displacements[node as usize])
+}
+
+/// Axes along which each node is held, if all numbers are those of nodes and some node is.
+fn checked_supports(
+    mesh: &HexMesh,
+    supports: impl IntoIterator<Item = (u32, [bool; 3])>,
+) -> Result<Vec<[bool; 3]>, SolidError> {
+    let nodes = mesh.nodes.len();
+    for (element, hex) in mesh.hexes.iter().enumerate() {
+        if let Some(&node) = hex.iter().find(|&&node| node as usize >= nodes) {
+            return Err(SolidError::NoSuchNode {
+                element,
+                node,
+                nodes,
+            });
+        }
+    }
+    let mut held = vec![[false; 3]; nodes];
+    for (node, axes) in supports {
+        let held = held
+            .get_mut(node as usize)
+            .ok_or(SolidError::NoSuchHeldNode { node, nodes })?;
+        for (held, axis) in held.iter_mut().zip(axes) {
+            *held |= axis;
+        }
+    }
+    if held.iter().flatten().any(|is_held| *is_held) {
+        Ok(held)
+    } else {
+        Err(SolidError::NotHeld)
+    }
+}
+
+fn factorise(mesh: &HexMesh, elastic: Elastic, held: &[[bool; 3]]) -> Result<Factor, Loose> {
+    let dissection = Dissection::new(mesh, held);
+    Factor::new(&mesh.hexes, held, dissection, |element| {
+        Element::new(&mesh.corners(element))
+            .map_or_else(|_| nalgebra::zero(), |element| element.stiffness(&elastic))
+    })
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::mesh::tests::block;
+
+    /// A block of which no element is a brick, the outside still flat.
+    pub(crate) fn distorted(n: [usize; 3]) -> HexMesh {
+        let mut mesh = block(n);
+        for (i, node) in mesh.nodes.iter_mut().enumerate() {
+            for axis in 0..3 {
+                if node[axis] > 0.0 && node[axis] < n[axis] as f64 {
+                    node[axis] += 0.25 * ((7 * i + 3 * axis) as f64).sin();
+                }
+            }
+        }
+        mesh
+    }
+
+    fn nodes_where(mesh: &HexMesh, is_there: impl Fn(&Vec3) -> bool) -> Vec<u32> {
+        let nodes = (0..mesh.nodes.len() as u32).zip(&mesh.nodes);
+        nodes.filter(|(_, p)| is_there(p)).map(|(n, _)| n).collect()
+    }
+
+    /// Forces of a uniform traction on the quads whose corners are all there.
+    fn traction(mesh: &HexMesh, on: impl Fn(&Vec3) -> bool, traction: Vec3) -> Vec<(u32, Vec3)> {
+        let quads = mesh.boundary_quads();
+        let at = |node: u32| mesh.nodes[node as usize];
+        let mut forces = Vec::new();
+        for quad in quads.iter().filter(|quad| quad.iter().all(|&n| on(&at(n)))) {
+            // Two by two points of Gauss over the bilinear quad.
+            for p in [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]] {
+                let [x, y] = p.map(|s: f64| s / 3f64.sqrt());
+                let signs = [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]];
+                let shape = signs.map(|[a, b]| (1.0 + a * x) * (1.0 + b * y) / 4.0);
+                let slope = |k: usize| {
+                    let one = |[a, b]: [f64; 2]| {
+                        if k == 0 {
+                            a * (1.0 + b * y)
+                        } else {
+                            b * (1.0 + a * x)
+                        }
+                    };
+                    (0..4)
+                        .map(|i| at(quad[i]) * one(signs[i]) / 4.0)
+                        .sum::<Vec3>()
+                };
+                let area = slope(0).cross(&slope(1)).norm();
+                forces.extend((0..4).map(|i| (quad[i], traction * (area * shape[i]))));
+            }
+        }
+        forces
+    }
+
+    #[test]
+    fn verify_tension_of_a_distorted_block() {
+        // Held as planes of symmetry hold it, so that the stress is uniform whatever Poisson's ratio is.
+        for v in [0.0, 0.3, 0.46, 0.49] {
+            let mesh = distorted([3, 4, 3]);
+            let supports = (0..3).flat_map(|axis| {
+                let on_plane = nodes_where(&mesh, |p| p[axis] == 0.0);
+                on_plane
+                    .into_iter()
+                    .map(move |node| (node, [0, 1, 2].map(|k| k == axis)))
+            });
+            let elastic = Elastic::new(463.0, v).unwrap();
+            let supports: Vec<_> = supports.collect();
+            let solid = ElasticSolid::with_supports(&mesh, elastic, supports).unwrap();
+            let forces = traction(&mesh, |p| p.y == 4.0, Vec3::new(0.0, 20.0, 0.0));
+            let displacements = solid.displacements(&forces);
+            let strain = 20.0 / 463.0;
+            for (node, u) in mesh.nodes.iter().zip(&displacements) {
+                let exact = Vec3::new(-v * node.x, node.y, -v * node.z) * strain;
+                assert!((u - exact).norm() < 1e-12, "{u} {exact}");
+            }
+            for stress in solid.stresses(&displacements) {
+                assert!((stress.0[1] - 20.0).abs() < 1e-10 && stress.0[0].abs() < 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn verify_beam_of_one_element_through_the_depth() {
+        // A cantilever ten times as long as deep, as wide as deep, under a force at its end: Timoshenko's
+        // F L^3/(3 E I) + 6 F L/(5 G A).
+        let mut mesh = block([10, 1, 1]);
+        for v in [0.0, 0.3] {
+            for node in &mut mesh.nodes {
+                node.x = node.x.clamp(0.0, 10.0);
+            }
+            let elastic = Elastic::new(1000.0, v).unwrap();
+            let supports = nodes_where(&mesh, |p| p.x == 0.0).into_iter().map(|n| {
+                let at = mesh.nodes[n as usize];
+                (n, [true, at.y == 0.0, at.z == 0.0])
+            });
+            let solid =
+                ElasticSolid::with_supports(&mesh, elastic, supports.collect::<Vec<_>>()).unwrap();
+            let forces = traction(&mesh, |p| p.x == 10.0, Vec3::new(0.0, 0.0, 1.0));
+            let tip = nodes_where(&mesh, |p| p.x == 10.0)[0];
+            let sag = solid.displacements(&forces)[tip as usize].z;
+            let shear_area = 5.0 / 6.0 * elastic.shear_modulus();
+            let exact = 1000.0 / (3.0 * 1000.0 / 12.0) + 10.0 / shear_area;
+            assert!((sag / exact - 1.0).abs() < 0.01, "{v}: {sag} {exact}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_solved_is_named() {
+        let mesh = block([2, 2, 2]);
+        let elastic = Elastic::new(463.0, 0.46).unwrap();
+        let error = |mesh: &HexMesh, held: &[u32]| {
+            let solid = ElasticSolid::new(mesh, elastic, held.iter().copied());
+            solid.err().expect("an error").to_string()
+        };
+        assert!(error(&mesh, &[]).starts_with("nothing holds the solid"));
+        assert!(error(&mesh, &[0, 99]).contains("node 99"));
+        // A solid that turns about two nodes.
+        assert!(error(&mesh, &[0, 1]).contains("can move without force"));
+        let mut flat = mesh.clone();
+        flat.nodes[26] = Vec3::new(1.2, 1.2, 1.2);
+        flat.nodes[13] = Vec3::new(1.8, 1.8, 1.8);
+        assert!(error(&flat, &[0, 1, 3]).contains("is flat or inverted"));
+        let cut = HexMesh {
+            nodes: mesh.nodes[..20].to_vec(),
+            hexes: mesh.hexes.clone(),
+        };
+        assert!(error(&cut, &[0, 1, 3]).contains("names node"));
+        let apart = two_blocks();
+        assert!(error(&apart, &[0, 1, 3]).contains("join it to what is held"));
+        let none = Elastic {
+            youngs_modulus: 1.0,
+            poissons_ratio: 0.5,
+        };
+        let solid = ElasticSolid::new(&mesh, none, [0, 1, 3]);
+        assert!(
+            solid
+                .err()
+                .expect("an error")
+                .to_string()
+                .contains("incompressible")
+        );
+    }
+
+    fn two_blocks() -> HexMesh {
+        let mesh = block([1, 1, 1]);
+        let far = mesh.nodes.iter().map(|p| p + Vec3::repeat(5.0));
+        let nodes: Vec<Vec3> = mesh.nodes.iter().copied().chain(far).collect();
+        let hexes = [mesh.hexes[0], mesh.hexes[0].map(|n| n + 8)];
+        HexMesh {
+            nodes,
+            hexes: hexes.into(),
+        }
+    }
+
+    #[test]
+    fn every_motion_of_a_solid_needs_its_force() {
+        // Forces by stiffness times displacements, against those that were given.
+        let mesh = distorted([5, 4, 3]);
+        let elastic = Elastic::new(463.0, 0.46).unwrap();
+        let held = nodes_where(&mesh, |p| p.z == 0.0);
+        let solid = ElasticSolid::new(&mesh, elastic, held.clone()).unwrap();
+        let given: Vec<(u32, Vec3)> = (0..mesh.nodes.len() as u32)
+            .map(|n| (n, Vec3::new(f64::from(n).sin(), f64::from(n).cos(), 0.3)))
+            .collect();
+        let displacements = solid.displacements(&given);
+        let mut forces = vec![Vec3::zeros(); mesh.nodes.len()];
+        for (hex, element) in solid.elements() {
+            let stiffness = element.stiffness(&elastic);
+            let u = nalgebra::SMatrix::<f64, 24, 1>::from_fn(|i, _| {
+                displacements[hex[i / 3] as usize][i % 3]
+            });
+            let f = stiffness * u;
+            for (corner, &node) in hex.iter().enumerate() {
+                forces[node as usize] +=
+                    Vec3::new(f[3 * corner], f[3 * corner + 1], f[3 * corner + 2]);
+            }
+        }
+        for (node, given) in given {
+            if !held.contains(&node) {
+                assert!((forces[node as usize] - given).norm() < 1e-10);
+            }
+        }
+    }
+}

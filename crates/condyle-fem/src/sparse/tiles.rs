@@ -1,0 +1,231 @@
+//! Dense triangles of numbers in tiles of four by four, and what is done to them.
+//!
+//! Row `t` of tiles holds the columns from 0 on, each as the vector of its four rows. So a product of two
+//! rows of tiles runs through both in order, and nothing is packed anew.
+
+use std::ops::Range;
+use wide::f64x4;
+
+/// Rows and columns of a tile.
+pub(crate) const TILE: usize = 4;
+
+/// Rows of tiles that go together through a product: with them twelve sums stay in registers.
+const TOGETHER: usize = 3;
+
+/// Columns that are eliminated before the rest is updated by all of them: they stay in the cache.
+const PANEL: usize = 64;
+
+/// Rounded up to whole tiles.
+pub(crate) fn whole_tiles(count: usize) -> usize {
+    count.next_multiple_of(TILE)
+}
+
+/// The lower triangle of a symmetric matrix, whole tiles on the diagonal.
+pub(crate) struct Triangle {
+    /// Rows, a multiple of [`TILE`].
+    size: usize,
+    vectors: Vec<f64x4>,
+}
+
+/// A pivot that is not positive enough.
+pub(crate) struct BadPivot {
+    /// Its column.
+    pub(crate) column: usize,
+}
+
+/// Where row `t` of tiles begins.
+fn start_of_row(t: usize) -> usize {
+    TILE * (t * (t + 1) / 2)
+}
+
+impl Triangle {
+    /// Of zeros.
+    pub(crate) fn new(size: usize) -> Self {
+        Self {
+            size,
+            vectors: vec![f64x4::ZERO; start_of_row(size / TILE)],
+        }
+    }
+
+    /// Row `t` of tiles: its columns up to the diagonal.
+    pub(crate) fn row(&self, t: usize) -> &[f64x4] {
+        &self.vectors[start_of_row(t)..start_of_row(t + 1)]
+    }
+
+    /// The number at a row and a column not after it.
+    #[inline(always)]
+    pub(crate) fn at_mut(&mut self, row: usize, column: usize) -> &mut f64 {
+        let vector = &mut self.vectors[start_of_row(row / TILE) + column];
+        &mut vector.as_mut_array()[row % TILE]
+    }
+
+    /// The number at a row and a column not after it.
+    #[inline(always)]
+    pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
+        self.vectors[start_of_row(row / TILE) + column].as_array()[row % TILE]
+    }
+
+    /// Eliminates the first `columns`, a multiple of [`TILE`]: there stands the Cholesky factor then, with
+    /// the inverses on its diagonal, and in the rest what the elimination leaves.
+    ///
+    /// `least`: pivots that are too small for each column.
+    pub(crate) fn eliminate(&mut self, columns: usize, least: &[f64]) -> Result<(), BadPivot> {
+        let rows = self.size / TILE;
+        for start in (0..columns).step_by(PANEL) {
+            let end = (start + PANEL).min(columns);
+            for column in (start..end).step_by(TILE) {
+                let tile = column / TILE;
+                self.update_column(tile, tile..rows, start..column);
+                self.factor_tile(tile, &least[column..column + TILE])?;
+                self.solve_tiles(tile);
+            }
+            self.update_rest(end / TILE, start..end);
+        }
+        Ok(())
+    }
+
+    /// Subtracts from the tiles of all later rows and columns the products over `over`.
+    fn update_rest(&mut self, first: usize, over: Range<usize>) {
+        let rows = self.size / TILE;
+        for t in (first..rows).step_by(TOGETHER) {
+            let together = t..(t + TOGETHER).min(rows);
+            for column in first..together.end {
+                self.update_column(column, column.max(t)..together.end, over.clone());
+            }
+        }
+    }
+
+    /// Subtracts from tiles of one column those of the products of their rows with that of the column.
+    #[inline]
+    fn update_column(&mut self, column: usize, rows: Range<usize>, over: Range<usize>) {
+        if over.is_empty() {
+            return;
+        }
+        let mut t = rows.start;
+        while t < rows.end {
+            if t + TOGETHER <= rows.end {
+                self.update::<TOGETHER>(t, column, &over);
+                t += TOGETHER;
+            } else {
+                self.update::<1>(t, column, &over);
+                t += 1;
+            }
+        }
+    }
+
+    #[inline]
+    fn update<const N: usize>(&mut self, t: usize, column: usize, over: &Range<usize>) {
+        let strip = |t: usize| &self.vectors[start_of_row(t)..][over.clone()];
+        let strips: [&[f64x4]; N] = std::array::from_fn(|i| strip(t + i));
+        let sums = products(strips, strip(column));
+        for (i, sums) in sums.iter().enumerate() {
+            let at = start_of_row(t + i) + TILE * column;
+            for (vector, sum) in self.vectors[at..at + TILE].iter_mut().zip(sums) {
+                *vector -= *sum;
+            }
+        }
+    }
+
+    /// Cholesky factor of a tile on the diagonal.
+    fn factor_tile(&mut self, tile: usize, least: &[f64]) -> Result<(), BadPivot> {
+        let start = TILE * tile;
+        for j in start..start + TILE {
+            let pivot = self.at(j, j);
+            if pivot.is_nan() || pivot <= least[j - start] {
+                return Err(BadPivot { column: j });
+            }
+            let inverse = 1.0 / pivot.sqrt();
+            *self.at_mut(j, j) = inverse;
+            for i in j + 1..start + TILE {
+                *self.at_mut(i, j) *= inverse;
+            }
+            for k in j + 1..start + TILE {
+                for i in k..start + TILE {
+                    let product = self.at(i, j) * self.at(k, j);
+                    *self.at_mut(i, k) -= product;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Divides the tiles below one on the diagonal by its factor.
+    fn solve_tiles(&mut self, tile: usize) {
+        let start = TILE * tile;
+        let factor: [[f64; TILE]; TILE] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                if j <= i {
+                    self.at(start + i, start + j)
+                } else {
+                    0.0
+                }
+            })
+        });
+        for t in tile + 1..self.size / TILE {
+            let at = start_of_row(t) + start;
+            let columns = &mut self.vectors[at..at + TILE];
+            for j in 0..TILE {
+                let mut sum = columns[j];
+                for k in 0..j {
+                    sum -= columns[k] * f64x4::splat(factor[j][k]);
+                }
+                columns[j] = sum * f64x4::splat(factor[j][j]);
+            }
+        }
+    }
+}
+
+/// Products of some rows of tiles with another, over as many columns as both have.
+#[inline(always)]
+fn products<const N: usize>(strips: [&[f64x4]; N], other: &[f64x4]) -> [[f64x4; TILE]; N] {
+    let mut sums = [[f64x4::ZERO; TILE]; N];
+    let strips = strips.map(|strip| &strip[..other.len()]);
+    for (k, other) in other.iter().enumerate() {
+        let numbers = other.as_array().map(f64x4::splat);
+        for (sums, strip) in sums.iter_mut().zip(&strips) {
+            for (sum, number) in sums.iter_mut().zip(numbers) {
+                *sum = strip[k].mul_add(number, *sum);
+            }
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+
+    #[test]
+    fn verify_partial_elimination_against_the_schur_complement() {
+        let (size, columns) = (152, 84);
+        let random = |i: usize, j: usize| ((i * 37 + j * 101) as f64).sin();
+        let half = DMatrix::from_fn(size, size, random);
+        let full = &half * half.transpose() + DMatrix::identity(size, size);
+        let mut triangle = Triangle::new(size);
+        for j in 0..size {
+            for i in j..size {
+                *triangle.at_mut(i, j) = full[(i, j)];
+            }
+        }
+        assert!(triangle.eliminate(columns, &vec![0.0; columns]).is_ok());
+        let rest = size - columns;
+        let first = full.view((0, 0), (columns, columns)).into_owned();
+        let lower = first.clone().cholesky().unwrap().l();
+        let below = full.view((columns, 0), (rest, columns));
+        let last = full.view((columns, columns), (rest, rest));
+        let schur = last - below * first.cholesky().unwrap().solve(&below.transpose());
+        for j in 0..rest {
+            for i in j..rest {
+                let found = triangle.at(columns + i, columns + j);
+                assert!((found - schur[(i, j)]).abs() < 1e-9);
+            }
+        }
+        for j in 0..columns {
+            assert!((1.0 / triangle.at(j, j) - lower[(j, j)]).abs() < 1e-11);
+            for i in j + 1..columns {
+                assert!((triangle.at(i, j) - lower[(i, j)]).abs() < 1e-11);
+            }
+        }
+    }
+}

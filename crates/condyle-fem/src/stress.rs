@@ -1,0 +1,74 @@
+//! Stress and what of it is reported.
+
+use nalgebra::Matrix3;
+
+/// A symmetric stress: xx, yy, zz, xy, yz, zx; tension is positive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stress(pub [f64; 6]);
+
+impl Stress {
+    /// The mean of the three normal stresses.
+    pub fn mean(&self) -> f64 {
+        (self.0[0] + self.0[1] + self.0[2]) / 3.0
+    }
+
+    /// The deviator, $\sigma - \tfrac{1}{3} \operatorname{tr} \sigma$.
+    pub fn deviator(&self) -> Self {
+        let [xx, yy, zz, xy, yz, zx] = self.0;
+        let mean = self.mean();
+        Self([xx - mean, yy - mean, zz - mean, xy, yz, zx])
+    }
+
+    /// Length of the tensor, $\sqrt{\sigma : \sigma}$.
+    pub fn norm(&self) -> f64 {
+        let [xx, yy, zz, xy, yz, zx] = self.0;
+        (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx)).sqrt()
+    }
+
+    /// Equivalent stress of von Mises, $\sqrt{\tfrac{3}{2} s : s}$ of the deviator.
+    pub fn von_mises(&self) -> f64 {
+        1.5f64.sqrt() * self.deviator().norm()
+    }
+
+    /// Principal stresses, the largest first.
+    pub fn principal(&self) -> [f64; 3] {
+        let [xx, yy, zz, xy, yz, zx] = self.0;
+        let values = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz).symmetric_eigenvalues();
+        let mut values = [values[0], values[1], values[2]];
+        values.sort_by(|a, b| b.total_cmp(a));
+        values
+    }
+
+    /// Largest shear stress: half of the difference of the outer principal stresses.
+    pub fn max_shear(&self) -> f64 {
+        let [first, _, third] = self.principal();
+        0.5 * (first - third)
+    }
+
+    /// Sum of some stresses with weights.
+    pub(crate) fn weighted(parts: impl Iterator<Item = (f64, Self)>) -> Self {
+        let mut sum = [0.0; 6];
+        for (weight, stress) in parts {
+            for (sum, part) in sum.iter_mut().zip(stress.0) {
+                *sum += weight * part;
+            }
+        }
+        Self(sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_invariants_of_tension_and_of_shear() {
+        let tension = Stress([0.0, 30.0, 0.0, 0.0, 0.0, 0.0]);
+        assert!((tension.von_mises() - 30.0).abs() < 1e-12);
+        assert!((tension.max_shear() - 15.0).abs() < 1e-12);
+        let shear = Stress([-5.0, -5.0, -5.0, 0.0, 8.0, 0.0]);
+        assert!((shear.von_mises() - 8.0 * 3f64.sqrt()).abs() < 1e-12);
+        assert!((shear.max_shear() - 8.0).abs() < 1e-12);
+        assert!((shear.principal()[0] - 3.0).abs() < 1e-12);
+    }
+}
