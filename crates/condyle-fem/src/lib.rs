@@ -31,6 +31,7 @@
 //! ```
 
 mod compliance;
+mod deflections;
 mod elastic;
 mod element;
 mod follow;

@@ -31,7 +31,9 @@ impl KnownColumns {
 
     /// Asks for the columns of nodes that are not known.
     pub fn ask(&mut self, nodes: impl Iterator<Item = u32>) {
-        let unknown: Vec<u32> = nodes.filter(|&node| self.columns[node as usize].is_none()).collect();
+        let unknown: Vec<u32> = nodes
+            .filter(|&node| self.columns[node as usize].is_none())
+            .collect();
         if !unknown.is_empty() {
             for (node, column) in self.source.columns(&unknown) {
                 self.columns[node as usize] = Some(column);

@@ -140,7 +140,10 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         self.lanes.clear();
         for (number, near) in self.near.iter().enumerate() {
             let shares = &self.nearby.blocks[near.block as usize];
-            let gap_mm = near.cached.sample.gap_at_point_mm(F64x4::splat(prepared_mm2));
+            let gap_mm = near
+                .cached
+                .sample
+                .gap_at_point_mm(F64x4::splat(prepared_mm2));
             let overclosures = overclosures_mm(near, gap_mm);
             for (lane, &node) in shares.nodes.iter().enumerate() {
                 let is_near = gap_mm.lane(lane) <= MOST_BULGE_MM;

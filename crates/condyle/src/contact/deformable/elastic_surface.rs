@@ -51,7 +51,8 @@ impl ElasticSurface {
         let tiles = tiles(&surface.positions);
         let mut tile_of = vec![0; surface.positions.len()];
         for (number, tile) in tiles.iter().enumerate() {
-            tile.iter().for_each(|&node| tile_of[node as usize] = number);
+            tile.iter()
+                .for_each(|&node| tile_of[node as usize] = number);
         }
         let held = insert.backside_nodes().iter().copied();
         Ok(Self {
@@ -75,12 +76,17 @@ impl ElasticSurface {
 
 impl SurfaceCompliance for ElasticSurface {
     fn columns(&self, nodes: &[u32]) -> Vec<(u32, Column)> {
-        let mut tiles: Vec<usize> = nodes.iter().map(|&node| self.tile_of[node as usize]).collect();
+        let mut tiles: Vec<usize> = nodes
+            .iter()
+            .map(|&node| self.tile_of[node as usize])
+            .collect();
         tiles.sort_unstable();
         tiles.dedup();
         let wanted = || tiles.iter().flat_map(|&tile| &self.tiles[tile]).copied();
         let mut columns = self.columns.lock().unwrap_or_else(PoisonError::into_inner);
-        let new: Vec<u32> = wanted().filter(|&node| columns[node as usize].is_none()).collect();
+        let new: Vec<u32> = wanted()
+            .filter(|&node| columns[node as usize].is_none())
+            .collect();
         let solved = self.solid.deflections(&self.nodes, &self.directions, &new);
         for (node, column) in new.into_iter().zip(solved) {
             columns[node as usize] = Some(Arc::from(column));
@@ -99,8 +105,14 @@ fn tiles(positions: &[Vec3]) -> Vec<Vec<u32>> {
             tiles.push(nodes);
         } else {
             let at = |node: &u32| positions[*node as usize];
-            let low = nodes.iter().map(at).fold(Vec3::repeat(f64::INFINITY), |a, b| a.inf(&b));
-            let high = nodes.iter().map(at).fold(Vec3::repeat(f64::NEG_INFINITY), |a, b| a.sup(&b));
+            let low = nodes
+                .iter()
+                .map(at)
+                .fold(Vec3::repeat(f64::INFINITY), |a, b| a.inf(&b));
+            let high = nodes
+                .iter()
+                .map(at)
+                .fold(Vec3::repeat(f64::NEG_INFINITY), |a, b| a.sup(&b));
             let axis = (high - low).imax();
             nodes.sort_by(|a, b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b)));
             let second = nodes.split_off(nodes.len() / 2);

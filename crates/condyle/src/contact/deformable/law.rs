@@ -63,6 +63,12 @@ impl ContactLaw for Deformable {
         let contact_modulus_mpa = self.elastic.youngs_modulus / (1.0 - ratio * ratio);
         ALONE * contact_modulus_mpa / insert.unworn_share_mm2(node).sqrt()
     }
+
+    fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
+        let mut law = self.clone();
+        law.slip_tolerance_mm_per_s *= factor;
+        Arc::new(law)
+    }
 }
 
 impl Deformable {
@@ -74,11 +80,16 @@ impl Deformable {
     ) -> (Arc<ElasticSurface>, ContactState) {
         let used = used_nodes(insert, state);
         let now = &insert.mesh().nodes;
-        if is_much_thinner(insert, &used) && let Ok(renewed) = self.surface(insert, now) {
+        if is_much_thinner(insert, &used)
+            && let Ok(renewed) = self.surface(insert, now)
+        {
             return (renewed, state_of(now));
         }
         let surface = self.surface(insert, &used);
-        #[expect(clippy::expect_used, reason = "said under Panics; a case checks its insert as it is built")]
+        #[expect(
+            clippy::expect_used,
+            reason = "said under Panics; a case checks its insert as it is built"
+        )]
         let surface = surface.expect("the insert is an elastic solid");
         (surface, state.clone())
     }
@@ -88,7 +99,11 @@ impl Deformable {
 fn used_nodes(insert: &Insert, state: &ContactState) -> Vec<Vec3> {
     let field = state.fields.iter().find(|field| field.name == NODES_FIELD);
     match field {
-        Some(field) => field.values.chunks_exact(3).map(Vec3::from_column_slice).collect(),
+        Some(field) => field
+            .values
+            .chunks_exact(3)
+            .map(Vec3::from_column_slice)
+            .collect(),
         None => insert.unworn_nodes().to_vec(),
     }
 }
@@ -98,7 +113,9 @@ fn state_of(nodes: &[Vec3]) -> ContactState {
         name: NODES_FIELD.to_owned(),
         values: nodes.iter().flatten().copied().collect(),
     };
-    ContactState { fields: vec![field] }
+    ContactState {
+        fields: vec![field],
+    }
 }
 
 fn is_much_thinner(insert: &Insert, used: &[Vec3]) -> bool {

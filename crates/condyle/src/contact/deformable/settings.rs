@@ -5,7 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use condyle_fem::{Elastic, SolidError};
 
 use super::elastic_surface::ElasticSurface;
-use crate::{Vec3, contact::{broad_phase::Search, pressed::Coulomb}, geometry::Insert};
+use crate::{
+    Vec3,
+    contact::{broad_phase::Search, pressed::Coulomb},
+    geometry::Insert,
+};
 
 /// So many compliances are remembered: those of an insert and of its coarser twin, unworn and worn.
 const MOST_REMEMBERED: usize = 4;
@@ -78,8 +82,14 @@ impl Deformable {
         insert: &Insert,
         mesh_nodes: &[Vec3],
     ) -> Result<Arc<ElasticSurface>, SolidError> {
-        let mut remembered = self.remembered.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let found = remembered.iter().find(|surface| surface.is_of(insert, mesh_nodes));
+        let mut remembered = self
+            .remembered
+            .0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let found = remembered
+            .iter()
+            .find(|surface| surface.is_of(insert, mesh_nodes));
         if let Some(surface) = found {
             return Ok(Arc::clone(surface));
         }
