@@ -97,17 +97,15 @@ impl Case {
             poissons_ratio: self.material.poissons_ratio,
         };
         let friction = &self.contact.friction;
-        let law = Deformable::new(
+        let mut law = Deformable::new(
             elastic,
             friction.friction,
             friction.slip_tolerance_mm_per_s,
             insert,
         )?;
-        Ok(Deformable {
-            search: self.contact.finding.search.search(),
-            sample_reuse_mm: self.contact.finding.sample_reuse_mm,
-            ..law
-        })
+        law.search = self.contact.finding.search.search();
+        law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
+        Ok(law)
     }
 
     /// The elastic foundation of this case.
