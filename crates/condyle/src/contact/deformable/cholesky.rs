@@ -26,15 +26,17 @@ fn start(panel: usize) -> usize {
     ROWS * panel * (panel + 1) / 2
 }
 
-fn zero() -> Eight {
+/// Eight zeros.
+pub(super) fn zero() -> Eight {
     [F64x4::splat(0.0); 2]
 }
 
 /// a - b f
 #[inline(always)]
-fn subtract(a: &mut Eight, b: &Eight, f: F64x4) {
-    a[0] -= b[0] * f;
-    a[1] -= b[1] * f;
+pub(super) fn subtract(a: &mut Eight, b: &Eight, f: f64) {
+    let f = F64x4::splat(-f);
+    a[0] = b[0].mul_add(f, a[0]);
+    a[1] = b[1].mul_add(f, a[1]);
 }
 
 impl Cholesky {
@@ -84,14 +86,14 @@ impl Cholesky {
         for (column, across) in own[..first].iter().zip(other) {
             let across = across[half];
             for (lane, sum) in four.iter_mut().enumerate() {
-                subtract(sum, column, F64x4::splat(across.lane(lane)));
+                subtract(sum, column, across.lane(lane));
             }
         }
         for j in 0..LANES {
             for m in 0..j {
                 let across = other[first + m][half].lane(j);
                 let column = four[m];
-                subtract(&mut four[j], &column, F64x4::splat(across));
+                subtract(&mut four[j], &column, across);
             }
             let scale = F64x4::splat(self.per_diagonal[first + j]);
             four[j] = four[j].map(|rows| rows * scale);
@@ -107,7 +109,7 @@ impl Cholesky {
             let mut column = own[first + j];
             for before in &own[..first + j] {
                 let across = before[j / LANES].lane(j % LANES);
-                subtract(&mut column, before, F64x4::splat(across));
+                subtract(&mut column, before, across);
             }
             let pivot = column[j / LANES].lane(j % LANES).max(f64::MIN_POSITIVE);
             let per_diagonal = 1.0 / pivot.sqrt();
@@ -116,35 +118,55 @@ impl Cholesky {
         }
     }
 
-    /// Solves for eight right-hand sides at once, in place; `sides` has a row for each of the matrix.
-    pub fn solve(&self, sides: &mut Vec<Eight>) {
-        let panels = self.order.div_ceil(ROWS);
-        sides.resize(ROWS * panels, zero());
-        for row in 0..sides.len() {
-            let (before, from) = sides.split_at_mut(row);
-            let mut sum = from[0];
-            for (known, factor) in before.iter().zip(self.row(row)) {
-                subtract(&mut sum, known, F64x4::splat(factor));
-            }
-            from[0] = self.scaled(row, sum);
-        }
-        for row in (0..sides.len()).rev() {
-            let (before, from) = sides.split_at_mut(row);
-            let solved = self.scaled(row, from[0]);
-            from[0] = solved;
-            for (sum, factor) in before.iter_mut().zip(self.row(row)) {
-                subtract(sum, &solved, F64x4::splat(factor));
-            }
-        }
-        sides.truncate(self.order);
+    /// How many rows right-hand sides have: the order, filled up.
+    pub fn rows(&self) -> usize {
+        self.per_diagonal.len()
     }
 
-    /// A row of the factor, left of the diagonal and on.
-    #[inline(always)]
-    fn row(&self, row: usize) -> impl Iterator<Item = f64> {
-        let (half, lane) = (row % ROWS / LANES, row % LANES);
-        let columns = &self.columns[start(row / ROWS)..];
-        columns.iter().map(move |rows| rows[half].lane(lane))
+    /// L\sides for eight right-hand sides at once, in place.
+    pub fn forward(&self, sides: &mut [Eight]) {
+        for four in 0..self.rows() / LANES {
+            let (first, half) = (LANES * four, four % 2);
+            let own = &self.columns[start(four / 2)..];
+            let (known, here) = sides.split_at_mut(first);
+            let mut sums = [here[0], here[1], here[2], here[3]];
+            for (known, column) in known.iter().zip(own) {
+                for (lane, sum) in sums.iter_mut().enumerate() {
+                    subtract(sum, known, column[half].lane(lane));
+                }
+            }
+            for j in 0..LANES {
+                sums[j] = self.scaled(first + j, sums[j]);
+                let solved = sums[j];
+                for (lane, sum) in sums.iter_mut().enumerate().skip(j + 1) {
+                    subtract(sum, &solved, own[first + j][half].lane(lane));
+                }
+            }
+            here[..LANES].copy_from_slice(&sums);
+        }
+    }
+
+    /// L'\sides for eight right-hand sides at once, in place.
+    pub fn backward(&self, sides: &mut [Eight]) {
+        for four in (0..self.rows() / LANES).rev() {
+            let (first, half) = (LANES * four, four % 2);
+            let own = &self.columns[start(four / 2)..];
+            let (before, here) = sides.split_at_mut(first);
+            let mut solved = [here[0], here[1], here[2], here[3]];
+            for j in (0..LANES).rev() {
+                solved[j] = self.scaled(first + j, solved[j]);
+                let known = solved[j];
+                for (m, sum) in solved.iter_mut().enumerate().take(j) {
+                    subtract(sum, &known, own[first + m][half].lane(j));
+                }
+            }
+            here[..LANES].copy_from_slice(&solved);
+            for (sum, column) in before.iter_mut().zip(own) {
+                for (lane, known) in solved.iter().enumerate() {
+                    subtract(sum, known, column[half].lane(lane));
+                }
+            }
+        }
     }
 
     fn scaled(&self, row: usize, sides: Eight) -> Eight {
@@ -171,7 +193,9 @@ mod tests {
                 |row: usize, half: usize| F64x4::from_lanes(|lane| right(row, 4 * half + lane));
             let mut sides: Vec<Eight> =
                 (0..order).map(|row| [half(row, 0), half(row, 1)]).collect();
-            factor.solve(&mut sides);
+            sides.resize(factor.rows(), zero());
+            factor.forward(&mut sides);
+            factor.backward(&mut sides);
             for row in 0..order {
                 for side in 0..8 {
                     let part =

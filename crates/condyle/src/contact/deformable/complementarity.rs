@@ -1,7 +1,8 @@
 //! The loads under which the surfaces touch and nowhere overlap, and nowhere pull.
 
 use super::{
-    cholesky::{Cholesky, Eight},
+    changed_factor::ChangedFactor,
+    cholesky::{Eight, zero},
     compliance::KnownColumns,
 };
 use crate::number::Number;
@@ -48,9 +49,9 @@ pub(super) struct Pressing {
     /// The pressing nodes, and their places among the candidates.
     places: Vec<usize>,
     nodes: Vec<u32>,
-    /// The nodes whose compliance is factored.
-    factored: Vec<u32>,
-    factor: Cholesky,
+    /// Of every surface node its overclosure, and the derivatives by six motions: of candidates as it is now.
+    overclosures: Vec<Eight>,
+    factor: ChangedFactor,
     /// Of every pressing node its load, and the derivatives by six motions.
     loads: Vec<Eight>,
     deflection_mm: Vec<f64>,
@@ -64,8 +65,8 @@ impl Pressing {
             is_pressing: Vec::new(),
             places: Vec::new(),
             nodes: Vec::new(),
-            factored: Vec::new(),
-            factor: Cholesky::default(),
+            overclosures: vec![zero(); node_count],
+            factor: ChangedFactor::of_nothing(node_count),
             loads: Vec::new(),
             deflection_mm: Vec::new(),
         }
@@ -81,6 +82,10 @@ impl Pressing {
         columns: &mut KnownColumns,
     ) -> impl Iterator<Item = (usize, &Eight)> {
         self.start(candidates);
+        for candidate in candidates {
+            self.overclosures[candidate.node as usize] = candidate.overclosure_mm;
+        }
+        self.factor.take_other_overclosures();
         let (mut least, mut tries) = (usize::MAX, MOST_TRIES);
         for _ in 0..MOST_ROUNDS {
             self.load(candidates, columns);
@@ -135,17 +140,10 @@ impl Pressing {
         places.extend((0..candidates.len()).filter(|&place| self.is_pressing[place]));
         nodes.clear();
         nodes.extend(places.iter().map(|&place| candidates[place].node));
-        if nodes != &self.factored {
-            columns.ask(nodes.iter().copied());
-            self.factor.factor(nodes.len(), |row, column| {
-                columns.of(nodes[column])[nodes[row] as usize]
-            });
-            self.factored.clone_from(nodes);
-        }
-        self.loads.clear();
-        let overclosures = places.iter().map(|&place| candidates[place].overclosure_mm);
-        self.loads.extend(overclosures);
-        self.factor.solve(&mut self.loads);
+        columns.ask(nodes.iter().copied());
+        self.factor.press(nodes, columns);
+        self.factor
+            .solve(nodes, &self.overclosures, &mut self.loads);
     }
 
     /// Places of the candidates that pull, and of those that overlap and do not press.

@@ -16,11 +16,15 @@ const EQUAL: f64 = 1e-9;
 /// As many nodes lie around any inside a surface; see `foundation/peak.rs`.
 const LEAST_NODES: usize = 7;
 
+/// A quadratic that misses the square of the pressure under the top by more than this part does not follow it.
+const MOST_MISSED: f64 = 0.1;
+
 /// Looks for the highest pressure.
 ///
 /// Under smooth bodies the square of the pressure is smooth up to the edge of contact (in Hertz's contact a
-/// quadratic), so it is this that is fitted, over the node that presses most and those around it that press. The
-/// peak is not below the highest mean over a share.
+/// quadratic), so it is this that is fitted, over the node that presses most and those around it, if all of them
+/// press; at the edge of a worn scar, where they do not, there is nothing smooth to fit. The peak is not below the
+/// highest mean over a share, and is that where the fit does not follow.
 pub(super) struct PeakSearch<'a> {
     pub shares: &'a [Share],
     pub faces: &'a FacesAround,
@@ -42,12 +46,16 @@ impl PeakSearch<'_> {
     /// Highest pressure within the share of a node, MPa.
     fn highest_around(&self, node: u32) -> f64 {
         let patch = self.faces.patch(node, LEAST_NODES);
-        let pressing = |node: &u32| {
-            let square = self.pressure2.get(node)?;
-            Some((&self.shares[*node as usize], *square))
+        let Some(own) = self.pressure2.get(&node) else {
+            return 0.0;
         };
-        let means = patch.iter().filter_map(pressing);
-        let fit = Quadratic::fit(&self.shares[node as usize], means);
-        fit.map_or(0.0, |fit| fit.highest().max(0.0).sqrt())
+        if !patch.iter().all(|node| self.pressure2.contains_key(node)) {
+            return 0.0;
+        }
+        let pressing = |node: &u32| (&self.shares[*node as usize], self.pressure2[node]);
+        let fit = Quadratic::fit(&self.shares[node as usize], patch.iter().map(pressing));
+        let follows = |fit: &Quadratic| (fit.mean() - own).abs() <= MOST_MISSED * own;
+        fit.filter(follows)
+            .map_or(0.0, |fit| fit.highest().max(0.0).sqrt())
     }
 }
