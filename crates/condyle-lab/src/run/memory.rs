@@ -20,6 +20,8 @@ const BYTES_A_TOUCH: f64 = 230.0;
 const WITH_ESTIMATE: f64 = 2.1;
 /// Bytes of a node of a mesh femur's field while it is made.
 const BYTES_A_FIELD_NODE: f64 = 48.0;
+/// So many times the nodes that touch at an increment are touched in the life of an insert, about.
+const EVER_TOUCHED: f64 = 4.0;
 /// Parts of a cycle at which the load is looked at.
 const LOOKED_AT: usize = 50;
 
@@ -47,9 +49,11 @@ fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64) -> f64 {
         FemoralSurface::Mesh(field) => field.nodes() as f64,
         _ => 0.0,
     };
+    let law = &march.test().contact;
     let bytes = BYTES_A_NODE * march.insert().mesh().nodes.len() as f64
         + BYTES_A_TOUCH * histories * touches
-        + BYTES_A_FIELD_NODE * field_nodes;
+        + BYTES_A_FIELD_NODE * field_nodes
+        + law.memory_bytes(march.insert(), EVER_TOUCHED * nodes_touched);
     PROGRAM_MB + 1e-6 * bytes
 }
 

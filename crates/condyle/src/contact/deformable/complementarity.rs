@@ -54,6 +54,8 @@ pub(super) struct Pressing {
     factor: ChangedFactor,
     /// Of every pressing node its load, and the derivatives by six motions.
     loads: Vec<Eight>,
+    /// Places of the candidates that do not press, and how far each gives way.
+    silent: Vec<usize>,
     deflection_mm: Vec<f64>,
 }
 
@@ -68,6 +70,7 @@ impl Pressing {
             overclosures: vec![zero(); node_count],
             factor: ChangedFactor::of_nothing(node_count),
             loads: Vec::new(),
+            silent: Vec::new(),
             deflection_mm: Vec::new(),
         }
     }
@@ -146,34 +149,32 @@ impl Pressing {
             .solve(nodes, &self.overclosures, &mut self.loads);
     }
 
-    /// Places of the candidates that pull, and of those that overlap and do not press.
+    /// Places of the candidates that pull, and of those that overlap and do not press; ascending.
     fn wrong(&mut self, candidates: &[Candidate], columns: &KnownColumns) -> Vec<usize> {
+        let loads = self.places.iter().zip(&self.loads);
+        let pulling = loads.filter(|(_, load)| load[0].lane(0) < -LOAD_TOLERANCE_N);
+        let mut wrong: Vec<usize> = pulling.map(|(&place, _)| place).collect();
+        self.silent.clear();
+        let silent = (0..candidates.len()).filter(|&place| !self.is_pressing[place]);
+        self.silent.extend(silent);
         self.find_deflection(candidates, columns);
-        let mut loads = self.loads.iter();
-        let mut wrong = Vec::new();
-        for (place, candidate) in candidates.iter().enumerate() {
-            let is_wrong = if self.is_pressing[place] {
-                loads
-                    .next()
-                    .is_some_and(|load| load[0].lane(0) < -LOAD_TOLERANCE_N)
-            } else {
-                candidate.overclosed_mm() - self.deflection_mm[place] > GAP_TOLERANCE_MM
-            };
-            if is_wrong {
+        for (&place, deflection_mm) in self.silent.iter().zip(&self.deflection_mm) {
+            if candidates[place].overclosed_mm() - deflection_mm > GAP_TOLERANCE_MM {
                 wrong.push(place);
             }
         }
+        wrong.sort_unstable();
         wrong
     }
 
-    /// How far each candidate gives way.
+    /// How far each candidate that does not press gives way.
     fn find_deflection(&mut self, candidates: &[Candidate], columns: &KnownColumns) {
         self.deflection_mm.clear();
-        self.deflection_mm.resize(candidates.len(), 0.0);
+        self.deflection_mm.resize(self.silent.len(), 0.0);
         for (&node, load) in self.nodes.iter().zip(&self.loads) {
             let (column, load_n) = (columns.of(node), load[0].lane(0));
-            for (sum, candidate) in self.deflection_mm.iter_mut().zip(candidates) {
-                *sum += column[candidate.node as usize] * load_n;
+            for (sum, &place) in self.deflection_mm.iter_mut().zip(&self.silent) {
+                *sum += column[candidates[place].node as usize] * load_n;
             }
         }
     }

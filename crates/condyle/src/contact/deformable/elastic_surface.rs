@@ -11,7 +11,7 @@ use super::compliance::{Column, SurfaceCompliance};
 use crate::{Vec3, geometry::Insert};
 
 /// So many nodes at most are solved for together: forces on nodes that are near load the same part of the factor.
-const TILE_NODES: usize = 24;
+const TILE_NODES: usize = 48;
 
 /// The articulating surface of an elastic insert, bonded to its tray.
 ///
@@ -63,6 +63,12 @@ impl ElasticSurface {
             tiles,
             tile_of,
         })
+    }
+
+    /// Bytes of the factor, and of so many columns.
+    pub fn bytes(&self, columns: f64) -> f64 {
+        let surface_nodes = self.nodes.len() as f64;
+        8.0 * (self.solid.factor_len() as f64 + surface_nodes * columns.min(surface_nodes))
     }
 
     /// Whether it is that of an insert with its mesh nodes there.

@@ -116,11 +116,8 @@ fn verify_hertz_on_a_half_space() {
     let depth_mm = 0.408;
     let hertz = Hertz::at(depth_mm);
     assert!((hertz.force_n - 1000.0).abs() < 3.0 && (hertz.radius_mm - 3.130).abs() < 1e-3);
-    for (edge_mm, within) in [
-        (1.5, [0.01, 0.03, 0.02]),
-        (1.0, [0.01, 0.03, 0.02]),
-        (0.5, [0.005, 0.01, 0.01]),
-    ] {
+    // Gaps are taken along the normals of the ball, not straight down: at this depth that is 0.9 % of the force.
+    for (edge_mm, within) in [(1.0, [0.01, 0.07, 0.03]), (0.5, [0.01, 0.04, 0.015])] {
         let plane = Plane::under_sphere(edge_mm);
         for (x, z) in [(0.0, 0.0), (0.4, 0.1), (0.7, 0.7), (0.3, -0.6)] {
             let motion = pressed(depth_mm, x, z);
@@ -133,11 +130,9 @@ fn verify_hertz_on_a_half_space() {
                 radius_mm / hertz.radius_mm,
                 landing.peak_pressure_mpa / hertz.peak_mpa,
             ];
-            println!("{edge_mm} {x} {z} {ratios:?} {}", landing.touched.len());
+            println!("{edge_mm} {x} {z} {ratios:?}");
             for (ratio, within) in ratios.iter().zip(within) {
-                if (ratio - 1.0).abs() > within {
-                    println!("   not");
-                }
+                assert!((ratio - 1.0).abs() < within, "{edge_mm} {x} {z} {ratios:?}");
             }
         }
     }
@@ -276,6 +271,30 @@ fn an_answer_does_not_depend_on_those_before() {
     for (depth_mm, x) in [(0.5, 1.0), (0.02, -0.5), (-1.0, 0.0), (0.3, 0.4)] {
         contact.respond(&pressed(depth_mm, x, 0.1));
         let again = contact.respond(&motion).wrench;
-        assert_eq!(again, fresh, "{depth_mm} {x}");
+        let apart = (again.numbers() - fresh.numbers()).norm() / fresh.numbers().norm();
+        assert!(apart < 1e-9, "{depth_mm} {x} {apart}");
+    }
+}
+
+#[test]
+fn a_factor_that_is_kept_solves_as_one_made_anew() {
+    let plane = Plane::under_sphere(0.7);
+    let mut kept = plane.contact(0.07);
+    for step in 0..60 {
+        let along_mm = 0.05 * f64::from(step);
+        let motion = pressed(0.3 + 0.05 * along_mm.sin(), along_mm - 1.5, 0.3);
+        let (mut anew, mut numbers) = (plane.contact(0.07), [Vec6::zeros(); 2]);
+        let mut tangents = [Mat6::zeros(); 2];
+        for (i, contact) in [&mut kept, &mut anew].into_iter().enumerate() {
+            let response = contact.respond(&motion);
+            numbers[i] = response.wrench.numbers();
+            tangents[i] = response.tangent().by_pose.matrix;
+        }
+        let apart = (numbers[0] - numbers[1]).norm() / numbers[1].norm();
+        assert!(apart < 1e-9, "{step} {apart}");
+        assert!(
+            (tangents[0] - tangents[1]).amax() < 1e-5 * tangents[1].amax(),
+            "{step}"
+        );
     }
 }
