@@ -42,7 +42,9 @@ fn fail(case: &Case, error: ExportError) -> ExitCode {
             shown: case.placement_at_its_key(&source, &[]),
             source,
         },
-        ExportError::Write { .. } => return exit::fail(error, exit::BAD_INPUT),
+        ExportError::Write { .. } | ExportError::Deformable => {
+            return exit::fail(error, exit::BAD_INPUT);
+        }
     })
 }
 

@@ -31,6 +31,7 @@
 //! ```
 
 mod compliance;
+mod deflections;
 mod eigenstrain;
 mod elastic;
 mod element;

@@ -115,7 +115,7 @@ pub(crate) fn estimate(
         return ControlFlow::Continue(None);
     };
     let coarser = case.coarser_insert().map(Arc::new);
-    let law: Arc<dyn ContactLaw> = looser(case);
+    let law = looser(march.test().contact.as_ref());
     let (mesh, base) = again.by_mesh(&coarser, summary)?;
     let finer = again.by_increments(&base)?;
     let looser = again.by_slip(&base, &law)?;
@@ -151,10 +151,8 @@ fn finer(mut test: WearTest) -> WearTest {
     test
 }
 
-fn looser(case: &Case) -> Arc<dyn ContactLaw> {
-    let mut law = case.foundation();
-    law.slip_tolerance_mm_per_s *= 2.0;
-    Arc::new(law)
+fn looser(contact: &dyn ContactLaw) -> Arc<dyn ContactLaw> {
+    contact.with_slip_tolerance_times(2.0)
 }
 
 fn with_contact(test: WearTest, contact: Arc<dyn ContactLaw>) -> WearTest {

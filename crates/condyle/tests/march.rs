@@ -44,6 +44,10 @@ impl ContactLaw for Counting {
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64 {
         self.0.stiffness_mpa_per_mm(insert, node)
     }
+
+    fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
+        self.0.with_slip_tolerance_times(factor)
+    }
 }
 
 impl ContactModel for CountingContact<'_> {

@@ -16,6 +16,11 @@ pub enum ExportError {
     /// The femur finds no place on the insert.
     #[error(transparent)]
     Placement(#[from] PlacementError),
+    /// A deformable insert, which the model that is written does not have.
+    #[error(
+        "the Abaqus model presses a rigid insert by a pressure law, and this case has a deformable one; write [contact] model = \"foundation\" for it"
+    )]
+    Deformable,
     /// The file cannot be written.
     #[error("the Abaqus file cannot be written: {source}; check the disk and the folder")]
     Write {

@@ -8,7 +8,7 @@ use super::error::ExportError;
 use super::model::Model;
 use super::options::AbaqusOptions;
 use super::{bodies, contact, heading, machine, steps, waves};
-use crate::case::{BuildWarning, Case};
+use crate::case::{BuildWarning, Case, ContactModelWord};
 use crate::mesh::InpWriter;
 
 /// Writes `case` as one Abaqus input file in mm, N, s, tonne and MPa; `threads` share the work on
@@ -18,13 +18,16 @@ use crate::mesh::InpWriter;
 /// Returns what was put right in the meshes on the way.
 ///
 /// # Errors
-/// A case that does not build, bodies that do not settle, or a file that cannot be written.
+/// A deformable insert, a case that does not build, bodies that do not settle, or a file that cannot be written.
 pub fn write_abaqus(
     case: &Case,
     options: AbaqusOptions,
     threads: usize,
     out: &mut impl Write,
 ) -> Result<Vec<BuildWarning>, ExportError> {
+    if case.contact.model == ContactModelWord::Deformable {
+        return Err(ExportError::Deformable);
+    }
     let built = case.build(threads)?;
     let march = March::start(built.test)?;
     let model = Model::new(case, &march, options)?;

@@ -1,12 +1,21 @@
-//! Pressure law, friction, and how nodes that touch are found.
+//! Model of contact, pressure law, friction, and how nodes that touch are found.
 
 use condyle::contact::{Foundation, PressureTable, Search, softening_modulus};
 
 use crate::keyed::{
-    Key, Log, Section, Settings, Variants, Writer, choice, settings, variants, within,
+    Choices, Key, Log, Offered, Section, Settings, Variants, Writer, choice, settings, variants,
+    within,
 };
 
 choice! {
+    /// What the insert is to the femur.
+    ContactModelWord {
+        /// A rigid body with an elastic layer on it, in which neighbours do not feel each other.
+        Foundation = "foundation",
+        /// An elastic body of finite elements, bonded to its tray.
+        Deformable = "deformable",
+    }
+
     /// How the nodes that may touch are found.
     SearchWord {
         /// By bounds that are carried along as the femur moves.
@@ -27,6 +36,12 @@ impl SearchWord {
 }
 
 settings! {
+    /// The model of contact.
+    ModelOfContact {
+        /// What the insert is: an elastic foundation, quick, whose pressure follows a law; or a deformable body, exact for small strains, which has no law.
+        model: ContactModelWord = ContactModelWord::Foundation;
+    }
+
     /// Contact besides the pressure law.
     Friction {
         /// Coulomb coefficient of friction.
@@ -81,10 +96,12 @@ variants! {
     }
 }
 
-/// Pressure law, friction, and how nodes that touch are found.
+/// Model of contact, pressure law, friction, and how nodes that touch are found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
-    /// Pressure against overclosure.
+    /// The model.
+    pub model: ContactModelWord,
+    /// Pressure against overclosure; of the foundation alone.
     pub law: PressureLawChoice,
     /// Friction.
     pub friction: Friction,
@@ -93,9 +110,29 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// The key that chooses the law, and those that `[contact]` has whatever the law.
+    /// The keys that choose model and law, and those that `[contact]` has whatever they are.
     pub(super) fn keys() -> Vec<Key> {
-        [vec![PressureLawChoice::choices().by], Self::other_keys()].concat()
+        [
+            ModelOfContact::keys(),
+            vec![PressureLawChoice::choices().by],
+            Self::other_keys(),
+        ]
+        .concat()
+    }
+
+    /// The choice of the model, which brings the key of the law, or that and `of_law`.
+    pub(super) fn models(of_law: &[Key]) -> Choices {
+        let key = &ModelOfContact::keys()[0];
+        let law = [&[PressureLawChoice::choices().by], of_law].concat();
+        let offered = ContactModelWord::ALL.iter().map(|model| Offered {
+            word: model.word(),
+            keys: match model {
+                ContactModelWord::Foundation => law.clone(),
+                ContactModelWord::Deformable => Vec::new(),
+            },
+        });
+        let default = ContactModelWord::Foundation.word();
+        Choices::new(key.name, key.doc, default, offered.collect())
     }
 
     fn other_keys() -> Vec<Key> {
@@ -103,10 +140,23 @@ impl Contact {
     }
 
     pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let law = PressureLawChoice::read(section, &Self::other_keys(), log);
+        let model = ModelOfContact::read(section, log).map(|of| of.model);
+        let law = match model {
+            Some(ContactModelWord::Deformable) => {
+                let of_laws = PressureLawChoice::choices().offered;
+                let of_laws: Vec<Key> = of_laws.into_iter().flat_map(|law| law.keys).collect();
+                Self::models(&of_laws).read(section, &Self::other_keys(), log);
+                Some(PressureLawChoice::Linear)
+            }
+            Some(ContactModelWord::Foundation) | None => {
+                let common = [ModelOfContact::keys(), Self::other_keys()].concat();
+                PressureLawChoice::read(section, &common, log)
+            }
+        };
         let friction = Friction::read(section, log);
         let finding = Finding::read(section, log);
         Some(Self {
+            model: model?,
             law: law?,
             friction: friction?,
             finding: finding?,
@@ -114,7 +164,11 @@ impl Contact {
     }
 
     pub(super) fn write(&self, out: &mut Writer) {
-        self.law.write(out);
+        let model = self.model;
+        ModelOfContact { model }.write(out);
+        if model == ContactModelWord::Foundation {
+            self.law.write(out);
+        }
         self.friction.write(out);
         self.finding.write(out);
     }

@@ -120,7 +120,9 @@ impl Case {
                 _ => &["articulating_surface"],
             },
             BuildError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "layers"],
-            BuildError::Insert(_) => &["backside", "articulating_surface", "file", "edge_mm"],
+            BuildError::Insert(_) | BuildError::Solid(_) => {
+                &["backside", "articulating_surface", "file", "edge_mm"]
+            }
             BuildError::Axes(_) => &["axes"],
             BuildError::WrongAxes { .. } => &["axes", "file"],
         };

@@ -83,8 +83,9 @@ fn of<S: Settings>(about: &str) -> TableSchema {
 
 fn contact() -> TableSchema {
     let laws = PressureLawChoice::choices();
-    TableSchema::new("Pressure law and friction.")
+    TableSchema::new("Model of contact, pressure law and friction.")
         .with_keys(&Contact::keys())
+        .with_choices(&Contact::models(&[]))
         .with_choices(&laws)
         .with_one_of_under(&laws, "tabulated", &pressure_table::WAYS)
 }

@@ -50,7 +50,9 @@ pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
 pub use build::{Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, StrayPiece, WrongAxes};
 pub use channel::CaseChannel;
-pub use contact::{Contact, Finding, Friction, PressureLawChoice, SearchWord, SofteningCurve};
+pub use contact::{
+    Contact, ContactModelWord, Finding, Friction, PressureLawChoice, SearchWord, SofteningCurve,
+};
 pub use contents::Case;
 pub use culprit::Unfit;
 #[cfg(feature = "file-system")]

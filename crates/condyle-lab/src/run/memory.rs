@@ -16,6 +16,8 @@ const PROGRAM_MB: f64 = 6.0;
 const BYTES_A_TOUCH: f64 = 230.0;
 /// The estimate of the error keeps histories of twice the increments beside them.
 const WITH_ESTIMATE: f64 = 2.1;
+/// So many times the nodes that touch at an increment are touched in the life of an insert, about.
+const EVER_TOUCHED: f64 = 4.0;
 /// Parts of a cycle at which the load is looked at.
 const LOOKED_AT: usize = 50;
 
@@ -43,9 +45,11 @@ fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64) -> f64 {
         FemoralSurface::Mesh(field) => field.nodes() as f64,
         _ => 0.0,
     };
+    let law = &march.test().contact;
     let bytes = Limits::BYTES_OF_INSERT_NODE * march.insert().mesh().nodes.len() as f64
         + BYTES_A_TOUCH * histories * touches
-        + Limits::BYTES_OF_FIELD_NODE * field_nodes;
+        + Limits::BYTES_OF_FIELD_NODE * field_nodes
+        + law.memory_bytes(march.insert(), EVER_TOUCHED * nodes_touched);
     PROGRAM_MB + 1e-6 * bytes
 }
 

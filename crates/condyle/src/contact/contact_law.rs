@@ -1,6 +1,6 @@
 //! What a test says of contact.
 
-use std::fmt::Debug;
+use std::{fmt::Debug, sync::Arc};
 
 use super::{memory::ContactMemory, model::ContactModel};
 use crate::geometry::{ArticulatingSurface, FemoralSurface, Insert};
@@ -29,4 +29,12 @@ pub trait ContactLaw: Debug + Send + Sync {
     /// By how much the pressure at a surface node falls as the node alone is worn by a millimetre,
     /// MPa/mm: how fast wear flattens the pressure follows from it.
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64;
+
+    /// Bytes that the law keeps of an insert, beside what a contact takes, if so many nodes ever touch.
+    fn memory_bytes(&self, _insert: &Insert, _ever_touched: f64) -> f64 {
+        0.0
+    }
+
+    /// The same law with `factor` times the slip tolerance, for the estimate of what that costs in accuracy.
+    fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw>;
 }

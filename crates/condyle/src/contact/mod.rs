@@ -7,20 +7,25 @@
 //! | `memory` | what a contact hands on to the next one: its history, and what makes that quicker |
 //! | `history` | what every surface node went through in a cycle |
 //! | `foundation` | the elastic foundation: rigid bodies, and pressure from local overclosure |
+//! | `deformable` | the deformable insert: pressure under which an elastic body just touches the femur |
+//! | `pressed` | what contacts have in common: shares under pressure, and what they add up to |
 //! | `broad_phase` | which blocks of nodes may touch, by brute force or coherently |
 
 mod broad_phase;
 mod contact_law;
+mod deformable;
 mod foundation;
 mod history;
 mod memory;
 mod model;
+mod pressed;
 mod pressure_law;
 mod pressure_table;
 mod share_block;
 
 pub use broad_phase::Search;
 pub use contact_law::{Bodies, ContactLaw};
+pub use deformable::Deformable;
 pub use foundation::Foundation;
 pub use history::{CycleHistory, Moment, NodeHistory, Record};
 pub use memory::{ContactCache, ContactMemory, ContactState, StateField};

@@ -34,6 +34,19 @@ impl ShareBlock {
             .collect()
     }
 
+    /// The same, each share taken to be what lies at its node alone: its centre there, and without spread.
+    pub fn of_nodes(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
+        let at_nodes = |block: Self| Self {
+            centre: vector_from_lanes(|lane| &surface.positions[block.nodes[lane] as usize]),
+            spread_mm2: F64x4::splat(0.0),
+            ..block
+        };
+        Self::of(insert, surface)
+            .into_iter()
+            .map(at_nodes)
+            .collect()
+    }
+
     fn new(block: &NodeBlock, surface: &ArticulatingSurface, insert: &Insert) -> Self {
         let NodeBlock { nodes, count } = *block;
         let thickness_mm = insert.thickness_mm();

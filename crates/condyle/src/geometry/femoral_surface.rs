@@ -59,6 +59,15 @@ impl FemoralSurface {
         }
     }
 
+    /// The spread over which its samples are averaged whatever they are asked for, mm2; see
+    /// [`FemoralSurface::prepared_for`].
+    pub fn prepared_spread_mm2(&self) -> f64 {
+        match self {
+            Self::Mesh(field) => field.spread_mm2(),
+            Self::Generic(_) | Self::Placed(_) | Self::Sphere(_) | Self::Cylinder(_) => 0.0,
+        }
+    }
+
     /// How far from the femoral frame's origin any of the femur reaches at most, mm; of a cylinder,
     /// across its axis.
     pub fn reach_mm(&self) -> f64 {

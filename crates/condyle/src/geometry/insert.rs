@@ -99,6 +99,16 @@ impl Insert {
         &self.unworn.surface_nodes
     }
 
+    /// Mesh nodes of the backside, ascending.
+    pub fn backside_nodes(&self) -> &[u32] {
+        &self.unworn.backside_nodes
+    }
+
+    /// Positions of all mesh nodes before any wear, mm.
+    pub fn unworn_nodes(&self) -> &[Vec3] {
+        &self.unworn.nodes
+    }
+
     /// Faces of the articulating surface, in numbers of surface nodes, facing out.
     pub fn surface_faces(&self) -> &[[u32; 4]] {
         &self.unworn.faces
@@ -114,6 +124,11 @@ impl Insert {
         &self.unworn.node_blocks
     }
 
+    /// Area of a surface node's share before any wear, mm2.
+    pub fn unworn_share_mm2(&self, node: usize) -> f64 {
+        self.unworn.share_mm2[node]
+    }
+
     /// Thickness of the insert below each surface node along its normal, mm.
     pub fn thickness_mm(&self) -> &[f64] {
         &self.thickness_mm
@@ -121,7 +136,13 @@ impl Insert {
 
     /// The articulating surface as it is now.
     pub fn surface(&self) -> ArticulatingSurface {
-        let positions = self.mesh.positions(self.surface_nodes()).collect();
+        self.surface_at(&self.mesh.nodes)
+    }
+
+    /// The articulating surface with the mesh nodes elsewhere, mm.
+    pub fn surface_at(&self, mesh_nodes: &[Vec3]) -> ArticulatingSurface {
+        let nodes = self.surface_nodes().iter();
+        let positions = nodes.map(|&node| mesh_nodes[node as usize]).collect();
         ArticulatingSurface::new(positions, &self.unworn.faces_around)
     }
 

@@ -41,6 +41,9 @@ pub struct SmoothField {
     /// Nodes beyond the band: their gap is a bound.
     is_far: Arc<[bool]>,
     curvature: CurvatureGrid,
+    /// What it is averaged over, mm2; what is kept for the next run is averaged over nothing.
+    #[serde(skip)]
+    spread_mm2: f64,
 }
 
 impl SmoothField {
@@ -66,7 +69,13 @@ impl SmoothField {
             curvature: CurvatureGrid::new(&gap),
             is_far: is_far.into(),
             gap,
+            spread_mm2: 0.0,
         }
+    }
+
+    /// The spread of the shares that it is averaged over, mm2.
+    pub fn spread_mm2(&self) -> f64 {
+        self.spread_mm2
     }
 
     /// The field averaged over flat shares of surface: g + `spread_mm2` div n.
@@ -79,6 +88,7 @@ impl SmoothField {
         };
         Self {
             gap: self.gap.changed(averaged),
+            spread_mm2: self.spread_mm2 + spread_mm2,
             ..self.clone()
         }
     }

@@ -53,6 +53,13 @@ pub struct SurfaceSample<T> {
 }
 
 impl<T: Number> SurfaceSample<T> {
+    /// The gap of the point alone, of a sample that is the mean over a spread, mm.
+    #[inline(always)]
+    pub fn gap_at_point_mm(&self, spread_mm2: T) -> T {
+        let Curvature { xx, yy, zz, .. } = self.curvature;
+        self.gap_mm - spread_mm2 * (xx + yy + zz)
+    }
+
     /// A sample that no surface gives: infinitely far.
     pub fn far() -> Self {
         let (zero, none) = (T::zero(), Vector::repeat(T::zero()));

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
-use condyle::contact::{Foundation, PressureLaw, confined_modulus};
+use condyle::contact::{ContactLaw, Deformable, Foundation, PressureLaw, confined_modulus};
 use condyle::evolve::{Activity, Schedule, Updates, WearTest};
+use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
+use condyle_fem::Elastic;
 
-use super::super::contact::PressureLawChoice;
+use super::super::contact::{ContactModelWord, PressureLawChoice};
 use super::super::contents::Case;
 use super::super::march::Update;
 use super::super::time::IntegratorWord;
@@ -53,13 +55,14 @@ impl Case {
             },
             &mut warnings,
         )?;
+        let contact = self.contact_law(&insert)?;
         let test = WearTest {
             femur: Arc::new(femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
             insert: Arc::new(insert),
             activities: vec![Activity::only("gait", machine)],
-            contact: Arc::new(self.foundation()),
+            contact,
             wear: self.wear.law(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),
@@ -76,7 +79,36 @@ impl Case {
         Ok(Built { test, warnings })
     }
 
-    /// The law of contact of this case.
+    /// The law of contact of this case with its insert.
+    ///
+    /// # Errors
+    /// An insert that is no elastic solid, where it is to be one.
+    pub fn contact_law(&self, insert: &Insert) -> Result<Arc<dyn ContactLaw>, BuildError> {
+        Ok(match self.contact.model {
+            ContactModelWord::Foundation => Arc::new(self.foundation()),
+            ContactModelWord::Deformable => Arc::new(self.deformable(insert)?),
+        })
+    }
+
+    /// The insert of this case as an elastic body.
+    fn deformable(&self, insert: &Insert) -> Result<Deformable, BuildError> {
+        let elastic = Elastic {
+            youngs_modulus: self.material.youngs_modulus_mpa,
+            poissons_ratio: self.material.poissons_ratio,
+        };
+        let friction = &self.contact.friction;
+        let mut law = Deformable::new(
+            elastic,
+            friction.friction,
+            friction.slip_tolerance_mm_per_s,
+            insert,
+        )?;
+        law.search = self.contact.finding.search.search();
+        law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
+        Ok(law)
+    }
+
+    /// The elastic foundation of this case.
     pub fn foundation(&self) -> Foundation {
         let material = &self.material;
         let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use condyle::geometry::{Defect, InsertError, ShellError, ShellInsertError};
+use condyle_fem::SolidError;
 use thiserror::Error;
 
 use super::super::axes::AxesError;
@@ -18,6 +19,9 @@ pub enum BuildError {
     /// A mesh file that cannot be read.
     #[error(transparent)]
     MeshFile(#[from] MeshFileError),
+    /// An insert that is no elastic solid.
+    #[error("[contact] model = \"deformable\": {0}")]
+    Solid(#[from] SolidError),
     /// A body that is too small or too large for a knee.
     #[error(
         "{}: the body is {} mm long, and a knee's is 5 mm to 500 mm; {}",
@@ -171,7 +175,7 @@ impl BuildError {
             | Self::ShellInsert { file, .. }
             | Self::ThicknessOfClosed { file }
             | Self::NoSurface { file, .. } => Some(file),
-            Self::InsertTooFine { .. } | Self::Insert(_) | Self::Axes(_) => None,
+            Self::InsertTooFine { .. } | Self::Insert(_) | Self::Axes(_) | Self::Solid(_) => None,
         }
     }
 }

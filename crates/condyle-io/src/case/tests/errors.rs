@@ -115,6 +115,41 @@ fn key_of_a_mesh_on_a_generic_femur_contradicts() {
 }
 
 #[test]
+fn keys_of_a_pressure_law_belong_to_the_foundation() {
+    let shown = refusal(
+        "[contact]\nmodel = \"deformable\"\nlaw = \"softening\"\nsoftening_strain = 0.05\n",
+    );
+    assert_shows(
+        &shown,
+        &[
+            "`law` belongs to model = \"foundation\", but this case has model = \"deformable\"",
+            " 3 | law = \"softening\"",
+            "`softening_strain` belongs to model = \"foundation\"",
+            " 4 | softening_strain = 0.05",
+        ],
+    );
+    let shown = refusal("[contact]\nmodel = \"elastic\"\n");
+    assert_shows(&shown, &["elastic"]);
+    assert!(
+        shown.contains("foundation") && shown.contains("deformable"),
+        "{shown}"
+    );
+    let shown = refusal("[contact]\nmodel = \"deformable\"\nfrictoin = 0.1\n");
+    assert_shows(&shown, &["no key `frictoin`", "did you mean `friction`?"]);
+}
+
+#[test]
+fn a_deformable_insert_is_written_without_a_law() {
+    let case = parsed("[contact]\nmodel = \"deformable\"\nfriction = 0.1\n");
+    let case = case.expect("it is a good case");
+    let written = case.to_toml();
+    assert!(written.contains("model = \"deformable\""), "{written}");
+    let contact = written.split("[contact]").nth(1).unwrap_or_default();
+    let contact = contact.split("\n[").next().unwrap_or_default();
+    assert!(!contact.contains("law ="), "{contact}");
+}
+
+#[test]
 fn table_of_another_law_contradicts() {
     let shown = refusal("[contact]\nlaw = \"linear\"\ntable = [[0.0, 0.0], [0.1, 5.0]]\n");
     assert_shows(

@@ -8,10 +8,7 @@ use super::{
 };
 use crate::{
     Mat3, Vec3, Vector,
-    contact::{
-        foundation::{CachedSample, EdgeSlopes},
-        share_block::ShareBlock,
-    },
+    contact::{foundation::EdgeSlopes, pressed::CachedSample, share_block::ShareBlock},
     geometry::{
         FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
         SmoothField, TriangleMesh, flat_insert,

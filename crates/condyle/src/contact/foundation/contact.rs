@@ -1,36 +1,18 @@
 //! The contact of a rigid femur with an elastic foundation.
 
-use super::{
-    active_block::ActiveBlock,
-    cached_sample::CachedSample,
-    landing::{Directions4, ShortWay},
-    mean_overclosure::EdgeSlopes,
-    peak::PeakSearch,
-    settings::Foundation,
-    sums::{RegionSlips, WrenchSum},
-    tangent_sum::TangentSum,
-    traction::Tractions4,
-};
+use super::{mean_overclosure::EdgeSlopes, peak::PeakSearch, settings::Foundation};
 use crate::{
-    Vec3, Vector,
     contact::{
-        broad_phase::{BroadPhase, SeparationBound},
+        broad_phase::BroadPhase,
         contact_law::Bodies,
         memory::{ContactCache, ContactMemory, ContactState},
-        model::{
-            ContactModel, Landing, Linearization, MOST_REGIONS, Response, Tangent, TouchedNode,
-        },
+        model::{ContactModel, Landing, Linearization, Response, Tangent},
+        pressed::{NearBlocks, PressedBlocks},
         share_block::ShareBlock,
     },
-    number::{F64x4, LANES, Number, vector::dot},
-    spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist4, Wrench, WrenchByTwist, body},
+    number::{F64x4, vector::dot},
+    spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist4},
 };
-
-/// What one contact knew of which blocks come near, and when; it makes the contact after it quicker.
-struct Cache<B> {
-    blocks: Vec<ShareBlock>,
-    search: B,
-}
 
 /// The contact of a femur with an insert as it is now, by a [`Foundation`], with a broad phase `B`.
 ///
@@ -40,134 +22,67 @@ struct Cache<B> {
 pub(super) struct FoundationContact<'a, B> {
     law: &'a Foundation,
     bodies: Bodies<'a>,
-    blocks: Vec<ShareBlock>,
-    directions: Vec<Directions4>,
-    search: B,
-    /// Every block's last sample of the femur, and the number of the response at which it touched last.
-    cached: Vec<CachedSample>,
-    touched_at: Vec<u64>,
-    /// The number of the last response: the first is 2, and none has touched at the one before it.
-    response: u64,
-    /// The blocks that may touch, and the places of their centres in the femoral frame.
-    candidates: Vec<(u32, Vector<F64x4>)>,
-    /// The blocks that touched at the last response, and what pressed them.
-    active: Vec<ActiveBlock>,
-    tractions: Vec<Tractions4>,
-    /// Where the femur was then.
-    pose: Pose,
+    nearby: NearBlocks<'a, B>,
+    /// The blocks that touched at the last response.
+    pressed: PressedBlocks,
+    /// The edge slopes of their shares.
+    slopes: Vec<EdgeSlopes<F64x4>>,
 }
 
 impl<'a, B: BroadPhase> FoundationContact<'a, B> {
     /// The contact of bodies, quicker where another left its cache for the insert less worn, under the
     /// same femur.
     pub fn after(cache: ContactCache, law: &'a Foundation, bodies: Bodies<'a>) -> Self {
-        let blocks = ShareBlock::of(bodies.insert, bodies.surface);
-        let directions = blocks
-            .iter()
-            .map(|block| Directions4::new(bodies.surface, block));
+        let nearby = NearBlocks::after(
+            cache.into_inner(),
+            bodies.femur,
+            ShareBlock::of(bodies.insert, bodies.surface),
+            law.sample_reuse_mm,
+        );
+        let pressed = PressedBlocks::none(bodies.surface, &nearby.blocks, law.coulomb());
         Self {
             law,
             bodies,
-            directions: directions.collect(),
-            search: match cache.into_inner::<Cache<B>>() {
-                Some(cache) => cache.search.worn(&cache.blocks, &blocks),
-                None => B::new(&blocks),
+            nearby,
+            pressed,
+            slopes: Vec::new(),
+        }
+    }
+
+    /// Finds the blocks that touch: those with a share of which a corner is overclosed.
+    fn find_touching(&mut self, pose: &Pose, pose4: &Pose4) {
+        let Self {
+            nearby,
+            pressed,
+            slopes,
+            ..
+        } = self;
+        pressed.near.clear();
+        slopes.clear();
+        nearby.find(
+            pose,
+            pose4,
+            |cached, shares| {
+                let normal = pose4.turn_to_insert(&cached.sample.normal);
+                let slopes =
+                    EdgeSlopes::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
+                (slopes.reach_mm(), slopes)
             },
-            cached: vec![CachedSample::nothing(); blocks.len()],
-            touched_at: vec![0; blocks.len()],
-            response: 1,
-            blocks,
-            candidates: Vec::new(),
-            active: Vec::new(),
-            tractions: Vec::new(),
-            pose: Pose::identity(),
-        }
+            |near, edges| {
+                pressed.near.push(near);
+                slopes.push(edges);
+            },
+        );
     }
 
-    /// Lists the blocks that may touch.
-    ///
-    /// They are found first and sampled after: the processor goes through two short loops faster than
-    /// through a long one, where every step waits for the one before.
-    fn find_candidates(&mut self, pose: &Pose4) {
-        self.candidates.clear();
-        for &block in self.search.candidates(&self.pose) {
-            let centre = &self.blocks[block as usize].centre;
-            self.candidates.push((block, pose.to_femur(centre)));
+    /// Presses all that touch.
+    fn press(&mut self, pose: &Pose4, twist: &Twist4) {
+        self.pressed.tractions.clear();
+        for (near, slopes) in self.pressed.near.iter().zip(&self.slopes) {
+            let shares = &self.nearby.blocks[near.block as usize];
+            let pressed = self.law.press(&near.cached, slopes, shares, pose, twist);
+            self.pressed.tractions.push(pressed);
         }
-    }
-
-    /// Samples the femur under every candidate, and keeps those that touch.
-    ///
-    /// Only what touches is remembered, and until it parts: what is remembered then follows from the
-    /// motion alone, and not from what the search named.
-    fn sample_candidates(&mut self, pose: &Pose4) {
-        let reuse_mm = self.law.sample_reuse_mm;
-        self.active.clear();
-        self.response += 1;
-        for &(block, place) in &self.candidates {
-            let at = block as usize;
-            let shares = &self.blocks[at];
-            let touched = self.touched_at[at] + 1 == self.response;
-            let reuses = touched && self.cached[at].reaches(&place, reuse_mm);
-            let cached = if reuses {
-                self.cached[at].extrapolated(place)
-            } else {
-                CachedSample::at(self.bodies.femur, place, shares.spread_mm2)
-            };
-            let normal = pose.turn_to_insert(&cached.sample.normal);
-            let slopes =
-                EdgeSlopes::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
-            let reach_mm = slopes.reach_mm();
-            if (cached.sample.gap_mm - reach_mm).least() > 0.0 {
-                self.search.is_apart(block, || {
-                    let curvature = self.bodies.femur.curvature_bounds(&place);
-                    SeparationBound::new(&cached.sample, reach_mm, shares, curvature)
-                });
-            } else {
-                self.search.touches(block);
-                self.touched_at[at] = self.response;
-                if !reuses {
-                    self.cached[at] = cached;
-                }
-                self.active.push(ActiveBlock {
-                    block,
-                    cached,
-                    slopes,
-                });
-            }
-        }
-    }
-
-    /// Presses all that touch; the wrench on the insert in the femoral frame, and how regions slip.
-    fn press(
-        &mut self,
-        pose: &Pose4,
-        twist: &Twist4,
-    ) -> (Wrench<body::Insert, body::Femur>, [Vec3; MOST_REGIONS]) {
-        self.tractions.clear();
-        let mut total = WrenchSum::new();
-        let mut slips = RegionSlips::new();
-        for active in &self.active {
-            let shares = &self.blocks[active.block as usize];
-            let pressed = active.press(self.law, shares, pose, twist);
-            let force_n = pressed.force_n(&active.cached.sample.normal, self.law.friction);
-            total.add(&active.cached.place, &force_n);
-            slips.add(&shares.in_region, &pressed);
-            self.tractions.push(pressed);
-        }
-        (total.total(), slips.means())
-    }
-
-    /// The nodes in contact at a motion near that of the last response.
-    fn touched(&self, motion: &RelativeMotion) -> Vec<TouchedNode> {
-        let way = ShortWay::between(&self.pose, motion);
-        let mut touched = Vec::with_capacity(LANES * self.active.len());
-        for pressed in self.active.iter().zip(&self.tractions) {
-            let block = pressed.0.block as usize;
-            let place = (&self.blocks[block], &self.directions[block]);
-            way.land(self.law, pressed, place, &mut touched);
-        }
-        touched
     }
 
     fn peak_search(&self, pose: &Pose) -> PeakSearch<'_> {
@@ -189,19 +104,7 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
 
 impl<B: BroadPhase> Linearization for FoundationContact<'_, B> {
     fn tangent(&self) -> Tangent {
-        let mut sum = TangentSum::new();
-        for (active, tractions) in self.active.chunks(2).zip(self.tractions.chunks(2)) {
-            let one = (&active[0].cached, &tractions[0]);
-            let nothing = (one.0, &Tractions4::none());
-            let other = active.get(1).map(|active| (&active.cached, &tractions[1]));
-            sum.add(one, other.unwrap_or(nothing), self.law.friction);
-        }
-        let (by_pose, by_twist) = sum.total();
-        let change = FrameChange::to_femur(&self.pose);
-        Tangent {
-            by_pose: change.derivative_back(&WrenchByTwist::new(by_pose)),
-            by_twist: change.derivative_back(&WrenchByTwist::new(by_twist)),
-        }
+        self.pressed.tangent()
     }
 }
 
@@ -211,22 +114,22 @@ impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.search.begin_increment(increment);
+        self.nearby.begin_increment(increment);
     }
 
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
-        self.pose = motion.pose;
-        let change = FrameChange::to_femur(&self.pose);
-        let pose = Pose4::new(&self.pose);
+        self.pressed.pose = motion.pose;
+        let change = FrameChange::to_femur(&motion.pose);
+        let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
-        self.find_candidates(&pose);
-        self.sample_candidates(&pose);
-        let (wrench, mean_slip) = self.press(&pose, &twist);
+        self.find_touching(&motion.pose, &pose);
+        self.press(&pose, &twist);
+        let (wrench, mean_slip) = self.pressed.total(&self.nearby.blocks);
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
     fn land(&mut self, motion: &RelativeMotion) -> Landing {
-        let touched = self.touched(motion);
+        let touched = self.pressed.touched(&self.nearby.blocks, motion);
         Landing {
             peak_pressure_mpa: self.peak_search(&motion.pose).highest_mpa(&touched),
             touched,
@@ -234,10 +137,9 @@ impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
     }
 
     fn into_memory(self: Box<Self>) -> ContactMemory {
-        let (blocks, search) = (self.blocks, self.search);
         ContactMemory {
             state: ContactState::default(),
-            cache: ContactCache::of(Cache { blocks, search }),
+            cache: ContactCache::of(self.nearby.into_cache()),
         }
     }
 }

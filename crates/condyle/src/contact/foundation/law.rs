@@ -1,5 +1,7 @@
 //! The foundation as a law of contact.
 
+use std::sync::Arc;
+
 use super::{contact::FoundationContact, settings::Foundation};
 use crate::{
     contact::{
@@ -28,5 +30,11 @@ impl ContactLaw for Foundation {
 
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64 {
         self.pressure.pressure(0.0, insert.thickness_mm()[node]).1
+    }
+
+    fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
+        let mut law = self.clone();
+        law.slip_tolerance_mm_per_s *= factor;
+        Arc::new(law)
     }
 }

@@ -1,9 +1,9 @@
 //! The highest pressure, which lies between the nodes.
 
-use super::quadratic::Quadratic;
 use crate::{
     contact::{
-        model::{MOST_REGIONS, TouchedNode},
+        model::TouchedNode,
+        pressed::{Quadratic, highest_of_regions},
         pressure_law::PressureLaw,
     },
     geometry::{FacesAround, FemoralSurface, MOST_GAP_SLOPE, Share},
@@ -108,17 +108,4 @@ impl PeakSearch<'_> {
         let spread_mm2 = F64x4::from_lanes(|lane| share(lane).spread_mm2);
         self.femur.sample(&place, spread_mm2).gap_mm
     }
-}
-
-/// Highest mean over a share in every region, MPa.
-fn highest_of_regions(touched: &[TouchedNode]) -> [f64; MOST_REGIONS] {
-    let mut highest = [0.0; MOST_REGIONS];
-    for node in touched {
-        let highest = &mut highest[usize::from(node.region)];
-        // A jump that is seldom taken is faster than a maximum that waits for the one before.
-        if node.pressure_mpa > *highest {
-            *highest = node.pressure_mpa;
-        }
-    }
-    highest
 }

@@ -1,6 +1,6 @@
 //! How an elastic foundation presses and rubs, and how that is computed.
 
-use crate::contact::{broad_phase::Search, pressure_law::PressureLaw};
+use crate::contact::{broad_phase::Search, pressed::Coulomb, pressure_law::PressureLaw};
 
 /// The law of an elastic layer on a rigid base under a rigid femur.
 ///
@@ -47,6 +47,13 @@ impl Foundation {
             slip_tolerance_mm_per_s,
             search: Search::default(),
             sample_reuse_mm: Self::SAMPLE_REUSE_MM,
+        }
+    }
+    /// Its friction.
+    pub(super) fn coulomb(&self) -> Coulomb {
+        Coulomb {
+            coefficient: self.friction,
+            slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
         }
     }
 }

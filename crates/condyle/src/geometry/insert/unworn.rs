@@ -20,10 +20,14 @@ pub struct UnwornInsert {
     pub boundary: Vec<[u32; 4]>,
     /// Mesh nodes of the articulating surface, ascending; "surface node i" is `surface_nodes[i]`.
     pub surface_nodes: Vec<u32>,
+    /// Mesh nodes of the backside, ascending.
+    pub backside_nodes: Vec<u32>,
     /// Faces of the articulating surface, in numbers of surface nodes.
     pub faces: Vec<[u32; 4]>,
     pub faces_around: FacesAround,
     pub node_blocks: Vec<NodeBlock>,
+    /// Area of each surface node's share, mm2.
+    pub share_mm2: Vec<f64>,
     /// Thickness below each surface node, mm.
     pub thickness_mm: Vec<f64>,
     pub follower: InteriorFollower,
@@ -46,11 +50,13 @@ impl UnwornInsert {
         let positions = mesh.positions(&surface_nodes).collect();
         let surface = ArticulatingSurface::new(positions, &faces_around);
         Ok(Self {
+            share_mm2: surface.shares.iter().map(|share| share.area_mm2).collect(),
             thickness_mm: thickness_at_nodes(&surface, mesh, backside)?,
             node_blocks: node_blocks(&faces, &faces_around),
             nodes: mesh.nodes.clone(),
             boundary,
             surface_nodes,
+            backside_nodes: numbered(backside).0,
             faces,
             faces_around,
             follower,

@@ -1,14 +1,16 @@
 //! What nodes feel where an increment ends.
 
 use super::{
-    active_block::ActiveBlock,
     cached_sample::CachedSample,
-    settings::Foundation,
-    traction::{Sliding, Tractions4},
+    near_blocks::NearBlock,
+    traction::{Coulomb, Sliding, Tractions4},
 };
 use crate::{
     Vec3, Vector,
-    contact::{model::TouchedNode, share_block::ShareBlock},
+    contact::{
+        model::{MOST_REGIONS, TouchedNode},
+        share_block::ShareBlock,
+    },
     geometry::ArticulatingSurface,
     number::{
         F64x4, Number,
@@ -60,12 +62,12 @@ impl ShortWay {
     #[inline(always)]
     pub fn land(
         &self,
-        law: &Foundation,
-        (active, tractions): (&ActiveBlock, &Tractions4),
+        friction: Coulomb,
+        (near, tractions): (&NearBlock, &Tractions4),
         (shares, directions): (&ShareBlock, &Directions4),
         touched: &mut Vec<TouchedNode>,
     ) {
-        let landed = self.landed(law, active, tractions, directions);
+        let landed = self.landed(friction, near, tractions, directions);
         landed.add(shares, touched);
     }
 
@@ -73,12 +75,12 @@ impl ShortWay {
     #[inline(always)]
     fn landed(
         &self,
-        law: &Foundation,
-        active: &ActiveBlock,
+        friction: Coulomb,
+        near: &NearBlock,
         tractions: &Tractions4,
         directions: &Directions4,
     ) -> Landed4 {
-        let CachedSample { place, sample } = &active.cached;
+        let CachedSample { place, sample } = &near.cached;
         let change_n = tractions.load_change_n(place, &self.moved);
         let area_mm2 = Number::max(tractions.area_mm2, F64x4::splat(f64::MIN_POSITIVE));
         let pressure_mpa = tractions.pressure_mpa + change_n / area_mm2;
@@ -87,11 +89,11 @@ impl ShortWay {
             sliding: Sliding::new(
                 &self.twist.velocity(place),
                 &sample.normal,
-                law.slip_tolerance_mm_per_s,
+                friction.slip_tolerance_mm_per_s,
             ),
             ..*tractions
         };
-        let force_n = landed.force_n(&sample.normal, law.friction);
+        let force_n = landed.force_n(&sample.normal, friction.coefficient);
         let sliding = self.pose.turn_to_insert(&landed.sliding.velocity_mm_per_s);
         let [anterior, lateral] = &directions.0;
         Landed4 {
@@ -123,4 +125,17 @@ impl Landed4 {
             }
         }
     }
+}
+
+/// Highest mean over a share in every region, MPa.
+pub(in crate::contact) fn highest_of_regions(touched: &[TouchedNode]) -> [f64; MOST_REGIONS] {
+    let mut highest = [0.0; MOST_REGIONS];
+    for node in touched {
+        let highest = &mut highest[usize::from(node.region)];
+        // A jump that is seldom taken is faster than a maximum that waits for the one before.
+        if node.pressure_mpa > *highest {
+            *highest = node.pressure_mpa;
+        }
+    }
+    highest
 }

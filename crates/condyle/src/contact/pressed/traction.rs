@@ -12,11 +12,20 @@ use crate::{
 /// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
 const STANDSTILL_MM_PER_S: f64 = 1e-9;
 
+/// Coulomb's law of friction, regularised.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::contact) struct Coulomb {
+    /// Coefficient of friction, mu.
+    pub coefficient: f64,
+    /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0.
+    pub slip_tolerance_mm_per_s: f64,
+}
+
 /// Four shares of nodes under pressure and rubbed; all vectors in the femoral frame.
 ///
 /// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
 /// of sliding, s = v_t/w and w = sqrt(v_t^2 + v0^2).
-pub(super) struct Tractions4 {
+pub(in crate::contact) struct Tractions4 {
     pub pressure_mpa: F64x4,
     /// Areas of the shares, mm2; their product with the pressure is the load L, N.
     pub area_mm2: F64x4,
@@ -30,7 +39,7 @@ pub(super) struct Tractions4 {
 }
 
 /// How the femur's material moves past a share.
-pub(super) struct Sliding {
+pub(in crate::contact) struct Sliding {
     /// Velocity along the surface, mm/s; where nothing slides, a lean so slight that it only gives
     /// a direction.
     pub velocity_mm_per_s: Vector<F64x4>,

@@ -1,13 +1,14 @@
-//! A block that touches, and what presses it.
+//! What presses a block that touches.
 
 use super::{
-    cached_sample::CachedSample,
     mean_overclosure::{EdgeSlopes, mean_overclosure},
     settings::Foundation,
-    traction::{Sliding, Tractions4},
 };
 use crate::{
-    contact::share_block::ShareBlock,
+    contact::{
+        pressed::{CachedSample, Sliding, Tractions4},
+        share_block::ShareBlock,
+    },
     number::{
         F64x4,
         vector::{cross, scale_add, tangential_part, zero_vector},
@@ -15,32 +16,24 @@ use crate::{
     spatial::{Pose4, Twist4},
 };
 
-/// A block of shares that touches, and its sample of the femur.
-pub(super) struct ActiveBlock {
-    /// Number of the block.
-    pub block: u32,
-    pub cached: CachedSample,
-    /// The edge slopes of the shares.
-    pub slopes: EdgeSlopes<F64x4>,
-}
-
-impl ActiveBlock {
+impl Foundation {
     /// Pressure and rubbing on the shares.
     ///
     /// With n the femur's normal, K its curvature, G the gradient of the gap, e_k the share's edges and W
     /// the mean overclosure of the share, a motion a and a turn w of the femur change the middle's
     /// overclosure by G . a, the normal by w x n - K a, and each edge slope n . e_k with the normal.
     #[inline(always)]
-    pub fn press(
+    pub(super) fn press(
         &self,
-        law: &Foundation,
+        cached: &CachedSample,
+        slopes: &EdgeSlopes<F64x4>,
         shares: &ShareBlock,
         pose: &Pose4,
         twist: &Twist4,
     ) -> Tractions4 {
-        let CachedSample { place, sample } = &self.cached;
-        let mean = mean_overclosure(-sample.gap_mm, &self.slopes);
-        let (pressure_mpa, slope) = law.pressure.pressures(mean.mm, shares.per_thickness);
+        let CachedSample { place, sample } = cached;
+        let mean = mean_overclosure(-sample.gap_mm, slopes);
+        let (pressure_mpa, slope) = self.pressure.pressures(mean.mm, shares.per_thickness);
         let stiffness = slope * shares.area_mm2;
         let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
         let mut load_by_turn = zero_vector();
@@ -61,7 +54,7 @@ impl ActiveBlock {
             sliding: Sliding::new(
                 &twist.velocity(place),
                 &sample.normal,
-                law.slip_tolerance_mm_per_s,
+                self.slip_tolerance_mm_per_s,
             ),
         }
     }

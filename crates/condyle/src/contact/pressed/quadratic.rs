@@ -12,7 +12,7 @@ const LEAST_SQUARES_FLOOR: f64 = 1e-10;
 /// q(u) = constant + slope . u + u . bend u / 2 along the plane of a share, u from its centre in
 /// units of `length_mm`.
 #[derive(Clone, Debug)]
-pub(super) struct Quadratic {
+pub(in crate::contact) struct Quadratic {
     constant: f64,
     slope: [f64; 2],
     /// xx, xy, yy.

@@ -1,0 +1,212 @@
+//! Cholesky's factor of a small dense matrix, eight rows side by side.
+
+use crate::number::{F64x4, LANES, Number};
+
+/// How many rows go side by side.
+const ROWS: usize = 2 * LANES;
+
+/// One number for each of the rows that go side by side, or for each right-hand side.
+pub(super) type Eight = [F64x4; 2];
+
+/// The factor L of a symmetric positive definite matrix A = L L'.
+///
+/// It is kept in panels of eight rows, each column of a panel side by side, so that all of the work is
+/// products of vectors. A matrix whose order is no multiple of eight is filled up with the identity. The
+/// same matrix gives the same bytes on any machine with fused products.
+#[derive(Default)]
+pub(super) struct Cholesky {
+    order: usize,
+    /// Columns of the panels, one panel after the other.
+    columns: Vec<Eight>,
+    per_diagonal: Vec<f64>,
+}
+
+/// Number of the first column of a panel.
+fn start(panel: usize) -> usize {
+    ROWS * panel * (panel + 1) / 2
+}
+
+/// Eight zeros.
+pub(super) fn zero() -> Eight {
+    [F64x4::splat(0.0); 2]
+}
+
+/// a - b f
+#[inline(always)]
+pub(super) fn subtract(a: &mut Eight, b: &Eight, f: f64) {
+    let f = F64x4::splat(-f);
+    a[0] = b[0].mul_add(f, a[0]);
+    a[1] = b[1].mul_add(f, a[1]);
+}
+
+impl Cholesky {
+    /// Factors a matrix of an order; `entry` gives what is in a row and a column that is not beyond it.
+    pub fn factor(&mut self, order: usize, entry: impl Fn(usize, usize) -> f64) {
+        let panels = order.div_ceil(ROWS);
+        self.order = order;
+        self.columns.clear();
+        self.per_diagonal.clear();
+        for panel in 0..panels {
+            self.add_rows(panel, &entry);
+            for block in 0..2 * panel {
+                self.eliminate(panel, block);
+            }
+            self.factor_diagonal(panel);
+        }
+    }
+
+    /// Puts the rows of a panel behind those before.
+    fn add_rows(&mut self, panel: usize, entry: &impl Fn(usize, usize) -> f64) {
+        let order = self.order;
+        let at = |row: usize, column: usize| {
+            if row < column {
+                0.0
+            } else if row < order {
+                entry(row, column)
+            } else {
+                f64::from(u8::from(row == column))
+            }
+        };
+        for column in 0..ROWS * (panel + 1) {
+            let half = |half: usize| {
+                let first = ROWS * panel + LANES * half;
+                F64x4::from_lanes(|lane| at(first + lane, column))
+            };
+            self.columns.push([half(0), half(1)]);
+        }
+    }
+
+    /// Computes four columns of a panel, number 4 `block` and on, left of its diagonal.
+    fn eliminate(&mut self, panel: usize, block: usize) {
+        let first = LANES * block;
+        let (done, own) = self.columns.split_at_mut(start(panel));
+        let other = &done[start(block / 2)..];
+        let half = block % 2;
+        let mut four = [own[first], own[first + 1], own[first + 2], own[first + 3]];
+        for (column, across) in own[..first].iter().zip(other) {
+            let across = across[half];
+            for (lane, sum) in four.iter_mut().enumerate() {
+                subtract(sum, column, across.lane(lane));
+            }
+        }
+        for j in 0..LANES {
+            for m in 0..j {
+                let across = other[first + m][half].lane(j);
+                let column = four[m];
+                subtract(&mut four[j], &column, across);
+            }
+            let scale = F64x4::splat(self.per_diagonal[first + j]);
+            four[j] = four[j].map(|rows| rows * scale);
+        }
+        own[first..first + LANES].copy_from_slice(&four);
+    }
+
+    /// Computes the columns of a panel that reach its diagonal.
+    fn factor_diagonal(&mut self, panel: usize) {
+        let first = ROWS * panel;
+        let own = &mut self.columns[start(panel)..];
+        for j in 0..ROWS {
+            let mut column = own[first + j];
+            for before in &own[..first + j] {
+                let across = before[j / LANES].lane(j % LANES);
+                subtract(&mut column, before, across);
+            }
+            let pivot = column[j / LANES].lane(j % LANES).max(f64::MIN_POSITIVE);
+            let per_diagonal = 1.0 / pivot.sqrt();
+            self.per_diagonal.push(per_diagonal);
+            own[first + j] = column.map(|rows| rows * F64x4::splat(per_diagonal));
+        }
+    }
+
+    /// How many rows right-hand sides have: the order, filled up.
+    pub fn rows(&self) -> usize {
+        self.per_diagonal.len()
+    }
+
+    /// L\sides for eight right-hand sides at once, in place.
+    pub fn forward(&self, sides: &mut [Eight]) {
+        for four in 0..self.rows() / LANES {
+            let (first, half) = (LANES * four, four % 2);
+            let own = &self.columns[start(four / 2)..];
+            let (known, here) = sides.split_at_mut(first);
+            let mut sums = [here[0], here[1], here[2], here[3]];
+            for (known, column) in known.iter().zip(own) {
+                for (lane, sum) in sums.iter_mut().enumerate() {
+                    subtract(sum, known, column[half].lane(lane));
+                }
+            }
+            for j in 0..LANES {
+                sums[j] = self.scaled(first + j, sums[j]);
+                let solved = sums[j];
+                for (lane, sum) in sums.iter_mut().enumerate().skip(j + 1) {
+                    subtract(sum, &solved, own[first + j][half].lane(lane));
+                }
+            }
+            here[..LANES].copy_from_slice(&sums);
+        }
+    }
+
+    /// L'\sides for eight right-hand sides at once, in place.
+    pub fn backward(&self, sides: &mut [Eight]) {
+        for four in (0..self.rows() / LANES).rev() {
+            let (first, half) = (LANES * four, four % 2);
+            let own = &self.columns[start(four / 2)..];
+            let (before, here) = sides.split_at_mut(first);
+            let mut solved = [here[0], here[1], here[2], here[3]];
+            for j in (0..LANES).rev() {
+                solved[j] = self.scaled(first + j, solved[j]);
+                let known = solved[j];
+                for (m, sum) in solved.iter_mut().enumerate().take(j) {
+                    subtract(sum, &known, own[first + m][half].lane(j));
+                }
+            }
+            here[..LANES].copy_from_slice(&solved);
+            for (sum, column) in before.iter_mut().zip(own) {
+                for (lane, known) in solved.iter().enumerate() {
+                    subtract(sum, known, column[half].lane(lane));
+                }
+            }
+        }
+    }
+
+    fn scaled(&self, row: usize, sides: Eight) -> Eight {
+        let scale = F64x4::splat(self.per_diagonal[row]);
+        sides.map(|side| side * scale)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_solutions_of_every_order() {
+        for order in 1..40_usize {
+            let entry = |i: usize, j: usize| {
+                let apart = i.abs_diff(j) as f64;
+                (-0.2 * apart).exp() + if i == j { 0.1 } else { 0.0 }
+            };
+            let mut factor = Cholesky::default();
+            factor.factor(order, entry);
+            let right = |row: usize, side: usize| ((row * 7 + side * 3) % 11) as f64 - 4.0;
+            let half =
+                |row: usize, half: usize| F64x4::from_lanes(|lane| right(row, 4 * half + lane));
+            let mut sides: Vec<Eight> =
+                (0..order).map(|row| [half(row, 0), half(row, 1)]).collect();
+            sides.resize(factor.rows(), zero());
+            factor.forward(&mut sides);
+            factor.backward(&mut sides);
+            for row in 0..order {
+                for side in 0..8 {
+                    let part =
+                        |column: usize| entry(row, column) * sides[column][side / 4].lane(side % 4);
+                    let sum: f64 = (0..order).map(part).sum();
+                    assert!(
+                        (sum - right(row, side)).abs() < 1e-11,
+                        "{order} {row} {side} {sum}"
+                    );
+                }
+            }
+        }
+    }
+}

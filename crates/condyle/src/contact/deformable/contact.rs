@@ -1,0 +1,253 @@
+//! The contact of a rigid femur with a deformable insert.
+
+use std::sync::Arc;
+
+use super::{
+    complementarity::{Candidate, Pressing},
+    compliance::{KnownColumns, SurfaceCompliance},
+    covered::{EdgeOfContact, squares},
+    peak::PeakSearch,
+};
+use crate::{
+    Vector,
+    contact::{
+        broad_phase::BroadPhase,
+        contact_law::Bodies,
+        memory::{ContactCache, ContactMemory, ContactState},
+        model::{ContactModel, Landing, Linearization, Response, Tangent},
+        pressed::{Coulomb, NearBlock, NearBlocks, PressedBlocks, Sliding, Tractions4},
+        share_block::ShareBlock,
+    },
+    number::{F64x4, LANES, Number, vector::cross},
+    spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist4},
+};
+
+/// A node may touch where the bodies at rest are nearer than this, mm: beside a contact a thin layer bulges,
+/// by a few hundredths of what it gives way.
+const MOST_BULGE_MM: f64 = 0.1;
+
+/// How a deformable contact is computed beside the compliance.
+#[derive(Clone, Copy)]
+pub(super) struct Rubbing {
+    pub friction: Coulomb,
+    /// Motion up to which a sample of the femur is extrapolated, mm.
+    pub sample_reuse_mm: f64,
+}
+
+/// The contact of a femur with an elastic insert as it is now, with a broad phase `B`.
+///
+/// What holds: a response depends on the motion alone, but for samples that are extrapolated and for what
+/// the complementarity is satisfied to. The tangent is the derivative of the response where no node begins or
+/// ceases to press, right to six digits.
+pub(super) struct DeformableContact<'a, B> {
+    bodies: Bodies<'a>,
+    rubbing: Rubbing,
+    nearby: NearBlocks<'a, B>,
+    pressed: PressedBlocks,
+    columns: KnownColumns,
+    pressing: Pressing,
+    /// The blocks near the femur, the nodes that may touch, and where each of these is: number among the
+    /// blocks, and lane.
+    near: Vec<NearBlock>,
+    candidates: Vec<Candidate>,
+    lanes: Vec<(usize, usize)>,
+    /// What the contact after this one is to know.
+    state: ContactState,
+}
+
+/// Loads of a block of shares, and their derivatives by six motions.
+#[derive(Clone, Copy)]
+struct Loads4 {
+    load_n: [f64; LANES],
+    by_motion: [[f64; LANES]; 6],
+}
+
+impl Loads4 {
+    const NONE: Self = Self {
+        load_n: [0.0; LANES],
+        by_motion: [[0.0; LANES]; 6],
+    };
+
+    fn is_none(&self) -> bool {
+        self.load_n == [0.0; LANES]
+    }
+
+    fn tractions(
+        &self,
+        near: &NearBlock,
+        area_mm2: F64x4,
+        twist: &Twist4,
+        friction: Coulomb,
+    ) -> Tractions4 {
+        let place = &near.cached.place;
+        let [ax, ay, az, x, y, z] = self.by_motion.map(F64x4::new);
+        let load_by_motion = Vector::new(x, y, z);
+        let area = Number::max(area_mm2, F64x4::splat(f64::MIN_POSITIVE));
+        Tractions4 {
+            pressure_mpa: F64x4::new(self.load_n) / area,
+            area_mm2,
+            covered_mm2: area_mm2,
+            // What a turn adds beyond that of its motion at the share: the whole load moves.
+            load_by_turn: Vector::new(ax, ay, az) - cross(place, &load_by_motion),
+            load_by_motion,
+            sliding: Sliding::new(
+                &twist.velocity(place),
+                &near.cached.sample.normal,
+                friction.slip_tolerance_mm_per_s,
+            ),
+        }
+    }
+}
+
+impl<'a, B: BroadPhase> DeformableContact<'a, B> {
+    /// The contact of bodies, of which the insert gives way as `compliance` says; quicker where another left
+    /// its cache. The state of `memory` is handed on.
+    pub fn after(
+        memory: ContactMemory,
+        bodies: Bodies<'a>,
+        rubbing: Rubbing,
+        compliance: Arc<dyn SurfaceCompliance>,
+    ) -> Self {
+        let nearby = NearBlocks::after(
+            memory.cache.into_inner(),
+            bodies.femur,
+            ShareBlock::of_nodes(bodies.insert, bodies.surface),
+            rubbing.sample_reuse_mm,
+        );
+        let node_count = bodies.surface.positions.len();
+        Self {
+            pressed: PressedBlocks::none(bodies.surface, &nearby.blocks, rubbing.friction),
+            columns: KnownColumns::none(compliance, node_count),
+            pressing: Pressing::nothing(node_count),
+            near: Vec::new(),
+            candidates: Vec::new(),
+            lanes: Vec::new(),
+            state: memory.state,
+            bodies,
+            rubbing,
+            nearby,
+        }
+    }
+
+    /// Lists the nodes that may touch.
+    fn find_candidates(&mut self, pose: &Pose, pose4: &Pose4) {
+        let (near, most) = (&mut self.near, F64x4::splat(MOST_BULGE_MM));
+        let prepared_mm2 = self.bodies.femur.prepared_spread_mm2();
+        near.clear();
+        self.nearby
+            .find(pose, pose4, |_, _| (most, ()), |block, ()| near.push(block));
+        self.candidates.clear();
+        self.lanes.clear();
+        for (number, near) in self.near.iter().enumerate() {
+            let shares = &self.nearby.blocks[near.block as usize];
+            let gap_mm = near
+                .cached
+                .sample
+                .gap_at_point_mm(F64x4::splat(prepared_mm2));
+            let overclosures = overclosures_mm(near, gap_mm);
+            for (lane, &node) in shares.nodes.iter().enumerate() {
+                let is_near = gap_mm.lane(lane) <= MOST_BULGE_MM;
+                if is_near && shares.area_mm2.lane(lane) > 0.0 {
+                    let overclosure_mm = overclosures[lane];
+                    self.candidates.push(Candidate {
+                        node,
+                        overclosure_mm,
+                    });
+                    self.lanes.push((number, lane));
+                }
+            }
+        }
+    }
+
+    /// Presses all that touch.
+    fn press(&mut self, twist: &Twist4) {
+        let mut loads = vec![Loads4::NONE; self.near.len()];
+        for (place, load) in self.pressing.solve(&self.candidates, &mut self.columns) {
+            let (number, lane) = self.lanes[place];
+            let block = &mut loads[number];
+            block.load_n[lane] = load[0].lane(0).max(0.0);
+            for (motion, by) in block.by_motion.iter_mut().enumerate() {
+                let at = motion + 1;
+                by[lane] = load[at / LANES].lane(at % LANES);
+            }
+        }
+        self.pressed.near.clear();
+        self.pressed.tractions.clear();
+        for (near, loads) in self.near.drain(..).zip(&loads) {
+            if !loads.is_none() {
+                let area_mm2 = self.nearby.blocks[near.block as usize].area_mm2;
+                let tractions = loads.tractions(&near, area_mm2, twist, self.rubbing.friction);
+                self.pressed.tractions.push(tractions);
+                self.pressed.near.push(near);
+            }
+        }
+    }
+}
+
+/// Overclosure of every share of a block, and its derivatives by a turn and a shift of the femur: a motion
+/// a + w x p of its material changes the overclosure by G . (a + w x p), G the gradient of the gap.
+fn overclosures_mm(near: &NearBlock, gap_mm: F64x4) -> [[F64x4; 2]; LANES] {
+    let sample = &near.cached.sample;
+    let gradient = &sample.gap_gradient;
+    let turn = cross(&near.cached.place, gradient);
+    let none = F64x4::splat(0.0);
+    let first = F64x4::transposed([-gap_mm, turn.x, turn.y, turn.z]);
+    let second = F64x4::transposed([gradient.x, gradient.y, gradient.z, none]);
+    std::array::from_fn(|lane| [first[lane], second[lane]])
+}
+
+impl<B: BroadPhase> Linearization for DeformableContact<'_, B> {
+    fn tangent(&self) -> Tangent {
+        self.pressed.tangent()
+    }
+}
+
+impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
+    fn node_count(&self) -> usize {
+        self.bodies.surface.positions.len()
+    }
+
+    fn begin_increment(&mut self, increment: usize) {
+        self.nearby.begin_increment(increment);
+    }
+
+    fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
+        self.pressed.pose = motion.pose;
+        let change = FrameChange::to_femur(&motion.pose);
+        let pose = Pose4::new(&motion.pose);
+        let twist = Twist4::new(&change.twist(&motion.twist));
+        self.find_candidates(&motion.pose, &pose);
+        self.press(&twist);
+        let (wrench, mean_slip) = self.pressed.total(&self.nearby.blocks);
+        Response::new(change.wrench_back(&wrench), mean_slip, self)
+    }
+
+    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+        let mut touched = self.pressed.touched(&self.nearby.blocks, motion);
+        let (surface, faces) = (self.bodies.surface, self.bodies.insert.faces_around());
+        let pressure2 = squares(&touched);
+        let edge = EdgeOfContact {
+            surface,
+            faces,
+            pressure2: &pressure2,
+        };
+        for node in &mut touched {
+            node.covered_mm2 = edge.part(node.node) * surface.shares[node.node as usize].area_mm2;
+        }
+        let peak = PeakSearch {
+            shares: &surface.shares,
+            faces,
+            pressure2: &pressure2,
+        };
+        Landing {
+            peak_pressure_mpa: peak.highest_mpa(&touched),
+            touched,
+        }
+    }
+    fn into_memory(self: Box<Self>) -> ContactMemory {
+        ContactMemory {
+            state: self.state,
+            cache: ContactCache::of(self.nearby.into_cache()),
+        }
+    }
+}

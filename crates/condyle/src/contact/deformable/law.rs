@@ -1,0 +1,134 @@
+//! The deformable insert as a law of contact.
+
+use std::sync::Arc;
+
+use super::{
+    contact::{DeformableContact, Rubbing},
+    elastic_surface::ElasticSurface,
+    settings::Deformable,
+};
+use crate::{
+    Vec3,
+    contact::{
+        broad_phase::{BruteForce, Coherent, Search},
+        contact_law::{Bodies, ContactLaw},
+        memory::{ContactMemory, ContactState, StateField},
+        model::ContactModel,
+    },
+    geometry::Insert,
+};
+
+/// An insert that has become thinner by more than this part somewhere since its compliance was computed gets a
+/// new one.
+///
+/// Wear is in the gap; what the compliance of an insert thinner by 4 % differs by changes the peak pressure by
+/// half a percent.
+const MOST_THINNER: f64 = 0.05;
+
+/// The field of the contact's state that holds the mesh nodes whose compliance is used, x, y and z of each.
+const NODES_FIELD: &str = "compliance_nodes_mm";
+
+/// How much the pressure at a node falls as the node alone gives way, times edge over contact modulus: 1.2 on a
+/// half-space where pressure is even over squares, and 1.7 for squares that give way by turns; more where elements
+/// are stiffer than the body.
+const ALONE: f64 = 1.9;
+
+impl ContactLaw for Deformable {
+    /// # Panics
+    /// An insert, other than that which the law was made of, that is no elastic solid.
+    fn contact<'a>(
+        &'a self,
+        bodies: Bodies<'a>,
+        memory: ContactMemory,
+    ) -> Box<dyn ContactModel + 'a> {
+        let (compliance, state) = self.compliance(bodies.insert, &memory.state);
+        let memory = ContactMemory { state, ..memory };
+        let rubbing = Rubbing {
+            friction: self.coulomb(),
+            sample_reuse_mm: self.sample_reuse_mm,
+        };
+        match self.search {
+            Search::Coherent => Box::new(DeformableContact::<Coherent>::after(
+                memory, bodies, rubbing, compliance,
+            )),
+            Search::BruteForce => Box::new(DeformableContact::<BruteForce>::after(
+                memory, bodies, rubbing, compliance,
+            )),
+        }
+    }
+
+    /// That of a node of an elastic half-space: what gives way along with a node alone is no deeper than its
+    /// share is wide.
+    fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64 {
+        let ratio = self.elastic.poissons_ratio;
+        let contact_modulus_mpa = self.elastic.youngs_modulus / (1.0 - ratio * ratio);
+        ALONE * contact_modulus_mpa / insert.unworn_share_mm2(node).sqrt()
+    }
+
+    fn memory_bytes(&self, insert: &Insert, ever_touched: f64) -> f64 {
+        let surface = self.surface(insert, insert.unworn_nodes());
+        surface.map_or(0.0, |surface| surface.bytes(ever_touched))
+    }
+
+    fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
+        let mut law = self.clone();
+        law.slip_tolerance_mm_per_s *= factor;
+        Arc::new(law)
+    }
+}
+
+impl Deformable {
+    /// The compliance to use for an insert after a contact has left `state`, and the state to leave.
+    fn compliance(
+        &self,
+        insert: &Insert,
+        state: &ContactState,
+    ) -> (Arc<ElasticSurface>, ContactState) {
+        let used = used_nodes(insert, state);
+        let now = &insert.mesh().nodes;
+        if is_much_thinner(insert, &used)
+            && let Ok(renewed) = self.surface(insert, now)
+        {
+            return (renewed, state_of(now));
+        }
+        let surface = self.surface(insert, &used);
+        #[expect(
+            clippy::expect_used,
+            reason = "said under Panics; a case checks its insert as it is built"
+        )]
+        let surface = surface.expect("the insert is an elastic solid");
+        (surface, state.clone())
+    }
+}
+
+/// The mesh nodes whose compliance was used, mm: unworn, unless the state says others.
+fn used_nodes(insert: &Insert, state: &ContactState) -> Vec<Vec3> {
+    let field = state.fields.iter().find(|field| field.name == NODES_FIELD);
+    match field {
+        Some(field) => field
+            .values
+            .chunks_exact(3)
+            .map(Vec3::from_column_slice)
+            .collect(),
+        None => insert.unworn_nodes().to_vec(),
+    }
+}
+
+fn state_of(nodes: &[Vec3]) -> ContactState {
+    let field = StateField {
+        name: NODES_FIELD.to_owned(),
+        values: nodes.iter().flatten().copied().collect(),
+    };
+    ContactState {
+        fields: vec![field],
+    }
+}
+
+fn is_much_thinner(insert: &Insert, used: &[Vec3]) -> bool {
+    let nodes = insert.surface_nodes().iter().zip(insert.thickness_mm());
+    let thinner = |(&node, thickness_mm): (&u32, &f64)| {
+        let node = node as usize;
+        (insert.mesh().nodes[node] - used[node]).norm() / thickness_mm
+    };
+    nodes.map(thinner).fold(0.0, f64::max) > MOST_THINNER
+}

@@ -1,0 +1,110 @@
+//! How a deformable insert presses and rubs.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use condyle_fem::{Elastic, SolidError};
+
+use super::elastic_surface::ElasticSurface;
+use crate::{
+    Vec3,
+    contact::{broad_phase::Search, pressed::Coulomb},
+    geometry::Insert,
+};
+
+/// So many compliances are remembered: those of an insert and of its coarser twin, unworn and worn.
+const MOST_REMEMBERED: usize = 4;
+
+/// The law of an elastic insert, bonded to its tray, under a rigid femur.
+///
+/// Small displacements: the surface gives way along its inward normals by the normal compliance C of the insert,
+/// computed by finite elements. The loads N at the nodes hold the bodies just in touch where they press,
+///
+/// $$ N \ge 0, \quad g + C N \ge 0, \quad N \cdot (g + C N) = 0, $$
+///
+/// with the gaps g of the bodies at rest: nothing is tuned. Every node's share of the surface presses along the
+/// femur's normal and rubs with regularised Coulomb friction. Wear goes into the gap; C is that of the insert
+/// unworn, and made anew where an insert has become thinner by more than a twentieth. Limits: no tangential
+/// compliance (half a percent of the pressure), no plastic flow, a tray that does not give.
+#[derive(Debug)]
+pub struct Deformable {
+    /// The elastic material, MPa.
+    pub elastic: Elastic,
+    /// Coulomb's coefficient of friction, mu.
+    pub friction: f64,
+    /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0.
+    pub slip_tolerance_mm_per_s: f64,
+    /// How the nodes that may touch are found; no answer depends on it.
+    pub search: Search,
+    /// Motion up to which a sample of the femur is extrapolated, mm; 0 takes every sample anew.
+    pub sample_reuse_mm: f64,
+    remembered: Arc<Remembered>,
+}
+
+/// Compliances of inserts, the newest last; clones of a law share them.
+#[derive(Debug, Default)]
+struct Remembered(Mutex<Vec<Arc<ElasticSurface>>>);
+
+impl Clone for Deformable {
+    fn clone(&self) -> Self {
+        Self {
+            remembered: Arc::clone(&self.remembered),
+            ..*self
+        }
+    }
+}
+
+impl Deformable {
+    /// The law of an insert, whose stiffness is factored here.
+    ///
+    /// # Errors
+    /// A material or a mesh that is no elastic solid: a part of it is not held by the backside, for instance.
+    pub fn new(
+        elastic: Elastic,
+        friction: f64,
+        slip_tolerance_mm_per_s: f64,
+        insert: &Insert,
+    ) -> Result<Self, SolidError> {
+        let law = Self {
+            elastic,
+            friction,
+            slip_tolerance_mm_per_s,
+            search: Search::default(),
+            sample_reuse_mm: crate::contact::Foundation::SAMPLE_REUSE_MM,
+            remembered: Arc::default(),
+        };
+        law.surface(insert, insert.unworn_nodes())?;
+        Ok(law)
+    }
+
+    /// The surface of an insert with its mesh nodes there: remembered, or made anew.
+    pub(super) fn surface(
+        &self,
+        insert: &Insert,
+        mesh_nodes: &[Vec3],
+    ) -> Result<Arc<ElasticSurface>, SolidError> {
+        let mut remembered = self
+            .remembered
+            .0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let found = remembered
+            .iter()
+            .find(|surface| surface.is_of(insert, mesh_nodes));
+        if let Some(surface) = found {
+            return Ok(Arc::clone(surface));
+        }
+        let surface = Arc::new(ElasticSurface::new(insert, mesh_nodes, self.elastic)?);
+        if remembered.len() == MOST_REMEMBERED {
+            remembered.remove(0);
+        }
+        remembered.push(Arc::clone(&surface));
+        Ok(surface)
+    }
+
+    pub(super) fn coulomb(&self) -> Coulomb {
+        Coulomb {
+            coefficient: self.friction,
+            slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Shares under pressure, whatever presses them: what all contacts of a rigid femur have in common.
+//!
+//! The blocks that come near (`near_blocks`) and their samples of the femur (`cached_sample`), their loads and
+//! how they rub (`traction`), what these add up to (`pressed_blocks`: `sums`, `tangent_sum`), and what every
+//! node feels where an increment ends (`landing`). Between the nodes a quantity is a quadratic (`quadratic`).
+
+mod cached_sample;
+mod landing;
+mod near_blocks;
+mod pressed_blocks;
+mod quadratic;
+mod sums;
+mod tangent_sum;
+mod traction;
+
+pub(super) use cached_sample::CachedSample;
+pub(super) use landing::highest_of_regions;
+pub(super) use near_blocks::{NearBlock, NearBlocks};
+pub(super) use pressed_blocks::PressedBlocks;
+pub(super) use quadratic::Quadratic;
+pub(super) use traction::{Coulomb, Sliding, Tractions4};

@@ -1,0 +1,248 @@
+//! The deformable insert by finite elements, against closed forms and finite differences.
+
+use std::f64::consts::PI;
+
+use condyle::{
+    Mat3, Vec3,
+    contact::{
+        Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Deformable, Foundation,
+        Landing, PressureLaw, confined_modulus,
+    },
+    geometry::{
+        ArticulatingSurface, FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape,
+        Insert, Meshing, flat_insert,
+    },
+    spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6},
+};
+use condyle_fem::Elastic;
+
+const RADIUS_MM: f64 = 24.0;
+const MODULUS_MPA: f64 = 463.0;
+const POISSON: f64 = 0.46;
+
+fn law(insert: &Insert, friction: f64) -> Deformable {
+    let elastic = Elastic::new(MODULUS_MPA, POISSON).unwrap();
+    Deformable::new(elastic, friction, 1.0, insert).unwrap()
+}
+
+/// Two bodies that contacts are made of.
+struct Pair {
+    femur: FemoralSurface,
+    insert: Insert,
+    surface: ArticulatingSurface,
+}
+
+impl Pair {
+    fn new(femur: FemoralSurface, insert: Insert) -> Self {
+        Self {
+            surface: insert.surface(),
+            femur,
+            insert,
+        }
+    }
+
+    fn bodies(&self) -> Bodies<'_> {
+        Bodies {
+            femur: &self.femur,
+            insert: &self.insert,
+            surface: &self.surface,
+        }
+    }
+
+    fn contact<'a>(&'a self, law: &'a dyn ContactLaw) -> Box<dyn ContactModel + 'a> {
+        law.contact(self.bodies(), ContactMemory::default())
+    }
+}
+
+fn over(middle: [f64; 3]) -> RelativeMotion {
+    RelativeMotion::at_rest(Pose::new(Mat3::identity(), Vec3::from(middle)))
+}
+
+fn down_n(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> f64 {
+    -contact.respond(motion).wrench.force.y
+}
+
+/// The height at which the force is so much, by bisection below `high_mm`, and what lands there.
+fn under(
+    contact: &mut dyn ContactModel,
+    (x, z): (f64, f64),
+    high_mm: f64,
+    force_n: f64,
+) -> (f64, Landing) {
+    let (mut low, mut high) = (high_mm - 1.0, high_mm);
+    for _ in 0..40 {
+        let middle = (low + high) / 2.0;
+        if down_n(contact, &over([x, middle, z])) > force_n {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let motion = over([x, low, z]);
+    contact.respond(&motion);
+    (high_mm - low, contact.land(&motion))
+}
+
+fn covered_mm2(landing: &Landing) -> f64 {
+    landing.touched.iter().map(|node| node.covered_mm2).sum()
+}
+
+#[test]
+fn verify_hertz_on_a_block_of_the_default_elements() {
+    let meshing = Meshing {
+        edge_mm: 1.05,
+        layers: 10,
+    };
+    let block = flat_insert((24.0, 24.0), 18.0, meshing).unwrap();
+    let pair = Pair::new(FemoralSurface::sphere(RADIUS_MM), block);
+    let law = law(&pair.insert, 0.0);
+    let mut contact = pair.contact(&law);
+    for middle in [(0.0, 0.0), (0.3, 0.1), (0.5, 0.5), (0.2, -0.4)] {
+        let (depth_mm, landing) = under(contact.as_mut(), middle, RADIUS_MM, 1000.0);
+        let radius_mm = (covered_mm2(&landing) / PI).sqrt();
+        let peak_mpa = landing.peak_pressure_mpa;
+        println!("{middle:?} {depth_mm:.4} {radius_mm:.4} {peak_mpa:.3}");
+        // The block is no half-space: its backside is held 6 radii below.
+        assert!((depth_mm / 0.408 - 1.0).abs() < 0.06, "{depth_mm}");
+        assert!((radius_mm / 3.130 - 1.0).abs() < 0.03, "{radius_mm}");
+        assert!((peak_mpa / 48.7 - 1.0).abs() < 0.03, "{peak_mpa}");
+    }
+}
+
+fn generic() -> Pair {
+    let insert = GenericInsertShape::default()
+        .insert(Meshing::default())
+        .unwrap();
+    let femur = FemoralSurface::Generic(GenericFemur::new(GenericFemurShape::default()));
+    Pair::new(femur, insert)
+}
+
+/// The pose after a small turn and translation of the femur, in the insert frame.
+fn moved(pose: &Pose, small: &Vec6) -> Pose {
+    let turn: Vec3 = small.fixed_rows::<3>(0).into();
+    let turn = nalgebra::Rotation3::new(turn).into_inner();
+    let shift: Vec3 = small.fixed_rows::<3>(3).into();
+    Pose::new(turn * pose.rotation, turn * pose.translation + shift)
+}
+
+/// The generic femur pressed with 1500 N, a little turned and sliding.
+fn sliding(pair: &Pair, law: &dyn ContactLaw) -> RelativeMotion {
+    let turn = nalgebra::Rotation3::new(Vec3::new(0.01, 0.03, -0.2)).into_inner();
+    let twist = Twist::new(Vec3::new(0.1, -0.3, 2.0), Vec3::new(30.0, -3.0, 12.0));
+    let mut contact = pair.contact(law);
+    let at = |y: f64| RelativeMotion {
+        pose: Pose::new(turn, Vec3::new(0.5, y, 0.2)),
+        twist,
+    };
+    let (mut low, mut high) = (0.0, 60.0);
+    for _ in 0..40 {
+        let middle = (low + high) / 2.0;
+        if down_n(contact.as_mut(), &at(middle)) > 1500.0 || middle < 20.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    at(low)
+}
+
+#[test]
+fn tangent_on_the_generic_insert_is_the_derivative_of_the_wrench() {
+    let pair = generic();
+    let law = law(&pair.insert, 0.07);
+    let motion = sliding(&pair, &law);
+    let mut contact = pair.contact(&law);
+    let tangent = contact.respond(&motion).tangent().by_pose.matrix;
+    let mut by_differences = Mat6::zeros();
+    let step = 1e-6;
+    for column in 0..6 {
+        let small = Vec6::ith(column, step);
+        let mut wrench = |small: Vec6| {
+            let pose = moved(&motion.pose, &small);
+            contact
+                .respond(&RelativeMotion { pose, ..motion })
+                .wrench
+                .numbers()
+        };
+        let change = wrench(small) - wrench(-small);
+        by_differences.set_column(column, &(change / (2.0 * step)));
+    }
+    let error = (tangent - by_differences).amax() / by_differences.amax();
+    assert!(error < 2e-4, "{error}\n{tangent}\n{by_differences}");
+}
+
+#[test]
+fn cross_a_linear_foundation_presses_harder_and_sinks_less() {
+    let pair = generic();
+    let elastic = law(&pair.insert, 0.0);
+    let modulus_mpa = confined_modulus(MODULUS_MPA, POISSON);
+    let foundation = Foundation::new(PressureLaw::Linear { modulus_mpa }, 0.0, 1.0);
+    let laws: [&dyn ContactLaw; 2] = [&elastic, &foundation];
+    let found = laws.map(|law| {
+        let mut contact = pair.contact(law);
+        let high_mm = touching_mm(&pair);
+        let (depth_mm, landing) = under(contact.as_mut(), (0.0, 0.0), high_mm, 2000.0);
+        [landing.peak_pressure_mpa, covered_mm2(&landing), depth_mm]
+    });
+    let ratios: [f64; 3] = std::array::from_fn(|i| found[1][i] / found[0][i]);
+    println!("{found:?} {ratios:?}");
+    // A trial of other finite elements on another dish of this kind: 1.29, 0.97 and 0.71.
+    for (ratio, trial) in ratios.iter().zip([1.29, 0.97, 0.71]) {
+        assert!((ratio / trial - 1.0).abs() < 0.15, "{ratios:?}");
+    }
+}
+
+/// The height of the femur at which it first touches, mm.
+fn touching_mm(pair: &Pair) -> f64 {
+    let mut y = 60.0;
+    loop {
+        let pose = over([0.0, y, 0.0]).pose;
+        let gap = |position: &Vec3| pair.femur.gap_mm(&pose.to_femur(position));
+        let nearest = pair
+            .surface
+            .positions
+            .iter()
+            .map(gap)
+            .fold(f64::INFINITY, f64::min);
+        if nearest < 1e-6 {
+            return y;
+        }
+        y -= nearest;
+    }
+}
+
+#[test]
+fn the_compliance_is_renewed_where_the_insert_has_become_thinner() {
+    let mut pair = generic();
+    let law = law(&pair.insert, 0.0);
+    let state = |pair: &Pair, state: ContactState| {
+        let memory = ContactMemory {
+            state,
+            ..ContactMemory::default()
+        };
+        law.contact(pair.bodies(), memory).into_memory().state
+    };
+    let wear = |pair: &mut Pair, mm: f64| {
+        let surface = pair.insert.surface();
+        pair.insert
+            .wear_down(&surface, &vec![mm; surface.positions.len()]);
+        pair.surface = pair.insert.surface();
+    };
+    assert_eq!(
+        state(&pair, ContactState::default()),
+        ContactState::default()
+    );
+    wear(&mut pair, 0.3);
+    assert_eq!(
+        state(&pair, ContactState::default()),
+        ContactState::default()
+    );
+    wear(&mut pair, 0.3);
+    let renewed = state(&pair, ContactState::default());
+    assert_eq!(
+        renewed.fields[0].values.len(),
+        3 * pair.insert.mesh().nodes.len()
+    );
+    wear(&mut pair, 0.1);
+    assert_eq!(state(&pair, renewed.clone()), renewed);
+}
