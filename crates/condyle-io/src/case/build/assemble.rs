@@ -61,6 +61,7 @@ impl Case {
             activities: vec![Activity::only("gait", machine)],
             contact: Arc::new(self.foundation()),
             wear: self.wear.law(),
+            laws_beside: self.wear.beside(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),
             schedule: Schedule {
