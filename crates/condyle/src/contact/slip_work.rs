@@ -75,7 +75,8 @@ impl SlipWork {
 
     /// Half of what is more along than across: half the difference of the eigenvalues.
     fn half_difference(&self) -> f64 {
-        (0.5 * (self.anterior - self.lateral)).hypot(self.mixed)
+        let skew = 0.5 * (self.anterior - self.lateral);
+        (skew * skew + self.mixed * self.mixed).sqrt()
     }
 }
 

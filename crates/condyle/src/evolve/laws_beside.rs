@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{mean_over_wear::volume_mm3, step_record::WearStep};
-use crate::wear::{MeanCycle, NamedLaw, WearLaw};
+use super::mean_over_wear::volume_mm3;
+use crate::wear::{MeanCycle, NamedLaw, NodeWear, WearLaw};
 
 /// What a law would have worn so far, had its wear not moved the surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,7 +60,7 @@ impl LawBeside {
         interval: f64,
     ) {
         let now = CycleByLaw::of(law, cycles, area_mm2, interval);
-        let worn = |now: f64, last: f64, last_interval: f64| {
+        let step = |now: f64, last: f64, last_interval: f64| {
             interval * now + interval * interval / (2.0 * last_interval) * (now - last)
         };
         for (node, depth_mm) in self.depth_mm.iter_mut().enumerate() {
@@ -68,7 +68,7 @@ impl LawBeside {
             let (last, last_interval) = self.last.as_ref().map_or((rate, interval), |last| {
                 (last.depth_mm[node], last.interval)
             });
-            let more_mm = worn(rate, last, last_interval);
+            let more_mm = step(rate, last, last_interval);
             *depth_mm += more_mm;
             self.volume_mm3 += area_mm2[node] * more_mm;
         }
@@ -76,7 +76,7 @@ impl LawBeside {
             let last = self.last.as_ref();
             let before = last.and_then(|last| Some((last.outside_mm3?, last.interval)));
             let (last, last_interval) = before.unwrap_or((rate, interval));
-            worn(rate, last, last_interval)
+            step(rate, last, last_interval)
         });
         self.outside_mm3 = sum(self.outside_mm3, outside);
         self.last = Some(now);
@@ -85,47 +85,37 @@ impl LawBeside {
 
 impl CycleByLaw {
     fn of(law: &dyn WearLaw, cycles: &[MeanCycle<'_>], area_mm2: &[f64], interval: f64) -> Self {
-        let depth = |cycle: &MeanCycle<'_>| {
-            // Most of a surface is never touched.
-            if cycle.sliding_distance_mm == 0.0 {
-                return 0.0;
-            }
-            law.depth_per_cycle_mm(cycle)
-        };
-        let depth_mm: Vec<f64> = cycles.iter().map(depth).collect();
+        let worn = worn(law, cycles);
+        let depth_mm: Vec<f64> = worn.iter().map(|worn| worn.depth_mm).collect();
         Self {
-            outside_mm3: outside_mm3(law, cycles, area_mm2, &depth_mm),
+            outside_mm3: outside_mm3(&worn, area_mm2, &depth_mm),
             interval,
             depth_mm,
         }
     }
 }
 
-/// What a step of the march's own law wears outside of what that was fitted to, mm3; none where that is not
-/// known.
-pub(super) fn step_outside_mm3(
-    law: &dyn WearLaw,
-    cycles: &[MeanCycle<'_>],
-    area_mm2: &[f64],
-    step: &WearStep,
-) -> Option<f64> {
-    outside_mm3(law, cycles, area_mm2, &step.depth_mm)
+/// What a cycle wears by a law at every node.
+pub(super) fn worn(law: &dyn WearLaw, cycles: &[MeanCycle<'_>]) -> Vec<NodeWear> {
+    let worn = |cycle: &MeanCycle<'_>| {
+        // Most of a surface is never touched.
+        if cycle.sliding_distance_mm == 0.0 {
+            return NodeWear::of_depth(0.0);
+        }
+        law.wear(cycle)
+    };
+    cycles.iter().map(worn).collect()
 }
 
-/// What of these depths is outside of what the law was fitted to, mm3; none where that is not known.
-fn outside_mm3(
-    law: &dyn WearLaw,
-    cycles: &[MeanCycle<'_>],
-    area_mm2: &[f64],
-    depth_mm: &[f64],
-) -> Option<f64> {
-    let outside = |(cycle, &depth_mm): (&MeanCycle<'_>, &f64)| {
+/// What of these depths is outside of what their law was fitted to, mm3; none where that is not known.
+pub(super) fn outside_mm3(worn: &[NodeWear], area_mm2: &[f64], depth_mm: &[f64]) -> Option<f64> {
+    let outside = |(worn, &depth_mm): (&NodeWear, &f64)| {
         if depth_mm == 0.0 {
             return Some(0.0);
         }
-        Some(depth_mm * law.part_outside(cycle)?)
+        Some(depth_mm * worn.part_outside?)
     };
-    let outside: Option<Vec<f64>> = cycles.iter().zip(depth_mm).map(outside).collect();
+    let outside: Option<Vec<f64>> = worn.iter().zip(depth_mm).map(outside).collect();
     Some(volume_mm3(area_mm2, &outside?))
 }
 

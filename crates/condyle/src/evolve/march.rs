@@ -8,12 +8,12 @@ use super::{
     PlacementError, Progress, Snapshot, SolvedCycle, UpdateRecord, Updates, WearTest,
     depth::{lost_mm, total_mm},
     interval::shared_out,
-    laws_beside::{LawBeside, step_outside_mm3, sum},
+    laws_beside::{LawBeside, outside_mm3, sum, worn},
     mean_over_wear::volume_mm3,
     placement::place,
     rates::{Rates, Wearing},
     step::next_step,
-    step_record::{Standing, WearStep},
+    step_record::Standing,
 };
 use crate::{
     Vec3,
@@ -21,7 +21,7 @@ use crate::{
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     machine::{Chain, Cycle, CycleRow, MachineState, Simulator, SolverCounters, TimeSettings},
     spatial::Pose,
-    wear::{MeanCycle, SharedCycle},
+    wear::{MeanCycle, NodeWear, SharedCycle},
 };
 
 /// The first and the last cycle, whose motions are kept, repeat themselves within this part of the
@@ -310,7 +310,8 @@ impl March {
         let cycles_before = self.cycles();
         let shared = with_shares(&self.test, &solved.cycles);
         let cycles = mean_cycles(&shared, &solved.surface);
-        let rates = self.rates(&solved.surface, &cycles);
+        let worn = worn(self.test.wear.as_ref(), &cycles);
+        let rates = self.rates(&solved.surface, &cycles, &worn);
         let standing = Standing {
             rates: &rates,
             last: self.state.last_step.as_ref(),
@@ -333,7 +334,9 @@ impl March {
         );
         self.state.updates.push(record);
         self.state.counters = solved.counters;
-        self.wear_by_laws(&cycles, &rates, &step);
+        let outside_mm3 = outside_mm3(&worn, &rates.area_mm2, &step.depth_mm);
+        self.state.outside_mm3 = sum(self.state.outside_mm3, outside_mm3);
+        self.wear_by_laws_beside(&cycles, &rates.area_mm2, step.interval);
         let fields = NodeFields::of(
             &cycles,
             &solved.surface,
@@ -377,23 +380,25 @@ impl March {
         ))
     }
 
-    fn rates(&self, surface: &ArticulatingSurface, cycles: &[MeanCycle<'_>]) -> Rates {
+    fn rates(
+        &self,
+        surface: &ArticulatingSurface,
+        cycles: &[MeanCycle<'_>],
+        worn: &[NodeWear],
+    ) -> Rates {
         let wearing = Wearing {
-            wear: self.test.wear.as_ref(),
             contact: self.test.contact.as_ref(),
             insert: &self.insert,
             surface,
         };
-        Rates::of(&wearing, cycles)
+        Rates::of(&wearing, cycles, worn)
     }
 
-    /// Adds a step to what each law knows of itself.
-    fn wear_by_laws(&mut self, cycles: &[MeanCycle<'_>], rates: &Rates, step: &WearStep) {
-        let outside_mm3 = step_outside_mm3(self.test.wear.as_ref(), cycles, &rates.area_mm2, step);
-        self.state.outside_mm3 = sum(self.state.outside_mm3, outside_mm3);
+    /// What the laws beside that of the test would have worn in an interval of these cycles.
+    fn wear_by_laws_beside(&mut self, cycles: &[MeanCycle<'_>], area_mm2: &[f64], interval: f64) {
         let laws = self.test.laws_beside.iter();
         for (law, beside) in laws.zip(&mut self.state.laws_beside) {
-            beside.wear(law.law.as_ref(), cycles, &rates.area_mm2, step.interval);
+            beside.wear(law.law.as_ref(), cycles, area_mm2, interval);
         }
     }
 

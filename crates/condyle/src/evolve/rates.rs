@@ -4,7 +4,7 @@ use super::mean_over_wear::{mean_over_volume, volume_mm3};
 use crate::{
     contact::ContactLaw,
     geometry::{ArticulatingSurface, Insert},
-    wear::{MeanCycle, WearLaw},
+    wear::{MeanCycle, NodeWear},
 };
 
 /// What a cycle wears on the present geometry, the mean over all activities by their shares.
@@ -20,19 +20,17 @@ pub(super) struct Rates {
     pub relaxation_per_cycle: f64,
 }
 
-/// The laws and the bodies that cycles wear by.
+/// The law of contact and the bodies that cycles wear.
 pub(super) struct Wearing<'a> {
-    pub wear: &'a dyn WearLaw,
     pub contact: &'a dyn ContactLaw,
     pub insert: &'a Insert,
     pub surface: &'a ArticulatingSurface,
 }
 
 impl Rates {
-    /// Those of nodes that go through these cycles.
-    pub fn of(wearing: &Wearing<'_>, cycles: &[MeanCycle<'_>]) -> Self {
-        let rate = |cycle| wearing.wear.depth_per_cycle_mm(cycle);
-        let depth_per_cycle_mm: Vec<f64> = cycles.iter().map(rate).collect();
+    /// Those of nodes that go through these cycles, which wear them so.
+    pub fn of(wearing: &Wearing<'_>, cycles: &[MeanCycle<'_>], worn: &[NodeWear]) -> Self {
+        let depth_per_cycle_mm: Vec<f64> = worn.iter().map(|worn| worn.depth_mm).collect();
         let shares = wearing.surface.shares.iter();
         let area_mm2: Vec<f64> = shares.map(|share| share.area_mm2).collect();
         let alone = |node: usize| {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{WearLaw, WearLawKind};
+use super::law::{NodeWear, WearLaw, WearLawKind};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
@@ -43,8 +43,8 @@ impl Archard {
 }
 
 impl WearLaw for Archard {
-    fn depth_per_cycle_mm(&self, cycle: &MeanCycle<'_>) -> f64 {
-        self.wear_factor_mm3_per_nm / MM_PER_M * cycle.pressure_slip_mpa_mm
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
+        NodeWear::of_depth(self.wear_factor_mm3_per_nm / MM_PER_M * cycle.pressure_slip_mpa_mm)
     }
 }
 

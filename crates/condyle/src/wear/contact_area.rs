@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::MeanCycle;
-use super::law::{WearLaw, WearLawKind};
+use super::law::{NodeWear, WearLaw, WearLawKind};
 use crate::parameter::{Known, Parameter};
 
 /// The law as it is offered.
@@ -74,14 +74,14 @@ struct ContactArea {
 }
 
 impl WearLaw for ContactArea {
-    fn depth_per_cycle_mm(&self, cycle: &MeanCycle<'_>) -> f64 {
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
         let cross_shear = cycle.slip_work.cross_shear();
         let [slope, offset] = if cross_shear < self.cross_shear_between {
             self.low
         } else {
             self.high
         };
-        (slope * cross_shear + offset) * cycle.pressed_distance_mm
+        NodeWear::of_depth((slope * cross_shear + offset) * cycle.pressed_distance_mm)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{WearLaw, WearLawKind};
+use super::law::{NodeWear, WearLaw, WearLawKind};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
@@ -60,14 +60,13 @@ struct Directional {
 }
 
 impl WearLaw for Directional {
-    fn depth_per_cycle_mm(&self, cycle: &MeanCycle<'_>) -> f64 {
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
         let along = self.along_mm3_per_nm * cycle.slip_work.along_mpa_mm();
         let across = self.across_mm3_per_nm * cycle.slip_work.across_mpa_mm();
-        (along + across) / MM_PER_M
-    }
-
-    fn part_outside(&self, cycle: &MeanCycle<'_>) -> Option<f64> {
-        Some(cycle.part_above(self.measured_at_mpa))
+        NodeWear {
+            depth_mm: (along + across) / MM_PER_M,
+            part_outside: Some(cycle.part_above(self.measured_at_mpa)),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{WearLaw, WearLawKind};
+use super::law::{NodeWear, WearLaw, WearLawKind};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
@@ -81,8 +81,8 @@ struct Kang {
 
 impl Kang {
     /// The wear factor without pressure, mm3/(N m).
-    fn unpressed_factor_mm3_per_nm(&self, cycle: &MeanCycle<'_>) -> f64 {
-        let cross_shear = cycle.slip_work.cross_shear().max(self.least_cross_shear);
+    fn unpressed_factor_mm3_per_nm(&self, cross_shear: f64) -> f64 {
+        let cross_shear = cross_shear.max(self.least_cross_shear);
         (self.log_wear_factor + self.cross_shear_exponent * cross_shear.ln()).exp()
     }
 
@@ -103,20 +103,19 @@ impl Kang {
 }
 
 impl WearLaw for Kang {
-    fn depth_per_cycle_mm(&self, cycle: &MeanCycle<'_>) -> f64 {
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
+        let cross_shear = cycle.slip_work.cross_shear();
         let [within, above] = self.weighed_work_mpa_mm(cycle);
-        self.unpressed_factor_mm3_per_nm(cycle) / MM_PER_M * (within + above)
-    }
-
-    fn part_outside(&self, cycle: &MeanCycle<'_>) -> Option<f64> {
-        if cycle.slip_work.cross_shear() < self.least_cross_shear {
-            return Some(1.0);
+        let work_mpa_mm = within + above;
+        let outside = if cross_shear < self.least_cross_shear {
+            1.0
+        } else {
+            above / work_mpa_mm.max(f64::MIN_POSITIVE)
+        };
+        NodeWear {
+            depth_mm: self.unpressed_factor_mm3_per_nm(cross_shear) / MM_PER_M * work_mpa_mm,
+            part_outside: Some(outside),
         }
-        if cycle.peak_pressure_mpa <= self.most_pressure_mpa {
-            return Some(0.0);
-        }
-        let [within, above] = self.weighed_work_mpa_mm(cycle);
-        Some(above / (within + above).max(f64::MIN_POSITIVE))
     }
 }
 

@@ -8,13 +8,27 @@ use crate::parameter::{Known, Parameter};
 
 /// A law of wear. It sees what one node goes through in the mean cycle of all activities, and never a solver.
 pub trait WearLaw: Debug + Send + Sync {
-    /// Depth worn at a node by one cycle, mm, along the inward normal; 0 or more, and 0 where nothing slides.
-    fn depth_per_cycle_mm(&self, cycle: &MeanCycle<'_>) -> f64;
+    /// What one cycle wears at a node.
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear;
+}
 
-    /// What part of that depth, 0 to 1, was worn outside of the pressures and cross-shear that the law was
-    /// fitted to; none where its source names none.
-    fn part_outside(&self, _cycle: &MeanCycle<'_>) -> Option<f64> {
-        None
+/// What one cycle wears at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeWear {
+    /// Depth along the inward normal, mm; 0 or more, and 0 where nothing slides.
+    pub depth_mm: f64,
+    /// What part of it, 0 to 1, is worn outside of the pressures and cross-shear that the law was fitted to;
+    /// none where its source names none.
+    pub part_outside: Option<f64>,
+}
+
+impl NodeWear {
+    /// That of a law of which it is not known what it was fitted to.
+    pub fn of_depth(depth_mm: f64) -> Self {
+        Self {
+            depth_mm,
+            part_outside: None,
+        }
     }
 }
 

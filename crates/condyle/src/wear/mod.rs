@@ -9,7 +9,7 @@ mod mean_cycle;
 mod paths;
 
 pub use archard::Archard;
-pub use law::{NamedLaw, WearLaw, WearLawKind};
+pub use law::{NamedLaw, NodeWear, WearLaw, WearLawKind};
 pub use mean_cycle::{MeanCycle, SharedCycle};
 
 law::wear_laws! {

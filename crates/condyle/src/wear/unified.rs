@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{WearLaw, WearLawKind};
+use super::law::{NodeWear, WearLaw, WearLawKind};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
@@ -47,13 +47,12 @@ struct Unified {
 }
 
 impl WearLaw for Unified {
-    fn depth_per_cycle_mm(&self, cycle: &MeanCycle<'_>) -> f64 {
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
         let across_mpa_mm = cycle.slip_work.across_mpa_mm();
-        2.0 * self.circle_factor_mm3_per_nm / MM_PER_M * across_mpa_mm
-    }
-
-    fn part_outside(&self, cycle: &MeanCycle<'_>) -> Option<f64> {
-        Some(cycle.part_above(self.measured_at_mpa))
+        NodeWear {
+            depth_mm: 2.0 * self.circle_factor_mm3_per_nm / MM_PER_M * across_mpa_mm,
+            part_outside: Some(cycle.part_above(self.measured_at_mpa)),
+        }
     }
 }
 

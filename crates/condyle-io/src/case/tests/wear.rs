@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use condyle::contact::{CycleHistory, Moment, Record};
 use condyle::parameter::{Known, Parameter};
-use condyle::wear::{MeanCycle, WEAR_LAWS, WearLaw, WearLawKind};
+use condyle::wear::{MeanCycle, NodeWear, WEAR_LAWS, WearLaw, WearLawKind};
 
 use super::assert_shows;
 use crate::case::{Case, CaseReader, ConstantError, Wear, WearLaws, schema_markdown};
@@ -18,9 +18,9 @@ struct Threshold {
 }
 
 impl WearLaw for Threshold {
-    fn depth_per_cycle_mm(&self, cycle: &MeanCycle<'_>) -> f64 {
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
         let above = cycle.pressure_slip_mpa_mm - self.from_n_per_mm;
-        self.wear_factor_mm3_per_nm / 1000.0 * above.max(0.0)
+        NodeWear::of_depth(self.wear_factor_mm3_per_nm / 1000.0 * above.max(0.0))
     }
 }
 
@@ -148,7 +148,7 @@ fn verify_it_is_the_law_that_the_test_wears_by() {
     let instant = history.record([record].into_iter());
     history.sort(1, &[instant]);
     let shared = [(1.0, &history)];
-    let depth = |law: &dyn WearLaw| law.depth_per_cycle_mm(&MeanCycle::of(&shared, 0, 1.0));
+    let depth = |law: &dyn WearLaw| law.wear(&MeanCycle::of(&shared, 0, 1.0)).depth_mm;
     let found = depth(test.wear.as_ref());
     assert!((found - 3e-10 * 60.0).abs() < 1e-20, "{found:e}");
 }
