@@ -19,6 +19,7 @@ FIELDS = [
     "depth_per_cycle_mm",
     "peak_pressure_mpa",
     "sliding_distance_mm",
+    "cross_shear",
     "thickness_mm",
 ]
 
@@ -110,7 +111,7 @@ def assert_vtk_and_meshio_read_the_same(path):
     assert types == {VTK_HEXAHEDRON}
     assert len(mesh.cells_dict["hexahedron"]) == cells
     np.testing.assert_array_equal(points, mesh.points)
-    for name in [*FIELDS, "articulating"]:
+    for name in [*FIELDS, "articulating", "principal_direction"]:
         np.testing.assert_array_equal(arrays[name], mesh.point_data[name])
     return len(points)
 
@@ -134,6 +135,35 @@ def test_fields_are_those_of_the_summary(meshes, summary):
     for name in FIELDS:
         assert fields[name].dtype == np.float64
         assert np.all(fields[name][~on_surface] == 0)
+
+
+def test_cross_shear_has_a_direction_along_the_surface(meshes):
+    fields = meshio.read(meshes[-1]).point_data
+    shear, direction = fields["cross_shear"], fields["principal_direction"]
+    assert direction.shape == (len(shear), 3)
+    assert np.all((shear >= 0) & (shear <= 0.5)) and shear.max() > 0.01
+    length = np.linalg.norm(direction, axis=1)
+    has_one = length > 0
+    np.testing.assert_allclose(length[has_one], 1, rtol=1e-12)
+    assert np.all(direction[:, 0] >= 0)
+    assert np.all(shear[~has_one] % 0.5 < 1e-6)
+    # A knee slides mostly forwards and backwards.
+    pressed = fields["sliding_distance_mm"] > 1
+    assert np.median(direction[pressed, 0]) > 0.9
+
+
+def test_every_law_says_what_it_would_have_worn(summary):
+    laws = summary["wear_laws"]
+    assert len({law["law"] for law in laws}) == len(laws) >= 5
+    assert [law["moved_the_surface"] for law in laws] == [True] + [False] * (len(laws) - 1)
+    assert laws[0]["mass_loss_mg"] == pytest.approx(summary["mass_loss_mg"], rel=1e-12)
+    assert laws[0]["max_depth_mm"] == summary["max_depth_mm"]
+    for law in laws:
+        assert law["mass_loss_mg"] > 0 and law["max_depth_mm"] > 0
+        per_million = law["mass_loss_mg"] / summary["cycles"] * 1e6
+        assert law["mass_loss_mg_per_million_cycles"] == pytest.approx(per_million)
+        outside = law["outside_of_fit_percent"]
+        assert outside is None or 0 <= outside <= 100
 
 
 def test_case_as_run_writes_every_section_out(folder):

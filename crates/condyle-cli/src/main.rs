@@ -7,6 +7,7 @@ mod compare;
 mod converge;
 mod exit;
 mod export;
+mod law_table;
 mod new;
 mod output;
 mod processor;

@@ -16,7 +16,7 @@ use condyle_lab::{Outcome, RunOptions};
 
 use crate::{
     arguments::Run,
-    exit,
+    exit, law_table,
     output::{self, Lines},
     progress::{Progress, in_words},
     standard_error::tell,
@@ -109,6 +109,7 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     for (what, value) in rows(summary) {
         lines.line(format_args!("{what:<28}{value}"));
     }
+    law_table::add(&summary.wear_laws, &mut lines);
     add_warnings(summary, &mut lines);
     lines.line(format_args!(
         "results in {}; open {}, and in ParaView {}",

@@ -217,6 +217,7 @@ impl<'a> Again<'a> {
     fn as_run(&self) -> WearTest {
         WearTest {
             schedule: Schedule::fixed(1.0, 1),
+            laws_beside: Vec::new(),
             ..self.march.test().clone()
         }
     }

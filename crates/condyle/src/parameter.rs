@@ -15,6 +15,19 @@ pub struct Parameter {
     pub most: f64,
     /// Where the default comes from: a key of `references.bib`, or `choice`.
     pub source: &'static str,
+    /// How well the default is known.
+    pub known: Known,
+}
+
+/// How well a constant or a formula is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// Read in its source.
+    Read,
+    /// Remembered rather than read: pages say *approximate*.
+    Approximate,
+    /// A choice of condyle's authors.
+    Chosen,
 }
 
 impl Parameter {

@@ -10,11 +10,11 @@ use condyle::{
     evolve::{Activity, March, MarchState, Schedule, WearTest},
     geometry::{FemoralSurface, Insert, Meshing, flat_insert},
     machine::{
-        Drive, Interpolation, Knot, Machine, TimeSettings, Waveform,
+        Drive, Interpolation, JointIndex, Knot, Machine, TimeSettings, Waveform,
         knee::{self, KNEE},
     },
     spatial::RelativeMotion,
-    wear::Archard,
+    wear::{Archard, NamedLaw, WEAR_LAWS},
 };
 
 /// A contact that counts the steps it has accepted, and keeps the count as its history.
@@ -88,11 +88,16 @@ impl ContactModel for CountingContact<'_> {
 
 /// A knee's machine that presses, and moves AP to and fro by `ap_mm`.
 fn machine(ap_mm: f64) -> Machine {
+    machine_along(knee::AP, ap_mm)
+}
+
+/// A knee's machine that presses, and moves one joint to and fro.
+fn machine_along(joint: JointIndex, by_mm: f64) -> Machine {
     let mut machine = Machine::new(&KNEE);
     let knot = |percent, value| Knot { percent, value };
-    let knots = vec![knot(0.0, -ap_mm), knot(50.0, ap_mm)];
+    let knots = vec![knot(0.0, -by_mm), knot(50.0, by_mm)];
     let to_and_fro = Waveform::new(knots, Interpolation::HalfCosine).unwrap();
-    machine.joint_mut(knee::AP).drive = Drive::Prescribed(to_and_fro);
+    machine.joint_mut(joint).drive = Drive::Prescribed(to_and_fro);
     machine.joint_mut(knee::IS).drive = Drive::Loaded(Waveform::constant(-500.0));
     machine
 }
@@ -118,6 +123,7 @@ fn test() -> WearTest {
         wear: Arc::new(Archard {
             wear_factor_mm3_per_nm: 2.64e-7,
         }),
+        laws_beside: Vec::new(),
         density_mg_per_mm3: 0.93,
         time: TimeSettings {
             increments: 40,
@@ -223,6 +229,77 @@ fn activities_wear_by_their_shares() {
     // On a flat plate volume is Kw F S: twice the way in half the cycles is the same wear.
     let mixed = with(vec![activity(2.0, 0.5), activity(4.0, 0.5)]);
     assert!((mixed / alone - 1.0).abs() < 2e-3, "{mixed} {alone}");
+}
+
+/// Every law that comes with condyle, with its defaults.
+fn every_law() -> Vec<NamedLaw> {
+    WEAR_LAWS.iter().map(|kind| kind.with_defaults()).collect()
+}
+
+#[test]
+fn laws_beside_move_no_surface_and_the_same_law_wears_the_same() {
+    let alone = marched(test());
+    let beside = marched(WearTest {
+        laws_beside: every_law(),
+        ..test()
+    });
+    assert!(alone.mesh_nodes == beside.mesh_nodes && alone.updates == beside.updates);
+    let laws = &beside.laws_beside;
+    assert_eq!(laws.len(), WEAR_LAWS.len());
+    let volume_mm3 = alone.updates[3].volume_loss_mm3;
+    let ratio = laws[0].volume_mm3 / volume_mm3;
+    assert!(
+        laws[0].word == "archard" && (ratio - 1.0).abs() < 1e-4,
+        "{ratio}"
+    );
+    let ratio = laws[0].max_depth_mm() / alone.updates[3].max_depth_mm;
+    assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+    assert_eq!(laws[0].outside_mm3, None);
+    // A ball that rubs along a line: nothing goes across.
+    let of = |word: &str| laws.iter().find(|law| law.word == word).expect("is there");
+    assert!(of("unified").volume_mm3 < 1e-3 * volume_mm3);
+    let kang = of("kang");
+    assert!(kang.outside_mm3.expect("is known") > 0.9 * kang.volume_mm3);
+}
+
+#[test]
+fn laws_beside_go_on_from_a_state_as_if_never_stopped() {
+    let test = WearTest {
+        laws_beside: every_law(),
+        ..test()
+    };
+    let mut whole = March::start(test.clone()).unwrap();
+    update(&mut whole);
+    let mut resumed = March::resume(test, whole.state().clone());
+    update(&mut whole);
+    update(&mut resumed);
+    assert!(whole.state() == resumed.state());
+}
+
+#[test]
+fn verify_activities_across_each_other_have_the_cross_shear_of_both() {
+    let activity = |name: &str, joint, share| Activity {
+        name: name.to_owned(),
+        machine: machine_along(joint, 3.0),
+        share,
+    };
+    let mut march = March::start(WearTest {
+        activities: vec![
+            activity("forwards", knee::AP, 0.75),
+            activity("aside", knee::ML, 0.25),
+        ],
+        ..test()
+    })
+    .unwrap();
+    update(&mut march);
+    let surface = march.last_cycle().expect("one is solved").surface;
+    let mut nodes = surface.positions.iter();
+    let middle = nodes.position(|place| place.x.hypot(place.z) < 1e-9);
+    let middle = middle.expect("a node in the middle");
+    let cross_shear = march.fields().cross_shear[middle];
+    assert!((cross_shear - 0.25).abs() < 0.01, "{cross_shear}");
+    let [forwards, up, aside] = march.fields().principal_direction[middle];
+    assert!(forwards > 0.9999 && up.abs() < 0.01 && aside.abs() < 0.01);
 }
 
 #[test]

@@ -36,6 +36,7 @@ const POINT_DATA: &[&str] = &[
     "depth_per_cycle_mm",
     "peak_pressure_mpa",
     "sliding_distance_mm",
+    "cross_shear",
     "thickness_mm",
     "articulating",
 ];

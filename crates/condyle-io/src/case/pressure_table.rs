@@ -37,7 +37,7 @@ impl Settings for PressureTable {
     fn keys() -> Vec<Key> {
         let points = Key {
             name: TABLE,
-            doc: "Points [overclosure in mm, pressure in MPa], rising from [0.0, 0.0].",
+            doc: "Points [overclosure in mm, pressure in MPa], rising from [0.0, 0.0].".into(),
             kind: Kind::Pairs,
             silent: WhereSilent::LeftOut,
             limits: None,
@@ -71,7 +71,7 @@ impl Settings for PressureTable {
 
     fn write(&self, out: &mut Writer) {
         for key in Self::keys().iter().filter(|key| key.name == TABLE) {
-            out.comment(key.doc);
+            out.comment(&key.doc);
             out.pairs(key.name, self.points());
         }
     }
@@ -80,7 +80,7 @@ impl Settings for PressureTable {
 fn file_key() -> Key {
     Key {
         name: TABLE_FILE,
-        doc: "CSV file of these points, with the header overclosure_mm,pressure_mpa.",
+        doc: "CSV file of these points, with the header overclosure_mm,pressure_mpa.".into(),
         kind: DataFile::kind(),
         silent: WhereSilent::LeftOut,
         limits: None,

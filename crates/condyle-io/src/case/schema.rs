@@ -1,7 +1,7 @@
 //! The page of the book that lists every key.
 
 use condyle::machine::{JointKind, knee::KNEE};
-use condyle::parameter::Parameter;
+use condyle::parameter::{Known, Parameter};
 use condyle::wear::WearLawKind;
 
 use super::accuracy::Accuracy;
@@ -88,11 +88,22 @@ fn wear(page: &mut Page, laws: WearLaws) {
 fn law_line(law: &WearLawKind) -> String {
     let source = |parameter: &Parameter| match parameter.source {
         "choice" => "choice".to_owned(),
+        key if parameter.known == Known::Approximate => format!("[{key}] (approximate)"),
         key => format!("[{key}]"),
     };
     let sources: Vec<String> = law.parameters.iter().map(source).collect();
     let (word, about, sources) = (law.word, law.about, sources.join(", "));
-    format!("- `{word}`: {about} Its constants are from: {sources}.\n")
+    let formula = if law.known == Known::Approximate {
+        " The formula is approximate: remembered rather than read."
+    } else {
+        ""
+    };
+    let constants = if sources.is_empty() {
+        String::new()
+    } else {
+        format!(" Its constants are from: {sources}.")
+    };
+    format!("- `{word}`: {about}{constants}{formula}\n")
 }
 
 fn machine(page: &mut Page) {

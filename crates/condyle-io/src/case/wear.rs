@@ -1,9 +1,10 @@
 //! The wear law: any of a list of kinds, each with the constants that it declares.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
-use condyle::parameter::Parameter;
-use condyle::wear::{WearLaw, WearLawKind};
+use condyle::parameter::{Known, Parameter};
+use condyle::wear::{NamedLaw, WEAR_LAWS, WearLaw, WearLawKind};
 use thiserror::Error;
 
 use crate::keyed::{
@@ -19,6 +20,8 @@ pub struct Wear {
     kind: &'static WearLawKind,
     /// One for each parameter of the kind, in their order.
     constants: Vec<f64>,
+    /// What it was chosen from.
+    offered: WearLaws,
 }
 
 /// Why a wear law cannot have a constant.
@@ -54,7 +57,11 @@ impl Wear {
     /// A law with the defaults of its constants.
     pub fn new(kind: &'static WearLawKind) -> Self {
         let constants = kind.defaults();
-        Self { kind, constants }
+        Self {
+            kind,
+            constants,
+            offered: WEAR_LAWS,
+        }
     }
 
     /// Which law.
@@ -101,6 +108,27 @@ impl Wear {
         self.kind.law(&self.constants)
     }
 
+    /// Whether the law of that word, with the constants of the case if it is the case's, is remembered rather
+    /// than read.
+    pub(crate) fn is_approximate(&self, word: &str) -> bool {
+        if word != self.kind.word {
+            let other = self.offered.iter().find(|other| other.word == word);
+            return other.is_some_and(|other| other.is_approximate());
+        }
+        let mut constants = self.kind.parameters.iter().zip(&self.constants);
+        let is_remembered = |(parameter, value): (&Parameter, &f64)| {
+            parameter.known == Known::Approximate && *value == parameter.default
+        };
+        self.kind.known == Known::Approximate || constants.any(is_remembered)
+    }
+
+    /// Every other law that it was chosen from, with the defaults of its constants.
+    pub(super) fn beside(&self) -> Vec<NamedLaw> {
+        let others = self.offered.iter();
+        let others = others.filter(|other| other.word != self.kind.word);
+        others.map(|other| other.with_defaults()).collect()
+    }
+
     /// The key that chooses the law, and the keys that each brings.
     pub(super) fn choices(laws: &[&WearLawKind]) -> Choices {
         let offered = |law: &&WearLawKind| Offered {
@@ -121,7 +149,11 @@ impl Wear {
         };
         let constants: Vec<Option<f64>> = kind.parameters.iter().map(read).collect();
         let constants = constants.into_iter().collect::<Option<_>>()?;
-        Some(Self { kind, constants })
+        Some(Self {
+            kind,
+            constants,
+            offered: laws,
+        })
     }
 
     /// Writes the law and its constants.
@@ -137,11 +169,19 @@ impl Wear {
 fn key_of(parameter: &Parameter) -> Key {
     Key {
         name: parameter.name,
-        doc: parameter.about,
+        doc: doc_of(parameter),
         kind: f64::kind(),
         silent: WhereSilent::Takes(format!("{:?}", parameter.default)),
         limits: Some(limits_of(parameter)),
     }
+}
+
+/// What a constant is; a default that nobody read says so.
+fn doc_of(parameter: &Parameter) -> Cow<'static, str> {
+    if parameter.known == Known::Approximate {
+        return format!("{} The default is approximate.", parameter.about).into();
+    }
+    parameter.about.into()
 }
 
 fn limits_of(parameter: &Parameter) -> Limits {

@@ -39,7 +39,7 @@ impl Choices {
         debug_assert!(words.contains(&default), "{name} offers its default");
         let by = Key {
             name,
-            doc,
+            doc: doc.into(),
             kind: Kind::Word(words),
             silent: WhereSilent::Takes(format!("{default:?}")),
             limits: None,

@@ -218,7 +218,7 @@ fn description(key: &Key) -> String {
         WhereSilent::MustBeGiven => Some("Must be given.".to_owned()),
         WhereSilent::LeftOut => None,
     };
-    let parts = [Some(key.doc.to_owned()), unit, range, default];
+    let parts = [Some(key.doc.to_string()), unit, range, default];
     parts
         .into_iter()
         .flatten()

@@ -1,5 +1,7 @@
 //! What is known of a key before any file is read.
 
+use std::borrow::Cow;
+
 use super::kind::Kind;
 use super::limits::Limits;
 
@@ -9,7 +11,7 @@ pub struct Key {
     /// Name in the file, with the unit where it has one.
     pub name: &'static str,
     /// What it means.
-    pub doc: &'static str,
+    pub doc: Cow<'static, str>,
     /// What may be written.
     pub kind: Kind,
     /// What is taken where the file is silent.

@@ -62,7 +62,7 @@ impl Page {
             WhereSilent::LeftOut => "none".to_owned(),
             WhereSilent::MustBeGiven => "must be given".to_owned(),
         };
-        let (name, doc) = (key.name, key.doc);
+        let (name, doc) = (key.name, &key.doc);
         let row = writeln!(
             self.text,
             "| `{name}` | {unit} | {range} | {default} | {doc} |"

@@ -56,7 +56,7 @@ macro_rules! settings {
                 vec![$(
                     $crate::keyed::key::Key {
                         name: stringify!($field),
-                        doc: concat!($($doc),+).trim(),
+                        doc: concat!($($doc),+).trim().into(),
                         kind: <$ty as $crate::keyed::setting::Setting>::kind(),
                         silent: $crate::keyed::settings::where_silent!($ty $(, $default)?),
                         limits: $crate::keyed::settings::given!($($limits)?),

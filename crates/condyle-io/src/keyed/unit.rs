@@ -9,6 +9,7 @@ const UNITS: &[(&str, &str)] = &[
     ("_mm_per_s", "mm/s"),
     ("_n_per_mm", "N/mm"),
     ("_kg_m2", "kg m2"),
+    ("_per_mpa", "1/MPa"),
     ("_mpa", "MPa"),
     ("_deg", "degrees"),
     ("_kg", "kg"),

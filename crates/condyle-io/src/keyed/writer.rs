@@ -26,14 +26,14 @@ impl Writer {
     /// Writes a key with its value and what it means; a value that is left out only as a remark.
     pub(crate) fn setting<T: Setting>(&mut self, key: &Key, value: &T) {
         match value.text() {
-            Some(text) => self.line(&format!("{} = {text}", key.name), key.doc),
-            None => self.line(&format!("# {} =", key.name), key.doc),
+            Some(text) => self.line(&format!("{} = {text}", key.name), &key.doc),
+            None => self.line(&format!("# {} =", key.name), &key.doc),
         }
     }
 
     /// Writes the word that chooses which other keys a table has.
     pub(crate) fn word(&mut self, key: &Key, word: &str) {
-        self.line(&format!("{} = {word:?}", key.name), key.doc);
+        self.line(&format!("{} = {word:?}", key.name), &key.doc);
     }
 
     /// Writes an assignment, and what it means behind it.

@@ -17,16 +17,18 @@ pub enum PointValues<'a> {
     Float64(&'a [f64]),
     /// Written as Float32.
     Float32(&'a [f32]),
+    /// Vectors, written as Float64 of three components.
+    Vectors(&'a [[f64; 3]]),
     /// Written as UInt8; values of 0 and 1 come back as a node set and a surface.
     UInt8(&'a [u8]),
 }
 
-/// A named array with one value a node.
+/// A named array with one value or vector a node.
 #[derive(Clone, Copy, Debug)]
 pub struct PointArray<'a> {
     /// Name with the unit in it, such as `wear_depth_mm`.
     pub name: &'a str,
-    /// One value a node of the mesh.
+    /// One value or vector a node of the mesh.
     pub values: PointValues<'a>,
 }
 
@@ -35,15 +37,23 @@ impl PointValues<'_> {
         match self {
             Self::Float64(values) => values.len(),
             Self::Float32(values) => values.len(),
+            Self::Vectors(values) => values.len(),
             Self::UInt8(values) => values.len(),
         }
     }
 
     fn kind(self) -> &'static str {
         match self {
-            Self::Float64(_) => "Float64",
+            Self::Float64(_) | Self::Vectors(_) => "Float64",
             Self::Float32(_) => "Float32",
             Self::UInt8(_) => "UInt8",
+        }
+    }
+
+    fn components(self) -> usize {
+        match self {
+            Self::Vectors(_) => 3,
+            Self::Float64(_) | Self::Float32(_) | Self::UInt8(_) => 1,
         }
     }
 
@@ -51,6 +61,10 @@ impl PointValues<'_> {
         match self {
             Self::Float64(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
             Self::Float32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            Self::Vectors(vectors) => {
+                let values = vectors.as_flattened().iter();
+                values.flat_map(|v| v.to_le_bytes()).collect()
+            }
             Self::UInt8(values) => values.to_vec(),
         }
     }
@@ -194,9 +208,15 @@ fn data_arrays(grid: &Grid, width: Width, arrays: &[PointArray]) -> Vec<DataArra
     let cells = grid.cells();
     let mut corners = grid.corners.iter().map(|&node| node.into());
     let mut ends = (1..=cells).map(|cell| (grid.corners_of_cell * cell) as i64);
-    let at_nodes = arrays
-        .iter()
-        .map(|given| array(given.values.kind(), given.name, 1, given.values.bytes()));
+    let at_nodes = arrays.iter().map(|given| {
+        let values = given.values;
+        array(
+            values.kind(),
+            given.name,
+            values.components(),
+            values.bytes(),
+        )
+    });
     let of_mesh = [
         array(float, "Points", 3, width.floats(grid.nodes)),
         array(integer, "connectivity", 1, width.integers(&mut corners)),

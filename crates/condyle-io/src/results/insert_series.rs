@@ -1,8 +1,9 @@
 //! `insert_*.vtu` and `insert.pvd`: the insert at each update, for ParaView.
 
+use condyle::Vec3;
 use condyle::evolve::{March, UpdateRecord};
 
-use super::sides::mesh_on_side;
+use super::sides::{mesh_on_side, point_on_side};
 use crate::{
     case::Side,
     mesh::{MeshFileError, PointArray, PointValues, pvd_text, vtu_bytes},
@@ -21,26 +22,21 @@ pub fn insert_file_name(update: usize) -> String {
 pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
     let insert = march.insert();
     let mesh = mesh_on_side(insert.mesh(), side);
-    let spread = |values: &[f64]| {
-        let mut all = vec![0.0; mesh.nodes.len()];
-        for (&node, &value) in insert.surface_nodes().iter().zip(values) {
-            all[node as usize] = value;
-        }
-        all
-    };
+    let (surface, count) = (insert.surface_nodes(), mesh.nodes.len());
+    let scalars = |values: &[f64]| spread(surface, values, 0.0, count);
     let fields = march.fields();
     let arrays = [
-        ("wear_depth_mm", spread(&fields.wear_depth_mm)),
-        ("depth_per_cycle_mm", spread(&fields.depth_per_cycle_mm)),
-        ("peak_pressure_mpa", spread(&fields.peak_pressure_mpa)),
-        ("sliding_distance_mm", spread(&fields.sliding_distance_mm)),
-        ("thickness_mm", spread(&fields.thickness_mm)),
+        ("wear_depth_mm", scalars(&fields.wear_depth_mm)),
+        ("depth_per_cycle_mm", scalars(&fields.depth_per_cycle_mm)),
+        ("peak_pressure_mpa", scalars(&fields.peak_pressure_mpa)),
+        ("sliding_distance_mm", scalars(&fields.sliding_distance_mm)),
+        ("cross_shear", scalars(&fields.cross_shear)),
+        ("thickness_mm", scalars(&fields.thickness_mm)),
     ];
-    let mut articulating = vec![0; mesh.nodes.len()];
-    insert
-        .surface_nodes()
-        .iter()
-        .for_each(|&node| articulating[node as usize] = 1);
+    let on_side = |vector: &[f64; 3]| point_on_side(&Vec3::from(*vector), side).into();
+    let directions: Vec<[f64; 3]> = fields.principal_direction.iter().map(on_side).collect();
+    let directions = spread(surface, &directions, [0.0; 3], count);
+    let articulating = spread(surface, &vec![1; surface.len()], 0, count);
     let float = |(name, values)| PointArray {
         name,
         values: PointValues::Float64(values),
@@ -50,10 +46,23 @@ pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
         .map(|(name, values)| float((name, values)))
         .collect();
     points.push(PointArray {
+        name: "principal_direction",
+        values: PointValues::Vectors(&directions),
+    });
+    points.push(PointArray {
         name: "articulating",
         values: PointValues::UInt8(&articulating),
     });
     vtu_bytes(&mesh, &points)
+}
+
+/// Values at the `surface` nodes as values at all nodes, elsewhere `none`.
+fn spread<T: Copy>(surface: &[u32], values: &[T], none: T, nodes: usize) -> Vec<T> {
+    let mut all = vec![none; nodes];
+    for (&node, &value) in surface.iter().zip(values) {
+        all[node as usize] = value;
+    }
+    all
 }
 
 /// `insert.pvd`: the series of all files so far, with the cycles as time.

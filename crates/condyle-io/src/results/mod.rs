@@ -9,6 +9,7 @@ mod femur_pose;
 #[cfg(feature = "file-system")]
 mod folder;
 mod insert_series;
+mod law_wear;
 #[cfg(feature = "file-system")]
 mod lock;
 mod plausibility;
@@ -38,6 +39,7 @@ pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
 pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
+pub use law_wear::LawWear;
 #[cfg(feature = "file-system")]
 pub use lock::FolderLock;
 pub use plausibility::PlausibilityWarning;

@@ -10,7 +10,8 @@ use condyle::{
 use serde::{Deserialize, Serialize};
 
 use super::{
-    error_estimate::ErrorEstimate, femur_pose::NeutralPose, plausibility::PlausibilityWarning,
+    error_estimate::ErrorEstimate, femur_pose::NeutralPose, law_wear::LawWear,
+    plausibility::PlausibilityWarning,
 };
 
 /// What a summary is made from.
@@ -34,6 +35,8 @@ pub struct SummaryInput<'a> {
     pub error: Option<ErrorEstimate>,
     /// Where the femur settled.
     pub neutral_pose: NeutralPose,
+    /// What every law of wear says of the run.
+    pub wear_laws: Vec<LawWear>,
 }
 
 /// The numbers of a finished run; units are in the names.
@@ -54,6 +57,10 @@ pub struct Summary {
     pub max_depth_mm: f64,
     /// Estimated discretisation errors of mass loss and deepest wear; none if the case asks for none.
     pub error: Option<ErrorEstimate>,
+    /// What every law of wear says of the same histories, that of the run first; only that one moved the
+    /// surface.
+    #[serde(default)]
+    pub wear_laws: Vec<LawWear>,
     /// Highest pressure anywhere, between nodes too, in any cycle, MPa.
     pub peak_pressure_mpa: f64,
     /// Cycles done before the cycle that has it.
@@ -149,6 +156,7 @@ impl Summary {
             volume_loss_mesh_mm3: last.volume_loss_mesh_mm3,
             max_depth_mm: last.max_depth_mm,
             error: input.error,
+            wear_laws: input.wear_laws,
             peak_pressure_mpa: pressure.value,
             peak_pressure_cycle: pressure.cycle,
             first_cycle_peak_pressure_mpa: first.peak_pressure_mpa,

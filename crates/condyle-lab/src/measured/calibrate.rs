@@ -352,6 +352,7 @@ mod tests {
         const OTHER: WearLawKind = WearLawKind {
             word: "other",
             about: "No wear.",
+            known: condyle::parameter::Known::Chosen,
             parameters: &[],
             make: |_| WEAR_LAWS[0].law(&WEAR_LAWS[0].defaults()),
         };

@@ -7,8 +7,8 @@ use condyle_io::{
     case::{Assignment, Case, FEMUR_TRIANGLES, Side},
     keyed::DataFile,
     results::{
-        Checkpoint, FRAME_TRIANGLES, FolderLock, Found, NeutralPose, ResultsError, ResultsFolder,
-        Summary, SummaryInput, femur_of_frames,
+        Checkpoint, FRAME_TRIANGLES, FolderLock, Found, LawWear, NeutralPose, ResultsError,
+        ResultsFolder, Summary, SummaryInput, femur_of_frames,
     },
 };
 
@@ -285,6 +285,7 @@ impl<'a> Run<'a> {
             warnings: self.warnings.clone(),
             error: None,
             neutral_pose: NeutralPose::of(&self.march, self.case.heading.side),
+            wear_laws: LawWear::of(&self.march, &self.case.wear),
         })
         .expect("a march that is done has an update")
     }

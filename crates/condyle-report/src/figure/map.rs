@@ -65,7 +65,7 @@ pub(crate) struct Map<'a> {
     pub(crate) id: &'static str,
     /// What is shown.
     pub(crate) title: &'static str,
-    /// Its unit.
+    /// Its unit; empty for a pure number.
     pub(crate) unit: &'static str,
     /// What the largest value of a side is called.
     pub(crate) largest: &'static str,
@@ -304,10 +304,13 @@ impl Map<'_> {
 
     fn bar_title(&self, x: f64) -> String {
         let (x, y) = (x + BAR_WIDTH + BAR_LABELS, TOP - 14.0);
-        let (title, unit) = (escape(self.title), escape(self.unit));
-        format!(
-            r#"<text class="strong" x="{x:.1}" y="{y}" text-anchor="end">{title}<tspan class="unit">, {unit}</tspan></text>"#
-        )
+        let title = escape(self.title);
+        let unit = if self.unit.is_empty() {
+            String::new()
+        } else {
+            format!(r#"<tspan class="unit">, {}</tspan>"#, escape(self.unit))
+        };
+        format!(r#"<text class="strong" x="{x:.1}" y="{y}" text-anchor="end">{title}{unit}</text>"#)
     }
 
     /// Below the colours, where no leader passes.
@@ -374,7 +377,8 @@ impl Map<'_> {
     }
 
     fn value_text(&self, value: f64) -> String {
-        format!("{}\u{a0}{}", significant(value, 3), self.unit)
+        let text = format!("{}\u{a0}{}", significant(value, 3), self.unit);
+        text.trim_end().to_owned()
     }
 }
 

@@ -24,7 +24,7 @@ pub(crate) fn wear_map(results: &Results, px_per_mm: f64) -> Option<Map<'_>> {
     })
 }
 
-/// The maps of peak pressure and of sliding distance.
+/// The maps of peak pressure, of sliding distance and of cross-shear.
 pub(super) fn small(results: &Results, px_per_mm: f64) -> Vec<Small> {
     let Some(surface) = &results.surface else {
         return Vec::new();
@@ -43,11 +43,18 @@ pub(super) fn small(results: &Results, px_per_mm: f64) -> Vec<Small> {
         shades: Shades::Cividis,
         ..map
     });
+    let cross_shear = plain(results, surface, "cross_shear", px_per_mm).map(|map| Map {
+        id: "map-cross-shear",
+        title: "Cross-shear ratio",
+        shades: Shades::Magma,
+        ..map
+    });
     let captions = [
         "Largest contact pressure that each node sees in one gait cycle, the mean over its share of the surface, last update.",
         "Distance that the femur slides over each place while it presses on it, in one gait cycle, last update.",
+        "What part of pressure times sliding goes across the main direction at each place, last update: 0 where the femur slides to and fro on a line, 0.5 where it goes round a circle.",
     ];
-    let maps = [pressure, sliding].into_iter().zip(captions);
+    let maps = [pressure, sliding, cross_shear].into_iter().zip(captions);
     maps.filter_map(|(map, caption)| {
         Some(Small {
             svg: map?.svg(),

@@ -7,6 +7,7 @@ mod compartments;
 mod curves;
 mod doubts;
 mod key_words;
+mod laws;
 mod maps;
 mod numbers;
 mod ranges;
@@ -50,6 +51,8 @@ struct Page<'a> {
     missing: Vec<&'static str>,
     wear_map: Option<String>,
     compartments: Vec<compartments::Comparison>,
+    laws: Vec<laws::Law>,
+    law_of_run: Option<String>,
     wear_curves: Vec<String>,
     channels: Vec<String>,
     cycles: Option<(String, String)>,
@@ -80,6 +83,8 @@ impl<'a> Page<'a> {
             missing: story::missing(results),
             wear_map: wear_map(results, LARGE).map(|map| map.svg()),
             compartments: compartments::comparisons(results),
+            laws: laws::laws(results),
+            law_of_run: laws::of_run(results),
             wear_curves: svgs(&wear_panels(results)),
             channels: svgs(&kinematics_panels(results)),
             cycles: channels::cycle_names(results),

@@ -263,7 +263,7 @@ const GROUPS: [(&str, &[Known]); 4] = [
 ];
 
 /// Told elsewhere on the page.
-const TOLD_ELSEWHERE: [&str; 4] = ["error", "warnings", "plausibility", NEUTRAL];
+const TOLD_ELSEWHERE: [&str; 5] = ["error", "warnings", "plausibility", "wear_laws", NEUTRAL];
 /// Where the femur settled.
 const NEUTRAL: &str = "neutral_pose";
 /// In names of what is told elsewhere, or differs from run to run.

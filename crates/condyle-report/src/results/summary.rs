@@ -1,6 +1,6 @@
 //! `summary.json`.
 
-use condyle_io::results::PlausibilityWarning;
+use condyle_io::results::{LawWear, PlausibilityWarning};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
@@ -37,6 +37,13 @@ impl Summary {
     /// What makes the run doubtful; nothing where that is not said.
     pub fn plausibility(&self) -> Vec<PlausibilityWarning> {
         let listed = self.values.get("plausibility");
+        let read = listed.and_then(|listed| Vec::deserialize(listed).ok());
+        read.unwrap_or_default()
+    }
+
+    /// What every law of wear says of the run; nothing where that is not said.
+    pub fn wear_laws(&self) -> Vec<LawWear> {
+        let listed = self.values.get("wear_laws");
         let read = listed.and_then(|listed| Vec::deserialize(listed).ok());
         read.unwrap_or_default()
     }

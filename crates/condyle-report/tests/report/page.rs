@@ -221,3 +221,34 @@ fn medial_is_left_in_a_right_knee_and_right_in_a_left_one() {
     results.side = Side::Left;
     assert!(!deepest(&results));
 }
+
+#[test]
+fn other_laws_stand_beside_that_of_the_run() {
+    let law = |word: &str, of_run: bool, outside: &str| {
+        format!(
+            r#"{{"law": "{word}", "moved_the_surface": {of_run}, "approximate": {}, "mass_loss_mg": 79.5,
+            "mass_loss_mg_per_million_cycles": 15.9, "volume_loss_mm3": 85.5, "max_depth_mm": 0.385,
+            "outside_of_fit_percent": {outside}}}"#,
+            !of_run
+        )
+    };
+    let with = |laws: &[String]| {
+        let mut results = fixture::results();
+        let text = format!("{{\"wear_laws\": [{}]}}", laws.join(", "));
+        results.summary = Some(Summary::parse(&text).expect("is JSON"));
+        report_html(&results)
+    };
+    let (kang, archard) = (law("kang", true, "12.4"), law("archard", false, "null"));
+    let page = with(&[kang.clone(), archard]);
+    for words in [
+        "What other laws say",
+        "kang (this run)</th>",
+        "archard <span class=\"u\">approximate</span>",
+        "<td class=\"n\">12</td>",
+        "<td class=\"n\">not known</td>",
+        "follows the law <code>kang</code>",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(!with(&[kang]).contains("What other laws say"));
+}

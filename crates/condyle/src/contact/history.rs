@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::SlipWork;
+
 /// One instant of contact at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
@@ -47,6 +49,8 @@ pub struct NodeHistory<'a> {
     pub pressed_area_slip_mm3: f64,
     /// Pressure times slip, sum of p |ds|, MPa mm.
     pub pressure_slip_mpa_mm: f64,
+    /// The same by direction.
+    pub slip_work: SlipWork,
 }
 
 /// What a node's moments come to.
@@ -56,6 +60,7 @@ struct Sums {
     sliding_distance_mm: f64,
     pressed_area_slip_mm3: f64,
     pressure_slip_mpa_mm: f64,
+    slip_work: SlipWork,
 }
 
 impl Sums {
@@ -67,6 +72,7 @@ impl Sums {
         self.sliding_distance_mm += distance_mm;
         self.pressed_area_slip_mm3 += f64::from(record.pressed_mm2) * distance_mm;
         self.pressure_slip_mpa_mm += moment.pressure_mpa * distance_mm;
+        self.slip_work.add(moment, distance_mm);
     }
 }
 
@@ -172,6 +178,7 @@ impl CycleHistory {
             sliding_distance_mm,
             pressed_area_slip_mm3,
             pressure_slip_mpa_mm,
+            slip_work,
         } = self.sums[node];
         NodeHistory {
             records: &self.records,
@@ -180,6 +187,7 @@ impl CycleHistory {
             sliding_distance_mm,
             pressed_area_slip_mm3,
             pressure_slip_mpa_mm,
+            slip_work,
         }
     }
 }

@@ -6,6 +6,7 @@
 //! | [`ContactLaw`] (`contact_law`) | what a test says of contact: it makes the contact of two bodies |
 //! | `memory` | what a contact hands on to the next one: its history, and what makes that quicker |
 //! | `history` | what every surface node went through in a cycle |
+//! | `slip_work` | pressure times slip by direction: cross-shear and principal direction |
 //! | `foundation` | the elastic foundation: rigid bodies, and pressure from local overclosure |
 //! | `deformable` | the deformable insert: pressure under which an elastic body just touches the femur |
 //! | `pressed` | what contacts have in common: shares under pressure, and what they add up to |
@@ -22,6 +23,7 @@ mod pressed;
 mod pressure_law;
 mod pressure_table;
 mod share_block;
+mod slip_work;
 
 pub use broad_phase::Search;
 pub use contact_law::{Bodies, ContactLaw};
@@ -34,3 +36,4 @@ pub use model::{
 };
 pub use pressure_law::{PressureLaw, confined_modulus, softening_modulus};
 pub use pressure_table::{PressureTable, PressureTableError};
+pub use slip_work::SlipWork;

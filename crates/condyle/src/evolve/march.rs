@@ -8,6 +8,7 @@ use super::{
     PlacementError, Progress, Snapshot, SolvedCycle, UpdateRecord, Updates, WearTest,
     depth::{lost_mm, total_mm},
     interval::shared_out,
+    laws_beside::{LawBeside, outside_mm3, sum, worn},
     mean_over_wear::volume_mm3,
     placement::place,
     rates::{Rates, Wearing},
@@ -20,6 +21,7 @@ use crate::{
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     machine::{Chain, Cycle, CycleRow, MachineState, Simulator, SolverCounters, TimeSettings},
     spatial::Pose,
+    wear::{MeanCycle, NodeWear, SharedCycle},
 };
 
 /// The first and the last cycle, whose motions are kept, repeat themselves within this part of the
@@ -123,7 +125,11 @@ impl March {
         self
     }
 
-    fn from_parts(test: WearTest, femur: FemoralSurface, state: MarchState) -> Self {
+    fn from_parts(test: WearTest, femur: FemoralSurface, mut state: MarchState) -> Self {
+        if state.updates.is_empty() {
+            let beside = |law| LawBeside::new(law, test.insert.surface_nodes().len());
+            state.laws_beside = test.laws_beside.iter().map(beside).collect();
+        }
         let mut insert = Insert::clone(&test.insert);
         insert.restore(state.mesh_nodes.clone(), &state.depths.total_mm());
         let chain = |activity: &Activity| {
@@ -302,7 +308,10 @@ impl March {
     fn wear(&mut self, solved: Solved) -> Result<&UpdateRecord, MarchError> {
         self.check_contact(&solved)?;
         let cycles_before = self.cycles();
-        let rates = self.rates(&solved);
+        let shared = with_shares(&self.test, &solved.cycles);
+        let cycles = mean_cycles(&shared, &solved.surface);
+        let worn = worn(self.test.wear.as_ref(), &cycles);
+        let rates = self.rates(&solved.surface, &cycles, &worn);
         let standing = Standing {
             rates: &rates,
             last: self.state.last_step.as_ref(),
@@ -325,8 +334,12 @@ impl March {
         );
         self.state.updates.push(record);
         self.state.counters = solved.counters;
+        let outside_mm3 = outside_mm3(&worn, &rates.area_mm2, &step.depth_mm);
+        self.state.outside_mm3 = sum(self.state.outside_mm3, outside_mm3);
+        self.wear_by_laws_beside(&cycles, &rates.area_mm2, step.interval);
         let fields = NodeFields::of(
-            &with_activities(&self.test, &solved.cycles),
+            &cycles,
+            &solved.surface,
             &rates,
             &self.insert,
             &self.state.depths,
@@ -367,14 +380,26 @@ impl March {
         ))
     }
 
-    fn rates(&self, solved: &Solved) -> Rates {
+    fn rates(
+        &self,
+        surface: &ArticulatingSurface,
+        cycles: &[MeanCycle<'_>],
+        worn: &[NodeWear],
+    ) -> Rates {
         let wearing = Wearing {
-            wear: self.test.wear.as_ref(),
             contact: self.test.contact.as_ref(),
             insert: &self.insert,
-            surface: &solved.surface,
+            surface,
         };
-        Rates::of(&wearing, &with_activities(&self.test, &solved.cycles))
+        Rates::of(&wearing, cycles, worn)
+    }
+
+    /// What the laws beside that of the test would have worn in an interval of these cycles.
+    fn wear_by_laws_beside(&mut self, cycles: &[MeanCycle<'_>], area_mm2: &[f64], interval: f64) {
+        let laws = self.test.laws_beside.iter();
+        for (law, beside) in laws.zip(&mut self.state.laws_beside) {
+            beside.wear(law.law.as_ref(), cycles, area_mm2, interval);
+        }
     }
 
     /// Takes the surface down by what a step takes; how it was before.
@@ -489,13 +514,22 @@ fn remember(
     *first_and_last = Some((first.unwrap_or_else(|| last.clone()), last));
 }
 
-/// The history of one cycle of every activity.
-fn with_activities<'a>(
-    test: &'a WearTest,
-    cycles: &'a [Cycle],
-) -> Vec<(&'a Activity, &'a CycleHistory)> {
+/// The history of one cycle of every activity, with the activity's share.
+fn with_shares<'a>(test: &WearTest, cycles: &'a [Cycle]) -> Vec<SharedCycle<'a>> {
     let histories = cycles.iter().map(|cycle| &cycle.history);
-    test.activities.iter().zip(histories).collect()
+    let shares = test.activities.iter().map(|activity| activity.share);
+    shares.zip(histories).collect()
+}
+
+/// What every node of the surface went through.
+fn mean_cycles<'a>(
+    cycles: &'a [SharedCycle<'a>],
+    surface: &ArticulatingSurface,
+) -> Vec<MeanCycle<'a>> {
+    let shares = surface.shares.iter().enumerate();
+    shares
+        .map(|(node, share)| MeanCycle::of(cycles, node, share.area_mm2))
+        .collect()
 }
 
 /// The femur of a test made ready for the shares of its insert.

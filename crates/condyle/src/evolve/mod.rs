@@ -6,6 +6,7 @@
 //! | `placement` | the femur is lowered onto the insert, and settles |
 //! | `march` | the loop over updates: cycles solved, rates, a step, the new surface |
 //! | `rates` | what a cycle wears, and how soon wear changes that |
+//! | `laws_beside` | what the other laws would have worn by the same cycles |
 //! | `step`, `interval` | the next step: how long it is, and by which rule it wears |
 //! | `extrapolated_step`, `exponential_step` | the rules |
 //! | `accumulated_error` | what the length of the steps costs in accuracy |
@@ -17,6 +18,7 @@ mod depth;
 mod exponential_step;
 mod extrapolated_step;
 mod interval;
+mod laws_beside;
 mod march;
 mod march_error;
 mod mean_over_wear;
@@ -34,6 +36,7 @@ mod wear_test;
 
 pub use accumulated_error::AccumulatedError;
 pub use depth::{DepthField, DepthFields};
+pub use laws_beside::LawBeside;
 pub use march::March;
 pub use march_error::MarchError;
 pub use mean_over_wear::{mean_over_volume, weight_of_depth};

@@ -2,8 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Activity, DepthFields, rates::Rates};
-use crate::{contact::CycleHistory, geometry::Insert};
+use super::{DepthFields, rates::Rates};
+use crate::{
+    geometry::{ArticulatingSurface, Insert},
+    wear::MeanCycle,
+};
 
 /// Results of an update at every node of the articulating surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,6 +20,12 @@ pub struct NodeFields {
     /// Distance slid under pressure in a cycle, mm: S = sum of A'/A |ds|, with A' the part of the
     /// node's share A that presses; the mean over all activities by their shares.
     pub sliding_distance_mm: Vec<f64>,
+    /// Cross-shear ratio of the mean cycle: what of pressure times slip is across the principal direction, 0
+    /// for straight paths to 0.5.
+    pub cross_shear: Vec<f64>,
+    /// The principal direction, a unit vector along the surface in the insert frame that points anteriorly; 0
+    /// where nothing slid, or as much in every direction.
+    pub principal_direction: Vec<[f64; 3]>,
     /// Thickness left, mm.
     pub thickness_mm: Vec<f64>,
 }
@@ -29,35 +38,44 @@ impl NodeFields {
             wear_depth_mm: depths.wear_mm().to_vec(),
             depth_per_cycle_mm: none.clone(),
             peak_pressure_mpa: none.clone(),
-            sliding_distance_mm: none,
+            sliding_distance_mm: none.clone(),
+            principal_direction: vec![[0.0; 3]; none.len()],
+            cross_shear: none,
             thickness_mm: insert.thickness_mm().to_vec(),
         }
     }
 
-    /// Those of an insert after a step by one solved cycle of every activity.
+    /// Those of an insert after a step by cycles on `surface`.
     pub(super) fn of(
-        cycles: &[(&Activity, &CycleHistory)],
+        cycles: &[MeanCycle<'_>],
+        surface: &ArticulatingSurface,
         rates: &Rates,
         insert: &Insert,
         depths: &DepthFields,
     ) -> Self {
-        let nodes = 0..insert.surface_nodes().len();
-        let highest = |node| {
-            let pressures = cycles.iter().map(|(_, of)| of.node(node).peak_pressure_mpa);
-            pressures.fold(0.0, f64::max)
-        };
-        let slid = |node| -> f64 {
-            let slid = |(activity, of): &(&Activity, &CycleHistory)| {
-                activity.share * of.node(node).pressed_area_slip_mm3 / rates.area_mm2[node]
-            };
-            cycles.iter().map(slid).sum()
-        };
+        let each = |value: fn(&MeanCycle<'_>) -> f64| cycles.iter().map(value).collect();
+        let direction = |(node, cycle)| principal_direction(surface, node, cycle);
         Self {
             wear_depth_mm: depths.wear_mm().to_vec(),
             depth_per_cycle_mm: rates.depth_per_cycle_mm.clone(),
-            peak_pressure_mpa: nodes.clone().map(highest).collect(),
-            sliding_distance_mm: nodes.map(slid).collect(),
+            peak_pressure_mpa: each(|cycle| cycle.peak_pressure_mpa),
+            sliding_distance_mm: each(|cycle| cycle.pressed_distance_mm),
+            cross_shear: each(|cycle| cycle.slip_work.cross_shear()),
+            principal_direction: cycles.iter().enumerate().map(direction).collect(),
             thickness_mm: insert.thickness_mm().to_vec(),
         }
     }
+}
+
+/// The principal direction of a node in the insert frame.
+fn principal_direction(
+    surface: &ArticulatingSurface,
+    node: usize,
+    cycle: &MeanCycle<'_>,
+) -> [f64; 3] {
+    let Some([forwards, aside]) = cycle.slip_work.principal_direction() else {
+        return [0.0; 3];
+    };
+    let [anterior, lateral] = surface.directions(node);
+    (anterior * forwards + lateral * aside).into()
 }

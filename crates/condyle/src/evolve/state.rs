@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     CycleRecord, DepthField, DepthFields, NodeFields, UpdateRecord,
-    accumulated_error::AccumulatedError, step_record::StepRecord,
+    accumulated_error::AccumulatedError, laws_beside::LawBeside, step_record::StepRecord,
 };
 use crate::{
     Vec3,
@@ -96,6 +96,11 @@ pub struct MarchState {
     pub mesh_nodes: Vec<Vec3>,
     /// How deep the surface has gone down, and by what.
     pub depths: DepthFields,
+    /// What of the volume worn is outside of what the wear law was fitted to, mm3; none where that is not
+    /// known.
+    pub outside_mm3: Option<f64>,
+    /// What the laws beside it would have worn.
+    pub laws_beside: Vec<LawBeside>,
     /// The history of the contact.
     pub contact: ContactState,
     /// One an activity.
@@ -134,6 +139,8 @@ impl MarchState {
             first_pressure_mpa: Vec::new(),
             mesh_nodes,
             depths,
+            outside_mm3: Some(0.0),
+            laws_beside: Vec::new(),
             contact,
             activities: machines.into_iter().map(ActivityState::before).collect(),
             zero_mm,

@@ -7,7 +7,7 @@ use crate::{
     contact::ContactLaw,
     geometry::{FemoralSurface, Insert},
     machine::{Machine, TimeSettings},
-    wear::WearLaw,
+    wear::{NamedLaw, WearLaw},
 };
 
 /// Bodies, activities and laws of a wear test; a right knee, mm N s MPa tonne rad.
@@ -31,6 +31,8 @@ pub struct WearTest {
     pub activities: Vec<Activity>,
     /// The law of wear.
     pub wear: Arc<dyn WearLaw>,
+    /// Laws whose wear is told beside that of the law of wear; they move no surface.
+    pub laws_beside: Vec<NamedLaw>,
     /// Density of the insert, mg/mm3.
     pub density_mg_per_mm3: f64,
     /// How finely and exactly a cycle is solved.

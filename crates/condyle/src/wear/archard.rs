@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use super::law::{WearLaw, WearLawKind};
-use crate::contact::NodeHistory;
-use crate::parameter::Parameter;
+use super::law::{NodeWear, WearLaw, WearLawKind};
+use super::{MM_PER_M, MeanCycle};
+use crate::parameter::{Known, Parameter};
 
 /// Archard's law as it is offered.
 pub(super) const KIND: WearLawKind = WearLawKind {
     word: "archard",
     about: "Depth per cycle = Kw sum of p |ds|.",
+    known: Known::Read,
     parameters: &[Archard::WEAR_FACTOR],
     make: |constants| {
         Arc::new(Archard {
@@ -37,42 +38,28 @@ impl Archard {
         least: 0.0,
         most: 1e-3,
         source: "knight2007",
+        known: Known::Read,
     };
 }
 
-/// A metre in millimetres.
-const MM_PER_M: f64 = 1000.0;
-
 impl WearLaw for Archard {
-    fn depth_per_cycle_mm(&self, history: &NodeHistory<'_>) -> f64 {
-        self.wear_factor_mm3_per_nm / MM_PER_M * history.pressure_slip_mpa_mm
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
+        NodeWear::of_depth(self.wear_factor_mm3_per_nm / MM_PER_M * cycle.pressure_slip_mpa_mm)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::paths::{assert_near, depth_mm};
     use super::*;
-    use crate::contact::{CycleHistory, Moment, Record};
 
     #[test]
     fn verify_flat_pin_depth_is_kw_p_s() {
         let law = Archard {
             wear_factor_mm3_per_nm: 2.64e-7,
         };
-        let record = |slip_mm| Record {
-            node: 0,
-            pressed_mm2: 1.0,
-            moment: Moment {
-                pressure_mpa: 10.0,
-                slip_mm,
-            },
-        };
-        let mut history = CycleHistory::default();
-        let slips = [[3.0, 4.0], [-5.0, 0.0]];
-        let instants = slips.map(|slip_mm| history.record([record(slip_mm)].into_iter()));
-        history.sort(1, &instants);
         // 10 MPa over 10 mm is 0.1 N m on each square millimetre.
-        let depth = law.depth_per_cycle_mm(&history.node(0));
-        assert!((depth - 2.64e-7 * 0.1).abs() < 1e-20);
+        let path = [(10.0, [3.0, 4.0]), (10.0, [-5.0, 0.0])];
+        assert_near(depth_mm(&law, &path), 2.64e-7 * 0.1);
     }
 }

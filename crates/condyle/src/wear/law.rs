@@ -3,13 +3,33 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use crate::contact::NodeHistory;
-use crate::parameter::Parameter;
+use super::MeanCycle;
+use crate::parameter::{Known, Parameter};
 
-/// A law of wear. It sees what happened at one node through a whole cycle, and never a solver.
+/// A law of wear. It sees what one node goes through in the mean cycle of all activities, and never a solver.
 pub trait WearLaw: Debug + Send + Sync {
-    /// Depth worn at a node by one cycle, mm, along the inward normal; 0 or more.
-    fn depth_per_cycle_mm(&self, history: &NodeHistory<'_>) -> f64;
+    /// What one cycle wears at a node.
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear;
+}
+
+/// What one cycle wears at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeWear {
+    /// Depth along the inward normal, mm; 0 or more, and 0 where nothing slides.
+    pub depth_mm: f64,
+    /// What part of it, 0 to 1, is worn outside of the pressures and cross-shear that the law was fitted to;
+    /// none where its source names none.
+    pub part_outside: Option<f64>,
+}
+
+impl NodeWear {
+    /// That of a law of which it is not known what it was fitted to.
+    pub fn of_depth(depth_mm: f64) -> Self {
+        Self {
+            depth_mm,
+            part_outside: None,
+        }
+    }
 }
 
 /// A kind of wear law: its name, its constants, and how a law is made of their values.
@@ -21,10 +41,21 @@ pub struct WearLawKind {
     pub word: &'static str,
     /// Its formula, in one line.
     pub about: &'static str,
+    /// How well the formula is known.
+    pub known: Known,
     /// Its constants.
     pub parameters: &'static [Parameter],
     /// The law with these values of its constants, in their order.
     pub make: fn(&[f64]) -> Arc<dyn WearLaw>,
+}
+
+/// A law of wear with the word for it.
+#[derive(Clone, Debug)]
+pub struct NamedLaw {
+    /// The word of its kind.
+    pub word: &'static str,
+    /// The law.
+    pub law: Arc<dyn WearLaw>,
 }
 
 impl WearLawKind {
@@ -44,6 +75,20 @@ impl WearLawKind {
             assert!(parameter.allows(value), "{} {value}", parameter.name);
         }
         (self.make)(constants)
+    }
+
+    /// The law with the defaults of its constants.
+    pub fn with_defaults(&self) -> NamedLaw {
+        NamedLaw {
+            word: self.word,
+            law: self.law(&self.defaults()),
+        }
+    }
+
+    /// Whether its formula or any of its defaults is remembered rather than read.
+    pub fn is_approximate(&self) -> bool {
+        let mut known = self.parameters.iter().map(|parameter| parameter.known);
+        self.known == Known::Approximate || known.any(|known| known == Known::Approximate)
     }
 }
 

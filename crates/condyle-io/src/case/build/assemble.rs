@@ -64,6 +64,7 @@ impl Case {
             activities: vec![Activity::only("gait", machine)],
             contact,
             wear: self.wear.law(),
+            laws_beside: self.wear.beside(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),
             schedule: Schedule {

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use condyle::contact::{CycleHistory, Moment, NodeHistory, Record};
-use condyle::parameter::Parameter;
-use condyle::wear::{WEAR_LAWS, WearLaw, WearLawKind};
+use condyle::contact::{CycleHistory, Moment, Record};
+use condyle::parameter::{Known, Parameter};
+use condyle::wear::{MeanCycle, NodeWear, WEAR_LAWS, WearLaw, WearLawKind};
 
 use super::assert_shows;
 use crate::case::{Case, CaseReader, ConstantError, Wear, WearLaws, schema_markdown};
@@ -18,15 +18,16 @@ struct Threshold {
 }
 
 impl WearLaw for Threshold {
-    fn depth_per_cycle_mm(&self, history: &NodeHistory<'_>) -> f64 {
-        let above = history.pressure_slip_mpa_mm - self.from_n_per_mm;
-        self.wear_factor_mm3_per_nm / 1000.0 * above.max(0.0)
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
+        let above = cycle.pressure_slip_mpa_mm - self.from_n_per_mm;
+        NodeWear::of_depth(self.wear_factor_mm3_per_nm / 1000.0 * above.max(0.0))
     }
 }
 
 const THRESHOLD: WearLawKind = WearLawKind {
     word: "threshold",
     about: "Depth per cycle = a (sum of p |ds| - b).",
+    known: Known::Chosen,
     parameters: &[
         Parameter {
             name: "factor_mm3_per_nm",
@@ -35,6 +36,7 @@ const THRESHOLD: WearLawKind = WearLawKind {
             least: 0.0,
             most: 1e-3,
             source: "choice",
+            known: Known::Chosen,
         },
         Parameter {
             name: "from_n_per_mm",
@@ -43,6 +45,7 @@ const THRESHOLD: WearLawKind = WearLawKind {
             least: 0.0,
             most: 1000.0,
             source: "choice",
+            known: Known::Chosen,
         },
     ],
     make: |constants| {
@@ -144,8 +147,39 @@ fn verify_it_is_the_law_that_the_test_wears_by() {
     };
     let instant = history.record([record].into_iter());
     history.sort(1, &[instant]);
-    let depth = test.wear.depth_per_cycle_mm(&history.node(0));
-    assert!((depth - 3e-10 * 60.0).abs() < 1e-20, "{depth:e}");
+    let shared = [(1.0, &history)];
+    let depth = |law: &dyn WearLaw| law.wear(&MeanCycle::of(&shared, 0, 1.0)).depth_mm;
+    let found = depth(test.wear.as_ref());
+    assert!((found - 3e-10 * 60.0).abs() < 1e-20, "{found:e}");
+}
+
+#[test]
+fn it_is_told_beside_the_law_of_a_case_that_takes_another() {
+    let words = |case: &str| -> Vec<&str> {
+        let test = read(case).unwrap().build(1).unwrap().test;
+        test.laws_beside.iter().map(|law| law.word).collect()
+    };
+    assert_eq!(words("[insert]\nedge_mm = 6.0\n"), ["threshold"]);
+    assert_eq!(words(CASE), ["archard"]);
+}
+
+#[test]
+fn what_is_remembered_rather_than_read_is_called_approximate() {
+    let kang = Case::parse("[wear]\nlaw = \"kang\"\n", "case.toml", Path::new("")).unwrap();
+    assert_shows(
+        &kang.to_toml(),
+        &[
+            "cross_shear_exponent = 0.19 ",
+            " # Constant b: the power of the cross-shear ratio. The default is approximate.\n",
+        ],
+    );
+    assert_shows(
+        &schema_markdown(WEAR_LAWS),
+        &[
+            "[kang2008] (approximate)",
+            "The formula is approximate: remembered",
+        ],
+    );
 }
 
 #[test]

@@ -79,7 +79,7 @@ pub(crate) fn waveform_keys(channel: CaseChannel) -> Vec<Key> {
 pub(crate) fn knots_key(channel: CaseChannel) -> Key {
     Key {
         name: channel.knots_key(),
-        doc: "Points [percent of the cycle, value] in the case file itself.",
+        doc: "Points [percent of the cycle, value] in the case file itself.".into(),
         kind: Kind::Pairs,
         silent: WhereSilent::LeftOut,
         limits: Some(channel.limits()),

@@ -17,7 +17,7 @@ use condyle::evolve::MarchError;
 use condyle_io::{
     cache::Cache,
     case::Case,
-    results::{NeutralPose, Summary, SummaryInput},
+    results::{LawWear, NeutralPose, Summary, SummaryInput},
 };
 use thiserror::Error;
 
@@ -98,6 +98,7 @@ fn marched(case: &Case) -> Result<Summary, SensitivityError> {
         warnings: Vec::new(),
         error: None,
         neutral_pose: NeutralPose::of(&march, case.heading.side),
+        wear_laws: LawWear::of(&march, &case.wear),
     });
     Ok(summary.expect("a march that is done has an update"))
 }

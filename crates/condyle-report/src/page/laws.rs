@@ -1,0 +1,51 @@
+//! What every law of wear says of the same histories.
+
+use condyle_io::results::LawWear;
+use serde::Serialize;
+
+use crate::number::{fixed, significant};
+use crate::results::contents::Results;
+
+/// A law in the table.
+#[derive(Serialize)]
+pub(super) struct Law {
+    name: String,
+    approximate: bool,
+    moved_the_surface: bool,
+    mass_per_million: String,
+    mass: String,
+    volume: String,
+    depth: String,
+    outside: String,
+}
+
+/// The laws of the summary; none where there is only one.
+pub(super) fn laws(results: &Results) -> Vec<Law> {
+    let summary = results.summary.as_ref();
+    let laws = summary.map_or_else(Vec::new, |summary| summary.wear_laws());
+    if laws.len() < 2 {
+        return Vec::new();
+    }
+    laws.iter().map(row).collect()
+}
+
+/// The law that moved the surface, if the summary says which.
+pub(super) fn of_run(results: &Results) -> Option<String> {
+    let laws = results.summary.as_ref()?.wear_laws();
+    let own = laws.into_iter().find(|law| law.moved_the_surface)?;
+    Some(own.law)
+}
+
+fn row(law: &LawWear) -> Law {
+    let outside = law.outside_of_fit_percent;
+    Law {
+        name: law.law.clone(),
+        approximate: law.approximate,
+        moved_the_surface: law.moved_the_surface,
+        mass_per_million: significant(law.mass_loss_mg_per_million_cycles, 3),
+        mass: significant(law.mass_loss_mg, 3),
+        volume: significant(law.volume_loss_mm3, 3),
+        depth: significant(law.max_depth_mm, 3),
+        outside: outside.map_or_else(|| String::from("not known"), |percent| fixed(percent, 0)),
+    }
+}

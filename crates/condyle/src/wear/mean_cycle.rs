@@ -1,0 +1,103 @@
+//! One node through the mean cycle of a test.
+
+use crate::contact::{CycleHistory, Moment, SlipWork};
+
+/// A cycle of every activity with the activity's share of all cycles.
+pub type SharedCycle<'a> = (f64, &'a CycleHistory);
+
+/// One node through the mean cycle of a test: a cycle of every activity, each counted by its share.
+///
+/// So the principal direction is that of all activities together: the molecules at a place do not know
+/// which activity pulled them.
+#[derive(Clone, Copy, Debug)]
+pub struct MeanCycle<'a> {
+    activities: &'a [SharedCycle<'a>],
+    node: usize,
+    /// Highest mean pressure on the node's share in any activity, MPa.
+    pub peak_pressure_mpa: f64,
+    /// Distance slid while any of the node's share presses, sum of |ds|, mm.
+    pub sliding_distance_mm: f64,
+    /// How far a place of the node's share slides under pressure, on the mean: sum of A'/A |ds|, with A' the
+    /// part of the share A that presses, mm.
+    pub pressed_distance_mm: f64,
+    /// Pressure times slip, sum of p |ds|, MPa mm.
+    pub pressure_slip_mpa_mm: f64,
+    /// The same by direction: cross-shear and principal direction.
+    pub slip_work: SlipWork,
+}
+
+impl<'a> MeanCycle<'a> {
+    /// That of node `node`, whose share of the surface is `area_mm2` large.
+    pub fn of(activities: &'a [SharedCycle<'a>], node: usize, area_mm2: f64) -> Self {
+        let mut mean = Self {
+            activities,
+            node,
+            peak_pressure_mpa: 0.0,
+            sliding_distance_mm: 0.0,
+            pressed_distance_mm: 0.0,
+            pressure_slip_mpa_mm: 0.0,
+            slip_work: SlipWork::default(),
+        };
+        for (share, cycle) in activities {
+            let own = cycle.node(node);
+            mean.peak_pressure_mpa = mean.peak_pressure_mpa.max(own.peak_pressure_mpa);
+            mean.sliding_distance_mm += share * own.sliding_distance_mm;
+            mean.pressed_distance_mm += share * own.pressed_area_slip_mm3 / area_mm2;
+            mean.pressure_slip_mpa_mm += share * own.pressure_slip_mpa_mm;
+            mean.slip_work.add_part(*share, &own.slip_work);
+        }
+        mean
+    }
+
+    /// Every instant of every activity with the activity's share, in the order of time.
+    pub fn moments(&self) -> impl Iterator<Item = (f64, &'a Moment)> + use<'a> {
+        let (activities, node) = (self.activities, self.node);
+        activities.iter().flat_map(move |(share, cycle)| {
+            let moments = cycle.node(node).moments();
+            moments.map(move |moment| (*share, moment))
+        })
+    }
+
+    /// The part of sum of p |ds|, 0 to 1, done under more than `pressure_mpa`; 0 where nothing slid.
+    pub fn part_above(&self, pressure_mpa: f64) -> f64 {
+        if self.peak_pressure_mpa <= pressure_mpa || self.pressure_slip_mpa_mm == 0.0 {
+            return 0.0;
+        }
+        let above = self
+            .moments()
+            .filter(|(_, moment)| moment.pressure_mpa > pressure_mpa);
+        let work = above.map(|(share, moment)| share * moment.pressure_mpa * moment.distance_mm());
+        work.sum::<f64>() / self.pressure_slip_mpa_mm
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::paths::{history, straight};
+    use super::*;
+
+    #[test]
+    fn activities_count_by_their_shares() {
+        // Half along x, half along z: each straight, and together a cross.
+        let (fore, aside) = (straight(4.0, [6.0, 0.0]), straight(4.0, [0.0, 2.0]));
+        let (walking, stairs) = (history(&fore), history(&aside));
+        let activities = [(0.75, &walking), (0.25, &stairs)];
+        let mean = MeanCycle::of(&activities, 0, 2.0);
+        assert_eq!(mean.pressure_slip_mpa_mm, 4.0 * (0.75 * 6.0 + 0.25 * 2.0));
+        assert_eq!(mean.sliding_distance_mm, 5.0);
+        assert_eq!(mean.slip_work.cross_shear(), 0.1);
+        assert_eq!(mean.slip_work.principal_direction(), Some([1.0, 0.0]));
+        assert_eq!(mean.moments().count(), fore.len() + aside.len());
+    }
+
+    #[test]
+    fn the_part_above_a_pressure_is_of_the_work() {
+        let path = [(2.0, [1.0, 0.0]), (6.0, [0.0, 1.0]), (2.0, [-1.0, 0.0])];
+        let history = history(&path);
+        let shared = [(1.0, &history)];
+        let mean = MeanCycle::of(&shared, 0, 1.0);
+        assert_eq!(mean.part_above(2.0), 0.6);
+        assert_eq!(mean.part_above(6.0), 0.0);
+        assert_eq!(mean.part_above(1.0), 1.0);
+    }
+}

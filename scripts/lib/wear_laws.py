@@ -1,0 +1,58 @@
+"""The tables of docs/src/wear-laws.md. Usage: wear_laws.py by-law NAME=FOLDER..., or wear_laws.py by-design NAME=FOLDER...
+
+By law, FOLDER has a run a law, each in a folder of the law's name; that of `archard` tells what the others would have worn beside
+it. By design, FOLDER is one run.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+
+def laws(folder):
+    return json.loads((folder / "summary.json").read_text())["wear_laws"]
+
+
+def rate(law):
+    return f"{law['mass_loss_mg_per_million_cycles']:.1f}"
+
+
+def outside(law):
+    percent = law["outside_of_fit_percent"]
+    return "not known" if percent is None else f"{percent:.0f} %"
+
+
+def print_row(cells):
+    print(f"| {' | '.join(cells)} |")
+
+
+def print_head(cells):
+    print_row(cells)
+    print_row(["---"] * len(cells))
+
+
+def by_law(folders):
+    """A row a law: beside Archard's, and where it moved the surface itself."""
+    print_head(["case", "law", "beside Archard's, mg/Mc", "by itself, mg/Mc", "deepest, mm", "outside of its fit"])
+    for name, folder in folders:
+        for beside in laws(folder / "archard"):
+            own = laws(folder / beside["law"])[0]
+            word = f"`{beside['law']}`" + (" (approximate)" if beside["approximate"] else "")
+            print_row([f"`{name}`", word, rate(beside), rate(own), f"{own['max_depth_mm']:.3f}", outside(own)])
+
+
+def by_design(folders):
+    """A row a design, a column a law."""
+    words = [law["law"] for law in laws(folders[0][1])]
+    print_head(["dish", *(f"`{word}`" for word in words)])
+    for name, folder in folders:
+        print_row([name, *(rate(law) for law in laws(folder))])
+
+
+def main():
+    table, *given = sys.argv[1:]
+    pairs = [argument.split("=", 1) for argument in given]
+    {"by-law": by_law, "by-design": by_design}[table]([(name, Path(folder)) for name, folder in pairs])
+
+
+main()
