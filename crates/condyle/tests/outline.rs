@@ -5,6 +5,7 @@ use condyle::{
     contact::{Bodies, ContactLaw, ContactMemory, Foundation, PressureLaw},
     geometry::{
         FemoralSurface, Insert, Meshing, ShellInsertError, TriangleMesh, insert_from_shell,
+        insert_over_holes,
     },
     spatial::{Pose, RelativeMotion},
 };
@@ -263,4 +264,94 @@ fn holes_under_the_outline_are_errors_that_list_all_with_their_places() {
         }
         other => panic!("{:?}", other.err()),
     }
+}
+
+/// A block cut out behind, with corners that stick out and some that go in.
+const NOTCHED: Body = Body {
+    outline_mm: |angle| {
+        let (sine, cosine) = (angle.sin().abs(), angle.cos());
+        let whole = (20.0 / cosine.abs()).min(30.0 / sine);
+        if cosine < 0.0 && 12.0 * sine < 7.0 * -cosine {
+            12.0 / -cosine
+        } else if cosine < 0.0 && whole * sine < 7.0 {
+            7.0 / sine
+        } else {
+            whole
+        }
+    },
+    top_mm: |_, _| 0.0,
+};
+
+#[test]
+fn hexahedra_are_sound_at_corners_that_go_in_however_the_grid_lies() {
+    for degrees in [0.0, 10.0, 27.0, 45.0] {
+        let shell = NOTCHED.shell().mapped(|vertex| turn(degrees) * vertex);
+        for edge_mm in [1.6, 1.05, 0.7, 0.5] {
+            let meshing = Meshing { edge_mm, layers: 2 };
+            let insert = insert_from_shell(&shell, true, None, meshing).unwrap();
+            let quality = insert.mesh().worst_quality();
+            assert!(
+                quality > 0.35,
+                "{quality} at {edge_mm} mm, turned by {degrees}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_surface_goes_on_smoothly_over_a_hole_which_is_named() {
+    let mut shell = OVAL.shell();
+    let vertices = shell.vertices.clone();
+    let is_cut = |n: &u32| vertices[*n as usize].x.hypot(vertices[*n as usize].z) < 3.0;
+    shell
+        .triangles
+        .retain(|triangle| !triangle.iter().any(is_cut));
+    let (insert, holes) = insert_over_holes(&shell, false, Some(8.0), MESHING).unwrap();
+    let [hole] = &holes[..] else {
+        panic!("{holes:?}");
+    };
+    assert!(
+        hole.goes_through && (25.0..40.0).contains(&hole.area_mm2),
+        "{hole:?}"
+    );
+    assert!(hole.distance_mm([0.0, 0.5]) == 0.0);
+    assert!(
+        (hole.distance_mm([0.0, 10.0]) - 6.7).abs() < 0.5,
+        "{}",
+        hole.distance_mm([0.0, 10.0])
+    );
+    let positions = insert.surface().positions;
+    let over: Vec<&Vec3> = positions
+        .iter()
+        .filter(|at| at.x.hypot(at.z) < 3.0)
+        .collect();
+    assert!(over.len() > 15);
+    let around = (0..60).map(|n| f64::from(n) / 60.0 * std::f64::consts::TAU);
+    let around = around.map(|angle| (OVAL.top_mm)(3.4 * angle.cos(), 3.4 * angle.sin()));
+    let (low, high) = around.fold((f64::MAX, f64::MIN), |(a, b), y| (a.min(y), b.max(y)));
+    assert!(
+        over.iter().all(|at| (low..high).contains(&at.y)),
+        "{over:?}"
+    );
+}
+
+/// The oval with a post in its middle, as a posterior-stabilised insert has.
+const WITH_POST: Body = Body {
+    outline_mm: OVAL.outline_mm,
+    top_mm: |x, z| {
+        let post = 4.0 * (8.0 - x.hypot(z)).clamp(0.0, 3.0);
+        (OVAL.top_mm)(x, z) + post
+    },
+};
+
+#[test]
+fn a_post_is_an_error_or_left_out_and_named() {
+    let shell = WITH_POST.shell();
+    let refused = insert_from_shell(&shell, true, None, MESHING);
+    assert!(matches!(refused, Err(ShellInsertError::Holes { .. })));
+    let (insert, holes) = insert_over_holes(&shell, true, None, MESHING).unwrap();
+    assert!(holes.len() == 1 && !holes[0].goes_through, "{holes:?}");
+    let (_, high) = insert.surface().height_range_mm();
+    let (_, highest) = OVAL.shell().bounds();
+    assert!(high < highest.y + 0.1, "{high}");
 }

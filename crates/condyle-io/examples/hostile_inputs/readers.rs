@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use condyle::geometry::{ShellChecks, Touching};
+use condyle::geometry::{Parts, ShellChecks, Touching};
 use condyle_io::{
     cache::{Cache, Keep},
     case::{CaseReader, Side},
@@ -74,12 +74,13 @@ fn surface(name: &str, bytes: &[u8]) {
     let Ok(mesh) = parse_surface(Path::new(name), bytes) else {
         return;
     };
-    for (touching, clip_below_mm) in [
-        (Touching::FromAbove, Some(2.0)),
-        (Touching::FromBelowAndBehind, None),
+    for (touching, parts, clip_below_mm) in [
+        (Touching::FromAbove, Parts::SeenFromAbove, Some(2.0)),
+        (Touching::FromBelowAndBehind, Parts::All, None),
     ] {
         let checks = ShellChecks {
             touching,
+            parts,
             clip_below_mm,
         };
         if let Err(error) = checks.check(mesh.clone()) {

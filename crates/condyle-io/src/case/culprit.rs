@@ -95,9 +95,10 @@ impl Case {
 
     fn culprit_of_build(&self, error: &BuildError) -> Culprit {
         let keys: &[&str] = match error {
-            BuildError::MeshFile(_) | BuildError::StrayPiece { .. } | BuildError::Shell { .. } => {
-                &["file"]
-            }
+            BuildError::MeshFile(_)
+            | BuildError::StrayPiece { .. }
+            | BuildError::Shell { .. }
+            | BuildError::PressedHole { .. } => &["file"],
             BuildError::Size { .. }
             | BuildError::WrongUnit { .. }
             | BuildError::TooManyNodes { .. } => &["length_unit", "file"],
@@ -114,6 +115,7 @@ impl Case {
             },
             BuildError::InsertTooFine { .. } => &["edge_mm", "layers", "file", "length_unit"],
             BuildError::ClipMisses { .. } => &["clip_below_mm"],
+            BuildError::UnclearUnderside { .. } => &["clip_below_mm", "file"],
             BuildError::ThicknessOfClosed { .. } => &["thickness_mm"],
             BuildError::NoSurface { key, .. } => match *key {
                 "backside" => &["backside"],

@@ -6,11 +6,14 @@ use condyle::Mat3;
 use condyle::anatomy::{
     Orientation, Recognition, Sureness, flange_lead_mm, start_over_the_dishes_mm,
 };
-use condyle::geometry::{CheckedShell, GenericInsertShape, ShellError, TriangleMesh};
+use condyle::geometry::{CheckedShell, GenericInsertShape, ShellError, TriangleMesh, Underside};
 use thiserror::Error;
 
 use super::axes::Axes;
-use super::build::{Body, checks_of, is_off_centre, longest_mm, middle_of_mesh, usual_unit};
+use super::build::{
+    Body, checks_of, checks_of_insert, heights_to_write, is_off_centre, longest_mm, middle_of_mesh,
+    rounded_up, usual_unit,
+};
 use super::contents::Case;
 use super::heading::Side;
 use super::machine_keys::Preset;
@@ -84,20 +87,22 @@ impl Draft<'_> {
         let insert = Concluded::from(Body::Insert, self.insert)?;
         let femur_lies = femur.orientation(&insert.best());
         let insert_lies = insert.orientation(&[femur_lies]);
-        let femur_shell = femur.shell(&femur_lies)?;
-        let mut insert_shell = insert.shell(&insert_lies)?;
-        let origin = ConcludedOrigin::centred(&mut insert_shell.mesh);
+        let (femur_shell, whole) = (femur.shell(&femur_lies)?, insert.shell(&insert_lies)?);
+        let mut alone = Alone::of(whole).map_err(|source| insert.refused(source))?;
+        let origin = ConcludedOrigin::centred(&mut alone.shell.mesh);
+        let of_insert = [origin.key, &thickness(&alone.shell), &alone.key()].concat();
         let bodies = [
             keys_of("femur", &femur, &femur_lies),
-            keys_of("insert", &insert, &insert_lies) + origin.key + &thickness(&insert_shell),
+            keys_of("insert", &insert, &insert_lies) + &of_insert,
         ];
-        let start_mm = self.start_mm(&femur_shell.mesh, &insert_shell.mesh);
+        let start_mm = self.start_mm(&femur_shell.mesh, &alone.shell.mesh);
         let side = ConcludedSide::of(&femur_shell.mesh, self.side);
         let keys = self.keys(side.side, &bodies, start_mm);
         let case = Case::parse(&keys, "draft", folder)?;
+        let of_insert = [insert.remarks(&insert_lies, &alone.shell), alone.remarks()];
         let remarks = [
             with(femur.remarks(&femur_lies, &femur_shell), Some(side.remark)),
-            with(insert.remarks(&insert_lies, &insert_shell), origin.remark),
+            with(of_insert.concat(), origin.remark),
         ];
         let text = case.as_draft_in(folder);
         Ok(Drafted {
@@ -205,6 +210,97 @@ fn thickness(insert: &CheckedShell) -> String {
     format!("thickness_mm = {thickness_mm:?}\n")
 }
 
+/// An insert without the tray that its file may hold too.
+struct Alone {
+    shell: CheckedShell,
+    underside: Underside,
+}
+
+impl Alone {
+    fn of(whole: CheckedShell) -> Result<Self, ShellError> {
+        let underside = if whole.closed {
+            Underside::of(&whole.mesh)
+        } else {
+            Underside::Whole
+        };
+        let shell = match &underside {
+            Underside::Ledge { height_mm, .. } => {
+                let left_out = whole.left_out;
+                let checks = checks_of_insert(Some(rounded_up(*height_mm)));
+                let cut = checks.check(whole.mesh)?;
+                CheckedShell { left_out, ..cut }
+            }
+            _ => whole,
+        };
+        Ok(Self { shell, underside })
+    }
+
+    /// The height at which it is cut.
+    fn key(&self) -> String {
+        match &self.underside {
+            Underside::Ledge { height_mm, .. } => {
+                format!("clip_below_mm = {:?}\n", rounded_up(*height_mm))
+            }
+            _ => String::new(),
+        }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        let parts = self.shell.left_out.len();
+        if parts > 0 {
+            remarks.push(format!(
+                "  The file has {parts} more parts, below the insert or beside it: they are left out."
+            ));
+        }
+        match &self.underside {
+            Underside::Whole => {}
+            Underside::Ledge {
+                below_dishes_mm,
+                reach_mm,
+                ..
+            } => remarks.push(format!(
+                "  clip_below_mm: the body reaches {reach_mm:.1} mm below its dishes, as with a tray or stem; cut at the ledge \
+                 around it, {below_dishes_mm:.2} mm of polyethylene are left below the dishes: check it."
+            )),
+            Underside::Unclear {
+                reach_mm,
+                plate_mm,
+                ledges_mm,
+            } => remarks.push(format!(
+                "  The body reaches {reach_mm:.1} mm below its dishes, as with a tray or stem, and does not show where the \
+                 polyethylene ends: write {}.",
+                heights_to_write(*plate_mm, ledges_mm)
+            )),
+        }
+        remarks
+    }
+}
+
+/// Recognises an insert in one with its tray, which is none by its shape: it is cut off as it would be in every
+/// orientation, until one shows an insert that lies so.
+fn recognised_alone(mesh: &TriangleMesh) -> Option<Recognition> {
+    Orientation::all().find_map(|lies| {
+        let rotation: Mat3 = lies.rotation();
+        let placed = mesh.clone().mapped(|vertex| rotation * vertex);
+        let alone = Alone::of(checks_of(Body::Insert).check(placed).ok()?).ok()?;
+        let is_cut = matches!(alone.underside, Underside::Ledge { .. });
+        if !is_cut && alone.shell.left_out.is_empty() {
+            return None;
+        }
+        let lies_so = Body::Insert.recognise(&alone.shell.mesh)?.nearest() == Orientation::ISB;
+        let back = || {
+            alone
+                .shell
+                .mesh
+                .mapped(|vertex| rotation.transpose() * vertex)
+        };
+        lies_so
+            .then(back)
+            .and_then(|mesh| Body::Insert.recognise(&mesh))
+    })
+}
+
 /// A body of the draft, and what its shape tells.
 struct Concluded<'a> {
     body: Body,
@@ -224,11 +320,15 @@ impl<'a> Concluded<'a> {
             return Err(DraftError::NoUnit { file, body, size });
         };
         let mesh = mesh.mapped(|vertex| vertex * unit.in_mm());
+        let recognition = match (body, body.recognise(&mesh)) {
+            (Body::Insert, None) => recognised_alone(&mesh),
+            (_, recognition) => recognition,
+        };
         Ok(Self {
             body,
             file,
             written,
-            recognition: body.recognise(&mesh),
+            recognition,
             mesh,
             unit,
         })
@@ -262,10 +362,14 @@ impl<'a> Concluded<'a> {
     fn shell(&self, lies: &Orientation) -> Result<CheckedShell, DraftError> {
         checks_of(self.body)
             .check(self.placed(lies))
-            .map_err(|source| DraftError::Shell {
-                file: self.file.clone(),
-                source,
-            })
+            .map_err(|source| self.refused(source))
+    }
+
+    fn refused(&self, source: ShellError) -> DraftError {
+        DraftError::Shell {
+            file: self.file.clone(),
+            source,
+        }
     }
 
     fn remarks(&self, lies: &Orientation, shell: &CheckedShell) -> Vec<String> {

@@ -1,5 +1,6 @@
 //! A case run into a results folder, from the start or from where it was stopped.
 
+mod bridged;
 mod clock;
 mod error;
 mod event;

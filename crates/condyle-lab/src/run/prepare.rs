@@ -8,7 +8,7 @@ use condyle_io::{
     case::{Assignment, BuildWarning, Built, Case, ChangeError},
 };
 
-use super::{error::RunError, memory::check_memory};
+use super::{bridged::check_at_rest, error::RunError, memory::check_memory};
 
 /// Checks the case at `case_path` as far as a run would go before its first cycle: the file, the
 /// meshes, and that the femur settles on the insert. Gives the case and what was put right.
@@ -56,5 +56,7 @@ pub(crate) fn start(
         shown: case.placement_at_its_key(&source, warnings),
         source,
     })?;
-    check_memory(case, &march).map(|()| march)
+    check_memory(case, &march)?;
+    check_at_rest(case, &march, warnings)?;
+    Ok(march)
 }

@@ -4,7 +4,7 @@ use std::{ops::ControlFlow, path::Path, time::Duration};
 
 use condyle::{evolve::March, geometry::TriangleMesh};
 use condyle_io::{
-    case::{Assignment, Case, FEMUR_TRIANGLES, Side},
+    case::{Assignment, BuildWarning, Case, FEMUR_TRIANGLES, Side},
     keyed::DataFile,
     results::{
         Checkpoint, FRAME_TRIANGLES, FolderLock, Found, LawWear, NeutralPose, ResultsError,
@@ -13,6 +13,7 @@ use condyle_io::{
 };
 
 use super::{
+    bridged::check_so_far,
     clock::Clock,
     error::RunError,
     event::{Outcome, Reached, RunEvent},
@@ -149,7 +150,7 @@ struct Run<'a> {
     case: &'a Case,
     options: &'a RunOptions,
     inputs_blake3: String,
-    warnings: Vec<String>,
+    warnings: Vec<BuildWarning>,
     folder: ResultsFolder,
     /// Held until the run has ended.
     _lock: Option<FolderLock>,
@@ -171,9 +172,8 @@ impl<'a> Run<'a> {
     ) -> Result<Self, RunError> {
         let mut clock = Clock::default();
         let built = clock.time(|| build(case, options.threads, &options.cache))?;
-        let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
-        for warning in &warnings {
-            let _ = on_event(RunEvent::Warning(warning.clone()));
+        for warning in &built.warnings {
+            let _ = on_event(RunEvent::Warning(warning.to_string()));
         }
         let is_new = checkpoint.is_none();
         let march = match checkpoint {
@@ -200,7 +200,7 @@ impl<'a> Run<'a> {
             case,
             options,
             inputs_blake3,
-            warnings,
+            warnings: built.warnings,
             folder,
             _lock: lock,
             march,
@@ -244,6 +244,7 @@ impl<'a> Run<'a> {
             return Ok(ControlFlow::Break(()));
         };
         self.write_update()?;
+        check_so_far(self.case, &self.march, &self.warnings)?;
         Ok(on_event(RunEvent::Updated(update)))
     }
 
@@ -282,7 +283,7 @@ impl<'a> Run<'a> {
             articulating_nodes: self.march.insert().surface_nodes().len(),
             wall_s: self.clock.spent.as_secs_f64(),
             inputs_blake3: self.inputs_blake3.clone(),
-            warnings: self.warnings.clone(),
+            warnings: self.warnings.iter().map(ToString::to_string).collect(),
             error: None,
             neutral_pose: NeutralPose::of(&self.march, self.case.heading.side),
             wear_laws: LawWear::of(&self.march, &self.case.wear),

@@ -92,6 +92,21 @@ impl ColumnGrid {
         (self.cells.0 + 1) * (self.cells.1 + 1)
     }
 
+    /// Grid points beside the one with a number, in its row and its column.
+    pub fn around(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
+        let per_row = self.cells.1 + 1;
+        let (i, k) = (number / per_row, number % per_row);
+        let before = [
+            (i > 0).then(|| number - per_row),
+            (k > 0).then(|| number - 1),
+        ];
+        let after = [
+            (i < self.cells.0).then_some(number + per_row),
+            (k < self.cells.1).then_some(number + 1),
+        ];
+        before.into_iter().chain(after).flatten()
+    }
+
     /// Grid points of cell (i, k), anticlockwise seen from above.
     pub fn corners(&self, i: usize, k: usize) -> [usize; 4] {
         [

@@ -144,7 +144,7 @@ impl HeightMap {
 }
 
 /// Height of a flat triangle over a place (x, z), if it covers it.
-fn height_over([a, b, c]: &[Vec3; 3], (x, z): (f64, f64)) -> Option<f64> {
+pub(super) fn height_over([a, b, c]: &[Vec3; 3], (x, z): (f64, f64)) -> Option<f64> {
     let twice_area = |p: &Vec3, q: &Vec3| (p.x - x) * (q.z - z) - (p.z - z) * (q.x - x);
     let weights = [twice_area(b, c), twice_area(c, a), twice_area(a, b)];
     let whole: f64 = weights.iter().sum();

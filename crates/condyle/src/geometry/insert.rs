@@ -15,6 +15,9 @@ use super::{
 };
 use crate::Vec3;
 
+/// A wall that leans farther than 60 degrees from the normal at its rim is no way down for it.
+const LEAST_COSINE_OF_WALL: f64 = 0.5;
+
 /// A tibial insert, unworn or worn.
 ///
 /// Clones share what wear does not change; a clone costs the positions of the nodes, and two
@@ -23,6 +26,7 @@ use crate::Vec3;
 pub struct Insert {
     unworn: Arc<UnwornInsert>,
     regions: Arc<SurfaceRegions>,
+    rim_along_walls: bool,
     mesh: HexMesh,
     /// Depth worn so far: the thickness is computed from it anew, so that an insert worn step by
     /// step and one restored have the same to the last bit.
@@ -56,6 +60,7 @@ impl Insert {
             worn_mm: vec![0.0; unworn.thickness_mm.len()],
             thickness_mm: unworn.thickness_mm.clone(),
             regions: Arc::new(regions),
+            rim_along_walls: false,
             unworn: Arc::new(unworn),
             mesh,
         })
@@ -146,13 +151,25 @@ impl Insert {
         ArticulatingSurface::new(positions, &self.unworn.faces_around)
     }
 
-    /// Moves every surface node inwards along its normal, and the mesh below after it.
+    /// The same insert whose rim wears down along its side wall, as far as the surface goes down by its depth.
+    ///
+    /// A rim that goes along its normal leans out of the body over the wall below it, or into it, and so changes the volume
+    /// otherwise than depth times area.
+    pub fn with_rim_along_walls(self) -> Self {
+        Self {
+            rim_along_walls: true,
+            ..self
+        }
+    }
+
+    /// Moves every surface node inwards along its normal, and the mesh below after it; one on the rim along its wall, if
+    /// the insert is [made so](Self::with_rim_along_walls).
     ///
     /// `depth_mm`: one a surface node, 0 or more. The thickness shrinks by as much.
     pub fn wear_down(&mut self, surface: &ArticulatingSurface, depth_mm: &[f64]) {
         let mut displacement = self.as_before(surface, depth_mm);
         for (i, &node) in self.unworn.surface_nodes.iter().enumerate() {
-            displacement[node as usize] = -surface.normals[i] * depth_mm[i];
+            displacement[node as usize] = -self.outwards(i, &surface.normals[i]) * depth_mm[i];
             self.worn_mm[i] += depth_mm[i];
         }
         self.find_thickness();
@@ -160,6 +177,13 @@ impl Insert {
         for (node, step) in self.mesh.nodes.iter_mut().zip(&displacement) {
             *node += step;
         }
+    }
+
+    /// How far and where a surface node goes if the surface around it rises by a unit.
+    fn outwards(&self, node: usize, normal: &Vec3) -> Vec3 {
+        let wall = self.unworn.walls[node].filter(|_| self.rim_along_walls);
+        let wall = wall.filter(|wall| wall.dot(normal) > LEAST_COSINE_OF_WALL);
+        wall.map_or(*normal, |wall| wall / wall.dot(normal))
     }
 
     /// How every mesh node moves if the mesh goes on as it has come so far, in proportion to the
@@ -241,6 +265,24 @@ mod tests {
         assert!(unworn.thickness_mm().iter().all(|left| *left == 5.0));
         assert!(Arc::ptr_eq(&unworn.unworn, &worn.unworn));
         assert!(Arc::ptr_eq(&unworn.mesh.hexes, &worn.mesh.hexes));
+    }
+
+    #[test]
+    fn verify_a_sloping_surface_that_wears_to_its_rim_loses_depth_times_area() {
+        let sloping = block().mesh().clone();
+        let slope = |node: &Vec3| Vec3::new(node.x, node.y + 0.3 * node.x, node.z);
+        let nodes = sloping.nodes.iter().map(slope).collect();
+        let mesh = HexMesh { nodes, ..sloping };
+        let top = block().surface_nodes().to_vec();
+        let quads = mesh.boundary_quads();
+        let on_top = |quad: &[u32; 4]| quad.iter().all(|node| top.contains(node));
+        let (above, rest): (Vec<[u32; 4]>, Vec<[u32; 4]>) = quads.into_iter().partition(on_top);
+        let insert = Insert::new(mesh, &above, &rest).unwrap();
+        let mut insert = insert.with_rim_along_walls();
+        let (surface, before) = (insert.surface(), insert.volume_mm3());
+        insert.wear_down(&surface, &vec![0.1; surface.positions.len()]);
+        let lost = (before - insert.volume_mm3()) / (0.1 * surface.area_mm2());
+        assert!((lost - 1.0).abs() < 1e-9, "{lost}");
     }
 
     #[test]

@@ -24,6 +24,7 @@ mod articulating_surface;
 mod bounds;
 mod clustered;
 mod columns;
+mod construct;
 mod curvature_bounds;
 mod curved_mesh;
 mod cylinder;
@@ -48,6 +49,7 @@ mod triangle_mesh;
 pub use articulating_surface::ArticulatingSurface;
 pub use bounds::bounds;
 pub use columns::{Column, ColumnGrid, ColumnMesh, Plan};
+pub use construct::Underside;
 pub use curvature_bounds::{CurvatureBounds, MOST_GAP_SLOPE};
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use cylinder::Cylinder;
@@ -61,10 +63,12 @@ pub use node_blocks::NodeBlock;
 pub use placed_femur::PlacedFemur;
 pub use share::Share;
 pub use shell::{
-    CheckedShell, Crossing, Crossings, Defect, DefectKind, ShellChecks, ShellError, ShellReport,
-    Touching, checked_shell, crossings, shell_report,
+    CheckedShell, Crossing, Crossings, Defect, DefectKind, LeftOut, Parts, ShellChecks, ShellError,
+    ShellReport, Touching, WhyLeftOut, checked_shell, crossings, shell_report,
 };
-pub use shell_insert::{ShellInsertError, insert_from_shell};
+pub use shell_insert::{
+    Hole, ShellInsertError, insert_from_shell, insert_over_holes, listed_holes,
+};
 pub use smooth_field::SmoothField;
 pub use surface_regions::SurfaceRegions;
 pub use surface_sample::{Curvature, SurfaceSample};

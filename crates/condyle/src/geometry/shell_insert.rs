@@ -1,12 +1,14 @@
 //! An insert from a triangle mesh: hexahedra in columns along y.
 
 mod backside;
+mod bridge;
 mod core;
 mod evened;
 mod footprint;
 mod holes;
 mod outline;
 mod ring;
+mod shaped;
 mod vertical_lines;
 
 use thiserror::Error;
@@ -52,7 +54,7 @@ pub enum ShellInsertError {
     /// Places inside the outline where no column may stand.
     #[error(
         "inside the insert's outline no hexahedra can stand on {}; fill it in the mesh",
-        listed(holes)
+        listed_holes(holes)
     )]
     Holes {
         /// All of them.
@@ -104,12 +106,38 @@ pub fn insert_from_shell(
     thickness_mm: Option<f64>,
     meshing: Meshing,
 ) -> Result<Insert, ShellInsertError> {
+    let (insert, holes) = insert_over_holes(shell, is_closed, thickness_mm, meshing)?;
+    if holes.is_empty() {
+        Ok(insert)
+    } else {
+        Err(ShellInsertError::Holes { holes })
+    }
+}
+
+/// As [`insert_from_shell`], with hexahedra over holes and posts inside the outline, as if the surface around them went
+/// on smoothly; and which those are. Whatever touches there, or beside it, touches what is made up.
+///
+/// # Errors
+/// As [`insert_from_shell`], but for holes.
+pub fn insert_over_holes(
+    shell: &TriangleMesh,
+    is_closed: bool,
+    thickness_mm: Option<f64>,
+    meshing: Meshing,
+) -> Result<(Insert, Vec<Hole>), ShellInsertError> {
     let edge_mm = meshing.edge_mm;
     let (low, high) = shell.bounds();
     let (low, high) = ((low.x, low.z), (high.x, high.z));
     let grid = ColumnGrid::filling(low, high, edge_mm, meshing.layers)?;
     let mut footprint = Footprint::new(shell, is_closed, edge_mm);
-    let (plan, mut columns) = fitted_plan(&grid, &mut footprint, edge_mm)?;
+    let outlines = outline(&footprint, edge_mm);
+    let holes = holes(&mut footprint, &outlines, edge_mm);
+    let fitted = fitted_plan(&grid, &footprint, edge_mm);
+    let (plan, mut columns) = match fitted {
+        // Of two reasons, the holes come first: what cannot be fitted may come from what was made up over them.
+        Err(_) if !holes.is_empty() => return Err(ShellInsertError::Holes { holes }),
+        fitted => fitted?,
+    };
     if is_closed {
         ease_steps(&plan, &mut columns);
     } else {
@@ -117,31 +145,24 @@ pub fn insert_from_shell(
         put_on_flat_backside(&mut columns, thickness_mm);
     }
     let built = plan.hexahedra(&columns, meshing.layers);
-    Ok(Insert::new(
-        built.mesh,
-        &built.articulating,
-        &built.backside,
-    )?)
+    let insert = Insert::new(built.mesh, &built.articulating, &built.backside)?;
+    Ok((insert.with_rim_along_walls(), holes))
 }
 
 /// The plan of the hexahedra with its rim on the outline, and the columns on its places.
 fn fitted_plan(
     grid: &ColumnGrid,
-    footprint: &mut Footprint<'_>,
+    footprint: &Footprint<'_>,
     edge_mm: f64,
 ) -> Result<(Plan, Vec<Column>), ShellInsertError> {
     let outlines = outline(footprint, edge_mm);
-    let holes = holes(footprint, &outlines, edge_mm);
-    if !holes.is_empty() {
-        return Err(ShellInsertError::Holes { holes });
-    }
     let outer: Vec<&Loop> = outlines
         .iter()
         .filter(|outline| outline.area_mm2() > LEAST_PIECE * edge_mm * edge_mm)
         .collect();
     let pieces = matched(grid, &outer, Core::pieces(grid, footprint), edge_mm)?;
     let mut ring = Ring::new(grid, &pieces);
-    ring.even_out();
+    ring.even_out(edge_mm);
     standing(&ring, footprint)
 }
 
@@ -214,7 +235,8 @@ fn put_on_flat_backside(columns: &mut [Column], thickness_mm: f64) {
     }
 }
 
-fn listed(holes: &[Hole]) -> String {
+/// Holes in words, one after the other.
+pub fn listed_holes(holes: &[Hole]) -> String {
     let each: Vec<String> = holes.iter().map(Hole::to_string).collect();
     each.join(", on ")
 }

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle::geometry::{Defect, InsertError, ShellError, ShellInsertError};
+use condyle::geometry::{
+    Defect, Hole, InsertError, LeftOut, ShellError, ShellInsertError, WhyLeftOut, listed_holes,
+};
 use condyle_fem::SolidError;
 use thiserror::Error;
 
@@ -123,6 +125,20 @@ pub enum BuildError {
         /// The highest point of the body.
         high_mm: f64,
     },
+    /// An insert in one with what it stands on, whose shape does not show where it ends.
+    #[error(
+        "{}: this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem, and \
+         its shape does not show for certain where the polyethylene ends; write [insert] {heights}",
+        file.display()
+    )]
+    UnclearUnderside {
+        /// The file.
+        file: PathBuf,
+        /// How far it reaches below its dishes, mm.
+        reach_mm: f64,
+        /// Which heights may be meant, in words.
+        heights: String,
+    },
     /// A shell that makes no insert.
     #[error("{}: {source}", file.display())]
     ShellInsert {
@@ -130,6 +146,20 @@ pub enum BuildError {
         file: PathBuf,
         /// Why.
         source: ShellInsertError,
+    },
+    /// A hole or a post at which the femur presses.
+    #[error(
+        "{}: the femur presses on the insert at a {hole}, {when}, where its surface is made up; fill the hole in the mesh, \
+         or see that the bodies lie as they should",
+        file.display()
+    )]
+    PressedHole {
+        /// The file.
+        file: PathBuf,
+        /// Which.
+        hole: Hole,
+        /// When it was found.
+        when: &'static str,
     },
     /// A thickness for a mesh that has its own.
     #[error(
@@ -172,7 +202,9 @@ impl BuildError {
             | Self::TooManyNodes { file, .. }
             | Self::Shell { file, .. }
             | Self::ClipMisses { file, .. }
+            | Self::UnclearUnderside { file, .. }
             | Self::ShellInsert { file, .. }
+            | Self::PressedHole { file, .. }
             | Self::ThicknessOfClosed { file }
             | Self::NoSurface { file, .. } => Some(file),
             Self::InsertTooFine { .. } | Self::Insert(_) | Self::Axes(_) | Self::Solid(_) => None,
@@ -294,6 +326,46 @@ pub enum BuildWarning {
         /// The piece.
         piece: StrayPiece,
     },
+    /// Parts of the file that are not of the insert.
+    #[error("{}: left out, since they are no part of the insert: {}", file.display(), parts_listed(parts))]
+    LeftOut {
+        /// The file, without its folder.
+        file: PathBuf,
+        /// What they are.
+        parts: Vec<LeftOut>,
+    },
+    /// An insert that was cut off the tray that its file holds too.
+    #[error(
+        "{}: this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem; it is cut \
+         at the ledge at y = {height_mm:.2} mm, which leaves {below_dishes_mm:.2} mm of polyethylene below the dishes; write \
+         clip_below_mm = {height_mm:.2} in [insert] if that is right, or the right height",
+        file.display()
+    )]
+    CutOffTray {
+        /// The file, without its folder.
+        file: PathBuf,
+        /// Height of the cut, mm.
+        height_mm: f64,
+        /// Polyethylene that is left below the dishes, mm.
+        below_dishes_mm: f64,
+        /// How far the body reaches below its dishes, mm.
+        reach_mm: f64,
+    },
+    /// Holes and posts inside the outline of an insert, over which hexahedra stand.
+    #[error(
+        "{}: the surface is taken to go on smoothly over a {}; nothing may press there or within {beside_mm} mm, which a run \
+         makes sure of",
+        file.display(),
+        listed_holes(holes)
+    )]
+    Bridged {
+        /// The file, without its folder.
+        file: PathBuf,
+        /// Where they are.
+        holes: Vec<Hole>,
+        /// What is pressed no farther from them than this is pressed beside them, mm.
+        beside_mm: f64,
+    },
     /// The mesh came inside-out.
     #[error("{}: the triangles faced inwards and were turned round", file.display())]
     TurnedRound {
@@ -335,6 +407,45 @@ pub enum BuildWarning {
         /// Kinds, counts and places, mm in the frame of the body.
         defects: Vec<Defect>,
     },
+}
+
+impl BuildWarning {
+    /// The hole of an insert that a place (x, z) is in or beside, mm, over which its surface is made up.
+    pub fn hole_at(&self, place_mm: [f64; 2]) -> Option<&Hole> {
+        let Self::Bridged {
+            holes, beside_mm, ..
+        } = self
+        else {
+            return None;
+        };
+        holes
+            .iter()
+            .find(|hole| hole.distance_mm(place_mm) <= *beside_mm)
+    }
+}
+
+/// Parts that are listed one by one, at most.
+const LISTED_PARTS: usize = 5;
+
+/// The first parts, each with its size and place, and why it is none of the insert.
+fn parts_listed(parts: &[LeftOut]) -> String {
+    let said = parts.iter().take(LISTED_PARTS).map(|part| {
+        let why = match part.why {
+            WhyLeftOut::Below => "below it",
+            WhyLeftOut::Speck => "beside it",
+            WhyLeftOut::Away => "far from it",
+        };
+        let ([x, y, z], [long, high, wide]) = (part.at_mm.into(), part.size_mm.into());
+        format!(
+            "{} triangles {why} around ({x:.1}, {y:.1}, {z:.1}) mm, {long:.1} mm long, {high:.1} mm high and {wide:.1} mm wide",
+            part.triangles
+        )
+    });
+    let mut said: Vec<String> = said.collect();
+    if parts.len() > LISTED_PARTS {
+        said.push(format!("{} more", parts.len() - LISTED_PARTS));
+    }
+    said.join("; ")
 }
 
 /// Kinds and counts, with the first three places of each.

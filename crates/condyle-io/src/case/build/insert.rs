@@ -1,9 +1,12 @@
 //! The insert in hexahedra.
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 use condyle::Vec3;
-use condyle::geometry::{self, GenericInsertShape, Meshing, flat_insert, insert_from_shell};
+use condyle::geometry::{
+    self, CheckedShell, GenericInsertShape, Meshing, flat_insert, insert_over_holes,
+};
 use condyle_fem::HexMesh;
 
 use super::super::contents::Case;
@@ -12,6 +15,7 @@ use super::super::insert::{FlatInsert, GenericInsert, HexahedralInsert, Insert, 
 use super::super::limits::Limits;
 use super::super::placement::InsertPlacement;
 use super::body_size::check_points;
+use super::construct::without_tray;
 use super::error::{BuildError, BuildWarning};
 use super::lie::{check_lie, check_lie_of_hexahedra};
 use super::meshes::{Placing, ShellOf, shell};
@@ -160,7 +164,7 @@ fn from_mesh(
 ) -> Result<geometry::Insert, BuildError> {
     let placing = Placing::new(insert.length_unit, &insert.axes, around.side)?;
     let path = insert.file.path();
-    let shell = shell(
+    let mut shell = shell(
         &insert.file,
         &placing,
         ShellOf::insert(insert.clip_below_mm),
@@ -171,6 +175,9 @@ fn from_mesh(
         return Err(BuildError::ThicknessOfClosed { file: file() });
     }
     check_lie(Body::Insert, &insert.file, &shell.mesh, &placing, warnings)?;
+    if shell.closed && insert.clip_below_mm.is_none() {
+        shell = insert_alone(insert, shell, &placing, warnings)?;
+    }
     let mesh = match around.placement.motion(|| middle_of_mesh(&shell.mesh)) {
         Some(motion) => motion.mesh(shell.mesh),
         None => shell.mesh,
@@ -178,12 +185,34 @@ fn from_mesh(
     let meshing = meshing(insert.edge_mm, insert.layers);
     let (low, high) = mesh.bounds();
     check_node_count((high.x - low.x, high.z - low.z), meshing, around.limits)?;
-    insert_from_shell(&mesh, shell.closed, insert.thickness_mm, meshing).map_err(|source| {
-        BuildError::ShellInsert {
-            file: file(),
-            source,
-        }
-    })
+    let built = insert_over_holes(&mesh, shell.closed, insert.thickness_mm, meshing);
+    let (built, holes) = built.map_err(|source| BuildError::ShellInsert {
+        file: file(),
+        source,
+    })?;
+    if !holes.is_empty() {
+        warnings.push(BuildWarning::Bridged {
+            file: PathBuf::from(insert.file.name()),
+            holes,
+            beside_mm: meshing.edge_mm,
+        });
+    }
+    Ok(built)
+}
+
+/// The insert without a tray that its file holds too; once it is alone, its shape tells how it lies.
+fn insert_alone(
+    insert: &MeshInsert,
+    shell: CheckedShell,
+    placing: &Placing,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<CheckedShell, BuildError> {
+    let count = shell.mesh.triangles.len();
+    let alone = without_tray(&insert.file, shell, warnings)?;
+    if alone.mesh.triangles.len() != count {
+        check_lie(Body::Insert, &insert.file, &alone.mesh, placing, warnings)?;
+    }
+    Ok(alone)
 }
 
 fn from_hexahedra(

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle::geometry::{CheckedShell, ShellChecks, Touching, TriangleMesh};
+use condyle::geometry::{CheckedShell, Parts, ShellChecks, Touching, TriangleMesh};
 use condyle::{Mat3, Vec3};
 
 use super::super::axes::Axes;
@@ -90,6 +90,7 @@ impl ShellOf {
         faces: Faces::Down,
         checks: ShellChecks {
             touching: Touching::FromBelowAndBehind,
+            parts: Parts::All,
             clip_below_mm: None,
         },
     };
@@ -100,6 +101,7 @@ impl ShellOf {
             faces: Faces::Up,
             checks: ShellChecks {
                 touching: Touching::FromAbove,
+                parts: Parts::SeenFromAbove,
                 clip_below_mm,
             },
         }
@@ -112,6 +114,11 @@ pub(in crate::case) fn checks_of(body: Body) -> ShellChecks {
         Body::Femur => ShellOf::FEMUR.checks,
         Body::Insert => ShellOf::insert(None).checks,
     }
+}
+
+/// What an insert is checked for that is cut away below a height.
+pub(in crate::case) fn checks_of_insert(clip_below_mm: Option<f64>) -> ShellChecks {
+    ShellOf::insert(clip_below_mm).checks
 }
 
 /// Up or down.
@@ -181,6 +188,13 @@ pub(super) fn warn(file: &DataFile, shell: &CheckedShell, warnings: &mut Vec<Bui
     if let Some(piece) = stray_piece(&shell.mesh) {
         let file = file();
         warnings.push(BuildWarning::StrayPiece { file, piece });
+    }
+    if !shell.left_out.is_empty() {
+        let parts = shell.left_out.clone();
+        warnings.push(BuildWarning::LeftOut {
+            file: file(),
+            parts,
+        });
     }
     if shell.turned_round {
         warnings.push(BuildWarning::TurnedRound { file: file() });

@@ -2,6 +2,7 @@
 
 mod assemble;
 mod body_size;
+mod construct;
 mod error;
 mod femur;
 mod femur_triangles;
@@ -17,13 +18,17 @@ mod tests;
 mod wrong_axes;
 
 pub use assemble::Built;
+#[cfg(feature = "file-system")]
+pub(super) use construct::{heights_to_write, rounded_up};
 pub use error::{BuildError, BuildWarning};
 pub use femur_triangles::FEMUR_TRIANGLES;
 #[cfg(feature = "file-system")]
 pub(super) use lie::{longest_mm, usual_unit};
 #[cfg(feature = "file-system")]
-pub(super) use meshes::checks_of;
+pub(super) use meshes::{checks_of, checks_of_insert};
+#[cfg(feature = "file-system")]
 pub(super) use off_centre::is_off_centre;
 pub use pieces::StrayPiece;
+#[cfg(feature = "file-system")]
 pub(super) use rigid_motion::middle_of_mesh;
 pub use wrong_axes::{Body, WrongAxes};

@@ -15,7 +15,7 @@ use super::error::BuildError;
 use super::meshes::{Placing, ShellOf, shell};
 use crate::cache::Cache;
 use crate::case::tests::{cases, has_dm_data};
-use crate::case::{Case, Femur, Side};
+use crate::case::{Case, Femur, Insert, Side};
 use crate::mesh::write_stl;
 
 fn built(text: &str, folder: &Path) -> Result<Built, BuildError> {
@@ -92,6 +92,50 @@ fn dm_cases_build_and_lie_the_right_way_round() {
         low.x < x && x < 0.0 && low.y < y && y < high.y,
         "{x} {y} {low} {high}"
     );
+}
+
+#[test]
+fn the_hexahedra_of_real_inserts_are_sound_whatever_their_edge() {
+    if !has_dm_data("the_hexahedra_of_real_inserts_are_sound_whatever_their_edge") {
+        return;
+    }
+    for name in ["dm-knee.toml", "cams-knee.toml"] {
+        for edge_mm in [2.1, 1.4, 1.05, 0.7, 0.5] {
+            let mut case = Case::read(&cases().join(name)).unwrap();
+            let Insert::Mesh(insert) = &mut case.insert else {
+                panic!("it is a mesh");
+            };
+            insert.edge_mm = edge_mm;
+            let built = case.built_insert(&case.insert, &mut Vec::new()).unwrap();
+            let quality = built.mesh().worst_quality();
+            assert!(quality >= 0.2, "{name} at {edge_mm} mm: {quality}");
+        }
+    }
+}
+
+#[test]
+fn a_speck_beside_the_insert_is_left_out_with_its_place() {
+    let mut mesh = block();
+    let first = mesh.vertices.len() as u32;
+    let speck = block().mapped(|v| Vec3::new(12.0, 3.0, 0.0) + v * 0.1);
+    mesh.vertices.extend(&speck.vertices);
+    let shifted = speck
+        .triangles
+        .iter()
+        .map(|t| t.map(|vertex| vertex + first));
+    mesh.triangles.extend(shifted);
+    let folder = with_stl("a.stl", &mesh);
+    let built = built(MESH_INSERT, folder.path()).unwrap();
+    let said = built.warnings.iter().map(ToString::to_string);
+    let said: Vec<String> = said.filter(|said| said.contains("left out")).collect();
+    assert_eq!(said.len(), 1, "{:?}", built.warnings);
+    assert!(
+        said[0].contains("12 triangles beside it around (12.0, 3.4, 0.0) mm"),
+        "{}",
+        said[0]
+    );
+    let nodes = &built.test.insert.mesh().nodes;
+    assert!(nodes.iter().all(|node| node.x <= 10.0));
 }
 
 /// A case with a femur of triangles that came inside-out.

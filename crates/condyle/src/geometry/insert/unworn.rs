@@ -30,6 +30,8 @@ pub struct UnwornInsert {
     pub share_mm2: Vec<f64>,
     /// Thickness below each surface node, mm.
     pub thickness_mm: Vec<f64>,
+    /// Of each surface node on the rim the unit direction, upwards, in which the side wall below ends there.
+    pub walls: Vec<Option<Vec3>>,
     pub follower: InteriorFollower,
 }
 
@@ -52,6 +54,7 @@ impl UnwornInsert {
         Ok(Self {
             share_mm2: surface.shares.iter().map(|share| share.area_mm2).collect(),
             thickness_mm: thickness_at_nodes(&surface, mesh, backside)?,
+            walls: walls(mesh, &boundary, &surface_nodes),
             node_blocks: node_blocks(&faces, &faces_around),
             nodes: mesh.nodes.clone(),
             boundary,
@@ -68,6 +71,32 @@ impl UnwornInsert {
         let nodes = self.surface_nodes.iter();
         nodes.map(|&node| self.nodes[node as usize])
     }
+}
+
+/// Where the edge of the boundary that leads away from the articulating surface comes from, if a node has one alone.
+fn walls(mesh: &HexMesh, boundary: &[[u32; 4]], surface_nodes: &[u32]) -> Vec<Option<Vec3>> {
+    let number = |node: u32| surface_nodes.binary_search(&node).ok();
+    let mut below: Vec<Vec<u32>> = vec![Vec::new(); surface_nodes.len()];
+    for quad in boundary {
+        for side in 0..4 {
+            let ends = [quad[side], quad[(side + 1) % 4]];
+            for [here, there] in [ends, [ends[1], ends[0]]] {
+                if let (Some(here), None) = (number(here), number(there)) {
+                    below[here].push(there);
+                }
+            }
+        }
+    }
+    let direction = |(here, mut below): (usize, Vec<u32>)| {
+        below.sort_unstable();
+        below.dedup();
+        let place = |node: u32| mesh.nodes[node as usize];
+        match below[..] {
+            [only] => (place(surface_nodes[here]) - place(only)).try_normalize(0.0),
+            _ => None,
+        }
+    };
+    below.into_iter().enumerate().map(direction).collect()
 }
 
 fn check_parts(

@@ -12,6 +12,7 @@ use super::{
     judge::Judge,
     mend::{Mended, mended},
     orientation::{Oriented, Piece, orient},
+    parts::{LeftOut, Parts, take_out_parts},
     touching::Touching,
     weld::drop_unused,
 };
@@ -35,6 +36,8 @@ pub struct CheckedShell {
     pub wrinkles: usize,
     /// What was put right, and what was left because nothing touches there.
     pub defects: Vec<Defect>,
+    /// Parts of the file that are not of the body.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// How a triangle mesh is taken as the shell of a body.
@@ -42,6 +45,8 @@ pub struct CheckedShell {
 pub struct ShellChecks {
     /// Where a defect matters.
     pub touching: Touching,
+    /// Which parts of the file are the body.
+    pub parts: Parts,
     /// Height along y below which the mesh is cut away and closed flat, mm; all of it if none.
     pub clip_below_mm: Option<f64>,
 }
@@ -53,6 +58,7 @@ pub struct ShellChecks {
 pub fn checked_shell(mesh: TriangleMesh) -> Result<CheckedShell, ShellError> {
     let checks = ShellChecks {
         touching: Touching::Everywhere,
+        parts: Parts::All,
         clip_below_mm: None,
     };
     checks.check(mesh)
@@ -65,6 +71,8 @@ impl ShellChecks {
     /// are split at vertices that lie on their open edges, slivers thinner than 1e-5 of the diagonal collapse
     /// where the surface stays what it is, doubled faces become single, triangles without area go, triangles are
     /// turned so that neighbours agree, with the majority, and a closed shell that is inside-out is turned.
+    ///
+    /// Parts that are not of the body are taken out first; what is wrong with them does not matter.
     ///
     /// Away from where another body can touch, open pieces and inner walls beside a closed body are left out and
     /// holes are closed, flat from edge to edge; edges of three or more triangles and crossings are left.
@@ -89,8 +97,11 @@ impl ShellChecks {
             return Err(ShellError::Empty);
         }
         let mut judge = Judge::new(self.touching, defects);
-        let uses = edge_uses(&mesh);
-        let oriented = orient(&mut mesh, &uses);
+        let Body {
+            uses,
+            oriented,
+            left_out,
+        } = Body::of(&mut mesh, self.parts);
         judge_edges(&mesh, &uses, &oriented.one_sided, &mut judge);
         let Oriented {
             turned_round,
@@ -112,7 +123,44 @@ impl ShellChecks {
             removed_degenerate,
             wrinkles,
             defects: judge.others,
+            left_out,
         })
+    }
+}
+
+/// What is left of a file without parts that are not of the body, its triangles turned.
+struct Body {
+    uses: Vec<EdgeUse>,
+    oriented: Oriented,
+    left_out: Vec<LeftOut>,
+}
+
+impl Body {
+    fn of(mesh: &mut TriangleMesh, parts: Parts) -> Self {
+        let uses = edge_uses(mesh);
+        let oriented = orient(mesh, &uses);
+        let left_out = match parts {
+            Parts::All => Vec::new(),
+            Parts::SeenFromAbove => take_out_parts(mesh, &oriented.pieces),
+        };
+        if left_out.is_empty() {
+            return Self {
+                uses,
+                oriented,
+                left_out,
+            };
+        }
+        let uses = edge_uses(mesh);
+        let again = orient(mesh, &uses);
+        Self {
+            uses,
+            oriented: Oriented {
+                turned_round: oriented.turned_round || again.turned_round,
+                made_consistent: oriented.made_consistent,
+                ..again
+            },
+            left_out,
+        }
     }
 }
 
@@ -355,6 +403,7 @@ mod tests {
 
     fn as_insert(mesh: TriangleMesh) -> Result<CheckedShell, ShellError> {
         let checks = ShellChecks {
+            parts: Parts::All,
             touching: Touching::FromAbove,
             clip_below_mm: None,
         };
@@ -531,6 +580,7 @@ mod tests {
     fn an_insert_fused_with_its_tray_is_cut_at_a_height() {
         let tray = block(Vec3::new(-22.0, -6.0, -33.0), Vec3::new(22.0, 1.0, 33.0));
         let checks = ShellChecks {
+            parts: Parts::All,
             touching: Touching::FromAbove,
             clip_below_mm: Some(2.0),
         };

@@ -2,9 +2,12 @@
 
 use crate::geometry::columns::{Column, Plan};
 
-/// A corner of the backside whose area is this many times its area seen from above is too steep:
-/// the scaled Jacobian of a hexahedron there is less than one over it.
-const STEEPEST: f64 = 3.2;
+/// A corner of the backside is too steep if the scaled Jacobian of a hexahedron there is less: the sine of the
+/// corner seen from above, over how many times longer its sides are than seen from above.
+const LEAST_JACOBIAN: f64 = 0.31;
+/// What is no longer than this, as an area over that seen from above, squared, is flat: a corner that is sharp seen
+/// from above is not eased further.
+const FLAT: f64 = 1.01;
 /// Share of a step that is moved from its upper to its lower end in a round.
 const MOVED: f64 = 0.1;
 /// Rounds at most: a step of six edges is eased in a hundred.
@@ -34,7 +37,8 @@ fn ease(plan: &Plan, columns: &mut [Column], corner: u32, ends: [u32; 2]) -> boo
     let rises = ends.map(|end| columns[end].0 - columns[corner].0);
     let longer = |end: usize, rise: f64| 1.0 + rise * rise / length2(plan, corner, end);
     let area2 = longer(ends[0], rises[0]) * longer(ends[1], rises[1]);
-    let is_steep = area2 > STEEPEST * STEEPEST;
+    let is_steep =
+        area2 > FLAT && sine2(plan, corner, ends) < LEAST_JACOBIAN * LEAST_JACOBIAN * area2;
     if is_steep {
         for (end, rise) in ends.into_iter().zip(rises) {
             columns[corner].0 += MOVED * rise;
@@ -42,6 +46,17 @@ fn ease(plan: &Plan, columns: &mut [Column], corner: u32, ends: [u32; 2]) -> boo
         }
     }
     is_steep
+}
+
+/// Squared sine of a corner seen from above.
+fn sine2(plan: &Plan, corner: usize, [a, b]: [usize; 2]) -> f64 {
+    let along = |end: usize| {
+        let ((x, z), (from_x, from_z)) = (plan.places_mm[end], plan.places_mm[corner]);
+        (x - from_x, z - from_z)
+    };
+    let ((ax, az), (bx, bz)) = (along(a), along(b));
+    let twice_area = az * bx - ax * bz;
+    twice_area * twice_area / (length2(plan, corner, a) * length2(plan, corner, b))
 }
 
 fn length2(plan: &Plan, a: usize, b: usize) -> f64 {

@@ -1,7 +1,8 @@
 //! Where columns may stand: where a shell is thick enough below a surface that is not a wall.
 
 use super::{
-    evened::without_details,
+    bridge::Bridges,
+    evened::{without_details, without_teeth},
     vertical_lines::{Through, VerticalLines},
 };
 use crate::geometry::{columns::ColumnGrid, triangle_mesh::TriangleMesh};
@@ -18,6 +19,11 @@ const SAMPLES_PER_EDGE: f64 = 4.0;
 const CLOSEST_SAMPLES_MM: f64 = 0.1;
 /// Chips, slits and teeth of the outline up to twice as many samples wide are no part of it.
 const DETAIL_SAMPLES: usize = 2;
+/// Teeth that are narrower than twice as many samples, an edge, and longer than [`LONGEST_TOOTH_SAMPLES`], are no part
+/// of the outline either: the ring of quads along it would not reach into them.
+const TOOTH_SAMPLES: usize = 4;
+/// One and a half edges: the tip of a square corner, however it is turned, is shorter.
+const LONGEST_TOOTH_SAMPLES: usize = 6;
 
 /// So many samples around the shell that what is evened out never reaches the last of them.
 const MARGIN_SAMPLES: usize = 2 * DETAIL_SAMPLES + 1;
@@ -30,6 +36,7 @@ pub struct Footprint<'a> {
     pub samples: ColumnGrid,
     meets_shell: Vec<bool>,
     holds: Vec<bool>,
+    bridges: Bridges,
 }
 
 impl<'a> Footprint<'a> {
@@ -45,16 +52,24 @@ impl<'a> Footprint<'a> {
             samples,
             meets_shell: through.iter().map(Option::is_some).collect(),
             holds: Vec::new(),
+            bridges: Bridges::default(),
         };
         let may_stand = |through: &Option<Through>| footprint.may_stand(*through);
         let holds: Vec<bool> = through.iter().map(may_stand).collect();
-        footprint.holds = without_details(&footprint.samples, &holds, DETAIL_SAMPLES);
+        let evened = without_details(&footprint.samples, &holds, DETAIL_SAMPLES);
+        footprint.holds = without_teeth(
+            &footprint.samples,
+            &evened,
+            TOOTH_SAMPLES,
+            LONGEST_TOOTH_SAMPLES,
+        );
         footprint
     }
 
     /// What the vertical line over a place meets.
     pub fn through(&self, place_mm: (f64, f64)) -> Option<Through> {
-        self.lines.at(place_mm)
+        let bridge = self.bridges.at(&self.samples, place_mm);
+        bridge.or_else(|| self.lines.at(place_mm))
     }
 
     /// Whether the vertical line through a sample meets the shell.
@@ -65,6 +80,18 @@ impl<'a> Footprint<'a> {
     /// Whether a column may stand on a sample.
     pub fn holds_sample(&self, sample: usize) -> bool {
         self.holds[sample]
+    }
+
+    /// Lets columns stand on some samples as if the shell went on smoothly from around them.
+    pub fn bridge(&mut self, samples: &[usize]) {
+        for &sample in samples {
+            self.holds[sample] = true;
+        }
+        let height = |sample: usize| {
+            let through = self.lines.at(self.samples.place_of_mm(sample));
+            through.map(|through| [through.bottom, through.top])
+        };
+        self.bridges.add(&self.samples, samples, height);
     }
 
     /// Lets a column stand on a sample.

@@ -8,7 +8,7 @@ use super::{
 };
 
 /// A place inside the outline of an insert where no column of hexahedra may stand.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Hole {
     /// Place of its middle, anterior, mm.
     pub x_mm: f64,
@@ -18,6 +18,24 @@ pub struct Hole {
     pub area_mm2: f64,
     /// Whether it goes through; if not, the surface is a wall there or the insert too thin.
     pub goes_through: bool,
+    /// The line around it, places (x, z), mm.
+    pub outline_mm: Vec<[f64; 2]>,
+}
+
+impl Hole {
+    /// How far a place (x, z) is from the hole seen from above, mm; 0 inside.
+    pub fn distance_mm(&self, place_mm: [f64; 2]) -> f64 {
+        let points = self.outline_mm.iter().map(|&[x, z]| Place::new(x, z));
+        let Some(outline) = Loop::through(points.collect()) else {
+            return f64::INFINITY;
+        };
+        let place = Place::new(place_mm[0], place_mm[1]);
+        if outline.goes_round(&place) {
+            0.0
+        } else {
+            outline.nearest(&place).1
+        }
+    }
 }
 
 impl fmt::Display for Hole {
@@ -41,7 +59,7 @@ impl fmt::Display for Hole {
 }
 
 /// Fills the holes of a footprint that are smaller than a hexahedron and do not go through, which the
-/// columns around bridge, and returns the others.
+/// columns around bridge; bridges the others, with what stands in them, and returns them.
 pub fn holes(footprint: &mut Footprint<'_>, outlines: &[Loop], edge_mm: f64) -> Vec<Hole> {
     let mut holes = Vec::new();
     for outline in outlines.iter().filter(|outline| outline.area_mm2() < 0.0) {
@@ -55,7 +73,9 @@ pub fn holes(footprint: &mut Footprint<'_>, outlines: &[Loop], edge_mm: f64) -> 
                 z_mm: middle[1],
                 area_mm2,
                 goes_through,
+                outline_mm: outline.places_mm(),
             });
+            footprint.bridge(&inside);
         } else {
             inside
                 .into_iter()
@@ -65,13 +85,26 @@ pub fn holes(footprint: &mut Footprint<'_>, outlines: &[Loop], edge_mm: f64) -> 
     holes
 }
 
-/// Samples on which no column may stand and which a line goes round.
+/// Samples that a line goes round, and those beside them on which no column may stand, since the line is evened out.
 fn samples_inside(footprint: &Footprint<'_>, outline: &Loop) -> Vec<usize> {
     let samples = &footprint.samples;
-    let bare = (0..samples.point_count()).filter(|&sample| !footprint.holds_sample(sample));
     let goes_round = |sample: &usize| {
         let (x, z) = samples.place_of_mm(*sample);
         outline.goes_round(&Place::new(x, z))
     };
-    bare.filter(goes_round).collect()
+    let mut inside: Vec<usize> = (0..samples.point_count()).filter(goes_round).collect();
+    let mut is_inside = vec![false; samples.point_count()];
+    inside.iter().for_each(|&sample| is_inside[sample] = true);
+    let mut at = 0;
+    while let Some(&sample) = inside.get(at) {
+        at += 1;
+        for beside in samples.around(sample) {
+            let is_bare = !footprint.holds_sample(beside);
+            if is_bare && !std::mem::replace(&mut is_inside[beside], true) {
+                inside.push(beside);
+            }
+        }
+    }
+    inside.sort_unstable();
+    inside
 }

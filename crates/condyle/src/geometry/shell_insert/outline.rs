@@ -114,7 +114,7 @@ fn crossing(footprint: &Footprint<'_>, edge: usize) -> Place {
 
 impl Loop {
     /// The closed line through some points, if they are three or more.
-    fn through(mut points: Vec<Place>) -> Option<Self> {
+    pub fn through(mut points: Vec<Place>) -> Option<Self> {
         let is_one = |a: &Place, b: &Place| (a - b).norm() < ONE_POINT_MM;
         points.dedup_by(|a, b| is_one(a, b));
         // The line closes: its last point may be its first one again.
@@ -168,6 +168,11 @@ impl Loop {
         } else {
             self.points[n]
         }
+    }
+
+    /// Its points, (x, z), mm.
+    pub fn places_mm(&self) -> Vec<[f64; 2]> {
+        self.points.iter().map(|point| (*point).into()).collect()
     }
 
     /// Its length, mm.
@@ -224,12 +229,7 @@ impl Loop {
 
     /// Where along the line it has corners, no two closer than `edge_mm`: the sharpest first.
     pub fn corners(&self, edge_mm: f64) -> Vec<f64> {
-        let reach = CORNER_REACH * edge_mm;
-        let turned_by = |&along: &f64| {
-            let here = self.at(along);
-            let (before, after) = (here - self.at(along - reach), self.at(along + reach) - here);
-            turn(&before, &after).atan2(before.dot(&after)).abs()
-        };
+        let turned_by = |&along: &f64| self.turned_at(along, edge_mm).abs();
         let candidates = self.along_mm[..self.points.len()].iter();
         let mut sharp: Vec<(f64, f64)> = candidates
             .map(|along| (turned_by(along), *along))
@@ -244,6 +244,19 @@ impl Loop {
             }
         }
         corners
+    }
+
+    /// Whether the outline sticks out after some length, mm.
+    pub fn sticks_out_at(&self, along_mm: f64, edge_mm: f64) -> bool {
+        self.turned_at(along_mm, edge_mm) > 0.0
+    }
+
+    /// By how much the line turns within the reach of a corner, rad; less than 0 to the right.
+    fn turned_at(&self, along_mm: f64, edge_mm: f64) -> f64 {
+        let reach = CORNER_REACH * edge_mm;
+        let [before, here, after] = [-reach, 0.0, reach].map(|way| self.at(along_mm + way));
+        let (before, after) = (here - before, after - here);
+        turn(&before, &after).atan2(before.dot(&after))
     }
 
     /// The shorter way along the line from one length to another, mm: less than 0 backwards.

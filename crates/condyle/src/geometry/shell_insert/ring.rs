@@ -3,6 +3,7 @@
 use super::{
     core::Core,
     outline::{Loop, Place},
+    shaped::{Freedom, shape},
 };
 use crate::geometry::columns::{ColumnGrid, Plan};
 
@@ -14,6 +15,8 @@ const ROUNDS: usize = 40;
 /// A plan whose rim lies on the outline, while it is evened out.
 pub struct Ring<'a> {
     places: Vec<Place>,
+    /// The outline around each place.
+    outlines: Vec<&'a Loop>,
     quads: Vec<[u32; 4]>,
     rims: Vec<Rim<'a>>,
 }
@@ -36,6 +39,7 @@ impl<'a> Ring<'a> {
     pub fn new(grid: &ColumnGrid, pieces: &[(Core, &'a Loop)]) -> Self {
         let mut ring = Self {
             places: Vec::new(),
+            outlines: Vec::new(),
             quads: Vec::new(),
             rims: Vec::new(),
         };
@@ -49,7 +53,7 @@ impl<'a> Ring<'a> {
         let mut number = vec![u32::MAX; grid.point_count()];
         for &point in core.cells.iter().flatten() {
             if number[point] == u32::MAX {
-                number[point] = self.add(grid.place_of_mm(point));
+                number[point] = self.add(grid.place_of_mm(point), outline);
             }
         }
         let cells = core.cells.iter();
@@ -61,8 +65,9 @@ impl<'a> Ring<'a> {
         }
     }
 
-    fn add(&mut self, place_mm: (f64, f64)) -> u32 {
+    fn add(&mut self, place_mm: (f64, f64), outline: &'a Loop) -> u32 {
         self.places.push(Place::new(place_mm.0, place_mm.1));
+        self.outlines.push(outline);
         self.places.len() as u32 - 1
     }
 
@@ -71,7 +76,7 @@ impl<'a> Ring<'a> {
         rim.hold_corners(edge_mm);
         for n in 0..rim.inner.len() {
             let place = outline.at(rim.along_mm[n]);
-            rim.outer.push(self.add((place[0], place[1])));
+            rim.outer.push(self.add((place[0], place[1]), outline));
         }
         for n in 0..rim.inner.len() {
             let after = (n + 1) % rim.inner.len();
@@ -81,10 +86,12 @@ impl<'a> Ring<'a> {
         self.rims.push(rim);
     }
 
-    /// Moves every place near the rim between those around it, and those on the outline along it.
-    pub fn even_out(&mut self) {
+    /// Moves every place near the rim between those around it, and those on the outline along it; then
+    /// those beside a badly shaped quad until it is not.
+    pub fn even_out(&mut self, edge_mm: f64) {
         let around = self.neighbours();
         let moved = self.near_the_rim(&around);
+        let start = self.places.clone();
         for _ in 0..ROUNDS {
             for rim in &mut self.rims {
                 rim.slide(&mut self.places);
@@ -98,6 +105,30 @@ impl<'a> Ring<'a> {
                 self.places[place] = sum / around.len() as f64;
             }
         }
+        // Where the outline goes in, the middle of those around may lie outside.
+        for &place in &moved {
+            if !self.outlines[place].goes_round(&self.places[place]) {
+                self.places[place] = start[place];
+            }
+        }
+        let freedoms = self.freedoms(&moved, edge_mm);
+        shape(&mut self.places, &self.quads, &freedoms, edge_mm);
+    }
+
+    /// Where every place may be moved: a corner of the outline that sticks out keeps its place.
+    fn freedoms(&self, moved: &[usize], edge_mm: f64) -> Vec<Freedom<'a>> {
+        let mut freedoms = vec![Freedom::Held; self.places.len()];
+        for &place in moved {
+            freedoms[place] = Freedom::Within(self.outlines[place]);
+        }
+        for rim in &self.rims {
+            for (n, &place) in rim.outer.iter().enumerate() {
+                if !(rim.is_held[n] && rim.outline.sticks_out_at(rim.along_mm[n], edge_mm)) {
+                    freedoms[place as usize] = Freedom::Along(rim.outline);
+                }
+            }
+        }
+        freedoms
     }
 
     /// The plan as it is now.

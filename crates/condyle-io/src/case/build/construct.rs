@@ -1,0 +1,104 @@
+//! The insert of a file that holds its tray and stem too.
+
+use std::path::PathBuf;
+
+use condyle::geometry::{CheckedShell, Underside};
+
+use super::error::{BuildError, BuildWarning};
+use super::meshes::checks_of_insert;
+use crate::keyed::DataFile;
+
+/// Digits of a height that is told, so that the one that is written is the one that was cut at.
+const PER_MM: f64 = 100.0;
+/// What rounding leaves of a round number.
+const ROUNDING: f64 = 1e-6;
+/// A tray's plate is about so thick, mm: common, and no more than a hint.
+const USUAL_PLATE_MM: f64 = 4.0;
+
+/// The insert of a file, cut off its tray where the shape shows where that is.
+///
+/// # Errors
+/// [`BuildError::UnclearUnderside`] where it does not, and what a shell is refused for.
+pub(super) fn without_tray(
+    file: &DataFile,
+    shell: CheckedShell,
+    warnings: &mut Vec<BuildWarning>,
+) -> Result<CheckedShell, BuildError> {
+    match Underside::of(&shell.mesh) {
+        Underside::Whole => Ok(shell),
+        Underside::Ledge {
+            height_mm,
+            below_dishes_mm,
+            reach_mm,
+        } => {
+            let height_mm = rounded_up(height_mm);
+            warnings.push(BuildWarning::CutOffTray {
+                file: PathBuf::from(file.name()),
+                height_mm,
+                below_dishes_mm,
+                reach_mm,
+            });
+            let checks = checks_of_insert(Some(height_mm));
+            checks
+                .check(shell.mesh)
+                .map_err(|source| BuildError::Shell {
+                    file: file.path().to_path_buf(),
+                    source,
+                })
+        }
+        Underside::Unclear {
+            reach_mm,
+            plate_mm,
+            ledges_mm,
+        } => Err(BuildError::UnclearUnderside {
+            file: file.path().to_path_buf(),
+            reach_mm,
+            heights: heights_to_write(plate_mm, &ledges_mm),
+        }),
+    }
+}
+
+/// The height to cut at: the next hundredth of a millimetre, so that nothing of the plate is left.
+pub(in crate::case) fn rounded_up(height_mm: f64) -> f64 {
+    // Adding zero turns -0 into 0.
+    (height_mm * PER_MM - ROUNDING).ceil() / PER_MM + 0.0
+}
+
+/// Which heights may be meant, in words: where there is nothing else, as thick as plates are.
+pub(in crate::case) fn heights_to_write(plate_mm: f64, ledges_mm: &[f64]) -> String {
+    let key = |height_mm: f64| format!("clip_below_mm = {:.2}", rounded_up(height_mm));
+    let on_plate = if ledges_mm.is_empty() {
+        let usual = key(plate_mm + USUAL_PLATE_MM);
+        format!("{usual} where it stands on a plate of {USUAL_PLATE_MM:.0} mm")
+    } else {
+        let ledges: Vec<String> = ledges_mm.iter().map(|&height| key(height)).collect();
+        format!("{}, where its sides have a ledge", ledges.join(" or "))
+    };
+    let whole = key(plate_mm);
+    format!("{on_plate}; or {whole}, where all above its underside is polyethylene")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_are_rounded_up_to_what_is_told() {
+        assert_eq!(rounded_up(-9.0), -9.0);
+        assert_eq!(rounded_up(-8.999_999_999_9), -9.0);
+        assert_eq!(rounded_up(-8.9987), -8.99);
+        assert_eq!(rounded_up(0.5), 0.5);
+    }
+
+    #[test]
+    fn heights_to_write_are_said_as_the_line_of_the_case() {
+        let said = heights_to_write(-13.0, &[]);
+        assert!(said.starts_with("clip_below_mm = -9.00 where"), "{said}");
+        assert!(said.contains("or clip_below_mm = -13.00,"), "{said}");
+        let said = heights_to_write(-13.0, &[-6.5, -9.0]);
+        assert!(
+            said.starts_with("clip_below_mm = -6.50 or clip_below_mm = -9.00, where"),
+            "{said}"
+        );
+    }
+}
