@@ -132,7 +132,7 @@ impl Contact {
             },
         });
         let default = ContactModelWord::Foundation.word();
-        Choices::new(key.name, key.doc, default, offered.collect())
+        Choices::new(key.name, key.doc.clone(), default, offered.collect())
     }
 
     fn other_keys() -> Vec<Key> {

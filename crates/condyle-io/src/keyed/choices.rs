@@ -1,5 +1,7 @@
 //! Keys whose word decides which other keys a table has, such as `shape`.
 
+use std::borrow::Cow;
+
 use super::key::{Key, WhereSilent, names};
 use super::key_reason::KeyReason;
 use super::kind::Kind;
@@ -31,7 +33,7 @@ impl Choices {
     /// The choice by the key `name` between what is `offered`, of which `default` is one.
     pub(crate) fn new(
         name: &'static str,
-        doc: &'static str,
+        doc: impl Into<Cow<'static, str>>,
         default: &'static str,
         offered: Vec<Offered>,
     ) -> Self {
