@@ -31,7 +31,6 @@
 //! ```
 
 mod compliance;
-mod deflections;
 mod elastic;
 mod element;
 mod follow;
