@@ -23,6 +23,7 @@ mod plate;
 mod pressed;
 mod quadrature;
 mod recorder;
+mod round_solids;
 mod row;
 mod rub_test;
 mod witness;
@@ -31,8 +32,12 @@ mod witness;
 mod archard_ball_on_flat;
 #[path = "../archard-pin-on-plate/mod.rs"]
 mod archard_pin_on_plate;
+#[path = "../bonded-layer/mod.rs"]
+mod bonded_layer;
 #[path = "../cylinder-on-foundation/mod.rs"]
 mod cylinder_on_foundation;
+#[path = "../elastic-solids/mod.rs"]
+mod elastic_solids;
 #[path = "../energy-balance/mod.rs"]
 mod energy_balance;
 #[path = "../explicit-integrator/mod.rs"]
@@ -45,6 +50,8 @@ mod invariances;
 mod off_centre_load;
 #[path = "../opensim-contact/mod.rs"]
 mod opensim_contact;
+#[path = "../plastic-solids/mod.rs"]
+mod plastic_solids;
 #[path = "../refinement/mod.rs"]
 mod refinement;
 #[path = "../sphere-on-foundation/mod.rs"]
@@ -65,6 +72,9 @@ pub const CASES: &[Case] = &[
     off_centre_load::CASE,
     springs::CASE,
     friction_block::CASE,
+    elastic_solids::CASE,
+    bonded_layer::CASE,
+    plastic_solids::CASE,
     archard_pin_on_plate::CASE,
     archard_ball_on_flat::CASE,
     wearing_ball::CASE,

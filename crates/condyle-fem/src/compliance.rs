@@ -13,88 +13,105 @@ type Columns = Rhs<VECTORS>;
 /// Right-hand sides that go through a front while it is in the cache.
 const AT_ONCE: usize = 8 * Columns::COLUMNS;
 
-/// Displacements of some nodes by unit forces on them, each along a direction of its own.
+/// Displacements of some nodes by some forces, each alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compliance {
-    nodes: usize,
+    forces: usize,
     /// Row-major, three rows a node, one column a force.
     values: Vec<f64>,
 }
 
 impl Compliance {
-    /// How many nodes it is of.
+    /// How many nodes move.
     pub fn nodes(&self) -> usize {
-        self.nodes
+        self.values.len() / (3 * self.forces.max(1))
     }
 
-    /// Row-major, `3 * nodes` rows and `nodes` columns: row `3 i + k` is the displacement of node `i` along axis
-    /// `k`, column `j` the unit force on node `j` along its direction; in length a force.
+    /// How many forces there are.
+    pub fn forces(&self) -> usize {
+        self.forces
+    }
+
+    /// Row-major, `3 * nodes` rows and `forces` columns: row `3 i + k` is the displacement of node `i` along axis
+    /// `k`, column `j` is by force `j`; both counted as they were given.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Displacement of node `node` by the unit force on node `force`, both counted as they were given.
+    /// Displacement of a node by a force, both counted as they were given.
     ///
     /// # Panics
-    /// If there are not as many nodes.
+    /// If there are not as many.
     pub fn displacement(&self, node: usize, force: usize) -> Vec3 {
-        Vec3::from_fn(|k, _| self.values[(3 * node + k) * self.nodes + force])
+        Vec3::from_fn(|k, _| self.values[(3 * node + k) * self.forces + force])
     }
 }
 
 impl ElasticSolid {
     /// Displacements of `nodes` by a unit force on each of them along its direction.
     ///
-    /// Column j is the force on `nodes[j]` along `directions[j]`, a unit vector; a force on a held node moves
-    /// nothing. A column has the same bytes whatever nodes stand beside it, on every run.
+    /// Column j is the force on `nodes[j]` along `directions[j]`, a unit vector; so values are in length a force.
     ///
     /// # Panics
     /// If there is no such node, or not one direction a node.
     pub fn compliance(&self, nodes: &[u32], directions: &[Vec3]) -> Compliance {
         assert_eq!(nodes.len(), directions.len(), "a direction for every node");
+        let forces = nodes.iter().copied().zip(directions.iter().copied());
+        self.influence(nodes, &forces.collect::<Vec<_>>())
+    }
+
+    /// Displacements of `nodes` by forces on other nodes, each alone.
+    ///
+    /// By reciprocity it is also what forces on `nodes`, such as those of an eigenstrain
+    /// ([`Self::eigenstrain_forces`]), move along the other forces by. A force along a direction that is held moves
+    /// nothing. A column has the same bytes whatever stands beside it, on every run.
+    ///
+    /// # Panics
+    /// If there is no such node.
+    pub fn influence(&self, nodes: &[u32], forces: &[(u32, Vec3)]) -> Compliance {
         let mut compliance = Compliance {
-            nodes: nodes.len(),
-            values: vec![0.0; 3 * nodes.len() * nodes.len()],
+            forces: forces.len(),
+            values: vec![0.0; 3 * nodes.len() * forces.len()],
         };
-        let place = |&node: &u32| self.factor.dissection.place(node);
-        let wanted = self.factor.paths(nodes.iter().filter_map(place));
-        let felt: Vec<Vec3> = std::iter::zip(nodes, directions)
-            .map(|(&node, &direction)| self.felt(node, direction))
-            .collect();
+        let place = |node: u32| self.factor.dissection.place(node);
+        let free = |(i, node)| Some((place(node)?, i));
+        let rows: Vec<(u32, usize)> = nodes.iter().copied().enumerate().filter_map(free).collect();
+        let wanted = self.factor.paths(rows.iter().map(|&(place, _)| place));
         // Forces that are near in the order of elimination load the same fronts.
-        let free = (0..nodes.len()).filter_map(|j| Some((place(&nodes[j])?, j)));
-        let mut forces: Vec<(u32, usize)> = free.collect();
-        forces.sort_unstable();
-        for some in forces.chunks(AT_ONCE) {
-            let columns = solved(&self.factor, some, &felt, &wanted);
-            for (solved, some) in columns.iter().zip(some.chunks(Columns::COLUMNS)) {
-                compliance.take(solved, &forces, some);
+        let loaded = forces.iter().map(|&(node, _)| node).enumerate();
+        let mut columns: Vec<(u32, usize)> = loaded.filter_map(free).collect();
+        columns.sort_unstable();
+        let felt: Vec<Vec3> = forces.iter().map(|&(node, f)| self.felt(node, f)).collect();
+        for some in columns.chunks(AT_ONCE) {
+            let solved = solved(&self.factor, some, &felt, &wanted);
+            for (solved, some) in solved.iter().zip(some.chunks(Columns::COLUMNS)) {
+                compliance.take(solved, &rows, some);
             }
         }
         compliance
     }
 }
 
-/// Displacements by unit forces at places, as many columns side by side as go.
+/// Displacements by forces at places, as many columns side by side as go.
 fn solved(
     factor: &Factor,
-    forces: &[(u32, usize)],
-    units: &[Vec3],
+    columns: &[(u32, usize)],
+    felt: &[Vec3],
     wanted: &[bool],
 ) -> Vec<Columns> {
-    let (mut columns, mut loaded) = (Vec::new(), Vec::new());
-    for some in forces.chunks(Columns::COLUMNS) {
+    let (mut solved, mut loaded) = (Vec::new(), Vec::new());
+    for some in columns.chunks(Columns::COLUMNS) {
         let mut x = Columns::new(factor.freedoms());
         for (column, &(place, force)) in some.iter().enumerate() {
-            for (k, unit) in units[force].iter().enumerate() {
-                *x.at_mut(3 * place as usize + k, column) = *unit;
+            for (k, component) in felt[force].iter().enumerate() {
+                *x.at_mut(3 * place as usize + k, column) = *component;
             }
         }
-        columns.push(x);
+        solved.push(x);
         loaded.push(factor.paths(some.iter().map(|&(place, _)| place)));
     }
-    factor.solve_some(&mut columns, &loaded, wanted);
-    columns
+    factor.solve_some(&mut solved, &loaded, wanted);
+    solved
 }
 
 impl Compliance {
@@ -102,7 +119,7 @@ impl Compliance {
     fn take(&mut self, solved: &Columns, rows: &[(u32, usize)], columns: &[(u32, usize)]) {
         for &(place, node) in rows {
             for k in 0..3 {
-                let row = &mut self.values[(3 * node + k) * self.nodes..][..self.nodes];
+                let row = &mut self.values[(3 * node + k) * self.forces..][..self.forces];
                 for (column, &(_, force)) in columns.iter().enumerate() {
                     row[force] = solved.at(3 * place as usize + k, column);
                 }

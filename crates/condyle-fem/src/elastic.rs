@@ -1,9 +1,10 @@
 //! Isotropic linear elasticity.
 
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::{stress::Stress, vector::Vec3};
+use crate::stress::Stress;
 
 /// The two constants of an isotropic, linearly elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,8 +96,8 @@ impl Elastic {
 }
 
 /// A symmetric strain: xx, yy, zz, xy, yz, zx, the last three those of the tensor, half of the angles.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Strain(pub(crate) [f64; 6]);
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Strain(pub [f64; 6]);
 
 impl Strain {
     /// The symmetric part of a displacement gradient.
@@ -113,8 +114,18 @@ impl Strain {
     }
 
     /// Change of volume.
-    pub(crate) fn trace(&self) -> f64 {
+    pub fn trace(&self) -> f64 {
         self.0[0] + self.0[1] + self.0[2]
+    }
+
+    /// What is left without a part of it.
+    pub(crate) fn less(&self, part: &Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] - part.0[i]))
+    }
+
+    /// Itself and some of a stress.
+    pub(crate) fn plus(&self, factor: f64, stress: &Stress) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] + factor * stress.0[i]))
     }
 
     /// The same shear with another change of volume.
@@ -125,25 +136,6 @@ impl Strain {
         }
         self
     }
-}
-
-/// The block of stiffness between two functions of displacement with gradients `a`, `b` and
-/// divergences by `da`, `db`: force along i on the first by a displacement along j of the second.
-///
-/// $2 G \operatorname{sym}:\operatorname{sym}$ is $G (a \cdot b\, 1 + b \otimes a)$, and of the traces
-/// $-\tfrac{2}{3} G\, a \otimes b + K\, d_a \otimes d_b$ remains.
-#[inline(always)]
-pub(crate) fn stiffness_block(
-    shear: f64,
-    bulk: f64,
-    [a, da]: [&Vec3; 2],
-    [b, db]: [&Vec3; 2],
-) -> Matrix3<f64> {
-    let dot = shear * a.dot(b);
-    Matrix3::from_fn(|i, j| {
-        let unlike = shear * (b[i] * a[j] - 2.0 / 3.0 * a[i] * b[j]) + bulk * da[i] * db[j];
-        if i == j { unlike + dot } else { unlike }
-    })
 }
 
 #[cfg(test)]

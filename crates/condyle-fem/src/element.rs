@@ -10,9 +10,11 @@
 //!   ratio of one half; the linear part cannot, and is kept since bending needs it.
 
 use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, Vector4};
+use wide::f64x4;
 
 use crate::{
-    elastic::{Elastic, Strain, stiffness_block},
+    elastic::{Elastic, Strain},
+    plasticity::Softening,
     stress::Stress,
     vector::Vec3,
 };
@@ -55,6 +57,83 @@ struct Point {
     volume: f64,
 }
 
+/// Stiffness of an element: of its nodes, of its modes by the nodes, and of its modes.
+pub(crate) struct Stiffness {
+    nodal: NodalStiffness,
+    coupling: SMatrix<f64, 9, 24>,
+    modal: Cholesky<f64, nalgebra::Const<9>>,
+}
+
+impl Stiffness {
+    /// That of the nodes after the modes have found their balance.
+    pub(crate) fn condensed(&self) -> NodalStiffness {
+        // With z = L^-1 coupling, coupling^T modal^-1 coupling is z^T z.
+        let lower = self.modal.l_dirty();
+        let z = lower.solve_lower_triangular_unchecked(&self.coupling);
+        let mut nodal = self.nodal;
+        nodal.gemm(-1.0, &z.transpose(), &z, 1.0);
+        nodal
+    }
+
+    /// Modes in balance with displacements of the nodes and with forces on the modes.
+    pub(crate) fn modes(&self, nodes: &[Vec3; 8], forces: &Modes) -> Modes {
+        let flat = SMatrix::<f64, 24, 1>::from_fn(|i, _| nodes[i / 3][i % 3]);
+        self.modal.solve(&(forces - self.coupling * flat))
+    }
+
+    /// What forces on the modes come to at the nodes.
+    pub(crate) fn passed_on(&self, forces: &Modes) -> [Vec3; 8] {
+        let passed = self.coupling.tr_mul(&self.modal.solve(forces));
+        std::array::from_fn(|node| passed.fixed_rows::<3>(3 * node).into_owned())
+    }
+}
+
+impl Point {
+    /// Takes away what yielding loses along the flow.
+    fn soften(&self, softening: &Softening, all: &mut SMatrix<f64, 33, 33>) {
+        let along = self
+            .gradients
+            .map(|gradient| softening.flow.times(&gradient));
+        for (a, row) in along.iter().enumerate() {
+            for (b, column) in along[..=a].iter().enumerate() {
+                let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
+                place -= row * column.transpose() * (self.volume * softening.along_flow);
+            }
+        }
+    }
+}
+
+/// A number of every Gauss point, side by side.
+#[derive(Clone, Copy)]
+struct Side([f64x4; 2]);
+
+impl Side {
+    fn of(number: impl Fn(usize) -> f64) -> Self {
+        let four = |first: usize| f64x4::new(std::array::from_fn(|p| number(first + p)));
+        Self([four(0), four(4)])
+    }
+
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self([self.0[0] * other.0[0], self.0[1] * other.0[1]])
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self([self.0[0] + other.0[0], self.0[1] + other.0[1]])
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: f64) -> Self {
+        self.times(Self([f64x4::splat(factor); 2]))
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        (self.0[0] + self.0[1]).reduce_add()
+    }
+}
+
 /// Where the map from natural coordinates folds over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Inverted;
@@ -62,27 +141,16 @@ pub(crate) struct Inverted;
 impl Element {
     /// The element with these corners.
     pub(crate) fn new(corners: &[Vec3; 8]) -> Result<Self, Inverted> {
-        let centre = jacobian(corners, [0.0; 3]);
-        let centre_inverse = centre.try_inverse().ok_or(Inverted)?;
-        let centre_volume = centre.determinant();
+        let (centre_volume, centre_inverse) = inverted(&jacobian(corners, [0.0; 3]))?;
         let mut points = Vec::with_capacity(POINTS);
         for at in gauss_points() {
-            let jacobian = jacobian(corners, at);
-            let volume = jacobian.determinant();
-            if !(volume > 0.0 && centre_volume > 0.0) {
-                return Err(Inverted);
-            }
-            let inverse = jacobian.try_inverse().ok_or(Inverted)?;
-            let mode_scale = centre_volume / volume;
+            let (volume, inverse) = inverted(&jacobian(corners, at))?;
+            let mode = |k: usize| {
+                centre_inverse.row(k).transpose() * (-2.0 * at[k] * centre_volume / volume)
+            };
+            let nodal = |corner: usize| inverse.tr_mul(&corner_slope(corner, at));
             points.push(Point {
-                gradients: std::array::from_fn(|function| {
-                    if function < 8 {
-                        inverse.tr_mul(&corner_slope(function, at))
-                    } else {
-                        centre_inverse.row(function - 8).transpose()
-                            * (-2.0 * at[function - 8] * mode_scale)
-                    }
-                }),
+                gradients: std::array::from_fn(|f| if f < 8 { nodal(f) } else { mode(f - 8) }),
                 dilatations: [Vec3::zeros(); FUNCTIONS],
                 volume,
             });
@@ -91,6 +159,17 @@ impl Element {
         let mut element = Self { points };
         element.project_dilatations();
         Ok(element)
+    }
+
+    /// Whether an element with these corners has a volume everywhere.
+    pub(crate) fn check(corners: &[Vec3; 8]) -> Result<(), Inverted> {
+        let places = gauss_points().into_iter().chain([[0.0; 3]]);
+        for at in places {
+            if jacobian(corners, at).determinant() <= 0.0 {
+                return Err(Inverted);
+            }
+        }
+        Ok(())
     }
 
     /// Replaces the divergences by their best fits, the shares of the volume as weights.
@@ -113,49 +192,86 @@ impl Element {
         }
     }
 
-    /// Stiffness of the nodes after the modes have found their balance, and the modes by the nodes.
-    pub(crate) fn stiffness(&self, elastic: &Elastic) -> NodalStiffness {
-        let (mut nodal, coupling, modal) = self.stiffnesses(elastic);
-        // z = L^-1 coupling, so that coupling^T modal^-1 coupling = z^T z.
-        let z = modal.l().solve_lower_triangular_unchecked(&coupling);
-        nodal -= z.tr_mul(&z);
-        nodal
+    /// Elastic stiffness.
+    pub(crate) fn stiffness(&self, elastic: &Elastic) -> Stiffness {
+        self.softened(elastic, &[None; POINTS])
     }
 
-    /// Amplitudes of the modes under displacements of the nodes, and none but elastic strain.
-    pub(crate) fn modes(&self, elastic: &Elastic, nodes: &[Vec3; 8]) -> Modes {
-        let (_, coupling, modal) = self.stiffnesses(elastic);
-        let flat = SMatrix::<f64, 24, 1>::from_fn(|i, _| nodes[i / 3][i % 3]);
-        -modal.solve(&(coupling * flat))
-    }
-
-    /// Stiffness of nodes, of modes by nodes, and of modes.
-    fn stiffnesses(
+    /// Stiffness of a material that is softer than elastic at some Gauss points.
+    pub(crate) fn softened(
         &self,
         elastic: &Elastic,
-    ) -> (
-        NodalStiffness,
-        SMatrix<f64, 9, 24>,
-        Cholesky<f64, nalgebra::Const<9>>,
-    ) {
+        softenings: &[Option<Softening>; POINTS],
+    ) -> Stiffness {
         let mut all = SMatrix::<f64, 33, 33>::zeros();
-        let (shear, bulk) = (elastic.shear_modulus(), elastic.bulk_modulus());
-        for point in &self.points {
-            let (shear, bulk) = (shear * point.volume, bulk * point.volume);
-            let of = |f: usize| [&point.gradients[f], &point.dilatations[f]];
-            for b in 0..FUNCTIONS {
-                for a in b..FUNCTIONS {
-                    let block = stiffness_block(shear, bulk, of(a), of(b));
-                    let mut place = all.fixed_view_mut::<3, 3>(3 * a, 3 * b);
-                    place += block;
-                }
+        self.add_stiffness(elastic, softenings, &mut all);
+        for (point, softening) in self.points.iter().zip(softenings) {
+            if let Some(softening) = softening {
+                point.soften(softening, &mut all);
             }
         }
         all.fill_upper_triangle_with_lower_triangle();
-        let nodal = all.fixed_view::<24, 24>(0, 0).into_owned();
-        let coupling = all.fixed_view::<9, 24>(24, 0).into_owned();
-        let modal = all.fixed_view::<9, 9>(24, 24).into_owned();
-        (nodal, coupling, Cholesky::new_unchecked(modal))
+        Stiffness {
+            nodal: all.fixed_view::<24, 24>(0, 0).into_owned(),
+            coupling: all.fixed_view::<9, 24>(24, 0).into_owned(),
+            modal: Cholesky::new_unchecked(all.fixed_view::<9, 9>(24, 24).into_owned()),
+        }
+    }
+
+    /// The lower triangle of the stiffness, without what is lost along the flow.
+    ///
+    /// $2 G \operatorname{dev}:\operatorname{dev}$ between displacements along i and j of functions with gradients $a$ and $b$
+    /// is $G (a \cdot b\, \delta_{ij} + b_i a_j - \tfrac{2}{3} a_i b_j)$, and $K$ goes with the projected divergences.
+    fn add_stiffness(
+        &self,
+        elastic: &Elastic,
+        softenings: &[Option<Softening>; POINTS],
+        all: &mut SMatrix<f64, 33, 33>,
+    ) {
+        let lost = softenings.map(|s| s.map_or(0.0, |softening| 0.5 * softening.deviatoric));
+        let shear = Side::of(|p| (elastic.shear_modulus() - lost[p]) * self.points[p].volume);
+        let bulk = Side::of(|p| elastic.bulk_modulus() * self.points[p].volume);
+        let gradients = self.sides(|point, f, k| point.gradients[f][k]);
+        let dilatations = self.sides(|point, f, k| point.dilatations[f][k]);
+        for b in 0..FUNCTIONS {
+            let stiff_gradient = gradients[b].map(|side| side.times(shear));
+            let stiff_dilatation = dilatations[b].map(|side| side.times(bulk));
+            for a in b..FUNCTIONS {
+                let product = |i: usize, j: usize| gradients[a][i].times(stiff_gradient[j]);
+                let dot = product(0, 0).plus(product(1, 1)).plus(product(2, 2));
+                for j in 0..3 {
+                    for i in 0..3 {
+                        let volumetric = dilatations[a][i].times(stiff_dilatation[j]);
+                        let shear = product(j, i).plus(product(i, j).scaled(-2.0 / 3.0));
+                        let block = shear.plus(volumetric);
+                        let block = if i == j { block.plus(dot) } else { block };
+                        all[(3 * a + i, 3 * b + j)] = block.sum();
+                    }
+                }
+            }
+        }
+    }
+
+    /// Numbers of every function and axis, all Gauss points side by side.
+    fn sides(&self, of: impl Fn(&Point, usize, usize) -> f64) -> [[Side; 3]; FUNCTIONS] {
+        std::array::from_fn(|f| std::array::from_fn(|k| Side::of(|p| of(&self.points[p], f, k))))
+    }
+
+    /// Forces of stresses at the Gauss points on the nodes, and on the modes.
+    pub(crate) fn forces(&self, stresses: &[Stress; POINTS]) -> ([Vec3; 8], Modes) {
+        let mut forces = [Vec3::zeros(); FUNCTIONS];
+        for (point, stress) in self.points.iter().zip(stresses) {
+            let (mean, deviator) = (stress.mean(), stress.deviator());
+            for (f, force) in forces.iter_mut().enumerate() {
+                let work = deviator.times(&point.gradients[f]) + point.dilatations[f] * mean;
+                *force += work * point.volume;
+            }
+        }
+        let [a, b, c, d, e, f, g, h, modes @ ..] = forces;
+        (
+            [a, b, c, d, e, f, g, h],
+            Modes::from_fn(|i, _| modes[i / 3][i % 3]),
+        )
     }
 
     /// Strain at every Gauss point.
@@ -183,11 +299,17 @@ impl Element {
         })
     }
 
-    /// Stress at every Gauss point of an elastic element.
-    pub(crate) fn stresses(&self, elastic: &Elastic, nodes: &[Vec3; 8]) -> [Stress; POINTS] {
-        let modes = self.modes(elastic, nodes);
-        self.strains(nodes, &modes)
-            .map(|strain| elastic.stress(&strain))
+    /// Stress at every Gauss point of an elastic element with eigenstrains.
+    pub(crate) fn stresses(
+        &self,
+        elastic: &Elastic,
+        nodes: &[Vec3; 8],
+        eigenstrains: &[Strain; POINTS],
+    ) -> [Stress; POINTS] {
+        let (_, pull) = self.forces(&eigenstrains.map(|strain| elastic.stress(&strain)));
+        let modes = self.stiffness(elastic).modes(nodes, &pull);
+        let strains = self.strains(nodes, &modes);
+        std::array::from_fn(|p| elastic.stress(&strains[p].less(&eigenstrains[p])))
     }
 
     /// Share of every Gauss point of the volume.
@@ -199,6 +321,13 @@ impl Element {
 /// Natural coordinates of the Gauss points, in the order of the corners.
 fn gauss_points() -> [[f64; 3]; POINTS] {
     SIGNS.map(|sign| sign.map(|s| s / 3f64.sqrt()))
+}
+
+/// Determinant and inverse of a Jacobian, if it does not fold over.
+fn inverted(jacobian: &Matrix3<f64>) -> Result<(f64, Matrix3<f64>), Inverted> {
+    let volume = jacobian.determinant();
+    let inverse = jacobian.try_inverse().filter(|_| volume > 0.0);
+    Ok((volume, inverse.ok_or(Inverted)?))
 }
 
 /// How the function of a corner rises along the natural coordinates.
@@ -224,6 +353,7 @@ fn jacobian(corners: &[Vec3; 8], at: [f64; 3]) -> Matrix3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plasticity::{PlasticPoint, tests::material};
     use nalgebra::SymmetricEigen;
 
     fn bent() -> [Vec3; 8] {
@@ -239,7 +369,10 @@ mod tests {
     fn only_rigid_motions_need_no_force() {
         for v in [0.0, 0.3, 0.49] {
             let elastic = Elastic::new(1.0, v).unwrap();
-            let stiffness = Element::new(&bent()).unwrap().stiffness(&elastic);
+            let stiffness = Element::new(&bent())
+                .unwrap()
+                .stiffness(&elastic)
+                .condensed();
             let mut values: Vec<f64> = SymmetricEigen::new(stiffness)
                 .eigenvalues
                 .iter()
@@ -257,7 +390,10 @@ mod tests {
         for corners in [SIGNS.map(|s| Vec3::from_row_slice(&s)), bent()] {
             let stiff = |v: f64| {
                 let elastic = Elastic::new(2.0 * (1.0 + v), v).unwrap();
-                let stiffness = Element::new(&corners).unwrap().stiffness(&elastic);
+                let stiffness = Element::new(&corners)
+                    .unwrap()
+                    .stiffness(&elastic)
+                    .condensed();
                 let mut values: Vec<f64> = SymmetricEigen::new(stiffness)
                     .eigenvalues
                     .iter()
@@ -280,10 +416,46 @@ mod tests {
         let slope = Matrix3::new(0.1, 0.2, -0.3, 0.05, -0.15, 0.07, 0.02, -0.11, 0.21);
         let nodes = bent().map(|corner| slope * corner);
         let exact = elastic.stress(&Strain::of_gradient(&slope));
-        for stress in element.stresses(&elastic, &nodes) {
+        let none = [Strain::default(); POINTS];
+        for stress in element.stresses(&elastic, &nodes, &none) {
             assert!(std::iter::zip(stress.0, exact.0).all(|(a, b)| (a - b).abs() < 1e-11));
         }
-        assert!(element.modes(&elastic, &nodes).norm() < 1e-14);
+        let stiffness = element.stiffness(&elastic);
+        assert!(stiffness.modes(&nodes, &Modes::zeros()).norm() < 1e-14);
+    }
+
+    #[test]
+    fn the_softened_stiffness_is_the_derivative_of_the_forces() {
+        let (material, element) = (material(60.0), Element::new(&bent()).unwrap());
+        let nodes: [Vec3; 8] =
+            std::array::from_fn(|i| Vec3::from_fn(|k, _| 0.1 * ((5 * i + 3 * k) as f64).sin()));
+        let modes = Modes::from_fn(|i, _| 0.02 * (i as f64).cos());
+        let before = PlasticPoint::default();
+        let respond = |nodes: &[Vec3; 8], modes: &Modes| {
+            let strains = element.strains(nodes, modes);
+            strains.map(|strain| material.respond(&strain, &before))
+        };
+        let forces = |nodes: &[Vec3; 8], modes: &Modes| {
+            element.forces(&respond(nodes, modes).map(|response| response.stress))
+        };
+        let softenings = respond(&nodes, &modes).map(|response| response.softening);
+        assert!(softenings.iter().all(Option::is_some));
+        let stiffness = element.softened(&material.elastic, &softenings);
+        let h = 1e-6;
+        for i in 0..24 {
+            let moved = |by: f64| {
+                let mut nodes = nodes;
+                nodes[i / 3][i % 3] += by;
+                forces(&nodes, &modes)
+            };
+            let ((up, modal_up), (down, modal_down)) = (moved(h), moved(-h));
+            for j in 0..24 {
+                let slope = (up[j / 3][j % 3] - down[j / 3][j % 3]) / (2.0 * h);
+                assert!((slope - stiffness.nodal[(j, i)]).abs() < 1e-4);
+            }
+            let slope = (modal_up - modal_down) / (2.0 * h);
+            assert!((slope - stiffness.coupling.column(i)).norm() < 1e-4);
+        }
     }
 
     #[test]

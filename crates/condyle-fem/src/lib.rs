@@ -31,23 +31,31 @@
 //! ```
 
 mod compliance;
+mod eigenstrain;
 mod elastic;
 mod element;
 mod follow;
+mod hardening;
 mod hex;
 mod mesh;
 mod neighbours;
+mod plastic_solid;
+mod plasticity;
 mod quality;
 mod solid;
 mod sparse;
 mod stress;
+mod traction;
 mod vector;
 
 pub use compliance::Compliance;
-pub use elastic::{Elastic, ElasticError};
+pub use elastic::{Elastic, ElasticError, Strain};
 pub use follow::InteriorFollower;
+pub use hardening::{Hardening, HardeningError};
 pub use hex::{HEX_FACES, trilinear_volume, volume_below};
 pub use mesh::HexMesh;
+pub use plastic_solid::{PlasticError, PlasticSolid, PlasticSolution, PlasticState};
+pub use plasticity::{ElasticPlastic, PlasticPoint};
 pub use solid::{ElasticSolid, SolidError};
 pub use stress::Stress;
 pub use vector::Vec3;

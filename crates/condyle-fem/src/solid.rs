@@ -3,13 +3,15 @@
 use thiserror::Error;
 
 use crate::{
-    elastic::{Elastic, ElasticError},
-    element::Element,
+    elastic::{Elastic, ElasticError, Strain},
+    element::{Element, POINTS},
     mesh::HexMesh,
     sparse::{Dissection, Factor, Loose, Rhs},
     stress::Stress,
     vector::Vec3,
 };
+
+const NO_EIGENSTRAIN: [Strain; POINTS] = [Strain([0.0; 6]); POINTS];
 
 /// A mesh of an elastic material, held at some nodes, with its stiffness factorised.
 ///
@@ -67,6 +69,15 @@ pub enum SolidError {
     },
 }
 
+impl SolidError {
+    pub(crate) fn inverted(element: usize, corners: &[Vec3; 8]) -> Self {
+        Self::Inverted {
+            element,
+            place: corners.iter().sum::<Vec3>() / 8.0,
+        }
+    }
+}
+
 impl ElasticSolid {
     /// A solid whose nodes `held` cannot move in any direction, as on a bonded backside.
     ///
@@ -98,10 +109,7 @@ impl ElasticSolid {
         let held = checked_supports(mesh, supports)?;
         for element in 0..mesh.hexes.len() {
             let corners = mesh.corners(element);
-            Element::new(&corners).map_err(|_| SolidError::Inverted {
-                element,
-                place: corners.iter().sum::<Vec3>() / 8.0,
-            })?;
+            Element::check(&corners).map_err(|_| SolidError::inverted(element, &corners))?;
         }
         let factor = factorise(mesh, elastic, &held).map_err(|Loose { node }| {
             let place = mesh.nodes[node as usize];
@@ -137,18 +145,26 @@ impl ElasticSolid {
     /// # Panics
     /// If there is no such node.
     pub fn displacements(&self, forces: &[(u32, Vec3)]) -> Vec<Vec3> {
+        let mut all = vec![Vec3::zeros(); self.mesh.nodes.len()];
+        for &(node, force) in forces {
+            all[node as usize] += force;
+        }
+        self.displacements_by(&all)
+    }
+
+    /// Displacement of all nodes under a force on every node.
+    pub(crate) fn displacements_by(&self, forces: &[Vec3]) -> Vec<Vec3> {
+        let order = &self.factor.dissection.order;
         let mut x = Rhs::<1>::new(self.factor.freedoms());
-        for (node, force) in forces {
-            if let Some(place) = self.factor.dissection.place(*node) {
-                let force = self.felt(*node, *force);
-                for i in 0..3 {
-                    *x.at_mut(3 * place as usize + i, 0) += force[i];
-                }
+        for (place, &node) in order.iter().enumerate() {
+            let force = self.felt(node, forces[node as usize]);
+            for (i, force) in force.iter().enumerate() {
+                *x.at_mut(3 * place + i, 0) = *force;
             }
         }
         self.factor.solve(&mut x);
-        let mut displacements = vec![Vec3::zeros(); self.mesh.nodes.len()];
-        for (place, &node) in self.factor.dissection.order.iter().enumerate() {
+        let mut displacements = vec![Vec3::zeros(); forces.len()];
+        for (place, &node) in order.iter().enumerate() {
             displacements[node as usize] = Vec3::from_fn(|i, _| x.at(3 * place + i, 0));
         }
         displacements
@@ -167,7 +183,9 @@ impl ElasticSolid {
     /// If there are fewer displacements than nodes.
     pub fn gauss_stresses(&self, displacements: &[Vec3]) -> Vec<[Stress; 8]> {
         self.elements()
-            .map(|(hex, element)| element.stresses(&self.elastic, &moved(hex, displacements)))
+            .map(|(hex, element)| {
+                element.stresses(&self.elastic, &moved(hex, displacements), &NO_EIGENSTRAIN)
+            })
             .collect()
     }
 
@@ -179,7 +197,8 @@ impl ElasticSolid {
     pub fn stresses(&self, displacements: &[Vec3]) -> Vec<Stress> {
         self.elements()
             .map(|(hex, element)| {
-                let stresses = element.stresses(&self.elastic, &moved(hex, displacements));
+                let stresses =
+                    element.stresses(&self.elastic, &moved(hex, displacements), &NO_EIGENSTRAIN);
                 let volumes = element.volumes();
                 let volume: f64 = volumes.iter().sum();
                 Stress::weighted(volumes.map(|part| part / volume).into_iter().zip(stresses))
@@ -188,13 +207,13 @@ impl ElasticSolid {
     }
 
     /// Every element and its nodes; all were checked to be good.
-    fn elements(&self) -> impl Iterator<Item = (&[u32; 8], Element)> {
+    pub(crate) fn elements(&self) -> impl Iterator<Item = (&[u32; 8], Element)> {
         let elements = (0..self.mesh.hexes.len()).map(|e| Element::new(&self.mesh.corners(e)));
         self.mesh.hexes.iter().zip(elements.flatten())
     }
 }
 
-fn moved(hex: &[u32; 8], displacements: &[Vec3]) -> [Vec3; 8] {
+pub(crate) fn moved(hex: &[u32; 8], displacements: &[Vec3]) -> [Vec3; 8] {
     hex.map(|node| displacements[node as usize])
 }
 
@@ -232,8 +251,10 @@ fn checked_supports(
 fn factorise(mesh: &HexMesh, elastic: Elastic, held: &[[bool; 3]]) -> Result<Factor, Loose> {
     let dissection = Dissection::new(mesh, held);
     Factor::new(&mesh.hexes, held, dissection, |element| {
-        Element::new(&mesh.corners(element))
-            .map_or_else(|_| nalgebra::zero(), |element| element.stiffness(&elastic))
+        Element::new(&mesh.corners(element)).map_or_else(
+            |_| nalgebra::zero(),
+            |element| element.stiffness(&elastic).condensed(),
+        )
     })
 }
 
@@ -261,49 +282,31 @@ pub(crate) mod tests {
     }
 
     /// Forces of a uniform traction on the quads whose corners are all there.
-    fn traction(mesh: &HexMesh, on: impl Fn(&Vec3) -> bool, traction: Vec3) -> Vec<(u32, Vec3)> {
-        let quads = mesh.boundary_quads();
-        let at = |node: u32| mesh.nodes[node as usize];
-        let mut forces = Vec::new();
-        for quad in quads.iter().filter(|quad| quad.iter().all(|&n| on(&at(n)))) {
-            // Two by two points of Gauss over the bilinear quad.
-            for p in [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]] {
-                let [x, y] = p.map(|s: f64| s / 3f64.sqrt());
-                let signs = [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]];
-                let shape = signs.map(|[a, b]| (1.0 + a * x) * (1.0 + b * y) / 4.0);
-                let slope = |k: usize| {
-                    let one = |[a, b]: [f64; 2]| {
-                        if k == 0 {
-                            a * (1.0 + b * y)
-                        } else {
-                            b * (1.0 + a * x)
-                        }
-                    };
-                    (0..4)
-                        .map(|i| at(quad[i]) * one(signs[i]) / 4.0)
-                        .sum::<Vec3>()
-                };
-                let area = slope(0).cross(&slope(1)).norm();
-                forces.extend((0..4).map(|i| (quad[i], traction * (area * shape[i]))));
-            }
-        }
-        forces
+    pub(crate) fn traction(
+        mesh: &HexMesh,
+        on: impl Fn(&Vec3) -> bool,
+        traction: Vec3,
+    ) -> Vec<(u32, Vec3)> {
+        let mut quads = mesh.boundary_quads();
+        quads.retain(|quad| mesh.positions(quad).all(|place| on(&place)));
+        mesh.traction_forces(&quads, |_, _| traction)
+    }
+
+    /// A distorted block held as planes of symmetry hold it, so that stress can be uniform.
+    pub(crate) fn between_planes(mesh: &HexMesh, elastic: Elastic) -> ElasticSolid {
+        let supports = (0..3).flat_map(|axis| {
+            let on_plane = nodes_where(mesh, |p| p[axis] == 0.0);
+            let along = [0, 1, 2].map(|k| k == axis);
+            on_plane.into_iter().map(move |node| (node, along))
+        });
+        ElasticSolid::with_supports(mesh, elastic, supports.collect::<Vec<_>>()).unwrap()
     }
 
     #[test]
     fn verify_tension_of_a_distorted_block() {
-        // Held as planes of symmetry hold it, so that the stress is uniform whatever Poisson's ratio is.
         for v in [0.0, 0.3, 0.46, 0.49] {
             let mesh = distorted([3, 4, 3]);
-            let supports = (0..3).flat_map(|axis| {
-                let on_plane = nodes_where(&mesh, |p| p[axis] == 0.0);
-                on_plane
-                    .into_iter()
-                    .map(move |node| (node, [0, 1, 2].map(|k| k == axis)))
-            });
-            let elastic = Elastic::new(463.0, v).unwrap();
-            let supports: Vec<_> = supports.collect();
-            let solid = ElasticSolid::with_supports(&mesh, elastic, supports).unwrap();
+            let solid = between_planes(&mesh, Elastic::new(463.0, v).unwrap());
             let forces = traction(&mesh, |p| p.y == 4.0, Vec3::new(0.0, 20.0, 0.0));
             let displacements = solid.displacements(&forces);
             let strain = 20.0 / 463.0;
@@ -403,7 +406,7 @@ pub(crate) mod tests {
         let displacements = solid.displacements(&given);
         let mut forces = vec![Vec3::zeros(); mesh.nodes.len()];
         for (hex, element) in solid.elements() {
-            let stiffness = element.stiffness(&elastic);
+            let stiffness = element.stiffness(&elastic).condensed();
             let u = nalgebra::SMatrix::<f64, 24, 1>::from_fn(|i, _| {
                 displacements[hex[i / 3] as usize][i % 3]
             });

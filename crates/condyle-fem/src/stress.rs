@@ -1,9 +1,12 @@
 //! Stress and what of it is reported.
 
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
+
+use crate::vector::Vec3;
 
 /// A symmetric stress: xx, yy, zz, xy, yz, zx; tension is positive.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stress(pub [f64; 6]);
 
 impl Stress {
@@ -21,8 +24,28 @@ impl Stress {
 
     /// Length of the tensor, $\sqrt{\sigma : \sigma}$.
     pub fn norm(&self) -> f64 {
+        self.dot(self).sqrt()
+    }
+
+    /// Product with another symmetric tensor, over all nine components.
+    pub(crate) fn dot(&self, other: &Self) -> f64 {
+        let part = |i: usize| self.0[i] * other.0[i];
+        part(0) + part(1) + part(2) + 2.0 * (part(3) + part(4) + part(5))
+    }
+
+    /// Product with a vector.
+    pub(crate) fn times(&self, v: &Vec3) -> Vec3 {
         let [xx, yy, zz, xy, yz, zx] = self.0;
-        (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx)).sqrt()
+        Vec3::new(
+            xx * v.x + xy * v.y + zx * v.z,
+            xy * v.x + yy * v.y + yz * v.z,
+            zx * v.x + yz * v.y + zz * v.z,
+        )
+    }
+
+    /// Itself and some of another.
+    pub(crate) fn plus(&self, factor: f64, other: &Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] + factor * other.0[i]))
     }
 
     /// Equivalent stress of von Mises, $\sqrt{\tfrac{3}{2} s : s}$ of the deviator.

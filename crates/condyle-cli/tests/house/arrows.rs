@@ -30,7 +30,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // Cases with known answers: nobody uses it.
     (
         "condyle-verification",
-        &["condyle", "condyle-io", "condyle-lab"],
+        &["condyle", "condyle-fem", "condyle-io", "condyle-lab"],
     ),
 ];
 

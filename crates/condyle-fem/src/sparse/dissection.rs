@@ -9,7 +9,7 @@ use std::ops::Range;
 use crate::{mesh::HexMesh, vector::Vec3};
 
 /// A set of so few nodes is not cut again.
-const SMALL: usize = 16;
+const SMALL: usize = 8;
 
 /// Stands for a node that is held, and so is not eliminated.
 const HELD: u32 = u32::MAX;

@@ -4,6 +4,8 @@
 //! summed there, its own freedoms are eliminated, and the rest goes to the group above (Duff and Reid 1983;
 //! Liu 1992). One thread, one order: the same numbers on every run.
 
+use wide::f64x4;
+
 use crate::{
     element::NodalStiffness,
     sparse::{
@@ -45,6 +47,8 @@ struct Assembly<'a, S> {
     rows: Vec<usize>,
     /// Stiffness of every freedom as it was assembled.
     diagonal: Vec<f64>,
+    /// Memory of fronts that are done with.
+    spare: Vec<Vec<f64x4>>,
 }
 
 impl Factor {
@@ -66,6 +70,7 @@ impl Factor {
             dissection: &dissection,
             rows: vec![0; free],
             diagonal: vec![0.0; 3 * free],
+            spare: Vec::new(),
         };
         let mut left: Vec<Option<Remainder>> = Vec::new();
         let mut fronts = Vec::new();
@@ -106,7 +111,8 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
         layout: &Layout,
         left: &mut [Option<Remainder>],
     ) -> Triangle {
-        let mut triangle = Triangle::new(layout.rows);
+        let memory = self.spare.pop().unwrap_or_default();
+        let mut triangle = Triangle::zeros(layout.rows, memory);
         for (i, place) in group.own.clone().enumerate() {
             self.rows[place as usize] = 3 * i;
         }
@@ -123,6 +129,7 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
             if let Some(remainder) = left[child].take() {
                 let boundary = &self.dissection.groups[child].boundary;
                 self.add_remainder(&remainder, boundary, &mut triangle);
+                self.spare.push(remainder.triangle.into_memory());
             }
         }
         triangle

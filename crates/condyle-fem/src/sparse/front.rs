@@ -19,7 +19,7 @@ pub(crate) struct Front {
 impl Front {
     /// The first `columns` of an eliminated triangle.
     pub(crate) fn of(triangle: &Triangle, columns: usize, rows: usize) -> Self {
-        let (mut starts, mut vectors) = (vec![0], Vec::new());
+        let (mut starts, mut vectors) = (vec![0], Vec::with_capacity(columns * rows / TILE));
         for t in 0..rows / TILE {
             let row = triangle.row(t);
             vectors.extend_from_slice(&row[..row.len().min(columns)]);

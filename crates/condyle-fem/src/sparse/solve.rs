@@ -2,7 +2,7 @@
 
 use wide::f64x4;
 
-use crate::sparse::{factor::Factor, front::Front, rhs::Rhs, tiles::TILE};
+use crate::sparse::{factor::Factor, rhs::Rhs, tiles::TILE};
 
 /// Four rows of right-hand sides.
 type Rows<const W: usize> = [[f64x4; W]; TILE];
@@ -91,13 +91,19 @@ impl Factor {
         front.clear();
         front.extend_from_slice(&x.rows[own.clone()]);
         front.resize(factor.columns, [f64x4::ZERO; W]);
-        front.extend(freedoms(&group.boundary).map(|freedom| x.rows[freedom]));
-        front.resize(TILE * factor.rows(), [f64x4::ZERO; W]);
-        for tile in (0..factor.columns / TILE).rev() {
-            let (here, after) = front.split_at_mut(TILE * (tile + 1));
-            let here = &mut here[TILE * tile..];
-            subtract(here, &up(factor, tile, after));
-            solve_tile_transposed(&factor.row(tile)[TILE * tile..], here);
+        let mut freedoms = freedoms(&group.boundary);
+        for t in factor.columns / TILE..factor.rows() {
+            let x = std::array::from_fn(|_| {
+                let freedom = freedoms.next();
+                freedom.map_or([f64x4::ZERO; W], |freedom| x.rows[freedom])
+            });
+            subtract_up(front, factor.row(t), &x);
+        }
+        for t in (0..factor.columns / TILE).rev() {
+            let row = factor.row(t);
+            let (before, here) = front.split_at_mut(TILE * t);
+            solve_tile_transposed(&row[TILE * t..], here);
+            subtract_up(before, &row[..TILE * t], &std::array::from_fn(|r| here[r]));
         }
         x.rows[own.clone()].copy_from_slice(&front[..own.len()]);
     }
@@ -115,36 +121,28 @@ fn freedoms(places: &[u32]) -> impl Iterator<Item = usize> {
 fn down<const W: usize>(row: &[f64x4], x: &[[f64x4; W]]) -> Rows<W> {
     let mut sums = [[f64x4::ZERO; W]; TILE];
     for (column, x) in row.iter().zip(x) {
-        add_products(&mut sums, column, x);
-    }
-    sums
-}
-
-/// Product of the transposed tiles below one on the diagonal with the rows of right-hand sides there.
-#[inline(always)]
-fn up<const W: usize>(factor: &Front, tile: usize, after: &[[f64x4; W]]) -> Rows<W> {
-    let mut sums = [[f64x4::ZERO; W]; TILE];
-    for (t, x) in (tile + 1..factor.rows()).zip(after.chunks_exact(TILE)) {
-        let columns = &factor.row(t)[TILE * tile..TILE * (tile + 1)];
-        for (r, x) in x.iter().enumerate() {
-            for (sum, column) in sums.iter_mut().zip(columns) {
-                let number = f64x4::splat(column.as_array()[r]);
-                for (sum, x) in sum.iter_mut().zip(x) {
-                    *sum = x.mul_add(number, *sum);
-                }
+        for (sum, &number) in sums.iter_mut().zip(column.as_array()) {
+            let number = f64x4::splat(number);
+            for (sum, x) in sum.iter_mut().zip(x) {
+                *sum = x.mul_add(number, *sum);
             }
         }
     }
     sums
 }
 
+/// Subtracts from rows of right-hand sides the product of a transposed row of tiles with four others.
 #[inline(always)]
-fn add_products<const W: usize>(sums: &mut Rows<W>, column: &f64x4, x: &[f64x4; W]) {
-    for (r, sum) in sums.iter_mut().enumerate() {
-        let number = f64x4::splat(column.as_array()[r]);
-        for (sum, x) in sum.iter_mut().zip(x) {
-            *sum = x.mul_add(number, *sum);
+fn subtract_up<const W: usize>(from: &mut [[f64x4; W]], row: &[f64x4], x: &Rows<W>) {
+    for (from, column) in from.iter_mut().zip(row) {
+        let mut left = *from;
+        for (x, &number) in x.iter().zip(column.as_array()) {
+            let number = f64x4::splat(number);
+            for (left, x) in left.iter_mut().zip(x) {
+                *left = number.mul_neg_add(*x, *left);
+            }
         }
+        *from = left;
     }
 }
 

@@ -39,12 +39,19 @@ fn start_of_row(t: usize) -> usize {
 }
 
 impl Triangle {
-    /// Of zeros.
-    pub(crate) fn new(size: usize) -> Self {
+    /// Of zeros, in memory that was another's.
+    pub(crate) fn zeros(size: usize, mut memory: Vec<f64x4>) -> Self {
+        memory.clear();
+        memory.resize(start_of_row(size / TILE), f64x4::ZERO);
         Self {
             size,
-            vectors: vec![f64x4::ZERO; start_of_row(size / TILE)],
+            vectors: memory,
         }
+    }
+
+    /// Its memory, for another.
+    pub(crate) fn into_memory(self) -> Vec<f64x4> {
+        self.vectors
     }
 
     /// Row `t` of tiles: its columns up to the diagonal.
@@ -181,10 +188,12 @@ fn products<const N: usize>(strips: [&[f64x4]; N], other: &[f64x4]) -> [[f64x4; 
     let mut sums = [[f64x4::ZERO; TILE]; N];
     let strips = strips.map(|strip| &strip[..other.len()]);
     for (k, other) in other.iter().enumerate() {
-        let numbers = other.as_array().map(f64x4::splat);
-        for (sums, strip) in sums.iter_mut().zip(&strips) {
-            for (sum, number) in sums.iter_mut().zip(numbers) {
-                *sum = strip[k].mul_add(number, *sum);
+        let vectors: [f64x4; N] = std::array::from_fn(|i| strips[i][k]);
+        // One number at a time: with three rows of tiles every register is taken.
+        for (j, &number) in other.as_array().iter().enumerate() {
+            let number = f64x4::splat(number);
+            for (sums, vector) in sums.iter_mut().zip(vectors) {
+                sums[j] = vector.mul_add(number, sums[j]);
             }
         }
     }
@@ -202,7 +211,7 @@ mod tests {
         let random = |i: usize, j: usize| ((i * 37 + j * 101) as f64).sin();
         let half = DMatrix::from_fn(size, size, random);
         let full = &half * half.transpose() + DMatrix::identity(size, size);
-        let mut triangle = Triangle::new(size);
+        let mut triangle = Triangle::zeros(size, Vec::new());
         for j in 0..size {
             for i in j..size {
                 *triangle.at_mut(i, j) = full[(i, j)];

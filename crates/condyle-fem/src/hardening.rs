@@ -1,0 +1,217 @@
+//! How the yield stress rises with plastic strain.
+
+use thiserror::Error;
+
+/// Isotropic hardening by a table, and linear kinematic hardening beside it.
+///
+/// The yield stress is linear between the points of the table and constant after the last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hardening {
+    /// Accumulated plastic strain and yield stress.
+    points: Vec<(f64, f64)>,
+    /// Stress of the centre of the yield surface over plastic strain, uniaxial.
+    kinematic_modulus: f64,
+}
+
+/// A hardening curve that is none.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum HardeningError {
+    /// The curve does not begin at yield.
+    #[error(
+        "the hardening curve must start at plastic strain 0 with the yield stress, but starts at {strain}; plastic strain is what is left of the strain after unloading"
+    )]
+    DoesNotStartAtYield {
+        /// Plastic strain of the first point.
+        strain: f64,
+    },
+    /// The curve has no point.
+    #[error(
+        "the hardening curve has no point; give at least the yield stress, at plastic strain 0"
+    )]
+    Empty,
+    /// The yield stress is not positive.
+    #[error("the yield stress is {stress}; it must be a positive number")]
+    Yield {
+        /// That stress.
+        stress: f64,
+    },
+    /// The plastic strain does not rise.
+    #[error(
+        "point {point} of the hardening curve has plastic strain {strain}, which is not above {before} of the point before"
+    )]
+    Order {
+        /// Number of the point, from 1.
+        point: usize,
+        /// Its plastic strain.
+        strain: f64,
+        /// That of the point before.
+        before: f64,
+    },
+    /// The stress falls.
+    #[error(
+        "the hardening curve falls at point {point}, from {before} to {stress}; a material that softens has no unique answer on a mesh"
+    )]
+    Falls {
+        /// Number of the point, from 1.
+        point: usize,
+        /// Its stress.
+        stress: f64,
+        /// That of the point before.
+        before: f64,
+    },
+    /// The kinematic modulus is negative or no number.
+    #[error("the kinematic hardening modulus is {modulus}; it must be 0 or positive")]
+    Kinematic {
+        /// That modulus.
+        modulus: f64,
+    },
+}
+
+impl Hardening {
+    /// Isotropic hardening by (accumulated plastic strain, yield stress), with kinematic hardening of a modulus.
+    ///
+    /// # Errors
+    /// If the table does not start at plastic strain 0, has a stress that is not positive or falls, or strains
+    /// that do not rise; or if the modulus is negative.
+    pub fn new(points: Vec<(f64, f64)>, kinematic_modulus: f64) -> Result<Self, HardeningError> {
+        let &(strain, stress) = points.first().ok_or(HardeningError::Empty)?;
+        if strain != 0.0 {
+            return Err(HardeningError::DoesNotStartAtYield { strain });
+        }
+        if !(stress > 0.0 && stress.is_finite()) {
+            return Err(HardeningError::Yield { stress });
+        }
+        for (at, ends) in points.windows(2).enumerate() {
+            checked_piece(at + 2, ends[0], ends[1])?;
+        }
+        if !(kinematic_modulus >= 0.0 && kinematic_modulus.is_finite()) {
+            return Err(HardeningError::Kinematic {
+                modulus: kinematic_modulus,
+            });
+        }
+        Ok(Self {
+            points,
+            kinematic_modulus,
+        })
+    }
+
+    /// A yield stress that stays.
+    ///
+    /// # Errors
+    /// If it is not positive.
+    pub fn perfectly_plastic(yield_stress: f64) -> Result<Self, HardeningError> {
+        Self::new(vec![(0.0, yield_stress)], 0.0)
+    }
+
+    /// Modulus of kinematic hardening.
+    pub fn kinematic_modulus(&self) -> f64 {
+        self.kinematic_modulus
+    }
+
+    /// Yield stress at an accumulated plastic strain.
+    pub fn yield_stress(&self, strain: f64) -> f64 {
+        let (start, stress, slope) = self.piece(self.piece_of(strain));
+        stress + slope * (strain - start)
+    }
+
+    /// The plastic strain that brings an equivalent stress down to the yield surface, and the slope of the
+    /// curve there; none if it does not yield.
+    ///
+    /// Solves `trial - softening * step = yield_stress(before + step)`, piece by piece, so exactly.
+    pub(crate) fn step(&self, trial: f64, before: f64, softening: f64) -> Option<(f64, f64)> {
+        if trial <= self.yield_stress(before) {
+            return None;
+        }
+        let first = self.piece_of(before);
+        (first..self.points.len()).find_map(|at| {
+            let (start, stress, slope) = self.piece(at);
+            let step = (trial - stress - slope * (before - start)) / (softening + slope);
+            let end = self.points.get(at + 1).map_or(f64::INFINITY, |next| next.0);
+            (before + step <= end).then_some((step, slope))
+        })
+    }
+
+    /// Number of the piece in which a plastic strain lies.
+    fn piece_of(&self, strain: f64) -> usize {
+        let after = self.points.partition_point(|point| point.0 <= strain);
+        after.saturating_sub(1)
+    }
+
+    /// Where a piece starts, and its slope.
+    fn piece(&self, at: usize) -> (f64, f64, f64) {
+        let (strain, stress) = self.points[at];
+        let slope = self
+            .points
+            .get(at + 1)
+            .map_or(0.0, |next| (next.1 - stress) / (next.0 - strain));
+        (strain, stress, slope)
+    }
+}
+
+fn checked_piece(point: usize, before: (f64, f64), here: (f64, f64)) -> Result<(), HardeningError> {
+    if here.0.is_nan() || here.0 <= before.0 {
+        return Err(HardeningError::Order {
+            point,
+            strain: here.0,
+            before: before.0,
+        });
+    }
+    if here.1.is_nan() || here.1 < before.1 {
+        return Err(HardeningError::Falls {
+            point,
+            stress: here.1,
+            before: before.1,
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_yield_stress_is_linear_between_points_and_constant_after() {
+        let curve = Hardening::new(vec![(0.0, 14.0), (0.02, 20.0), (0.1, 28.0)], 0.0).unwrap();
+        let stresses = [0.0, 0.01, 0.02, 0.06, 0.1, 1.0].map(|strain| curve.yield_stress(strain));
+        for (found, exact) in std::iter::zip(stresses, [14.0, 17.0, 20.0, 24.0, 28.0, 28.0]) {
+            assert!((found - exact).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_step_ends_on_the_curve_over_any_number_of_points() {
+        let curve = Hardening::new(vec![(0.0, 14.0), (0.02, 20.0), (0.1, 28.0)], 0.0).unwrap();
+        for trial in [15.0, 25.0, 60.0, 200.0] {
+            for before in [0.0, 0.015, 0.05, 0.3] {
+                match curve.step(trial, before, 500.0) {
+                    None => assert!(trial <= curve.yield_stress(before)),
+                    Some((step, _)) => {
+                        let left = trial - 500.0 * step - curve.yield_stress(before + step);
+                        assert!(step > 0.0 && left.abs() < 1e-12);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_curve_is_named() {
+        let error = |points: &[(f64, f64)]| {
+            let curve = Hardening::new(points.to_vec(), 0.0);
+            curve.unwrap_err().to_string()
+        };
+        assert!(error(&[]).contains("no point"));
+        assert!(error(&[(0.01, 14.0)]).contains("must start at plastic strain 0"));
+        assert!(error(&[(0.0, 0.0)]).contains("the yield stress is 0"));
+        assert!(error(&[(0.0, 14.0), (0.1, 13.0)]).contains("falls at point 2, from 14 to 13"));
+        assert!(error(&[(0.0, 14.0), (0.0, 15.0)]).contains("not above 0"));
+        let negative = Hardening::new(vec![(0.0, 14.0)], -1.0);
+        assert!(
+            negative
+                .unwrap_err()
+                .to_string()
+                .contains("kinematic hardening modulus is -1")
+        );
+    }
+}
