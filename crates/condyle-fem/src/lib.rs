@@ -31,7 +31,6 @@
 //! ```
 
 mod compliance;
-mod deflections;
 mod eigenstrain;
 mod elastic;
 mod element;

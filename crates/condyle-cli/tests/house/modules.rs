@@ -35,7 +35,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle::anatomy", &["condyle::geometry"]),
     (
         "condyle::contact",
-        &["condyle::number", "condyle::spatial", "condyle::geometry"],
+        &[
+            "condyle::number",
+            "condyle::spatial",
+            "condyle::geometry",
+            "condyle_fem",
+        ],
     ),
     // What may touch knows shares of a surface, never a law.
     (

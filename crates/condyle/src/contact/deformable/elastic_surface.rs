@@ -80,6 +80,22 @@ impl ElasticSurface {
     }
 }
 
+impl ElasticSurface {
+    /// Columns of surface nodes.
+    fn solved(&self, nodes: &[u32]) -> Vec<Column> {
+        let force = |&node: &u32| (self.nodes[node as usize], self.directions[node as usize]);
+        let forces: Vec<(u32, Vec3)> = nodes.iter().map(force).collect();
+        let moved = self.solid.influence(&self.nodes, &forces);
+        let column = |force: usize| {
+            let directions = self.directions.iter().enumerate();
+            let deflection =
+                |(node, direction): (usize, &Vec3)| direction.dot(&moved.displacement(node, force));
+            Column::from_iter(directions.map(deflection))
+        };
+        (0..nodes.len()).map(column).collect()
+    }
+}
+
 impl SurfaceCompliance for ElasticSurface {
     fn columns(&self, nodes: &[u32]) -> Vec<(u32, Column)> {
         let mut tiles: Vec<usize> = nodes
@@ -93,9 +109,8 @@ impl SurfaceCompliance for ElasticSurface {
         let new: Vec<u32> = wanted()
             .filter(|&node| columns[node as usize].is_none())
             .collect();
-        let solved = self.solid.deflections(&self.nodes, &self.directions, &new);
-        for (node, column) in new.into_iter().zip(solved) {
-            columns[node as usize] = Some(Arc::from(column));
+        for (node, column) in new.iter().zip(self.solved(&new)) {
+            columns[*node as usize] = Some(column);
         }
         let known = |node| Some((node, Arc::clone(columns[node as usize].as_ref()?)));
         wanted().filter_map(known).collect()

@@ -92,10 +92,7 @@ impl Deformable {
             return (renewed, state_of(now));
         }
         let surface = self.surface(insert, &used);
-        #[expect(
-            clippy::expect_used,
-            reason = "said under Panics; a case checks its insert as it is built"
-        )]
+        // A case checks its insert as it is built.
         let surface = surface.expect("the insert is an elastic solid");
         (surface, state.clone())
     }

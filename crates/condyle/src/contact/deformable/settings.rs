@@ -7,7 +7,7 @@ use condyle_fem::{Elastic, SolidError};
 use super::elastic_surface::ElasticSurface;
 use crate::{
     Vec3,
-    contact::{broad_phase::Search, pressed::Coulomb},
+    contact::{broad_phase::Search, foundation::Foundation, pressed::Coulomb},
     geometry::Insert,
 };
 
@@ -69,7 +69,7 @@ impl Deformable {
             friction,
             slip_tolerance_mm_per_s,
             search: Search::default(),
-            sample_reuse_mm: crate::contact::Foundation::SAMPLE_REUSE_MM,
+            sample_reuse_mm: Foundation::SAMPLE_REUSE_MM,
             remembered: Arc::default(),
         };
         law.surface(insert, insert.unworn_nodes())?;
