@@ -54,6 +54,7 @@ fn cylinder_row(v: f64) -> Row {
     refined(
         format!("widening of a cylinder, v = {v}"),
         exact,
+        0.005,
         |elements| {
             let mesh = cylinder(elements);
             let forces = inner_pressure(&mesh, |place| across(place).norm());
@@ -70,6 +71,7 @@ fn sphere_row(v: f64) -> Row {
     refined(
         format!("widening of a sphere, v = {v}"),
         exact,
+        0.012,
         |elements| {
             let mesh = sphere(elements);
             let forces = inner_pressure(&mesh, |place| place.norm());

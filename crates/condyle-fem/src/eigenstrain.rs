@@ -5,8 +5,8 @@
 
 use crate::{
     elastic::Strain,
-    element::{Element, POINTS},
-    solid::{ElasticSolid, SolidError, moved},
+    element::POINTS,
+    solid::{ElasticSolid, moved},
     stress::Stress,
     vector::Vec3,
 };
@@ -16,27 +16,17 @@ impl ElasticSolid {
     ///
     /// The displacements under them are those of the eigenstrains.
     ///
-    /// # Errors
-    /// If the element is inverted; those of a solid are not.
-    ///
     /// # Panics
     /// If there is no such element.
-    pub fn eigenstrain_forces(
-        &self,
-        element: usize,
-        eigenstrains: &[Strain; POINTS],
-    ) -> Result<[Vec3; 8], SolidError> {
-        let (element, elastic) = (self.element(element)?, self.elastic());
+    pub fn eigenstrain_forces(&self, element: usize, eigenstrains: &[Strain; POINTS]) -> [Vec3; 8] {
+        let (element, elastic) = (&self.elements()[element], self.elastic());
         let stresses = eigenstrains.map(|strain| elastic.stress(&strain));
         let (nodes, modes) = element.forces(&stresses);
         let passed_on = element.stiffness(&elastic).passed_on(&modes);
-        Ok(std::array::from_fn(|node| nodes[node] - passed_on[node]))
+        std::array::from_fn(|node| nodes[node] - passed_on[node])
     }
 
     /// Stress at the Gauss points of an element under displacements of its eight nodes and eigenstrains.
-    ///
-    /// # Errors
-    /// If the element is inverted; those of a solid are not.
     ///
     /// # Panics
     /// If there is no such element.
@@ -45,25 +35,22 @@ impl ElasticSolid {
         element: usize,
         displacements: &[Vec3; 8],
         eigenstrains: &[Strain; POINTS],
-    ) -> Result<[Stress; POINTS], SolidError> {
-        let element = self.element(element)?;
-        Ok(element.stresses(&self.elastic(), displacements, eigenstrains))
+    ) -> [Stress; POINTS] {
+        let element = &self.elements()[element];
+        element.stresses(&self.elastic(), displacements, eigenstrains)
     }
 
-    /// Displacements of all nodes and stresses of some elements by eigenstrains in those elements alone.
-    ///
-    /// # Errors
-    /// If an element is inverted; those of a solid are not.
+    /// Displacements of all nodes by eigenstrains of some elements, and the stresses that stay in those.
     ///
     /// # Panics
     /// If there is no such element.
     pub fn relaxed(
         &self,
         eigenstrains: &[(usize, [Strain; POINTS])],
-    ) -> Result<(Vec<Vec3>, Vec<[Stress; POINTS]>), SolidError> {
+    ) -> (Vec<Vec3>, Vec<[Stress; POINTS]>) {
         let mut forces = vec![Vec3::zeros(); self.mesh().nodes.len()];
         for (element, eigenstrains) in eigenstrains {
-            let own = self.eigenstrain_forces(*element, eigenstrains)?;
+            let own = self.eigenstrain_forces(*element, eigenstrains);
             for (&node, force) in self.mesh().hexes[*element].iter().zip(own) {
                 forces[node as usize] += force;
             }
@@ -73,13 +60,8 @@ impl ElasticSolid {
             let nodes = moved(&self.mesh().hexes[*element], &displacements);
             self.element_stresses(*element, &nodes, eigenstrains)
         });
-        let stresses = stresses.collect::<Result<_, _>>()?;
-        Ok((displacements, stresses))
-    }
-
-    fn element(&self, element: usize) -> Result<Element, SolidError> {
-        let corners = self.mesh().corners(element);
-        Element::new(&corners).map_err(|_| SolidError::inverted(element, &corners))
+        let stresses = stresses.collect();
+        (displacements, stresses)
     }
 }
 
@@ -106,7 +88,7 @@ mod tests {
         let all: Vec<_> = (0..36)
             .map(|element| (element, [eigenstrain; POINTS]))
             .collect();
-        let (displacements, stresses) = solid.relaxed(&all).unwrap();
+        let (displacements, stresses) = solid.relaxed(&all);
         for (node, u) in solid.mesh().nodes.iter().zip(&displacements) {
             let exact = Vec3::new(0.01 * node.x, -0.02 * node.y, 0.03 * node.z);
             assert!((u - exact).norm() < 1e-12, "{u} {exact}");
@@ -128,11 +110,11 @@ mod tests {
                 0.01 * ((3 * i + 7 * p) as f64).sin()
             }))
         });
-        let (displacements, _) = solid.relaxed(&[(17, eigenstrains)]).unwrap();
+        let (displacements, _) = solid.relaxed(&[(17, eigenstrains)]);
         let (node, force) = (75, Vec3::new(0.3, -0.8, 0.4));
         let by_force = solid.displacements(&[(node, force)]);
         let stresses = solid.gauss_stresses(&by_force)[17];
-        let volumes = solid.element(17).unwrap().volumes();
+        let volumes = solid.elements()[17].volumes();
         let works = (0..POINTS).map(|p| volumes[p] * stresses[p].dot(&Stress(eigenstrains[p].0)));
         let work = force.dot(&displacements[node as usize]);
         assert!((works.sum::<f64>() - work).abs() < 1e-15, "{work}");

@@ -161,17 +161,6 @@ impl Element {
         Ok(element)
     }
 
-    /// Whether an element with these corners has a volume everywhere.
-    pub(crate) fn check(corners: &[Vec3; 8]) -> Result<(), Inverted> {
-        let places = gauss_points().into_iter().chain([[0.0; 3]]);
-        for at in places {
-            if jacobian(corners, at).determinant() <= 0.0 {
-                return Err(Inverted);
-            }
-        }
-        Ok(())
-    }
-
     /// Replaces the divergences by their best fits, the shares of the volume as weights.
     fn project_dilatations(&mut self) {
         let base = gauss_points().map(|[x, y, z]| Vector4::new(1.0, x, y, z));

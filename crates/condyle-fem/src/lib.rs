@@ -1,6 +1,7 @@
 //! Hexahedral meshes and elements; knows nothing of knees.
 //!
-//! Lengths are in whatever unit the mesh is in; condyle uses millimetres.
+//! Lengths are in whatever unit the mesh is in, and forces and moduli in units that go with it; condyle uses
+//! millimetre, newton and MPa.
 //!
 //! The top of a block of two bricks, pressed down by a tenth of its height; the layer between follows:
 //!
@@ -28,6 +29,30 @@
 //! assert!((mesh.volume() - 1.8).abs() < 1e-12);
 //! assert!((mesh.nodes[4].z - 0.9).abs() < 1e-3);
 //! assert!(mesh.worst_quality() > 0.99);
+//! ```
+//!
+//! A block of polyethylene that is held below, under a force on a node of its top:
+//!
+//! ```
+//! use condyle_fem::{Elastic, ElasticSolid, HexMesh, Vec3};
+//!
+//! let corners = [[0., 0.], [1., 0.], [1., 1.], [0., 1.]];
+//! let layer = |z: f64| corners.map(|[x, y]| Vec3::new(x, y, z));
+//! let mesh = HexMesh {
+//!     nodes: [layer(0.0), layer(1.0)].concat(),
+//!     hexes: vec![[0, 1, 2, 3, 4, 5, 6, 7]].into(),
+//! };
+//! let polyethylene = Elastic::new(463.0, 0.46)?;
+//! let solid = ElasticSolid::new(&mesh, polyethylene, 0..4)?;
+//!
+//! let down = Vec3::new(0.0, 0.0, -1.0);
+//! let displacements = solid.displacements(&[(6, down * 10.0)]);
+//! assert!(displacements[6].z < 0.0 && displacements[0].norm() == 0.0);
+//!
+//! // The same by the compliance of two nodes, computed once for all loads.
+//! let compliance = solid.compliance(&[6, 7], &[down, down]);
+//! assert!((compliance.displacement(0, 0) * 10.0 - displacements[6]).norm() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod compliance;

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::{
     elastic::Elastic,
-    element::{Element, Modes, NodalStiffness, POINTS, Stiffness},
+    element::{Modes, NodalStiffness, POINTS, Stiffness},
     hardening::Hardening,
     plasticity::{ElasticPlastic, PlasticPoint, Response},
     solid::{ElasticSolid, moved},
@@ -36,7 +36,6 @@ const GRADIENT_STEPS: usize = 200;
 pub struct PlasticSolid {
     solid: ElasticSolid,
     material: ElasticPlastic,
-    elements: Vec<Element>,
     stiffnesses: Vec<Stiffness>,
 }
 
@@ -127,10 +126,11 @@ impl PlasticSolid {
     /// A solid whose material yields.
     pub fn new(solid: ElasticSolid, hardening: Hardening) -> Self {
         let elastic = solid.elastic();
-        let elements: Vec<Element> = solid.elements().map(|(_, element)| element).collect();
+        let elements = solid.elements().iter();
         Self {
-            stiffnesses: elements.iter().map(|e| e.stiffness(&elastic)).collect(),
-            elements,
+            stiffnesses: elements
+                .map(|element| element.stiffness(&elastic))
+                .collect(),
             material: ElasticPlastic { elastic, hardening },
             solid,
         }
@@ -155,7 +155,7 @@ impl PlasticSolid {
         forces: &[(u32, Vec3)],
         before: &PlasticState,
     ) -> Result<PlasticSolution, PlasticError> {
-        let (found, elements) = (before.elements.len(), self.elements.len());
+        let (found, elements) = (before.elements.len(), self.stiffnesses.len());
         if found != elements {
             return Err(PlasticError::WrongState { found, elements });
         }
@@ -202,10 +202,10 @@ impl PlasticSolid {
         let elastic = &self.material.elastic;
         let mut forces = external.to_vec();
         let mut size2 = dot(external, external);
-        let mut pulls = Vec::with_capacity(self.elements.len());
+        let mut pulls = Vec::with_capacity(self.stiffnesses.len());
         for (e, points) in before.elements.iter().enumerate() {
             let stresses = points.map(|point| elastic.stress(&point.strain));
-            let (nodes, pull) = self.elements[e].forces(&stresses);
+            let (nodes, pull) = self.solid.elements()[e].forces(&stresses);
             let passed_on = self.stiffnesses[e].passed_on(&pull);
             for (corner, &node) in self.solid.mesh().hexes[e].iter().enumerate() {
                 forces[node as usize] += nodes[corner] - passed_on[corner];
@@ -234,11 +234,11 @@ impl PlasticSolid {
             yielding: Vec::new(),
         };
         for (e, hex) in self.solid.mesh().hexes.iter().enumerate() {
-            let strains = self.elements[e].strains(&moved(hex, displacements), &modes[e]);
+            let strains = self.solid.elements()[e].strains(&moved(hex, displacements), &modes[e]);
             let points = &before.elements[e];
             let responses: [Response; POINTS] =
                 std::array::from_fn(|p| self.material.respond(&strains[p], &points[p]));
-            let (nodes, modal) = self.elements[e].forces(&responses.map(|r| r.stress));
+            let (nodes, modal) = self.solid.elements()[e].forces(&responses.map(|r| r.stress));
             let yielding = self.yielding(e, &responses);
             let stiffness = yielding
                 .as_ref()
@@ -261,7 +261,7 @@ impl PlasticSolid {
             return None;
         }
         let elastic: &Elastic = &self.material.elastic;
-        let stiffness = self.elements[element].softened(elastic, &softenings);
+        let stiffness = self.solid.elements()[element].softened(elastic, &softenings);
         Some(Yielding {
             element,
             lost: self.stiffnesses[element].condensed() - stiffness.condensed(),

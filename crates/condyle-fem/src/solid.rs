@@ -21,6 +21,7 @@ pub struct ElasticSolid {
     elastic: Elastic,
     /// Axes along which each node cannot move.
     held: Vec<[bool; 3]>,
+    elements: Vec<Element>,
     pub(crate) factor: Factor,
 }
 
@@ -69,15 +70,6 @@ pub enum SolidError {
     },
 }
 
-impl SolidError {
-    pub(crate) fn inverted(element: usize, corners: &[Vec3; 8]) -> Self {
-        Self::Inverted {
-            element,
-            place: corners.iter().sum::<Vec3>() / 8.0,
-        }
-    }
-}
-
 impl ElasticSolid {
     /// A solid whose nodes `held` cannot move in any direction, as on a bonded backside.
     ///
@@ -107,11 +99,11 @@ impl ElasticSolid {
     ) -> Result<Self, SolidError> {
         let elastic = elastic.checked()?;
         let held = checked_supports(mesh, supports)?;
-        for element in 0..mesh.hexes.len() {
-            let corners = mesh.corners(element);
-            Element::check(&corners).map_err(|_| SolidError::inverted(element, &corners))?;
-        }
-        let factor = factorise(mesh, elastic, &held).map_err(|Loose { node }| {
+        let elements = checked_elements(mesh)?;
+        let dissection = Dissection::new(mesh, &held);
+        let stiffness = |element: usize| elements[element].stiffness(&elastic).condensed();
+        let factor = Factor::new(&mesh.hexes, &held, dissection, stiffness);
+        let factor = factor.map_err(|Loose { node }| {
             let place = mesh.nodes[node as usize];
             SolidError::Loose { node, place }
         })?;
@@ -119,6 +111,7 @@ impl ElasticSolid {
             mesh: mesh.clone(),
             elastic,
             held,
+            elements,
             factor,
         })
     }
@@ -182,7 +175,8 @@ impl ElasticSolid {
     /// # Panics
     /// If there are fewer displacements than nodes.
     pub fn gauss_stresses(&self, displacements: &[Vec3]) -> Vec<[Stress; 8]> {
-        self.elements()
+        let hexes = self.mesh.hexes.iter().zip(&self.elements);
+        hexes
             .map(|(hex, element)| {
                 element.stresses(&self.elastic, &moved(hex, displacements), &NO_EIGENSTRAIN)
             })
@@ -195,21 +189,18 @@ impl ElasticSolid {
     /// # Panics
     /// If there are fewer displacements than nodes.
     pub fn stresses(&self, displacements: &[Vec3]) -> Vec<Stress> {
-        self.elements()
-            .map(|(hex, element)| {
-                let stresses =
-                    element.stresses(&self.elastic, &moved(hex, displacements), &NO_EIGENSTRAIN);
-                let volumes = element.volumes();
-                let volume: f64 = volumes.iter().sum();
-                Stress::weighted(volumes.map(|part| part / volume).into_iter().zip(stresses))
-            })
-            .collect()
+        let stresses = self.gauss_stresses(displacements).into_iter();
+        let mean = |(stresses, element): ([Stress; POINTS], &Element)| {
+            let volumes = element.volumes();
+            let volume: f64 = volumes.iter().sum();
+            Stress::weighted(volumes.map(|part| part / volume).into_iter().zip(stresses))
+        };
+        stresses.zip(&self.elements).map(mean).collect()
     }
 
-    /// Every element and its nodes; all were checked to be good.
-    pub(crate) fn elements(&self) -> impl Iterator<Item = (&[u32; 8], Element)> {
-        let elements = (0..self.mesh.hexes.len()).map(|e| Element::new(&self.mesh.corners(e)));
-        self.mesh.hexes.iter().zip(elements.flatten())
+    /// Strains of every element.
+    pub(crate) fn elements(&self) -> &[Element] {
+        &self.elements
     }
 }
 
@@ -248,14 +239,16 @@ fn checked_supports(
     }
 }
 
-fn factorise(mesh: &HexMesh, elastic: Elastic, held: &[[bool; 3]]) -> Result<Factor, Loose> {
-    let dissection = Dissection::new(mesh, held);
-    Factor::new(&mesh.hexes, held, dissection, |element| {
-        Element::new(&mesh.corners(element)).map_or_else(
-            |_| nalgebra::zero(),
-            |element| element.stiffness(&elastic).condensed(),
-        )
-    })
+/// All elements, if each has a volume everywhere.
+fn checked_elements(mesh: &HexMesh) -> Result<Vec<Element>, SolidError> {
+    let checked = |element: usize| {
+        let corners = mesh.corners(element);
+        Element::new(&corners).map_err(|_| SolidError::Inverted {
+            element,
+            place: corners.iter().sum::<Vec3>() / 8.0,
+        })
+    };
+    (0..mesh.hexes.len()).map(checked).collect()
 }
 
 #[cfg(test)]
@@ -405,7 +398,7 @@ pub(crate) mod tests {
             .collect();
         let displacements = solid.displacements(&given);
         let mut forces = vec![Vec3::zeros(); mesh.nodes.len()];
-        for (hex, element) in solid.elements() {
+        for (hex, element) in mesh.hexes.iter().zip(solid.elements()) {
             let stiffness = element.stiffness(&elastic).condensed();
             let u = nalgebra::SMatrix::<f64, 24, 1>::from_fn(|i, _| {
                 displacements[hex[i / 3] as usize][i % 3]
