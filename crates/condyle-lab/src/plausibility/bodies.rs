@@ -4,7 +4,7 @@ use condyle_io::results::PlausibilityWarning;
 
 use super::finished::Finished;
 
-/// Nearer than this to the rim a foundation over-estimates pressure, mm: about the reach of its neighbours that it
+/// Nearer than this to the rim a foundation over-estimates pressure, and that of an elastic body has no limit, mm: about the reach of its neighbours that it
 /// does not have there.
 const NEAR_RIM_MM: f64 = 1.5;
 /// Part of the worn volume that may be there, %.
@@ -47,7 +47,7 @@ pub(super) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
             "{percent:.1} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
              {MOST_AT_RIM_PERCENT:.0} % would be sound"
         ),
-        advice: "The femur rides on an edge, where an elastic foundation over-estimates pressure: look at the placement \
+        advice: "The femur rides on an edge, where the pressure of an elastic model is not to be believed: look at the placement \
                  of the bodies, their axes and sides, and at where the outline of the insert was cut."
             .to_owned(),
     })
@@ -129,7 +129,7 @@ pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
             "the highest pressure is {peak:.1} MPa, and polyethylene yields below the surface from about {limit:.1} MPa; {}",
             extents()
         ),
-        advice: "A layer of springs does not yield: take pressure there as an upper bound, and wear, which goes by \
+        advice: "The insert of the model does not yield: take pressure there as an upper bound, and wear, which goes by \
                  force times sliding, as less affected."
             .to_owned(),
     })

@@ -24,7 +24,10 @@ use minijinja::value::Serde;
 use serde::Serialize;
 
 use crate::figure::{Panel, css, variables};
-use crate::results::{case::title, contents::Results};
+use crate::results::{
+    case::{is_deformable, title},
+    contents::Results,
+};
 
 const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
@@ -49,6 +52,7 @@ struct Page<'a> {
     rate: Option<String>,
     tiles: Vec<numbers::Tile>,
     missing: Vec<&'static str>,
+    is_deformable: bool,
     wear_map: Option<String>,
     compartments: Vec<compartments::Comparison>,
     laws: Vec<laws::Law>,
@@ -81,6 +85,7 @@ impl<'a> Page<'a> {
             rate: rate::rate(results),
             tiles: numbers::tiles(results),
             missing: story::missing(results),
+            is_deformable: results.case.as_deref().is_some_and(is_deformable),
             wear_map: wear_map(results, LARGE).map(|map| map.svg()),
             compartments: compartments::comparisons(results),
             laws: laws::laws(results),

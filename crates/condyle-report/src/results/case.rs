@@ -1,4 +1,4 @@
-//! What the report takes from the case file: its title and the side of the knee.
+//! What the report takes from the case file: its title, the side of the knee, the model of contact.
 
 use toml::{Table, Value};
 
@@ -19,6 +19,15 @@ pub(crate) fn cycles_asked(case: &str) -> Option<f64> {
     let cycles = case.get("march")?.get("cycles")?;
     let whole = cycles.as_integer().map(|cycles| cycles as f64);
     whole.or_else(|| cycles.as_float())
+}
+
+/// Whether the insert of the case deforms, and is no foundation.
+pub(crate) fn is_deformable(case: &str) -> bool {
+    let case: Option<Table> = case.parse().ok();
+    let model = case
+        .as_ref()
+        .and_then(|case| case.get("contact")?.get("model")?.as_str());
+    model == Some("deformable")
 }
 
 /// The side of the knee: left where any table of the case says `side = "left"`, else right.
@@ -52,6 +61,13 @@ mod tests {
     fn the_cycles_are_those_of_the_march() {
         assert_eq!(cycles_asked("[march]\ncycles = 5_000_000"), Some(5e6));
         assert_eq!(cycles_asked("[run]\ncycles = 2"), None);
+    }
+
+    #[test]
+    fn an_insert_deforms_where_the_case_says_so() {
+        assert!(is_deformable("[contact]\nmodel = \"deformable\""));
+        assert!(!is_deformable("[contact]\nmodel = \"foundation\""));
+        assert!(!is_deformable("model = \"deformable\""));
     }
 
     #[test]
