@@ -1,4 +1,4 @@
-//! What every law of wear says of a run, as a table of the terminal.
+//! What every law of wear says of a run: before its numbers, as all that makes them doubtful.
 
 use condyle_io::results::LawWear;
 
@@ -9,19 +9,19 @@ pub fn add(laws: &[LawWear], lines: &mut Lines) {
     if laws.len() < 2 {
         return;
     }
-    lines.line("wear by law, same histories    mg/Mcycles        mg        mm   outside of fit");
+    lines.line("   wear by law, same cycles    mg/Mcycles        mg        mm   outside of fit");
     for law in laws {
         lines.line(row(law));
     }
     if laws.iter().any(|law| law.approximate) {
         lines.line(
-            "  ~ approximate: the formula or a constant is remembered, not read in its source",
+            "   ~ approximate: the formula or a constant is remembered, not read in its source",
         );
     }
 }
 
 fn row(law: &LawWear) -> String {
-    let mark = if law.approximate { "~" } else { " " };
+    let mark = if law.approximate { '~' } else { ' ' };
     let name = if law.moved_the_surface {
         format!("{} (this run)", law.law)
     } else {
@@ -33,7 +33,7 @@ fn row(law: &LawWear) -> String {
         |percent| format!("{percent:.0} % of volume"),
     );
     format!(
-        "{mark:>3} {name:<26}{:>11.2}{:>10.2}{:>10.4}   {outside}",
+        "   {mark} {name:<25}{:>11.2}{:>10.2}{:>10.4}   {outside}",
         law.mass_loss_mg_per_million_cycles, law.mass_loss_mg, law.max_depth_mm
     )
 }
@@ -69,7 +69,7 @@ mod tests {
             assert_eq!(end(row, "0.2500"), end(0, "mm   outside").map(|at| at - 10));
         }
         assert!(rows[1].contains("archard (this run)") && rows[1].ends_with("range not known"));
-        assert!(rows[2].starts_with("  ~ kang") && rows[2].ends_with("12 % of volume"));
+        assert!(rows[2].starts_with("   ~ kang") && rows[2].ends_with("12 % of volume"));
     }
 
     #[test]

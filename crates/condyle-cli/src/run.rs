@@ -106,10 +106,10 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     }
     let mut lines = Lines::default();
     add_doubts(summary, &mut lines);
+    law_table::add(&summary.wear_laws, &mut lines);
     for (what, value) in rows(summary) {
         lines.line(format_args!("{what:<28}{value}"));
     }
-    law_table::add(&summary.wear_laws, &mut lines);
     add_warnings(summary, &mut lines);
     lines.line(format_args!(
         "results in {}; open {}, and in ParaView {}",

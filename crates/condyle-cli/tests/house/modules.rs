@@ -64,7 +64,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // Histories, never a solver.
     (
         "condyle::wear",
-        &["condyle::contact::history", "condyle::parameter"],
+        &[
+            "condyle::contact::history",
+            "condyle::contact::slip_work",
+            "condyle::parameter",
+        ],
     ),
     // Contact by its law alone.
     (

@@ -1,6 +1,5 @@
 //! What every law of wear says of the same histories.
 
-use condyle_io::results::LawWear;
 use serde::Serialize;
 
 use crate::number::{fixed, significant};
@@ -26,7 +25,17 @@ pub(super) fn laws(results: &Results) -> Vec<Law> {
     if laws.len() < 2 {
         return Vec::new();
     }
-    laws.iter().map(row).collect()
+    let rows = laws.into_iter().map(|law| Law {
+        name: law.law,
+        approximate: law.approximate,
+        moved_the_surface: law.moved_the_surface,
+        mass_per_million: significant(law.mass_loss_mg_per_million_cycles, 3),
+        mass: significant(law.mass_loss_mg, 3),
+        volume: significant(law.volume_loss_mm3, 3),
+        depth: significant(law.max_depth_mm, 3),
+        outside: percent(law.outside_of_fit_percent),
+    });
+    rows.collect()
 }
 
 /// The law that moved the surface, if the summary says which.
@@ -36,16 +45,6 @@ pub(super) fn of_run(results: &Results) -> Option<String> {
     Some(own.law)
 }
 
-fn row(law: &LawWear) -> Law {
-    let outside = law.outside_of_fit_percent;
-    Law {
-        name: law.law.clone(),
-        approximate: law.approximate,
-        moved_the_surface: law.moved_the_surface,
-        mass_per_million: significant(law.mass_loss_mg_per_million_cycles, 3),
-        mass: significant(law.mass_loss_mg, 3),
-        volume: significant(law.volume_loss_mm3, 3),
-        depth: significant(law.max_depth_mm, 3),
-        outside: outside.map_or_else(|| String::from("not known"), |percent| fixed(percent, 0)),
-    }
+fn percent(of_volume: Option<f64>) -> String {
+    of_volume.map_or_else(|| String::from("not known"), |percent| fixed(percent, 0))
 }

@@ -72,7 +72,8 @@ impl Sums {
         self.sliding_distance_mm += distance_mm;
         self.pressed_area_slip_mm3 += f64::from(record.pressed_mm2) * distance_mm;
         self.pressure_slip_mpa_mm += moment.pressure_mpa * distance_mm;
-        self.slip_work.add(moment, distance_mm);
+        self.slip_work
+            .add(moment.pressure_mpa, moment.slip_mm, distance_mm);
     }
 }
 

@@ -1,7 +1,5 @@
 //! Pressure times slip by direction: along and across the molecules, cross-shear, principal direction.
 
-use super::Moment;
-
 /// Less difference than this between along and across, as a part of the whole, has no direction: on a
 /// circle it is all rounding.
 const ISOTROPIC: f64 = 1e-6;
@@ -19,12 +17,12 @@ pub struct SlipWork {
 }
 
 impl SlipWork {
-    /// Adds an instant, whose slip is `distance_mm` long.
+    /// Adds a slip under a pressure; `distance_mm` is its length.
     #[inline(always)]
-    pub fn add(&mut self, moment: &Moment, distance_mm: f64) {
-        let [anterior, lateral] = moment.slip_mm;
+    pub fn add(&mut self, pressure_mpa: f64, slip_mm: [f64; 2], distance_mm: f64) {
+        let [anterior, lateral] = slip_mm;
         // A slip of length 0 has parts of 0: any divisor will do.
-        let per_mm = moment.pressure_mpa / distance_mm.max(f64::MIN_POSITIVE);
+        let per_mm = pressure_mpa / distance_mm.max(f64::MIN_POSITIVE);
         self.anterior += per_mm * anterior * anterior;
         self.mixed += per_mm * anterior * lateral;
         self.lateral += per_mm * lateral * lateral;
@@ -92,11 +90,8 @@ mod tests {
         let mut work = SlipWork::default();
         for pair in corners.windows(2) {
             let (x, z) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
-            let moment = Moment {
-                pressure_mpa: 2.0,
-                slip_mm: [cosine * x - sine * z, sine * x + cosine * z],
-            };
-            work.add(&moment, moment.distance_mm());
+            let slip_mm = [cosine * x - sine * z, sine * x + cosine * z];
+            work.add(2.0, slip_mm, slip_mm[0].hypot(slip_mm[1]));
         }
         work
     }
@@ -154,15 +149,7 @@ mod tests {
             let mut work = SlipWork::default();
             for part in 0..PARTS {
                 let angle = spread * ((2 * part + 1) as f64 / PARTS as f64 - 1.0);
-                let slip_mm = [angle.cos(), angle.sin()];
-                let pressure_mpa = 1.0;
-                work.add(
-                    &Moment {
-                        pressure_mpa,
-                        slip_mm,
-                    },
-                    1.0,
-                );
+                work.add(1.0, [angle.cos(), angle.sin()], 1.0);
             }
             let exact = 0.5 * (1.0 - (2.0 * spread).sin() / (2.0 * spread));
             near(work.cross_shear(), exact, 1e-6);
