@@ -266,38 +266,6 @@ fn holes_under_the_outline_are_errors_that_list_all_with_their_places() {
     }
 }
 
-/// A block cut out behind, with corners that stick out and some that go in.
-const NOTCHED: Body = Body {
-    outline_mm: |angle| {
-        let (sine, cosine) = (angle.sin().abs(), angle.cos());
-        let whole = (20.0 / cosine.abs()).min(30.0 / sine);
-        if cosine < 0.0 && 12.0 * sine < 7.0 * -cosine {
-            12.0 / -cosine
-        } else if cosine < 0.0 && whole * sine < 7.0 {
-            7.0 / sine
-        } else {
-            whole
-        }
-    },
-    top_mm: |_, _| 0.0,
-};
-
-#[test]
-fn hexahedra_are_sound_at_corners_that_go_in_however_the_grid_lies() {
-    for degrees in [0.0, 10.0, 27.0, 45.0] {
-        let shell = NOTCHED.shell().mapped(|vertex| turn(degrees) * vertex);
-        for edge_mm in [1.6, 1.05, 0.7, 0.5] {
-            let meshing = Meshing { edge_mm, layers: 2 };
-            let insert = insert_from_shell(&shell, true, None, meshing).unwrap();
-            let quality = insert.mesh().worst_quality();
-            assert!(
-                quality > 0.35,
-                "{quality} at {edge_mm} mm, turned by {degrees}"
-            );
-        }
-    }
-}
-
 #[test]
 fn the_surface_goes_on_smoothly_over_a_hole_which_is_named() {
     let mut shell = OVAL.shell();

@@ -33,7 +33,7 @@ use super::{
 const LEAST_PIECE: f64 = 4.0;
 /// Where a node on the outline is off the shell by what a chord of the outline is, it is moved by one of
 /// these shares of the way to the next node inside.
-const HAIRS: [f64; 7] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1];
+const HAIRS: [f64; 9] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.25, 0.5];
 
 /// Why a shell makes no insert.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -433,7 +433,6 @@ fn parts_listed(parts: &[LeftOut]) -> String {
         let why = match part.why {
             WhyLeftOut::Below => "below it",
             WhyLeftOut::Speck => "beside it",
-            WhyLeftOut::Away => "far from it",
         };
         let ([x, y, z], [long, high, wide]) = (part.at_mm.into(), part.size_mm.into());
         format!(

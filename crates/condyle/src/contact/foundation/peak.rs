@@ -23,10 +23,6 @@ const LEAST_NODES: usize = 7;
 /// that is none, such as a step of the thickness at the rim; what it says between the nodes is made up.
 const MOST_MISSED: f64 = 0.3;
 
-/// A quadratic that rises above the highest mean by more than this part of it may overshoot: where contact ends at an edge
-/// of the femur, the means beyond fall steeply, and bend it more than the surface inside is bent.
-const MOST_RISE: f64 = 0.5;
-
 /// Looks for the highest pressure.
 ///
 /// The law's measure of overclosure (see [`PressureLaw::measure`]) is smooth where the pressure is
@@ -66,37 +62,9 @@ impl PeakSearch<'_> {
             .fold(highest.into_iter().fold(0.0, f64::max), f64::max)
     }
 
-    /// Highest pressure within the share of a node, MPa; 0 where nothing tells that it is higher than the mean.
+    /// Highest pressure within the share of a node, MPa.
     fn highest_around(&self, node: u32) -> f64 {
         let patch = self.sampled(&self.faces.patch(node, LEAST_NODES));
-        let Some(highest) = self.highest_measure(&patch) else {
-            return 0.0;
-        };
-        let mean = patch[0].mean;
-        let limited = if highest - mean > MOST_RISE * mean {
-            let inside = self.sampled(&self.faces.patch(self.innermost(&patch), LEAST_NODES));
-            let inside = self.highest_measure(&inside).unwrap_or(mean);
-            highest.min(inside.max(mean))
-        } else {
-            highest
-        };
-        self.law.pressure(limited.max(0.0), 1.0).0
-    }
-
-    /// The node of a patch that is farthest from the one that presses least: what it sees of the surface does not have the
-    /// edge of contact in it.
-    fn innermost(&self, patch: &[PatchNode]) -> u32 {
-        let least = patch.iter().min_by(|a, b| a.mean.total_cmp(&b.mean));
-        let from = least.map_or(patch[0].node, |least| least.node);
-        let centre = |node: u32| self.shares[node as usize].centre;
-        let away = |at: &&PatchNode| (centre(at.node) - centre(from)).norm_squared();
-        let farthest = patch.iter().max_by(|a, b| away(a).total_cmp(&away(b)));
-        farthest.map_or(from, |farthest| farthest.node)
-    }
-
-    /// The highest value within the share of the first node of a patch, in the law's measure; none where a quadratic does
-    /// not follow it.
-    fn highest_measure(&self, patch: &[PatchNode]) -> Option<f64> {
         let share = |at: &PatchNode| &self.shares[at.node as usize];
         let top = &patch[0];
         let is_surface = |at: &&PatchNode| {
@@ -110,7 +78,8 @@ impl PeakSearch<'_> {
         let fit = Quadratic::fit(share(top), means.map(|at| (share(at), at.mean)));
         let follows =
             |fit: &Quadratic| (fit.mean() - top.mean).abs() <= MOST_MISSED * highest.abs();
-        fit.filter(follows).map(|fit| fit.highest())
+        fit.filter(follows)
+            .map_or(0.0, |fit| self.law.pressure(fit.highest().max(0.0), 1.0).0)
     }
 
     fn sampled(&self, nodes: &[u32]) -> Vec<PatchNode> {

@@ -2,8 +2,11 @@
 
 use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
 
-/// Lines lie beside round numbers, where edges of triangles are, by this share of their distance.
-const BESIDE: f64 = 0.137;
+/// Lines lie beside round numbers, where edges of triangles are, by these shares of their distance: not by the same,
+/// or they would lie on diagonals.
+const BESIDE: (f64, f64) = (0.137, 0.291);
+/// Passes of one line that are no farther apart are one, mm: through the edge between two triangles.
+const ONE_PASS_MM: f64 = 1e-6;
 
 /// A closed body by the heights at which the vertical lines of a square grid pass its surface.
 pub struct Sections {
@@ -26,12 +29,13 @@ impl Sections {
             columns,
             passes: vec![Vec::new(); rows * columns],
         };
-        let origin = Vec3::new(low.x, 0.0, low.z) - Vec3::new(1.0, 0.0, 1.0) * (BESIDE * step_mm);
+        let origin = Vec3::new(low.x - BESIDE.0 * step_mm, 0.0, low.z - BESIDE.1 * step_mm);
         for triangle in 0..body.triangles.len() {
             sections.add(&body.corners(triangle).map(|corner| corner - origin));
         }
         for passes in &mut sections.passes {
             passes.sort_by(|a, b| b.0.total_cmp(&a.0));
+            passes.dedup_by(|a, b| a.1 == b.1 && (a.0 - b.0).abs() < ONE_PASS_MM);
         }
         sections
     }

@@ -9,10 +9,13 @@ use crate::{
 
 /// The generic insert as a closed shell, its underside at y = -9 mm.
 fn insert() -> TriangleMesh {
-    let meshing = Meshing {
+    insert_of(Meshing {
         edge_mm: 2.0,
         layers: 1,
-    };
+    })
+}
+
+fn insert_of(meshing: Meshing) -> TriangleMesh {
     let insert = GenericInsertShape::default().insert(meshing).unwrap();
     let quads = insert.mesh().boundary_quads();
     let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
@@ -67,6 +70,21 @@ fn a_plate_that_is_no_larger_does_not_show_where_the_insert_ends() {
             }
             other => panic!("{other:?}"),
         }
+    }
+}
+
+#[test]
+fn lines_on_the_diagonals_of_a_square_grid_do_not_count_twice() {
+    let meshing = Meshing {
+        edge_mm: 1.0,
+        layers: 1,
+    };
+    let insert = insert_of(meshing);
+    match underside_of(fused(insert, -9.0, 0.94, 4.0, 40.0)) {
+        Underside::Unclear { plate_mm, .. } => {
+            assert!((plate_mm + 13.0).abs() < 0.01, "{plate_mm}")
+        }
+        other => panic!("{other:?}"),
     }
 }
 

@@ -22,8 +22,6 @@ const HIDDEN_SHARE: f64 = 0.5;
 /// A part whose shadow is smaller than this share of the largest one is a speck: an insert of two parts, or one with
 /// a post by itself, has larger ones.
 const SPECK_SHARE: f64 = 0.02;
-/// A part farther from the body than this share of its diagonal is none of it.
-const AWAY_SHARE: f64 = 0.5;
 
 /// Which parts of a file are the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +52,6 @@ pub enum WhyLeftOut {
     Below,
     /// It is small, and neither above nor below the rest.
     Speck,
-    /// It lies far away.
-    Away,
 }
 
 /// Takes out what is not of the body; gives what that was.
@@ -100,15 +96,6 @@ impl<'a> Part<'a> {
             .flat_map(|&n| mesh.corners(n as usize));
         let (low, high) = corners.fold(none, |(low, high), at| (low.inf(&at), high.sup(&at)));
         Self { piece, low, high }
-    }
-
-    fn diagonal_mm(&self) -> f64 {
-        (self.high - self.low).norm()
-    }
-
-    fn distance_mm(&self, other: &Self) -> f64 {
-        let apart = (self.low - other.high).sup(&(other.low - self.high));
-        apart.sup(&Vec3::zeros()).norm()
     }
 
     fn encloses(&self, other: &Self) -> bool {
@@ -217,9 +204,7 @@ impl Seen {
         let (part, whole) = (&parts[n], &parts[body]);
         let is_hidden = share(self.first[n], self.shadows[n]) < HIDDEN_SHARE;
         let is_beside = share(self.shared[n], self.shadows[n]) < HIDDEN_SHARE;
-        if part.distance_mm(whole) > AWAY_SHARE * whole.diagonal_mm() {
-            Some(WhyLeftOut::Away)
-        } else if share(self.shadows[n], self.first[body]) < SPECK_SHARE && is_beside {
+        if share(self.shadows[n], self.first[body]) < SPECK_SHARE && is_beside {
             Some(WhyLeftOut::Speck)
         } else if is_hidden && !part.piece.is_open && !whole.encloses(part) {
             Some(WhyLeftOut::Below)
@@ -292,9 +277,9 @@ mod tests {
     #[test]
     fn specks_beside_the_body_and_far_from_it_are_left_out() {
         let beside = block(Vec3::new(25.0, 3.0, 0.0), Vec3::new(27.0, 5.0, 2.0));
-        let far = block(Vec3::new(0.0, 3.0, 120.0), Vec3::new(40.0, 5.0, 150.0));
+        let far = block(Vec3::new(0.0, 3.0, 120.0), Vec3::new(4.0, 5.0, 125.0));
         let (why, body) = left_out(joined(joined(insert(), beside), far));
-        assert_eq!(why, [WhyLeftOut::Speck, WhyLeftOut::Away]);
+        assert_eq!(why, [WhyLeftOut::Speck; 2]);
         assert_eq!(body.bounds(), insert().bounds());
     }
 }
