@@ -74,7 +74,7 @@ fn sphere_row(v: f64) -> Row {
         0.012,
         |elements| {
             let mesh = sphere(elements);
-            let forces = inner_pressure(&mesh, |place| place.norm());
+            let forces = inner_pressure(&mesh, Vec3::norm);
             let u = symmetric(&mesh, elastic(v), false).displacements(&forces);
             radial_mm(&mesh, &u, a, |place| *place)
         },

@@ -78,7 +78,7 @@ fn sphere_solved() -> Solved {
         2.0 * YIELD_MPA * (c / a).ln() + 2.0 / 3.0 * YIELD_MPA * (1.0 - (c / b).powi(3));
     let mesh = sphere(ELEMENTS);
     let solid = symmetric(&mesh, elastic(v), false);
-    let forces = inner_pressure(&mesh, |place| place.norm());
+    let forces = inner_pressure(&mesh, Vec3::norm);
     Solved {
         exact_mm: (1.0 - v) * YIELD_MPA * c.powi(3) / (MODULUS_MPA * b * b),
         ..loaded(solid, &forces, pressure_mpa, |place| *place)
