@@ -19,6 +19,8 @@ const MOST_LINES: f64 = 400.0;
 const MOST_LAYERS: usize = 32;
 /// A part that is seen from above on less than this share of its own shadow lies below another.
 const HIDDEN_SHARE: f64 = 0.5;
+/// A part below with a smaller share of the body's shadow that reaches into it is a peg of it, and no tray.
+const PEG_SHARE: f64 = 0.25;
 /// A part whose shadow is smaller than this share of the largest one is a speck: an insert of two parts, or one with
 /// a post by itself, has larger ones.
 const SPECK_SHARE: f64 = 0.02;
@@ -203,10 +205,12 @@ impl Seen {
         let share = |of: usize, whole: usize| of as f64 / whole.max(1) as f64;
         let (part, whole) = (&parts[n], &parts[body]);
         let is_hidden = share(self.first[n], self.shadows[n]) < HIDDEN_SHARE;
+        let reaches_in = part.high.y > whole.low.y;
+        let is_peg = reaches_in && share(self.shadows[n], self.first[body]) < PEG_SHARE;
         let is_beside = share(self.shared[n], self.shadows[n]) < HIDDEN_SHARE;
         if share(self.shadows[n], self.first[body]) < SPECK_SHARE && is_beside {
             Some(WhyLeftOut::Speck)
-        } else if is_hidden && !part.piece.is_open && !whole.encloses(part) {
+        } else if is_hidden && !part.piece.is_open && !whole.encloses(part) && !is_peg {
             Some(WhyLeftOut::Below)
         } else {
             None
