@@ -125,7 +125,8 @@ fn a_file_that_is_no_mesh() {
 
 #[test]
 fn an_insert_so_steep_that_no_column_stands_in_it() {
-    let text = MESH_INSERT.replace("edge_mm = 1.5\n", "edge_mm = 2.0\n");
+    // So high a body is taken for one with its tray unless the case says where the polyethylene ends.
+    let text = MESH_INSERT.replace("edge_mm = 1.5\n", "edge_mm = 2.0\nclip_below_mm = 0.01\n");
     let steep = shapes::wedge(10.0);
     let bench = knee(&format!("{text}{MESH_FEMUR}"), &steep, &shapes::femur());
     let words = [

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::number::{fixed, significant};
-use crate::results::contents::Results;
+use crate::results::{contents::Results, summary::Summary};
 
 /// A law in the table.
 #[derive(Serialize)]
@@ -21,7 +21,7 @@ pub(super) struct Law {
 /// The laws of the summary; none where there is only one.
 pub(super) fn laws(results: &Results) -> Vec<Law> {
     let summary = results.summary.as_ref();
-    let laws = summary.map_or_else(Vec::new, |summary| summary.wear_laws());
+    let laws = summary.map_or_else(Vec::new, Summary::wear_laws);
     if laws.len() < 2 {
         return Vec::new();
     }

@@ -18,8 +18,10 @@ const MOST_MM: f64 = 25.0;
 const LEAST_MM: f64 = 3.0;
 /// Below a plate, where a stem, a keel or pegs stand, a section has less than this share of its area.
 const STEM_SHARE: f64 = 0.5;
-/// What stands so far below a plate is a stem or a keel, mm.
+/// What stands so far below a plate is a stem, a keel or a peg, mm ...
 const LEAST_STEM_MM: f64 = 5.0;
+/// ... and one that stands less far may be a peg of the insert itself, where no ledge shows a plate, mm.
+const MOST_PEG_MM: f64 = 10.0;
 /// A ledge around the body changes the area of a section by this share at least: a third of a millimetre all
 /// around a knee's insert.
 const LEDGE_SHARE: f64 = 0.02;
@@ -57,7 +59,8 @@ impl Underside {
     /// That of a closed body with its articulating surface above, x anterior, y superior, z right, mm.
     ///
     /// A body that reaches more than 12 mm below its dishes is looked at in horizontal sections. It is a construct if
-    /// a stem, a keel or pegs of 5 mm stand on less than half of its area, or if it reaches 25 mm below the dishes. The
+    /// a stem, a keel or pegs of 5 mm stand on less than half of its area (10 mm, where no ledge shows a plate), or if it
+    /// reaches 25 mm below the dishes. The
     /// polyethylene ends at the height, 3 mm below the dishes or more, below which the area within the outer line of the
     /// section jumps up: on a plate that is larger. Where the area jumps down, the insert may overhang its plate, or be
     /// cut out for its rim, so that is not taken for the end.
@@ -73,7 +76,9 @@ impl Underside {
         }
         let profile = Profile::new(body, dish_mm);
         let plate_mm = profile.plate_mm(low.y);
-        if plate_mm - low.y < LEAST_STEM_MM && reach_mm < MOST_MM {
+        let stem_mm = plate_mm - low.y;
+        let is_whole_below = |stem_most_mm| stem_mm < stem_most_mm && reach_mm < MOST_MM;
+        if is_whole_below(LEAST_STEM_MM) {
             return Self::Whole;
         }
         let ledges = profile.ledges(plate_mm);
@@ -84,6 +89,7 @@ impl Underside {
                 below_dishes_mm: dish_mm - ledge.height_mm,
                 reach_mm,
             },
+            _ if is_whole_below(MOST_PEG_MM) => Self::Whole,
             _ => Self::Unclear {
                 reach_mm,
                 plate_mm,

@@ -248,7 +248,7 @@ fn a_draft_puts_the_origin_between_dishes_that_lie_off_that_of_their_file() {
         femur: pair
             .femur
             .clone()
-            .mapped(|v| v + Vec3::new(-40.0, 10.0, 3.0)),
+            .mapped(|v| v + Vec3::new(-40.0, 10.0, 0.0)),
         insert: pair
             .insert
             .clone()

@@ -173,9 +173,9 @@ impl ChangedFactor {
             let mut row = [0.0; MOST_CHANGES];
             for j in 0..=i {
                 let mut sum = self.of_changes(i, j, columns);
-                for m in 0..j {
-                    let other = if j == i { row[m] } else { self.small[j][m] };
-                    sum -= row[m] * other * self.small[m][m];
+                let other = if j == i { &row } else { &self.small[j] };
+                for (m, (own, other)) in row.iter().zip(other).enumerate().take(j) {
+                    sum -= own * other * self.small[m][m];
                 }
                 row[j] = if j == i { sum } else { sum / self.small[j][j] };
             }

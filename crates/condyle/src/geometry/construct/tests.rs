@@ -82,7 +82,7 @@ fn lines_on_the_diagonals_of_a_square_grid_do_not_count_twice() {
     let insert = insert_of(meshing);
     match underside_of(fused(insert, -9.0, 0.94, 4.0, 40.0)) {
         Underside::Unclear { plate_mm, .. } => {
-            assert!((plate_mm + 13.0).abs() < 0.01, "{plate_mm}")
+            assert!((plate_mm + 13.0).abs() < 0.01, "{plate_mm}");
         }
         other => panic!("{other:?}"),
     }
