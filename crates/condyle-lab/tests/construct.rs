@@ -66,14 +66,14 @@ fn block(low: [f64; 3], high: [f64; 3]) -> TriangleMesh {
 }
 
 /// The tray and stem of an insert as shells of their own, which reach a little into it.
-fn with_shells_below(insert: TriangleMesh) -> TriangleMesh {
+fn with_shells_below(insert: &TriangleMesh) -> TriangleMesh {
     let (low, high) = insert.bounds();
     let tray = block(
         [low.x - 2.0, low.y - 4.0, low.z - 2.0],
         [high.x + 2.0, low.y + 0.3, high.z + 2.0],
     );
     let stem = block([-6.0, low.y - STEM_MM, -6.0], [6.0, low.y - 3.5, 6.0]);
-    joined(joined(tray, &insert), &stem)
+    joined(joined(tray, insert), &stem)
 }
 
 /// One closed surface around an insert, cut at a height, and a plate and stem that have grown together with it there.
@@ -221,7 +221,7 @@ fn assert_wears_as_alone_in_one_surface(text: &str, insert: &TriangleMesh, heigh
 /// As one of three shells in a file.
 fn assert_wears_as_alone_among_shells(text: &str, insert: &TriangleMesh) {
     let alone = worn(unwrapped(built(text, insert)));
-    let shells = unwrapped(built(text, &with_shells_below(insert.clone())));
+    let shells = unwrapped(built(text, &with_shells_below(insert)));
     let is_told = |warning: &BuildWarning| matches!(warning, BuildWarning::LeftOut { parts, .. } if parts.len() == 2);
     assert!(shells.warnings.iter().any(is_told), "{:?}", shells.warnings);
     assert_equal(worn(shells), alone);

@@ -113,11 +113,13 @@ fn jump(program: &mut [u8], from: usize, to: usize) {
     program[from + 1..from + JUMP_LENGTH].copy_from_slice(&distance.to_le_bytes());
 }
 
-/// The first padding after a place that is long enough.
+/// The padding that is long enough and nearest to a place, after it if there is one: so it is code.
 fn padding(program: &[u8], place: usize, length: usize) -> usize {
-    let mut places = program[place..].windows(length);
-    let found = places.position(|bytes| bytes.iter().all(|&byte| byte == PADDING));
-    place + found.expect("there is padding between functions")
+    let is_padding = |bytes: &[u8]| bytes.iter().all(|&byte| byte == PADDING);
+    let after = program[place..].windows(length).position(is_padding);
+    let before = || program[..place].windows(length).rposition(is_padding);
+    let found = after.map(|after| place + after).or_else(before);
+    found.expect("there is padding between functions")
 }
 
 fn listing(program: &Path) -> String {
