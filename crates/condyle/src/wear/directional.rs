@@ -96,7 +96,10 @@ mod tests {
     fn verify_a_ratio_of_one_is_archards_law() {
         let law = KIND.law(&[2.64e-7, 1.0, 1.1]);
         let path = [rectangle(3.0, [2.0, 1.0]), straight(8.0, [1.0, 7.0])].concat();
-        let work: f64 = path.iter().map(|(p, [x, z])| p * x.hypot(*z) / 1000.0).sum();
+        let work: f64 = path
+            .iter()
+            .map(|(p, [x, z])| p * x.hypot(*z) / 1000.0)
+            .sum();
         assert_near(depth_mm(law.as_ref(), &path), 2.64e-7 * work);
     }
 }

@@ -153,7 +153,10 @@ mod tests {
         assert_near(depth_mm(law.as_ref(), &path), within + above);
         let told = outside(law.as_ref(), &path).unwrap();
         assert_near(told, above / (within + above));
-        assert_eq!(outside(law.as_ref(), &rectangle(4.0, [3.0, 1.0])), Some(0.0));
+        assert_eq!(
+            outside(law.as_ref(), &rectangle(4.0, [3.0, 1.0])),
+            Some(0.0)
+        );
         assert_eq!(outside(law.as_ref(), &straight(4.0, [3.0, 1.0])), Some(1.0));
     }
 }

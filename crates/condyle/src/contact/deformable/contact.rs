@@ -134,8 +134,15 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         let (near, most) = (&mut self.near, F64x4::splat(MOST_BULGE_MM));
         let prepared_mm2 = self.bodies.femur.prepared_spread_mm2();
         near.clear();
-        self.nearby
-            .find(pose, pose4, |_, _| (most, ()), |block, ()| near.push(block));
+        self.nearby.find(
+            pose,
+            pose4,
+            |_, _| (most, ()),
+            |block, cached, ()| {
+                let cached = *cached;
+                near.push(NearBlock { block, cached });
+            },
+        );
         self.candidates.clear();
         self.lanes.clear();
         for (number, near) in self.near.iter().enumerate() {
@@ -159,8 +166,8 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         }
     }
 
-    /// Presses all that touch.
-    fn press(&mut self, twist: &Twist4) {
+    /// Finds the loads of all that touch, and keeps those blocks.
+    fn find_loads(&mut self) -> Vec<Loads4> {
         let mut loads = vec![Loads4::NONE; self.near.len()];
         for (place, load) in self.pressing.solve(&self.candidates, &mut self.columns) {
             let (number, lane) = self.lanes[place];
@@ -171,16 +178,12 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
                 by[lane] = load[at / LANES].lane(at % LANES);
             }
         }
+        let pressing = self.near.drain(..).zip(&loads);
+        let pressing = pressing.filter(|(_, loads)| !loads.is_none());
         self.pressed.near.clear();
-        self.pressed.tractions.clear();
-        for (near, loads) in self.near.drain(..).zip(&loads) {
-            if !loads.is_none() {
-                let area_mm2 = self.nearby.blocks[near.block as usize].area_mm2;
-                let tractions = loads.tractions(&near, area_mm2, twist, self.rubbing.friction);
-                self.pressed.tractions.push(tractions);
-                self.pressed.near.push(near);
-            }
-        }
+        self.pressed.near.extend(pressing.map(|(near, _)| near));
+        loads.retain(|loads| !loads.is_none());
+        loads
     }
 }
 
@@ -217,8 +220,12 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
         self.find_candidates(&motion.pose, &pose);
-        self.press(&twist);
-        let (wrench, mean_slip) = self.pressed.total(&self.nearby.blocks);
+        let (loads, friction) = (self.find_loads(), self.rubbing.friction);
+        let (wrench, mean_slip) = self
+            .pressed
+            .press(&self.nearby.blocks, |place, near, shares| {
+                loads[place].tractions(near, shares.area_mm2, &twist, friction)
+            });
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 

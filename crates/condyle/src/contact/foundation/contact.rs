@@ -7,7 +7,7 @@ use crate::{
         contact_law::Bodies,
         memory::{ContactCache, ContactMemory, ContactState},
         model::{ContactModel, Landing, Linearization, Response, Tangent},
-        pressed::{NearBlocks, PressedBlocks},
+        pressed::{NearBlock, NearBlocks, PressedBlocks},
         share_block::ShareBlock,
     },
     number::{F64x4, vector::dot},
@@ -68,21 +68,12 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
                     EdgeSlopes::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
                 (slopes.reach_mm(), slopes)
             },
-            |near, edges| {
-                pressed.near.push(near);
+            |block, cached, edges| {
+                let cached = *cached;
+                pressed.near.push(NearBlock { block, cached });
                 slopes.push(edges);
             },
         );
-    }
-
-    /// Presses all that touch.
-    fn press(&mut self, pose: &Pose4, twist: &Twist4) {
-        self.pressed.tractions.clear();
-        for (near, slopes) in self.pressed.near.iter().zip(&self.slopes) {
-            let shares = &self.nearby.blocks[near.block as usize];
-            let pressed = self.law.press(&near.cached, slopes, shares, pose, twist);
-            self.pressed.tractions.push(pressed);
-        }
     }
 
     fn peak_search(&self, pose: &Pose) -> PeakSearch<'_> {
@@ -123,8 +114,12 @@ impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
         self.find_touching(&motion.pose, &pose);
-        self.press(&pose, &twist);
-        let (wrench, mean_slip) = self.pressed.total(&self.nearby.blocks);
+        let (law, slopes) = (self.law, &self.slopes);
+        let (wrench, mean_slip) = self
+            .pressed
+            .press(&self.nearby.blocks, |place, near, shares| {
+                law.press(&near.cached, &slopes[place], shares, &pose, &twist)
+            });
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 

@@ -87,7 +87,7 @@ impl<'a, B: BroadPhase> NearBlocks<'a, B> {
         pose: &Pose,
         pose4: &Pose4,
         reach: impl Fn(&CachedSample, &ShareBlock) -> (F64x4, K),
-        found: impl FnMut(NearBlock, K),
+        found: impl FnMut(u32, &CachedSample, K),
     ) {
         self.find_candidates(pose, pose4);
         self.sample_candidates(reach, found);
@@ -114,7 +114,7 @@ impl<'a, B: BroadPhase> NearBlocks<'a, B> {
     fn sample_candidates<K>(
         &mut self,
         reach: impl Fn(&CachedSample, &ShareBlock) -> (F64x4, K),
-        mut found: impl FnMut(NearBlock, K),
+        mut found: impl FnMut(u32, &CachedSample, K),
     ) {
         let femur = self.femur;
         self.number += 1;
@@ -140,7 +140,7 @@ impl<'a, B: BroadPhase> NearBlocks<'a, B> {
                 if !reuses {
                     self.cached[at] = cached;
                 }
-                found(NearBlock { block, cached }, known);
+                found(block, &cached, known);
             }
         }
     }

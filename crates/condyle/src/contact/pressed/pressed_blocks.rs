@@ -23,7 +23,7 @@ pub(in crate::contact) struct PressedBlocks {
     /// The blocks near the femur, ascending.
     pub near: Vec<NearBlock>,
     /// What presses each of them.
-    pub tractions: Vec<Tractions4>,
+    tractions: Vec<Tractions4>,
     /// Where the femur is.
     pub pose: Pose,
     friction: Coulomb,
@@ -44,19 +44,24 @@ impl PressedBlocks {
         }
     }
 
-    /// The wrench on the insert in the femoral frame, and how regions slip.
+    /// Presses the blocks, each by the `traction` of its place in the list and its shares; the wrench on the insert in
+    /// the femoral frame, and how regions slip.
     #[inline(always)]
-    pub fn total(
-        &self,
+    pub fn press(
+        &mut self,
         blocks: &[ShareBlock],
+        mut traction: impl FnMut(usize, &NearBlock, &ShareBlock) -> Tractions4,
     ) -> (Wrench<body::Insert, body::Femur>, [Vec3; MOST_REGIONS]) {
         let mut total = WrenchSum::new();
         let mut slips = RegionSlips::new();
-        for (near, pressed) in self.near.iter().zip(&self.tractions) {
+        self.tractions.clear();
+        for (place, near) in self.near.iter().enumerate() {
             let shares = &blocks[near.block as usize];
+            let pressed = traction(place, near, shares);
             let force_n = pressed.force_n(&near.cached.sample.normal, self.friction.coefficient);
             total.add(&near.cached.place, &force_n);
-            slips.add(&shares.in_region, pressed);
+            slips.add(&shares.in_region, &pressed);
+            self.tractions.push(pressed);
         }
         (total.total(), slips.means())
     }
