@@ -78,7 +78,7 @@ impl Elastic {
         self.youngs_modulus / (3.0 * (1.0 - 2.0 * self.poissons_ratio))
     }
 
-    /// Stress $2 G \operatorname{dev} \varepsilon + K \operatorname{tr} \varepsilon\, 1$ of a strain.
+    /// Stress $2 G \operatorname{dev} \varepsilon + K \operatorname{tr} \varepsilon\thinspace 1$ of a strain.
     pub(crate) fn stress(&self, strain: &Strain) -> Stress {
         let (g, mean) = (self.shear_modulus(), strain.trace() / 3.0);
         let pressure = 3.0 * self.bulk_modulus() * mean;

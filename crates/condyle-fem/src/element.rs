@@ -210,7 +210,7 @@ impl Element {
     /// The lower triangle of the stiffness, without what is lost along the flow.
     ///
     /// $2 G \operatorname{dev}:\operatorname{dev}$ between displacements along i and j of functions with gradients $a$ and $b$
-    /// is $G (a \cdot b\, \delta_{ij} + b_i a_j - \tfrac{2}{3} a_i b_j)$, and $K$ goes with the projected divergences.
+    /// is $G (a \cdot b\thinspace \delta_{ij} + b_i a_j - \tfrac{2}{3} a_i b_j)$, and $K$ goes with the projected divergences.
     fn add_stiffness(
         &self,
         elastic: &Elastic,

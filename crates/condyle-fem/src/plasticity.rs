@@ -42,7 +42,7 @@ pub(crate) struct Response {
     pub(crate) softening: Option<Softening>,
 }
 
-/// The elastic tangent less the consistent one: $a\, I_\text{dev} + b\, n \otimes n$.
+/// The elastic tangent less the consistent one: $a\thinspace I_\text{dev} + b\thinspace n \otimes n$.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Softening {
     /// Stress over strain, of any deviator.

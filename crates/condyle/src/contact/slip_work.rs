@@ -4,7 +4,7 @@
 /// circle it is all rounding.
 const ISOTROPIC: f64 = 1e-6;
 
-/// Pressure times slip of a node by direction: the sum of $p |\Delta s| \, t t^T$ over the instants of a
+/// Pressure times slip of a node by direction: the sum of $p |\Delta s| \thinspace t t^T$ over the instants of a
 /// cycle, $t$ the direction of the slip, MPa mm.
 ///
 /// What slides along a direction $d$ is $d^T T d$, the sum of $p |\Delta s| \cos^2$ of the angle between. The

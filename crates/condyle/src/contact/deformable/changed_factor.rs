@@ -20,8 +20,8 @@ const NONE: u32 = u32::MAX;
 /// The compliance C = L L' of the nodes B that pressed some time ago is factored. Since then nodes E have begun to
 /// press, and R have ceased. With W = [C_BE, I_R] and Z = L\W the changes x, loads on E and what holds R, satisfy
 ///
-/// $$ \left( \begin{bmatrix} C_{EE} & 0 \\ 0 & 0 \end{bmatrix} - Z^T Z \right) x =
-///    \begin{bmatrix} d_E \\ 0 \end{bmatrix} - Z^T y, \qquad y = L^{-1} d_B, \qquad N_B = L^{-T} (y - Z x). $$
+/// $$ \left( \begin{bmatrix} C_{EE} & 0 \cr 0 & 0 \end{bmatrix} - Z^T Z \right) x =
+///    \begin{bmatrix} d_E \cr 0 \end{bmatrix} - Z^T y, \qquad y = L^{-1} d_B, \qquad N_B = L^{-T} (y - Z x). $$
 ///
 /// The small matrix is quasi-definite: L D L' of it exists in any order.
 pub(super) struct ChangedFactor {
