@@ -11,8 +11,8 @@ use thiserror::Error;
 
 use super::axes::Axes;
 use super::build::{
-    Body, checks_of, checks_of_insert, heights_to_write, is_off_centre, longest_mm, middle_of_mesh,
-    rounded_up, usual_unit,
+    Body, MOST_ACROSS_MM, checks_of, checks_of_insert, heights_to_write, longest_mm,
+    middle_of_mesh, rounded_up, usual_unit,
 };
 use super::contents::Case;
 use super::heading::Side;
@@ -142,6 +142,9 @@ fn with(mut remarks: Vec<String>, remark: Option<String>) -> Vec<String> {
     remarks
 }
 
+/// An origin so far in front of the dishes' middle, or behind it, is not that of a machine, mm.
+const FAR_ALONG_MM: f64 = 20.0;
+
 /// Where the origin of an insert frame is.
 struct ConcludedOrigin {
     key: &'static str,
@@ -152,7 +155,9 @@ impl ConcludedOrigin {
     /// That of the file, unless the dishes lie off it; then between them, where the insert is moved to.
     fn centred(insert: &mut TriangleMesh) -> Self {
         let middle = middle_of_mesh(insert);
-        if !is_off_centre(&middle) {
+        // Flat dishes are lowest at no certain place along: only what is far off is taken for another origin.
+        let is_far = middle.z.abs() > MOST_ACROSS_MM || middle.x.abs() > FAR_ALONG_MM;
+        if !is_far {
             return Self {
                 key: "",
                 remark: None,

@@ -27,7 +27,7 @@ pub(super) use lie::{longest_mm, usual_unit};
 #[cfg(feature = "file-system")]
 pub(super) use meshes::{checks_of, checks_of_insert};
 #[cfg(feature = "file-system")]
-pub(super) use off_centre::is_off_centre;
+pub(super) use off_centre::MOST_ACROSS_MM;
 pub use pieces::StrayPiece;
 #[cfg(feature = "file-system")]
 pub(super) use rigid_motion::middle_of_mesh;
