@@ -134,15 +134,8 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         let (near, most) = (&mut self.near, F64x4::splat(MOST_BULGE_MM));
         let prepared_mm2 = self.bodies.femur.prepared_spread_mm2();
         near.clear();
-        self.nearby.find(
-            pose,
-            pose4,
-            |_, _| (most, ()),
-            |block, cached, ()| {
-                let cached = *cached;
-                near.push(NearBlock { block, cached });
-            },
-        );
+        self.nearby
+            .find(pose, pose4, |_, _| (most, ()), |block, ()| near.push(block));
         self.candidates.clear();
         self.lanes.clear();
         for (number, near) in self.near.iter().enumerate() {

@@ -7,7 +7,7 @@ use crate::{
         contact_law::Bodies,
         memory::{ContactCache, ContactMemory, ContactState},
         model::{ContactModel, Landing, Linearization, Response, Tangent},
-        pressed::{NearBlock, NearBlocks, PressedBlocks},
+        pressed::{NearBlocks, PressedBlocks},
         share_block::ShareBlock,
     },
     number::{F64x4, vector::dot},
@@ -68,9 +68,8 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
                     EdgeSlopes::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
                 (slopes.reach_mm(), slopes)
             },
-            |block, cached, edges| {
-                let cached = *cached;
-                pressed.near.push(NearBlock { block, cached });
+            |near, edges| {
+                pressed.near.push(near);
                 slopes.push(edges);
             },
         );

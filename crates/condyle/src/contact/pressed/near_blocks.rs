@@ -81,13 +81,12 @@ impl<'a, B: BroadPhase> NearBlocks<'a, B> {
     /// Tells `found` of every block with a share whose gap is within its reach, in ascending order.
     ///
     /// `reach` says how far that is, mm, and what else it knows of the block.
-    #[inline(always)]
     pub fn find<K>(
         &mut self,
         pose: &Pose,
         pose4: &Pose4,
         reach: impl Fn(&CachedSample, &ShareBlock) -> (F64x4, K),
-        found: impl FnMut(u32, &CachedSample, K),
+        found: impl FnMut(NearBlock, K),
     ) {
         self.find_candidates(pose, pose4);
         self.sample_candidates(reach, found);
@@ -97,7 +96,6 @@ impl<'a, B: BroadPhase> NearBlocks<'a, B> {
     ///
     /// They are found first and sampled after: the processor goes through two short loops faster than
     /// through a long one, where every step waits for the one before.
-    #[inline(always)]
     fn find_candidates(&mut self, pose: &Pose, pose4: &Pose4) {
         self.candidates.clear();
         for &block in self.search.candidates(pose) {
@@ -110,11 +108,10 @@ impl<'a, B: BroadPhase> NearBlocks<'a, B> {
     ///
     /// Only what is near is remembered, and until it parts: what is remembered then follows from the
     /// motion alone, and not from what the search named.
-    #[inline(always)]
     fn sample_candidates<K>(
         &mut self,
         reach: impl Fn(&CachedSample, &ShareBlock) -> (F64x4, K),
-        mut found: impl FnMut(u32, &CachedSample, K),
+        mut found: impl FnMut(NearBlock, K),
     ) {
         let femur = self.femur;
         self.number += 1;
@@ -140,7 +137,7 @@ impl<'a, B: BroadPhase> NearBlocks<'a, B> {
                 if !reuses {
                     self.cached[at] = cached;
                 }
-                found(block, &cached, known);
+                found(NearBlock { block, cached }, known);
             }
         }
     }

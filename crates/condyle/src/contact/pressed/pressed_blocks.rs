@@ -46,7 +46,6 @@ impl PressedBlocks {
 
     /// Presses the blocks, each by the `traction` of its place in the list and its shares; the wrench on the insert in
     /// the femoral frame, and how regions slip.
-    #[inline(always)]
     pub fn press(
         &mut self,
         blocks: &[ShareBlock],
