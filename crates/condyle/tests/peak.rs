@@ -5,7 +5,7 @@ use condyle::{
     contact::{Bodies, ContactLaw, ContactMemory, Foundation, PressureLaw, PressureTable},
     geometry::{
         Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert,
-        Meshing, flat_insert,
+        Meshing, SmoothField, TriangleMesh, flat_insert,
     },
     spatial::{Pose, RelativeMotion},
 };
@@ -196,4 +196,55 @@ fn at_rest(femur: &FemoralSurface, insert: &Insert) -> Vec3 {
         }
     }
     Vec3::new(0.0, low, 0.0)
+}
+
+/// Half the width of a flat condyle, the radius of its edge, and how much deeper its right side is, mm a mm.
+const FLAT_MM: f64 = 8.0;
+const EDGE_MM: f64 = 1.5;
+const SLOPE: f64 = 0.004;
+
+/// A condyle that is flat across and rounded at its edges, as an open surface that faces down.
+fn flat_condyle() -> FemoralSurface {
+    const STEP_MM: f64 = 0.25;
+    let columns = 76;
+    let place = |i: u32, k: u32| {
+        let x = f64::from(i) * STEP_MM - 9.5;
+        let beyond = (x.abs() - FLAT_MM).max(0.0);
+        let rounded = EDGE_MM - (EDGE_MM * EDGE_MM - (beyond * beyond).min(2.2)).sqrt();
+        Vec3::new(x, rounded - SLOPE * x, f64::from(k) * 8.0 * STEP_MM - 20.0)
+    };
+    let mut mesh = TriangleMesh::default();
+    for k in 0..=20 {
+        mesh.vertices.extend((0..=columns).map(|i| place(i, k)));
+    }
+    for k in 0..20 {
+        for i in 0..columns {
+            let [a, b] = [k * (columns + 1) + i, (k + 1) * (columns + 1) + i];
+            mesh.triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
+        }
+    }
+    FemoralSurface::Mesh(SmoothField::new(&mesh, 1))
+}
+
+#[test]
+fn a_peak_at_an_edge_of_the_femur_is_not_made_up() {
+    const DEEP_MM: f64 = 0.05;
+    let femur = flat_condyle();
+    let insert = layer(1.05);
+    let law = &laws()[0];
+    let along = (0..=2000).map(|i| f64::from(i) / 100.0 - 10.0);
+    let deepest_mm = along.map(|x| -femur.gap_mm(&Vec3::new(x, DEEP_MM, 0.0)));
+    let deepest_mm = deepest_mm.fold(0.0, f64::max);
+    let exact = law.pressure(deepest_mm, THICKNESS_MM).0;
+    let femur = femur.prepared_for(insert.surface().mean_spread_mm2());
+    for part in [0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9] {
+        let place = Vec3::new(part * 1.05, -DEEP_MM, 0.3);
+        let [mean, peak] = mean_and_peak(law, &femur, &insert, place, 0.0);
+        assert!(mean <= peak, "{mean} {peak}");
+        let part_of_exact = peak / exact;
+        assert!(
+            (0.7..1.1).contains(&part_of_exact),
+            "{part_of_exact} at {part}"
+        );
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use condyle::geometry::{CheckedShell, Underside};
+use condyle::geometry::{CheckedShell, ShellError, Underside};
 
 use super::error::{BuildError, BuildWarning};
 use super::meshes::checks_of_insert;
@@ -38,13 +38,10 @@ pub(super) fn without_tray(
                 below_dishes_mm,
                 reach_mm,
             });
-            let checks = checks_of_insert(Some(height_mm));
-            checks
-                .check(shell.mesh)
-                .map_err(|source| BuildError::Shell {
-                    file: file.path().to_path_buf(),
-                    source,
-                })
+            cut_at(shell, height_mm).map_err(|source| BuildError::Shell {
+                file: file.path().to_path_buf(),
+                source,
+            })
         }
         Underside::Unclear {
             reach_mm,
@@ -56,6 +53,19 @@ pub(super) fn without_tray(
             heights: heights_to_write(plate_mm, &ledges_mm),
         }),
     }
+}
+
+/// The insert of a construct above a height, mm; what was left out of the file before stays known.
+///
+/// # Errors
+/// What a shell is refused for.
+pub(in crate::case) fn cut_at(
+    whole: CheckedShell,
+    height_mm: f64,
+) -> Result<CheckedShell, ShellError> {
+    let CheckedShell { mesh, left_out, .. } = whole;
+    let cut = checks_of_insert(Some(height_mm)).check(mesh)?;
+    Ok(CheckedShell { left_out, ..cut })
 }
 
 /// The height to cut at: the next hundredth of a millimetre, so that nothing of the plate is left.

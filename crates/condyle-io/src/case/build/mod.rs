@@ -19,13 +19,13 @@ mod wrong_axes;
 
 pub use assemble::Built;
 #[cfg(feature = "file-system")]
-pub(super) use construct::{heights_to_write, rounded_up};
+pub(super) use construct::{cut_at, heights_to_write, rounded_up};
 pub use error::{BuildError, BuildWarning};
 pub use femur_triangles::FEMUR_TRIANGLES;
 #[cfg(feature = "file-system")]
 pub(super) use lie::{longest_mm, usual_unit};
 #[cfg(feature = "file-system")]
-pub(super) use meshes::{checks_of, checks_of_insert};
+pub(super) use meshes::checks_of;
 #[cfg(feature = "file-system")]
 pub(super) use off_centre::MOST_ACROSS_MM;
 pub use pieces::StrayPiece;

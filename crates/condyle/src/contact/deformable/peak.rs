@@ -5,16 +5,10 @@ use std::collections::BTreeMap;
 use crate::{
     contact::{
         model::TouchedNode,
-        pressed::{Quadratic, highest_of_regions},
+        pressed::{LEAST_NODES, Quadratic, highest_mpa},
     },
     geometry::{FacesAround, Share},
 };
-
-/// Nodes whose pressures differ by no more than this part press equally: which of them leads is a matter of
-/// round-off.
-const EQUAL: f64 = 1e-9;
-/// As many nodes lie around any inside a surface; see `foundation/peak.rs`.
-const LEAST_NODES: usize = 7;
 
 /// A quadratic that misses the square of the pressure under the top by more than this part does not follow it.
 const MOST_MISSED: f64 = 0.1;
@@ -35,12 +29,7 @@ pub(super) struct PeakSearch<'a> {
 impl PeakSearch<'_> {
     /// Highest pressure at or around the nodes that touch, MPa; any region may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
-        let highest = highest_of_regions(touched);
-        let leads = highest.map(|highest| highest * (1.0 - EQUAL));
-        let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.region)];
-        let tops = touched.iter().filter(leads);
-        tops.map(|top| self.highest_around(top.node))
-            .fold(highest.into_iter().fold(0.0, f64::max), f64::max)
+        highest_mpa(touched, |node| self.highest_around(node))
     }
 
     /// Highest pressure within the share of a node, MPa.

@@ -3,7 +3,7 @@
 use crate::{
     contact::{
         model::TouchedNode,
-        pressed::{Quadratic, highest_of_regions},
+        pressed::{LEAST_NODES, Quadratic, highest_mpa},
         pressure_law::PressureLaw,
     },
     geometry::{FacesAround, FemoralSurface, MOST_GAP_SLOPE, Share},
@@ -11,17 +11,16 @@ use crate::{
     spatial::Pose4,
 };
 
-/// Nodes whose pressures differ by no more than this part press equally: which of them leads is a
-/// matter of round-off, and of which way round the knee is told.
-const EQUAL: f64 = 1e-9;
-
-/// Around any node inside a surface there are as many, and they determine a quadratic; at its rim
-/// there are fewer, and farther ones must help.
-const LEAST_NODES: usize = 7;
-
 /// A quadratic that misses the mean under the top by more than this part of the highest mean follows something
 /// that is none, such as a step of the thickness at the rim; what it says between the nodes is made up.
 const MOST_MISSED: f64 = 0.3;
+
+/// A quadratic that misses a mean around the top by more than this part of its rise there bends otherwise than the
+/// surface does.
+const MISSED_OF_RISE: f64 = 0.1;
+
+/// So many that at an edge, too, those on one side of it determine a quadratic.
+const NODES_ONE_SIDED: usize = 2 * LEAST_NODES;
 
 /// Looks for the highest pressure.
 ///
@@ -54,32 +53,65 @@ struct PatchNode {
 impl PeakSearch<'_> {
     /// Highest pressure at or around the nodes that touch, MPa; any region may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
-        let highest = highest_of_regions(touched);
-        let leads = highest.map(|highest| highest * (1.0 - EQUAL));
-        let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.region)];
-        let tops = touched.iter().filter(leads);
-        tops.map(|top| self.highest_around(top.node))
-            .fold(highest.into_iter().fold(0.0, f64::max), f64::max)
+        highest_mpa(touched, |node| self.highest_around(node))
     }
 
-    /// Highest pressure within the share of a node, MPa.
+    /// Highest pressure within the share of a node, MPa; 0 where nothing tells that it is higher than the mean.
     fn highest_around(&self, node: u32) -> f64 {
         let patch = self.sampled(&self.faces.patch(node, LEAST_NODES));
+        let Some(fit) = self.fit(&patch) else {
+            return 0.0;
+        };
+        let limited = if patch.iter().all(|at| at.mean > 0.0) {
+            fit.highest()
+        } else {
+            self.limited(&fit, node)
+        };
+        self.law.pressure(limited.max(0.0), 1.0).0
+    }
+
+    /// What a quadratic rises to that has the edge of contact in it.
+    ///
+    /// At an edge of the femur the surface falls away beyond, and bends it more than the surface inside is bent: it
+    /// then misses the nodes farther inside that press, and these alone tell how high it rises.
+    fn limited(&self, fit: &Quadratic, node: u32) -> f64 {
+        let mut pressing = self.sampled(&self.faces.patch(node, NODES_ONE_SIDED));
+        pressing.retain(|at| at.node == node || at.mean > 0.0);
+        let missed = fit.worst_miss(&self.shares[node as usize], self.means(&pressing));
+        let (highest, mean) = (fit.highest(), pressing[0].mean);
+        if missed <= MISSED_OF_RISE * (highest - mean) {
+            return highest;
+        }
+        let of_pressing = self.fit(&pressing).map_or(mean, |fit| fit.highest());
+        highest.min(of_pressing.max(mean))
+    }
+
+    /// The quadratic over a patch; none where it does not follow the mean of the first node.
+    fn fit(&self, patch: &[PatchNode]) -> Option<Quadratic> {
+        let top = &patch[0];
+        let means = self.means(patch);
+        let highest = means.clone().map(|(_, mean)| mean).fold(top.mean, f64::max);
+        let fit = Quadratic::fit(&self.shares[top.node as usize], means);
+        let follows =
+            |fit: &Quadratic| (fit.mean() - top.mean).abs() <= MOST_MISSED * highest.abs();
+        fit.filter(follows)
+    }
+
+    /// Shares and means of those nodes of a patch that are on one surface with the first.
+    fn means<'a>(
+        &'a self,
+        patch: &'a [PatchNode],
+    ) -> impl Iterator<Item = (&'a Share, f64)> + Clone {
         let share = |at: &PatchNode| &self.shares[at.node as usize];
         let top = &patch[0];
-        let is_surface = |at: &&PatchNode| {
+        let is_surface = move |at: &&PatchNode| {
             let distance2_mm2 = (share(at).centre - share(top).centre).norm_squared();
             // What changes faster from point to point than a gap can has no surface behind it.
             let change = (at.gap_mm - top.gap_mm) / MOST_GAP_SLOPE;
             change * change <= distance2_mm2
         };
-        let means = patch.iter().filter(is_surface);
-        let highest = means.clone().map(|at| at.mean).fold(top.mean, f64::max);
-        let fit = Quadratic::fit(share(top), means.map(|at| (share(at), at.mean)));
-        let follows =
-            |fit: &Quadratic| (fit.mean() - top.mean).abs() <= MOST_MISSED * highest.abs();
-        fit.filter(follows)
-            .map_or(0.0, |fit| self.law.pressure(fit.highest().max(0.0), 1.0).0)
+        let on_surface = patch.iter().filter(is_surface);
+        on_surface.map(move |at| (share(at), at.mean))
     }
 
     fn sampled(&self, nodes: &[u32]) -> Vec<PatchNode> {

@@ -7,10 +7,7 @@ use super::{
 };
 use crate::{
     Vec3, Vector,
-    contact::{
-        model::{MOST_REGIONS, TouchedNode},
-        share_block::ShareBlock,
-    },
+    contact::{model::TouchedNode, share_block::ShareBlock},
     geometry::ArticulatingSurface,
     number::{
         F64x4, Number,
@@ -125,17 +122,4 @@ impl Landed4 {
             }
         }
     }
-}
-
-/// Highest mean over a share in every region, MPa.
-pub(in crate::contact) fn highest_of_regions(touched: &[TouchedNode]) -> [f64; MOST_REGIONS] {
-    let mut highest = [0.0; MOST_REGIONS];
-    for node in touched {
-        let highest = &mut highest[usize::from(node.region)];
-        // A jump that is seldom taken is faster than a maximum that waits for the one before.
-        if node.pressure_mpa > *highest {
-            *highest = node.pressure_mpa;
-        }
-    }
-    highest
 }

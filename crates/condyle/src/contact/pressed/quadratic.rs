@@ -85,6 +85,22 @@ impl Quadratic {
         self.constant + self.moment * (xx + yy) / 2.0
     }
 
+    /// By how much it misses one of the means that it was fitted to around a share, at most.
+    pub fn worst_miss<'a>(
+        &self,
+        around: &Share,
+        means: impl Iterator<Item = (&'a Share, f64)>,
+    ) -> f64 {
+        let plane = Plane::of(around);
+        let [xx, xy, yy] = self.bend;
+        let [x, y] = self.slope;
+        let coefficients = SVector::from([self.constant, x, y, xx, xy, yy]);
+        let miss = |(share, mean): (&Share, f64)| {
+            (row(&plane, share, around).dot(&coefficients) - mean).abs()
+        };
+        means.map(miss).fold(0.0, f64::max)
+    }
+
     /// The largest value within the share.
     ///
     /// Along either axis of the bend it is at the stationary point, or at the end of the share

@@ -1,0 +1,144 @@
+//! What a shape tells of its body.
+
+use std::path::{Path, PathBuf};
+
+use condyle::{
+    Mat3,
+    anatomy::{Orientation, Recognition, Sureness},
+    geometry::{CheckedShell, ShellError, TriangleMesh},
+};
+
+use super::{alone::recognised_alone, error::DraftError};
+use crate::{
+    case::{
+        axes::Axes,
+        build::{Body, checks_of, longest_mm, usual_unit},
+        mesh_file::LengthUnit,
+    },
+    files::Disk,
+    mesh::{parse_surface, surface_bytes},
+};
+
+/// A body of the draft, and what its shape tells.
+pub(super) struct Concluded<'a> {
+    body: Body,
+    pub file: PathBuf,
+    written: &'a Path,
+    mesh: TriangleMesh,
+    pub unit: LengthUnit,
+    recognition: Option<Recognition>,
+}
+
+impl<'a> Concluded<'a> {
+    pub fn from(body: Body, written: &'a Path) -> Result<Self, DraftError> {
+        let file = std::path::absolute(written).unwrap_or_else(|_| written.to_path_buf());
+        let mesh = parse_surface(&file, &surface_bytes(&Disk, &file)?)?;
+        let size = longest_mm(&mesh);
+        let Some((unit, _)) = usual_unit(size) else {
+            return Err(DraftError::NoUnit { file, body, size });
+        };
+        let mesh = mesh.mapped(|vertex| vertex * unit.in_mm());
+        let recognition = match (body, body.recognise(&mesh)) {
+            (Body::Insert, None) => recognised_alone(&mesh),
+            (_, recognition) => recognition,
+        };
+        Ok(Self {
+            body,
+            file,
+            written,
+            recognition,
+            mesh,
+            unit,
+        })
+    }
+
+    /// The orientations that its shape leaves, best first.
+    pub fn best(&self) -> Vec<Orientation> {
+        self.recognition
+            .iter()
+            .flat_map(Recognition::best)
+            .collect()
+    }
+
+    /// How it lies: as the other body may lie, where its own shape leaves that, since files of one
+    /// implant mostly share their axes.
+    pub fn orientation(&self, of_other: &[Orientation]) -> Orientation {
+        let Some(recognition) = &self.recognition else {
+            return of_other.first().copied().unwrap_or(Orientation::ISB);
+        };
+        let shared = recognition.best().find(|best| of_other.contains(best));
+        shared.unwrap_or_else(|| recognition.nearest())
+    }
+
+    /// Its triangles in mm, x anterior, y superior, z right.
+    fn placed(&self, lies: &Orientation) -> TriangleMesh {
+        let rotation: Mat3 = lies.rotation();
+        self.mesh.clone().mapped(|vertex| rotation * vertex)
+    }
+
+    /// The same, mended and checked as a run does it.
+    pub fn shell(&self, lies: &Orientation) -> Result<CheckedShell, DraftError> {
+        checks_of(self.body)
+            .check(self.placed(lies))
+            .map_err(|source| self.refused(source))
+    }
+
+    pub fn refused(&self, source: ShellError) -> DraftError {
+        DraftError::Shell {
+            file: self.file.clone(),
+            source,
+        }
+    }
+
+    pub fn remarks(&self, lies: &Orientation, shell: &CheckedShell) -> Vec<String> {
+        let (low, high) = shell.mesh.bounds();
+        let size = high - low;
+        let mut remarks = vec![
+            format!(
+                "{}, concluded from the shape of {}:",
+                self.body,
+                self.written.display()
+            ),
+            format!(
+                "  length_unit \"{}\", which makes it {:.1} mm from back to front, {:.1} mm high and {:.1} mm wide;",
+                self.unit.word(),
+                size.x,
+                size.y,
+                size.z
+            ),
+            format!("  axes {}.", self.how_sure(lies)),
+        ];
+        if self.body == Body::Femur {
+            let start = "  start_mm: the lowest points of the condyles over those of the dishes.";
+            remarks.push(start.to_owned());
+        } else if !shell.closed {
+            let thickness =
+                "  The surface is open: thickness_mm is assumed, write that of the insert.";
+            remarks.push(thickness.to_owned());
+        }
+        remarks
+    }
+
+    fn how_sure(&self, lies: &Orientation) -> String {
+        let Some(recognition) = &self.recognition else {
+            return "could not be told, since the shape is not that of a whole knee: check them"
+                .to_owned();
+        };
+        match recognition.sureness() {
+            Some(Sureness::Certain) => "for certain".to_owned(),
+            Some(Sureness::Likely) => {
+                "likely, since one sign of the shape tells back from front: check them".to_owned()
+            }
+            None => {
+                let others = recognition.best().filter(|other| other != lies);
+                let others: Vec<String> = others
+                    .map(|other| format!("{:?}", Axes::of(&other.rotation()).words()))
+                    .collect();
+                format!(
+                    "not for certain, since {} fits about as well: check them",
+                    others.join(" or ")
+                )
+            }
+        }
+    }
+}
