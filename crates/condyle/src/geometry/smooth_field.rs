@@ -96,11 +96,17 @@ impl SmoothField {
     /// Bounds on the surface around points, in every lane.
     #[inline(always)]
     pub fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
-        let nodes = self.gap.nodes_at(points);
-        nodes
-            .map(|node| self.curvature.around(node))
-            .reduce(CurvatureBounds::joined)
-            .unwrap_or(CurvatureBounds::UNKNOWN)
+        let mut around = self
+            .gap
+            .nodes_at(points)
+            .map(|node| self.curvature.around(node));
+        let Some(mut bounds) = around.next() else {
+            return CurvatureBounds::UNKNOWN;
+        };
+        for other in around {
+            bounds = bounds.joined(other);
+        }
+        bounds
     }
 
     /// How far from the femoral frame's origin the grid reaches, mm.

@@ -78,7 +78,8 @@ impl TangentSum {
 
     /// Adds two blocks of shares; the derivatives of the wrench at the femur's origin by pose and by
     /// twist.
-    #[inline(always)]
+    // Inlined, the entries of the sum would go to and fro between two places in memory at every call.
+    #[inline(never)]
     pub fn add(
         &mut self,
         one: (&CachedSample, &Tractions4),
