@@ -50,6 +50,16 @@ fn another_law_takes_the_place_of_the_files_with_all_its_constants() {
         assert!(read("set") == read("written"), "{file}");
     }
     bench.write("case.toml", &archard);
+    let own = [
+        "--print",
+        "--set",
+        "decay_per_mpa=0.2",
+        "--set",
+        "wear.law=kang",
+    ];
+    let said = bench.say(&[&["check", "case.toml"][..], &own].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(said.out.contains("decay_per_mpa = 0.2"), "{}", said.out);
     let both = [
         "--set",
         "wear.law=kang",

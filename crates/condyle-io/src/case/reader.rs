@@ -81,13 +81,14 @@ impl CaseReader {
         Ok(case)
     }
 
-    /// The same changes with the dotted paths of their keys; the case is read as it is where they
-    /// do not tell themselves.
+    /// The same changes with the dotted paths of their keys. Where they do not tell themselves, the case is read with
+    /// those that do: a law that is set brings keys of its own.
     fn placed(&self, path: &Path, changes: &[Assignment]) -> Result<Vec<Assignment>, ChangeError> {
         if changes.iter().all(Assignment::is_placed) {
             return Ok(changes.to_vec());
         }
-        let case = self.read(path)?;
+        let told = changes.iter().filter(|change| change.is_placed());
+        let case = self.read_changed(path, &told.cloned().collect::<Vec<_>>())?;
         let placed = |change: &Assignment| {
             if change.is_placed() {
                 Ok(change.clone())
