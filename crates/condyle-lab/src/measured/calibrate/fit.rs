@@ -122,13 +122,8 @@ impl<'a> Search<'a> {
         };
         if start.in_proportion {
             let at = search.at[0];
-            let slope = search.weighed(
-                &search
-                    .rates
-                    .iter()
-                    .map(|rate| rate / at)
-                    .collect::<Vec<_>>(),
-            );
+            let slopes: Vec<f64> = search.rates.iter().map(|rate| rate / at).collect();
+            let slope = search.weighed(&slopes);
             search.slopes.set_column(0, &slope);
             return Ok(search);
         }
@@ -212,7 +207,7 @@ impl<'a> Search<'a> {
     fn step(&self) -> Result<DVector<f64>, CalibrateError> {
         let parts = self.slopes.clone().svd(true, true);
         let [most, least] = [parts.singular_values.max(), parts.singular_values.min()];
-        if !(least > SINGULAR * most) {
+        if least.is_nan() || least <= SINGULAR * most {
             return Err(CalibrateError::NotTold);
         }
         let step = parts.solve(&-self.residuals(&self.rates), 0.0);
@@ -254,13 +249,12 @@ impl<'a> Search<'a> {
     /// A parameter after a step, which is cut where it is too long or leads out of the limits.
     fn after(&self, number: usize, step: f64) -> f64 {
         let (was, [least, most]) = (self.at[number], self.limits[number]);
-        let cut = match was.signum() {
-            sign if was == 0.0 || sign.is_nan() => was + step,
-            sign => {
-                let size =
-                    (sign * (was + step)).clamp(was.abs() / LONGEST_STEP, was.abs() * LONGEST_STEP);
-                sign * size
-            }
+        let sign = was.signum();
+        let cut = if was == 0.0 {
+            step
+        } else {
+            let [shortest, longest] = [was.abs() / LONGEST_STEP, was.abs() * LONGEST_STEP];
+            sign * (sign * (was + step)).clamp(shortest, longest)
         };
         cut.clamp(least, most)
     }

@@ -50,7 +50,7 @@ impl Test {
     /// An error where there is nothing to make a prediction of, or by.
     pub(super) fn check(&self) -> Result<(), CalibrateError> {
         let mg_per_million_cycles = self.weighed.aim().mg_per_million_cycles;
-        if !(mg_per_million_cycles > 0.0 && mg_per_million_cycles.is_finite()) {
+        if mg_per_million_cycles <= 0.0 || !mg_per_million_cycles.is_finite() {
             return Err(CalibrateError::NoWear {
                 mg_per_million_cycles,
             });
