@@ -169,7 +169,7 @@ def findings(laws, runs, rates, words):
     for knee, own in rates.items():
         ratio = {word: own["unstable"][word] / own["stable"][word] for word in words}
         rows.append((
-            f"The {knee} knee wears more without its ligaments [pmc4174965]",
+            f"The {knee} knee wears more without its ligaments [pmc2014]",
             "measured 1.83 times as much",
             [f"{yes(ratio[w] > 1.0)} ({ratio[w]:.2f})" for w in words],
         ))
