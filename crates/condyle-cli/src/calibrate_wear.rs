@@ -28,9 +28,10 @@ fn calibrated(arguments: &CalibrateWear) -> Result<Calibration, CalibrateError> 
         constants: arguments.constant.clone(),
         predict: arguments.predict.clone(),
     };
-    calibrate(&request, &mut |trial: &Trial| {
-        tell(format_args!("{}", in_words(trial)))
-    })
+    let mut tried = |trial: &Trial| {
+        tell(format_args!("{}", in_words(trial)));
+    };
+    calibrate(&request, &mut tried)
 }
 
 fn in_words(trial: &Trial) -> String {
