@@ -38,7 +38,7 @@ pub enum Command {
     Sensitivity(Sensitivity),
     /// Hold a run against measured kinematics, weighed wear and a scanned surface.
     Compare(Compare),
-    /// Find the wear factor with which a run wears as fast as the specimens did.
+    /// Find the constants of the wear law with which runs wear as fast as the specimens did.
     CalibrateWear(CalibrateWear),
 }
 
@@ -192,11 +192,18 @@ pub struct Compare {
 
 #[derive(Args)]
 pub struct CalibrateWear {
-    /// The results folder; its case is run again with other wear factors, and nothing in it is changed.
-    pub results: PathBuf,
-    /// The TOML file that names the measured data; it needs `[gravimetric]`.
-    pub measured: PathBuf,
-    /// Print the factor, its interval and every trial as JSON, and nothing else on standard output.
+    /// A results folder and the TOML file that names its measured data, which needs `[gravimetric]`; give as many such
+    /// pairs as there are tests. The cases are run again with other constants, and nothing in the folders is changed.
+    #[arg(required = true, num_args = 2.., value_names = ["RESULTS", "MEASURED"])]
+    pub tests: Vec<PathBuf>,
+    /// Find this constant of the law, such as cross_shear_exponent; may be given several times. Without it, how much the
+    /// law wears is found, whatever the cycle.
+    #[arg(long, value_name = "NAME")]
+    pub constant: Vec<String>,
+    /// Say what this case would lose with the constants found, with its interval; may be given several times.
+    #[arg(long, value_name = "CASE")]
+    pub predict: Vec<PathBuf>,
+    /// Print the constants, their intervals and every trial as JSON, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
 }

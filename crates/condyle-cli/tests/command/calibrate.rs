@@ -1,4 +1,4 @@
-//! The wear factor from weighings: found again where it is known.
+//! Constants of wear laws from weighings: found again where they are known.
 
 use std::fmt::Write;
 
@@ -104,7 +104,7 @@ fn the_interval_may_count_specimens_instead_of_weighings() {
     assert_eq!(said.code, Some(0), "{}", said.err);
     for words in [
         "mean of the specimens",
-        "wear factor",
+        "archard wears",
         "95 % interval",
         "[wear] wear_factor_mm3_per_nm =",
     ] {
@@ -133,7 +133,7 @@ fn what_cannot_be_calibrated_is_said() {
         &["does not say that it is a mass in mg"],
     );
     let heavy = "cycles,k_mg\n0,90000\n1e6,81000\n2e6,72000\n3e6,63000\n";
-    refuses(heavy, 3, &["with a wear factor of", "update"]);
+    refuses(heavy, 3, &["with wear_factor_mm3_per_nm = ", "update"]);
     bench.write("measured.toml", "[kinematics]\nfile = \"motion.csv\"\n");
     bench.write("motion.csv", "percent,ap_mm\n0,1\n8,2\n");
     let said = bench.say(&["calibrate-wear", "out", "measured.toml"]);
@@ -180,10 +180,12 @@ fn a_case_in_the_folder_that_is_none_any_more_is_refused_with_its_place() {
 }
 
 #[test]
-fn a_rate_that_no_run_comes_near_is_said_with_what_is_left() {
+fn a_table_of_masses_that_the_run_did_not_write_leads_astray_no_further_than_a_run() {
     let bench = with_factor(ASSUMED);
+    bench.write("masses.csv", &masses_of(&with_factor(KNOWN), 0.5));
+    bench.write("measured.toml", TABLE);
     let run = std::fs::read_to_string(bench.path("out/wear.csv")).unwrap();
-    // A table that claims ten times the mass: the search takes the factor for large enough.
+    // A table that claims ten times the mass: the first step takes the factor for far too large.
     let claimed = |line: &str| {
         let mut columns: Vec<String> = line.split(',').map(str::to_owned).collect();
         if let Ok(mass) = columns[1].parse::<f64>() {
@@ -195,14 +197,149 @@ fn a_rate_that_no_run_comes_near_is_said_with_what_is_left() {
         "out/wear.csv",
         &run.lines().map(claimed).collect::<String>(),
     );
-    losing(&bench, 60.0);
-    let said = bench.say(&["calibrate-wear", "out", "measured.toml"]);
-    said.assert_refused(
-        2,
+    let json = calibrated(&bench);
+    close(&json["wear_factor_mm3_per_nm"], KNOWN, 2e-3 * KNOWN);
+}
+
+/// A small case by the law of Kang that wears `times` as much as by its defaults, on a dish of that radius, run into
+/// `out`.
+fn by_kang(times: f64, coronal_radius_mm: f64) -> Bench {
+    let level = -13.1 + times.ln();
+    let case = SMALL.replace("increments = 50", "increments = 100");
+    let case = case.replace(
+        "[insert]\n",
+        &format!("[insert]\ncoronal_radius_mm = {coronal_radius_mm}\n"),
+    );
+    let bench = Bench::with_case(&format!(
+        "{case}[wear]\nlaw = \"kang\"\nlog_wear_factor = {level}\n"
+    ));
+    bench.run_into("out");
+    bench
+}
+
+/// A bench with a run by Kang's law on two dishes, and the masses of specimens by a law that wears 1.5 times as much.
+fn two_tests() -> Bench {
+    let bench = by_kang(1.0, 30.0);
+    let flatter = by_kang(1.0, 35.0);
+    bench.write(
+        "flatter.toml",
+        &std::fs::read_to_string(flatter.path("case.toml")).unwrap(),
+    );
+    let said = bench.say(&["run", "flatter.toml", "--out", "flatter"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    for (name, radius) in [("masses", 30.0), ("flatter", 35.0)] {
+        bench.write(
+            &format!("{name}.csv"),
+            &masses_of(&by_kang(1.5, radius), 0.3),
+        );
+    }
+    let table =
+        |file: &str| format!("[gravimetric]\nfile = \"{file}.csv\"\ninterval = \"specimens\"\n");
+    bench.write("measured.toml", &table("masses"));
+    bench.write("measured-flatter.toml", &table("flatter"));
+    bench
+}
+
+const BOTH: [&str; 5] = [
+    "calibrate-wear",
+    "out",
+    "measured.toml",
+    "flatter",
+    "measured-flatter.toml",
+];
+
+#[test]
+fn verify_another_law_is_found_by_two_tests_and_carried_into_a_third() {
+    let bench = two_tests();
+    let third = by_kang(1.5, 32.0);
+    let start = by_kang(1.0, 32.0);
+    bench.write(
+        "third.toml",
+        &std::fs::read_to_string(start.path("case.toml")).unwrap(),
+    );
+    let said = bench.say(&[&BOTH[..], &["--predict", "third.toml", "--json"]].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let json: Value = serde_json::from_str(&said.out).unwrap();
+    close(&json["times_as_much"]["value"], 1.5, 2e-3);
+    let constant = &json["constants"][0];
+    assert_eq!(constant["name"], "log_wear_factor");
+    close(&constant["value"], -13.1 + 1.5f64.ln(), 2e-3);
+    assert_eq!(json["degrees_of_freedom"], 3);
+    let prediction = &json["predictions"][0];
+    let truth = *third.table("out", "wear.csv")["mass_loss_mg"]
+        .last()
+        .unwrap();
+    close(&prediction["mass_loss_mg"], truth, 3e-3 * truth);
+    // All rates rise alike with the level, so that the mass is as sure as the mean of four specimens: Student's t of
+    // three degrees of freedom at 97.5 %, over the root of four.
+    let interval = &prediction["interval_mg"];
+    let wide = interval["high"].as_f64().unwrap() - interval["low"].as_f64().unwrap();
+    let scatter = json["scatter_percent"].as_f64().unwrap() / 100.0;
+    let exact = 2.0 * 3.182_446 * scatter / 2.0 * truth;
+    assert!((wide / exact - 1.0).abs() < 0.1, "{wide} {exact}");
+}
+
+#[test]
+fn what_several_tests_cannot_tell_is_said() {
+    let bench = two_tests();
+    let refuses =
+        |arguments: &[&str], expected: &[&str]| bench.say(arguments).assert_refused(2, expected);
+    refuses(&BOTH[..4], &["3 paths are no pairs"]);
+    refuses(
+        &[&BOTH[..], &["--constant", "wear_factor"]].concat(),
+        &["the wear law \"kang\" has no constant `wear_factor`; it has `log_wear_factor`, "],
+    );
+    refuses(
         &[
-            "after 12 runs the wear rate is still",
-            "% off the measured one",
-            "use more updates",
+            &BOTH[..3],
+            &[
+                "--constant",
+                "log_wear_factor",
+                "--constant",
+                "decay_per_mpa",
+            ],
+        ]
+        .concat(),
+        &["1 measured rate cannot tell 2 constants"],
+    );
+    bench.write(
+        "measured-flatter.toml",
+        "[gravimetric]\nfile = \"flatter.csv\"\n",
+    );
+    refuses(
+        &BOTH,
+        &[
+            "measured-flatter.toml",
+            "tests that are fitted together need one kind of interval",
         ],
     );
+    let archard = with_factor(ASSUMED);
+    let other = archard.path("out");
+    refuses(
+        &[
+            "calibrate-wear",
+            "out",
+            "measured.toml",
+            other.to_str().unwrap(),
+            "measured.toml",
+        ],
+        &["this run has the wear law \"archard\", and the first one has \"kang\""],
+    );
+}
+
+#[test]
+fn one_specimen_gives_no_interval_of_specimens_and_that_is_said() {
+    let bench = with_factor(ASSUMED);
+    losing(&bench, 25.0);
+    bench.write(
+        "measured.toml",
+        &format!("{TABLE}interval = \"specimens\"\n"),
+    );
+    let said = bench.say(&["calibrate-wear", "out", "measured.toml"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(said.out.contains("without an interval"), "{}", said.out);
+    assert!(said.out.contains("no interval: "), "{}", said.out);
+    bench.write("masses.csv", "cycles,k_mg\n0,900\n");
+    let said = bench.say(&["calibrate-wear", "out", "measured.toml"]);
+    said.assert_refused(2, &["weighing"]);
 }

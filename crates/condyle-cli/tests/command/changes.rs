@@ -34,6 +34,46 @@ fn a_changed_case_is_checked_and_stays_as_it_is() {
 }
 
 #[test]
+fn another_law_takes_the_place_of_the_files_with_all_its_constants() {
+    let archard = format!("{SMALL}[wear]\nwear_factor_mm3_per_nm = 3e-7\n");
+    let bench = Bench::with_case(&archard);
+    let law = ["--set", "wear.law=kang"];
+    let said = bench.say(&[&["run", "case.toml", "-o", "set"][..], &law].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let told = "wear_factor_mm3_per_nm = 3e-7: left out, since the law \"kang\" that is set has no such constant";
+    assert!(said.err.contains(told), "{}", said.err);
+    bench.write("case.toml", &format!("{SMALL}[wear]\nlaw = \"kang\"\n"));
+    let said = bench.run_into("written");
+    assert!(!said.err.contains("left out"), "{}", said.err);
+    for file in ["wear.csv", "kinematics.csv", "case.toml"] {
+        let read = |run: &str| fs::read(bench.path(&format!("{run}/{file}"))).unwrap();
+        assert!(read("set") == read("written"), "{file}");
+    }
+    bench.write("case.toml", &archard);
+    let own = [
+        "--print",
+        "--set",
+        "decay_per_mpa=0.2",
+        "--set",
+        "wear.law=kang",
+    ];
+    let said = bench.say(&[&["check", "case.toml"][..], &own].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(said.out.contains("decay_per_mpa = 0.2"), "{}", said.out);
+    let both = [
+        "--set",
+        "wear.law=kang",
+        "--set",
+        "wear.wear_factor_mm3_per_nm=1e-7",
+    ];
+    let said = bench.say(&[&["check", "case.toml"][..], &both].concat());
+    said.assert_refused(
+        2,
+        &["`wear_factor_mm3_per_nm` belongs to law = \"archard\""],
+    );
+}
+
+#[test]
 fn a_change_that_cannot_be_made_is_refused() {
     let bench = Bench::with_case(SMALL);
     for (change, words) in [

@@ -156,6 +156,7 @@ fn the_folder_has_the_files_of_the_contract_and_no_others() {
         "insert_0003.vtu",
         "kinematics.csv",
         "report.html",
+        "slip_paths.csv",
         "summary.json",
         "wear.csv",
     ];

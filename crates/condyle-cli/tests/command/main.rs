@@ -24,4 +24,5 @@ mod plausibility;
 mod preview;
 mod sensitivity;
 mod shapes;
+mod slip_paths;
 mod words;

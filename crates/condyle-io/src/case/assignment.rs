@@ -63,6 +63,11 @@ impl Assignment {
         self.key.contains('.')
     }
 
+    /// The dotted path of its key, once it is placed.
+    pub(super) fn key(&self) -> &str {
+        &self.key
+    }
+
     /// The same with the dotted path of its key in `case`.
     pub(super) fn placed_in(&self, case: &Case) -> Result<Self, AssignmentError> {
         let paths: Vec<String> = case.keys().into_iter().map(|(path, _)| path).collect();

@@ -151,7 +151,7 @@ impl Case {
     }
 
     fn errors_at(&self, errors: &[(Culprit, String)]) -> Problems {
-        let source = &self.origin.0;
+        let source = &self.origin.source;
         let problem = |(culprit, message): &(Culprit, String)| {
             let message = message.clone();
             Problem::at(source, span_of(source, culprit), Unfit { message })

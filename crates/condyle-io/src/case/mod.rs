@@ -20,6 +20,7 @@ mod heading;
 mod insert;
 mod json_schema;
 mod key_names;
+mod law_change;
 mod limits;
 mod machine;
 mod machine_keys;

@@ -2,17 +2,26 @@
 
 use std::sync::Arc;
 
+use super::law_change::LeftOutConstant;
 use crate::keyed::Source;
 
-/// The text of a case file.
+/// The text of a case file, and what of it was left out.
 ///
 /// All origins are equal: two cases are the same if they say the same, wherever they stand.
 #[derive(Clone, Debug)]
-pub(super) struct Origin(pub Source);
+pub(super) struct Origin {
+    /// The text.
+    pub(super) source: Source,
+    /// Constants that a law chosen from outside does not have.
+    pub(super) left_out: Vec<LeftOutConstant>,
+}
 
 impl Origin {
     pub(super) fn of(source: &Source) -> Self {
-        Self(Arc::clone(source))
+        Self {
+            source: Arc::clone(source),
+            left_out: Vec::new(),
+        }
     }
 }
 

@@ -8,6 +8,7 @@ use miette::NamedSource;
 
 use super::assignment::{Assignment, ChangeError};
 use super::contents::Case;
+use super::law_change::without_other_laws;
 use super::overriding::Override;
 use super::read::read_case;
 use super::wear::WearLaws;
@@ -57,7 +58,8 @@ impl CaseReader {
     }
 
     /// Reads the case file at `path` with some of its values changed, the last of several for the
-    /// same key. Messages show the changed text, and say so in its name.
+    /// same key. Messages show the changed text, and say so in its name. A wear law that is set takes
+    /// the place of the file's with all of its constants, of which building the case warns.
     ///
     /// # Errors
     /// As [`Self::read`]; a key that the case does not have, or more than once.
@@ -71,17 +73,22 @@ impl CaseReader {
         let name = format!("{} with {}", file.name(), said.join(", "));
         let apply = |text: String, change: &Assignment| change.applied_to(&text);
         let text = changes.iter().fold(file.inner().clone(), apply);
+        let set: Vec<&str> = changes.iter().map(Assignment::key).collect();
+        let (text, left_out) = without_other_laws(&text, &set, self.wear_laws);
         let source = Arc::new(NamedSource::new(name, text));
-        Ok(self.case_of(&source, Base::of(&self.files, path))?)
+        let mut case = self.case_of(&source, Base::of(&self.files, path))?;
+        case.origin.left_out = left_out;
+        Ok(case)
     }
 
-    /// The same changes with the dotted paths of their keys; the case is read as it is where they
-    /// do not tell themselves.
+    /// The same changes with the dotted paths of their keys. Where they do not tell themselves, the case is read with
+    /// those that do: a law that is set brings keys of its own.
     fn placed(&self, path: &Path, changes: &[Assignment]) -> Result<Vec<Assignment>, ChangeError> {
         if changes.iter().all(Assignment::is_placed) {
             return Ok(changes.to_vec());
         }
-        let case = self.read(path)?;
+        let told = changes.iter().filter(|change| change.is_placed());
+        let case = self.read_changed(path, &told.cloned().collect::<Vec<_>>())?;
         let placed = |change: &Assignment| {
             if change.is_placed() {
                 Ok(change.clone())

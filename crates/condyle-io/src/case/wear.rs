@@ -77,6 +77,23 @@ impl Wear {
         Ok(self.constants[self.index(name)?])
     }
 
+    /// Its constants, in the order of its parameters.
+    pub fn constants(&self) -> &[f64] {
+        &self.constants
+    }
+
+    /// The same law with constants by which it wears so many times as much, whatever the cycle.
+    ///
+    /// # Errors
+    /// A constant outside its range.
+    pub fn scaled(&self, times: f64) -> Result<Self, ConstantError> {
+        let scaled = (self.kind.scaled)(&self.constants, times);
+        let mut named = self.kind.parameters.iter().zip(scaled);
+        named.try_fold(self.clone(), |law, (parameter, value)| {
+            law.with_constant(parameter.name, value)
+        })
+    }
+
     /// The same law with another value of the constant of that name.
     ///
     /// # Errors

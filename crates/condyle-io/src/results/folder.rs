@@ -16,6 +16,7 @@ use super::{
     insert_series::{insert_file_name, insert_pvd, insert_vtu},
     lock::{FolderLock, LOCK},
     replace::{beside, replace_file, replace_file_durably},
+    slip_paths::slip_paths_csv,
     summary::Summary,
     tables::{kinematics_csv, wear_csv},
 };
@@ -159,7 +160,7 @@ pub struct ResultsFolder {
 }
 
 /// Files of a run that are never written over by another; the one written first comes first.
-pub(super) const SIGNS_OF_A_RUN: [&str; 13] = [
+pub(super) const SIGNS_OF_A_RUN: [&str; 14] = [
     "case.toml",
     "checkpoint",
     "summary.json",
@@ -171,6 +172,7 @@ pub(super) const SIGNS_OF_A_RUN: [&str; 13] = [
     CHECKSUMS,
     "femur.vtu",
     "femur_pose.csv",
+    "slip_paths.csv",
     "cycle_first.pvd",
     "cycle_last.pvd",
 ];
@@ -457,6 +459,9 @@ impl ResultsFolder {
             .as_bytes(),
         )?;
         self.replace("femur_pose.csv", femur_pose_csv(march, side).as_bytes())?;
+        if let Some(paths) = slip_paths_csv(march, side) {
+            self.replace("slip_paths.csv", paths.as_bytes())?;
+        }
         let checkpoint = Checkpoint {
             inputs_blake3: inputs_blake3.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),

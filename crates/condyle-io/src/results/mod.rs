@@ -16,6 +16,7 @@ mod plausibility;
 #[cfg(feature = "file-system")]
 mod replace;
 mod sides;
+mod slip_paths;
 mod summary;
 mod tables;
 #[cfg(feature = "file-system")]

@@ -13,6 +13,7 @@ use std::process::ExitCode;
 
 const USAGE: &str = "say what to do:
   times [CONDYLE]        times beside their targets; with the path of the command, also the whole command's
+  laws                   time of all wear laws in one pass beside that of Archard's alone
   instructions           instruction counts beside their budgets, by callgrind
   instructions --record  the same, and the budgets recorded anew
   solve CASE TIMES       a whole test so many times: what a profile is taken of
@@ -29,6 +30,7 @@ fn main() -> ExitCode {
     match words[..] {
         ["times"] => times::print(None),
         ["times", condyle] => times::print(Some(condyle.as_ref())),
+        ["laws"] => times::print_laws(),
         ["instructions"] => return instructions::hold(),
         ["instructions", "--record"] => instructions::record(),
         ["solve", case, times] => times::solve(case, times.parse().expect("a number of times")),

@@ -47,6 +47,7 @@ pub fn print(condyle: Option<&Path>) {
     if let Some(real) = cases::read(REAL) {
         print_real(&real, &generic);
     }
+    print_laws();
     let finer = finer(&generic);
     let ratio = least_s(ROUNDS, || solved(&finer)) / generic_s;
     row(
@@ -66,6 +67,27 @@ pub fn print(condyle: Option<&Path>) {
     if let Some(real) = cases::read(REAL) {
         print_work(REAL, &real);
     }
+}
+
+/// The time of a whole test with every wear law in one pass, over that with Archard's alone.
+pub fn print_laws() {
+    let case = cases::read(GENERIC).expect("a shipped case is read");
+    let alone = || {
+        let mut test = built(&case);
+        test.laws_beside.clear();
+        marched(test)
+    };
+    // By turns, so that both see the same of whatever else the machine does.
+    let rounds = (0..2 * ROUNDS).map(|_| [least_s(1, alone), least_s(1, || solved(&case))]);
+    let least = rounds.fold([f64::INFINITY; 2], |least, round| {
+        [least[0].min(round[0]), least[1].min(round[1])]
+    });
+    row(
+        "all wear laws in one pass, of the time of Archard's alone",
+        1.15,
+        least[1] / least[0],
+        "times",
+    );
 }
 
 /// The figures of a real implant; those of the femur are told from the insert's by a test with the

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::CompareError;
 use super::line::{Interval, Line, mean, mean_interval};
+use super::observation::Observation;
 
 /// Wear rates are per this many cycles.
 const MILLION: f64 = 1e6;
@@ -117,6 +118,55 @@ impl GravimetricComparison {
         }
     }
 
+    /// The measured rate that calibration aims at, with what its scatter tells: the mean of the specimens' rates, or the
+    /// line through all weighings.
+    pub(super) fn observation(&self) -> Observation {
+        let rate = self.aim().mg_per_million_cycles;
+        let (weight, squares, points, used) = match self.aim {
+            IntervalWord::Specimens => {
+                let off = self
+                    .specimens
+                    .iter()
+                    .map(|one| (one.mg_per_million_cycles - rate).powi(2));
+                (
+                    self.specimens.len() as f64,
+                    off.sum(),
+                    self.specimens.len(),
+                    1,
+                )
+            }
+            IntervalWord::Weighings => self.observed_line(),
+        };
+        Observation {
+            rate,
+            weight,
+            squares,
+            freedom: points.saturating_sub(used),
+        }
+    }
+
+    /// Spread in time, squares off the line as those of its slope, points, and what the line takes of them.
+    fn observed_line(&self) -> (f64, f64, usize, usize) {
+        const OF_A_LINE: usize = 2;
+        let points = in_millions(&all_losses(&self.weighings));
+        let middle = mean(&points.iter().map(|point| point.0).collect::<Vec<_>>());
+        let spread: f64 = points.iter().map(|point| (point.0 - middle).powi(2)).sum();
+        let error = Line::through(&points).and_then(|line| line.slope_standard_error);
+        let freedom = points.len().saturating_sub(OF_A_LINE) as f64;
+        let squares = error.map_or(0.0, |error| error * error * freedom * spread);
+        (spread, squares, points.len(), OF_A_LINE)
+    }
+
+    /// Whether it is specimens that intervals count, and not weighings.
+    pub(super) fn counts_specimens(&self) -> bool {
+        self.aim == IntervalWord::Specimens
+    }
+
+    /// Whether both give intervals of one kind.
+    pub(super) fn has_intervals_like(&self, other: &Self) -> bool {
+        self.aim == other.aim && self.confidence_percent == other.confidence_percent
+    }
+
     /// Rate of a predicted loss given as (cycles, mg), by the same regression at the same cycles.
     pub(super) fn rate_of(&self, predicted: &[(f64, f64)]) -> Option<f64> {
         let counted = self.weighings.iter().filter(|weighing| weighing.in_line);
@@ -187,8 +237,7 @@ fn counted(weighings: &[Weighing]) -> impl Iterator<Item = &Weighing> {
 impl Rate {
     /// Slope of the line through points (cycles, mg).
     fn of_line(name: &str, points: &[(f64, f64)], confidence: f64) -> Option<Self> {
-        let in_millions: Vec<_> = points.iter().map(|(x, y)| (x / MILLION, *y)).collect();
-        let line = Line::through(&in_millions)?;
+        let line = Line::through(&in_millions(points))?;
         Some(Self {
             name: name.to_owned(),
             mg_per_million_cycles: line.slope,
@@ -200,11 +249,22 @@ impl Rate {
 }
 
 fn pooled(weighings: &[Weighing], confidence: f64) -> Result<Rate, CompareError> {
-    let points: Vec<(f64, f64)> = counted(weighings)
-        .flat_map(|weighing| weighing.loss_mg.iter().map(|loss| (weighing.cycles, *loss)))
-        .collect();
-    let rate = Rate::of_line("all weighings", &points, confidence);
+    let rate = Rate::of_line("all weighings", &all_losses(weighings), confidence);
     rate.ok_or(CompareError::NoColumn { column: "cycles" })
+}
+
+/// Losses of all specimens at all weighings that count, as (cycles, mg).
+fn all_losses(weighings: &[Weighing]) -> Vec<(f64, f64)> {
+    let each = |weighing: &Weighing| {
+        let cycles = weighing.cycles;
+        let losses = weighing.loss_mg.clone().into_iter();
+        losses.map(move |loss| (cycles, loss))
+    };
+    counted(weighings).flat_map(each).collect()
+}
+
+fn in_millions(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    points.iter().map(|(x, y)| (x / MILLION, *y)).collect()
 }
 
 fn mean_rate(specimens: &[Rate], confidence: f64) -> Rate {

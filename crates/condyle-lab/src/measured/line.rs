@@ -34,7 +34,7 @@ impl Interval {
     }
 
     /// `middle` and as much on either side.
-    fn around(middle: f64, half: f64) -> Self {
+    pub(super) fn around(middle: f64, half: f64) -> Self {
         Self {
             low: middle - half,
             high: middle + half,
@@ -98,7 +98,7 @@ pub(super) fn mean(values: &[f64]) -> f64 {
 }
 
 /// How many standard errors a two-sided interval reaches to either side.
-fn student(confidence: f64, freedom: usize) -> Option<f64> {
+pub(super) fn student(confidence: f64, freedom: usize) -> Option<f64> {
     let distribution = StudentsT::new(0.0, 1.0, freedom as f64).ok()?;
     Some(distribution.inverse_cdf(f64::midpoint(1.0, confidence)))
 }

@@ -9,6 +9,7 @@ mod error;
 mod gravimetric;
 mod kinematics;
 mod line;
+mod observation;
 mod surface;
 mod write;
 
@@ -19,7 +20,10 @@ use condyle_io::measured::Measured;
 use condyle_report::Results;
 use serde::Serialize;
 
-pub use calibrate::{CalibrateError, Calibration, Trial, calibrate};
+pub use calibrate::{
+    CalibrateError, CalibratedConstant, CalibratedTest, Calibration, CalibrationRequest, Found,
+    OneTest, Prediction, Trial, WearFactor, calibrate,
+};
 pub use error::CompareError;
 pub use gravimetric::{GravimetricComparison, Rate, Weighing};
 pub use kinematics::{ColumnComparison, Errors, KinematicsComparison, PhaseErrors};

@@ -86,10 +86,15 @@ pub(crate) struct Map<'a> {
 impl Map<'_> {
     /// The map as an element of a page.
     pub(crate) fn svg(&self) -> String {
+        self.svg_with(&self.desc(), "")
+    }
+
+    /// The map with something drawn over it, by [`Map::place`], and what it shows in a sentence.
+    pub(crate) fn svg_with(&self, desc: &str, over: &str) -> String {
         let ((width, height), id) = (self.size(), self.id);
-        let (title, desc) = (escape(self.title), escape(&self.desc()));
+        let (title, desc) = (escape(self.title), escape(desc));
         format!(
-            r#"<svg class="fig" role="img" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width:.1} {height:.1}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}</svg>"#,
+            r#"<svg class="fig" role="img" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width:.1} {height:.1}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}{over}</svg>"#,
             self.body()
         )
     }
@@ -177,7 +182,8 @@ impl Map<'_> {
         )
     }
 
-    fn place(&self) -> impl Fn(f64, f64) -> (f64, f64) {
+    /// Where x and z of the insert frame, mm, are in the picture.
+    pub(crate) fn place(&self) -> impl Fn(f64, f64) -> (f64, f64) {
         let [(_, x_high), (z_low, _)] = self.surface.bounds();
         let scale = self.px_per_mm;
         move |x, z| (LEFT + (z - z_low) * scale, TOP + (x_high - x) * scale)

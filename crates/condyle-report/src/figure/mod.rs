@@ -14,5 +14,6 @@ pub(crate) use axis::Axis;
 pub(crate) use escape::escape;
 pub(crate) use map::{ColourRange, Map, Shades};
 pub(crate) use panel::{Curve, Panel};
+pub(crate) use path::Path;
 pub(crate) use sheet::{alone, sheet};
 pub(crate) use style::{css, variables};

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::slip::slip_map;
 use crate::figure::{ColourRange, Map, Shades};
 use crate::results::{contents::Results, surface::SurfaceFields};
 
@@ -24,7 +25,7 @@ pub(crate) fn wear_map(results: &Results, px_per_mm: f64) -> Option<Map<'_>> {
     })
 }
 
-/// The maps of peak pressure, of sliding distance and of cross-shear.
+/// The maps of peak pressure, of sliding distance and of cross-shear, and the slip paths.
 pub(super) fn small(results: &Results, px_per_mm: f64) -> Vec<Small> {
     let Some(surface) = &results.surface else {
         return Vec::new();
@@ -55,13 +56,17 @@ pub(super) fn small(results: &Results, px_per_mm: f64) -> Vec<Small> {
         "What part of pressure times sliding goes across the main direction at each place, last update: 0 where the femur slides to and fro on a line, 0.5 where it goes round a circle.",
     ];
     let maps = [pressure, sliding, cross_shear].into_iter().zip(captions);
-    maps.filter_map(|(map, caption)| {
+    let maps = maps.filter_map(|(map, caption)| {
         Some(Small {
             svg: map?.svg(),
             caption,
         })
-    })
-    .collect()
+    });
+    let paths = slip_map(results, px_per_mm).map(|svg| Small {
+        svg,
+        caption: "How the femur slides past the deepest place of each side and past four around it while they are pressed, in one gait cycle, last update; each about the dot of its place, at 0.4 of its length and 1.6 of its width, so that four times as wide as it is. The wider, the more cross-shear.",
+    });
+    maps.chain(paths).collect()
 }
 
 fn plain<'a>(

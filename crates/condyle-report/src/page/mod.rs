@@ -12,6 +12,7 @@ mod maps;
 mod numbers;
 mod ranges;
 mod rate;
+mod slip;
 mod story;
 
 pub(crate) use channels::{PlottedColumn, channel, panels as kinematics_panels};

@@ -11,6 +11,8 @@ pub struct Results {
     pub wear: Option<Table>,
     /// `kinematics.csv`, a row an increment of the first and of the last cycle.
     pub kinematics: Option<Table>,
+    /// `slip_paths.csv`, a row an increment and place.
+    pub slip_paths: Option<Table>,
     /// The articulating surface at the last update.
     pub surface: Option<SurfaceFields>,
     /// `case.toml`, its text.

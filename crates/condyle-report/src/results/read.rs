@@ -26,6 +26,7 @@ impl Results {
             summary: summary(folder.join("summary.json"))?,
             wear: table(&folder.join("wear.csv"))?,
             kinematics: table(&folder.join("kinematics.csv"))?,
+            slip_paths: table(&folder.join("slip_paths.csv"))?,
             surface: surface(folder)?,
             side: case.as_deref().map_or_else(Side::default, side),
             case,

@@ -180,6 +180,19 @@ fn a_run_without_an_estimate_says_so() {
 }
 
 #[test]
+fn slip_paths_are_drawn_about_their_places() {
+    let html = report_html(&fixture::results());
+    assert!(html.contains("map-slip-t"));
+    assert_eq!(html.matches(r#"<path class="slip""#).count(), 2);
+    assert_eq!(html.matches(r#"class="slip-place""#).count(), 2);
+    let without = Results {
+        slip_paths: None,
+        ..fixture::results()
+    };
+    assert!(!report_html(&without).contains("map-slip-t"));
+}
+
+#[test]
 fn the_case_is_shown_as_text() {
     let case = Some(String::from("title = \"a <b> & c\""));
     let html = report_html(&Results {

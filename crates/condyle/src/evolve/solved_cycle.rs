@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::{
-    contact::CycleHistory,
+    contact::{CycleHistory, Moment},
     geometry::ArticulatingSurface,
     machine::{Chain, CycleRow},
     spatial::Pose,
@@ -28,6 +28,13 @@ impl SolvedCycle<'_> {
     /// Where the femur is in the insert frame at the end of increment number `increment`.
     pub fn pose(&self, increment: usize) -> Pose {
         self.chain.at(&self.rows[increment].positions).pose
+    }
+
+    /// Pressure and slip of a node of the surface in increment number `increment`; none where it was not touched.
+    pub fn moment(&self, increment: usize, node: usize) -> Option<&Moment> {
+        let touched = self.history.instant(&self.instants[increment]);
+        let own = touched.iter().find(|record| record.node as usize == node);
+        own.map(|record| &record.moment)
     }
 
     /// Pressure at every node of the surface at the end of increment number `increment`, the mean

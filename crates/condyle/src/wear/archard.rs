@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{NodeWear, WearLaw, WearLawKind};
+use super::law::{NodeWear, WearLaw, WearLawKind, first_times};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
@@ -12,6 +12,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
     about: "Depth per cycle = Kw sum of p |ds|.",
     known: Known::Read,
     parameters: &[Archard::WEAR_FACTOR],
+    scaled: |constants, times| first_times(1, constants, times),
     make: |constants| {
         Arc::new(Archard {
             wear_factor_mm3_per_nm: constants[0],

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::MeanCycle;
-use super::law::{NodeWear, WearLaw, WearLawKind};
+use super::law::{NodeWear, WearLaw, WearLawKind, first_times};
 use crate::parameter::{Known, Parameter};
 
 /// The law as it is offered.
@@ -45,6 +45,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
             ..COEFFICIENT
         },
     ],
+    scaled: |constants, times| first_times(4, constants, times),
     make: |constants| {
         Arc::new(ContactArea {
             low: [constants[0], constants[1]],

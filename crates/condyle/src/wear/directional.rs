@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{NodeWear, WearLaw, WearLawKind};
+use super::law::{NodeWear, WearLaw, WearLawKind, first_times};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
@@ -41,6 +41,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
             known: Known::Approximate,
         },
     ],
+    scaled: |constants, times| first_times(1, constants, times),
     make: |constants| {
         let [circle, ratio] = [constants[0], constants[1]];
         let along_mm3_per_nm = 2.0 * circle / (1.0 + ratio);

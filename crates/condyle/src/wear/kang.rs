@@ -59,6 +59,11 @@ pub(super) const KIND: WearLawKind = WearLawKind {
             known: Known::Chosen,
         },
     ],
+    scaled: |constants, times| {
+        let mut scaled = constants.to_vec();
+        scaled[0] += times.ln();
+        scaled
+    },
     make: |constants| {
         Arc::new(Kang {
             log_wear_factor: constants[0],

@@ -45,6 +45,8 @@ pub struct WearLawKind {
     pub known: Known,
     /// Its constants.
     pub parameters: &'static [Parameter],
+    /// The constants of a law that wears so many times as much, whatever the cycle: what a calibration changes first.
+    pub scaled: fn(&[f64], f64) -> Vec<f64>,
     /// The law with these values of its constants, in their order.
     pub make: fn(&[f64]) -> Arc<dyn WearLaw>,
 }
@@ -90,6 +92,16 @@ impl WearLawKind {
         let mut known = self.parameters.iter().map(|parameter| parameter.known);
         self.known == Known::Approximate || known.any(|known| known == Known::Approximate)
     }
+}
+
+/// The constants with the first `count` of them `times` as large: [`WearLawKind::scaled`] of a law whose depth is in
+/// proportion to these.
+pub(super) fn first_times(count: usize, constants: &[f64], times: f64) -> Vec<f64> {
+    let mut scaled = constants.to_vec();
+    for constant in &mut scaled[..count] {
+        *constant *= times;
+    }
+    scaled
 }
 
 /// Declares the files of the wear laws, each with a `KIND`, and lists them.

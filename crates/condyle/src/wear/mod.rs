@@ -3,6 +3,8 @@
 //! A law is one file: its constants with their units, defaults, limits and sources, and its
 //! formula; one line here adds it.
 
+#[cfg(test)]
+mod closed_forms;
 mod law;
 mod mean_cycle;
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law::{NodeWear, WearLaw, WearLawKind};
+use super::law::{NodeWear, WearLaw, WearLawKind, first_times};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
@@ -32,6 +32,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
             known: Known::Approximate,
         },
     ],
+    scaled: |constants, times| first_times(1, constants, times),
     make: |constants| {
         Arc::new(Unified {
             circle_factor_mm3_per_nm: constants[0],

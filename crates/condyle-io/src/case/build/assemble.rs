@@ -10,6 +10,7 @@ use condyle_fem::Elastic;
 
 use super::super::contact::{ContactModelWord, PressureLawChoice};
 use super::super::contents::Case;
+use super::super::law_change::LeftOutConstant;
 use super::super::march::Update;
 use super::super::time::IntegratorWord;
 use super::error::{BuildError, BuildWarning};
@@ -41,7 +42,7 @@ impl Case {
     /// # Errors
     /// As [`Case::build`].
     pub fn build_kept(&self, threads: usize, keep: &dyn Keep) -> Result<Built, BuildError> {
-        let mut warnings = Vec::new();
+        let mut warnings = self.constants_left_out();
         let insert = self.built_insert(&self.insert, &mut warnings)?;
         let machine = self.machine.build(insert.dish_low_point_mm());
         let femur = self.femur.build(
@@ -78,6 +79,14 @@ impl Case {
             },
         };
         Ok(Built { test, warnings })
+    }
+
+    /// Constants of the file that its wear law, chosen from outside, does not have.
+    fn constants_left_out(&self) -> Vec<BuildWarning> {
+        let left_out = self.origin.left_out.iter().cloned();
+        let warning =
+            |LeftOutConstant { written, law }| BuildWarning::ConstantLeftOut { written, law };
+        left_out.map(warning).collect()
     }
 
     /// The law of contact of this case with its insert.

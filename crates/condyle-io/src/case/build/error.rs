@@ -259,6 +259,14 @@ fn listed(names: &[String]) -> String {
 /// What was put right in a mesh, or looks wrong.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum BuildWarning {
+    /// A constant of another wear law than the one chosen from outside.
+    #[error("[wear] {written}: left out, since the law \"{law}\" that is set has no such constant")]
+    ConstantLeftOut {
+        /// As the file writes it.
+        written: String,
+        /// The law chosen from outside.
+        law: &'static str,
+    },
     /// A body that likely lies otherwise than its axes say.
     #[error("{}: this {} likely lies {}; {wrong}", file.display(), wrong.body, wrong.how)]
     WrongAxes {

@@ -48,6 +48,7 @@ const THRESHOLD: WearLawKind = WearLawKind {
             known: Known::Chosen,
         },
     ],
+    scaled: |constants, times| vec![times * constants[0], constants[1]],
     make: |constants| {
         Arc::new(Threshold {
             wear_factor_mm3_per_nm: constants[0],

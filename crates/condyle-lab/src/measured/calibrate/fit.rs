@@ -1,0 +1,492 @@
+//! Least squares of a model that takes seconds to ask, and how sure what it finds is.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::super::line::student;
+use super::super::observation::Observation;
+use super::CalibrateError;
+
+/// Steps that would change no rate by more than this part of it are not made.
+const SETTLED: f64 = 1e-3;
+/// Steps at most; nearly linear as rates are, two or three are enough.
+const MOST_STEPS: usize = 12;
+/// A step changes no parameter by more than this factor.
+const LONGEST_STEP: f64 = 5.0;
+/// First differences, as a part of the parameter: well above what increments and updates leave in a rate.
+const DIFFERENCE: f64 = 0.05;
+/// Singular values that are this much smaller than the largest tell nothing.
+const SINGULAR: f64 = 1e-6;
+
+/// Where a search begins.
+pub(super) struct Start {
+    /// The parameters.
+    pub(super) at: Vec<f64>,
+    /// What each can be.
+    pub(super) limits: Vec<[f64; 2]>,
+    /// Whether rates go nearly in proportion to the only parameter, so that the first slope needs no run.
+    pub(super) in_proportion: bool,
+}
+
+/// What least squares find.
+#[derive(Clone, Debug)]
+pub(super) struct Fit {
+    /// The parameters.
+    pub(super) at: Vec<f64>,
+    /// The rates that they give.
+    pub(super) rates: Vec<f64>,
+    /// How sure they are; none where nothing is left over to tell.
+    pub(super) spread: Option<Spread>,
+}
+
+/// How sure parameters are.
+#[derive(Clone, Debug)]
+pub(super) struct Spread {
+    /// Scatter of one observation of weight 1, as a part of its rate.
+    pub(super) scatter: f64,
+    /// Observations less parameters.
+    pub(super) freedom: usize,
+    /// How many standard errors an interval reaches to either side.
+    pub(super) quantile: f64,
+    /// Of the parameters.
+    pub(super) covariance: DMatrix<f64>,
+    /// By how much each parameter is changed to either side for a slope.
+    pub(super) half: Vec<f64>,
+}
+
+impl Spread {
+    /// Half the interval of something with these slopes in the parameters.
+    pub(super) fn half_interval(&self, slopes: &[f64]) -> f64 {
+        let slopes = DVector::from_column_slice(slopes);
+        self.quantile
+            * (slopes.transpose() * &self.covariance * &slopes)[0]
+                .max(0.0)
+                .sqrt()
+    }
+}
+
+/// Rates of the tests by the parameters.
+pub(super) type Model<'a> = dyn FnMut(&[f64]) -> Result<Vec<f64>, CalibrateError> + 'a;
+
+/// The parameters with the least sum of weight (predicted / measured - 1)^2, by Gauss and Newton's iteration with
+/// Broyden's slopes.
+///
+/// Scatter counts in proportion to the rate, and is the same part of it in all tests. It is told by what the specimens
+/// or weighings of each test scatter, and by what the tests differ from the model together: a law that does not fit
+/// gets a wider interval.
+pub(super) fn fit(
+    model: &mut Model<'_>,
+    start: Start,
+    observations: &[Observation],
+    confidence: f64,
+) -> Result<Fit, CalibrateError> {
+    let mut search = Search::begin(model, start, observations)?;
+    search.settle(model)?;
+    let spread = search.spread(confidence)?;
+    let spread = match spread {
+        Some(rough) => search.with_slopes_across(model, rough, confidence)?,
+        None => None,
+    };
+    Ok(Fit {
+        rates: search.rates,
+        at: search.at,
+        spread,
+    })
+}
+
+struct Search<'a> {
+    observations: &'a [Observation],
+    limits: Vec<[f64; 2]>,
+    at: Vec<f64>,
+    rates: Vec<f64>,
+    /// Slopes of the residuals in the parameters.
+    slopes: DMatrix<f64>,
+}
+
+impl<'a> Search<'a> {
+    fn begin(
+        model: &mut Model<'_>,
+        start: Start,
+        observations: &'a [Observation],
+    ) -> Result<Self, CalibrateError> {
+        let (tests, constants) = (observations.len(), start.at.len());
+        if tests < constants {
+            return Err(CalibrateError::TooFewTests { tests, constants });
+        }
+        let rates = model(&start.at)?;
+        let mut search = Self {
+            observations,
+            limits: start.limits,
+            slopes: DMatrix::zeros(tests, constants),
+            at: start.at,
+            rates,
+        };
+        if start.in_proportion {
+            let at = search.at[0];
+            let slopes: Vec<f64> = search.rates.iter().map(|rate| rate / at).collect();
+            let slope = search.weighed(&slopes);
+            search.slopes.set_column(0, &slope);
+            return Ok(search);
+        }
+        for number in 0..constants {
+            let step = DIFFERENCE * size(search.at[number]);
+            let slope = search.slope(model, number, [0.0, step])?;
+            search.slopes.set_column(number, &slope);
+        }
+        Ok(search)
+    }
+
+    /// Rates, or differences of them, as parts of the measured ones, each by the root of its weight.
+    fn weighed(&self, rates: &[f64]) -> DVector<f64> {
+        let all = rates.iter().zip(self.observations);
+        let weighed = all.map(|(rate, of)| of.weight.sqrt() * rate / of.rate);
+        DVector::from_iterator(rates.len(), weighed)
+    }
+
+    fn residuals(&self, rates: &[f64]) -> DVector<f64> {
+        let off: Vec<f64> = rates
+            .iter()
+            .zip(self.observations)
+            .map(|(rate, of)| rate - of.rate)
+            .collect();
+        self.weighed(&off)
+    }
+
+    /// Slope of the residuals in one parameter, from `below` it to `above` it, inside its limits.
+    fn slope(
+        &self,
+        model: &mut Model<'_>,
+        number: usize,
+        [below, above]: [f64; 2],
+    ) -> Result<DVector<f64>, CalibrateError> {
+        let [least, most] = self.limits[number];
+        let ends = [-below, above].map(|by| (self.at[number] + by).clamp(least, most));
+        // At its upper limit a parameter can only go down.
+        let ends = if ends[0] == ends[1] {
+            [ends[0] - above, ends[1]]
+        } else {
+            ends
+        };
+        let mut rates_at = |end: f64| {
+            let mut at = self.at.clone();
+            at[number] = end;
+            if at == self.at {
+                Ok(self.rates.clone())
+            } else {
+                model(&at)
+            }
+        };
+        let [low, high] = [rates_at(ends[0])?, rates_at(ends[1])?];
+        let slopes = low
+            .iter()
+            .zip(&high)
+            .map(|(low, high)| (high - low) / (ends[1] - ends[0]));
+        Ok(self.weighed(&slopes.collect::<Vec<_>>()))
+    }
+
+    /// Steps until another one would change nothing.
+    fn settle(&mut self, model: &mut Model<'_>) -> Result<(), CalibrateError> {
+        let mut part = 1.0;
+        let mut change = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            let step = self.step()?;
+            change = self.change_of(&step);
+            if change <= SETTLED {
+                return Ok(());
+            }
+            let better = self.go(model, &(part * step))?;
+            part = if better { 1.0 } else { 0.5 * part };
+        }
+        let (steps, left_percent) = (MOST_STEPS, 100.0 * change);
+        Err(CalibrateError::NotFound {
+            steps,
+            left_percent,
+        })
+    }
+
+    /// The step to the least squares, were all slopes to stay.
+    fn step(&self) -> Result<DVector<f64>, CalibrateError> {
+        let parts = self.slopes.clone().svd(true, true);
+        let [most, least] = [parts.singular_values.max(), parts.singular_values.min()];
+        if least.is_nan() || least <= SINGULAR * most {
+            return Err(CalibrateError::NotTold);
+        }
+        let step = parts.solve(&-self.residuals(&self.rates), 0.0);
+        step.map_err(|_| CalibrateError::NotTold)
+    }
+
+    /// The largest part of its rate by which a step changes any.
+    fn change_of(&self, step: &DVector<f64>) -> f64 {
+        let change = &self.slopes * step;
+        let parts = change.iter().zip(self.observations);
+        parts
+            .map(|(change, of)| (change / of.weight.sqrt()).abs())
+            .fold(0.0, f64::max)
+    }
+
+    /// Tries a step, learns the slopes along it, and keeps it if it is for the better.
+    fn go(&mut self, model: &mut Model<'_>, step: &DVector<f64>) -> Result<bool, CalibrateError> {
+        let at: Vec<f64> = (0..self.at.len())
+            .map(|number| self.after(number, step[number]))
+            .collect();
+        let made = DVector::from_iterator(
+            at.len(),
+            at.iter().zip(&self.at).map(|(new, old)| new - old),
+        );
+        if made.norm() == 0.0 {
+            return Ok(false);
+        }
+        let rates = model(&at)?;
+        let (before, after) = (self.residuals(&self.rates), self.residuals(&rates));
+        let missed = &after - &before - &self.slopes * &made;
+        self.slopes += missed * made.transpose() / made.norm_squared();
+        let better = after.norm() < before.norm();
+        if better {
+            (self.at, self.rates) = (at, rates);
+        }
+        Ok(better)
+    }
+
+    /// A parameter after a step, which is cut where it is too long or leads out of the limits.
+    fn after(&self, number: usize, step: f64) -> f64 {
+        let (was, [least, most]) = (self.at[number], self.limits[number]);
+        let sign = was.signum();
+        let cut = if was == 0.0 {
+            step
+        } else {
+            let [shortest, longest] = [was.abs() / LONGEST_STEP, was.abs() * LONGEST_STEP];
+            sign * (sign * (was + step)).clamp(shortest, longest)
+        };
+        cut.clamp(least, most)
+    }
+
+    /// How sure the parameters are by the slopes as they are known.
+    fn spread(&self, confidence: f64) -> Result<Option<Spread>, CalibrateError> {
+        let within = |of: &Observation| of.squares / (of.rate * of.rate);
+        let inside: f64 = self.observations.iter().map(within).sum();
+        let beside = self.residuals(&self.rates).norm_squared();
+        let freedom =
+            self.observations.iter().map(|of| of.freedom).sum::<usize>() + self.observations.len();
+        let freedom = freedom - self.at.len();
+        let Some(quantile) = student(confidence, freedom) else {
+            return Ok(None);
+        };
+        let variance = (inside + beside) / freedom as f64;
+        let inverse = (self.slopes.transpose() * &self.slopes).try_inverse();
+        let covariance = inverse.ok_or(CalibrateError::NotTold)? * variance;
+        let half = |number: usize| {
+            let wide = quantile * covariance[(number, number)].sqrt();
+            wide.clamp(0.01 * size(self.at[number]), 0.3 * size(self.at[number]))
+        };
+        Ok(Some(Spread {
+            scatter: variance.sqrt(),
+            freedom,
+            quantile,
+            half: (0..self.at.len()).map(half).collect(),
+            covariance,
+        }))
+    }
+
+    /// The same by slopes across the interval itself.
+    fn with_slopes_across(
+        &mut self,
+        model: &mut Model<'_>,
+        rough: Spread,
+        confidence: f64,
+    ) -> Result<Option<Spread>, CalibrateError> {
+        for (number, &half) in rough.half.iter().enumerate() {
+            let slope = self.slope(model, number, [half; 2])?;
+            self.slopes.set_column(number, &slope);
+        }
+        Ok(self.spread(confidence)?.map(|fine| Spread {
+            half: rough.half,
+            ..fine
+        }))
+    }
+}
+
+/// What a change of a parameter is held against; one that is 0 has a unit of 1.
+fn size(parameter: f64) -> f64 {
+    if parameter == 0.0 {
+        1.0
+    } else {
+        parameter.abs()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use statrs::distribution::{ContinuousCDF, Normal};
+
+    use super::*;
+
+    /// Even numbers between 0 and 1 that repeat with the seed.
+    fn uniform(seed: &mut u64) -> f64 {
+        *seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        ((*seed >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+    }
+
+    fn normal(seed: &mut u64) -> f64 {
+        Normal::standard().inverse_cdf(uniform(seed))
+    }
+
+    /// Specimens of a test that scatter by a part of the rate.
+    fn specimens(rate: f64, part: f64, count: usize, seed: &mut u64) -> Observation {
+        let rates: Vec<f64> = (0..count)
+            .map(|_| rate * (1.0 + part * normal(seed)))
+            .collect();
+        let mean = rates.iter().sum::<f64>() / count as f64;
+        Observation {
+            rate: mean,
+            weight: count as f64,
+            squares: rates.iter().map(|rate| (rate - mean).powi(2)).sum(),
+            freedom: count - 1,
+        }
+    }
+
+    fn level(
+        model: impl Fn(f64) -> Vec<f64>,
+        observations: &[Observation],
+    ) -> Result<Fit, CalibrateError> {
+        let start = Start {
+            at: vec![1.0],
+            limits: vec![[1e-9, 1e9]],
+            in_proportion: true,
+        };
+        fit(
+            &mut |at: &[f64]| Ok(model(at[0])),
+            start,
+            observations,
+            0.95,
+        )
+    }
+
+    fn exact(rate: f64) -> Observation {
+        Observation {
+            rate,
+            weight: 1.0,
+            squares: 0.0,
+            freedom: 0,
+        }
+    }
+
+    #[test]
+    fn verify_the_level_of_a_bent_curve_is_found_within_a_thousandth() {
+        let bent = |level: f64| vec![4.0 * level + 0.2 * level * level];
+        let found = level(bent, &[exact(bent(1.7)[0])]).unwrap();
+        assert!((found.at[0] / 1.7 - 1.0).abs() < 1e-3, "{:?}", found.at);
+        assert!(found.spread.is_none());
+    }
+
+    #[test]
+    fn verify_two_constants_are_found_where_two_tests_tell_them() {
+        let model = |at: &[f64]| {
+            Ok(vec![
+                3.0 * at[0] * (-0.5 * at[1]).exp(),
+                2.0 * at[0] * (-0.1 * at[1]).exp(),
+            ])
+        };
+        let truth = model(&[2.0, 0.6]).unwrap();
+        let start = Start {
+            at: vec![1.0, 1.0],
+            limits: vec![[0.0, 100.0]; 2],
+            in_proportion: false,
+        };
+        let found = fit(
+            &mut { model },
+            start,
+            &[exact(truth[0]), exact(truth[1])],
+            0.95,
+        )
+        .unwrap();
+        assert!(
+            (found.at[0] - 2.0).abs() < 0.01 && (found.at[1] - 0.6).abs() < 0.01,
+            "{:?}",
+            found.at
+        );
+    }
+
+    #[test]
+    fn verify_an_interval_holds_the_truth_as_often_as_it_says() {
+        const TRUE_LEVEL: f64 = 1.4;
+        const TIMES: usize = 4000;
+        let model = |level: f64| vec![8.0 * level + 0.1 * level * level, 3.0 * level, 14.0 * level];
+        let truth = model(TRUE_LEVEL);
+        let mut seed = 7;
+        let mut held = 0;
+        for _ in 0..TIMES {
+            let measured = [2, 4, 3].iter().zip(&truth);
+            let measured: Vec<_> = measured
+                .map(|(&count, rate)| specimens(*rate, 0.08, count, &mut seed))
+                .collect();
+            let found = level(model, &measured).unwrap();
+            let spread = found.spread.unwrap();
+            assert_eq!(spread.freedom, 8);
+            held += usize::from((found.at[0] - TRUE_LEVEL).abs() <= spread.half_interval(&[1.0]));
+        }
+        // 95 % of 4000, give or take four standard errors.
+        let part = held as f64 / TIMES as f64;
+        assert!((part - 0.95).abs() < 0.014, "{part}");
+    }
+
+    #[test]
+    fn verify_the_interval_of_one_test_is_that_of_the_mean_of_its_specimens() {
+        let rates = [7.0, 8.0, 9.0];
+        let of = Observation {
+            rate: 8.0,
+            weight: 3.0,
+            squares: 2.0,
+            freedom: 2,
+        };
+        let found = level(|level| vec![4.0 * level], &[of]).unwrap();
+        let interval = super::super::super::line::mean_interval(&rates, 0.95).unwrap();
+        let half = found.spread.unwrap().half_interval(&[1.0]);
+        assert!((half - (interval.high - 8.0) / 4.0).abs() < 1e-9, "{half}");
+    }
+
+    #[test]
+    fn a_law_that_does_not_fit_gets_a_wider_interval() {
+        let of = |rate| Observation {
+            rate,
+            weight: 3.0,
+            squares: 0.01 * rate * rate,
+            freedom: 2,
+        };
+        let half = |second: f64| {
+            let found = level(
+                |level| vec![4.0 * level, 4.0 * level],
+                &[of(4.0), of(second)],
+            )
+            .unwrap();
+            found.spread.unwrap().half_interval(&[1.0])
+        };
+        assert!(half(8.0) > 3.0 * half(4.0));
+    }
+
+    #[test]
+    fn what_cannot_be_told_is_refused() {
+        let start = |count| Start {
+            at: vec![1.0; count],
+            limits: vec![[0.0, 10.0]; count],
+            in_proportion: false,
+        };
+        let alike = |at: &[f64]| Ok(vec![at[0] * at[1], 2.0 * at[0] * at[1]]);
+        let two = [exact(3.0), exact(5.0)];
+        let error = fit(&mut { alike }, start(2), &two, 0.95).unwrap_err();
+        assert!(matches!(error, CalibrateError::NotTold), "{error}");
+        let error = fit(&mut { alike }, start(2), &two[..1], 0.95).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "1 measured rate cannot tell 2 constants; give as many tests as constants, or fewer --constant"
+        );
+        let mut seed = 3;
+        let mut noise = |_: &[f64]| Ok(vec![1.0 + uniform(&mut seed)]);
+        let error = fit(&mut noise, start(1), &two[1..], 0.95).unwrap_err();
+        assert!(
+            error.to_string().starts_with("after 12 steps")
+                || matches!(error, CalibrateError::NotTold),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,378 @@
+//! The constants of a wear law with which predictions wear as fast as specimens did, and how sure they are.
+
+mod error;
+mod fit;
+mod free;
+mod runs;
+
+use std::path::{Path, PathBuf};
+
+use condyle::wear::Archard;
+use condyle_io::case::{Case, Wear};
+use serde::Serialize;
+
+use super::Interval;
+use fit::{Fit, fit};
+use free::Free;
+use runs::{Test, losses};
+
+pub use error::CalibrateError;
+pub use runs::Trial;
+
+/// What is calibrated by what.
+#[derive(Clone, Debug, Default)]
+pub struct CalibrationRequest {
+    /// Results folders, each with a file of measured data.
+    pub tests: Vec<(PathBuf, PathBuf)>,
+    /// Names of the constants that are found; how much the law wears, whatever the cycle, if there are none.
+    pub constants: Vec<String>,
+    /// Cases that are predicted with them.
+    pub predict: Vec<PathBuf>,
+}
+
+impl CalibrationRequest {
+    /// The tests of paths that are by turns results folders and measured data.
+    ///
+    /// # Errors
+    /// An odd number of paths.
+    pub fn pairs(paths: &[PathBuf]) -> Result<Vec<(PathBuf, PathBuf)>, CalibrateError> {
+        let pairs = paths.chunks_exact(2);
+        if paths.is_empty() || !pairs.remainder().is_empty() {
+            let given = paths.len();
+            return Err(CalibrateError::NoPairs { given });
+        }
+        Ok(pairs
+            .map(|pair| (pair[0].clone(), pair[1].clone()))
+            .collect())
+    }
+}
+
+/// Constants of a wear law found from weighings.
+#[derive(Clone, Debug, Serialize)]
+pub struct Calibration {
+    /// Word of the law.
+    pub law: &'static str,
+    /// Confidence of every interval, percent.
+    pub confidence_percent: f64,
+    /// Each constant that was found.
+    pub constants: Vec<CalibratedConstant>,
+    /// How many times as much as in the first run the law wears; none where single constants were found.
+    pub times_as_much: Option<Found>,
+    /// Each test.
+    pub tests: Vec<CalibratedTest>,
+    /// Scatter of a specimen around what is predicted, percent of the rate; none where weighings are what is counted, or
+    /// where nothing is left to tell.
+    pub scatter_percent: Option<f64>,
+    /// Observations less what was found from them.
+    pub degrees_of_freedom: usize,
+    /// Why there are no intervals, if there are none.
+    pub without_interval: Option<&'static str>,
+    /// Cases predicted with these constants.
+    pub predictions: Vec<Prediction>,
+    /// What was measured in a calibration by one test.
+    #[serde(flatten)]
+    pub one_test: Option<OneTest>,
+    /// The factor of Archard's law.
+    #[serde(flatten)]
+    pub wear_factor: Option<WearFactor>,
+    /// All constants that were run, in this order; the first are those of the first results folder.
+    pub trials: Vec<Trial>,
+}
+
+/// A value and its interval.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Found {
+    /// The value.
+    pub value: f64,
+    /// Its interval; none where nothing is left to tell.
+    pub interval: Option<Interval>,
+}
+
+/// A constant that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct CalibratedConstant {
+    /// Its name, with the unit.
+    pub name: &'static str,
+    /// That of the first run.
+    pub run_with: f64,
+    /// As found.
+    #[serde(flatten)]
+    pub found: Found,
+}
+
+/// A test that constants were found from.
+#[derive(Clone, Debug, Serialize)]
+pub struct CalibratedTest {
+    /// The results folder.
+    pub results: PathBuf,
+    /// The measured data.
+    pub measured: PathBuf,
+    /// What the measured rate is.
+    pub measured_by: String,
+    /// The measured rate.
+    pub measured_mg_per_million_cycles: f64,
+    /// Its own interval.
+    pub interval_mg_per_million_cycles: Option<Interval>,
+    /// The rate with the constants found.
+    pub fitted_mg_per_million_cycles: f64,
+    /// Fitted over measured, less one, percent.
+    pub fitted_above_measured_percent: f64,
+}
+
+/// A case predicted with the constants found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Prediction {
+    /// The case file.
+    pub case: PathBuf,
+    /// Cycles of it.
+    pub cycles: f64,
+    /// Mass lost, mg.
+    pub mass_loss_mg: f64,
+    /// Its interval by that of the constants: of the mean of such specimens, not of one specimen.
+    pub interval_mg: Option<Interval>,
+}
+
+/// What was measured in a calibration by one test.
+#[derive(Clone, Debug, Serialize)]
+pub struct OneTest {
+    /// Measured rate that the prediction was made to match.
+    pub measured_mg_per_million_cycles: f64,
+    /// What that rate is.
+    pub measured_by: String,
+    /// Its interval; none where it is of one specimen alone.
+    pub interval_mg_per_million_cycles: Option<Interval>,
+}
+
+/// The factor of Archard's law.
+#[derive(Clone, Debug, Serialize)]
+pub struct WearFactor {
+    /// Factor of the first case that was run.
+    pub run_with_mm3_per_nm: f64,
+    /// Factor found.
+    pub wear_factor_mm3_per_nm: f64,
+    /// Its interval.
+    pub wear_factor_interval_mm3_per_nm: Option<Interval>,
+}
+
+/// Finds the constants of the law of the results folders for the weighings beside each, by running their cases again;
+/// `tried` hears of every run.
+///
+/// More wear conforms the surfaces and so changes the wear that follows, so that rates are only nearly in proportion to
+/// how much a law wears: least squares by iteration, until a step changes no rate by more than 0.1 %.
+///
+/// # Errors
+/// No weighings, no wear, tests that do not tell the constants, or a run that fails.
+pub fn calibrate(
+    request: &CalibrationRequest,
+    tried: &mut dyn FnMut(&Trial),
+) -> Result<Calibration, CalibrateError> {
+    let tests = read(&request.tests)?;
+    let free = Free::new(tests[0].case.wear.clone(), &request.constants)?;
+    for test in &tests {
+        test.check()?;
+    }
+    let predicted = request.predict.iter().map(|path| Case::read(path));
+    let predicted: Vec<Case> = predicted.collect::<Result<_, _>>()?;
+    let mut trials = Vec::new();
+    let mut model = |at: &[f64]| {
+        let trial = trial(&tests, &free.law(at)?)?;
+        tried(&trial);
+        trials.push(trial.clone());
+        Ok(trial.mg_per_million_cycles)
+    };
+    let observations: Vec<_> = tests
+        .iter()
+        .map(|test| test.weighed.observation())
+        .collect();
+    let confidence = tests[0].weighed.confidence_percent / 100.0;
+    let fit = fit(&mut model, free.start(), &observations, confidence)?;
+    let each = request.predict.iter().zip(&predicted);
+    let predictions = each.map(|(path, case)| predict(path, case, &free, &fit));
+    let predictions = predictions.collect::<Result<_, _>>()?;
+    Ok(told(&tests, &free, &fit, predictions, trials))
+}
+
+fn read(pairs: &[(PathBuf, PathBuf)]) -> Result<Vec<Test>, CalibrateError> {
+    let tests = pairs
+        .iter()
+        .map(|(results, measured)| Test::read(results, measured));
+    let tests: Vec<Test> = tests.collect::<Result<_, _>>()?;
+    let Some(first) = tests.first() else {
+        return Err(CalibrateError::NoPairs { given: 0 });
+    };
+    for test in &tests {
+        let [law, own] = [test, first].map(|test| test.case.wear.kind().word);
+        if law != own {
+            let (results, first) = (test.results.clone(), own);
+            return Err(CalibrateError::OtherLaw {
+                results,
+                law,
+                first,
+            });
+        }
+        if !test.weighed.has_intervals_like(&first.weighed) {
+            let measured = test.measured.clone();
+            return Err(CalibrateError::OtherInterval { measured });
+        }
+    }
+    Ok(tests)
+}
+
+fn trial(tests: &[Test], law: &Wear) -> Result<Trial, CalibrateError> {
+    let rates = tests.iter().map(|test| test.rate(law));
+    Ok(Trial {
+        constants: law.constants().to_vec(),
+        mg_per_million_cycles: rates.collect::<Result<_, _>>()?,
+    })
+}
+
+/// What a case loses with the constants found, and how far that is sure.
+fn predict(path: &Path, case: &Case, free: &Free, fit: &Fit) -> Result<Prediction, CalibrateError> {
+    let lost = |at: &[f64]| -> Result<(f64, f64), CalibrateError> {
+        let losses = losses(case, &free.law(at)?)?;
+        Ok(losses.last().copied().unwrap_or_default())
+    };
+    let (cycles, mass_loss_mg) = lost(&fit.at)?;
+    let interval = fit.spread.as_ref().map(|spread| {
+        let slope = |number: usize| {
+            let beside = |by: f64| {
+                let mut at = fit.at.clone();
+                at[number] += by;
+                lost(&at).map(|(_, mass_mg)| mass_mg)
+            };
+            let half = spread.half[number];
+            Ok((beside(half)? - beside(-half)?) / (2.0 * half))
+        };
+        let slopes: Vec<f64> = (0..fit.at.len())
+            .map(slope)
+            .collect::<Result<_, CalibrateError>>()?;
+        let around = Interval::around(mass_loss_mg, spread.half_interval(&slopes));
+        Ok::<_, CalibrateError>(from_nothing(around))
+    });
+    Ok(Prediction {
+        case: path.to_owned(),
+        cycles,
+        mass_loss_mg,
+        interval_mg: interval.transpose()?,
+    })
+}
+
+/// Nothing wears less than nothing.
+fn from_nothing(interval: Interval) -> Interval {
+    Interval {
+        low: interval.low.max(0.0),
+        ..interval
+    }
+}
+
+fn told(
+    tests: &[Test],
+    free: &Free,
+    fit: &Fit,
+    predictions: Vec<Prediction>,
+    trials: Vec<Trial>,
+) -> Calibration {
+    let constants = constants(free, fit);
+    let spread = fit.spread.as_ref();
+    Calibration {
+        law: free.law.kind().word,
+        confidence_percent: tests[0].weighed.confidence_percent,
+        times_as_much: free.is_level().then(|| Found {
+            value: fit.at[0],
+            interval: ends(fit, 0).map(from_nothing),
+        }),
+        tests: tests.iter().zip(&fit.rates).map(|(test, &rate)| of_test(test, rate)).collect(),
+        scatter_percent: spread
+            .filter(|_| tests[0].weighed.counts_specimens())
+            .map(|spread| 100.0 * spread.scatter),
+        degrees_of_freedom: spread.map_or(0, |spread| spread.freedom),
+        without_interval: spread.is_none().then_some(
+            "as many constants were found as there are measured rates, and no rate has a scatter of its own; weigh more \
+             specimens, or more often",
+        ),
+        predictions,
+        one_test: match tests {
+            [test] => Some(one_test(test)),
+            _ => None,
+        },
+        wear_factor: wear_factor(&constants),
+        constants,
+        trials,
+    }
+}
+
+/// The interval of a parameter.
+fn ends(fit: &Fit, number: usize) -> Option<Interval> {
+    let spread = fit.spread.as_ref()?;
+    let slopes: Vec<f64> = (0..fit.at.len())
+        .map(|own| f64::from(u8::from(own == number)))
+        .collect();
+    Some(Interval::around(
+        fit.at[number],
+        spread.half_interval(&slopes),
+    ))
+}
+
+/// Every constant that changed, with its interval.
+fn constants(free: &Free, fit: &Fit) -> Vec<CalibratedConstant> {
+    let values = free.constants_near(&fit.at);
+    let parameters = free.law.kind().parameters.iter().enumerate();
+    let changed = parameters.filter(|(place, _)| free.changes(*place));
+    let constant = |(place, parameter): (usize, &condyle::parameter::Parameter)| {
+        let number = free.parameter_of(place);
+        let at_end = |end: f64| {
+            let mut at = fit.at.clone();
+            at[number] = end;
+            free.constants_near(&at)[place]
+        };
+        let interval = ends(fit, number).map(|ends| {
+            let [one, other] = [at_end(ends.low), at_end(ends.high)];
+            Interval {
+                low: one.min(other),
+                high: one.max(other),
+            }
+        });
+        CalibratedConstant {
+            name: parameter.name,
+            run_with: free.law.constants()[place],
+            found: Found {
+                value: values[place],
+                interval,
+            },
+        }
+    };
+    changed.map(constant).collect()
+}
+
+fn of_test(test: &Test, rate: f64) -> CalibratedTest {
+    let aim = test.weighed.aim();
+    CalibratedTest {
+        results: test.results.clone(),
+        measured: test.measured.clone(),
+        measured_by: aim.name.clone(),
+        measured_mg_per_million_cycles: aim.mg_per_million_cycles,
+        interval_mg_per_million_cycles: aim.interval_mg_per_million_cycles,
+        fitted_mg_per_million_cycles: rate,
+        fitted_above_measured_percent: 100.0 * (rate / aim.mg_per_million_cycles - 1.0),
+    }
+}
+
+fn one_test(test: &Test) -> OneTest {
+    let aim = test.weighed.aim();
+    OneTest {
+        measured_mg_per_million_cycles: aim.mg_per_million_cycles,
+        measured_by: aim.name.clone(),
+        interval_mg_per_million_cycles: aim.interval_mg_per_million_cycles,
+    }
+}
+
+/// What of Archard's law was found.
+fn wear_factor(constants: &[CalibratedConstant]) -> Option<WearFactor> {
+    let mut all = constants.iter();
+    let factor = all.find(|constant| constant.name == Archard::WEAR_FACTOR.name)?;
+    Some(WearFactor {
+        run_with_mm3_per_nm: factor.run_with,
+        wear_factor_mm3_per_nm: factor.found.value,
+        wear_factor_interval_mm3_per_nm: factor.found.interval,
+    })
+}
