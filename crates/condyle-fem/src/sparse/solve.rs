@@ -1,5 +1,7 @@
 //! Forward and backward substitution, several right-hand sides side by side.
 
+use std::ops::Range;
+
 use wide::f64x4;
 
 use crate::sparse::{factor::Factor, rhs::Rhs, tiles::TILE};
@@ -48,6 +50,29 @@ impl Factor {
         }
     }
 
+    /// Solves half way for right-hand sides that only these groups feel, with all groups above those, ascending:
+    /// the rows of these, one after the other. Leaves zeros behind.
+    pub(crate) fn solve_half<const W: usize>(
+        &self,
+        groups: &[usize],
+        x: &mut Rhs<W>,
+    ) -> Vec<[f64x4; W]> {
+        let (mut front, mut half) = (Vec::new(), Vec::new());
+        for &group in groups {
+            self.forward(group, x, &mut front);
+            let own = &mut x.rows[self.own_freedoms(group)];
+            half.extend_from_slice(own);
+            own.fill([f64x4::ZERO; W]);
+        }
+        half
+    }
+
+    /// Freedoms that a group eliminates.
+    pub(crate) fn own_freedoms(&self, group: usize) -> Range<usize> {
+        let own = &self.dissection.groups[group].own;
+        3 * own.start as usize..3 * own.end as usize
+    }
+
     /// The groups of some places, and all groups above them.
     pub(crate) fn paths(&self, places: impl Iterator<Item = u32>) -> Vec<bool> {
         let mut on_path = vec![false; self.fronts.len()];
@@ -62,8 +87,8 @@ impl Factor {
     }
 
     fn forward<const W: usize>(&self, group: usize, x: &mut Rhs<W>, front: &mut Vec<[f64x4; W]>) {
+        let own = self.own_freedoms(group);
         let (group, factor) = (&self.dissection.groups[group], &self.fronts[group]);
-        let own = 3 * group.own.start as usize..3 * group.own.end as usize;
         front.clear();
         front.extend_from_slice(&x.rows[own.clone()]);
         front.resize(factor.columns, [f64x4::ZERO; W]);
@@ -86,8 +111,8 @@ impl Factor {
     }
 
     fn backward<const W: usize>(&self, group: usize, x: &mut Rhs<W>, front: &mut Vec<[f64x4; W]>) {
+        let own = self.own_freedoms(group);
         let (group, factor) = (&self.dissection.groups[group], &self.fronts[group]);
-        let own = 3 * group.own.start as usize..3 * group.own.end as usize;
         front.clear();
         front.extend_from_slice(&x.rows[own.clone()]);
         front.resize(factor.columns, [f64x4::ZERO; W]);

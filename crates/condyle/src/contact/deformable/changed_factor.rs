@@ -1,17 +1,18 @@
 //! The factor of the compliance of nodes that press, kept while few of them change.
 
 use super::{
-    cholesky::{Cholesky, Eight, subtract, zero},
-    compliance::KnownColumns,
+    cholesky::{Cholesky, Eight, ROWS, subtract, zero},
+    near_matrix::NearMatrix,
 };
 use crate::number::{F64x4, LANES, Number};
 
 /// How many changes go side by side.
-const SIDES: usize = 2 * LANES;
-/// With more changes than this the matrix is factored anew: that takes n^3/6 products, each change n^2/2 and more.
-const MOST_CHANGES: usize = 32;
-/// So many columns of changes are kept, those of nodes that have changed back among them.
-const MOST_KEPT: usize = 64;
+const SIDES: usize = ROWS;
+/// With more changes than one to so many nodes the matrix is factored anew: that takes n^3/6 products, each change
+/// n^2/2 and more.
+const NODES_A_CHANGE: usize = 4;
+/// Fewest and most changes up to which it is not.
+const MOST_CHANGES: [usize; 2] = [32, 320];
 /// A node that is in no row.
 const NONE: u32 = u32::MAX;
 
@@ -32,16 +33,17 @@ pub(super) struct ChangedFactor {
     /// Nodes of which there are columns of Z, none twice, each eight of which share a block of Z.
     kept: Vec<Option<u32>>,
     blocks: Vec<Vec<Eight>>,
-    /// Z' Z of the kept columns.
-    products: Vec<[f64; MOST_KEPT]>,
-    /// Which of the kept columns count now, and the factor of their matrix.
+    /// Z' Z of the kept columns, up to the diagonal.
+    products: Vec<Vec<f64>>,
+    /// Which of the kept columns count now, and the rows of the factor of their matrix.
     changes: Vec<usize>,
-    small: Vec<[f64; MOST_CHANGES]>,
+    small: Vec<Vec<f64>>,
     /// y, if it is that of the present overclosures.
     forward: Vec<Eight>,
     is_forward_known: bool,
     is_pressing: Vec<bool>,
     sides: Vec<Eight>,
+    side: Vec<f64>,
 }
 
 impl ChangedFactor {
@@ -60,6 +62,7 @@ impl ChangedFactor {
             is_forward_known: false,
             is_pressing: vec![false; node_count],
             sides: Vec::new(),
+            side: Vec::new(),
         }
     }
 
@@ -69,21 +72,24 @@ impl ChangedFactor {
     }
 
     /// Lets nodes press, and no others.
-    pub fn press(&mut self, nodes: &[u32], columns: &KnownColumns) {
+    pub fn press(&mut self, nodes: &[u32], compliance: &NearMatrix) {
         let changed = self.changed(nodes);
         let is_new = |node: &&u32| !self.kept.contains(&Some(**node));
         let new: Vec<u32> = changed.iter().filter(is_new).copied().collect();
         let kept = self.kept.len() + new.len().next_multiple_of(SIDES);
-        if changed.len() > MOST_CHANGES.min(nodes.len() / 2) || kept > MOST_KEPT {
-            self.factor_anew(nodes, columns);
+        let [fewest, most] = MOST_CHANGES;
+        let most = (nodes.len() / NODES_A_CHANGE).clamp(fewest, most);
+        if changed.len() > most.min(nodes.len() / 2) || kept > 2 * most {
+            self.factor_anew(nodes, compliance);
             return;
         }
         for new in new.chunks(SIDES) {
-            self.keep(new, columns);
+            self.keep(new, compliance);
         }
         let place = |node: &u32| self.kept.iter().position(|kept| *kept == Some(*node));
-        self.changes = changed.iter().filter_map(place).collect();
-        self.factor_changes(columns);
+        let mut changes: Vec<usize> = changed.iter().filter_map(place).collect();
+        changes.sort_unstable();
+        self.change(changes, compliance);
     }
 
     /// The nodes that have ceased to press since the matrix was factored, and those that have begun.
@@ -105,16 +111,21 @@ impl ChangedFactor {
         changed
     }
 
-    fn factor_anew(&mut self, nodes: &[u32], columns: &KnownColumns) {
+    fn factor_anew(&mut self, nodes: &[u32], compliance: &NearMatrix) {
         self.nodes
             .iter()
             .for_each(|&node| self.row_of[node as usize] = NONE);
         self.nodes.clear();
         self.nodes.extend_from_slice(nodes);
-        for (row, &node) in nodes.iter().enumerate() {
+        // Rows of a panel together: an entry is next to the one before.
+        self.nodes
+            .sort_unstable_by_key(|&node| compliance.place(node));
+        for (row, &node) in self.nodes.iter().enumerate() {
             self.row_of[node as usize] = row as u32;
         }
-        let entry = |row: usize, column: usize| columns.of(nodes[column])[nodes[row] as usize];
+        let rows = self.nodes.iter().map(|&node| compliance.row(node));
+        let rows: Vec<u32> = rows.collect();
+        let entry = |row: usize, column: usize| compliance.at(rows[row], rows[column]);
         self.factor.factor(nodes.len(), entry);
         self.kept.clear();
         self.blocks.clear();
@@ -125,14 +136,14 @@ impl ChangedFactor {
     }
 
     /// Keeps the columns of Z of up to eight nodes.
-    fn keep(&mut self, new: &[u32], columns: &KnownColumns) {
+    fn keep(&mut self, new: &[u32], compliance: &NearMatrix) {
         let mut block = vec![zero(); self.factor.rows()];
         for (side, &node) in new.iter().enumerate() {
             let row = self.row_of[node as usize];
             if row == NONE {
-                let column = columns.of(node);
+                let column = compliance.row(node);
                 for (numbers, &other) in block.iter_mut().zip(&self.nodes) {
-                    set(numbers, side, column[other as usize]);
+                    set(numbers, side, compliance.at(compliance.row(other), column));
                 }
             } else {
                 set(&mut block[row as usize], side, 1.0);
@@ -148,7 +159,10 @@ impl ChangedFactor {
     /// Adds the products of the last block with all blocks.
     fn add_products(&mut self) {
         let last = self.blocks.len() - 1;
-        self.products.resize(self.kept.len(), [0.0; MOST_KEPT]);
+        let first = self.products.len();
+        for row in first..self.kept.len() {
+            self.products.push(vec![0.0; row + 1]);
+        }
         for other in 0..=last {
             let mut sums = [zero(); SIDES];
             for (own, other) in self.blocks[last].iter().zip(&self.blocks[other]) {
@@ -156,49 +170,137 @@ impl ChangedFactor {
                     subtract(sum, own, -get(other, side));
                 }
             }
-            for (side, sum) in sums.iter().enumerate() {
-                for own in 0..SIDES {
-                    let (i, j) = (SIDES * last + own, SIDES * other + side);
-                    self.products[i][j] = get(sum, own);
-                    self.products[j][i] = get(sum, own);
+            for (own, row) in self.products[first..].iter_mut().enumerate() {
+                let columns = row.iter_mut().skip(SIDES * other);
+                for (product, sum) in columns.zip(&sums) {
+                    *product = get(sum, own);
                 }
             }
         }
     }
 
-    /// Factors the matrix of the changes, L D L', the diagonal of L left to D.
-    fn factor_changes(&mut self, columns: &KnownColumns) {
-        self.small.clear();
-        for i in 0..self.changes.len() {
-            let mut row = [0.0; MOST_CHANGES];
-            for j in 0..=i {
-                let mut sum = self.of_changes(i, j, columns);
-                let other = if j == i { &row } else { &self.small[j] };
-                for (m, (own, other)) in row.iter().zip(other).enumerate().take(j) {
-                    sum -= own * other * self.small[m][m];
-                }
-                row[j] = if j == i { sum } else { sum / self.small[j][j] };
+    /// Factors the matrix of other changes, L D L', the diagonal of L left to D. What it has in common with that of
+    /// the changes before stays.
+    fn change(&mut self, changes: Vec<usize>, compliance: &NearMatrix) {
+        let pairs = self.changes.iter().zip(&changes);
+        let same = pairs.take_while(|(before, now)| before == now).count();
+        self.changes = changes;
+        self.small.truncate(same);
+        for i in same..self.changes.len() {
+            // First of L D, then of L.
+            let mut row: Vec<f64> = Vec::with_capacity(i + 1);
+            for j in 0..i {
+                let taken = dot(&row, &self.small[j][..j]);
+                row.push(self.of_changes(i, j, compliance) - taken);
             }
+            let mut pivot = self.of_changes(i, i, compliance);
+            for (j, number) in row.iter_mut().enumerate() {
+                let scaled = *number / self.small[j][j];
+                pivot -= *number * scaled;
+                *number = scaled;
+            }
+            row.push(pivot);
             self.small.push(row);
         }
     }
 
-    /// An entry of the matrix of the changes.
-    fn of_changes(&self, i: usize, j: usize, columns: &KnownColumns) -> f64 {
+    /// An entry of the matrix of the changes, up to the diagonal.
+    fn of_changes(&self, i: usize, j: usize, compliance: &NearMatrix) -> f64 {
         let (i, j) = (self.changes[i], self.changes[j]);
-        let begun =
-            |kept: usize| self.kept[kept].filter(|&node| self.row_of[node as usize] == NONE);
-        let own = match (begun(i), begun(j)) {
-            (Some(one), Some(other)) => columns.of(one.min(other))[one.max(other) as usize],
+        let own = match (self.begun(i), self.begun(j)) {
+            (Some(one), Some(other)) => compliance.at(compliance.row(one), compliance.row(other)),
             _ => 0.0,
         };
         own - self.products[i][j]
     }
 
+    /// The node of a kept column, if it has begun to press.
+    fn begun(&self, kept: usize) -> Option<u32> {
+        self.kept[kept].filter(|&node| self.row_of[node as usize] == NONE)
+    }
+
     /// The loads on the nodes that press, in their order, from the overclosures of all surface nodes.
-    pub fn solve(&mut self, nodes: &[u32], overclosures: &[Eight], loads: &mut Vec<Eight>) {
+    pub fn loads(&mut self, nodes: &[u32], overclosures: &[Eight], loads: &mut Vec<f64>) {
         self.find_forward(overclosures);
-        let changes = self.solved_changes(overclosures);
+        let changes = self.changes_of_loads(overclosures);
+        self.side.clear();
+        self.side
+            .extend(self.forward.iter().map(|side| get(side, 0)));
+        for (block, columns) in self.blocks.iter().enumerate() {
+            let of_block = self.of_block(block, &changes);
+            for (sum, columns) in self.side.iter_mut().zip(columns) {
+                let [a, b] = [0, 1].map(|half| columns[half] * of_block[half]);
+                *sum -= (a + b).sum();
+            }
+        }
+        self.factor.backward_one(&mut self.side);
+        loads.clear();
+        for &node in nodes {
+            let row = self.row_of[node as usize];
+            loads.push(if row == NONE {
+                self.place_of(node).map_or(0.0, |place| changes[place])
+            } else {
+                self.side[row as usize]
+            });
+        }
+    }
+
+    /// The changes x of the loads.
+    fn changes_of_loads(&self, overclosures: &[Eight]) -> Vec<f64> {
+        let mut products = Vec::with_capacity(self.kept.len());
+        for block in &self.blocks {
+            let mut sum = zero();
+            for (y, columns) in self.forward.iter().zip(block) {
+                subtract(&mut sum, columns, -get(y, 0));
+            }
+            products.extend((0..SIDES).map(|side| get(&sum, side)));
+        }
+        let mut x: Vec<f64> = Vec::with_capacity(self.changes.len());
+        for (&kept, row) in self.changes.iter().zip(&self.small) {
+            let begun = self.begun(kept);
+            let own = begun.map_or(0.0, |node| get(&overclosures[node as usize], 0));
+            let known: f64 = x
+                .iter()
+                .zip(row)
+                .map(|(known, factor)| known * factor)
+                .sum();
+            x.push(own - products[kept] - known);
+        }
+        for i in (0..x.len()).rev() {
+            let row = &self.small[i];
+            let after: f64 = (i + 1..x.len()).map(|j| x[j] * self.small[j][i]).sum();
+            x[i] = x[i] / row[i] - after;
+        }
+        x
+    }
+
+    /// The changes of the columns of a block, those that do not count none.
+    fn of_block(&self, block: usize, changes: &[f64]) -> Eight {
+        let mut numbers = zero();
+        for (&kept, &change) in self.changes.iter().zip(changes) {
+            if kept / SIDES == block {
+                set(&mut numbers, kept % SIDES, change);
+            }
+        }
+        numbers
+    }
+
+    /// Where among the changes a node is.
+    fn place_of(&self, node: u32) -> Option<usize> {
+        self.changes
+            .iter()
+            .position(|&kept| self.kept[kept] == Some(node))
+    }
+
+    /// The same with the derivatives by six motions.
+    pub fn loads_by_motion(
+        &mut self,
+        nodes: &[u32],
+        overclosures: &[Eight],
+        loads: &mut Vec<Eight>,
+    ) {
+        self.find_forward(overclosures);
+        let changes = self.changes_by_motion(overclosures);
         self.sides.clone_from(&self.forward);
         for (&kept, change) in self.changes.iter().zip(&changes) {
             let block = &self.blocks[kept / SIDES];
@@ -210,13 +312,8 @@ impl ChangedFactor {
         loads.clear();
         for &node in nodes {
             let row = self.row_of[node as usize];
-            let of_change = || {
-                self.changes
-                    .iter()
-                    .position(|&kept| self.kept[kept] == Some(node))
-            };
             loads.push(if row == NONE {
-                of_change().map_or(zero(), |place| changes[place])
+                self.place_of(node).map_or(zero(), |place| changes[place])
             } else {
                 self.sides[row as usize]
             });
@@ -235,16 +332,16 @@ impl ChangedFactor {
         }
     }
 
-    /// The changes x.
-    fn solved_changes(&self, overclosures: &[Eight]) -> Vec<Eight> {
+    /// The changes x, with their derivatives.
+    fn changes_by_motion(&self, overclosures: &[Eight]) -> Vec<Eight> {
         let mut x: Vec<Eight> = Vec::with_capacity(self.changes.len());
-        for (i, &kept) in self.changes.iter().enumerate() {
-            let begun = self.kept[kept].filter(|&node| self.row_of[node as usize] == NONE);
+        for (&kept, row) in self.changes.iter().zip(&self.small) {
+            let begun = self.begun(kept);
             let mut sum = begun.map_or(zero(), |node| overclosures[node as usize]);
             for (y, column) in self.forward.iter().zip(&self.blocks[kept / SIDES]) {
                 subtract(&mut sum, y, get(column, kept % SIDES));
             }
-            for (known, &factor) in x.iter().zip(&self.small[i]) {
+            for (known, &factor) in x.iter().zip(row) {
                 subtract(&mut sum, known, factor);
             }
             x.push(sum);
@@ -259,6 +356,16 @@ impl ChangedFactor {
         }
         x
     }
+}
+
+/// The product of two vectors, four of their numbers side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (fours, others) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest = fours.remainder().iter().zip(others.remainder());
+    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    let vector = |four: &[f64]| F64x4::from_lanes(|lane| four[lane]);
+    let add = |sum: F64x4, (a, b): (&[f64], &[f64])| vector(a).mul_add(vector(b), sum);
+    fours.zip(others).fold(F64x4::splat(0.0), add).sum() + rest
 }
 
 fn get(numbers: &Eight, side: usize) -> f64 {

@@ -3,7 +3,10 @@
 use crate::number::{F64x4, LANES, Number};
 
 /// How many rows go side by side.
-const ROWS: usize = 2 * LANES;
+pub(super) const ROWS: usize = 2 * LANES;
+
+/// Panels that go together past those before, which come from memory once for all of them.
+const TOGETHER: usize = 4;
 
 /// One number for each of the rows that go side by side, or for each right-hand side.
 pub(super) type Eight = [F64x4; 2];
@@ -46,12 +49,18 @@ impl Cholesky {
         self.order = order;
         self.columns.clear();
         self.per_diagonal.clear();
-        for panel in 0..panels {
-            self.add_rows(panel, &entry);
-            for block in 0..2 * panel {
-                self.eliminate(panel, block);
+        for first in (0..panels).step_by(TOGETHER) {
+            let some = first..panels.min(first + TOGETHER);
+            some.clone().for_each(|panel| self.add_rows(panel, &entry));
+            for block in 0..2 * first {
+                some.clone().for_each(|panel| self.eliminate(panel, block));
             }
-            self.factor_diagonal(panel);
+            for panel in some {
+                for block in 2 * first..2 * panel {
+                    self.eliminate(panel, block);
+                }
+                self.factor_diagonal(panel);
+            }
         }
     }
 
@@ -104,7 +113,7 @@ impl Cholesky {
     /// Computes the columns of a panel that reach its diagonal.
     fn factor_diagonal(&mut self, panel: usize) {
         let first = ROWS * panel;
-        let own = &mut self.columns[start(panel)..];
+        let own = &mut self.columns[start(panel)..start(panel + 1)];
         for j in 0..ROWS {
             let mut column = own[first + j];
             for before in &own[..first + j] {
@@ -169,6 +178,29 @@ impl Cholesky {
         }
     }
 
+    /// L'\side for one right-hand side, in place.
+    pub fn backward_one(&self, side: &mut [f64]) {
+        // What the rows below take off each, not yet added up.
+        let mut taken = vec![zero(); side.len()];
+        for panel in (0..side.len() / ROWS).rev() {
+            let first = ROWS * panel;
+            let own = &self.columns[start(panel)..];
+            let here = &mut side[first..first + ROWS];
+            for j in (0..ROWS).rev() {
+                let column = own[first + j];
+                let below = j + 1..ROWS;
+                let of_panel = below.map(|m| column[m / LANES].lane(m % LANES) * here[m]);
+                let taken = (taken[first + j][0] + taken[first + j][1]).sum();
+                here[j] = (here[j] - taken - of_panel.sum::<f64>()) * self.per_diagonal[first + j];
+            }
+            let solved = [0, LANES].map(|half| F64x4::from_lanes(|lane| here[half + lane]));
+            for (taken, column) in taken[..first].iter_mut().zip(own) {
+                taken[0] = column[0].mul_add(solved[0], taken[0]);
+                taken[1] = column[1].mul_add(solved[1], taken[1]);
+            }
+        }
+    }
+
     fn scaled(&self, row: usize, sides: Eight) -> Eight {
         let scale = F64x4::splat(self.per_diagonal[row]);
         sides.map(|side| side * scale)
@@ -195,7 +227,12 @@ mod tests {
                 (0..order).map(|row| [half(row, 0), half(row, 1)]).collect();
             sides.resize(factor.rows(), zero());
             factor.forward(&mut sides);
+            let mut one: Vec<f64> = sides.iter().map(|sides| sides[1].lane(2)).collect();
+            factor.backward_one(&mut one);
             factor.backward(&mut sides);
+            for (one, sides) in one.iter().zip(&sides) {
+                assert!((one - sides[1].lane(2)).abs() < 1e-12);
+            }
             for row in 0..order {
                 for side in 0..8 {
                     let part =

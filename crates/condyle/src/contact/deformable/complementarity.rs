@@ -2,13 +2,12 @@
 
 use super::{
     changed_factor::ChangedFactor,
-    cholesky::{Eight, zero},
-    compliance::KnownColumns,
+    cholesky::{Eight, ROWS, zero},
+    clearance::Clearances,
+    near_matrix::NearMatrix,
 };
-use crate::number::Number;
+use crate::number::{F64x4, LANES, Number};
 
-/// A gap may be below zero by this much, mm: a millionth of what a surface is rough by.
-const GAP_TOLERANCE_MM: f64 = 1e-10;
 /// A load may pull by this much, N.
 const LOAD_TOLERANCE_N: f64 = 1e-9;
 /// How often all that is wrong may be put right at once without there being less of it.
@@ -26,7 +25,7 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    fn overclosed_mm(&self) -> f64 {
+    pub fn overclosed_mm(&self) -> f64 {
         self.overclosure_mm[0].lane(0)
     }
 }
@@ -52,11 +51,12 @@ pub(super) struct Pressing {
     /// Of every surface node its overclosure, and the derivatives by six motions: of candidates as it is now.
     overclosures: Vec<Eight>,
     factor: ChangedFactor,
-    /// Of every pressing node its load, and the derivatives by six motions.
+    /// Of every pressing node its load; and when these are right, with the derivatives by six motions.
+    loads_n: Vec<f64>,
     loads: Vec<Eight>,
-    /// Places of the candidates that do not press, and how far each gives way.
-    silent: Vec<usize>,
-    deflection_mm: Vec<f64>,
+    /// Those loads by the panels of their nodes.
+    by_panel: Vec<(usize, Eight)>,
+    clearances: Clearances,
 }
 
 impl Pressing {
@@ -69,9 +69,10 @@ impl Pressing {
             nodes: Vec::new(),
             overclosures: vec![zero(); node_count],
             factor: ChangedFactor::of_nothing(node_count),
+            loads_n: Vec::new(),
             loads: Vec::new(),
-            silent: Vec::new(),
-            deflection_mm: Vec::new(),
+            by_panel: Vec::new(),
+            clearances: Clearances::unknown(node_count),
         }
     }
 
@@ -82,7 +83,7 @@ impl Pressing {
     pub fn solve(
         &mut self,
         candidates: &[Candidate],
-        columns: &mut KnownColumns,
+        compliance: &NearMatrix,
     ) -> impl Iterator<Item = (usize, &Eight)> {
         self.start(candidates);
         for candidate in candidates {
@@ -91,8 +92,8 @@ impl Pressing {
         self.factor.take_other_overclosures();
         let (mut least, mut tries) = (usize::MAX, MOST_TRIES);
         for _ in 0..MOST_ROUNDS {
-            self.load(candidates, columns);
-            let wrong = self.wrong(candidates, columns);
+            self.load(candidates, compliance);
+            let wrong = self.wrong(candidates, compliance);
             let Some(last) = wrong.last() else {
                 break;
             };
@@ -111,6 +112,8 @@ impl Pressing {
                 self.is_pressing[place] = !self.is_pressing[place];
             }
         }
+        self.factor
+            .loads_by_motion(&self.nodes, &self.overclosures, &mut self.loads);
         self.nodes
             .iter()
             .for_each(|&node| self.pressed_before[node as usize] = true);
@@ -137,45 +140,78 @@ impl Pressing {
     }
 
     /// The loads under which the gap of all that press is zero.
-    fn load(&mut self, candidates: &[Candidate], columns: &mut KnownColumns) {
+    fn load(&mut self, candidates: &[Candidate], compliance: &NearMatrix) {
         let (places, nodes) = (&mut self.places, &mut self.nodes);
         places.clear();
         places.extend((0..candidates.len()).filter(|&place| self.is_pressing[place]));
         nodes.clear();
         nodes.extend(places.iter().map(|&place| candidates[place].node));
-        columns.ask(nodes.iter().copied());
-        self.factor.press(nodes, columns);
+        self.factor.press(nodes, compliance);
         self.factor
-            .solve(nodes, &self.overclosures, &mut self.loads);
+            .loads(nodes, &self.overclosures, &mut self.loads_n);
+        self.clearances.take(nodes, &self.loads_n, compliance);
+        self.by_panel = by_panel(nodes, &self.loads_n, compliance);
     }
 
     /// Places of the candidates that pull, and of those that overlap and do not press; ascending.
-    fn wrong(&mut self, candidates: &[Candidate], columns: &KnownColumns) -> Vec<usize> {
-        let loads = self.places.iter().zip(&self.loads);
-        let pulling = loads.filter(|(_, load)| load[0].lane(0) < -LOAD_TOLERANCE_N);
+    fn wrong(&mut self, candidates: &[Candidate], compliance: &NearMatrix) -> Vec<usize> {
+        let loads = self.places.iter().zip(&self.loads_n);
+        let pulling = loads.filter(|(_, load_n)| **load_n < -LOAD_TOLERANCE_N);
         let mut wrong: Vec<usize> = pulling.map(|(&place, _)| place).collect();
-        self.silent.clear();
-        let silent = (0..candidates.len()).filter(|&place| !self.is_pressing[place]);
-        self.silent.extend(silent);
-        self.find_deflection(candidates, columns);
-        for (&place, deflection_mm) in self.silent.iter().zip(&self.deflection_mm) {
-            if candidates[place].overclosed_mm() - deflection_mm > GAP_TOLERANCE_MM {
-                wrong.push(place);
+        // Those that are likely to, first: while some of these are wrong, the others can wait.
+        for is_likely in [true, false] {
+            if is_likely || wrong.is_empty() {
+                self.add_overlapping(is_likely, candidates, compliance, &mut wrong);
             }
         }
         wrong.sort_unstable();
         wrong
     }
 
-    /// How far each candidate that does not press gives way.
-    fn find_deflection(&mut self, candidates: &[Candidate], columns: &KnownColumns) {
-        self.deflection_mm.clear();
-        self.deflection_mm.resize(self.silent.len(), 0.0);
-        for (&node, load) in self.nodes.iter().zip(&self.loads) {
-            let (column, load_n) = (columns.of(node), load[0].lane(0));
-            for (sum, &place) in self.deflection_mm.iter_mut().zip(&self.silent) {
-                *sum += column[candidates[place].node as usize] * load_n;
+    /// Adds the places of the candidates that overlap and do not press, of those that are likely to or of the others.
+    fn add_overlapping(
+        &mut self,
+        is_likely: bool,
+        candidates: &[Candidate],
+        compliance: &NearMatrix,
+        wrong: &mut Vec<usize>,
+    ) {
+        for (place, candidate) in candidates.iter().enumerate() {
+            if self.is_pressing[place] || self.clearances.may_overlap(candidate) != is_likely {
+                continue;
+            }
+            let row = compliance.row(candidate.node);
+            let moved_mm = || compliance.moved(row, &self.by_panel);
+            if self.clearances.overlaps(candidate, moved_mm) {
+                wrong.push(place);
             }
         }
     }
+}
+
+/// Loads on nodes by the panels of these.
+fn by_panel(nodes: &[u32], loads_n: &[f64], compliance: &NearMatrix) -> Vec<(usize, Eight)> {
+    let rows = nodes.iter().map(|&node| compliance.row(node) as usize);
+    let mut loads: Vec<(u32, usize, f64)> = nodes
+        .iter()
+        .zip(rows)
+        .zip(loads_n)
+        .map(|((&node, row), &load_n)| (compliance.place(node), row, load_n))
+        .collect();
+    loads.sort_unstable_by_key(|&(place, ..)| place);
+    let mut panels: Vec<(usize, [f64; ROWS])> = Vec::new();
+    for (_, row, load_n) in loads {
+        if panels.last().is_none_or(|(panel, _)| *panel != row / ROWS) {
+            panels.push((row / ROWS, [0.0; ROWS]));
+        }
+        if let Some((_, loads)) = panels.last_mut() {
+            loads[row % ROWS] = load_n;
+        }
+    }
+    let vectors =
+        |loads: [f64; ROWS]| [0, LANES].map(|first| F64x4::from_lanes(|lane| loads[first + lane]));
+    panels
+        .into_iter()
+        .map(|(panel, loads)| (panel, vectors(loads)))
+        .collect()
 }

@@ -1,49 +1,85 @@
 //! How a surface gives way under loads on its nodes.
 
-use std::{fmt::Debug, sync::Arc};
+use std::{
+    fmt::Debug,
+    sync::{PoisonError, RwLock, RwLockReadGuard},
+};
 
-/// Deflections of all surface nodes under a unit load on one of them, both along the inward normals, mm/N.
-pub(super) type Column = Arc<[f64]>;
+use super::near_matrix::NearMatrix;
 
-/// The normal compliance of a surface: how far its nodes give way to loads on them.
+/// The normal compliance of a surface: how far its nodes give way to loads on them, both along the inward normals.
 ///
-/// It is symmetric and positive definite, and given column by column, as they are asked for: of most nodes
-/// nobody ever asks. What a column says depends on nothing that was asked before.
+/// It is symmetric and positive definite, and given for two tiles of nodes at a time, as they are asked for: of most
+/// nodes nobody ever asks. What it says depends on nothing that was asked before.
 pub(super) trait SurfaceCompliance: Debug + Send + Sync {
-    /// The columns of surface nodes, and those that come with them.
-    fn columns(&self, nodes: &[u32]) -> Vec<(u32, Column)>;
+    /// All nodes of the surface, in tiles that lie together.
+    fn tiles(&self) -> &[Vec<u32>];
+
+    /// How far unit loads on the nodes of one tile move those of another, mm/N: row-major, a row for each of `one`.
+    fn between(&self, one: usize, other: usize) -> Vec<f64>;
 }
 
-/// The columns that a contact has asked for so far.
-pub(super) struct KnownColumns {
-    source: Arc<dyn SurfaceCompliance>,
-    columns: Vec<Option<Column>>,
+/// The compliance of a surface, and of the nodes that any contact has come near what was asked so far.
+#[derive(Debug)]
+pub(super) struct Compliance<S: ?Sized = dyn SurfaceCompliance> {
+    tile_of: Vec<u32>,
+    near: RwLock<NearMatrix>,
+    pub source: S,
 }
 
-impl KnownColumns {
-    /// None so far, of a surface with so many nodes.
-    pub fn none(source: Arc<dyn SurfaceCompliance>, node_count: usize) -> Self {
-        Self {
-            source,
-            columns: vec![None; node_count],
-        }
-    }
-
-    /// Asks for the columns of nodes that are not known.
-    pub fn ask(&mut self, nodes: impl Iterator<Item = u32>) {
-        let unknown: Vec<u32> = nodes
-            .filter(|&node| self.columns[node as usize].is_none())
-            .collect();
-        if !unknown.is_empty() {
-            for (node, column) in self.source.columns(&unknown) {
-                self.columns[node as usize] = Some(column);
+impl<S: SurfaceCompliance> Compliance<S> {
+    /// That of a surface, of which nothing was asked.
+    pub fn new(source: S) -> Self {
+        let nodes = source.tiles().iter().map(Vec::len).sum();
+        let mut tile_of = vec![0; nodes];
+        for (number, tile) in source.tiles().iter().enumerate() {
+            for &node in tile {
+                tile_of[node as usize] = number as u32;
             }
         }
+        Self {
+            near: RwLock::new(NearMatrix::of_nothing(source.tiles())),
+            tile_of,
+            source,
+        }
+    }
+}
+
+impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
+    /// How many nodes the surface has.
+    pub fn node_count(&self) -> usize {
+        self.tile_of.len()
     }
 
-    /// The column of a node that was asked for.
-    #[inline(always)]
-    pub fn of(&self, node: u32) -> &[f64] {
-        self.columns[node as usize].as_deref().unwrap_or(&[])
+    /// The compliance of some nodes, and of others.
+    pub fn near(&self, nodes: impl Iterator<Item = u32>) -> RwLockReadGuard<'_, NearMatrix> {
+        let near = self.read();
+        let unknown = nodes.filter(|&node| !near.knows(node));
+        let mut tiles: Vec<u32> = unknown.map(|node| self.tile_of[node as usize]).collect();
+        if tiles.is_empty() {
+            return near;
+        }
+        drop(near);
+        tiles.sort_unstable();
+        tiles.dedup();
+        self.add(&tiles);
+        self.read()
+    }
+
+    fn read(&self) -> RwLockReadGuard<'_, NearMatrix> {
+        self.near.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn add(&self, tiles: &[u32]) {
+        let mut near = self.near.write().unwrap_or_else(PoisonError::into_inner);
+        let all = self.source.tiles();
+        for &tile in tiles {
+            // Another thread may have added it.
+            if !near.knows(all[tile as usize][0]) {
+                near.add(tile as usize, all, |one, other| {
+                    self.source.between(one, other)
+                });
+            }
+        }
     }
 }

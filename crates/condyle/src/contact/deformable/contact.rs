@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::{
+    along_normal::AlongNormal,
     complementarity::{Candidate, Pressing},
-    compliance::{KnownColumns, SurfaceCompliance},
-    covered::{EdgeOfContact, squares},
+    compliance::Compliance,
+    covered::{EdgeOfContact, squares, squares_everywhere},
     peak::PeakSearch,
 };
 use crate::{
@@ -18,7 +19,10 @@ use crate::{
         pressed::{Coulomb, NearBlock, NearBlocks, PressedBlocks, Sliding, Tractions4},
         share_block::ShareBlock,
     },
-    number::{F64x4, LANES, Number, vector::cross},
+    number::{
+        F64x4, LANES, Number,
+        vector::{cross, vector_from_lanes},
+    },
     spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist4},
 };
 
@@ -44,13 +48,16 @@ pub(super) struct DeformableContact<'a, B> {
     rubbing: Rubbing,
     nearby: NearBlocks<'a, B>,
     pressed: PressedBlocks,
-    columns: KnownColumns,
+    compliance: Arc<Compliance>,
     pressing: Pressing,
     /// The blocks near the femur, the nodes that may touch, and where each of these is: number among the
     /// blocks, and lane.
     near: Vec<NearBlock>,
     candidates: Vec<Candidate>,
     lanes: Vec<(usize, usize)>,
+    /// Of every block the inward normals of its nodes; of those near the femur how gaps change along them.
+    inward: Vec<Vector<F64x4>>,
+    along: Vec<AlongNormal>,
     /// What the contact after this one is to know.
     state: ContactState,
 }
@@ -75,16 +82,19 @@ impl Loads4 {
     fn tractions(
         &self,
         near: &NearBlock,
+        along: &AlongNormal,
         area_mm2: F64x4,
         twist: &Twist4,
         friction: Coulomb,
     ) -> Tractions4 {
         let place = &near.cached.place;
-        let [ax, ay, az, x, y, z] = self.by_motion.map(F64x4::new);
+        let by_motion = self.by_motion.map(F64x4::new);
+        let (force_n, by_motion) = along.forces_n(F64x4::new(self.load_n), &by_motion);
+        let [ax, ay, az, x, y, z] = by_motion;
         let load_by_motion = Vector::new(x, y, z);
         let area = Number::max(area_mm2, F64x4::splat(f64::MIN_POSITIVE));
         Tractions4 {
-            pressure_mpa: F64x4::new(self.load_n) / area,
+            pressure_mpa: force_n / area,
             area_mm2,
             covered_mm2: area_mm2,
             // What a turn adds beyond that of its motion at the share: the whole load moves.
@@ -106,7 +116,7 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         memory: ContactMemory,
         bodies: Bodies<'a>,
         rubbing: Rubbing,
-        compliance: Arc<dyn SurfaceCompliance>,
+        compliance: Arc<Compliance>,
     ) -> Self {
         let nearby = NearBlocks::after(
             memory.cache.into_inner(),
@@ -114,14 +124,18 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             ShareBlock::of_nodes(bodies.insert, bodies.surface),
             rubbing.sample_reuse_mm,
         );
-        let node_count = bodies.surface.positions.len();
+        let inward = |block: &ShareBlock| {
+            -vector_from_lanes(|lane| &bodies.surface.normals[block.nodes[lane] as usize])
+        };
         Self {
             pressed: PressedBlocks::none(bodies.surface, &nearby.blocks, rubbing.friction),
-            columns: KnownColumns::none(compliance, node_count),
-            pressing: Pressing::nothing(node_count),
+            pressing: Pressing::nothing(compliance.node_count()),
+            compliance,
             near: Vec::new(),
             candidates: Vec::new(),
             lanes: Vec::new(),
+            inward: nearby.blocks.iter().map(inward).collect(),
+            along: Vec::new(),
             state: memory.state,
             bodies,
             rubbing,
@@ -138,13 +152,17 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             .find(pose, pose4, |_, _| (most, ()), |block, ()| near.push(block));
         self.candidates.clear();
         self.lanes.clear();
+        self.along.clear();
         for (number, near) in self.near.iter().enumerate() {
             let shares = &self.nearby.blocks[near.block as usize];
             let gap_mm = near
                 .cached
                 .sample
                 .gap_at_point_mm(F64x4::splat(prepared_mm2));
-            let overclosures = overclosures_mm(near, gap_mm);
+            let inward = pose4.turn_to_femur(&self.inward[near.block as usize]);
+            let along = AlongNormal::new(near, &inward);
+            let overclosures = along.overclosures_mm(near, gap_mm);
+            self.along.push(along);
             for (lane, &node) in shares.nodes.iter().enumerate() {
                 let is_near = gap_mm.lane(lane) <= MOST_BULGE_MM;
                 if is_near && shares.area_mm2.lane(lane) > 0.0 {
@@ -162,7 +180,11 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
     /// Finds the loads of all that touch, and keeps those blocks.
     fn find_loads(&mut self) -> Vec<Loads4> {
         let mut loads = vec![Loads4::NONE; self.near.len()];
-        for (place, load) in self.pressing.solve(&self.candidates, &mut self.columns) {
+        let candidates = self.candidates.iter();
+        let compliance = self
+            .compliance
+            .near(candidates.map(|candidate| candidate.node));
+        for (place, load) in self.pressing.solve(&self.candidates, &compliance) {
             let (number, lane) = self.lanes[place];
             let block = &mut loads[number];
             block.load_n[lane] = load[0].lane(0).max(0.0);
@@ -171,6 +193,8 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
                 by[lane] = load[at / LANES].lane(at % LANES);
             }
         }
+        let mut pressing = loads.iter().map(|loads| !loads.is_none());
+        self.along.retain(|_| pressing.next().unwrap_or(false));
         let pressing = self.near.drain(..).zip(&loads);
         let pressing = pressing.filter(|(_, loads)| !loads.is_none());
         self.pressed.near.clear();
@@ -178,18 +202,6 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         loads.retain(|loads| !loads.is_none());
         loads
     }
-}
-
-/// Overclosure of every share of a block, and its derivatives by a turn and a shift of the femur: a motion
-/// a + w x p of its material changes the overclosure by G . (a + w x p), G the gradient of the gap.
-fn overclosures_mm(near: &NearBlock, gap_mm: F64x4) -> [[F64x4; 2]; LANES] {
-    let sample = &near.cached.sample;
-    let gradient = &sample.gap_gradient;
-    let turn = cross(&near.cached.place, gradient);
-    let none = F64x4::splat(0.0);
-    let first = F64x4::transposed([-gap_mm, turn.x, turn.y, turn.z]);
-    let second = F64x4::transposed([gradient.x, gradient.y, gradient.z, none]);
-    std::array::from_fn(|lane| [first[lane], second[lane]])
 }
 
 impl<B: BroadPhase> Linearization for DeformableContact<'_, B> {
@@ -214,10 +226,11 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         let twist = Twist4::new(&change.twist(&motion.twist));
         self.find_candidates(&motion.pose, &pose);
         let (loads, friction) = (self.find_loads(), self.rubbing.friction);
+        let along = &self.along;
         let (wrench, mean_slip) = self
             .pressed
             .press(&self.nearby.blocks, |place, near, shares| {
-                loads[place].tractions(near, shares.area_mm2, &twist, friction)
+                loads[place].tractions(near, &along[place], shares.area_mm2, &twist, friction)
             });
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
@@ -229,7 +242,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         let edge = EdgeOfContact {
             surface,
             faces,
-            pressure2: &pressure2,
+            pressure2: &squares_everywhere(self.node_count(), &touched),
         };
         for node in &mut touched {
             node.covered_mm2 = edge.part(node.node) * surface.shares[node.node as usize].area_mm2;

@@ -18,14 +18,23 @@ const STEPS_LESS: f64 = 0.77;
 pub(super) struct EdgeOfContact<'a> {
     pub surface: &'a ArticulatingSurface,
     pub faces: &'a FacesAround,
-    /// Square of the pressure at every node that presses, MPa2.
-    pub pressure2: &'a BTreeMap<u32, f64>,
+    /// Square of the pressure at every node, MPa2; 0 where it does not press.
+    pub pressure2: &'a [f64],
 }
 
 /// Squares of the pressures at nodes, MPa2.
 pub(super) fn squares(touched: &[TouchedNode]) -> BTreeMap<u32, f64> {
     let square = |node: &TouchedNode| (node.node, node.pressure_mpa * node.pressure_mpa);
     touched.iter().map(square).collect()
+}
+
+/// The same at every node of a surface, 0 where it does not press.
+pub(super) fn squares_everywhere(node_count: usize, touched: &[TouchedNode]) -> Vec<f64> {
+    let mut pressure2 = vec![0.0; node_count];
+    for node in touched {
+        pressure2[node.node as usize] = node.pressure_mpa * node.pressure_mpa;
+    }
+    pressure2
 }
 
 impl EdgeOfContact<'_> {
@@ -35,15 +44,18 @@ impl EdgeOfContact<'_> {
     /// pressure to that of the next one inside tells how far beyond the node the edge is: nearly [`STEPS_BY_RATIO`]
     /// times the ratio, less [`STEPS_LESS`], in steps between nodes. The node stands for half a step more than that.
     pub fn part(&self, node: u32) -> f64 {
-        let Some(slope) = self.slope(node) else {
+        let outside = || {
+            let beside = self.beside(node);
+            beside.filter(|&other| self.pressure2[other as usize] == 0.0)
+        };
+        // Most nodes press with all around them.
+        let at_edge = outside().next().and_then(|_| self.slope(node));
+        let Some(slope) = at_edge else {
             return 1.0;
         };
-        let own = self.pressure2[&node];
+        let own = self.pressure2[node as usize];
         let at = |node: u32| self.surface.positions[node as usize];
-        let outside = self
-            .beside(node)
-            .filter(|other| !self.pressure2.contains_key(other));
-        let fall = outside.map(|other| -slope.dot(&(at(other) - at(node))));
+        let fall = outside().map(|other| -slope.dot(&(at(other) - at(node))));
         fall.reduce(f64::max).map_or(1.0, |fall| {
             let ratio = (own / (own + fall.max(0.0))).sqrt();
             (0.5 + STEPS_BY_RATIO * ratio - STEPS_LESS).clamp(0.0, 1.5)
@@ -59,11 +71,13 @@ impl EdgeOfContact<'_> {
     /// Slope of the square of the pressure at a node, the least-squares fit to those that press around it;
     /// none where they do not tell it.
     fn slope(&self, node: u32) -> Option<Vec3> {
-        let (own, place) = (self.pressure2[&node], self.surface.positions[node as usize]);
+        let at = node as usize;
+        let (own, place) = (self.pressure2[at], self.surface.positions[at]);
         let along = self.surface.directions(node as usize);
         let (mut matrix, mut right) = (nalgebra::Matrix2::zeros(), nalgebra::Vector2::zeros());
         for other in self.faces.of(node as usize).iter().flatten() {
-            if let Some(other_own) = self.pressure2.get(other) {
+            let other_own = self.pressure2[*other as usize];
+            if other_own > 0.0 {
                 let way = self.surface.positions[*other as usize] - place;
                 let flat = nalgebra::Vector2::new(along[0].dot(&way), along[1].dot(&way));
                 let weight = 1.0 / flat.norm_squared();

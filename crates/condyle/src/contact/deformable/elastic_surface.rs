@@ -5,28 +5,31 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-use condyle_fem::{Elastic, ElasticSolid, HexMesh, SolidError};
+use condyle_fem::{Elastic, ElasticSolid, HalfSolved, HexMesh, SolidError};
 
-use super::compliance::{Column, SurfaceCompliance};
+use super::compliance::SurfaceCompliance;
 use crate::{Vec3, geometry::Insert};
 
 /// So many nodes at most are solved for together: forces on nodes that are near load the same part of the factor.
 const TILE_NODES: usize = 48;
 
+/// The freedoms that feel a load, over the root of all: those on the cuts around it, which go through a plate of three
+/// layers of nodes.
+const FELT_PER_ROOT: f64 = 6.0;
+
 /// The articulating surface of an elastic insert, bonded to its tray.
 ///
-/// The stiffness is factored once; a column is solved for when it is first asked for, together with those of the
-/// nodes around, and kept.
+/// The stiffness is factored once; unit loads on a tile of nodes are solved half way when they are first asked for,
+/// and kept.
 pub(super) struct ElasticSurface {
     solid: ElasticSolid,
     /// Mesh nodes of the surface.
     nodes: Vec<u32>,
     /// Inward normals.
     directions: Vec<Vec3>,
-    /// Surface nodes that lie together, and of every node its tile.
+    /// Surface nodes that lie together, and of every tile its loads.
     tiles: Vec<Vec<u32>>,
-    tile_of: Vec<usize>,
-    columns: Mutex<Vec<Option<Column>>>,
+    loads: Mutex<Vec<Option<Arc<HalfSolved>>>>,
 }
 
 impl fmt::Debug for ElasticSurface {
@@ -49,26 +52,22 @@ impl ElasticSurface {
         };
         let surface = insert.surface_at(mesh_nodes);
         let tiles = tiles(&surface.positions);
-        let mut tile_of = vec![0; surface.positions.len()];
-        for (number, tile) in tiles.iter().enumerate() {
-            tile.iter()
-                .for_each(|&node| tile_of[node as usize] = number);
-        }
         let held = insert.backside_nodes().iter().copied();
         Ok(Self {
             solid: ElasticSolid::new(&mesh, elastic, held)?,
             nodes: insert.surface_nodes().to_vec(),
-            columns: Mutex::new(vec![None; tile_of.len()]),
+            loads: Mutex::new(vec![None; tiles.len()]),
             directions: surface.normals.iter().map(|normal| -normal).collect(),
             tiles,
-            tile_of,
         })
     }
 
-    /// Bytes of the factor, and of so many columns.
-    pub fn bytes(&self, columns: f64) -> f64 {
-        let surface_nodes = self.nodes.len() as f64;
-        8.0 * (self.solid.factor_len() as f64 + surface_nodes * columns.min(surface_nodes))
+    /// Bytes of the factor, and of the loads on so many nodes and the compliance between them.
+    pub fn bytes(&self, nodes: f64) -> f64 {
+        let factor = self.solid.factor_len() as f64;
+        let felt = FELT_PER_ROOT * (3.0 * self.solid.mesh().nodes.len() as f64).sqrt();
+        let nodes = nodes.min(self.nodes.len() as f64);
+        8.0 * (factor + nodes * (nodes + felt))
     }
 
     /// Whether it is that of an insert with its mesh nodes there.
@@ -78,42 +77,26 @@ impl ElasticSurface {
             && mesh.nodes == mesh_nodes
             && self.nodes == insert.surface_nodes()
     }
-}
 
-impl ElasticSurface {
-    /// Columns of surface nodes.
-    fn solved(&self, nodes: &[u32]) -> Vec<Column> {
-        let force = |&node: &u32| (self.nodes[node as usize], self.directions[node as usize]);
-        let forces: Vec<(u32, Vec3)> = nodes.iter().map(force).collect();
-        let moved = self.solid.influence(&self.nodes, &forces);
-        let column = |force: usize| {
-            let directions = self.directions.iter().enumerate();
-            let deflection =
-                |(node, direction): (usize, &Vec3)| direction.dot(&moved.displacement(node, force));
-            Column::from_iter(directions.map(deflection))
-        };
-        (0..nodes.len()).map(column).collect()
+    /// Unit loads on a tile of nodes.
+    fn loads(&self, tile: usize) -> Arc<HalfSolved> {
+        let mut loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
+        let solved = loads[tile].get_or_insert_with(|| {
+            let nodes = self.tiles[tile].iter().map(|&node| node as usize);
+            let forces = nodes.map(|node| (self.nodes[node], self.directions[node]));
+            Arc::new(self.solid.half_solved(&forces.collect::<Vec<_>>()))
+        });
+        Arc::clone(solved)
     }
 }
 
 impl SurfaceCompliance for ElasticSurface {
-    fn columns(&self, nodes: &[u32]) -> Vec<(u32, Column)> {
-        let mut tiles: Vec<usize> = nodes
-            .iter()
-            .map(|&node| self.tile_of[node as usize])
-            .collect();
-        tiles.sort_unstable();
-        tiles.dedup();
-        let wanted = || tiles.iter().flat_map(|&tile| &self.tiles[tile]).copied();
-        let mut columns = self.columns.lock().unwrap_or_else(PoisonError::into_inner);
-        let new: Vec<u32> = wanted()
-            .filter(|&node| columns[node as usize].is_none())
-            .collect();
-        for (node, column) in new.iter().zip(self.solved(&new)) {
-            columns[*node as usize] = Some(column);
-        }
-        let known = |node| Some((node, Arc::clone(columns[node as usize].as_ref()?)));
-        wanted().filter_map(known).collect()
+    fn tiles(&self) -> &[Vec<u32>] {
+        &self.tiles
+    }
+
+    fn between(&self, one: usize, other: usize) -> Vec<f64> {
+        self.loads(one).moved_along(&self.loads(other))
     }
 }
 

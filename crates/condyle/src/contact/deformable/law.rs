@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::{
+    compliance::Compliance,
     contact::{DeformableContact, Rubbing},
     elastic_surface::ElasticSurface,
     settings::Deformable,
@@ -67,7 +68,7 @@ impl ContactLaw for Deformable {
 
     fn memory_bytes(&self, insert: &Insert, ever_touched: f64) -> f64 {
         let surface = self.surface(insert, insert.unworn_nodes());
-        surface.map_or(0.0, |surface| surface.bytes(ever_touched))
+        surface.map_or(0.0, |surface| surface.source.bytes(ever_touched))
     }
 
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
@@ -83,7 +84,7 @@ impl Deformable {
         &self,
         insert: &Insert,
         state: &ContactState,
-    ) -> (Arc<ElasticSurface>, ContactState) {
+    ) -> (Arc<Compliance<ElasticSurface>>, ContactState) {
         let used = used_nodes(insert, state);
         let now = &insert.mesh().nodes;
         if is_much_thinner(insert, &used)

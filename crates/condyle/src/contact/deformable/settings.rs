@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use condyle_fem::{Elastic, SolidError};
 
-use super::elastic_surface::ElasticSurface;
+use super::{compliance::Compliance, elastic_surface::ElasticSurface};
 use crate::{
     Vec3,
     contact::{broad_phase::Search, foundation::Foundation, pressed::Coulomb},
@@ -42,7 +42,7 @@ pub struct Deformable {
 
 /// Compliances of inserts, the newest last; clones of a law share them.
 #[derive(Debug, Default)]
-struct Remembered(Mutex<Vec<Arc<ElasticSurface>>>);
+struct Remembered(Mutex<Vec<Arc<Compliance<ElasticSurface>>>>);
 
 impl Clone for Deformable {
     fn clone(&self) -> Self {
@@ -81,7 +81,7 @@ impl Deformable {
         &self,
         insert: &Insert,
         mesh_nodes: &[Vec3],
-    ) -> Result<Arc<ElasticSurface>, SolidError> {
+    ) -> Result<Arc<Compliance<ElasticSurface>>, SolidError> {
         let mut remembered = self
             .remembered
             .0
@@ -89,11 +89,12 @@ impl Deformable {
             .unwrap_or_else(PoisonError::into_inner);
         let found = remembered
             .iter()
-            .find(|surface| surface.is_of(insert, mesh_nodes));
+            .find(|surface| surface.source.is_of(insert, mesh_nodes));
         if let Some(surface) = found {
             return Ok(Arc::clone(surface));
         }
-        let surface = Arc::new(ElasticSurface::new(insert, mesh_nodes, self.elastic)?);
+        let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic)?;
+        let surface = Arc::new(Compliance::new(surface));
         if remembered.len() == MOST_REMEMBERED {
             remembered.remove(0);
         }

@@ -1,10 +1,10 @@
 //! The compliance of an elastic half-space in closed form.
 
-use std::{f64::consts::PI, sync::Arc};
+use std::f64::consts::PI;
 
 use crate::{
     Vec3,
-    contact::deformable::compliance::{Column, SurfaceCompliance},
+    contact::deformable::compliance::SurfaceCompliance,
     geometry::{ArticulatingSurface, Share},
 };
 
@@ -12,14 +12,17 @@ use crate::{
 #[derive(Debug)]
 pub(super) struct HalfSpace {
     shares: Vec<Share>,
+    tiles: Vec<Vec<u32>>,
     contact_modulus_mpa: f64,
 }
 
 impl HalfSpace {
     /// That under a flat surface.
     pub fn under(surface: &ArticulatingSurface, contact_modulus_mpa: f64) -> Self {
+        let nodes: Vec<u32> = (0..surface.shares.len() as u32).collect();
         Self {
             shares: surface.shares.clone(),
+            tiles: nodes.chunks(20).map(<[u32]>::to_vec).collect(),
             contact_modulus_mpa,
         }
     }
@@ -45,13 +48,19 @@ fn love(x: f64, y: f64, a: f64, b: f64) -> f64 {
 }
 
 impl SurfaceCompliance for HalfSpace {
-    fn columns(&self, nodes: &[u32]) -> Vec<(u32, Column)> {
-        let column = |&node: &u32| {
-            let loaded = &self.shares[node as usize];
-            let shares = self.shares.iter();
-            let deflections = shares.map(|share| self.deflection(loaded, &share.centre));
-            (node, Arc::from_iter(deflections))
-        };
-        nodes.iter().map(column).collect()
+    fn tiles(&self) -> &[Vec<u32>] {
+        &self.tiles
+    }
+
+    fn between(&self, one: usize, other: usize) -> Vec<f64> {
+        let numbers = self.tiles[one].iter().flat_map(|&one| {
+            let nodes = self.tiles[other].iter();
+            nodes.map(move |&other| {
+                // Of a pair the one with the lower number, so that it is the same both ways.
+                let (loaded, at) = (one.min(other) as usize, one.max(other) as usize);
+                self.deflection(&self.shares[loaded], &self.shares[at].centre)
+            })
+        });
+        numbers.collect()
     }
 }

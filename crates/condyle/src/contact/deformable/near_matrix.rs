@@ -1,0 +1,133 @@
+//! The compliance between the nodes of a surface that ever came near.
+
+use super::cholesky::{Eight, ROWS, zero};
+use crate::number::{F64x4, LANES, Number};
+
+/// A node of which nothing is known.
+const UNKNOWN: u32 = u32::MAX;
+
+/// The compliance between the nodes of some tiles of a surface.
+///
+/// A row says how far loads on all nodes move its node, those of eight nodes, a panel, side by side. A tile is filled up
+/// to whole panels by nodes that nothing moves.
+#[derive(Debug)]
+pub(super) struct NearMatrix {
+    /// Tiles in the order in which they were added, and the first row of each.
+    tiles: Vec<(usize, usize)>,
+    row_of: Vec<u32>,
+    /// Places of all nodes, tile by tile: the same whichever tile was added first.
+    places: Vec<u32>,
+    rows: Vec<Vec<Eight>>,
+    /// The least number, and the largest off the diagonal.
+    least: f64,
+    largest: f64,
+}
+
+impl NearMatrix {
+    /// Nothing is known of a surface of these tiles.
+    pub fn of_nothing(tiles: &[Vec<u32>]) -> Self {
+        let nodes = || tiles.iter().flatten();
+        let mut places = vec![0; nodes().count()];
+        for (place, &node) in nodes().enumerate() {
+            places[node as usize] = place as u32;
+        }
+        Self {
+            tiles: Vec::new(),
+            row_of: vec![UNKNOWN; places.len()],
+            places,
+            rows: Vec::new(),
+            least: 0.0,
+            largest: 0.0,
+        }
+    }
+
+    pub fn knows(&self, node: u32) -> bool {
+        self.row_of[node as usize] != UNKNOWN
+    }
+
+    /// The row, and the column, of a node that is known.
+    #[inline(always)]
+    pub fn row(&self, node: u32) -> u32 {
+        self.row_of[node as usize]
+    }
+
+    /// A number by its row and its column, or the other way round.
+    #[inline(always)]
+    pub fn at(&self, row: u32, column: u32) -> f64 {
+        let numbers = &self.rows[column as usize][row as usize / ROWS];
+        let row = row as usize % ROWS;
+        numbers[row / LANES].lane(row % LANES)
+    }
+
+    /// Where a node stands if all do so tile by tile: those with rows in one panel stand together.
+    pub fn place(&self, node: u32) -> u32 {
+        self.places[node as usize]
+    }
+
+    /// No load of a newton moves another node outwards by more than this, mm/N.
+    pub fn most_bulge(&self) -> f64 {
+        -self.least
+    }
+
+    /// No load of a newton moves another node inwards by more than this, mm/N.
+    pub fn most_dent(&self) -> f64 {
+        self.largest
+    }
+
+    /// How far loads move the node of a row; of loads there are panels, each with its number.
+    pub fn moved(&self, row: u32, loads: &[(usize, Eight)]) -> f64 {
+        // Four sums, so that no addition waits for the one before.
+        let mut sums = [F64x4::splat(0.0); 4];
+        let row = &self.rows[row as usize];
+        for two in loads.chunks(2) {
+            for ((panel, loads), sums) in two.iter().zip(sums.chunks_exact_mut(2)) {
+                let numbers = &row[*panel];
+                sums[0] = numbers[0].mul_add(loads[0], sums[0]);
+                sums[1] = numbers[1].mul_add(loads[1], sums[1]);
+            }
+        }
+        let [a, b, c, d] = sums;
+        ((a + b) + (c + d)).sum()
+    }
+
+    /// Adds tile number `new` of `tiles`, with what is `between` two of them.
+    pub fn add(
+        &mut self,
+        new: usize,
+        tiles: &[Vec<u32>],
+        mut between: impl FnMut(usize, usize) -> Vec<f64>,
+    ) {
+        let first = self.rows.len();
+        let rows = first + tiles[new].len().next_multiple_of(ROWS);
+        for (row, &node) in (first..).zip(&tiles[new]) {
+            self.row_of[node as usize] = row as u32;
+        }
+        self.tiles.push((new, first));
+        self.rows.resize_with(rows, Vec::new);
+        for row in &mut self.rows {
+            row.resize(rows / ROWS, zero());
+        }
+        for place in 0..self.tiles.len() {
+            let (other, other_first) = self.tiles[place];
+            let numbers = between(new, other);
+            let columns = tiles[other].len();
+            for (i, row) in numbers.chunks_exact(columns).enumerate() {
+                for (j, &number) in row.iter().enumerate() {
+                    self.set(first + i, other_first + j, number);
+                    self.set(other_first + j, first + i, number);
+                    self.least = self.least.min(number);
+                    if (new, i) != (other, j) {
+                        self.largest = self.largest.max(number);
+                    }
+                }
+            }
+        }
+    }
+
+    fn set(&mut self, row: usize, column: usize, number: f64) {
+        let half = &mut self.rows[row][column / ROWS][column % ROWS / LANES];
+        let mut lanes = half.to_array();
+        lanes[column % LANES] = number;
+        *half = F64x4::new(lanes);
+    }
+}
