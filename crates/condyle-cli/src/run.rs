@@ -15,6 +15,7 @@ use condyle_io::results::{ErrorEstimate, ErrorParts, Summary};
 use condyle_lab::{Outcome, RunOptions};
 
 use crate::{
+    activity_table,
     arguments::Run,
     exit, law_table,
     output::{self, Lines},
@@ -107,6 +108,7 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     let mut lines = Lines::default();
     add_doubts(summary, &mut lines);
     law_table::add(&summary.wear_laws, &mut lines);
+    activity_table::add(&summary.activities, &mut lines);
     for (what, value) in rows(summary) {
         lines.line(format_args!("{what:<28}{value}"));
     }

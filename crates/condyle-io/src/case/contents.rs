@@ -1,6 +1,7 @@
 //! All that a case says.
 
 use super::accuracy::Accuracy;
+use super::activity::Activities;
 use super::contact::Contact;
 use super::femur::Femur;
 use super::heading::Heading;
@@ -34,6 +35,8 @@ pub struct Case {
     pub contact: Contact,
     /// The simulator.
     pub machine: Machine,
+    /// What it does in turn; where there is none, what the machine's own waveforms say.
+    pub activities: Activities,
     /// The wear law.
     pub wear: Wear,
     /// The march over the life of the insert.

@@ -4,6 +4,7 @@ use condyle::machine::{JointDescription, knee::KNEE};
 use condyle::wear::WEAR_LAWS;
 
 use super::accuracy::Accuracy;
+use super::activity::{self, ActivityKeys};
 use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
 use super::contents::Case;
@@ -46,6 +47,7 @@ pub fn json_schema(wear_laws: WearLaws) -> String {
         .with_table("material", of::<Material>("Polyethylene of the insert."))
         .with_table("contact", contact())
         .with_table("machine", machine())
+        .with_list(activity::TABLE, activity_of_list())
         .with_table(
             "wear",
             TableSchema::new("The wear law.").with_choices(&Wear::choices(wear_laws)),
@@ -105,8 +107,18 @@ fn machine() -> TableSchema {
             of::<Springs>("The pair of springs that stands for the ligaments."),
         )
         .with_table("freedoms", freedoms());
-    CaseChannel::all().fold(machine, |machine, channel| {
-        machine.with_table(channel.name(), waveform(channel))
+    with_waveforms(machine)
+}
+
+fn activity_of_list() -> TableSchema {
+    with_waveforms(of::<ActivityKeys>(
+        "Something that the machine does over and over, with inputs of its own.",
+    ))
+}
+
+fn with_waveforms(table: TableSchema) -> TableSchema {
+    CaseChannel::all().fold(table, |table, channel| {
+        table.with_table(channel.name(), waveform(channel))
     })
 }
 

@@ -4,6 +4,8 @@
 //! last step, where a case is built.
 
 mod accuracy;
+mod activity;
+mod activity_reason;
 mod assignment;
 mod axes;
 mod build;
@@ -46,6 +48,8 @@ mod wear;
 mod write;
 
 pub use accuracy::Accuracy;
+pub use activity::{Activities, Activity, ActivityKeys};
+pub use activity_reason::ActivityReason;
 pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
 pub use build::{Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, StrayPiece, WrongAxes};

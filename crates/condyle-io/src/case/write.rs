@@ -30,6 +30,7 @@ impl Case {
         out.table("contact");
         self.contact.write(&mut out);
         self.machine.write(write_waveform, &mut out);
+        self.activities.write(write_waveform, &mut out);
         out.table("wear");
         self.wear.write(&mut out);
         out.table("march");

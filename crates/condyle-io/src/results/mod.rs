@@ -1,5 +1,6 @@
 //! The results folder: what a run writes, one file a table, all readable without condyle.
 
+mod activities;
 mod checkpoint;
 #[cfg(feature = "file-system")]
 mod checksums;
@@ -27,6 +28,7 @@ pub use condyle::machine::{
     knee::{KNEE, LATERAL, MEDIAL},
 };
 
+pub use activities::{ActivitySummary, kinematics_file};
 pub use checkpoint::{Checkpoint, CheckpointError};
 #[cfg(feature = "file-system")]
 pub use checksums::{DamagedFile, check_file};

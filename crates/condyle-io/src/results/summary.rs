@@ -10,8 +10,8 @@ use condyle::{
 use serde::{Deserialize, Serialize};
 
 use super::{
-    error_estimate::ErrorEstimate, femur_pose::NeutralPose, law_wear::LawWear,
-    plausibility::PlausibilityWarning,
+    activities::ActivitySummary, error_estimate::ErrorEstimate, femur_pose::NeutralPose,
+    law_wear::LawWear, plausibility::PlausibilityWarning,
 };
 
 /// What a summary is made from.
@@ -37,6 +37,8 @@ pub struct SummaryInput<'a> {
     pub neutral_pose: NeutralPose,
     /// What every law of wear says of the run.
     pub wear_laws: Vec<LawWear>,
+    /// What each of several activities did.
+    pub activities: Vec<ActivitySummary>,
 }
 
 /// The numbers of a finished run; units are in the names.
@@ -61,6 +63,10 @@ pub struct Summary {
     /// surface.
     #[serde(default)]
     pub wear_laws: Vec<LawWear>,
+    /// What each of several activities did and wore; motions and ranges below are those of the first. Not there
+    /// where the case has one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub activities: Vec<ActivitySummary>,
     /// Highest pressure anywhere, between nodes too, in any cycle, MPa.
     pub peak_pressure_mpa: f64,
     /// Cycles done before the cycle that has it.
@@ -157,6 +163,7 @@ impl Summary {
             max_depth_mm: last.max_depth_mm,
             error: input.error,
             wear_laws: input.wear_laws,
+            activities: input.activities,
             peak_pressure_mpa: pressure.value,
             peak_pressure_cycle: pressure.cycle,
             first_cycle_peak_pressure_mpa: first.peak_pressure_mpa,
@@ -228,7 +235,8 @@ pub fn joint_range(rows: &[CycleRow], joint: JointIndex) -> f64 {
     KNEE.joint(joint).kind().in_files(high - low)
 }
 
-fn medial_load_share(rows: &[CycleRow]) -> f64 {
+/// Medial part of the axial force, weighted by force.
+pub(super) fn medial_load_share(rows: &[CycleRow]) -> f64 {
     let medial: f64 = rows.iter().map(|row| row.region_force_n[MEDIAL]).sum();
     let whole: f64 = rows.iter().map(|row| row.axial_force_n).sum();
     medial / whole

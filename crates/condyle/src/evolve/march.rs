@@ -4,8 +4,9 @@
 use std::ops::{ControlFlow, Range};
 
 use super::{
-    Activity, CycleRecord, DepthField, DepthFields, MarchError, MarchState, NodeFields,
-    PlacementError, Progress, Snapshot, SolvedCycle, UpdateRecord, Updates, WearTest,
+    Activity, ActivityWear, CycleRecord, DepthField, DepthFields, MarchError, MarchState,
+    NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UpdateRecord, Updates, WearTest,
+    activity_wear::SharedStep,
     depth::{lost_mm, total_mm},
     interval::shared_out,
     laws_beside::{LawBeside, outside_mm3, sum, worn},
@@ -297,9 +298,11 @@ impl March {
             })
         };
         let solved = simulator.cycle(&own.machine, counters, &mut watch_cycle);
+        let name = &self.test.activities[number].name;
         solved.map_err(|source| MarchError::Cycle {
             update,
             cycles,
+            activity: (self.test.activities.len() > 1).then(|| name.clone()),
             source,
         })
     }
@@ -337,6 +340,15 @@ impl March {
         let outside_mm3 = outside_mm3(&worn, &rates.area_mm2, &step.depth_mm);
         self.state.outside_mm3 = sum(self.state.outside_mm3, outside_mm3);
         self.wear_by_laws_beside(&cycles, &rates.area_mm2, step.interval);
+        let by_activity = SharedStep {
+            law: self.test.wear.as_ref(),
+            surface: &solved.surface,
+            mean: &cycles,
+            rates: &rates,
+            step: &step,
+        }
+        .of_each(&shared, &solved.cycles);
+        self.add_wear_of_activities(&by_activity);
         let fields = NodeFields::of(
             &cycles,
             &solved.surface,
@@ -399,6 +411,12 @@ impl March {
         let laws = self.test.laws_beside.iter();
         for (law, beside) in laws.zip(&mut self.state.laws_beside) {
             beside.wear(law.law.as_ref(), cycles, area_mm2, interval);
+        }
+    }
+
+    fn add_wear_of_activities(&mut self, worn: &[ActivityWear]) {
+        for (activity, worn) in self.state.activities.iter_mut().zip(worn) {
+            activity.wear = activity.wear.and(*worn);
         }
     }
 

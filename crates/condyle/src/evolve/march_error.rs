@@ -19,12 +19,17 @@ pub enum MarchError {
     #[error(transparent)]
     Placement(#[from] PlacementError),
     /// A cycle was not solved.
-    #[error("update {update}, after {cycles:.0} cycles: {source}")]
+    #[error(
+        "update {update}, after {cycles:.0} cycles{}: {source}",
+        activity.as_ref().map_or_else(String::new, |name| format!(", activity \"{name}\""))
+    )]
     Cycle {
         /// Which update, from 1.
         update: usize,
         /// Cycles done before it.
         cycles: f64,
+        /// Which of several activities.
+        activity: Option<String>,
         /// Why.
         source: CycleError,
     },

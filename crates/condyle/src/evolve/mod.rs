@@ -7,6 +7,7 @@
 //! | `march` | the loop over updates: cycles solved, rates, a step, the new surface |
 //! | `rates` | what a cycle wears, and how soon wear changes that |
 //! | `laws_beside` | what the other laws would have worn by the same cycles |
+//! | `activity_wear` | what each of several activities wears |
 //! | `step`, `interval` | the next step: how long it is, and by which rule it wears |
 //! | `extrapolated_step`, `exponential_step` | the rules |
 //! | `accumulated_error` | what the length of the steps costs in accuracy |
@@ -14,6 +15,7 @@
 //! | `records`, `node_fields`, `state`, `solved_cycle` | what is told, and what is remembered |
 
 mod accumulated_error;
+mod activity_wear;
 mod depth;
 mod exponential_step;
 mod extrapolated_step;
@@ -35,6 +37,7 @@ mod step_record;
 mod wear_test;
 
 pub use accumulated_error::AccumulatedError;
+pub use activity_wear::ActivityWear;
 pub use depth::{DepthField, DepthFields};
 pub use laws_beside::LawBeside;
 pub use march::March;

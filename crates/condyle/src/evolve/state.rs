@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     CycleRecord, DepthField, DepthFields, NodeFields, UpdateRecord,
-    accumulated_error::AccumulatedError, laws_beside::LawBeside, step_record::StepRecord,
+    accumulated_error::AccumulatedError, activity_wear::ActivityWear, laws_beside::LawBeside,
+    step_record::StepRecord,
 };
 use crate::{
     Vec3,
@@ -70,6 +71,8 @@ pub struct ActivityState {
     pub warm_starts: Vec<Option<WarmStart>>,
     /// The first cycle and the last one solved.
     pub first_and_last: Option<(CycleRecord, CycleRecord)>,
+    /// What it has worn; nothing yet where it is the only one, since then it wears all.
+    pub wear: ActivityWear,
 }
 
 impl ActivityState {
@@ -79,6 +82,7 @@ impl ActivityState {
             machine,
             warm_starts: Vec::new(),
             first_and_last: None,
+            wear: ActivityWear::default(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use condyle::contact::{ContactLaw, Deformable, Foundation, PressureLaw, confined_modulus};
-use condyle::evolve::{Activity, Schedule, Updates, WearTest};
+use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 use condyle_fem::Elastic;
@@ -43,11 +43,11 @@ impl Case {
     pub fn build_kept(&self, threads: usize, keep: &dyn Keep) -> Result<Built, BuildError> {
         let mut warnings = Vec::new();
         let insert = self.built_insert(&self.insert, &mut warnings)?;
-        let machine = self.machine.build(insert.dish_low_point_mm());
+        let activities = self.built_activities(insert.dish_low_point_mm());
         let femur = self.femur.build(
             &self.femur_placement,
             self.heading.side,
-            start_flexion_rad(&machine),
+            start_flexion_rad(&activities[0].machine),
             Preparing {
                 threads,
                 keep,
@@ -61,7 +61,7 @@ impl Case {
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
             insert: Arc::new(insert),
-            activities: vec![Activity::only("gait", machine)],
+            activities,
             contact,
             wear: self.wear.law(),
             laws_beside: self.wear.beside(),
