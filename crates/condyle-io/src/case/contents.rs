@@ -3,6 +3,7 @@
 use super::accuracy::Accuracy;
 use super::activity::Activities;
 use super::contact::Contact;
+use super::creep::Creep;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
@@ -39,6 +40,8 @@ pub struct Case {
     pub activities: Activities,
     /// The wear law.
     pub wear: Wear,
+    /// The law of creep.
+    pub creep: Creep,
     /// The march over the life of the insert.
     pub march: March,
     /// Steps and tolerances in time.

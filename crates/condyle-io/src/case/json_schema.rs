@@ -8,6 +8,7 @@ use super::activity::{self, ActivityKeys};
 use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
 use super::contents::Case;
+use super::creep::Creep;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
@@ -51,6 +52,11 @@ pub fn json_schema(wear_laws: WearLaws) -> String {
         .with_table(
             "wear",
             TableSchema::new("The wear law.").with_choices(&Wear::choices(wear_laws)),
+        )
+        .with_table(
+            "creep",
+            TableSchema::new("How the polyethylene of the insert creeps.")
+                .with_choices(&Creep::choices()),
         )
         .with_table("march", march())
         .with_table("time", of::<Time>("Steps and tolerances in time."))

@@ -12,6 +12,7 @@ mod build;
 mod channel;
 mod contact;
 mod contents;
+mod creep;
 mod culprit;
 #[cfg(feature = "file-system")]
 mod draft;
@@ -58,6 +59,7 @@ pub use contact::{
     Contact, ContactModelWord, Finding, Friction, PressureLawChoice, SearchWord, SofteningCurve,
 };
 pub use contents::Case;
+pub use creep::{Creep, LogarithmicCreep};
 pub use culprit::Unfit;
 #[cfg(feature = "file-system")]
 pub use draft::{Draft, DraftError, Drafted};

@@ -3,6 +3,7 @@
 use super::activity::{self, Activities};
 use super::contact::Contact;
 use super::contents::Case;
+use super::creep::Creep;
 use super::femur::Femur;
 use super::heading::{Heading, Side};
 use super::insert::Insert;
@@ -11,10 +12,10 @@ use super::march::March;
 use super::origin::Origin;
 use super::placement::{FemurPlacement, InsertPlacement};
 use super::wear::{Wear, WearLaws};
-use crate::keyed::{Log, Section, Settings, names, read_table};
+use crate::keyed::{Log, Section, Settings, Variants, names, read_table};
 
 /// Every table of a case, in the order they are written.
-const TABLES: [&str; 12] = [
+const TABLES: [&str; 13] = [
     "femur",
     "insert",
     "material",
@@ -22,6 +23,7 @@ const TABLES: [&str; 12] = [
     "machine",
     activity::TABLE,
     "wear",
+    "creep",
     "march",
     "time",
     "accuracy",
@@ -51,6 +53,7 @@ pub(super) fn read_case(
     let machine = Machine::read(&root.table("machine", log), has_activities, log);
     let activities = Activities::read(root, machine.as_ref(), log);
     let wear = Wear::read(&root.table("wear", log), wear_laws, log);
+    let creep = Creep::read(&root.table("creep", log), &[], log);
     let march = March::read(&root.table("march", log), log);
     let time = read_table(root, "time", log);
     let accuracy = read_table(root, "accuracy", log);
@@ -67,6 +70,7 @@ pub(super) fn read_case(
         machine: machine?,
         activities: activities?,
         wear: wear?,
+        creep: creep?,
         march: march?,
         time: time?,
         accuracy: accuracy?,

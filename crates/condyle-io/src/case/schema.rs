@@ -8,6 +8,7 @@ use super::accuracy::Accuracy;
 use super::activity::ActivityKeys;
 use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
+use super::creep::Creep;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
@@ -76,6 +77,8 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
     page.section("`[[activity]]`", &ActivityKeys::keys());
     page.push(ACTIVITIES);
     wear(&mut page, wear_laws);
+    let creep = Creep::choices();
+    page.chosen("`[creep]`", std::slice::from_ref(&creep.by), &creep);
     page.chosen("`[march]`", &March::keys(), &Update::choices());
     page.section("`[time]`", &Time::keys());
     page.section("`[accuracy]`", &Accuracy::keys());

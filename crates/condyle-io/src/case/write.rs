@@ -33,6 +33,8 @@ impl Case {
         self.activities.write(write_waveform, &mut out);
         out.table("wear");
         self.wear.write(&mut out);
+        out.table("creep");
+        self.creep.write(&mut out);
         out.table("march");
         self.march.write(&mut out);
         out.table("time");

@@ -4,6 +4,7 @@ mod activities;
 mod checkpoint;
 #[cfg(feature = "file-system")]
 mod checksums;
+mod creep;
 mod cycle_files;
 mod error_estimate;
 mod femur_pose;
@@ -32,6 +33,7 @@ pub use activities::{ActivitySummary, kinematics_file};
 pub use checkpoint::{Checkpoint, CheckpointError};
 #[cfg(feature = "file-system")]
 pub use checksums::{DamagedFile, check_file};
+pub use creep::{CreepSummary, Penetration, ScanLine};
 pub use cycle_files::{
     BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pvd, femur_of_frames, femur_vtu, frame_name,
     insert_frame,

@@ -10,8 +10,8 @@ use condyle::{
 use serde::{Deserialize, Serialize};
 
 use super::{
-    activities::ActivitySummary, error_estimate::ErrorEstimate, femur_pose::NeutralPose,
-    law_wear::LawWear, plausibility::PlausibilityWarning,
+    activities::ActivitySummary, creep::CreepSummary, error_estimate::ErrorEstimate,
+    femur_pose::NeutralPose, law_wear::LawWear, plausibility::PlausibilityWarning,
 };
 
 /// What a summary is made from.
@@ -53,7 +53,7 @@ pub struct Summary {
     pub mass_loss_mg: f64,
     /// Volume worn, from depth times area, mm3.
     pub volume_loss_mm3: f64,
-    /// Volume worn, from the change of the mesh, mm3.
+    /// Volume worn, from the change of the mesh less the volume of creep, mm3.
     pub volume_loss_mesh_mm3: f64,
     /// Deepest wear, mm.
     pub max_depth_mm: f64,
@@ -67,6 +67,9 @@ pub struct Summary {
     /// where the case has one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub activities: Vec<ActivitySummary>,
+    /// What creep came to; not there where the insert does not creep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub creep: Option<CreepSummary>,
     /// Highest pressure anywhere, between nodes too, in any cycle, MPa.
     pub peak_pressure_mpa: f64,
     /// Cycles done before the cycle that has it.
@@ -164,6 +167,7 @@ impl Summary {
             error: input.error,
             wear_laws: input.wear_laws,
             activities: input.activities,
+            creep: CreepSummary::of(state),
             peak_pressure_mpa: pressure.value,
             peak_pressure_cycle: pressure.cycle,
             first_cycle_peak_pressure_mpa: first.peak_pressure_mpa,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    CycleRecord, DepthField, DepthFields, NodeFields, UpdateRecord,
+    CreepState, CycleRecord, DepthField, DepthFields, NodeFields, UpdateRecord,
     accumulated_error::AccumulatedError, activity_wear::ActivityWear, laws_beside::LawBeside,
     step_record::StepRecord,
 };
@@ -100,6 +100,8 @@ pub struct MarchState {
     pub mesh_nodes: Vec<Vec3>,
     /// How deep the surface has gone down, and by what.
     pub depths: DepthFields,
+    /// What creep remembers of the load.
+    pub creep: CreepState,
     /// What of the volume worn is outside of what the wear law was fitted to, mm3; none where that is not
     /// known.
     pub outside_mm3: Option<f64>,
@@ -143,6 +145,7 @@ impl MarchState {
             first_pressure_mpa: Vec::new(),
             mesh_nodes,
             depths,
+            creep: CreepState::default(),
             outside_mm3: Some(0.0),
             laws_beside: Vec::new(),
             contact,

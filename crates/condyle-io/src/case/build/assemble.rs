@@ -65,6 +65,7 @@ impl Case {
             contact,
             wear: self.wear.law(),
             laws_beside: self.wear.beside(),
+            creep: self.creep.law(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),
             schedule: Schedule {

@@ -31,6 +31,9 @@ fn assert_round_trip(case: &Case) {
 fn generic_cases_round_trip() {
     assert_round_trip(&shipped("stanmore-force.toml"));
     assert_round_trip(&shipped("stanmore-displacement.toml"));
+    assert_round_trip(&shipped("gait-and-stairs.toml"));
+    assert_round_trip(&shipped("daily-life.toml"));
+    assert_round_trip(&shipped("creep.toml"));
 }
 
 #[test]
