@@ -4,7 +4,7 @@ use super::WearTest;
 use crate::{geometry::Insert, machine::Cycle};
 
 /// So many instants of a cycle stand for all where it is foreseen how the pressure will change.
-const INSTANTS: usize = 32;
+const INSTANTS: usize = 16;
 
 /// The contact of a mean cycle, as creep sees it.
 #[derive(Clone, Debug, Default)]
