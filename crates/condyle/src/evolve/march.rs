@@ -4,9 +4,9 @@
 use std::ops::{ControlFlow, Range};
 
 use super::{
-    Activity, ActivityWear, CreepRecord, CreepState, CycleRecord, DepthField, DepthFields,
-    MarchError, MarchState, NodeFields, PlacementError, Progress, Snapshot, SolvedCycle,
-    UpdateRecord, Updates, WearTest,
+    Activity, CreepRecord, CreepState, CycleRecord, DepthField, DepthFields, MarchError,
+    MarchState, NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UpdateRecord, Updates,
+    WearTest,
     activity_wear::SharedStep,
     creep::CreepStep,
     creep_contact::CreepContact,
@@ -19,7 +19,7 @@ use super::{
     placement::place,
     rates::{Rates, Wearing},
     step::next_step,
-    step_record::Standing,
+    step_record::{Standing, WearStep},
 };
 use crate::{
     Vec3,
@@ -349,15 +349,7 @@ impl March {
         let outside_mm3 = outside_mm3(&worn, &rates.area_mm2, &step.depth_mm);
         self.state.outside_mm3 = sum(self.state.outside_mm3, outside_mm3);
         self.wear_by_laws_beside(&cycles, &rates.area_mm2, step.interval);
-        let by_activity = SharedStep {
-            law: self.test.wear.as_ref(),
-            surface: &solved.surface,
-            mean: &cycles,
-            rates: &rates,
-            step: &step,
-        }
-        .of_each(&shared, &solved.cycles);
-        self.add_wear_of_activities(&by_activity);
+        self.add_wear_of_activities(&solved, &shared, &cycles, &rates, &step);
         let fields = NodeFields::of(
             &cycles,
             &solved.surface,
@@ -365,12 +357,7 @@ impl March {
             &self.insert,
             &self.state.depths,
         );
-        if self.state.fields.is_none() {
-            self.state
-                .first_pressure_mpa
-                .clone_from(&fields.peak_pressure_mpa);
-        }
-        self.state.fields = Some(fields);
+        self.keep_fields(fields);
         let snapshot = Snapshot {
             update: self.state.updates.len() - 1,
             step: step.record(rates),
@@ -423,10 +410,34 @@ impl March {
         }
     }
 
-    fn add_wear_of_activities(&mut self, worn: &[ActivityWear]) {
+    /// Adds what each of several activities wore in a step.
+    fn add_wear_of_activities(
+        &mut self,
+        solved: &Solved,
+        shared: &[SharedCycle<'_>],
+        mean: &[MeanCycle<'_>],
+        rates: &Rates,
+        step: &WearStep,
+    ) {
+        let step = SharedStep {
+            law: self.test.wear.as_ref(),
+            surface: &solved.surface,
+            mean,
+            rates,
+            step,
+        };
+        let worn = step.of_each(shared, &solved.cycles);
         for (activity, worn) in self.state.activities.iter_mut().zip(worn) {
-            activity.wear = activity.wear.and(*worn);
+            activity.wear = activity.wear.and(worn);
         }
+    }
+
+    fn keep_fields(&mut self, fields: NodeFields) {
+        if self.state.fields.is_none() {
+            let pressures_mpa = &fields.peak_pressure_mpa;
+            self.state.first_pressure_mpa.clone_from(pressures_mpa);
+        }
+        self.state.fields = Some(fields);
     }
 
     /// What creep takes by the end of a step, if the insert creeps.
