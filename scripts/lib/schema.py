@@ -38,6 +38,12 @@ WRONG = [
     ("[march]\ncycles = 0", "march.cycles"),
     ("[march]\nupdate = \"auto\"\nupdates = 3", "march"),
     ("[wear]\nlaw = \"archerd\"", "wear.law"),
+    ("[creep]\nlaw = \"lee\"", "creep.law"),
+    ("[creep]\nrecovering_fraction = 0.5", "creep"),
+    ("[activity]\nname = \"gait\"", "activity"),
+    ("[[activity]]\nshare = 1.0", "activity.0"),
+    ("[[activity]]\nname = \"gait\"\nshare = 2.0", "activity.0.share"),
+    ("[[activity]]\nname = \"gait\"\nshare = 1.0\n[activity.flexion]\nwaveform = \"iso\"", "activity.0.flexion.waveform"),
     ("[time]\nincrements = \"200\"", "time.increments"),
     ("[accuracy]\nestimate = 1", "accuracy.estimate"),
     ("accuracy = true", "accuracy"),
@@ -55,6 +61,9 @@ RIGHT = [
     "[contact]\nlaw = \"tabulated\"\ntable = [[0.0, 0.0], [1.0, 10.0]]",
     "[insert]\nshape = \"flat\"\nthickness_mm = 8.0\n[femur]\nshape = \"sphere\"\nradius_mm = 20\n[machine.freedoms.vv]\ndrive = \"locked\"",
     "[march]\nupdate = \"auto\"\ndepth_tolerance_fraction = 0.1",
+    "[creep]\nlaw = \"lee-pienkowski\"\nrecovering_fraction = 0.4",
+    "[[activity]]\nname = \"gait\"\nshare = 1\n"
+    + "".join(f"[activity.{name}]\nwaveform = \"iso-like\"\n" for name in ("axial_force", "flexion", "ap_force", "ie_torque")),
 ]
 
 

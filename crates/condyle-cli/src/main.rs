@@ -1,5 +1,6 @@
 //! The condyle command: words to calls, nothing else.
 
+mod activity_table;
 mod arguments;
 mod calibrate_wear;
 mod check;

@@ -11,10 +11,11 @@ use std::{
 };
 
 use condyle_io::cache::Cache;
-use condyle_io::results::{ErrorEstimate, ErrorParts, Summary};
+use condyle_io::results::{CreepSummary, ErrorEstimate, ErrorParts, Summary};
 use condyle_lab::{Outcome, RunOptions};
 
 use crate::{
+    activity_table,
     arguments::Run,
     exit, law_table,
     output::{self, Lines},
@@ -107,6 +108,7 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     let mut lines = Lines::default();
     add_doubts(summary, &mut lines);
     law_table::add(&summary.wear_laws, &mut lines);
+    activity_table::add(&summary.activities, &mut lines);
     for (what, value) in rows(summary) {
         lines.line(format_args!("{what:<28}{value}"));
     }
@@ -158,6 +160,7 @@ type SummaryLine = (&'static str, String);
 fn rows(summary: &Summary) -> Vec<SummaryLine> {
     let mut rows = vec![("gait cycles", format!("{:.0}", summary.cycles))];
     rows.extend(rows_of_wear(summary));
+    rows.extend(summary.creep.iter().flat_map(rows_of_creep));
     rows.extend(rows_of_contact(summary));
     rows.extend(rows_of_motion(summary));
     rows.extend(rows_of_work(summary));
@@ -186,6 +189,41 @@ fn rows_of_wear(summary: &Summary) -> [SummaryLine; 3] {
             with_error(summary.max_depth_mm, 4, "mm", depth_parts),
         ),
     ]
+}
+
+fn rows_of_creep(creep: &CreepSummary) -> Vec<SummaryLine> {
+    let parted = |penetration: f64, wear: f64, creep: f64| {
+        format!("{penetration:.4} mm: {wear:.4} by wear, {creep:.4} by creep (approximate)")
+    };
+    let mut rows = vec![
+        (
+            "deepest penetration",
+            parted(
+                creep.max_penetration_mm,
+                creep.wear_there_mm,
+                creep.creep_there_mm,
+            ),
+        ),
+        (
+            "  scanned without load",
+            format!("{:.4} mm", creep.max_unloaded_depth_mm),
+        ),
+        ("volume of creep", format!("{:.2} mm3", creep.volume_mm3)),
+    ];
+    if let Some(first) = creep.first_million {
+        let said = parted(first.penetration_mm, first.wear_mm, first.creep_mm);
+        rows.push(("  after a million cycles", said));
+    }
+    if let Some(line) = creep.line_from_a_million {
+        rows.push((
+            "  scans from there on",
+            format!(
+                "{:.4} mm a million cycles, from {:.4} mm, as laboratories part wear from creep",
+                line.rise_mm_per_million_cycles, line.at_no_cycles_mm
+            ),
+        ));
+    }
+    rows
 }
 
 fn rows_of_contact(summary: &Summary) -> [SummaryLine; 3] {

@@ -213,11 +213,12 @@ impl<'a> Again<'a> {
         })
     }
 
-    /// The test of the run again, but so short that nothing to speak of is worn.
+    /// The test of the run again, but so short that nothing to speak of is worn, and no time is left to creep.
     fn as_run(&self) -> WearTest {
         WearTest {
             schedule: Schedule::fixed(1.0, 1),
             laws_beside: Vec::new(),
+            creep: None,
             ..self.march.test().clone()
         }
     }

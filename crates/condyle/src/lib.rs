@@ -5,6 +5,7 @@
 
 pub mod anatomy;
 pub mod contact;
+pub mod creep;
 pub mod evolve;
 pub mod geometry;
 pub mod machine;

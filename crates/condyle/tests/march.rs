@@ -7,6 +7,7 @@ use condyle::{
         Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Foundation, Landing,
         PressureLaw, Response, StateField,
     },
+    creep::LeePienkowski,
     evolve::{Activity, March, MarchState, Schedule, WearTest},
     geometry::{FemoralSurface, Insert, Meshing, flat_insert},
     machine::{
@@ -124,6 +125,7 @@ fn test() -> WearTest {
             wear_factor_mm3_per_nm: 2.64e-7,
         }),
         laws_beside: Vec::new(),
+        creep: None,
         density_mg_per_mm3: 0.93,
         time: TimeSettings {
             increments: 40,
@@ -300,6 +302,77 @@ fn verify_activities_across_each_other_have_the_cross_shear_of_both() {
     assert!((cross_shear - 0.25).abs() < 0.01, "{cross_shear}");
     let [forwards, up, aside] = march.fields().principal_direction[middle];
     assert!(forwards > 0.9999 && up.abs() < 0.01 && aside.abs() < 0.01);
+}
+
+#[test]
+fn activities_share_out_all_of_the_wear() {
+    let activity = |ap_mm: f64, share| Activity {
+        name: format!("{ap_mm} mm"),
+        machine: machine(ap_mm),
+        share,
+    };
+    let state = marched(WearTest {
+        activities: vec![activity(2.0, 0.4), activity(4.0, 0.6)],
+        ..test()
+    });
+    let [short, long] = [0, 1].map(|number| state.activities[number].wear);
+    let all = state.updates.last().expect("one was done").volume_loss_mm3;
+    assert!(((short.volume_mm3 + long.volume_mm3) / all - 1.0).abs() < 1e-12);
+    // Volume is Kw F S: 0.4 x 2 mm against 0.6 x 4 mm; and Archard's law knows no others' directions.
+    assert!((long.volume_mm3 / short.volume_mm3 - 3.0).abs() < 0.01);
+    assert!((short.alone_mm3 / short.volume_mm3 - 1.0).abs() < 0.02);
+    assert!((long.alone_mm3 / long.volume_mm3 - 1.0).abs() < 0.02);
+}
+
+/// A test whose insert creeps.
+fn creeping() -> WearTest {
+    WearTest {
+        creep: Some(LeePienkowski::default()),
+        ..test()
+    }
+}
+
+#[test]
+fn creep_takes_the_surface_down_and_no_mass() {
+    let (worn, crept) = (marched(test()), marched(creeping()));
+    let [worn, crept] = [&worn, &crept].map(|state| state.updates.last().expect("one was done"));
+    let creep = crept.creep.expect("it creeps");
+    assert!(worn.creep.is_none() && creep.volume_mm3 > 0.0);
+    // Force times way is the same, wherever the surface lies.
+    assert!((crept.mass_loss_mg / worn.mass_loss_mg - 1.0).abs() < 0.02);
+    assert!((crept.volume_loss_mesh_mm3 / crept.volume_loss_mm3 - 1.0).abs() < 0.05);
+    let there = creep.wear_there_mm + creep.creep_there_mm;
+    assert!((there / creep.max_penetration_mm - 1.0).abs() < 1e-12);
+    assert!(creep.max_unloaded_mm < creep.max_penetration_mm);
+}
+
+#[test]
+fn creep_goes_on_from_a_state_as_if_never_stopped() {
+    let mut whole = March::start(creeping()).unwrap();
+    update(&mut whole);
+    let mut resumed = March::resume(creeping(), whole.state().clone());
+    for _ in 0..2 {
+        update(&mut whole);
+        update(&mut resumed);
+    }
+    assert!(whole.state() == resumed.state());
+}
+
+#[test]
+fn an_insert_worn_and_crept_through_says_by_what() {
+    let test = WearTest {
+        wear: Arc::new(Archard {
+            wear_factor_mm3_per_nm: 1e-3,
+        }),
+        ..creeping()
+    };
+    let mut march = March::start(test).unwrap();
+    let error = (0..4).find_map(|_| march.update(&mut |_| ControlFlow::Continue(())).err());
+    let said = error.expect("it wears through").to_string();
+    assert!(
+        said.contains("mm of wear and") && said.contains("mm of creep; use"),
+        "{said}"
+    );
 }
 
 #[test]

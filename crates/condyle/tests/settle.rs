@@ -62,6 +62,7 @@ fn test(edge_mm: f64) -> WearTest {
             wear_factor_mm3_per_nm: 2.64e-7,
         }),
         laws_beside: Vec::new(),
+        creep: None,
         density_mg_per_mm3: 0.93,
         time: TimeSettings::default(),
         schedule: Schedule::fixed(1.0, 1),

@@ -35,6 +35,11 @@ const NONE: NamedWaveform = NamedWaveform {
 };
 
 impl CaseChannel {
+    /// What presses the femur on the insert.
+    pub(super) fn load() -> Self {
+        Self(&machine::knee::AXIAL_FORCE)
+    }
+
     /// All of them, in the order they are written.
     pub fn all() -> impl Iterator<Item = Self> {
         KNEE.channels.iter().copied().map(Self)
@@ -85,17 +90,25 @@ impl CaseChannel {
         const AXIAL_FORCE: &[NamedWaveform] = &[
             shipped!("iso-like", "iso-like-axial-force.csv", HalfCosine),
             shipped!("paper-like", "paper-like-axial-force.csv", HalfCosine),
+            shipped!("stairs-like", "stairs-like-axial-force.csv", HalfCosine),
+            shipped!("chair-like", "chair-like-axial-force.csv", HalfCosine),
         ];
         const FLEXION: &[NamedWaveform] = &[
             shipped!("iso-like", "iso-like-flexion.csv", HalfCosine),
+            shipped!("stairs-like", "stairs-like-flexion.csv", HalfCosine),
+            shipped!("chair-like", "chair-like-flexion.csv", HalfCosine),
             NONE,
         ];
         const AP_FORCE: &[NamedWaveform] = &[
             shipped!("iso-like", "iso-like-ap-force.csv", HalfCosine),
+            shipped!("stairs-like", "stairs-like-ap-force.csv", HalfCosine),
+            shipped!("chair-like", "chair-like-ap-force.csv", HalfCosine),
             NONE,
         ];
         const IE_TORQUE: &[NamedWaveform] = &[
             shipped!("iso-like", "iso-like-ie-torque.csv", HalfCosine),
+            shipped!("stairs-like", "stairs-like-ie-torque.csv", HalfCosine),
+            shipped!("chair-like", "chair-like-ie-torque.csv", HalfCosine),
             NONE,
         ];
         const AP_MOTION: &[NamedWaveform] =

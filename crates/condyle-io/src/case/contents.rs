@@ -1,7 +1,9 @@
 //! All that a case says.
 
 use super::accuracy::Accuracy;
+use super::activity::Activities;
 use super::contact::Contact;
+use super::creep::Creep;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
@@ -34,8 +36,12 @@ pub struct Case {
     pub contact: Contact,
     /// The simulator.
     pub machine: Machine,
+    /// What it does in turn; where there is none, what the machine's own waveforms say.
+    pub activities: Activities,
     /// The wear law.
     pub wear: Wear,
+    /// The law of creep.
+    pub creep: Creep,
     /// The march over the life of the insert.
     pub march: March,
     /// Steps and tolerances in time.

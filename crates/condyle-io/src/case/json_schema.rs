@@ -4,9 +4,11 @@ use condyle::machine::{JointDescription, knee::KNEE};
 use condyle::wear::WEAR_LAWS;
 
 use super::accuracy::Accuracy;
+use super::activity::{self, ActivityKeys};
 use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
 use super::contents::Case;
+use super::creep::Creep;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
@@ -46,9 +48,15 @@ pub fn json_schema(wear_laws: WearLaws) -> String {
         .with_table("material", of::<Material>("Polyethylene of the insert."))
         .with_table("contact", contact())
         .with_table("machine", machine())
+        .with_list(activity::TABLE, activity_of_list())
         .with_table(
             "wear",
             TableSchema::new("The wear law.").with_choices(&Wear::choices(wear_laws)),
+        )
+        .with_table(
+            "creep",
+            TableSchema::new("How the polyethylene of the insert creeps.")
+                .with_choices(&Creep::choices()),
         )
         .with_table("march", march())
         .with_table("time", of::<Time>("Steps and tolerances in time."))
@@ -105,8 +113,18 @@ fn machine() -> TableSchema {
             of::<Springs>("The pair of springs that stands for the ligaments."),
         )
         .with_table("freedoms", freedoms());
-    CaseChannel::all().fold(machine, |machine, channel| {
-        machine.with_table(channel.name(), waveform(channel))
+    with_waveforms(machine)
+}
+
+fn activity_of_list() -> TableSchema {
+    with_waveforms(of::<ActivityKeys>(
+        "Something that the machine does over and over, with inputs of its own.",
+    ))
+}
+
+fn with_waveforms(table: TableSchema) -> TableSchema {
+    CaseChannel::all().fold(table, |table, channel| {
+        table.with_table(channel.name(), waveform(channel))
     })
 }
 

@@ -84,8 +84,23 @@ fn add_keys(table: toml::Table, above: &str, keys: &mut Vec<(String, toml::Value
         };
         match value {
             toml::Value::Table(inside) => add_keys(inside, &path, keys),
+            toml::Value::Array(list) if list.iter().all(toml::Value::is_table) => {
+                for table in list {
+                    add_keys_of_list(table, &path, keys);
+                }
+            }
             value => keys.push((path, value)),
         }
+    }
+}
+
+/// Those of a table of a list, which is known by its name: `activity.stairs.share`.
+fn add_keys_of_list(table: toml::Value, list: &str, keys: &mut Vec<(String, toml::Value)>) {
+    if let toml::Value::Table(table) = table
+        && let Some(name) = table.get("name").and_then(toml::Value::as_str)
+    {
+        let path = format!("{list}.{name}");
+        add_keys(table, &path, keys);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use condyle::machine::{JointDescription, JointIndex, JointKind, Waveform, knee::KNEE};
 
+use super::activity_reason::ActivityReason;
 use super::channel::CaseChannel;
 use super::drive_reason::DriveReason;
 use super::machine_keys::{
@@ -209,6 +210,12 @@ impl Freedoms {
         &self.rows[joint.place()]
     }
 
+    /// The waveforms that they need.
+    pub(super) fn channels(&self) -> impl Iterator<Item = CaseChannel> {
+        let channel = |(joint, freedom): (_, &Freedom)| channel_of(joint, freedom.drive());
+        self.in_files().filter_map(channel)
+    }
+
     /// Every freedom with its joint, in the order they are written.
     pub(super) fn in_files(&self) -> impl Iterator<Item = (&'static JointDescription, &Freedom)> {
         let joints = KNEE.in_files.into_iter();
@@ -217,7 +224,12 @@ impl Freedoms {
 }
 
 impl Waveforms {
-    fn read(machine: &Section<'_>, freedoms: &Freedoms, log: &mut Log<'_>) -> Option<Self> {
+    /// Reads those that freedoms so driven need from their tables in `machine`.
+    pub(super) fn read(
+        machine: &Section<'_>,
+        freedoms: &Freedoms,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
         let mut given = Vec::new();
         let mut complete = true;
         for (joint, freedom) in freedoms.in_files() {
@@ -253,7 +265,7 @@ fn check_absent(
         DriveWord::Loaded
     };
     let reason = DriveReason::UnusedWaveform {
-        section: format!("machine.{}", channel.name()),
+        section: format!("{}.{}", machine.path(), channel.name()),
         freedom: joint.name,
         drive: drive.word(),
         wanted: wanted.word(),
@@ -261,8 +273,23 @@ fn check_absent(
     log.problem(machine.key_span(channel.name()), reason);
 }
 
+/// Reports waveforms of the machine, which has those of its activities.
+fn check_without_waveforms(machine: &Section<'_>, log: &mut Log<'_>) {
+    for channel in CaseChannel::all() {
+        if machine.value(channel.name()).is_some() {
+            let table = channel.name();
+            log.problem(machine.key_span(table), ActivityReason::OfMachine { table });
+        }
+    }
+}
+
 impl Machine {
-    pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+    /// Reads `[machine]`, whose waveforms are elsewhere where the case has activities.
+    pub(super) fn read(
+        section: &Section<'_>,
+        has_activities: bool,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
         let known: Vec<&str> = names(&MachineSettings::keys())
             .chain(names(&Start::keys()))
             .chain(["springs", "freedoms"])
@@ -273,7 +300,12 @@ impl Machine {
         let springs = read_table(section, "springs", log);
         let preset = Start::read(section, log)?.preset;
         let freedoms = Freedoms::read(section, preset, log)?;
-        let waveforms = Waveforms::read(section, &freedoms, log);
+        let waveforms = if has_activities {
+            check_without_waveforms(section, log);
+            Some(Waveforms::default())
+        } else {
+            Waveforms::read(section, &freedoms, log)
+        };
         Some(Self {
             preset,
             settings: settings?,

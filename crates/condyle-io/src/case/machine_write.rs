@@ -3,13 +3,13 @@
 use condyle::machine::Waveform;
 
 use super::channel::CaseChannel;
-use super::machine::{Freedom, Machine};
+use super::machine::{Freedom, Machine, Waveforms};
 use super::machine_keys::Start;
 use super::waveform::{DEFAULT_WAVEFORM, InterpolationWord};
 use crate::keyed::{Settings, Writer, unit_of};
 
 /// How the table of a waveform is written.
-pub(super) type WriteWaveform = fn(&mut Writer, CaseChannel, &Waveform);
+pub(super) type WriteWaveform = fn(&mut Writer, &str, CaseChannel, &Waveform);
 
 impl Machine {
     /// Writes `[machine]` and the tables inside it.
@@ -20,11 +20,7 @@ impl Machine {
         self.settings.write(out);
         out.table("machine.springs");
         self.springs.write(out);
-        for channel in CaseChannel::all() {
-            if let Some(waveform) = self.waveforms.get(channel) {
-                write_waveform(out, channel, waveform);
-            }
-        }
+        self.waveforms.write("machine.", write_waveform, out);
         self.write_freedoms(out);
     }
 
@@ -39,10 +35,27 @@ impl Machine {
     }
 }
 
+impl Waveforms {
+    /// Writes a table a waveform, each with `above` before its name.
+    pub(super) fn write(&self, above: &str, write_waveform: WriteWaveform, out: &mut Writer) {
+        for channel in CaseChannel::all() {
+            if let Some(waveform) = self.get(channel) {
+                let table = format!("{above}{}", channel.name());
+                write_waveform(out, &table, channel, waveform);
+            }
+        }
+    }
+}
+
 /// The points of a waveform as its table.
-pub(super) fn write_knots(out: &mut Writer, channel: CaseChannel, waveform: &Waveform) {
+pub(super) fn write_knots(
+    out: &mut Writer,
+    table: &str,
+    channel: CaseChannel,
+    waveform: &Waveform,
+) {
     let interpolation = InterpolationWord::of(waveform.interpolation()).word();
-    out.table(&format!("machine.{}", channel.name()));
+    out.table(table);
     out.comment(channel.about());
     out.line(
         &format!("interpolation = {interpolation:?}"),
@@ -56,8 +69,8 @@ pub(super) fn write_knots(out: &mut Writer, channel: CaseChannel, waveform: &Wav
 }
 
 /// The table of a waveform by its name.
-pub(super) fn write_name(out: &mut Writer, channel: CaseChannel, _: &Waveform) {
-    out.table(&format!("machine.{}", channel.name()));
+pub(super) fn write_name(out: &mut Writer, table: &str, channel: CaseChannel, _: &Waveform) {
+    out.table(table);
     out.comment(channel.about());
     out.line(
         &format!("waveform = {DEFAULT_WAVEFORM:?}"),

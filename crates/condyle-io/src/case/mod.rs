@@ -4,12 +4,15 @@
 //! last step, where a case is built.
 
 mod accuracy;
+mod activity;
+mod activity_reason;
 mod assignment;
 mod axes;
 mod build;
 mod channel;
 mod contact;
 mod contents;
+mod creep;
 mod culprit;
 #[cfg(feature = "file-system")]
 mod draft;
@@ -47,6 +50,8 @@ mod wear;
 mod write;
 
 pub use accuracy::Accuracy;
+pub use activity::{Activities, Activity, ActivityKeys};
+pub use activity_reason::ActivityReason;
 pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
 pub use build::{Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, StrayPiece, WrongAxes};
@@ -55,6 +60,7 @@ pub use contact::{
     Contact, ContactModelWord, Finding, Friction, PressureLawChoice, SearchWord, SofteningCurve,
 };
 pub use contents::Case;
+pub use creep::{Creep, LogarithmicCreep};
 pub use culprit::Unfit;
 #[cfg(feature = "file-system")]
 pub use draft::{Draft, DraftError, Drafted};

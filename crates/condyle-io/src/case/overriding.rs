@@ -1,7 +1,7 @@
 //! One number of a case set from outside, before the case is read.
 
 use thiserror::Error;
-use toml_edit::{DocumentMut, Item, TableLike, Value};
+use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 
 use super::key_names::KeyNameError;
 
@@ -82,13 +82,37 @@ pub(super) fn with_value(case: &str, path: &str, value: Value) -> String {
         return case.to_owned();
     };
     let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
-    let names = tables.split('.').filter(|name| !name.is_empty());
-    let table = names.fold(
-        document.as_table_mut() as &mut dyn TableLike,
-        |above, name| table_in(above, name),
-    );
-    set(table, key, value);
+    let names: Vec<&str> = tables.split('.').filter(|name| !name.is_empty()).collect();
+    set(table_at(document.as_table_mut(), &names), key, value);
     document.to_string()
+}
+
+/// The table at the end of a path; of a list of tables the one with the name that follows.
+fn table_at<'a>(above: &'a mut dyn TableLike, names: &[&str]) -> &'a mut dyn TableLike {
+    match names {
+        [] => above,
+        [list, name, below @ ..] if above.get(list).is_some_and(Item::is_array_of_tables) => {
+            table_at(named_in(above, list, name), below)
+        }
+        [name, below @ ..] => table_at(table_in(above, name), below),
+    }
+}
+
+/// The table called `name` of the list `list`, put there if it is not; a reader then says what it lacks.
+fn named_in<'a>(above: &'a mut dyn TableLike, list: &str, name: &str) -> &'a mut dyn TableLike {
+    let tables = above
+        .get_mut(list)
+        .and_then(Item::as_array_of_tables_mut)
+        .expect("it was seen there");
+    let is_called = |table: &Table| table.get("name").and_then(Item::as_str) == Some(name);
+    let place = tables.iter().position(is_called);
+    if place.is_none() {
+        let mut table = Table::new();
+        table.insert("name", toml_edit::value(name));
+        tables.push(table);
+    }
+    let place = place.unwrap_or(tables.len() - 1);
+    tables.get_mut(place).expect("it was put there")
 }
 
 /// The table `name`, put there if it is not; a reader then says what should be there instead.

@@ -1,7 +1,9 @@
 //! A case from its file, table by table.
 
+use super::activity::{self, Activities};
 use super::contact::Contact;
 use super::contents::Case;
+use super::creep::Creep;
 use super::femur::Femur;
 use super::heading::{Heading, Side};
 use super::insert::Insert;
@@ -10,12 +12,23 @@ use super::march::March;
 use super::origin::Origin;
 use super::placement::{FemurPlacement, InsertPlacement};
 use super::wear::{Wear, WearLaws};
-use crate::keyed::{Log, Section, Settings, names, read_table};
+use crate::keyed::{Log, Section, Settings, Variants, names, read_table};
 
 /// Every table of a case, in the order they are written.
-const TABLES: [&str; 11] = [
-    "femur", "insert", "material", "contact", "machine", "wear", "march", "time", "accuracy",
-    "limits", "output",
+const TABLES: [&str; 13] = [
+    "femur",
+    "insert",
+    "material",
+    "contact",
+    "machine",
+    activity::TABLE,
+    "wear",
+    "creep",
+    "march",
+    "time",
+    "accuracy",
+    "limits",
+    "output",
 ];
 
 /// Reads every table before giving up on any, so that all problems are found at once.
@@ -36,8 +49,11 @@ pub(super) fn read_case(
     let insert_placement = InsertPlacement::read_checked(&section, insert.as_ref(), log);
     let material = read_table(root, "material", log);
     let contact = Contact::read(&root.table("contact", log), log);
-    let machine = Machine::read(&root.table("machine", log), log);
+    let has_activities = root.value(activity::TABLE).is_some();
+    let machine = Machine::read(&root.table("machine", log), has_activities, log);
+    let activities = Activities::read(root, machine.as_ref(), log);
     let wear = Wear::read(&root.table("wear", log), wear_laws, log);
+    let creep = Creep::read(&root.table("creep", log), &[], log);
     let march = March::read(&root.table("march", log), log);
     let time = read_table(root, "time", log);
     let accuracy = read_table(root, "accuracy", log);
@@ -52,7 +68,9 @@ pub(super) fn read_case(
         material: material?,
         contact: contact?,
         machine: machine?,
+        activities: activities?,
         wear: wear?,
+        creep: creep?,
         march: march?,
         time: time?,
         accuracy: accuracy?,

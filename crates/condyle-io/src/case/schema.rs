@@ -5,8 +5,10 @@ use condyle::parameter::{Known, Parameter};
 use condyle::wear::WearLawKind;
 
 use super::accuracy::Accuracy;
+use super::activity::ActivityKeys;
 use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
+use super::creep::Creep;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
@@ -48,6 +50,12 @@ const POINTS: &str = "
 | --- | --- | --- | --- | --- | --- |
 ";
 
+const ACTIVITIES: &str = "
+One table for each thing that the machine does, each with every waveform that its freedoms need as \
+`[activity.axial_force]`, `[activity.flexion]` and so on, with the keys of the waveforms above; `[machine]` then has \
+none. [Activities and creep](activities-and-creep.md) shows how.
+";
+
 /// Every key of a case file that may choose from `wear_laws`, with its unit, range, default and
 /// meaning, as Markdown.
 pub fn schema_markdown(wear_laws: WearLaws) -> String {
@@ -66,7 +74,11 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
         &PressureLawChoice::choices(),
     );
     machine(&mut page);
+    page.section("`[[activity]]`", &ActivityKeys::keys());
+    page.push(ACTIVITIES);
     wear(&mut page, wear_laws);
+    let creep = Creep::choices();
+    page.chosen("`[creep]`", std::slice::from_ref(&creep.by), &creep);
     page.chosen("`[march]`", &March::keys(), &Update::choices());
     page.section("`[time]`", &Time::keys());
     page.section("`[accuracy]`", &Accuracy::keys());

@@ -30,8 +30,11 @@ impl Case {
         out.table("contact");
         self.contact.write(&mut out);
         self.machine.write(write_waveform, &mut out);
+        self.activities.write(write_waveform, &mut out);
         out.table("wear");
         self.wear.write(&mut out);
+        out.table("creep");
+        self.creep.write(&mut out);
         out.table("march");
         self.march.write(&mut out);
         out.table("time");

@@ -63,6 +63,13 @@ impl TableSchema {
         self
     }
 
+    /// The same with the list `name` of such tables inside, of one or more.
+    pub(crate) fn with_list(mut self, name: &str, table: Self) -> Self {
+        let list = json!({ "type": "array", "minItems": 1, "items": table.into_schema() });
+        self.properties.insert(name.to_owned(), list);
+        self
+    }
+
     /// The same where exactly one of the keys `names` is given.
     pub(crate) fn with_one_of(mut self, names: &[&str]) -> Self {
         self.rules.push(one_of(names));

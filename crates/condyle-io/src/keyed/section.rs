@@ -18,6 +18,8 @@ type Entry<'a> = (&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>);
 /// A table of a file; an absent one has no keys.
 pub struct Section<'a> {
     path: String,
+    /// Whether it is one of a list of tables.
+    is_of_list: bool,
     table: Option<&'a DeTable<'a>>,
     span: Range<usize>,
 }
@@ -27,6 +29,7 @@ impl<'a> Section<'a> {
     pub(crate) fn root(table: &'a DeTable<'a>) -> Self {
         Self {
             path: String::new(),
+            is_of_list: false,
             table: Some(table),
             span: 0..0,
         }
@@ -46,7 +49,42 @@ impl<'a> Section<'a> {
             log.problem(value.span(), KeyReason::WrongType { key, wanted, found });
         }
         let span = entry.map_or(self.span.clone(), |(key, _)| key.span());
-        Self { path, table, span }
+        Self {
+            path,
+            is_of_list: false,
+            table,
+            span,
+        }
+    }
+
+    /// The tables of the list `name` at the top of the file; nothing where it is something else.
+    pub(crate) fn list(&self, name: &str, log: &mut Log<'_>) -> Option<Vec<Self>> {
+        let Some(value) = self.value(name) else {
+            return Some(Vec::new());
+        };
+        let listed = value.get_ref().as_array();
+        let tables: Option<Vec<Self>> = listed.and_then(|listed| {
+            let table = |item| Self::of_list(name, item);
+            listed.iter().map(table).collect()
+        });
+        let tables = tables.filter(|tables| !tables.is_empty());
+        if tables.is_none() {
+            let (key, found) = (name.to_owned(), type_name(value.get_ref()));
+            let wanted = format!("tables, each headed [[{name}]]");
+            let reason = KeyReason::WrongType { key, wanted, found };
+            log.problem(self.key_span(name), reason);
+        }
+        tables
+    }
+
+    /// A table of the list `name`; nothing where it is something else.
+    fn of_list(name: &str, item: &'a Spanned<DeValue<'a>>) -> Option<Self> {
+        Some(Self {
+            path: name.to_owned(),
+            is_of_list: true,
+            table: Some(item.get_ref().as_table()?),
+            span: item.span(),
+        })
     }
 
     /// Path of the table, such as `machine.springs`.
@@ -58,6 +96,7 @@ impl<'a> Section<'a> {
     pub(crate) fn name(&self) -> String {
         match self.path.as_str() {
             "" => "the top of the file".to_owned(),
+            path if self.is_of_list => format!("[[{path}]]"),
             path => format!("[{path}]"),
         }
     }

@@ -18,6 +18,11 @@ impl Writer {
         self.text.push_str(&format!("\n[{path}]\n"));
     }
 
+    /// Starts the next table of a list.
+    pub(crate) fn table_of_list(&mut self, path: &str) {
+        self.text.push_str(&format!("\n[[{path}]]\n"));
+    }
+
     /// Writes a remark on a line of its own.
     pub(crate) fn comment(&mut self, text: &str) {
         self.text.push_str(&format!("# {text}\n"));

@@ -9,6 +9,7 @@ use condyle::{evolve::March, geometry::TriangleMesh};
 use thiserror::Error;
 
 use super::{
+    activities::kinematics_file,
     checkpoint::{Checkpoint, CheckpointError},
     checksums::{CHECKSUMS, DamagedFile, check_all, is_listed, write_checksum},
     cycle_files::{KeptCycle, cycle_pvd, femur_vtu, frame_name, insert_frame},
@@ -450,14 +451,14 @@ impl ResultsFolder {
         )?;
         self.replace("insert.pvd", insert_pvd(&state.updates).as_bytes())?;
         self.replace("wear.csv", wear_csv(&state.updates).as_bytes())?;
-        self.replace(
-            "kinematics.csv",
-            kinematics_csv(
-                march.test().machine().mechanism,
-                state.activities[0].first_and_last.as_ref(),
-            )
-            .as_bytes(),
-        )?;
+        let activities = march.test().activities.iter().zip(&state.activities);
+        for (number, (activity, own)) in activities.enumerate() {
+            let (mechanism, cycles) = (activity.machine.mechanism, own.first_and_last.as_ref());
+            self.replace(
+                &kinematics_file(number, &activity.name),
+                kinematics_csv(mechanism, cycles).as_bytes(),
+            )?;
+        }
         self.replace("femur_pose.csv", femur_pose_csv(march, side).as_bytes())?;
         if let Some(paths) = slip_paths_csv(march, side) {
             self.replace("slip_paths.csv", paths.as_bytes())?;

@@ -25,7 +25,7 @@ pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
     let (surface, count) = (insert.surface_nodes(), mesh.nodes.len());
     let scalars = |values: &[f64]| spread(surface, values, 0.0, count);
     let fields = march.fields();
-    let arrays = [
+    let mut arrays = vec![
         ("wear_depth_mm", scalars(&fields.wear_depth_mm)),
         ("depth_per_cycle_mm", scalars(&fields.depth_per_cycle_mm)),
         ("peak_pressure_mpa", scalars(&fields.peak_pressure_mpa)),
@@ -33,6 +33,14 @@ pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
         ("cross_shear", scalars(&fields.cross_shear)),
         ("thickness_mm", scalars(&fields.thickness_mm)),
     ];
+    if let Some(law) = &march.test().creep {
+        let (depths, left_mm) = (&march.state().depths, march.state().creep.left_mm(law));
+        let none = vec![0.0; surface.len()];
+        let or_none = |values: Option<&[f64]>| scalars(values.unwrap_or(&none));
+        arrays.push(("creep_depth_mm", or_none(depths.creep_mm())));
+        let left_mm = Some(left_mm.as_slice()).filter(|left| !left.is_empty());
+        arrays.push(("creep_left_unloaded_mm", or_none(left_mm)));
+    }
     let on_side = |vector: &[f64; 3]| point_on_side(&Vec3::from(*vector), side).into();
     let directions: Vec<[f64; 3]> = fields.principal_direction.iter().map(on_side).collect();
     let directions = spread(surface, &directions, [0.0; 3], count);

@@ -1,8 +1,10 @@
 //! The results folder: what a run writes, one file a table, all readable without condyle.
 
+mod activities;
 mod checkpoint;
 #[cfg(feature = "file-system")]
 mod checksums;
+mod creep;
 mod cycle_files;
 mod error_estimate;
 mod femur_pose;
@@ -28,9 +30,11 @@ pub use condyle::machine::{
     knee::{KNEE, LATERAL, MEDIAL},
 };
 
+pub use activities::{ActivitySummary, kinematics_file};
 pub use checkpoint::{Checkpoint, CheckpointError};
 #[cfg(feature = "file-system")]
 pub use checksums::{DamagedFile, check_file};
+pub use creep::{CreepSummary, Penetration, ScanLine};
 pub use cycle_files::{
     BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pvd, femur_of_frames, femur_vtu, frame_name,
     insert_frame,

@@ -10,8 +10,8 @@ use condyle::{
 use serde::{Deserialize, Serialize};
 
 use super::{
-    error_estimate::ErrorEstimate, femur_pose::NeutralPose, law_wear::LawWear,
-    plausibility::PlausibilityWarning,
+    activities::ActivitySummary, creep::CreepSummary, error_estimate::ErrorEstimate,
+    femur_pose::NeutralPose, law_wear::LawWear, plausibility::PlausibilityWarning,
 };
 
 /// What a summary is made from.
@@ -37,6 +37,8 @@ pub struct SummaryInput<'a> {
     pub neutral_pose: NeutralPose,
     /// What every law of wear says of the run.
     pub wear_laws: Vec<LawWear>,
+    /// What each of several activities did.
+    pub activities: Vec<ActivitySummary>,
 }
 
 /// The numbers of a finished run; units are in the names.
@@ -51,7 +53,7 @@ pub struct Summary {
     pub mass_loss_mg: f64,
     /// Volume worn, from depth times area, mm3.
     pub volume_loss_mm3: f64,
-    /// Volume worn, from the change of the mesh, mm3.
+    /// Volume worn, from the change of the mesh less the volume of creep, mm3.
     pub volume_loss_mesh_mm3: f64,
     /// Deepest wear, mm.
     pub max_depth_mm: f64,
@@ -61,6 +63,13 @@ pub struct Summary {
     /// surface.
     #[serde(default)]
     pub wear_laws: Vec<LawWear>,
+    /// What each of several activities did and wore; motions and ranges below are those of the first. Not there
+    /// where the case has one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub activities: Vec<ActivitySummary>,
+    /// What creep came to; not there where the insert does not creep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub creep: Option<CreepSummary>,
     /// Highest pressure anywhere, between nodes too, in any cycle, MPa.
     pub peak_pressure_mpa: f64,
     /// Cycles done before the cycle that has it.
@@ -157,6 +166,8 @@ impl Summary {
             max_depth_mm: last.max_depth_mm,
             error: input.error,
             wear_laws: input.wear_laws,
+            activities: input.activities,
+            creep: CreepSummary::of(state),
             peak_pressure_mpa: pressure.value,
             peak_pressure_cycle: pressure.cycle,
             first_cycle_peak_pressure_mpa: first.peak_pressure_mpa,
@@ -228,7 +239,8 @@ pub fn joint_range(rows: &[CycleRow], joint: JointIndex) -> f64 {
     KNEE.joint(joint).kind().in_files(high - low)
 }
 
-fn medial_load_share(rows: &[CycleRow]) -> f64 {
+/// Medial part of the axial force, weighted by force.
+pub(super) fn medial_load_share(rows: &[CycleRow]) -> f64 {
     let medial: f64 = rows.iter().map(|row| row.region_force_n[MEDIAL]).sum();
     let whole: f64 = rows.iter().map(|row| row.axial_force_n).sum();
     medial / whole

@@ -7,6 +7,7 @@ use std::{
 };
 
 use super::{
+    activities::{kinematics_file, listed_in},
     cycle_files::{BODIES, KeptCycle},
     folder::{ResultsError, ResultsFolder, SIGNS_OF_A_RUN, TIME_SPENT},
     replace::beside,
@@ -79,12 +80,24 @@ impl ResultsFolder {
         let frames = KeptCycle::BOTH
             .into_iter()
             .flat_map(|cycle| self.frames(cycle));
-        let names = named
+        // Before the case, which tells their names.
+        let names = self.kinematics_of_activities().into_iter();
+        let names = names
+            .chain(named)
             .chain(inserts)
             .chain(frames)
             .chain(["checkpoint".to_owned()]);
         let files = names.map(|name| self.path().join(name));
         files.flat_map(|file| [beside(&file), file]).collect()
+    }
+
+    /// The motions of the activities that the case of the run lists.
+    fn kinematics_of_activities(&self) -> Vec<String> {
+        let case = fs::read_to_string(self.path().join("case.toml")).unwrap_or_default();
+        let names = listed_in(&case).into_iter().enumerate();
+        names
+            .map(|(number, name)| kinematics_file(number, &name))
+            .collect()
     }
 
     /// The frames of a cycle, by their paths in the folder.

@@ -7,8 +7,8 @@ use condyle_io::{
     case::{Assignment, BuildWarning, Case, FEMUR_TRIANGLES, Side},
     keyed::DataFile,
     results::{
-        Checkpoint, FRAME_TRIANGLES, FolderLock, Found, LawWear, NeutralPose, ResultsError,
-        ResultsFolder, Summary, SummaryInput, femur_of_frames,
+        ActivitySummary, Checkpoint, FRAME_TRIANGLES, FolderLock, Found, LawWear, NeutralPose,
+        ResultsError, ResultsFolder, Summary, SummaryInput, femur_of_frames,
     },
 };
 
@@ -287,6 +287,7 @@ impl<'a> Run<'a> {
             error: None,
             neutral_pose: NeutralPose::of(&self.march, self.case.heading.side),
             wear_laws: LawWear::of(&self.march, &self.case.wear),
+            activities: ActivitySummary::of(&self.march),
         })
         .expect("a march that is done has an update")
     }

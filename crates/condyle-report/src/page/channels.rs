@@ -119,11 +119,14 @@ pub(super) fn cycle_names(results: &Results) -> Option<(String, String)> {
     Some(cycle_caption(first.count, last.count))
 }
 
-/// A panel for each channel that the folder holds.
+/// A panel for each channel that the folder holds, of the first activity.
 pub(crate) fn panels(results: &Results) -> Vec<Panel> {
-    let Some(table) = &results.kinematics else {
-        return Vec::new();
-    };
+    let table = results.kinematics.as_ref();
+    table.map_or_else(Vec::new, |table| panels_of(table, ""))
+}
+
+/// A panel for each channel of a table, which `activity` tells from those of others on the page.
+pub(super) fn panels_of(table: &Table, activity: &str) -> Vec<Panel> {
     let Some(percent) = table.column("percent") else {
         return Vec::new();
     };
@@ -131,6 +134,10 @@ pub(crate) fn panels(results: &Results) -> Vec<Panel> {
     CHANNELS
         .iter()
         .filter_map(|channel| panel(channel, table.column(channel.column)?, percent, &ends))
+        .map(|panel| Panel {
+            id: format!("{}{activity}", panel.id),
+            ..panel
+        })
         .collect()
 }
 

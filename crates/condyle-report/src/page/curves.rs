@@ -16,7 +16,7 @@ struct Quantity {
     starts_at_zero: bool,
 }
 
-const QUANTITIES: [Quantity; 4] = [
+const QUANTITIES: [Quantity; 6] = [
     Quantity {
         column: "mass_loss_mg",
         title: "Mass loss",
@@ -26,6 +26,18 @@ const QUANTITIES: [Quantity; 4] = [
     Quantity {
         column: "max_depth_mm",
         title: "Maximum wear depth",
+        unit: "mm",
+        starts_at_zero: true,
+    },
+    Quantity {
+        column: "max_penetration_mm",
+        title: "Deepest penetration, wear and creep",
+        unit: "mm",
+        starts_at_zero: true,
+    },
+    Quantity {
+        column: "max_unloaded_depth_mm",
+        title: "Deepest place of a scan without load",
         unit: "mm",
         starts_at_zero: true,
     },

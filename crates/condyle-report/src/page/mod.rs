@@ -1,6 +1,7 @@
 //! The page: what stands on it, and in which order.
 
 mod accuracy;
+mod activities;
 mod captions;
 mod channels;
 mod compartments;
@@ -26,7 +27,7 @@ use serde::Serialize;
 
 use crate::figure::{Panel, css, variables};
 use crate::results::{
-    case::{is_deformable, title},
+    case::{creeps, is_deformable, title},
     contents::Results,
 };
 
@@ -58,6 +59,10 @@ struct Page<'a> {
     compartments: Vec<compartments::Comparison>,
     laws: Vec<laws::Law>,
     law_of_run: Option<String>,
+    activities: Vec<activities::Row>,
+    first_activity: Option<String>,
+    activity_curves: Vec<activities::Curves>,
+    creeps: bool,
     wear_curves: Vec<String>,
     channels: Vec<String>,
     cycles: Option<(String, String)>,
@@ -91,6 +96,10 @@ impl<'a> Page<'a> {
             compartments: compartments::comparisons(results),
             laws: laws::laws(results),
             law_of_run: laws::of_run(results),
+            activities: activities::rows(results),
+            first_activity: activities::first(results),
+            activity_curves: activities::curves(results),
+            creeps: results.case.as_deref().is_some_and(creeps),
             wear_curves: svgs(&wear_panels(results)),
             channels: svgs(&kinematics_panels(results)),
             cycles: channels::cycle_names(results),

@@ -263,7 +263,14 @@ const GROUPS: [(&str, &[Known]); 4] = [
 ];
 
 /// Told elsewhere on the page.
-const TOLD_ELSEWHERE: [&str; 5] = ["error", "warnings", "plausibility", "wear_laws", NEUTRAL];
+const TOLD_ELSEWHERE: [&str; 6] = [
+    "error",
+    "warnings",
+    "plausibility",
+    "wear_laws",
+    "activities",
+    NEUTRAL,
+];
 /// Where the femur settled.
 const NEUTRAL: &str = "neutral_pose";
 /// In names of what is told elsewhere, or differs from run to run.

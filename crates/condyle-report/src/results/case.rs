@@ -30,6 +30,15 @@ pub(crate) fn is_deformable(case: &str) -> bool {
     model == Some("deformable")
 }
 
+/// Whether the insert of the case creeps.
+pub(crate) fn creeps(case: &str) -> bool {
+    let case: Option<Table> = case.parse().ok();
+    let law = case
+        .as_ref()
+        .and_then(|case| case.get("creep")?.get("law")?.as_str());
+    law.is_some_and(|law| law != "none")
+}
+
 /// The side of the knee: left where any table of the case says `side = "left"`, else right.
 pub(super) fn side(case: &str) -> Side {
     match case.parse::<Table>() {
@@ -68,6 +77,13 @@ mod tests {
         assert!(is_deformable("[contact]\nmodel = \"deformable\""));
         assert!(!is_deformable("[contact]\nmodel = \"foundation\""));
         assert!(!is_deformable("model = \"deformable\""));
+    }
+
+    #[test]
+    fn an_insert_creeps_where_the_case_has_a_law_of_it() {
+        assert!(creeps("[creep]\nlaw = \"lee-pienkowski\""));
+        assert!(!creeps("[creep]\nlaw = \"none\""));
+        assert!(!creeps("[wear]\nlaw = \"archard\""));
     }
 
     #[test]

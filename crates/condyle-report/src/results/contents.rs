@@ -1,5 +1,7 @@
 //! What a results folder holds.
 
+use condyle_io::results::ActivitySummary;
+
 use super::{side::Side, summary::Summary, surface::SurfaceFields, table::Table};
 
 /// What a results folder holds; a part that is not there is `None`.
@@ -13,6 +15,8 @@ pub struct Results {
     pub kinematics: Option<Table>,
     /// `slip_paths.csv`, a row an increment and place.
     pub slip_paths: Option<Table>,
+    /// Each of several activities, and its motions and loads; none where the case has one.
+    pub activities: Vec<(ActivitySummary, Option<Table>)>,
     /// The articulating surface at the last update.
     pub surface: Option<SurfaceFields>,
     /// `case.toml`, its text.

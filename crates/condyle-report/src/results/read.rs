@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle_io::{mesh::read_vtu_points, results::check_file};
+use condyle_io::{
+    mesh::read_vtu_points,
+    results::{ActivitySummary, check_file},
+};
 
 use super::{
     case::side, contents::Results, side::Side, summary::Summary, surface::SurfaceFields,
@@ -22,8 +25,10 @@ impl Results {
             });
         }
         let case = text(&folder.join("case.toml"))?;
+        let summary = summary(folder.join("summary.json"))?;
         let results = Self {
-            summary: summary(folder.join("summary.json"))?,
+            activities: activities(folder, summary.as_ref())?,
+            summary,
             wear: table(&folder.join("wear.csv"))?,
             kinematics: table(&folder.join("kinematics.csv"))?,
             slip_paths: table(&folder.join("slip_paths.csv"))?,
@@ -46,6 +51,21 @@ impl Results {
             folder: folder.to_owned(),
         })
     }
+}
+
+/// Each of several activities, and its table.
+fn activities(
+    folder: &Path,
+    summary: Option<&Summary>,
+) -> Result<Vec<(ActivitySummary, Option<Table>)>, ReportError> {
+    let listed = summary.map_or_else(Vec::new, Summary::activities);
+    let with_table = |activity: ActivitySummary| {
+        // A summary that somebody wrote may name any file: only one of the folder itself is read.
+        let name = Path::new(&activity.kinematics_file).file_name();
+        let table = name.map(|name| table(&folder.join(name))).transpose()?;
+        Ok((activity, table.flatten()))
+    };
+    listed.into_iter().map(with_table).collect()
 }
 
 fn surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {

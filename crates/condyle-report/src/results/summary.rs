@@ -1,6 +1,6 @@
 //! `summary.json`.
 
-use condyle_io::results::{LawWear, PlausibilityWarning};
+use condyle_io::results::{ActivitySummary, LawWear, PlausibilityWarning};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
@@ -44,6 +44,13 @@ impl Summary {
     /// What every law of wear says of the run; nothing where that is not said.
     pub fn wear_laws(&self) -> Vec<LawWear> {
         let listed = self.values.get("wear_laws");
+        let read = listed.and_then(|listed| Vec::deserialize(listed).ok());
+        read.unwrap_or_default()
+    }
+
+    /// What each of several activities did; nothing where there is one, or that is not said.
+    pub fn activities(&self) -> Vec<ActivitySummary> {
+        let listed = self.values.get("activities");
         let read = listed.and_then(|listed| Vec::deserialize(listed).ok());
         read.unwrap_or_default()
     }

@@ -17,6 +17,18 @@ impl DepthField {
     /// Name of the depth that the wear law takes.
     pub const WEAR: &'static str = "wear";
 
+    /// Name of the depth that creep takes.
+    pub const CREEP: &'static str = "creep";
+
+    /// Depth that creep takes, without loss of mass.
+    pub fn creep(depth_mm: Vec<f64>) -> Self {
+        Self {
+            name: Self::CREEP.to_owned(),
+            loses_mass: false,
+            depth_mm,
+        }
+    }
+
     /// Depth worn away.
     pub fn wear(depth_mm: Vec<f64>) -> Self {
         Self {
@@ -49,6 +61,13 @@ impl DepthFields {
     /// Depth worn away at every surface node, mm.
     pub fn wear_mm(&self) -> &[f64] {
         &self.fields[0].depth_mm
+    }
+
+    /// Depth that creep has taken at every surface node, mm; none where nothing crept.
+    pub fn creep_mm(&self) -> Option<&[f64]> {
+        let mut fields = self.fields.iter();
+        let creep = fields.find(|field| field.name == DepthField::CREEP)?;
+        Some(&creep.depth_mm)
     }
 
     /// Depth that the surface has gone down at every node, mm: the sum of all causes.
@@ -95,11 +114,7 @@ mod tests {
 
     #[test]
     fn a_field_that_loses_no_mass_moves_the_surface_alone() {
-        let creep = DepthField {
-            name: "creep".to_owned(),
-            loses_mass: false,
-            depth_mm: vec![0.5, 0.0],
-        };
+        let creep = DepthField::creep(vec![0.5, 0.0]);
         let step = [DepthField::wear(vec![1.0, 2.0]), creep];
         assert_eq!(total_mm(&step, 2), [1.5, 2.0]);
         assert_eq!(lost_mm(&step, 2), [1.0, 2.0]);
@@ -109,6 +124,7 @@ mod tests {
         depths.add(&step[..1]);
         assert_eq!(depths.wear_mm(), [2.0, 4.0]);
         assert_eq!(depths.total_mm(), [2.5, 4.0]);
+        assert_eq!(depths.creep_mm(), Some([0.5, 0.0].as_slice()));
         assert_eq!(depths.fields().len(), 2);
     }
 }

@@ -4,16 +4,22 @@
 use std::ops::{ControlFlow, Range};
 
 use super::{
-    Activity, CycleRecord, DepthField, DepthFields, MarchError, MarchState, NodeFields,
-    PlacementError, Progress, Snapshot, SolvedCycle, UpdateRecord, Updates, WearTest,
+    Activity, CreepRecord, CreepState, CycleRecord, DepthField, DepthFields, MarchError,
+    MarchState, NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UpdateRecord, Updates,
+    WearTest,
+    activity_wear::SharedStep,
+    creep::CreepStep,
+    creep_contact::CreepContact,
+    creep_record::Depths,
     depth::{lost_mm, total_mm},
     interval::shared_out,
     laws_beside::{LawBeside, outside_mm3, sum, worn},
+    march_error::WornAndCrept,
     mean_over_wear::volume_mm3,
     placement::place,
     rates::{Rates, Wearing},
     step::next_step,
-    step_record::Standing,
+    step_record::{Standing, WearStep},
 };
 use crate::{
     Vec3,
@@ -297,9 +303,11 @@ impl March {
             })
         };
         let solved = simulator.cycle(&own.machine, counters, &mut watch_cycle);
+        let name = &self.test.activities[number].name;
         solved.map_err(|source| MarchError::Cycle {
             update,
             cycles,
+            activity: (self.test.activities.len() > 1).then(|| name.clone()),
             source,
         })
     }
@@ -322,14 +330,18 @@ impl March {
         let step = next_step(standing, &self.test.schedule);
         let settled_error = self.state.settled_error.after(standing);
         let step_error = settled_error.with_last(standing, &step);
-        let taken = [DepthField::wear(step.depth_mm.clone())];
+        let mut taken = vec![DepthField::wear(step.depth_mm.clone())];
+        let mut creep = self.state.creep.clone();
+        taken.extend(self.crept(&mut creep, &solved, step.cycles_after));
         let before = self.lower(&solved.surface, &taken)?;
+        self.state.creep = creep;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
         let lost_mm3 = volume_mm3(&rates.area_mm2, &lost_mm(&taken, rates.area_mm2.len()));
         let record = self.record(
             &solved.cycles,
             step.cycles_after,
             lost_mm3,
+            self.creep_record(&taken, &rates.area_mm2),
             before.worst_quality,
         );
         self.state.updates.push(record);
@@ -337,6 +349,7 @@ impl March {
         let outside_mm3 = outside_mm3(&worn, &rates.area_mm2, &step.depth_mm);
         self.state.outside_mm3 = sum(self.state.outside_mm3, outside_mm3);
         self.wear_by_laws_beside(&cycles, &rates.area_mm2, step.interval);
+        self.add_wear_of_activities(&solved, &shared, &cycles, &rates, &step);
         let fields = NodeFields::of(
             &cycles,
             &solved.surface,
@@ -344,12 +357,7 @@ impl March {
             &self.insert,
             &self.state.depths,
         );
-        if self.state.fields.is_none() {
-            self.state
-                .first_pressure_mpa
-                .clone_from(&fields.peak_pressure_mpa);
-        }
-        self.state.fields = Some(fields);
+        self.keep_fields(fields);
         let snapshot = Snapshot {
             update: self.state.updates.len() - 1,
             step: step.record(rates),
@@ -402,6 +410,68 @@ impl March {
         }
     }
 
+    /// Adds what each of several activities wore in a step.
+    fn add_wear_of_activities(
+        &mut self,
+        solved: &Solved,
+        shared: &[SharedCycle<'_>],
+        mean: &[MeanCycle<'_>],
+        rates: &Rates,
+        step: &WearStep,
+    ) {
+        let step = SharedStep {
+            law: self.test.wear.as_ref(),
+            surface: &solved.surface,
+            mean,
+            rates,
+            step,
+        };
+        let worn = step.of_each(shared, &solved.cycles);
+        for (activity, worn) in self.state.activities.iter_mut().zip(worn) {
+            activity.wear = activity.wear.and(worn);
+        }
+    }
+
+    fn keep_fields(&mut self, fields: NodeFields) {
+        if self.state.fields.is_none() {
+            let pressures_mpa = &fields.peak_pressure_mpa;
+            self.state.first_pressure_mpa.clone_from(pressures_mpa);
+        }
+        self.state.fields = Some(fields);
+    }
+
+    /// What creep takes by the end of a step, if the insert creeps.
+    fn crept(
+        &self,
+        creep: &mut CreepState,
+        solved: &Solved,
+        cycles_after: f64,
+    ) -> Option<DepthField> {
+        const SECONDS_PER_MINUTE: f64 = 60.0;
+        let law = self.test.creep.as_ref()?;
+        let step = CreepStep {
+            law,
+            thickness_mm: self.test.insert.thickness_mm(),
+            contact: &CreepContact::of(&self.test, &self.insert, &solved.cycles),
+            end_min: cycles_after * self.test.cycle_seconds() / SECONDS_PER_MINUTE,
+        };
+        Some(DepthField::creep(creep.step(&step)))
+    }
+
+    /// What creep has come to after a step that took this.
+    fn creep_record(&self, taken: &[DepthField], area_mm2: &[f64]) -> Option<CreepRecord> {
+        let law = self.test.creep.as_ref()?;
+        let crept = taken.iter().find(|field| field.name == DepthField::CREEP)?;
+        let last = self.state.updates.last().and_then(|last| last.creep);
+        let before_mm3 = last.map_or(0.0, |last| last.volume_mm3);
+        let depths = Depths {
+            wear_mm: self.state.depths.wear_mm(),
+            creep_mm: self.state.depths.creep_mm()?,
+            left_mm: &self.state.creep.left_mm(law),
+        };
+        Some(depths.record(before_mm3 + volume_mm3(area_mm2, &crept.depth_mm)))
+    }
+
     /// Takes the surface down by what a step takes; how it was before.
     fn lower(
         &mut self,
@@ -416,6 +486,7 @@ impl March {
                 update: self.state.updates.len() + 1,
                 x: place.x,
                 z: place.z,
+                by: self.through_at(node, taken),
             });
         }
         self.insert.wear_down(surface, &down_mm);
@@ -434,12 +505,27 @@ impl March {
         })
     }
 
+    /// What has worn and crept through at a node, if the insert creeps.
+    fn through_at(&self, node: usize, taken: &[DepthField]) -> Option<WornAndCrept> {
+        let crept = taken.iter().find(|field| field.name == DepthField::CREEP)?;
+        let before_mm = self
+            .state
+            .depths
+            .creep_mm()
+            .map_or(0.0, |creep| creep[node]);
+        Some(WornAndCrept {
+            wear_mm: self.state.depths.wear_mm()[node] + taken[0].depth_mm[node],
+            creep_mm: before_mm + crept.depth_mm[node],
+        })
+    }
+
     /// What the update that has just taken `lost_mm3` off the insert found.
     fn record(
         &self,
         cycles: &[Cycle],
         cycles_after: f64,
         lost_mm3: f64,
+        creep: Option<CreepRecord>,
         worst_quality: f64,
     ) -> UpdateRecord {
         let last = self.state.updates.last();
@@ -450,7 +536,9 @@ impl March {
         UpdateRecord {
             cycles: cycles_after,
             volume_loss_mm3,
-            volume_loss_mesh_mm3: self.test.insert.volume_mm3() - self.insert.volume_mm3(),
+            volume_loss_mesh_mm3: self.test.insert.volume_mm3()
+                - self.insert.volume_mm3()
+                - creep.map_or(0.0, |creep| creep.volume_mm3),
             mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
             max_depth_mm: largest(self.state.depths.wear_mm()),
             peak_pressure_mpa: most(|row| row.peak_pressure_mpa),
@@ -458,6 +546,7 @@ impl March {
             cycles_solved: solved as f64 / self.test.time.increments as f64,
             repeats: cycles.iter().all(|cycle| cycle.repeats),
             worst_quality,
+            creep,
         }
     }
 

@@ -1,5 +1,7 @@
 //! Why a march ended early.
 
+use std::fmt;
+
 use condyle_fem::HexMesh;
 use thiserror::Error;
 
@@ -19,12 +21,17 @@ pub enum MarchError {
     #[error(transparent)]
     Placement(#[from] PlacementError),
     /// A cycle was not solved.
-    #[error("update {update}, after {cycles:.0} cycles: {source}")]
+    #[error(
+        "update {update}, after {cycles:.0} cycles{}: {source}",
+        activity.as_ref().map_or_else(String::new, |name| format!(", activity \"{name}\""))
+    )]
     Cycle {
         /// Which update, from 1.
         update: usize,
         /// Cycles done before it.
         cycles: f64,
+        /// Which of several activities.
+        activity: Option<String>,
         /// Why.
         source: CycleError,
     },
@@ -59,7 +66,8 @@ pub enum MarchError {
     },
     /// The insert wore through.
     #[error(
-        "update {update}: the insert is worn through at ({x:.1}, {z:.1}) mm; use fewer cycles or a thicker insert"
+        "update {update}: the insert is worn through at ({x:.1}, {z:.1}) mm{}; use fewer cycles or a thicker insert",
+        by.map_or_else(String::new, |by| by.to_string())
     )]
     WornThrough {
         /// Which update, from 1.
@@ -68,6 +76,8 @@ pub enum MarchError {
         x: f64,
         /// Place along z.
         z: f64,
+        /// How deep by what, if the insert creeps.
+        by: Option<WornAndCrept>,
     },
     /// Elements turned inside out below the worn surface.
     #[error(
@@ -86,6 +96,25 @@ pub enum MarchError {
         /// Place of the worst along z.
         z: f64,
     },
+}
+
+/// How deep an insert has gone down at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WornAndCrept {
+    /// By wear, mm.
+    pub wear_mm: f64,
+    /// By creep, mm.
+    pub creep_mm: f64,
+}
+
+impl fmt::Display for WornAndCrept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { wear_mm, creep_mm } = self;
+        write!(
+            f,
+            ", by {wear_mm:.2} mm of wear and {creep_mm:.2} mm of creep"
+        )
+    }
 }
 
 impl MarchError {

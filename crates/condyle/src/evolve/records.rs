@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::CreepRecord;
 use crate::machine::CycleRow;
 
 /// How far a march has come.
@@ -22,7 +23,7 @@ pub struct UpdateRecord {
     pub cycles: f64,
     /// Volume worn so far, from depth times area, mm3.
     pub volume_loss_mm3: f64,
-    /// Volume worn so far, from the change of the mesh, mm3.
+    /// Volume worn so far, from the change of the mesh less the volume of creep, mm3.
     pub volume_loss_mesh_mm3: f64,
     /// Mass worn so far, mg.
     pub mass_loss_mg: f64,
@@ -38,6 +39,8 @@ pub struct UpdateRecord {
     pub repeats: bool,
     /// Smallest scaled Jacobian of the worn mesh.
     pub worst_quality: f64,
+    /// Creep so far, if the insert creeps.
+    pub creep: Option<CreepRecord>,
 }
 
 /// The motions and loads of one solved cycle, and how many cycles of wear it came after.

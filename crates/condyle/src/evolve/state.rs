@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    CycleRecord, DepthField, DepthFields, NodeFields, UpdateRecord,
-    accumulated_error::AccumulatedError, laws_beside::LawBeside, step_record::StepRecord,
+    CreepState, CycleRecord, DepthField, DepthFields, NodeFields, UpdateRecord,
+    accumulated_error::AccumulatedError, activity_wear::ActivityWear, laws_beside::LawBeside,
+    step_record::StepRecord,
 };
 use crate::{
     Vec3,
@@ -70,6 +71,8 @@ pub struct ActivityState {
     pub warm_starts: Vec<Option<WarmStart>>,
     /// The first cycle and the last one solved.
     pub first_and_last: Option<(CycleRecord, CycleRecord)>,
+    /// What it has worn; nothing yet where it is the only one, since then it wears all.
+    pub wear: ActivityWear,
 }
 
 impl ActivityState {
@@ -79,6 +82,7 @@ impl ActivityState {
             machine,
             warm_starts: Vec::new(),
             first_and_last: None,
+            wear: ActivityWear::default(),
         }
     }
 }
@@ -96,6 +100,8 @@ pub struct MarchState {
     pub mesh_nodes: Vec<Vec3>,
     /// How deep the surface has gone down, and by what.
     pub depths: DepthFields,
+    /// What creep remembers of the load.
+    pub creep: CreepState,
     /// What of the volume worn is outside of what the wear law was fitted to, mm3; none where that is not
     /// known.
     pub outside_mm3: Option<f64>,
@@ -139,6 +145,7 @@ impl MarchState {
             first_pressure_mpa: Vec::new(),
             mesh_nodes,
             depths,
+            creep: CreepState::default(),
             outside_mm3: Some(0.0),
             laws_beside: Vec::new(),
             contact,

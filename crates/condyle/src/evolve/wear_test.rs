@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::Schedule;
 use crate::{
     contact::ContactLaw,
+    creep::LeePienkowski,
     geometry::{FemoralSurface, Insert},
     machine::{Machine, TimeSettings},
     wear::{NamedLaw, WearLaw},
@@ -33,6 +34,8 @@ pub struct WearTest {
     pub wear: Arc<dyn WearLaw>,
     /// Laws whose wear is told beside that of the law of wear; they move no surface.
     pub laws_beside: Vec<NamedLaw>,
+    /// The law of creep, if the insert creeps.
+    pub creep: Option<LeePienkowski>,
     /// Density of the insert, mg/mm3.
     pub density_mg_per_mm3: f64,
     /// How finely and exactly a cycle is solved.
@@ -63,7 +66,19 @@ impl Activity {
     }
 }
 
+impl Activity {
+    /// The time that it takes of a mean cycle of its test, s.
+    pub fn seconds(&self) -> f64 {
+        self.share / self.machine.frequency_hz
+    }
+}
+
 impl WearTest {
+    /// How long a mean cycle of all activities takes, s.
+    pub fn cycle_seconds(&self) -> f64 {
+        self.activities.iter().map(Activity::seconds).sum()
+    }
+
     /// The machine in which the femur settles: that of the first activity.
     ///
     /// # Panics

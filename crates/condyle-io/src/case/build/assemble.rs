@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use condyle::contact::{ContactLaw, Deformable, Foundation, PressureLaw, confined_modulus};
-use condyle::evolve::{Activity, Schedule, Updates, WearTest};
+use condyle::evolve::{Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 use condyle_fem::Elastic;
@@ -44,11 +44,11 @@ impl Case {
     pub fn build_kept(&self, threads: usize, keep: &dyn Keep) -> Result<Built, BuildError> {
         let mut warnings = self.constants_left_out();
         let insert = self.built_insert(&self.insert, &mut warnings)?;
-        let machine = self.machine.build(insert.dish_low_point_mm());
+        let activities = self.built_activities(insert.dish_low_point_mm());
         let femur = self.femur.build(
             &self.femur_placement,
             self.heading.side,
-            start_flexion_rad(&machine),
+            start_flexion_rad(&activities[0].machine),
             Preparing {
                 threads,
                 keep,
@@ -62,10 +62,11 @@ impl Case {
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
             insert: Arc::new(insert),
-            activities: vec![Activity::only("gait", machine)],
+            activities,
             contact,
             wear: self.wear.law(),
             laws_beside: self.wear.beside(),
+            creep: self.creep.law(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),
             schedule: Schedule {

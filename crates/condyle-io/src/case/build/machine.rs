@@ -116,7 +116,7 @@ fn springs(springs: &Springs) -> Vec<Spring> {
 impl Case {
     /// Flexion at the start of the cycle, whatever the bodies are.
     pub(in crate::case) fn start_flexion_rad(&self) -> f64 {
-        start_flexion_rad(&self.machine.build(Vec3::zeros()))
+        start_flexion_rad(&self.first_machine().build(Vec3::zeros()))
     }
 }
 

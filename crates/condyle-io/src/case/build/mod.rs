@@ -1,5 +1,6 @@
 //! The last step: from a case to bodies and machine in mm, N, s, MPa, tonne and rad.
 
+mod activities;
 mod assemble;
 mod body_size;
 mod construct;

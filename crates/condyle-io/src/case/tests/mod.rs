@@ -1,5 +1,6 @@
 //! Whole cases: what is read, what is refused and how that looks.
 
+mod activities;
 mod errors;
 mod files;
 mod lie;

@@ -31,6 +31,9 @@ fn assert_round_trip(case: &Case) {
 fn generic_cases_round_trip() {
     assert_round_trip(&shipped("stanmore-force.toml"));
     assert_round_trip(&shipped("stanmore-displacement.toml"));
+    assert_round_trip(&shipped("gait-and-stairs.toml"));
+    assert_round_trip(&shipped("daily-life.toml"));
+    assert_round_trip(&shipped("creep.toml"));
 }
 
 #[test]
@@ -167,7 +170,7 @@ fn page_of_keys_has_unit_range_default_and_meaning() {
     let row = "| `edge_mm` | mm | a number, 0.1 to 10 | `1.05` | Edge of a hexahedron, seen from above. |";
     assert!(page.contains(row), "{page}");
     assert!(page.contains("| `file` |  | a path in quotes | must be given |"));
-    assert!(page.contains("| `axial_force` | `knots_n` | N | 0 to 20000 | iso-like, paper-like |"));
+    assert!(page.contains("| `axial_force` | `knots_n` | N | 0 to 20000 | iso-like, paper-like, stairs-like, chair-like |"));
 }
 
 #[test]

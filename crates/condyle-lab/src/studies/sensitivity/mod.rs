@@ -98,6 +98,7 @@ fn marched(case: &Case) -> Result<Summary, SensitivityError> {
         warnings: Vec::new(),
         error: None,
         neutral_pose: NeutralPose::of(&march, case.heading.side),
+        activities: Vec::new(),
         wear_laws: LawWear::of(&march, &case.wear),
     });
     Ok(summary.expect("a march that is done has an update"))
