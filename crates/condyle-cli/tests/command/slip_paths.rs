@@ -19,9 +19,9 @@ struct Place {
 fn places(bench: &Bench) -> Vec<Place> {
     let table = bench.table("out", "slip_paths.csv");
     let mut places: BTreeMap<u64, Place> = BTreeMap::new();
-    for row in 0..table["path"].len() {
+    for (row, path) in table["path"].iter().enumerate() {
         let at = |column: &str| table[column][row];
-        let place = places.entry(at("path") as u64).or_default();
+        let place = places.entry(*path as u64).or_default();
         let [anterior, right] = [at("slip_anterior_mm"), at("slip_right_mm")];
         let per_mm = at("pressure_mpa") / anterior.hypot(right).max(f64::MIN_POSITIVE);
         let parts = [anterior * anterior, anterior * right, right * right];

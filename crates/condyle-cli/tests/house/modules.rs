@@ -89,6 +89,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "condyle_fem::half_solved",
+        &[
+            "condyle_fem::vector",
+            "condyle_fem::solid",
+            "condyle_fem::sparse",
+        ],
+    ),
+    (
         "condyle_fem::eigenstrain",
         &[
             "condyle_fem::vector",
@@ -144,6 +152,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     // Histories, never a solver.
+    ("condyle::creep", &["condyle::parameter"]),
     (
         "condyle::wear",
         &[
@@ -161,6 +170,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle::contact::history",
             "condyle::contact::memory",
             "condyle::contact::model",
+            "condyle::creep",
             "condyle::machine",
             "condyle::spatial",
             "condyle::wear",
@@ -200,6 +210,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::figure",
             "condyle_report::number",
             "condyle_report::results",
+            // What the summary says of each activity.
+            "condyle_io::results::activities",
             // The table of joints that the columns of kinematics.csv are made by.
             "condyle::machine::joint_kind",
             "condyle::machine::knee",

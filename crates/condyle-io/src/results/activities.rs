@@ -9,7 +9,7 @@ use condyle::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::summary::{joint_range, medial_load_share};
+use super::cycle_motion::{joint_range, medial_load_share};
 
 /// What one of several activities did and wore; units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,6 +6,7 @@ mod checkpoint;
 mod checksums;
 mod creep;
 mod cycle_files;
+mod cycle_motion;
 mod error_estimate;
 mod femur_pose;
 #[cfg(feature = "file-system")]
@@ -39,6 +40,7 @@ pub use cycle_files::{
     BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pvd, femur_of_frames, femur_vtu, frame_name,
     insert_frame,
 };
+pub use cycle_motion::joint_range;
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, Quantity, QuantityErrors};
 pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]
@@ -48,5 +50,5 @@ pub use law_wear::LawWear;
 #[cfg(feature = "file-system")]
 pub use lock::FolderLock;
 pub use plausibility::PlausibilityWarning;
-pub use summary::{Summary, SummaryInput, joint_range};
+pub use summary::{Summary, SummaryInput};
 pub use tables::{kinematics_csv, wear_csv};

@@ -2,16 +2,18 @@
 
 use condyle::{
     evolve::{MarchState, UpdateRecord},
-    machine::{
-        CycleRow, JointIndex,
-        knee::{AP, IE, KNEE, MEDIAL},
-    },
+    machine::knee::{AP, IE},
 };
 use serde::{Deserialize, Serialize};
 
 use super::{
-    activities::ActivitySummary, creep::CreepSummary, error_estimate::ErrorEstimate,
-    femur_pose::NeutralPose, law_wear::LawWear, plausibility::PlausibilityWarning,
+    activities::ActivitySummary,
+    creep::CreepSummary,
+    cycle_motion::{joint_range, medial_load_share},
+    error_estimate::ErrorEstimate,
+    femur_pose::NeutralPose,
+    law_wear::LawWear,
+    plausibility::PlausibilityWarning,
 };
 
 /// What a summary is made from.
@@ -227,21 +229,4 @@ impl Largest {
         }
         largest
     }
-}
-
-/// Largest less smallest position of a joint, in the unit of files.
-pub fn joint_range(rows: &[CycleRow], joint: JointIndex) -> f64 {
-    let values = || rows.iter().map(|row| joint.of(&row.positions));
-    let (low, high) = (
-        values().fold(f64::INFINITY, f64::min),
-        values().fold(f64::NEG_INFINITY, f64::max),
-    );
-    KNEE.joint(joint).kind().in_files(high - low)
-}
-
-/// Medial part of the axial force, weighted by force.
-pub(super) fn medial_load_share(rows: &[CycleRow]) -> f64 {
-    let medial: f64 = rows.iter().map(|row| row.region_force_n[MEDIAL]).sum();
-    let whole: f64 = rows.iter().map(|row| row.axial_force_n).sum();
-    medial / whole
 }

@@ -254,7 +254,7 @@ fn unknown_word_offers_the_nearest_and_lists_all() {
         &shown,
         &[
             "`waveform` cannot be \"none\"",
-            "\"iso-like\" or \"paper-like\"",
+            "\"iso-like\", \"paper-like\", \"stairs-like\" or \"chair-like\"",
         ],
     );
 }

@@ -1,6 +1,6 @@
 //! How far the nodes that do not press are from the femur, or are so at least.
 
-use super::{complementarity::Candidate, near_matrix::NearMatrix};
+use super::{candidate::Candidate, near_matrix::NearMatrix};
 
 /// A gap may be below zero by this much, mm: a millionth of what a surface is rough by.
 const GAP_TOLERANCE_MM: f64 = 1e-10;

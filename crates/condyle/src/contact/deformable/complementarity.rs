@@ -1,6 +1,7 @@
 //! The loads under which the surfaces touch and nowhere overlap, and nowhere pull.
 
 use super::{
+    candidate::Candidate,
     changed_factor::ChangedFactor,
     cholesky::{Eight, ROWS, zero},
     clearance::Clearances,
@@ -14,21 +15,6 @@ const LOAD_TOLERANCE_N: f64 = 1e-9;
 const MOST_TRIES: u32 = 10;
 /// Rounds after which what is left is round-off: ten times what was ever seen.
 const MOST_ROUNDS: u32 = 500;
-
-/// A node that may touch.
-#[derive(Clone, Copy)]
-pub(super) struct Candidate {
-    pub node: u32,
-    /// How far the rigid femur reaches into the surface at rest, mm; < 0 apart. Then its derivatives by six
-    /// motions.
-    pub overclosure_mm: Eight,
-}
-
-impl Candidate {
-    pub fn overclosed_mm(&self) -> f64 {
-        self.overclosure_mm[0].lane(0)
-    }
-}
 
 /// Which nodes press, and the factor of their compliance.
 ///

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::{
     along_normal::AlongNormal,
-    complementarity::{Candidate, Pressing},
+    candidate::Candidate,
+    complementarity::Pressing,
     compliance::Compliance,
     covered::{EdgeOfContact, squares, squares_everywhere},
     peak::PeakSearch,
@@ -257,6 +258,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
             touched,
         }
     }
+
     fn into_memory(self: Box<Self>) -> ContactMemory {
         ContactMemory {
             state: self.state,

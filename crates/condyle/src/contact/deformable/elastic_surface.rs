@@ -8,7 +8,10 @@ use std::{
 use condyle_fem::{Elastic, ElasticSolid, HalfSolved, HexMesh, SolidError};
 
 use super::compliance::SurfaceCompliance;
-use crate::{Vec3, geometry::Insert};
+use crate::{
+    Vec3,
+    geometry::{Insert, bounds},
+};
 
 /// So many nodes at most are solved for together: forces on nodes that are near load the same part of the factor.
 const TILE_NODES: usize = 48;
@@ -109,14 +112,7 @@ fn tiles(positions: &[Vec3]) -> Vec<Vec<u32>> {
             tiles.push(nodes);
         } else {
             let at = |node: &u32| positions[*node as usize];
-            let low = nodes
-                .iter()
-                .map(at)
-                .fold(Vec3::repeat(f64::INFINITY), |a, b| a.inf(&b));
-            let high = nodes
-                .iter()
-                .map(at)
-                .fold(Vec3::repeat(f64::NEG_INFINITY), |a, b| a.sup(&b));
+            let (low, high) = bounds(nodes.iter().map(|node| &positions[*node as usize]));
             let axis = (high - low).imax();
             nodes.sort_by(|a, b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b)));
             let second = nodes.split_off(nodes.len() / 2);

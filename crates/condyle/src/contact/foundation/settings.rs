@@ -49,6 +49,7 @@ impl Foundation {
             sample_reuse_mm: Self::SAMPLE_REUSE_MM,
         }
     }
+
     /// Its friction.
     pub(super) fn coulomb(&self) -> Coulomb {
         Coulomb {
