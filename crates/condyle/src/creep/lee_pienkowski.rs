@@ -31,7 +31,7 @@ impl LeePienkowski {
         default: 3.491e-3,
         least: 0.0,
         most: 0.02,
-        source: "leePienkowski1998",
+        source: "lee-pienkowski1998",
         known: Known::Approximate,
     };
     /// B.
@@ -41,7 +41,7 @@ impl LeePienkowski {
         default: 7.966e-4,
         least: 0.0,
         most: 0.005,
-        source: "leePienkowski1998",
+        source: "lee-pienkowski1998",
         known: Known::Approximate,
     };
     /// r.
@@ -51,7 +51,7 @@ impl LeePienkowski {
         default: 0.5,
         least: 0.0,
         most: 1.0,
-        source: "leePienkowskiRecovery",
+        source: "lee-pienkowski1998b",
         known: Known::Read,
     };
 
