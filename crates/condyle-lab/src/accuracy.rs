@@ -3,7 +3,7 @@
 //! Two cycles on the way are solved again with finer increments, and with a looser slip tolerance;
 //! the first one, on the unworn insert, with a coarser mesh. By how much what they wear changes
 //! tells the error of the run, from the order at which it falls. What the length of the march's
-//! steps costs is known from the march itself.
+//! steps costs is known from the march itself; where the insert creeps, from a march of half as many.
 //!
 //! Ranges of motion are those of the first cycle, which is solved again with each of the changes, and so is a peak
 //! that the first cycle has. A peak of a later cycle is looked at in the later of the two on the way: solved again as
@@ -40,6 +40,8 @@ const LOOSER_SLIP: f64 = -1.0;
 const COARSER_MESH: f64 = -1.0 / 3.0;
 /// From the change that the errors of the steps so far make.
 const MISSED: f64 = 1.0;
+/// From the change that half the updates make where the insert creeps, a step of which is of first order.
+const HALF_THE_UPDATES: f64 = -1.0;
 
 /// Why a part has no estimate.
 enum Without {
@@ -168,11 +170,15 @@ fn has_later_peak(summary: &Summary) -> bool {
     summary.peak_pressure_cycle > 0.0 || summary.peak_contact_area_cycle > 0.0
 }
 
+/// The last update; none of a march of one, which has no other to be compared with.
+fn last_of_several(state: &MarchState) -> Stated<&UpdateRecord> {
+    let last = state.updates.last().filter(|_| state.updates.len() > 1);
+    last.ok_or_else(|| "one update has no other to be compared with".to_owned())
+}
+
 /// What the march knows of the error of its own steps, % of volume loss and of maximum depth.
 fn of_updates(state: &MarchState) -> Stated<OfWear> {
-    let (Some(last), Some(_)) = (state.updates.last(), state.updates.get(1)) else {
-        return Err("one update has no other to be compared with".to_owned());
-    };
+    let last = last_of_several(state)?;
     let error = state.step_error;
     Ok([
         100.0 * error.volume_mm3 / last.volume_loss_mm3,
@@ -290,11 +296,36 @@ impl<'a> Again<'a> {
         } else {
             Ok([0.0; 2])
         };
+        let wear = if self.march.test().creep.is_some() {
+            stated(self.with_half_the_updates())?
+        } else {
+            of_updates(self.march.state())
+        };
         ControlFlow::Continue(Told {
-            wear: of_updates(self.march.state()),
+            wear,
             later,
             first: Ok([0.0; 4]),
         })
+    }
+
+    /// Errors of a march that creeps, in %: what half as many updates make of it.
+    ///
+    /// The march knows the error of its steps of wear, but not of those of creep, which change the wear after them.
+    fn with_half_the_updates(&mut self) -> Found<OfWear> {
+        let state = self.march.state();
+        let last = last_of_several(state).map_err(Without::Reason)?;
+        let test = WearTest {
+            schedule: Schedule::fixed(last.cycles, state.updates.len() / 2),
+            laws_beside: Vec::new(),
+            ..self.march.test().clone()
+        };
+        let mut march = March::start(test)?.in_motion(&self.first.1);
+        while !march.is_done() {
+            march = self.solved(march)?;
+        }
+        let worn = |update: &UpdateRecord| [update.volume_loss_mm3, update.max_depth_mm];
+        let halved = march.state().updates.last().map_or([0.0; 2], worn);
+        Ok(errors(HALF_THE_UPDATES, halved, worn(last)))
     }
 
     /// Errors in %: `factor` times what a changed test makes on the way; of the wear the mean of the snapshots, of

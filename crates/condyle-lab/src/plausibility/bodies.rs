@@ -139,7 +139,7 @@ pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
 fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f64) -> String {
     let shares = pressures.iter().zip(&finished.surface.shares);
     let above = shares.filter(|(pressure_mpa, _)| **pressure_mpa > limit_mpa);
-    let area_mm2: f64 = above.map(|(_, share)| share.area_mm2).sum();
+    let area_mm2 = above.fold(0.0, |sum, (_, share)| sum + share.area_mm2);
     format!(
         "in the {cycle} cycle {area_mm2:.0} mm2 are pressed harder than that, for {:.0} % of it",
         time_above_percent(finished, cycle, limit_mpa)

@@ -31,6 +31,8 @@ pub(super) struct CreepStep<'a> {
     pub law: &'a LeePienkowski,
     /// Thickness of the unworn insert at every surface node, mm.
     pub thickness_mm: &'a [f64],
+    /// How far wear takes every surface node down in the same step, mm.
+    pub worn_mm: &'a [f64],
     /// The contact of the cycles that were solved before it.
     pub contact: &'a CreepContact,
     /// When it ends, min from the start of the test.
@@ -46,6 +48,8 @@ struct Node {
     deepest_mm: f64,
     before_mm: f64,
     pressure_mpa: f64,
+    /// By how much wear relieves it, MPa.
+    relieved_mpa: f64,
     /// How the mean pressure falls as this node alone goes down, MPa/mm.
     stiffness_mpa_per_mm: f64,
 }
@@ -62,9 +66,9 @@ impl CreepState {
     /// Takes a step, and gives how far it goes down at every node, mm; up where load has gone.
     ///
     /// The pressure through the step is taken to be what it is in the end (Euler's implicit method in the
-    /// superposition of loads), as far as can be foreseen: a node that goes down by x relieves itself by its
-    /// stiffness times x, and gets back what the femur sinks by, which keeps the force of each side at every
-    /// instant. An explicit step would take every node out of contact, since the creep of the first interval is
+    /// superposition of loads), as far as can be foreseen: a node that goes down by x, of wear and creep, relieves
+    /// itself by its stiffness times x, and gets back what the femur sinks by, which keeps the force of each side at
+    /// every instant. An explicit step would take every node out of contact, since the creep of the first interval is
     /// deeper than the femur presses.
     pub(super) fn step(&mut self, step: &CreepStep<'_>) -> Vec<f64> {
         let count = step.thickness_mm.len();
@@ -119,6 +123,7 @@ impl CreepState {
     fn node(&self, step: &CreepStep<'_>, node: usize, strain: f64) -> Node {
         let thickness_mm = step.thickness_mm[node];
         let minutes = step.end_min - self.ends_min.last().copied().unwrap_or(0.0);
+        let stiffness_mpa_per_mm = step.contact.stiffness_mpa_per_mm[node];
         Node {
             number: node,
             by_history_mm: thickness_mm * strain,
@@ -126,7 +131,8 @@ impl CreepState {
             deepest_mm: self.deepest_mm[node],
             before_mm: self.depth_mm[node],
             pressure_mpa: step.contact.mean_pressure_mpa[node],
-            stiffness_mpa_per_mm: step.contact.stiffness_mpa_per_mm[node],
+            relieved_mpa: stiffness_mpa_per_mm * step.worn_mm[node],
+            stiffness_mpa_per_mm,
         }
     }
 }
@@ -141,7 +147,7 @@ impl Node {
     /// Solves x = d(e) - before, e = history + c (p + more - k x), p + more - k x >= 0, with d the depth of a
     /// recoverable depth e, which is straight on either side of the deepest so far.
     fn down_mm(&self, law: &LeePienkowski, more_mpa: f64) -> f64 {
-        let free_mpa = self.pressure_mpa + more_mpa;
+        let free_mpa = self.pressure_mpa + more_mpa - self.relieved_mpa;
         let k = self.stiffness_mpa_per_mm;
         let solved = |slope: f64, offset_mm: f64| {
             let at_rest_mm = slope * (self.by_history_mm + self.mm_per_mpa * free_mpa) + offset_mm;
@@ -183,7 +189,10 @@ fn implicit(step: &CreepStep<'_>, nodes: &[Node]) -> Vec<f64> {
         down_mm[node.number] = node.unrelieved_mm(step.law);
     }
     for _ in 0..MOST_ITERATIONS {
-        let more_mpa = step.contact.relief_mpa(&down_mm);
+        let lower_mm: Vec<f64> = std::iter::zip(&down_mm, step.worn_mm)
+            .map(|(crept, worn)| crept + worn)
+            .collect();
+        let more_mpa = step.contact.relief_mpa(&lower_mm);
         let (mut change_mm, mut most_mm) = (0.0_f64, 0.0_f64);
         for node in nodes {
             let next_mm = node.down_mm(step.law, more_mpa[node.number]);
@@ -217,6 +226,7 @@ mod tests {
             let step = CreepStep {
                 law,
                 thickness_mm: &[10.0; 6],
+                worn_mm: &[0.0; 6],
                 contact: &contact,
                 end_min,
             };
@@ -277,6 +287,7 @@ mod tests {
         let step = CreepStep {
             law: &law,
             thickness_mm: &[10.0; 6],
+            worn_mm: &[0.0; 6],
             contact: &contact,
             end_min: 1e4,
         };

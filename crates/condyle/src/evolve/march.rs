@@ -332,7 +332,7 @@ impl March {
         let step_error = settled_error.with_last(standing, &step);
         let mut taken = vec![DepthField::wear(step.depth_mm.clone())];
         let mut creep = self.state.creep.clone();
-        taken.extend(self.crept(&mut creep, &solved, step.cycles_after));
+        taken.extend(self.crept(&mut creep, &solved, &step));
         let before = self.lower(&solved.surface, &taken)?;
         self.state.creep = creep;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
@@ -445,15 +445,16 @@ impl March {
         &self,
         creep: &mut CreepState,
         solved: &Solved,
-        cycles_after: f64,
+        wear: &WearStep,
     ) -> Option<DepthField> {
         const SECONDS_PER_MINUTE: f64 = 60.0;
         let law = self.test.creep.as_ref()?;
         let step = CreepStep {
             law,
             thickness_mm: self.test.insert.thickness_mm(),
+            worn_mm: &wear.depth_mm,
             contact: &CreepContact::of(&self.test, &self.insert, &solved.cycles),
-            end_min: cycles_after * self.test.cycle_seconds() / SECONDS_PER_MINUTE,
+            end_min: wear.cycles_after * self.test.cycle_seconds() / SECONDS_PER_MINUTE,
         };
         Some(DepthField::creep(creep.step(&step)))
     }
