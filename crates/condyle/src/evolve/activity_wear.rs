@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{laws_beside::worn, mean_over_wear::volume_mm3, rates::Rates, step_record::WearStep};
 use crate::{
     geometry::ArticulatingSurface,
-    machine::{Cycle, CycleRow},
+    machine::Cycle,
     wear::{MeanCycle, SharedCycle, WearLaw},
 };
 
@@ -47,12 +47,11 @@ impl SharedStep<'_> {
 
     /// What an activity wore in the step.
     fn of_activity(&self, activity: SharedCycle<'_>, solved: &Cycle) -> ActivityWear {
-        let most = |value: fn(&CycleRow) -> f64| solved.rows.iter().map(value).fold(0.0, f64::max);
         ActivityWear {
             volume_mm3: self.part_mm3(activity),
             alone_mm3: self.alone_mm3(activity),
-            peak_pressure_mpa: most(|row| row.peak_pressure_mpa),
-            peak_contact_area_mm2: most(|row| row.contact_area_mm2),
+            peak_pressure_mpa: solved.most(|row| row.peak_pressure_mpa),
+            peak_contact_area_mm2: solved.most(|row| row.contact_area_mm2),
         }
     }
 

@@ -113,13 +113,9 @@ impl CreepContact {
 
 /// The part of the time that each activity of a test takes: its share of the cycles over its frequency.
 fn parts_of_time(test: &WearTest) -> Vec<f64> {
-    let times: Vec<f64> = test
-        .activities
-        .iter()
-        .map(super::Activity::seconds)
-        .collect();
-    let sum: f64 = times.iter().sum();
-    times.iter().map(|time| time / sum).collect()
+    let all = test.cycle_seconds();
+    let each = test.activities.iter();
+    each.map(|activity| activity.seconds() / all).collect()
 }
 
 #[cfg(test)]

@@ -531,8 +531,12 @@ impl March {
     ) -> UpdateRecord {
         let last = self.state.updates.last();
         let volume_loss_mm3 = lost_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
-        let rows = || cycles.iter().flat_map(|cycle| &cycle.rows);
-        let most = |value: fn(&CycleRow) -> f64| rows().map(value).fold(0.0, f64::max);
+        let most = |value| {
+            cycles
+                .iter()
+                .map(|cycle| cycle.most(value))
+                .fold(0.0, f64::max)
+        };
         let solved: usize = cycles.iter().map(|cycle| cycle.increments_solved).sum();
         UpdateRecord {
             cycles: cycles_after,

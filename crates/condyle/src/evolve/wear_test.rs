@@ -64,9 +64,7 @@ impl Activity {
             share: 1.0,
         }
     }
-}
 
-impl Activity {
     /// The time that it takes of a mean cycle of its test, s.
     pub fn seconds(&self) -> f64 {
         self.share / self.machine.frequency_hz

@@ -22,3 +22,10 @@ pub struct Cycle {
     /// Whether it did repeat itself, within the cycles that it was given.
     pub repeats: bool,
 }
+
+impl Cycle {
+    /// The highest that a value which is never negative rises to.
+    pub fn most(&self, value: fn(&CycleRow) -> f64) -> f64 {
+        self.rows.iter().map(value).fold(0.0, f64::max)
+    }
+}

@@ -29,7 +29,7 @@ pub(super) struct PeakSearch<'a> {
 impl PeakSearch<'_> {
     /// Highest pressure at or around the nodes that touch, MPa; any region may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
-        highest_mpa(touched, |node| self.highest_around(node))
+        highest_mpa(touched, |node, _| self.highest_around(node))
     }
 
     /// Highest pressure within the share of a node, MPa.

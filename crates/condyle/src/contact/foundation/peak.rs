@@ -53,31 +53,45 @@ struct PatchNode {
 impl PeakSearch<'_> {
     /// Highest pressure at or around the nodes that touch, MPa; any region may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
-        highest_mpa(touched, |node| self.highest_around(node))
+        highest_mpa(touched, |node, so_far_mpa| {
+            self.highest_around(node, so_far_mpa)
+        })
     }
 
-    /// Highest pressure within the share of a node, MPa; 0 where nothing tells that it is higher than the mean.
-    fn highest_around(&self, node: u32) -> f64 {
+    /// Highest pressure within the share of a node, MPa; 0 where nothing tells that it is higher than the mean, or
+    /// than `so_far_mpa`.
+    fn highest_around(&self, node: u32, so_far_mpa: f64) -> f64 {
         let patch = self.sampled(&self.faces.patch(node, LEAST_NODES));
         let Some(fit) = self.fit(&patch) else {
             return 0.0;
         };
-        let limited = if patch.iter().all(|at| at.mean > 0.0) {
-            fit.highest()
+        let pressure_mpa = |measure: f64| self.law.pressure(measure.max(0.0), 1.0).0;
+        let highest_mpa = pressure_mpa(fit.highest());
+        if highest_mpa <= so_far_mpa {
+            0.0
+        } else if patch.iter().all(|at| at.mean > 0.0) {
+            highest_mpa
         } else {
-            self.limited(&fit, node)
-        };
-        self.law.pressure(limited.max(0.0), 1.0).0
+            pressure_mpa(self.limited(&fit, patch))
+        }
     }
 
-    /// What a quadratic rises to that has the edge of contact in it.
+    /// What a quadratic rises to that has the edge of contact in the patch that it was fitted over; never more than
+    /// the quadratic itself.
     ///
     /// At an edge of the femur the surface falls away beyond, and bends it more than the surface inside is bent: it
     /// then misses the nodes farther inside that press, and these alone tell how high it rises.
-    fn limited(&self, fit: &Quadratic, node: u32) -> f64 {
-        let mut pressing = self.sampled(&self.faces.patch(node, NODES_ONE_SIDED));
-        pressing.retain(|at| at.node == node || at.mean > 0.0);
-        let missed = fit.worst_miss(&self.shares[node as usize], self.means(&pressing));
+    fn limited(&self, fit: &Quadratic, patch: Vec<PatchNode>) -> f64 {
+        let top = patch[0].node;
+        // A larger patch begins with the smaller one.
+        let farther = self
+            .faces
+            .patch(top, NODES_ONE_SIDED)
+            .split_off(patch.len());
+        let mut pressing = patch;
+        pressing.extend(self.sampled(&farther));
+        pressing.retain(|at| at.node == top || at.mean > 0.0);
+        let missed = fit.worst_miss(&self.shares[top as usize], self.means(&pressing));
         let (highest, mean) = (fit.highest(), pressing[0].mean);
         if missed <= MISSED_OF_RISE * (highest - mean) {
             return highest;

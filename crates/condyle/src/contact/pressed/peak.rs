@@ -12,18 +12,22 @@ pub(in crate::contact) const LEAST_NODES: usize = 7;
 
 /// Highest pressure at or around the nodes that touch, MPa, any region of which may have it.
 ///
-/// `highest_around` tells it for a node's share and what lies around; it is asked of those that lead their region.
+/// `highest_around` tells it for a node's share and what lies around; it is asked of those that lead their region,
+/// and told the highest so far: what cannot be above that need not be told exactly.
 /// It is not below the highest mean over a share.
 pub(in crate::contact) fn highest_mpa(
     touched: &[TouchedNode],
-    highest_around: impl Fn(u32) -> f64,
+    highest_around: impl Fn(u32, f64) -> f64,
 ) -> f64 {
     let highest = highest_of_regions(touched);
     let leads = highest.map(|highest| highest * (1.0 - EQUAL));
     let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.region)];
-    let tops = touched.iter().filter(leads);
-    tops.map(|top| highest_around(top.node))
-        .fold(highest.into_iter().fold(0.0, f64::max), f64::max)
+    let mut tops = touched.iter().filter(leads).collect::<Vec<_>>();
+    tops.sort_by(|a, b| b.pressure_mpa.total_cmp(&a.pressure_mpa));
+    let of_means = highest.into_iter().fold(0.0, f64::max);
+    tops.iter().fold(of_means, |so_far, top| {
+        highest_around(top.node, so_far).max(so_far)
+    })
 }
 
 /// Highest mean over a share in every region, MPa.
