@@ -2,16 +2,19 @@
 
 use std::{
     fs::{self, File},
-    io::Write,
+    io::{ErrorKind, Write},
     path::{Path, PathBuf},
     process::ExitCode,
     thread,
 };
 
-use condyle_io::case::{Draft, DraftError, template};
+use condyle_io::case::{Case, Draft, DraftError, template};
 use condyle_lab::Preview;
 
 use crate::{arguments::New, exit, output, standard_error::tell};
+
+/// The file, beside the case, that the first line of a case names.
+const SCHEMA: &str = "condyle.schema.json";
 
 pub fn new(arguments: &New) -> ExitCode {
     let text = match text(arguments) {
@@ -20,11 +23,13 @@ pub fn new(arguments: &New) -> ExitCode {
         Err(error) => return exit::fail(error, exit::BAD_INPUT),
     };
     let path = &arguments.case;
+    let text = format!("#:schema {SCHEMA}\n{text}");
     let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
     if let Err(error) = written {
         let said = format!("{}: {error}; choose another name", path.display());
         return exit::fail(said, exit::BAD_INPUT);
     }
+    write_schema(&path.with_file_name(SCHEMA));
     let picture = arguments.femur.as_ref().and_then(|_| drawn(path));
     let seen = picture.map_or(String::new(), |picture| {
         format!("look at {}; ", picture.display())
@@ -34,6 +39,18 @@ pub fn new(arguments: &New) -> ExitCode {
         path.display(),
         path.display()
     ))
+}
+
+/// The schema for editors, unless one is there; a case runs without it.
+fn write_schema(path: &Path) {
+    let written =
+        File::create_new(path).and_then(|mut file| file.write_all(Case::json_schema().as_bytes()));
+    match written {
+        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+            tell(format_args!("warning: {}: {error}", path.display()));
+        }
+        _ => {}
+    }
 }
 
 /// A picture of the bodies in place, beside the case; where there is none, why is told.

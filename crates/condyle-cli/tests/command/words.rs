@@ -76,6 +76,9 @@ fn new_writes_a_case_that_runs() {
         assert!(said.out.contains("condyle run case.toml"));
         let text = fs::read_to_string(bench.path("case.toml")).unwrap();
         assert!(text.contains(&format!("preset = \"{preset}\"")));
+        let schema = text.lines().next().unwrap().strip_prefix("#:schema ");
+        let schema = fs::read_to_string(bench.path(schema.unwrap())).unwrap();
+        assert_eq!(schema, bench.say(&["schema"]).out);
         let short = text
             .replace("edge_mm = 1.05", "edge_mm = 2.5")
             .replace("updates = 10", "updates = 1")

@@ -32,7 +32,7 @@ that the program reads a case with.
 
 Editors complete the keys, show what each means, its unit and range, and underline what is wrong, by the schema that
 `condyle schema > condyle.schema.json` writes. A case names it in its first line, `#:schema condyle.schema.json`, as the
-shipped cases do; taplo and the extension Even Better TOML of VS Code read that line. `condyle check` knows more than the
+shipped cases do and `condyle new` writes it, with the schema beside; taplo and the extension Even Better TOML of VS Code read that line. `condyle check` knows more than the
 schema: files that must be there, and values that do not fit each other.
 
 ## Top of the file
