@@ -36,6 +36,11 @@ def write_stl(path, triangles):
         out.write("endsolid\n")
 
 
+def turned(triangles, by):
+    """The same with the axes of the file named anew, round and round, which keeps it right-handed."""
+    return [[corner[by:] + corner[:by] for corner in triangle] for triangle in triangles]
+
+
 def mix(a, b, share):
     return tuple(p + (q - p) * share for p, q in zip(a, b))
 
@@ -163,6 +168,8 @@ class Runs:
         keys = tomllib.loads(text)
         self.meshes = {body: (case.parent / keys[body]["file"]).resolve() for body in ("femur", "insert")}
         self.text = text
+        # From the file's axes to those with the second one up.
+        self.turns = {body: (keys[body]["axes"].index("superior") - 1) % 3 for body in self.meshes}
         for body, path in self.meshes.items():
             self.text = self.text.replace(f'"{keys[body]["file"]}"', f'"{path}"')
 
@@ -170,7 +177,7 @@ class Runs:
         text = self.text
         if triangles:
             path = self.folder / f"{body}.stl"
-            write_stl(path, triangles)
+            write_stl(path, turned(triangles, -self.turns[body] % 3))
             text = text.replace(str(self.meshes[body]), str(path))
         case, out = self.folder / "case.toml", self.folder / "out"
         case.write_text(text)
@@ -196,7 +203,7 @@ def main():
         _, clean, _ = runs.run()
         print(f"`{asked.case}`, clean: {clean:.4f} mg\n")
         print("| body | defects | exit | mass, mg | off | said |\n| --- | --- | --- | --- | --- | --- |")
-        bodies = {body: read_stl(path) for body, path in runs.meshes.items()}
+        bodies = {body: turned(read_stl(path), runs.turns[body]) for body, path in runs.meshes.items()}
         tray, height = on_a_tray(bodies["insert"])
         todo = [(body, kind, None) for body in bodies for kind in KINDS] + [("insert", "on a tray, cut", height)]
         for body, kind, clip in todo:

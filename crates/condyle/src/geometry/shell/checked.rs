@@ -549,7 +549,7 @@ mod tests {
     fn a_hole_in_the_backside_is_closed_and_one_in_the_top_refused() {
         let with_hole = |height: f64| {
             let mut mesh = fine_block(5.0);
-            for _ in 0..6 {
+            for _ in 0..10 {
                 let t = nearest(&mesh, Vec3::new(3.0, height, 4.0));
                 mesh.triangles.remove(t);
             }

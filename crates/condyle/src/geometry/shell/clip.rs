@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::{
     edges::{by_edge, edge_uses},
     fill::fill,
+    joints::join_filled,
 };
 use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
 
@@ -26,6 +27,7 @@ pub(super) fn clip_below(mesh: &TriangleMesh, height_mm: f64) -> TriangleMesh {
         .for_each(|&triangle| clip.add(triangle));
     let loops = loops_at(&clip.cut, height_mm);
     fill(&mut clip.cut, &loops, &-Vec3::y());
+    join_filled(&mut clip.cut);
     clip.cut
 }
 
@@ -128,10 +130,13 @@ fn walk(beside: &mut BTreeMap<u32, Vec<u32>>, start: u32) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use crate::geometry::shell::{
         checked_shell,
-        fixtures::{block, joined},
+        crossing::{Crossings, crossings},
+        fixtures::{block, fine_block, joined},
     };
 
     #[test]
@@ -146,6 +151,20 @@ mod tests {
     }
 
     #[test]
+    fn a_cut_through_straight_walls_of_many_triangles_is_closed() {
+        let body = fine_block(Vec3::new(40.0, 8.0, 60.0), 2.0);
+        for height_mm in [0.1, 1.0, 2.0, 4.7] {
+            let cut = clip_below(&body, height_mm);
+            assert!(by_edge(&edge_uses(&cut)).all(|edge| edge.len() == 2));
+            let volume = cut.signed_volume();
+            assert!(
+                (volume - 2400.0 * (8.0 - height_mm)).abs() < 1e-9,
+                "{volume}"
+            );
+        }
+    }
+
+    #[test]
     fn verify_a_hollow_stays_hollow() {
         let mut hollow = block(Vec3::new(-1.0, -4.0, -0.5), Vec3::new(1.0, 4.0, 0.5));
         hollow
@@ -155,5 +174,27 @@ mod tests {
         let outer = block(Vec3::new(-2.0, -3.0, -1.0), Vec3::new(2.0, 5.0, 1.0));
         let cut = checked_shell(clip_below(&joined(outer, hollow), 0.0)).unwrap();
         assert!((cut.mesh.signed_volume() - (40.0 - 8.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_flat_bottom_with_a_fine_outline_is_no_tangle() {
+        let count = 750_u32;
+        let rim = |y: f64| {
+            (0..count).map(move |i| {
+                let (sine, cosine) = (f64::from(i) / f64::from(count) * TAU).sin_cos();
+                Vec3::new(26.0 * cosine, y, 40.0 * sine)
+            })
+        };
+        let wall = (0..count).flat_map(|i| {
+            let [low, next] = [i, (i + 1) % count];
+            [[low, low + count, next], [next, low + count, next + count]]
+        });
+        let tube = TriangleMesh {
+            vertices: rim(-5.0).chain(rim(9.0)).collect(),
+            triangles: wall.collect(),
+        };
+        let cut = clip_below(&tube, 1.0);
+        assert_eq!(cut.triangles.len(), 3 * 750 + 1500 - 2);
+        assert_eq!(crossings(&cut), Crossings::default());
     }
 }

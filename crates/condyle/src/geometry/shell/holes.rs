@@ -1,7 +1,8 @@
 //! Loops of open edges: the rim of an open surface, and holes.
 
 use super::{
-    defect::DefectKind, edges::shell_report, fill::fill, judge::Judge, orientation::Piece,
+    defect::DefectKind, edges::shell_report, fill::fill, joints::join_filled, judge::Judge,
+    orientation::Piece,
 };
 use crate::{
     Vec3,
@@ -16,6 +17,7 @@ pub(super) fn close_holes(mesh: &mut TriangleMesh, pieces: &[Piece], judge: &mut
     if pieces.iter().all(|piece| !piece.is_open) {
         return;
     }
+    let mut filled = false;
     for around in holes(mesh, pieces) {
         let places: Vec<Vec3> = around.iter().map(|&v| mesh.vertices[v as usize]).collect();
         let middle = places.iter().sum::<Vec3>() / places.len() as f64;
@@ -23,7 +25,11 @@ pub(super) fn close_holes(mesh: &mut TriangleMesh, pieces: &[Piece], judge: &mut
         let normal = area_vector(&places).try_normalize(0.0);
         if let Some(normal) = normal.filter(|_| !matters) {
             fill(mesh, &[around], &-normal);
+            filled = true;
         }
+    }
+    if filled {
+        join_filled(mesh);
     }
 }
 

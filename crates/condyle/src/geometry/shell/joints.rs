@@ -11,6 +11,15 @@ use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
 /// A split edge may leave triangles with another edge to split; more rounds than this help nobody.
 const ROUNDS: usize = 4;
 
+/// Distance over the diagonal of the mesh within which vertices are on an edge but for rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Joins to their neighbours triangles that close a loop of edges: they pass over vertices that lie in line.
+pub(super) fn join_filled(mesh: &mut TriangleMesh) {
+    let (low, high) = mesh.bounds();
+    join(mesh, ROUNDING * (high - low).norm());
+}
+
 /// Splits triangles at vertices on their open edges, no farther off than `within`; gives where.
 pub(super) fn join(mesh: &mut TriangleMesh, within: f64) -> Vec<Vec3> {
     let mut places = Vec::new();
