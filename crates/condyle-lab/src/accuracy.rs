@@ -40,8 +40,9 @@ const LOOSER_SLIP: f64 = -1.0;
 const COARSER_MESH: f64 = -1.0 / 3.0;
 /// From the change that the errors of the steps so far make.
 const MISSED: f64 = 1.0;
-/// From the change that half the updates make where the insert creeps, a step of which is of first order.
-const HALF_THE_UPDATES: f64 = -1.0;
+/// From the change that half the updates make where the insert creeps: steps of creep are of first order and those of
+/// wear of second, and twice the updates leave a third of the error, so that half of them make three times of it.
+const HALF_THE_UPDATES: f64 = -1.0 / 2.0;
 
 /// Why a part has no estimate.
 enum Without {

@@ -123,6 +123,7 @@ mod tests {
 
     fn standing<'a>(now: &'a Rates, last: &'a StepRecord) -> Standing<'a> {
         Standing {
+            creeps: false,
             rates: now,
             last: Some(last),
             worn_mm: &[6.0],

@@ -7,6 +7,9 @@ use super::step_record::{Standing, StepRecord};
 const FIRST_SHARE: f64 = 0.12;
 /// ... and less where the tolerance is smaller than this: the error of a step is second order.
 const FIRST_TOLERANCE: f64 = 0.05;
+/// Creep goes with the logarithm of time: most of it comes at once, and takes the highest pressures away. Where the
+/// insert creeps, the first step is this part of what it would be else, so that nothing to speak of wears by them.
+const FIRST_OF_CREEP: f64 = 0.1;
 /// A step is at most this many times as long as the one before, over which its rates were seen to
 /// change, ...
 const MOST_GROWTH: f64 = 1.5;
@@ -18,6 +21,19 @@ const LONGEST: f64 = 1.8;
 /// A step in error is shortened by this factor until it is not.
 const SHORTER: f64 = 0.9;
 
+/// The interval after `done` of a fixed number of updates: all are equal, but where the insert creeps the first is
+/// shorter.
+pub(super) fn fixed_interval(all_cycles: f64, updates: usize, done: usize, creeps: bool) -> f64 {
+    let even = all_cycles / updates as f64;
+    if !creeps || updates == 1 {
+        even
+    } else if done == 0 {
+        FIRST_OF_CREEP * even
+    } else {
+        (all_cycles - FIRST_OF_CREEP * even) / (updates - 1) as f64
+    }
+}
+
 /// The longest interval whose estimated error of the maximum depth is within `tolerance` times
 /// the depth expected at the end, and that is stable.
 pub(super) fn adaptive_interval(standing: Standing<'_>, all_cycles: f64, tolerance: f64) -> f64 {
@@ -25,7 +41,8 @@ pub(super) fn adaptive_interval(standing: Standing<'_>, all_cycles: f64, toleran
     let stable = LONGEST / standing.rates.relaxation_per_cycle.max(f64::MIN_POSITIVE);
     let Some(last) = standing.last else {
         let share = FIRST_SHARE * (tolerance / FIRST_TOLERANCE).sqrt().min(1.0);
-        return stable.min(share * all_cycles);
+        let part = if standing.creeps { FIRST_OF_CREEP } else { 1.0 };
+        return stable.min(part * share * all_cycles);
     };
     let expected_mm = deepest(standing, |node| {
         standing.rates.depth_per_cycle_mm[node] * left
@@ -95,6 +112,7 @@ mod tests {
 
     fn interval(now: &Rates, last: Option<&StepRecord>) -> f64 {
         let standing = Standing {
+            creeps: false,
             rates: now,
             last,
             worn_mm: &[0.1],

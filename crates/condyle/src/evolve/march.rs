@@ -12,7 +12,7 @@ use super::{
     creep_contact::CreepContact,
     creep_record::Depths,
     depth::{lost_mm, total_mm},
-    interval::shared_out,
+    interval::{fixed_interval, shared_out},
     laws_beside::{LawBeside, outside_mm3, sum, worn},
     march_error::WornAndCrept,
     mean_over_wear::volume_mm3,
@@ -320,13 +320,7 @@ impl March {
         let cycles = mean_cycles(&shared, &solved.surface);
         let worn = worn(self.test.wear.as_ref(), &cycles);
         let rates = self.rates(&solved.surface, &cycles, &worn);
-        let standing = Standing {
-            rates: &rates,
-            last: self.state.last_step.as_ref(),
-            worn_mm: self.state.depths.wear_mm(),
-            cycles: cycles_before,
-            updates: self.state.updates.len(),
-        };
+        let standing = self.standing(&rates);
         let step = next_step(standing, &self.test.schedule);
         let settled_error = self.state.settled_error.after(standing);
         let step_error = settled_error.with_last(standing, &step);
@@ -372,6 +366,18 @@ impl March {
         self.keep(solved.cycles, solved.surface, cycles_before);
         let last = self.state.updates.len() - 1;
         Ok(&self.state.updates[last])
+    }
+
+    /// Where the march stands before a step, and what a cycle wears there.
+    fn standing<'a>(&'a self, rates: &'a Rates) -> Standing<'a> {
+        Standing {
+            rates,
+            last: self.state.last_step.as_ref(),
+            worn_mm: self.state.depths.wear_mm(),
+            cycles: self.cycles(),
+            updates: self.state.updates.len(),
+            creeps: self.test.creep.is_some(),
+        }
     }
 
     /// An error where no activity brings the bodies together.
@@ -571,7 +577,10 @@ impl March {
         let last = self.state.last_step.as_ref().map(|last| last.interval);
         let left = schedule.cycles - self.cycles();
         match schedule.updates {
-            Updates::Fixed(updates) => schedule.cycles / updates as f64,
+            Updates::Fixed(updates) => {
+                let (done, creeps) = (self.state.updates.len(), self.test.creep.is_some());
+                fixed_interval(schedule.cycles, updates, done, creeps)
+            }
             Updates::Auto { .. } => last.map_or(0.0, |last| shared_out(left, last)),
         }
     }

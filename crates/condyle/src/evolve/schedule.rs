@@ -12,7 +12,8 @@ pub struct Schedule {
 /// When the geometry is updated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Updates {
-    /// So many times, each after the same number of cycles, as Knight 2007 does it.
+    /// So many times, each after the same number of cycles, as Knight 2007 does it; where the insert creeps, the first
+    /// after a tenth of that, since most of creep comes at once.
     Fixed(usize),
     /// As seldom as the depth of wear allows.
     Auto {

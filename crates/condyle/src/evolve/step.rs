@@ -5,17 +5,21 @@ use super::{
     accumulated_error::accumulated_error_mm,
     exponential_step::exponential,
     extrapolated_step::extrapolated,
-    interval::{adaptive_interval, second_order, shared_out},
-    step_record::{Standing, WearStep},
+    interval::{adaptive_interval, fixed_interval, second_order, shared_out},
+    step_record::{Standing, StepRecord, WearStep},
 };
+
+/// A step that was a shorter part of the next than this does not tell how rates go on changing through that.
+const LEAST_TELLING: f64 = 0.25;
 
 /// The next step of a march by `schedule`.
 pub(super) fn next_step(standing: Standing<'_>, schedule: &Schedule) -> WearStep {
     let left = schedule.cycles - standing.cycles;
     let (interval, is_last) = match schedule.updates {
         Updates::Fixed(updates) => {
-            let interval = schedule.cycles / updates as f64;
-            (interval, standing.updates + 1 >= updates)
+            let (done, creeps) = (standing.updates, standing.creeps);
+            let interval = fixed_interval(schedule.cycles, updates, done, creeps);
+            (interval, done + 1 >= updates)
         }
         Updates::Auto { tolerance } => {
             let wished = adaptive_interval(standing, schedule.cycles, tolerance);
@@ -40,7 +44,8 @@ pub(super) fn next_step(standing: Standing<'_>, schedule: &Schedule) -> WearStep
 
 /// What an interval wears, mm, and what it would wear by a second rule, which tells its error.
 fn worn(standing: Standing<'_>, updates: Updates, interval: f64) -> (Vec<f64>, Vec<f64>) {
-    let (rates, last) = (standing.rates, standing.last);
+    let tells = |last: &&StepRecord| last.interval > LEAST_TELLING * interval;
+    let (rates, last) = (standing.rates, standing.last.filter(tells));
     let exponential = exponential(rates, last, interval);
     match updates {
         Updates::Fixed(_) => (extrapolated(rates, last, interval), exponential),
@@ -59,6 +64,17 @@ mod tests {
 
     #[test]
     fn the_last_fixed_step_lands_on_the_last_cycle() {
+        for creeps in [false, true] {
+            let ends = ends_of_three_steps(creeps);
+            assert_eq!(ends[2], 5e6);
+            let even = 5e6 / 3.0;
+            let first = if creeps { 0.1 * even } else { even };
+            assert!((ends[0] - first).abs() < 1e-6, "{ends:?}");
+            assert!((ends[2] - 2.0 * ends[1] + ends[0]).abs() < 1e-6, "{ends:?}");
+        }
+    }
+
+    fn ends_of_three_steps(creeps: bool) -> [f64; 3] {
         let schedule = Schedule::fixed(5e6, 3);
         let now = Rates {
             depth_per_cycle_mm: vec![1e-8],
@@ -67,8 +83,9 @@ mod tests {
             relaxation_per_cycle: 0.0,
         };
         let mut cycles = 0.0;
-        for updates in 0..3 {
+        [0, 1, 2].map(|updates| {
             let standing = Standing {
+                creeps,
                 rates: &now,
                 last: None,
                 worn_mm: &[0.0],
@@ -76,7 +93,7 @@ mod tests {
                 updates,
             };
             cycles = next_step(standing, &schedule).cycles_after;
-        }
-        assert_eq!(cycles, 5e6);
+            cycles
+        })
     }
 }

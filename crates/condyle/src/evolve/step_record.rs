@@ -46,6 +46,8 @@ pub(super) struct Standing<'a> {
     pub cycles: f64,
     /// Updates done.
     pub updates: usize,
+    /// Whether the insert creeps as well.
+    pub creeps: bool,
 }
 
 /// A step of the march.
