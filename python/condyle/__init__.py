@@ -14,6 +14,8 @@ from ._condyle import VERSION
 from .case import Case
 from .check import Check
 from .errors import BadInput, CondyleError, Interrupted, NotSolved, Problem
+from .knee import Contact, Cycle, Knee
+from .laws import NodeCycle
 from .progress import Bar, Progress
 from .result import Result
 from .run import open, run
@@ -27,7 +29,11 @@ __all__ = [
     "Case",
     "Check",
     "CondyleError",
+    "Contact",
+    "Cycle",
     "Interrupted",
+    "Knee",
+    "NodeCycle",
     "NotSolved",
     "Problem",
     "Progress",

@@ -1,27 +1,15 @@
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import Any, Final, TypedDict, final
+from typing import Any, Final, final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ._raw import RawContact, RawCycle, RawRun
+from .laws import NodeCycle
 from .progress import Progress
 
 VERSION: Final[str]
-
-class RawInsert(TypedDict):
-    points_mm: NDArray[np.float64]
-    hexes: NDArray[np.uint32]
-    articulating: NDArray[np.bool_]
-    fields: dict[str, NDArray[np.float64]]
-
-class RawRun(TypedDict):
-    case: str
-    summary: str | None
-    tables: dict[str, tuple[list[str], NDArray[np.float64]]]
-    insert: RawInsert
-    femur_points_mm: NDArray[np.float64]
-    femur_triangles: NDArray[np.uint32]
 
 @final
 class RawCase:
@@ -41,10 +29,23 @@ class RawCase:
     def inputs_blake3(self) -> str: ...
     def preview(self, threads: int) -> tuple[str, str]: ...
 
+@final
+class RawKnee:
+    def __new__(cls, case: RawCase, threads: int) -> RawKnee: ...
+    def gap(self, points_mm: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def neutral_pose(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def surface_points(self) -> NDArray[np.float64]: ...
+    def contact(self, rotation: Sequence[Sequence[float]], translation: Sequence[float]) -> RawContact: ...
+    def first_cycle(self) -> RawCycle: ...
+
 def with_table(text: str, table: str, keys: str) -> str: ...
 def read_folder(path: str | PathLike[str]) -> RawRun: ...
 def run_in_memory(
-    case: RawCase, threads: int, keeps_fields: bool, progress: Callable[[Progress], Any] | None = None
+    case: RawCase,
+    threads: int,
+    keeps_fields: bool,
+    progress: Callable[[Progress], Any] | None = None,
+    wear_law: Callable[[NodeCycle], float] | None = None,
 ) -> RawRun: ...
 def run_into_folder(
     case: RawCase,

@@ -22,6 +22,8 @@ __all__ = ["data_set"]
 
 def data_set(result: Result) -> xr.Dataset:
     """Everything that a run found."""
+    import numpy as np
+
     xarray = extra("xarray", "xarray")
     check_fields(result)
     variables = {**_at_nodes(result), **_by_update(result.wear), **_by_increment(result.kinematics)}
@@ -31,6 +33,7 @@ def data_set(result: Result) -> xr.Dataset:
     coordinates = {
         "cycles": ("update", result.update_cycles, {"long_name": "gait cycles done"}),
         "component": ["x", "y", "z"],
+        "cycle": ["first", "last"][: len(np.unique(kinematics["cycles"]))],
         "percent": ("increment", kinematics["percent"][first], {"units": "%", "long_name": "part of the cycle"}),
         "articulating": ("node", result.articulating),
         **{f"{axis}_mm": ("node", places[:, number], {"units": "mm"}) for number, axis in enumerate("xyz")},

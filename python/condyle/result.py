@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from . import _condyle
+from ._raw import RawRun
 from .case import Case
 from .errors import CondyleError
 from .table import Table
@@ -112,7 +112,7 @@ class Result:
     neutral_pose: dict[str, Any]
     """Where the femur settled, in the insert frame: there AP, ML and IS read zero."""
 
-    def __init__(self, run: _condyle.RawRun, folder: Path | None = None) -> None:
+    def __init__(self, run: RawRun, folder: Path | None = None) -> None:
         """Use :func:`condyle.run` or :func:`condyle.open`."""
         self._run, self._folder = run, folder
         summary = run["summary"]
@@ -197,7 +197,7 @@ class Result:
         return self._run["insert"]["fields"]
 
     @property
-    def femur_points_mm(self) -> NDArray[np.float64]:
+    def femur_points_mm(self) -> NDArray[np.float32]:
         """Vertices of the femur as it stands at neutral, mm: shape (vertices, 3)."""
         return self._run["femur_points_mm"]
 
@@ -234,7 +234,7 @@ class Result:
         return data_set(self)
 
     def to_pyvista(
-        self, update: int = -1, increment: int | None = None, cycle: Literal["first", "last"] = "first"
+        self, update: int = -1, increment: int | None = None, cycle: Literal["first", "last"] = "last"
     ) -> pv.MultiBlock:
         """The insert with its fields at an update, and the femur beside it.
 

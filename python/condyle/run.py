@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from . import _condyle
+from ._raw import RawRun
 from .case import Case, CaseLike, case_of
+from .laws import NodeCycle
 from .progress import Bar, Progress
 from .result import Result
 
@@ -24,6 +26,7 @@ def run(
     force: bool = False,
     fields: bool = True,
     threads: int = 1,
+    wear_law: Callable[[NodeCycle], float] | None = None,
 ) -> Result:
     """Runs a case to its end. The numbers are those of ``condyle run``, to the last bit.
 
@@ -39,6 +42,10 @@ def run(
         force: write over the run that is in ``out``.
         fields: keep the insert and its results at every node for every update, about a megabyte each.
         threads: for the one-time work on a mesh; results do not depend on it.
+        wear_law: what takes the place of the case's law: called with the :class:`NodeCycle` of every node that slides,
+            it gives the depth that one cycle wears, mm. That is slow, some ten microseconds and what the function
+            takes for each of some ten thousand calls an update. The case and its hash do not know it, so that there
+            can be no ``out``.
 
     Raises:
         BadInput: a case, a mesh or a folder that cannot be used.
@@ -47,14 +54,18 @@ def run(
     >>> import condyle
     >>> result = condyle.run({"march": {"updates": 2}, "accuracy": {"estimate": False}})
     >>> round(result.mass_loss_mg), result.wear["cycles"].tolist()
-    (80, [2500000.0, 5000000.0])
+    (59, [2500000.0, 5000000.0])
     """
+    if out is None and (resume or force):
+        raise ValueError("resume and force are about the run in a folder: give out, too")
+    if out is not None and wear_law is not None:
+        raise ValueError("a run with a wear_law is kept in memory, since its folder would not name the law: leave out away")
     bar = Bar() if progress is True else None
     listener = bar or (progress if callable(progress) else None)
     checked = case_of(case)
     try:
         if out is None:
-            return Result(_run_in_memory(checked, resume, force, fields, threads, listener))
+            return Result(_condyle.run_in_memory(checked.compiled, threads, fields, listener, wear_law))
         return Result(_run_into(Path(out), checked, resume, force, threads, listener), Path(out))
     finally:
         if bar:
@@ -70,19 +81,6 @@ def open(folder: str | os.PathLike[str]) -> Result:
     return Result(_condyle.read_folder(folder), Path(folder))
 
 
-def _run_in_memory(
-    case: Case,
-    resume: bool,
-    force: bool,
-    fields: bool,
-    threads: int,
-    listener: Callable[[Progress], Any] | None,
-) -> _condyle.RawRun:
-    if resume or force:
-        raise ValueError("resume and force are about the run in a folder: give out, too")
-    return _condyle.run_in_memory(case.compiled, threads, fields, listener)
-
-
 def _run_into(
     out: Path,
     case: Case,
@@ -90,7 +88,7 @@ def _run_into(
     force: bool,
     threads: int,
     listener: Callable[[Progress], Any] | None,
-) -> _condyle.RawRun:
+) -> RawRun:
     if case.has_arrays:
         out.mkdir(parents=True, exist_ok=True)
     case = case.written_in(out)

@@ -32,6 +32,11 @@ pub fn of_run(error: &RunError) -> PyErr {
     })
 }
 
+/// Physics that could not be solved.
+pub fn not_solved(message: &impl Display) -> PyErr {
+    raised("NotSolved", |class| class.call1((message.to_string(),)))
+}
+
 /// A run that somebody asked to stop.
 pub fn interrupted(reached: &Reached) -> PyErr {
     let Reached {

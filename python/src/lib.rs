@@ -12,6 +12,8 @@ mod case;
 mod errors;
 mod files;
 mod folder;
+mod knee;
+mod law;
 mod listener;
 mod record;
 mod recorder;
@@ -27,6 +29,8 @@ mod _condyle {
     use super::case::{RawCase, with_table};
     #[pymodule_export]
     use super::folder::read_folder;
+    #[pymodule_export]
+    use super::knee::RawKnee;
     #[pymodule_export]
     use super::run::{run_in_memory, run_into_folder};
 

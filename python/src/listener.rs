@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 use condyle_lab::{Reached, RunEvent};
 use pyo3::prelude::*;
 
+use crate::law::{Raised, taken};
+
 /// Between two looks at Ctrl-C and two calls of a callback: taking the interpreter's lock may wait for other threads.
 const PAUSE: Duration = Duration::from_millis(50);
 
@@ -18,11 +20,13 @@ pub struct Listener {
     cycles: f64,
     updates: usize,
     /// What the callback or Ctrl-C raised.
-    pub raised: Option<PyErr>,
+    raised: Option<PyErr>,
+    /// What a wear law raised.
+    raised_by_law: Option<Raised>,
 }
 
 impl Listener {
-    pub fn new(callback: Option<Py<PyAny>>) -> Self {
+    pub fn new(callback: Option<Py<PyAny>>, raised_by_law: Option<Raised>) -> Self {
         Self {
             callback,
             last: Instant::now(),
@@ -30,7 +34,14 @@ impl Listener {
             cycles: 0.0,
             updates: 0,
             raised: None,
+            raised_by_law,
         }
+    }
+
+    /// What stopped the run, if anything was raised.
+    pub fn raised(self) -> Option<PyErr> {
+        let by_law = self.raised_by_law.as_ref().and_then(taken);
+        by_law.or(self.raised)
     }
 
     /// Hears of an event of a run.
@@ -75,6 +86,9 @@ impl Listener {
     /// Tells the callback; whether the run is to go on.
     fn tell(&self, py: Python<'_>, event: &RunEvent<'_>) -> PyResult<bool> {
         py.check_signals()?;
+        if let Some(raised) = self.raised_by_law.as_ref().and_then(taken) {
+            return Err(raised);
+        }
         let Some(callback) = &self.callback else {
             return Ok(true);
         };

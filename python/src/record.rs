@@ -1,6 +1,6 @@
 //! What is known of a run, whether it was kept in memory or in a folder.
 
-use condyle::geometry::TriangleMesh;
+use condyle::{Vec3, geometry::TriangleMesh};
 use condyle_fem::HexMesh;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -99,9 +99,9 @@ impl Record {
             tables.set_item(name, table.into_python(py)?)?;
         }
         let vertices = self.femur.vertices.iter();
-        let vertices: Vec<f64> = vertices
-            .flat_map(|place| [place.x, place.y, place.z])
-            .collect();
+        // As femur.vtu has them, so that a run is the same from memory and from its folder.
+        let single = |place: &Vec3| [place.x as f32, place.y as f32, place.z as f32];
+        let vertices: Vec<f32> = vertices.flat_map(single).collect();
         let shape = [vertices.len() / 3, 3];
         let all = PyDict::new(py);
         all.set_item("case", self.case)?;

@@ -8,27 +8,30 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::case::RawCase;
+use crate::law::law_of;
 use crate::listener::Listener;
 use crate::recorder::Recorder;
 use crate::{errors, folder};
 
-/// Runs a case in memory; `progress` is called with a `condyle.Progress`.
+/// Runs a case in memory; `progress` is called with a `condyle.Progress`, and `wear_law` with a `condyle.NodeCycle`.
 #[pyfunction]
-#[pyo3(signature = (case, threads, keeps_fields, progress=None))]
+#[pyo3(signature = (case, threads, keeps_fields, progress=None, wear_law=None))]
 pub fn run_in_memory<'py>(
     py: Python<'py>,
     case: &RawCase,
     threads: usize,
     keeps_fields: bool,
     progress: Option<Py<PyAny>>,
+    wear_law: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let case = &case.case;
+    let (wear_law, raised) = wear_law.map(law_of).unzip();
     let how = InMemory {
         threads,
         cache: Cache::of_user(),
-        wear_law: None,
+        wear_law,
     };
-    let mut listener = Listener::new(progress);
+    let mut listener = Listener::new(progress, raised);
     let mut recorder = Recorder::new(case, keeps_fields);
     let outcome = py.detach(|| {
         condyle_lab::run_in_memory(case, &how, &mut recorder, &mut |event| {
@@ -62,7 +65,7 @@ pub fn run_into_folder<'py>(
         threads,
         cache: Cache::of_user(),
     };
-    let mut listener = Listener::new(progress);
+    let mut listener = Listener::new(progress, None);
     let outcome =
         py.detach(|| condyle_lab::run_case(case, &options, &mut |event| listener.hear(&event)));
     ended(outcome, listener)?;
@@ -71,7 +74,7 @@ pub fn run_into_folder<'py>(
 
 /// How a run ended; one that did not come to its end is an exception.
 fn ended(outcome: Result<Outcome, RunError>, listener: Listener) -> PyResult<Outcome> {
-    match (outcome, listener.raised) {
+    match (outcome, listener.raised()) {
         (_, Some(raised)) => Err(raised),
         (Err(error), None) => Err(errors::of_run(&error)),
         (Ok(Outcome::Interrupted(reached)), None) => Err(errors::interrupted(&reached)),

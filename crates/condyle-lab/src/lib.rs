@@ -12,5 +12,5 @@ pub use at_rest::AtRest;
 pub use preview::{Expected, FemurFacts, InsertFacts, Preview};
 pub use run::{
     InMemory, Outcome, Reached, RunError, RunEvent, RunKeeper, RunOptions, check, check_changed,
-    run, run_case, run_changed, run_in_memory,
+    run, run_case, run_changed, run_in_memory, settled,
 };

@@ -19,5 +19,5 @@ pub use in_memory::{InMemory, RunKeeper, run_in_memory};
 pub(crate) use memory::memory_mb;
 pub use options::RunOptions;
 pub(crate) use prepare::{build, changed, start};
-pub use prepare::{check, check_changed};
+pub use prepare::{check, check_changed, settled};
 pub use run_case::{run, run_case, run_changed};
