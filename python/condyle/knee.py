@@ -56,10 +56,11 @@ class Knee:
     frame is at R p + t in the insert frame.
 
     >>> import numpy as np
-    >>> knee = Knee({"femur": {"shape": "sphere", "radius_mm": 24.0}, "insert": {"shape": "flat"}})
-    >>> gap_mm, normals = knee.gap([[0.0, -25.0, 0.0]])
-    >>> gap_mm.round(9).tolist(), normals.round(9).tolist()
-    ([1.0], [[0.0, -1.0, 0.0]])
+    >>> knee = Knee({"insert": {"edge_mm": 2.0}})
+    >>> rotation, translation = knee.neutral_pose
+    >>> lowered = knee.contact(rotation, translation - [0.0, 0.01, 0.0])
+    >>> bool(lowered.force_n[1] < knee.contact(rotation, translation).force_n[1] < 0.0)
+    True
     """
 
     def __init__(self, case: CaseLike, *, threads: int = 1) -> None:

@@ -84,7 +84,7 @@ class Plots:
         axes = _axes(ax)
         seen = triangulation(places[:, 2], places[:, 0], triangles)
         colours = axes.tripcolor(seen, result.fields[field][update], shading="gouraud", cmap="magma_r", vmin=0.0)
-        axes.get_figure().colorbar(colours, ax=axes, label=label)
+        axes.get_figure().colorbar(colours, ax=axes, label=label, shrink=0.7)
         left, right = ("lateral", "medial") if result.case["side"] == "left" else ("medial", "lateral")
         axes.set(xlabel=f"{left}  <  z, mm  >  {right}", ylabel="x, anterior up, mm", aspect="equal")
         axes.set_title(f"after {result.update_cycles[update] / 1e6:g} million cycles", fontsize="medium")

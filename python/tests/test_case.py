@@ -37,13 +37,11 @@ def test_changes_are_those_of_the_command() -> None:
 def test_a_case_keeps_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "waves").mkdir()
     text = "[machine.ap_force]\nfile = 'waves/ap.csv'\n"
-    (tmp_path / "waves" / "ap.csv").write_text("percent,ap_force_n\n0,0\n50,100\n100,0\n")
+    rows = "".join(f"{percent},{percent * (100 - percent) / 25}\n" for percent in range(0, 101, 5))
+    (tmp_path / "waves" / "ap.csv").write_text("percent,ap_force_n\n" + rows)
     (tmp_path / "case.toml").write_text(text)
     monkeypatch.chdir(tmp_path)
-    try:
-        case = condyle.Case.read("case.toml")
-    except condyle.BadInput as error:
-        pytest.fail(str(error))
+    case = condyle.Case.read("case.toml")
     monkeypatch.chdir("/")
     assert pickle.loads(pickle.dumps(case)).replace({"friction": 0.05}).replace({"friction": 0.07}) == case
 
@@ -52,7 +50,7 @@ def test_a_check_says_what_the_command_says() -> None:
     check = condyle.Case.from_dict(SMALL).check()
     assert check.facts["side"] == "right" and check.warnings == []
     assert check.picture_svg.startswith("<svg")
-    assert check.facts["at_rest"]["axial_force_n"] == pytest.approx(167.6, rel=0.5)
+    assert check.facts["at_rest"]["axial_force_n"] == pytest.approx(168, rel=0.02)
 
 
 def test_bodies_come_from_arrays(tmp_path: Path) -> None:
