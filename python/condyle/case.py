@@ -204,11 +204,11 @@ else:
 
 
 def case_of(case: CaseLike) -> Case:
-    """``case`` as a :class:`Case`; text with a line end or a ``=`` is TOML, other text a path."""
+    """``case`` as a :class:`Case`; text is TOML if it has lines, or a ``=`` and no file is called so, and else a path."""
     if isinstance(case, Case):
         return case
     if isinstance(case, Mapping):
         return Case.from_dict(case)
-    if isinstance(case, str) and ("\n" in case or "=" in case):
+    if isinstance(case, str) and ("\n" in case or ("=" in case and not os.path.exists(case))):
         return Case.from_text(case)
     return Case.read(case)

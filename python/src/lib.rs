@@ -15,6 +15,7 @@ mod folder;
 mod knee;
 mod law;
 mod listener;
+mod processor;
 mod record;
 mod recorder;
 mod run;
@@ -25,6 +26,8 @@ use pyo3::prelude::*;
 /// The compiled part of condyle; use the package `condyle`.
 #[pymodule]
 mod _condyle {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::case::{RawCase, with_table};
     #[pymodule_export]
@@ -33,6 +36,12 @@ mod _condyle {
     use super::knee::RawKnee;
     #[pymodule_export]
     use super::run::{run_in_memory, run_into_folder};
+
+    /// Done before anything else.
+    #[pymodule_init]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        super::processor::check()
+    }
 
     /// Version of condyle.
     #[pymodule_export]

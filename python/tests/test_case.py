@@ -46,6 +46,12 @@ def test_a_case_keeps_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert pickle.loads(pickle.dumps(case)).replace({"friction": 0.05}).replace({"friction": 0.07}) == case
 
 
+def test_a_path_with_an_equals_sign_is_a_path(small: condyle.Case, tmp_path: Path) -> None:
+    small.write(tmp_path / "friction=0.07.toml")
+    assert condyle.run(str(tmp_path / "friction=0.07.toml"), fields=False).case == small
+    assert condyle.run("march.updates = 1", fields=False).updates == 1
+
+
 def test_a_check_says_what_the_command_says() -> None:
     check = condyle.Case.from_dict(SMALL).check()
     assert check.facts["side"] == "right" and check.warnings == []
