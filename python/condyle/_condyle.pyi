@@ -9,6 +9,16 @@ from ._raw import RawContact, RawCycle, RawRun
 from .laws import NodeCycle
 from .progress import Progress
 
+__all__ = [
+    "VERSION",
+    "RawCase",
+    "RawKnee",
+    "read_folder",
+    "run_in_memory",
+    "run_into_folder",
+    "with_table",
+]
+
 VERSION: Final[str]
 
 @final
