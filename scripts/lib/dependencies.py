@@ -16,6 +16,7 @@ from pathlib import Path
 
 CRATES_IO = "registry+https://github.com/rust-lang/crates.io-index"
 WORD = re.compile(r"\(|\)|/|[^\s()/]+")
+LICENCE = re.compile(r"[^\s()/]+(?: WITH [^\s()/]+)?")
 
 
 def used_packages():
@@ -79,7 +80,7 @@ def wrong_licences(packages, rules):
         licence = package["license"] or "no licence"
         if not is_allowed(licence, allow):
             yield f"{name(package)}: {licence} is not among the licences that deny.toml allows"
-    needed = {word for p in packages for word in WORD.findall(p["license"] or "")}
+    needed = {word for p in packages for word in LICENCE.findall(p["license"] or "")}
     for licence in sorted(allow - needed):
         yield f"deny.toml allows {licence}, which nothing has: remove it"
 

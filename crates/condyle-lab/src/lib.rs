@@ -11,6 +11,6 @@ pub mod studies;
 pub use at_rest::AtRest;
 pub use preview::{Expected, FemurFacts, InsertFacts, Preview};
 pub use run::{
-    Outcome, Reached, RunError, RunEvent, RunOptions, check, check_changed, run, run_case,
-    run_changed,
+    InMemory, Outcome, Reached, RunError, RunEvent, RunKeeper, RunOptions, check, check_changed,
+    run, run_case, run_changed, run_in_memory, settled,
 };

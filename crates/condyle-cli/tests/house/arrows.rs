@@ -27,6 +27,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle-report",
         ],
     ),
+    // What Python calls: the same calls, arrays in and out.
+    (
+        "condyle-python",
+        &["condyle", "condyle-fem", "condyle-io", "condyle-lab"],
+    ),
     // Cases with known answers: nobody uses it.
     (
         "condyle-verification",

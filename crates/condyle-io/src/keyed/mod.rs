@@ -15,6 +15,7 @@ mod document;
 mod file_reason;
 mod json_schema;
 pub(crate) mod key;
+mod key_at;
 mod key_reason;
 pub(crate) mod kind;
 mod limits;

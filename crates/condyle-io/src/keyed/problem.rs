@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::key_at::key_at;
 use super::reason::Reason;
 use super::source::Source;
 
@@ -61,6 +62,12 @@ impl Problem {
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let column = before[line_start..].chars().count() + 1;
         Some((before.matches('\n').count() + 1, column))
+    }
+
+    /// The dotted path of the key that it stands at, or of the table; none outside of any, or in a file of
+    /// other kind than TOML.
+    pub fn key(&self) -> Option<String> {
+        key_at(self.source.as_ref()?.inner(), self.span.as_ref()?)
     }
 
     /// Name of the file it is in.

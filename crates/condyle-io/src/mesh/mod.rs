@@ -26,6 +26,7 @@ mod vtk_binary;
 mod vtk_xml;
 mod vtp;
 mod vtu;
+mod vtu_triangles;
 mod vtu_write;
 
 pub use error::{FileLine, MeshFileError};
@@ -41,6 +42,7 @@ pub use pvd::{parse_pvd, pvd_text, pvd_text_of_parts};
 pub use stl::write_stl;
 pub use surface::{parse_surface, read_surface};
 pub use vtu::{VtuFile, parse_vtu_points};
+pub use vtu_triangles::parse_vtu_triangles;
 pub use vtu_write::{Grid, PointArray, PointValues, compact_vtu_bytes, vtu_bytes};
 
 pub(crate) use surface::surface_bytes;

@@ -16,13 +16,15 @@ const QUAD: i64 = 9;
 /// Cells of points and lines carry no volume and no face.
 const PASSED_OVER: [i64; 4] = [1, 2, 3, 4];
 
-/// A hexahedral mesh with its scalars at the nodes.
+/// A hexahedral mesh with its scalars and vectors at the nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VtuFile {
     /// The hexahedra and all nodes, as in the file.
     pub mesh: HexMesh,
     /// Name and one value a node, in the order of the file.
     pub point_data: Vec<(String, Vec<f64>)>,
+    /// Name and one vector a node, in the order of the file.
+    pub point_vectors: Vec<(String, Vec<[f64; 3]>)>,
 }
 
 impl VtuFile {
@@ -36,7 +38,7 @@ impl VtuFile {
 /// A `.vtu` of hexahedra with its point data, from the bytes of the file called `path`; nodes are
 /// numbered as in the file.
 ///
-/// Arrays of more than one component are left out. The shape of the elements is not judged, so
+/// Arrays of neither one nor three components are left out. The shape of the elements is not judged, so
 /// that a result can be looked at whatever became of it.
 ///
 /// # Errors
@@ -54,14 +56,24 @@ pub fn parse_vtu_points(path: &Path, bytes: &[u8]) -> Result<VtuFile, MeshFileEr
             hexes.push(corners.map(|node| node as u32));
         }
     }
-    let scalars = grid
-        .point_data
-        .into_iter()
-        .filter(|array| array.components == 1);
-    let point_data = scalars.map(|array| (array.name, array.values)).collect();
+    let (mut point_data, mut point_vectors) = (Vec::new(), Vec::new());
+    for array in grid.point_data {
+        match array.components {
+            1 => point_data.push((array.name, array.values)),
+            3 => {
+                let vectors = array.points().collect();
+                point_vectors.push((array.name, vectors));
+            }
+            _ => {}
+        }
+    }
     let hexes = hexes.into();
     let mesh = HexMesh { nodes, hexes };
-    Ok(VtuFile { mesh, point_data })
+    Ok(VtuFile {
+        mesh,
+        point_data,
+        point_vectors,
+    })
 }
 
 pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError> {
@@ -294,7 +306,12 @@ mod tests {
         let mesh = two_cubes();
         let depth: Vec<f64> = (0..12).map(|node| f64::from(node) / 7.0).collect();
         let flags = [0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1];
+        let along: Vec<[f64; 3]> = depth.iter().map(|&depth| [depth, 0.0, -depth]).collect();
         let arrays = [
+            PointArray {
+                name: "direction",
+                values: PointValues::Vectors(&along),
+            },
             PointArray {
                 name: "depth_mm",
                 values: PointValues::Float64(&depth),
@@ -309,6 +326,7 @@ mod tests {
         let points = parse_vtu_points(Path::new("a.vtu"), &bytes).unwrap();
         assert_eq!(points.mesh, mesh);
         assert_eq!(points.values("depth_mm").unwrap(), depth);
+        assert_eq!(points.point_vectors, [("direction".to_owned(), along)]);
         assert_eq!(points.values("articulating").unwrap(), flags.map(f64::from));
         let file = read(&bytes).unwrap();
         assert_eq!(file.mesh, mesh);

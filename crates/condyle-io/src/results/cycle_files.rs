@@ -85,13 +85,18 @@ pub fn insert_frame(
 /// # Errors
 /// None but those of [`compact_vtu_bytes`].
 pub fn femur_vtu(femur: &TriangleMesh, pose: &Pose, side: Side) -> Result<Vec<u8>, MeshFileError> {
+    let placed = femur_on_side(femur, pose, side);
+    compact_vtu_bytes(&Grid::triangles(&placed.vertices, &placed.triangles), &[])
+}
+
+/// The femur in the insert frame at a pose, in the knee of that side.
+pub fn femur_on_side(femur: &TriangleMesh, pose: &Pose, side: Side) -> TriangleMesh {
     let place = |vertex: &Vec3| point_on_side(&pose.to_insert(vertex), side);
-    let nodes: Vec<Vec3> = femur.vertices.iter().map(place).collect();
-    let triangles = femur.triangles.iter();
-    let triangles: Vec<[u32; 3]> = triangles
-        .map(|&corners| triangle_on_side(corners, side))
-        .collect();
-    compact_vtu_bytes(&Grid::triangles(&nodes, &triangles), &[])
+    let triangle = |&corners| triangle_on_side(corners, side);
+    TriangleMesh {
+        vertices: femur.vertices.iter().map(place).collect(),
+        triangles: femur.triangles.iter().map(triangle).collect(),
+    }
 }
 
 /// The `.pvd` file of a cycle: both bodies at every increment, the time in % of the cycle.

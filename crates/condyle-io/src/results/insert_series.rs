@@ -1,9 +1,8 @@
 //! `insert_*.vtu` and `insert.pvd`: the insert at each update, for ParaView.
 
-use condyle::Vec3;
 use condyle::evolve::{March, UpdateRecord};
 
-use super::sides::{mesh_on_side, point_on_side};
+use super::insert_fields::InsertFields;
 use crate::{
     case::Side,
     mesh::{MeshFileError, PointArray, PointValues, pvd_text, vtu_bytes},
@@ -20,57 +19,21 @@ pub fn insert_file_name(update: usize) -> String {
 /// # Errors
 /// None but those of [`vtu_bytes`].
 pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
-    let insert = march.insert();
-    let mesh = mesh_on_side(insert.mesh(), side);
-    let (surface, count) = (insert.surface_nodes(), mesh.nodes.len());
-    let scalars = |values: &[f64]| spread(surface, values, 0.0, count);
-    let fields = march.fields();
-    let mut arrays = vec![
-        ("wear_depth_mm", scalars(&fields.wear_depth_mm)),
-        ("depth_per_cycle_mm", scalars(&fields.depth_per_cycle_mm)),
-        ("peak_pressure_mpa", scalars(&fields.peak_pressure_mpa)),
-        ("sliding_distance_mm", scalars(&fields.sliding_distance_mm)),
-        ("cross_shear", scalars(&fields.cross_shear)),
-        ("thickness_mm", scalars(&fields.thickness_mm)),
-    ];
-    if let Some(law) = &march.test().creep {
-        let (depths, left_mm) = (&march.state().depths, march.state().creep.left_mm(law));
-        let none = vec![0.0; surface.len()];
-        let or_none = |values: Option<&[f64]>| scalars(values.unwrap_or(&none));
-        arrays.push(("creep_depth_mm", or_none(depths.creep_mm())));
-        let left_mm = Some(left_mm.as_slice()).filter(|left| !left.is_empty());
-        arrays.push(("creep_left_unloaded_mm", or_none(left_mm)));
-    }
-    let on_side = |vector: &[f64; 3]| point_on_side(&Vec3::from(*vector), side).into();
-    let directions: Vec<[f64; 3]> = fields.principal_direction.iter().map(on_side).collect();
-    let directions = spread(surface, &directions, [0.0; 3], count);
-    let articulating = spread(surface, &vec![1; surface.len()], 0, count);
-    let float = |(name, values)| PointArray {
+    let fields = InsertFields::of(march, side);
+    let scalars = fields.scalars.iter().map(|(name, values)| PointArray {
         name,
         values: PointValues::Float64(values),
-    };
-    let mut points: Vec<_> = arrays
-        .iter()
-        .map(|(name, values)| float((name, values)))
-        .collect();
-    points.push(PointArray {
-        name: "principal_direction",
-        values: PointValues::Vectors(&directions),
     });
+    let vectors = fields.vectors.iter().map(|(name, values)| PointArray {
+        name,
+        values: PointValues::Vectors(values),
+    });
+    let mut points: Vec<_> = scalars.chain(vectors).collect();
     points.push(PointArray {
         name: "articulating",
-        values: PointValues::UInt8(&articulating),
+        values: PointValues::UInt8(&fields.articulating),
     });
-    vtu_bytes(&mesh, &points)
-}
-
-/// Values at the `surface` nodes as values at all nodes, elsewhere `none`.
-fn spread<T: Copy>(surface: &[u32], values: &[T], none: T, nodes: usize) -> Vec<T> {
-    let mut all = vec![none; nodes];
-    for (&node, &value) in surface.iter().zip(values) {
-        all[node as usize] = value;
-    }
-    all
+    vtu_bytes(&fields.mesh, &points)
 }
 
 /// `insert.pvd`: the series of all files so far, with the cycles as time.

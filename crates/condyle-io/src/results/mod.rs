@@ -11,6 +11,7 @@ mod error_estimate;
 mod femur_pose;
 #[cfg(feature = "file-system")]
 mod folder;
+mod insert_fields;
 mod insert_series;
 mod law_wear;
 #[cfg(feature = "file-system")]
@@ -37,14 +38,15 @@ pub use checkpoint::{Checkpoint, CheckpointError};
 pub use checksums::{DamagedFile, check_file};
 pub use creep::{CreepSummary, Penetration, ScanLine};
 pub use cycle_files::{
-    BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pvd, femur_of_frames, femur_vtu, frame_name,
-    insert_frame,
+    BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pvd, femur_of_frames, femur_on_side, femur_vtu,
+    frame_name, insert_frame,
 };
 pub use cycle_motion::joint_range;
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, Quantity, QuantityErrors};
 pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
+pub use insert_fields::InsertFields;
 pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
 pub use law_wear::LawWear;
 #[cfg(feature = "file-system")]

@@ -52,7 +52,14 @@ impl Preview {
     /// # Errors
     /// Those of a run that cannot start.
     pub fn of(case_path: &Path, changes: &[Assignment], threads: usize) -> Result<Self, RunError> {
-        let case = changed(case_path, changes)?;
+        Self::of_case(changed(case_path, changes)?, threads)
+    }
+
+    /// The same of a case that is read already.
+    ///
+    /// # Errors
+    /// As [`Preview::of`].
+    pub fn of_case(case: Case, threads: usize) -> Result<Self, RunError> {
         let mut clock = Clock::default();
         let built = clock.time(|| build(&case, threads, &Cache::off()))?;
         let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();

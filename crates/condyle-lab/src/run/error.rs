@@ -1,6 +1,9 @@
 //! Why a run failed.
 
-use std::{io, path::PathBuf};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
 use condyle::evolve::{MarchError, PlacementError};
 use condyle_io::{
@@ -53,12 +56,12 @@ pub enum RunError {
         shown: Problems,
     },
     /// The physics.
-    #[error("{source}; what was computed is kept in {}", out.display())]
+    #[error("{source}{}", kept_in(out.as_deref()))]
     March {
         /// Why.
         source: MarchError,
-        /// Where the results so far are.
-        out: PathBuf,
+        /// Where the results so far are, if in a folder.
+        out: Option<PathBuf>,
     },
 }
 
@@ -110,4 +113,9 @@ impl RunError {
             | Self::March { .. } => None,
         }
     }
+}
+
+fn kept_in(out: Option<&Path>) -> String {
+    let kept = |out: &Path| format!("; what was computed is kept in {}", out.display());
+    out.map_or_else(String::new, kept)
 }

@@ -1,9 +1,14 @@
 //! What a run tells while it runs, and how it ends.
 
+use std::ops::ControlFlow;
+
 use condyle::evolve::{March, Progress, UpdateRecord};
 use condyle_io::results::Summary;
 
-/// How far a run has come on the disk.
+/// Hears of everything that happens, and may stop the run by breaking.
+pub(super) type Listener<'a> = dyn FnMut(RunEvent<'_>) -> ControlFlow<()> + 'a;
+
+/// How far a run has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
     /// Updates done.
@@ -35,7 +40,7 @@ pub enum RunEvent<'a> {
     Solved(Progress),
     /// All updates are done, and an increment is solved to estimate how accurate they are.
     Estimating,
-    /// An update is done and on the disk.
+    /// An update is done and kept.
     Updated(&'a UpdateRecord),
 }
 

@@ -1,19 +1,23 @@
-//! A case run into a results folder, from the start or from where it was stopped.
+//! A case run into a results folder, from the start or from where it was stopped; or into memory.
 
 mod bridged;
 mod clock;
 mod error;
 mod event;
+mod in_memory;
 mod memory;
 mod options;
 mod prepare;
 mod run_case;
+mod running;
+mod written;
 
 pub(crate) use clock::Clock;
 pub use error::RunError;
 pub use event::{Outcome, Reached, RunEvent};
+pub use in_memory::{InMemory, RunKeeper, run_in_memory};
 pub(crate) use memory::memory_mb;
 pub use options::RunOptions;
 pub(crate) use prepare::{build, changed, start};
-pub use prepare::{check, check_changed};
+pub use prepare::{check, check_changed, settled};
 pub use run_case::{run, run_case, run_changed};

@@ -34,6 +34,15 @@ pub fn check_changed(
     Ok((case, built.warnings))
 }
 
+/// The bodies of a case with the femur settled on the insert, before any cycle.
+///
+/// # Errors
+/// Those of a run that cannot start.
+pub fn settled(case: &Case, threads: usize, cache: &Cache) -> Result<March, RunError> {
+    let built = build(case, threads, cache)?;
+    start(case, built.test, &built.warnings)
+}
+
 /// The case at `case_path` with some of its values changed.
 pub(crate) fn changed(case_path: &Path, changes: &[Assignment]) -> Result<Case, RunError> {
     Case::read_changed(case_path, changes).map_err(|error| match error {

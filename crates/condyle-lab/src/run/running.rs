@@ -1,0 +1,195 @@
+//! A run on its way, wherever it is kept.
+
+use std::{ops::ControlFlow, path::Path, time::Duration};
+
+use condyle::{evolve::March, geometry::TriangleMesh, wear::NamedLaw};
+use condyle_io::{
+    cache::Cache,
+    case::{BuildWarning, Case},
+    results::{ActivitySummary, Checkpoint, LawWear, NeutralPose, Summary, SummaryInput},
+};
+
+use super::{
+    bridged::check_so_far,
+    clock::Clock,
+    error::RunError,
+    event::{Listener, Outcome, Reached, RunEvent},
+    prepare::{build, start},
+};
+use crate::{accuracy, plausibility};
+
+/// When a run began.
+pub(super) enum Begun {
+    /// It begins now.
+    Now,
+    /// Before, up to a checkpoint, in so many seconds.
+    Before(Box<Checkpoint>, f64),
+}
+
+/// What a run is done with.
+#[derive(Clone, Copy)]
+pub(super) struct Means<'a> {
+    pub threads: usize,
+    pub cache: &'a Cache,
+    /// The folder where it is kept, if in one.
+    pub out: Option<&'a Path>,
+    /// A law of wear that takes the place of the case's.
+    pub wear_law: Option<&'a NamedLaw>,
+}
+
+/// A run on its way.
+pub(super) struct Run<'a> {
+    pub case: &'a Case,
+    pub march: March,
+    means: Means<'a>,
+    inputs_blake3: String,
+    warnings: Vec<BuildWarning>,
+    clock: Clock,
+}
+
+/// Keeps what a run has found after an update.
+type Keep<'a, 'b> = dyn FnMut(&Run<'b>) -> Result<(), RunError> + 'a;
+
+impl<'a> Run<'a> {
+    /// Builds the bodies and starts the march, or goes on from a checkpoint.
+    pub fn begin(
+        case: &'a Case,
+        means: Means<'a>,
+        begun: Begun,
+        inputs_blake3: String,
+        on_event: &mut Listener<'_>,
+    ) -> Result<Self, RunError> {
+        let mut clock = Clock::default();
+        let mut built = clock.time(|| build(case, means.threads, means.cache))?;
+        for warning in &built.warnings {
+            let _ = on_event(RunEvent::Warning(warning.to_string()));
+        }
+        if let Some(named) = means.wear_law {
+            built.test.wear = named.law.clone();
+        }
+        let march = match begun {
+            Begun::Before(checkpoint, spent_s) => {
+                clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
+                clock.time(|| March::resume(built.test, checkpoint.state))
+            }
+            Begun::Now => clock.time(|| start(case, built.test, &built.warnings))?,
+        };
+        Ok(Self {
+            case,
+            march,
+            means,
+            inputs_blake3,
+            warnings: built.warnings,
+            clock,
+        })
+    }
+
+    /// The femur as triangles: those of its mesh, or about so many.
+    pub fn femur_triangles(&self, about: f64) -> Result<TriangleMesh, RunError> {
+        let triangles = self.case.femur_triangles(self.march.test(), about);
+        triangles.map_err(|source| RunError::of_build(self.case, source))
+    }
+
+    /// Time spent on the solver so far.
+    pub fn spent(&self) -> Duration {
+        self.clock.spent
+    }
+
+    /// Updates until all cycles are done or somebody asks to stop, then what it found.
+    pub fn complete(
+        &mut self,
+        keep: &mut Keep<'_, 'a>,
+        on_event: &mut Listener<'_>,
+    ) -> Result<Outcome, RunError> {
+        if self.march_on(keep, on_event)?.is_continue()
+            && let ControlFlow::Continue(summary) = self.summary(on_event)
+        {
+            return Ok(Outcome::Done(Box::new(summary)));
+        }
+        Ok(Outcome::Interrupted(Reached::by(&self.march)))
+    }
+
+    /// Updates until all cycles are done; a break if somebody asked to stop before.
+    fn march_on(
+        &mut self,
+        keep: &mut Keep<'_, 'a>,
+        on_event: &mut Listener<'_>,
+    ) -> Result<ControlFlow<()>, RunError> {
+        let mut flow = on_event(RunEvent::Started(Reached::by(&self.march)));
+        while !self.march.is_done() && flow.is_continue() {
+            let (march, clock) = (&mut self.march, &mut self.clock);
+            let mut watch = |progress| on_event(RunEvent::Solved(progress));
+            let updated = clock.time(|| march.update(&mut watch).map(|flow| flow.is_continue()));
+            let is_updated = updated.map_err(|source| RunError::March {
+                source,
+                out: self.means.out.map(Path::to_path_buf),
+            })?;
+            flow = self.updated(is_updated, keep, on_event)?;
+        }
+        // Whoever stops a run that is done has stopped nothing.
+        if self.march.is_done() {
+            flow = ControlFlow::Continue(());
+        }
+        Ok(flow)
+    }
+
+    /// Keeps an update, and tells of it; a break if there was none.
+    fn updated(
+        &self,
+        is_updated: bool,
+        keep: &mut Keep<'_, 'a>,
+        on_event: &mut Listener<'_>,
+    ) -> Result<ControlFlow<()>, RunError> {
+        let update = self.march.state().updates.last();
+        let Some(update) = update.filter(|_| is_updated) else {
+            return Ok(ControlFlow::Break(()));
+        };
+        keep(self)?;
+        check_so_far(self.case, &self.march, &self.warnings)?;
+        Ok(on_event(RunEvent::Updated(update)))
+    }
+
+    /// What the run found, with its error if the case asks for that; a break if somebody asked to stop.
+    fn summary(&self, on_event: &mut Listener<'_>) -> ControlFlow<(), Summary> {
+        let mut summary = self.summary_without_error();
+        if self.case.accuracy.estimate {
+            let mut watch = || on_event(RunEvent::Estimating);
+            let mut clock = Clock::default();
+            let error =
+                clock.time(|| accuracy::estimate(self.case, &self.march, &summary, &mut watch))?;
+            summary.error = error.map(|mut error| {
+                error.wall_s = clock.spent.as_secs_f64();
+                error
+            });
+        }
+        summary.plausibility = plausibility::warnings(&self.march, &summary);
+        ControlFlow::Continue(summary)
+    }
+
+    fn summary_without_error(&self) -> Summary {
+        Summary::new(SummaryInput {
+            state: self.march.state(),
+            increments: self.march.test().time.increments,
+            hexahedra: self.march.insert().mesh().hexes.len(),
+            articulating_nodes: self.march.insert().surface_nodes().len(),
+            wall_s: self.clock.spent.as_secs_f64(),
+            inputs_blake3: self.inputs_blake3.clone(),
+            warnings: self.warnings.iter().map(ToString::to_string).collect(),
+            error: None,
+            neutral_pose: NeutralPose::of(&self.march, self.case.heading.side),
+            wear_laws: self.wear_laws(),
+            activities: ActivitySummary::of(&self.march),
+        })
+        .expect("a march that is done has an update")
+    }
+
+    /// What every law says; the first has moved the surface, whether it is the case's or not.
+    fn wear_laws(&self) -> Vec<LawWear> {
+        let mut laws = LawWear::of(&self.march, &self.case.wear);
+        if let (Some(named), Some(first)) = (self.means.wear_law, laws.first_mut()) {
+            first.law = named.word.to_owned();
+            first.approximate = false;
+        }
+        laws
+    }
+}

@@ -1,0 +1,44 @@
+"""condyle: virtual wear tests of knee replacements.
+
+>>> import condyle
+>>> result = condyle.run({"march": {"updates": 1}, "accuracy": {"estimate": False}})
+>>> result.updates
+1
+
+Numbers have their unit in their names. What a case may say is in the book, and in ``Case.text`` of any.
+"""
+
+from __future__ import annotations
+
+from ._condyle import VERSION
+from .case import Case
+from .check import Check
+from .errors import BadInput, CondyleError, Interrupted, NotSolved, Problem
+from .knee import Contact, Cycle, Knee
+from .laws import NodeCycle
+from .progress import Bar, Progress
+from .result import Result
+from .run import open, run
+from .table import Table
+
+__version__ = VERSION
+
+__all__ = [
+    "BadInput",
+    "Bar",
+    "Case",
+    "Check",
+    "CondyleError",
+    "Contact",
+    "Cycle",
+    "Interrupted",
+    "Knee",
+    "NodeCycle",
+    "NotSolved",
+    "Problem",
+    "Progress",
+    "Result",
+    "Table",
+    "open",
+    "run",
+]

@@ -1,0 +1,102 @@
+"""Bodies from CAD files."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any
+
+from ._extras import extra
+from .errors import BadInput
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["read_step"]
+
+
+# OpenCASCADE looks at the deflection along edges and at some places of a face, and leaves up to 2.1 times what it is
+# asked for on a ball.
+_EXCEEDED = 2.5
+
+
+def read_step(
+    path: str | os.PathLike[str], *, deflection_mm: float = 0.01, angle_deg: float = 10.0
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The surface of all bodies in a STEP file as triangles, for ``Case.with_femur`` and ``with_insert``.
+
+    OpenCASCADE reads it (``pip install condyle[cad]``) and gives mm, whatever the unit of the file.
+
+    Args:
+        path: a STEP file.
+        deflection_mm: how far a triangle may be from the surface that it stands for, mm.
+        angle_deg: how far the normals of neighbouring triangles may turn on a curved face, degrees.
+
+    Returns:
+        Vertices in mm, shape (n, 3), each once; vertex numbers from 0, shape (m, 3), anticlockwise seen from outside.
+
+    Raises:
+        BadInput: a file that cannot be read or has no surface.
+    """
+    import numpy as np
+
+    if not (deflection_mm > 0.0 and angle_deg > 0.0):
+        raise BadInput(f"deflection_mm = {deflection_mm} and angle_deg = {angle_deg}: give both above 0")
+    shape = _shape(os.fspath(path))
+    mesh = extra("OCP.BRepMesh", "cad").BRepMesh_IncrementalMesh
+    mesh(shape, deflection_mm / _EXCEEDED, False, np.radians(angle_deg), False)
+    parts = [part for part in map(_triangles_of, _faces(shape)) if part is not None]
+    if not parts:
+        raise BadInput(f"{os.fspath(path)}: there is no surface in the file")
+    return _joined(parts)
+
+
+def _shape(path: str) -> Any:
+    control = extra("OCP.STEPControl", "cad")
+    reader = control.STEPControl_Reader()
+    if reader.ReadFile(path) != extra("OCP.IFSelect", "cad").IFSelect_RetDone:
+        raise BadInput(f"{path}: this is not a STEP file that can be read; see that it is there, and exported as STEP")
+    reader.TransferRoots()
+    shape = reader.OneShape()
+    if shape is None or shape.IsNull():
+        raise BadInput(f"{path}: there is no body in the file")
+    return shape
+
+
+def _faces(shape: Any) -> list[Any]:
+    kinds, explorer = extra("OCP.TopAbs", "cad"), extra("OCP.TopExp", "cad").TopExp_Explorer
+    casts = extra("OCP.TopoDS", "cad").TopoDS
+    cast = getattr(casts, "Face_s", None) or casts.Face
+    found, faces = explorer(shape, kinds.TopAbs_FACE), []
+    while found.More():
+        faces.append(cast(found.Current()))
+        found.Next()
+    return faces
+
+
+def _triangles_of(face: Any) -> NDArray[np.float64] | None:
+    """Corners of a face's triangles, mm: shape (m, 3, 3)."""
+    import numpy as np
+
+    place = extra("OCP.TopLoc", "cad").TopLoc_Location()
+    tool = extra("OCP.BRep", "cad").BRep_Tool
+    triangulation = (getattr(tool, "Triangulation_s", None) or tool.Triangulation)(face, place)
+    if triangulation is None:
+        return None
+    moved = place.Transformation()
+    nodes = [triangulation.Node(number + 1).Transformed(moved) for number in range(triangulation.NbNodes())]
+    places = np.array([(node.X(), node.Y(), node.Z()) for node in nodes])
+    corners = np.array([triangulation.Triangle(number + 1).Get() for number in range(triangulation.NbTriangles())]) - 1
+    reversed_face = face.Orientation() == extra("OCP.TopAbs", "cad").TopAbs_REVERSED
+    return places[corners[:, ::-1] if reversed_face else corners]
+
+
+def _joined(parts: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Triangles of all faces between vertices that are one where faces meet, and none without an area."""
+    import numpy as np
+
+    corners = np.concatenate(parts).reshape(-1, 3)
+    _, first, number = np.unique(corners.round(6), axis=0, return_index=True, return_inverse=True)
+    triangles = number.reshape(-1, 3)
+    a, b, c = triangles.T
+    return corners[first], triangles[(a != b) & (b != c) & (c != a)]

@@ -1,0 +1,214 @@
+"""Cases: what a wear test is made of."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _condyle
+from ._ply import ply_bytes
+from ._toml import document, value_text
+from .check import Check
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    from numpy.typing import ArrayLike
+
+__all__ = ["Case", "CaseLike"]
+
+
+class Case:
+    """A wear test as its file describes it, checked, with every default filled in.
+
+    It does not change: what looks like a change gives another case. Two cases are equal, and have equal hashes, if
+    they say the same and their meshes hold the same bytes, wherever those lie. Cases can be pickled.
+
+    >>> case = Case.from_dict({"contact": {"friction": 0.05}})
+    >>> lower = case.replace({"contact.friction": 0.04, "march.updates": 5})
+    >>> lower["contact.friction"], lower == case
+    (0.04, False)
+    >>> lower.replace({"contact.friction": 0.05, "march.updates": 10}) == case
+    True
+    """
+
+    __slots__ = ("_base", "_changes", "_files", "_hash", "_path", "_raw", "_text")
+
+    def __init__(
+        self,
+        path: str,
+        text: str,
+        base: str,
+        files: Mapping[str, bytes] | None = None,
+        changes: tuple[str, ...] = (),
+    ) -> None:
+        """Use :meth:`read`, :meth:`from_text` or :meth:`from_dict`."""
+        self._path, self._text, self._base, self._changes = path, text, base, changes
+        self._files = dict(files or {})
+        self._raw = _condyle.RawCase(path, text, base, self._files, changes)
+        self._hash: str | None = None
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Case:
+        """Reads the case file at ``path``; paths in it count from its folder.
+
+        Raises:
+            BadInput: with everything that is wrong, each thing at its place.
+        """
+        return cls(os.fspath(path), _condyle.RawCase.read_text(path), os.getcwd())
+
+    @classmethod
+    def from_text(cls, text: str, *, folder: str | os.PathLike[str] = ".", name: str = "case") -> Case:
+        """Reads a case from TOML; paths in it count from ``folder``, and messages call it ``name``.
+
+        >>> Case.from_text("[march]\\nupdates = 5")["march.updates"]
+        5
+        """
+        return cls(name, text, os.path.abspath(folder))
+
+    @classmethod
+    def from_dict(cls, tables: Mapping[str, Any], *, folder: str | os.PathLike[str] = ".") -> Case:
+        """Makes a case of nested dictionaries, as :meth:`to_dict` gives them; what is ``None`` is left out."""
+        return cls.from_text(document(tables), folder=folder, name="dictionary")
+
+    def replace(self, changes: Mapping[str, Any]) -> Case:
+        """The same with other values of some keys, as ``condyle run --set`` takes them.
+
+        Args:
+            changes: a value for each key; a key is a dotted path such as ``"contact.friction"``, or the last word
+                of one where only one key has it. A wear law that is set takes the place of the case's with all of its
+                constants.
+
+        Raises:
+            BadInput: a key that the case does not have, or a value outside of its range.
+        """
+        written = tuple(f"{key}={value_text(value)}" for key, value in changes.items())
+        return Case(self._path, self._text, self._base, self._files, self._changes + written)
+
+    def with_femur(self, vertices: ArrayLike, triangles: ArrayLike, **keys: Any) -> Case:
+        """The same with a femoral component of triangles.
+
+        Args:
+            vertices: places, shape (n, 3), in the unit and axes that ``length_unit`` and ``axes`` say; by default mm,
+                x anterior, y superior, z to the right.
+            triangles: vertex numbers from 0, shape (m, 3), anticlockwise seen from outside.
+            **keys: other keys of ``[femur]``, such as ``start_mm``; those of the case's own femur are left out.
+        """
+        return self._with_body("femur", vertices, triangles, keys)
+
+    def with_insert(self, vertices: ArrayLike, triangles: ArrayLike, **keys: Any) -> Case:
+        """The same with an insert of triangles: closed, or an open articulating surface with ``thickness_mm``.
+
+        Args:
+            vertices: places, shape (n, 3), as for :meth:`with_femur`.
+            triangles: vertex numbers from 0, shape (m, 3), anticlockwise seen from outside.
+            **keys: other keys of ``[insert]``, such as ``edge_mm``; those of the case's own insert are left out.
+        """
+        return self._with_body("insert", vertices, triangles, keys)
+
+    def check(self, *, threads: int = 1) -> Check:
+        """Goes as far as a run goes before its first cycle: meshes, and that the femur settles on the insert.
+
+        >>> check = Case.from_text("").check()
+        >>> check.facts["insert"]["hexahedra"]
+        9108
+
+        Raises:
+            BadInput: bodies that make no knee.
+            NotSolved: a femur that does not come to rest.
+        """
+        facts, picture_svg = self._raw.preview(threads)
+        return Check(json.loads(facts), picture_svg)
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Writes the case with every default to ``path``, and bodies that came as arrays as .ply files beside it."""
+        target = Path(path).absolute()
+        text = self.written_in(target.parent)._raw.toml_in(target.parent)
+        target.write_text(text, encoding="utf-8")
+
+    def written_in(self, folder: str | os.PathLike[str]) -> Case:
+        """The same case with bodies that came as arrays written into ``folder``, as .ply files that it then names."""
+        if not self._files:
+            return self
+        text = self.text
+        for name, data in self._files.items():
+            file = Path(folder).absolute() / Path(name).name
+            file.write_bytes(data)
+            text = text.replace(value_text(name), value_text(str(file)))
+        return Case(self._path, text, self._base)
+
+    @property
+    def text(self) -> str:
+        """The case as run, as TOML: every default written out, waveforms as points."""
+        return self._raw.toml()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The case as run, as nested dictionaries."""
+        return json.loads(self._raw.json())
+
+    def __getitem__(self, key: str) -> Any:
+        """The value of the key at a dotted path; its unit is in its name."""
+        value: Any = self.to_dict()
+        for name in key.split("."):
+            value = value[name]
+        return value
+
+    @property
+    def inputs_blake3(self) -> str:
+        """Hash of the case and of the bytes of its meshes, as in ``summary.json``."""
+        if self._hash is None:
+            self._hash = self._raw.inputs_blake3()
+        return self._hash
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Case) and self.inputs_blake3 == other.inputs_blake3
+
+    def __hash__(self) -> int:
+        return hash(self.inputs_blake3)
+
+    def __repr__(self) -> str:
+        return f"<condyle.Case {self['title']!r}, {self._path}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Case, (self._path, self._text, self._base, self._files, self._changes)
+
+    def _with_body(self, body: str, vertices: ArrayLike, triangles: ArrayLike, keys: dict[str, Any]) -> Case:
+        data = ply_bytes(vertices, triangles, body)
+        # The same bytes have the same name, whichever folder they are written into; no folder of a disk is called so.
+        name = f"/arrays/{body}-{hashlib.blake2b(data, digest_size=6).hexdigest()}.ply"
+        table = document({"shape": "mesh", "file": name, **keys})
+        text = _condyle.with_table(self.text if self._changes else self._text, body, table)
+        files = {file: kept for file, kept in self._files.items() if file in text}
+        return Case(self._path, text, self._base, {**files, name: data})
+
+    @property
+    def compiled(self) -> _condyle.RawCase:
+        """The compiled case, for the package itself."""
+        return self._raw
+
+    @property
+    def has_arrays(self) -> bool:
+        """Whether a body of it came as arrays, and is in no file yet."""
+        return bool(self._files)
+
+
+if TYPE_CHECKING:
+    CaseLike: TypeAlias = Case | str | os.PathLike[str] | Mapping[str, Any]
+    """A case, the path of one, its text, or nested dictionaries."""
+else:
+    CaseLike = "CaseLike"
+
+
+def case_of(case: CaseLike) -> Case:
+    """``case`` as a :class:`Case`; text is TOML if it has lines, or a ``=`` and no file is called so, and else a path."""
+    if isinstance(case, Case):
+        return case
+    if isinstance(case, Mapping):
+        return Case.from_dict(case)
+    if isinstance(case, str) and ("\n" in case or ("=" in case and not os.path.exists(case))):
+        return Case.from_text(case)
+    return Case.read(case)

@@ -1,0 +1,82 @@
+"""A result as a data set of xarray."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ._extras import extra
+from .femur import rows_of_cycle
+from .result import check_fields
+from .units import unit_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    import xarray as xr
+    from numpy.typing import NDArray
+
+    from .result import Result
+    from .table import Table
+
+__all__ = ["data_set"]
+
+
+def data_set(result: Result) -> xr.Dataset:
+    """Everything that a run found."""
+    import numpy as np
+
+    xarray = extra("xarray", "xarray")
+    check_fields(result)
+    variables = {**_at_nodes(result), **_by_update(result.wear), **_by_increment(result.kinematics)}
+    places = result.points_mm[0]
+    kinematics = result.kinematics
+    first = rows_of_cycle(kinematics["cycles"], "first")
+    coordinates = {
+        "cycles": ("update", result.update_cycles, {"long_name": "gait cycles done"}),
+        "component": ["x", "y", "z"],
+        "cycle": ["first", "last"][: len(np.unique(kinematics["cycles"]))],
+        "percent": ("increment", kinematics["percent"][first], {"units": "%", "long_name": "part of the cycle"}),
+        "articulating": ("node", result.articulating),
+        **{f"{axis}_mm": ("node", places[:, number], {"units": "mm"}) for number, axis in enumerate("xyz")},
+    }
+    return xarray.Dataset(variables, coordinates, {"condyle": result.version, "inputs_blake3": result.inputs_blake3})
+
+
+def _described(dimensions: tuple[str, ...], values: NDArray[np.float64], name: str) -> tuple[Any, ...]:
+    return dimensions, values, {"units": unit_of(name) or "1", "long_name": name.replace("_", " ")}
+
+
+def _at_nodes(result: Result) -> dict[str, Any]:
+    def described(name: str, values: NDArray[np.float64]) -> tuple[Any, ...]:
+        dimensions = ("update", "node", "component")[: values.ndim]
+        return _described(dimensions, values, name)
+
+    fields = {name: described(name, values) for name, values in result.fields.items()}
+    return {"points_mm": described("points_mm", result.points_mm), **_apart(fields, "node_")}
+
+
+def _apart(fields: dict[str, Any], prefix: str) -> dict[str, Any]:
+    """Fields whose name a table has too get a prefix."""
+    return {prefix + name if name == "peak_pressure_mpa" else name: values for name, values in fields.items()}
+
+
+def _by_update(table: Table) -> dict[str, Any]:
+    """The unworn insert, update 0, has no row in the table: it is NaN there."""
+    import numpy as np
+
+    def from_unworn(name: str) -> NDArray[np.float64]:
+        return np.concatenate([[np.nan], table[name]])
+
+    return {name: _described(("update",), from_unworn(name), name) for name in table if name != "cycles"}
+
+
+def _by_increment(table: Table) -> dict[str, Any]:
+    import numpy as np
+
+    cycles = np.unique(table["cycles"])
+
+    def by_cycle(name: str) -> NDArray[np.float64]:
+        return table[name].reshape(len(cycles), -1)
+
+    names = [name for name in table if name not in ("cycles", "percent")]
+    own = {name: "cycle_peak_pressure_mpa" if name == "peak_pressure_mpa" else name for name in names}
+    return {own[name]: _described(("cycle", "increment"), by_cycle(name), name) for name in names}

@@ -1,0 +1,37 @@
+"""Where the femur is through a cycle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from .result import Result
+
+__all__ = ["femur_points_at", "rows_of_cycle"]
+
+
+def rows_of_cycle(cycles: NDArray[np.float64], cycle: Literal["first", "last"]) -> NDArray[np.bool_]:
+    """Which rows of a column ``cycles`` are of that cycle."""
+    return cycles == (cycles.min() if cycle == "first" else cycles.max())
+
+
+def femur_points_at(
+    result: Result, increment: int, cycle: Literal["first", "last"] = "first"
+) -> NDArray[np.float64]:
+    """Vertices of the femur at the end of an increment, from 0, of one of the two cycles, mm: shape (vertices, 3).
+
+    A point p of the femoral frame is at R p + t; what is kept of the femur is where it stands at neutral.
+    """
+    import numpy as np
+
+    neutral = result.neutral_pose
+    origin, rotation = np.array(neutral["femoral_origin_mm"]), np.array(neutral["rotation"])
+    in_femoral_frame = (result.femur_points_mm - origin) @ rotation
+    table = result.femur_pose
+    row = table.array[rows_of_cycle(table["cycles"], cycle)][increment]
+    first = table.columns.index("origin_x_mm")
+    there, turned = row[first : first + 3], row[first + 3 : first + 12].reshape(3, 3)
+    return in_femoral_frame @ turned.T + there

@@ -1,0 +1,42 @@
+"""Wear laws of one's own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["NodeCycle"]
+
+
+class NodeCycle(NamedTuple):
+    """What one node of the articulating surface goes through in the mean cycle of all activities.
+
+    A wear law gives the depth that one such cycle wears, mm. Archard's, with Kw in mm3/(N m):
+
+    >>> import condyle
+    >>> def archard(cycle: condyle.NodeCycle) -> float:
+    ...     return 2.64e-7 * cycle.pressure_slip_mpa_mm / 1000.0
+    >>> case = condyle.Case.from_dict({"march": {"updates": 1}, "accuracy": {"estimate": False}})
+    >>> own = condyle.run(case.replace({"wear.wear_factor_mm3_per_nm": 2.64e-7}), wear_law=archard)
+    >>> own.wear_laws[0]["law"]
+    'python'
+    """
+
+    pressure_mpa: NDArray[np.float64]
+    """Mean pressure on the node's share of the surface at every instant of contact, MPa: shape (instants,)."""
+    slip_mm: NDArray[np.float64]
+    """Slip of the femur past the insert in each instant, along the surface's anterior and lateral directions, mm: shape
+    (instants, 2)."""
+    share: NDArray[np.float64]
+    """Part of all cycles that the instant's activity has: shape (instants,)."""
+    peak_pressure_mpa: float
+    """Highest of the pressures, MPa."""
+    sliding_distance_mm: float
+    """Sum of share times slip, mm."""
+    pressure_slip_mpa_mm: float
+    """Sum of share times pressure times slip, MPa mm."""
+    cross_shear: float
+    """What of pressure times slip goes across the principal direction, 0 to 0.5."""

@@ -1,0 +1,25 @@
+//! Files of a case: some in memory, all others on the disk.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use condyle_io::files::{Disk, Files, MemoryFiles};
+
+/// Files in memory over those on the disk, where relative paths count from a folder that stays what it was.
+#[derive(Debug)]
+pub struct FilesOfCase {
+    pub memory: MemoryFiles,
+    pub base: PathBuf,
+}
+
+impl Files for FilesOfCase {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let in_memory = self.memory.read(path);
+        in_memory.or_else(|_| Disk.read(&self.base.join(path)))
+    }
+
+    fn find(&self, written: &str, folder: &Path) -> Result<PathBuf, PathBuf> {
+        let in_memory = self.memory.find(written, folder);
+        in_memory.or_else(|_| Disk.find(written, &self.base.join(folder)))
+    }
+}

@@ -1,0 +1,87 @@
+//! A wear law that is a function of Python: slow, since every node that slides is one call.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use condyle::wear::{MeanCycle, NamedLaw, NodeWear, WearLaw};
+use pyo3::prelude::*;
+
+use crate::arrays::array;
+
+/// The word for a law that Python gives.
+const WORD: &str = "python";
+
+/// What a law raised, for whoever runs it: a law of wear itself cannot fail.
+pub type Raised = Arc<Mutex<Option<PyErr>>>;
+
+/// A wear law that is a function of Python.
+#[derive(Debug)]
+struct LawOfPython {
+    function: Py<PyAny>,
+    raised: Raised,
+}
+
+/// The law that calls `function` with a `condyle.NodeCycle`, and what it raises first.
+pub fn law_of(function: Py<PyAny>) -> (NamedLaw, Raised) {
+    let raised = Raised::default();
+    let law = LawOfPython {
+        function,
+        raised: Arc::clone(&raised),
+    };
+    let law = Arc::new(law);
+    (NamedLaw { word: WORD, law }, raised)
+}
+
+/// What a law has raised so far.
+pub fn taken(raised: &Raised) -> Option<PyErr> {
+    raised.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+impl WearLaw for LawOfPython {
+    fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
+        if cycle.pressure_slip_mpa_mm == 0.0 {
+            return NodeWear::of_depth(0.0);
+        }
+        let depth_mm = Python::attach(|py| self.depth_mm(py, cycle));
+        NodeWear::of_depth(depth_mm.unwrap_or_else(|error| self.failed(error)))
+    }
+}
+
+impl LawOfPython {
+    fn depth_mm(&self, py: Python<'_>, cycle: &MeanCycle<'_>) -> PyResult<f64> {
+        let answer = self.function.bind(py).call1((node_cycle(py, cycle)?,))?;
+        let depth_mm: f64 = answer.extract()?;
+        if depth_mm.is_finite() && depth_mm >= 0.0 {
+            return Ok(depth_mm);
+        }
+        let said =
+            format!("a wear law gave {depth_mm} as the depth of a cycle; give mm, 0 or more");
+        Err(pyo3::exceptions::PyValueError::new_err(said))
+    }
+
+    /// Remembers the first error; the run is stopped at its next increment.
+    fn failed(&self, error: PyErr) -> f64 {
+        let mut raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
+        raised.get_or_insert(error);
+        0.0
+    }
+}
+
+/// A `condyle.NodeCycle`.
+fn node_cycle<'py>(py: Python<'py>, cycle: &MeanCycle<'_>) -> PyResult<Bound<'py, PyAny>> {
+    let (mut shares, mut pressures, mut slips) = (Vec::new(), Vec::new(), Vec::new());
+    for (share, moment) in cycle.moments() {
+        shares.push(share);
+        pressures.push(moment.pressure_mpa);
+        slips.extend(moment.slip_mm);
+    }
+    let instants = shares.len();
+    py.import("condyle.laws")?.getattr("NodeCycle")?.call1((
+        array(py, pressures, [instants])?,
+        array(py, slips, [instants, 2])?,
+        array(py, shares, [instants])?,
+        cycle.peak_pressure_mpa,
+        cycle.sliding_distance_mm,
+        cycle.pressure_slip_mpa_mm,
+        cycle.slip_work.cross_shear(),
+    ))
+}

@@ -1,0 +1,83 @@
+//! Cases run, in memory or into a folder.
+
+use std::path::PathBuf;
+
+use condyle_io::cache::Cache;
+use condyle_lab::{InMemory, Outcome, RunError, RunOptions};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::case::RawCase;
+use crate::law::law_of;
+use crate::listener::Listener;
+use crate::recorder::Recorder;
+use crate::{errors, folder};
+
+/// Runs a case in memory; `progress` is called with a `condyle.Progress`, and `wear_law` with a `condyle.NodeCycle`.
+#[pyfunction]
+#[pyo3(signature = (case, threads, keeps_fields, progress=None, wear_law=None))]
+pub fn run_in_memory<'py>(
+    py: Python<'py>,
+    case: &RawCase,
+    threads: usize,
+    keeps_fields: bool,
+    progress: Option<Py<PyAny>>,
+    wear_law: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let case = &case.case;
+    let (wear_law, raised) = wear_law.map(law_of).unzip();
+    let how = InMemory {
+        threads,
+        cache: Cache::of_user(),
+        wear_law,
+    };
+    let mut listener = Listener::new(progress, raised);
+    let mut recorder = Recorder::new(case, keeps_fields);
+    let outcome = py.detach(|| {
+        condyle_lab::run_in_memory(case, &how, &mut recorder, &mut |event| {
+            listener.hear(&event)
+        })
+    });
+    let outcome = ended(outcome, listener)?;
+    let (Outcome::Done(summary) | Outcome::DoneBefore(summary)) = outcome else {
+        unreachable!("a run that was interrupted is an exception");
+    };
+    recorder.into_record(Some(&summary)).into_python(py)
+}
+
+/// Runs a case into the folder `out`, and reads that.
+#[pyfunction]
+#[pyo3(signature = (case, threads, out, resume, force, progress=None))]
+pub fn run_into_folder<'py>(
+    py: Python<'py>,
+    case: &RawCase,
+    threads: usize,
+    out: PathBuf,
+    resume: bool,
+    force: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let case = &case.case;
+    let options = RunOptions {
+        out,
+        resume,
+        force,
+        threads,
+        cache: Cache::of_user(),
+    };
+    let mut listener = Listener::new(progress, None);
+    let outcome =
+        py.detach(|| condyle_lab::run_case(case, &options, &mut |event| listener.hear(&event)));
+    ended(outcome, listener)?;
+    py.detach(|| folder::read(&options.out))?.into_python(py)
+}
+
+/// How a run ended; one that did not come to its end is an exception.
+fn ended(outcome: Result<Outcome, RunError>, listener: Listener) -> PyResult<Outcome> {
+    match (outcome, listener.raised()) {
+        (_, Some(raised)) => Err(raised),
+        (Err(error), None) => Err(errors::of_run(&error)),
+        (Ok(Outcome::Interrupted(reached)), None) => Err(errors::interrupted(&reached)),
+        (Ok(outcome), None) => Ok(outcome),
+    }
+}

@@ -1,0 +1,43 @@
+"""Pictures show what the numbers say."""
+
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import condyle
+
+matplotlib.use("Agg")
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+def test_maps_show_the_articulating_surface(result: condyle.Result) -> None:
+    for draw, field in [(result.plot.wear_map, "wear_depth_mm"), (result.plot.pressure, "peak_pressure_mpa")]:
+        axes = draw()
+        (drawn,) = axes.collections
+        assert drawn.get_array().max() == result.fields[field][-1].max()
+        assert "medial" in axes.get_xlabel().split("<")[0], "a right knee has medial at the left, seen from above"
+        axes.figure.canvas.draw()
+
+
+def test_maps_take_axes_and_an_update(result: condyle.Result) -> None:
+    _, axes = plt.subplots()
+    assert result.plot.wear_map(update=1, ax=axes) is axes
+    assert axes.get_title() == "after 1.66667 million cycles"
+
+
+def test_the_curve_ends_at_the_mass(result: condyle.Result) -> None:
+    axes = result.plot.wear_curve()
+    assert axes.lines[0].get_ydata()[-1] == result.mass_loss_mg
+
+
+def test_kinematics_show_both_cycles(result: condyle.Result) -> None:
+    figure = result.plot.kinematics()
+    assert len(figure.axes) == 6 and all(len(axes.lines) == 2 for axes in figure.axes)
+    force = figure.axes[1].lines[0].get_ydata()
+    assert np.array_equal(force, result.kinematics["axial_force_n"][:60])

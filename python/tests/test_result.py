@@ -1,0 +1,95 @@
+"""Results: their numbers, arrays and what they become."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import condyle
+
+
+def test_every_number_of_the_summary_is_documented(result: condyle.Result) -> None:
+    documented = set(condyle.Result.__annotations__)
+    assert documented == set(result.summary)
+    assert all(getattr(result, name) == result.summary[name] for name in documented)
+
+
+def test_a_column_is_a_view(result: condyle.Result) -> None:
+    mass = result.wear["mass_loss_mg"]
+    assert np.shares_memory(mass, result.wear.array)
+    assert mass[-1] == result.mass_loss_mg and result.wear.units["mass_loss_mg"] == "mg"
+    with pytest.raises(KeyError, match="there are cycles, mass_loss_mg"):
+        result.wear["mass"]
+
+
+def test_fields_agree_with_the_table(result: condyle.Result) -> None:
+    assert np.array_equal(result.fields["wear_depth_mm"].max(axis=1)[1:], result.wear["max_depth_mm"])
+    assert result.update_cycles.tolist() == [0.0, *result.wear["cycles"]]
+    assert not result.fields["wear_depth_mm"][:, ~result.articulating].any()
+    sunk_mm = np.linalg.norm(result.points_mm[-1] - result.points_mm[0], axis=1)[result.articulating]
+    depth_mm = result.fields["wear_depth_mm"][-1][result.articulating]
+    assert np.allclose(sunk_mm, depth_mm, atol=2e-3), "nodes move along their normals by the depth"
+
+
+def test_volume_lost_is_that_between_the_meshes(result: condyle.Result) -> None:
+    def volume_mm3(points: np.ndarray) -> float:
+        corners = points[result.hexes]
+        tetrahedra = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
+        parts = [np.linalg.det(corners[:, [b, c, d]] - corners[:, [a]]) for a, b, c, d in tetrahedra]
+        return float(sum(parts).sum() / 6.0)  # type: ignore[union-attr]
+
+    lost = volume_mm3(result.points_mm[0]) - volume_mm3(result.points_mm[-1])
+    assert lost == pytest.approx(result.volume_loss_mesh_mm3, rel=0.01)
+
+
+def test_a_result_without_fields_is_small(small: condyle.Case, result: condyle.Result) -> None:
+    lean = condyle.run(small, fields=False)
+    assert lean.mass_loss_mg == result.mass_loss_mg and not lean.fields
+    with pytest.raises(condyle.CondyleError, match="fields=True"):
+        lean.to_xarray()
+    assert len(pickle.dumps(lean)) < 200_000 + result.femur_points_mm.nbytes + result.femur_triangles.nbytes
+
+
+def test_a_result_is_pickled(result: condyle.Result) -> None:
+    again = pickle.loads(pickle.dumps(result))
+    assert again.summary == result.summary and np.array_equal(again.wear.array, result.wear.array)
+
+
+def test_pandas(result: condyle.Result) -> None:
+    frame = result.to_pandas()
+    assert frame["mass_loss_mg"].iloc[-1] == result.mass_loss_mg
+    assert frame.attrs["units"]["max_depth_mm"] == "mm"
+    assert len(result.kinematics.to_pandas()) == 120
+
+
+def test_xarray(result: condyle.Result) -> None:
+    data = result.to_xarray()
+    assert {"update": 4, "cycle": 2, "increment": 60, "component": 3}.items() <= dict(data.sizes).items()
+    assert data["wear_depth_mm"].attrs["units"] == "mm" and data["ap_mm"].dims == ("cycle", "increment")
+    assert float(data["wear_depth_mm"].max()) == result.max_depth_mm
+    assert float(data["mass_loss_mg"][-1]) == result.mass_loss_mg and bool(data["mass_loss_mg"][0].isnull())
+    pressed = data["node_peak_pressure_mpa"].isel(node=data["articulating"].values)
+    assert pressed.sizes["node"] == result.articulating_nodes
+    range_mm = float(data["ap_mm"].sel(cycle="first").max() - data["ap_mm"].sel(cycle="first").min())
+    assert range_mm == pytest.approx(result.ap_range_mm)
+
+
+def test_pyvista(result: condyle.Result) -> None:
+    scene = result.to_pyvista()
+    assert scene["insert"].n_cells == result.hexahedra
+    assert scene["insert"].volume == pytest.approx(result.to_pyvista(0)["insert"].volume - result.volume_loss_mesh_mm3, rel=1e-4)
+    assert np.array_equal(scene["femur"].points, result.femur_points_mm)
+
+
+def test_the_femur_rests_on_the_insert_through_the_cycle(result: condyle.Result) -> None:
+    for increment in (0, 20, 59):
+        scene = result.to_pyvista(0, increment, "first")
+        near = scene["femur"].compute_implicit_distance(scene["insert"].extract_surface(algorithm="dataset_surface"))
+        deepest_mm = -near["implicit_distance"].min()
+        assert 0.0 < deepest_mm < 1.0, "it presses, and by less than a millimetre"
+
+
+def test_a_left_knee_is_the_mirror_image(small: condyle.Case, result: condyle.Result) -> None:
+    left = condyle.run({**small.to_dict(), "side": "left"})
+    assert left.mass_loss_mg == result.mass_loss_mg
+    assert np.array_equal(left.points_mm * [1.0, 1.0, -1.0], result.points_mm)
