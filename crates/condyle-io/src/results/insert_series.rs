@@ -2,6 +2,7 @@
 
 use condyle::Vec3;
 use condyle::evolve::{March, UpdateRecord};
+use condyle_fem::HexMesh;
 
 use super::sides::{mesh_on_side, point_on_side};
 use crate::{
@@ -41,6 +42,23 @@ pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
         let left_mm = Some(left_mm.as_slice()).filter(|left| !left.is_empty());
         arrays.push(("creep_left_unloaded_mm", or_none(left_mm)));
     }
+    let under = march.state().under_surface.as_ref();
+    let plastic = under.and_then(|under| under.plastic.as_ref());
+    if let Some(under) = under {
+        let around = |values: &[f64]| mean_around(&mesh, values);
+        arrays.push(("von_mises_mpa", around(&under.von_mises_mpa)));
+        arrays.push(("max_shear_mpa", around(&under.max_shear_mpa)));
+    }
+    if let Some(plastic) = plastic {
+        arrays.push(("permanent_set_mm", scalars(&plastic.permanent_set_mm)));
+        arrays.push((
+            "plastic_strain",
+            most_around(&mesh, &plastic.plastic_strain),
+        ));
+        let regimes = plastic.regime.iter();
+        let regimes: Vec<f64> = regimes.map(|regime| f64::from(regime.number())).collect();
+        arrays.push(("plastic_regime", most_around(&mesh, &regimes)));
+    }
     let on_side = |vector: &[f64; 3]| point_on_side(&Vec3::from(*vector), side).into();
     let directions: Vec<[f64; 3]> = fields.principal_direction.iter().map(on_side).collect();
     let directions = spread(surface, &directions, [0.0; 3], count);
@@ -62,6 +80,31 @@ pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
         values: PointValues::UInt8(&articulating),
     });
     vtu_bytes(&mesh, &points)
+}
+
+/// Values of elements as values at nodes: the mean of those around each.
+fn mean_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); mesh.nodes.len()];
+    for (hex, value) in mesh.hexes.iter().zip(values) {
+        for &node in hex {
+            let (sum, count) = &mut sums[node as usize];
+            *sum += value;
+            *count += 1.0;
+        }
+    }
+    let mean = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { 0.0 };
+    sums.into_iter().map(mean).collect()
+}
+
+/// Values of elements as values at nodes: the largest of those around each.
+fn most_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
+    let mut most = vec![0.0; mesh.nodes.len()];
+    for (hex, &value) in mesh.hexes.iter().zip(values) {
+        for &node in hex {
+            most[node as usize] = value.max(most[node as usize]);
+        }
+    }
+    most
 }
 
 /// Values at the `surface` nodes as values at all nodes, elsewhere `none`.

@@ -51,6 +51,11 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
         self.tile_of.len()
     }
 
+    /// The tile of a node.
+    pub fn tile_of(&self, node: u32) -> u32 {
+        self.tile_of[node as usize]
+    }
+
     /// The compliance of some nodes, and of others.
     pub fn near(&self, nodes: impl Iterator<Item = u32>) -> RwLockReadGuard<'_, NearMatrix> {
         let near = self.read();
