@@ -40,7 +40,7 @@ pub struct PlasticSummary {
     pub max_plastic_strain: f64,
     /// Elements that have yielded.
     pub yielded_elements: usize,
-    /// Of these, elements that yield in every cycle still, by more than a strain of 1e-6 a cycle.
+    /// Of these, elements that yield in every cycle still, by more than a strain of 1e-5 a cycle.
     pub ratcheting_elements: usize,
 }
 

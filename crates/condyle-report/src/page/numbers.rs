@@ -233,7 +233,7 @@ const GROUPS: [(&str, &[Known]); 5] = [
                 "ratcheting_elements",
                 "Elements that yield in every cycle",
                 "",
-                "By more than a strain of 1e-6 in the last cycle; the others have shaken down.",
+                "By more than a strain of 1e-5 in the last cycle; the others have shaken down.",
             ),
         ],
     ),

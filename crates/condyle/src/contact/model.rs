@@ -145,8 +145,8 @@ pub trait ContactModel {
     /// The step that settled last is not gone on from: what it would have added is dropped.
     fn reject(&mut self) {}
 
-    /// How far the surface at rest lies from where it lay when the same increment landed a cycle before, mm; a
-    /// cycle does not repeat itself before that has become small.
+    /// How far the surface at rest lies from where it lay when the same increment landed a cycle before, mm, times how
+    /// much more exactly than a motion it is to repeat itself; a cycle does not before that has become small.
     fn moved_in_a_cycle_mm(&self) -> f64 {
         0.0
     }

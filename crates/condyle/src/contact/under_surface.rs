@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Plastic strain that accumulates at a place in a cycle below which the place counts as shaken down: in a million
-/// cycles of that the strain would be one, and what a cycle that repeats itself is found to is not less.
-const SHAKEN_DOWN: f64 = 1e-6;
+/// Plastic strain that accumulates at a place in a cycle below which the place counts as shaken down: the flow of an
+/// increment is found to some 3e-6.
+const SHAKEN_DOWN: f64 = 1e-5;
 
 /// What is below the surface of an insert that is a solid.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     compliance::Compliance,
-    contact::{DeformableContact, Rubbing},
+    contact::{DeformableContact, Rubbing, TILES_FIELD},
     elastic_surface::ElasticSurface,
     plastic::{PLASTIC_FIELD, PlasticInsert, Remembered},
     settings::Deformable,
@@ -47,6 +47,7 @@ impl ContactLaw for Deformable {
     ) -> Box<dyn ContactModel + 'a> {
         let (compliance, state) = self.compliance(bodies.insert, &memory.state);
         let plastic = self.plastic(&state, &compliance);
+        compliance.know_tiles(tiles_of(&state));
         let memory = ContactMemory { state, ..memory };
         let rubbing = Rubbing {
             friction: self.coulomb(),
@@ -146,6 +147,15 @@ fn used_nodes(insert: &Insert, state: &ContactState) -> Vec<Vec3> {
             .collect(),
         None => insert.unworn_nodes().to_vec(),
     }
+}
+
+/// The tiles of the compliance that were asked for.
+fn tiles_of(state: &ContactState) -> impl Iterator<Item = u32> {
+    let fields = state.fields.iter();
+    let tiles = fields.filter(|field| field.name == TILES_FIELD);
+    tiles
+        .flat_map(|field| &field.values)
+        .map(|&tile| tile as u32)
 }
 
 /// The state with the nodes whose compliance is used, and the plastic strains that it had.

@@ -4,6 +4,10 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use super::POINTS;
 
+/// How much more exactly than a motion the surface at rest is to repeat itself: what is added to it stays for all
+/// cycles of an interval.
+const MORE_EXACTLY: f64 = 20.0;
+
 /// Accumulated plastic strain at the Gauss points of an element.
 type Flow = [f64; POINTS];
 
@@ -54,9 +58,10 @@ impl CycleOfFlow {
         };
     }
 
-    /// How far the surface at rest lies from where it lay a cycle before, mm.
+    /// How far the surface at rest lies from where it lay a cycle before, mm, so often as it is to be more exact than a
+    /// motion.
     pub fn moved_mm(&self) -> f64 {
-        self.moved_mm
+        MORE_EXACTLY * self.moved_mm
     }
 
     /// What accumulated in the last cycle of every activity, by elements.

@@ -209,12 +209,15 @@ impl PlasticInsert {
         (0..influence.means.len()).map(use_of).fold(0.0, f64::max)
     }
 
-    /// The elements below the nodes that press and those around them, of which something is known to have
-    /// yielded, or the mean stress is near yield.
+    /// The elements that have yielded, wherever they are, and those below the nodes that press and those around them
+    /// whose mean stress is near yield.
     ///
     /// Takes along how far their nodes are moved.
     fn looked_at(&mut self, loads: &[NodeLoad], around: &FacesAround) -> Vec<u32> {
-        let below = self.below(loads, around);
+        let mut below = self.below(loads, around);
+        below.extend(self.committed.keys());
+        below.sort_unstable();
+        below.dedup();
         self.load_nodes(loads, &below);
         let influence = self.influence();
         let yield_mpa = self.material.hardening.yield_stress(0.0);
@@ -227,7 +230,7 @@ impl PlasticInsert {
         below.into_iter().filter(is_near_yield).collect()
     }
 
-    /// The elements below nodes and those around them, ascending.
+    /// The elements below nodes and those around them.
     fn below(&self, loads: &[NodeLoad], around: &FacesAround) -> Vec<u32> {
         let mut is_near = vec![false; self.set_mm.len()];
         for &(node, _) in loads {
@@ -238,9 +241,7 @@ impl PlasticInsert {
         }
         let stacks = self.influence().stacks.iter().zip(&is_near);
         let below = stacks.filter(|(_, is_near)| **is_near);
-        let mut below: Vec<u32> = below.flat_map(|(stack, _)| stack).copied().collect();
-        below.sort_unstable();
-        below
+        below.flat_map(|(stack, _)| stack).copied().collect()
     }
 
     /// How far the nodes of elements are moved by loads and what is committed.
