@@ -92,11 +92,7 @@ impl Influence {
                 let block = self.block(solid, tile, other);
                 let rows = moved.iter_mut().zip(block.chunks_exact(forces.len()));
                 for (moved, row) in rows {
-                    *moved += row
-                        .iter()
-                        .zip(forces)
-                        .map(|(by, force)| by * force)
-                        .sum::<f64>();
+                    *moved += product(row, forces);
                 }
             }
             (tile, moved)
@@ -143,6 +139,21 @@ impl Influence {
             solid.half_solved(&forces.collect::<Vec<_>>())
         })
     }
+}
+
+/// Product of a row with loads: four sums, so that no addition waits for the one before.
+pub(super) fn product<T: Copy + Into<f64>>(row: &[T], loads: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (fours, four_loads) = (row.chunks_exact(4), loads.chunks_exact(4));
+    let (rest, rest_of_loads) = (fours.remainder(), four_loads.remainder());
+    for (row, loads) in fours.zip(four_loads) {
+        for lane in 0..4 {
+            sums[lane] += row[lane].into() * loads[lane];
+        }
+    }
+    let rest = rest.iter().zip(rest_of_loads);
+    let rest: f64 = rest.map(|(&by, load)| by.into() * load).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 fn empty<T>(count: usize) -> Vec<OnceLock<T>> {

@@ -8,7 +8,7 @@ use super::{
     super::{compliance::Compliance, elastic_surface::ElasticSurface},
     CycleOfFlow, POINTS, Points, Remembered,
     cycle::farthest_mm,
-    influence::{ByTile, Influence},
+    influence::{ByTile, Influence, product},
 };
 use crate::{Vec3, contact::model::Flattened, geometry::FacesAround};
 
@@ -407,15 +407,4 @@ fn moved(node: usize, rows: &[(&[f32], &Vec<f64>)]) -> Vec3 {
         }
     }
     moved
-}
-
-/// Four sums, so that no addition waits for the one before.
-fn product(row: &[f32], loads: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    for (row, loads) in row.chunks(4).zip(loads.chunks(4)) {
-        for ((sum, &by), load) in sums.iter_mut().zip(row).zip(loads) {
-            *sum += f64::from(by) * load;
-        }
-    }
-    sums.iter().sum()
 }
