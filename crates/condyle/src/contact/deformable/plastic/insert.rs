@@ -13,8 +13,8 @@ use super::{
 use crate::{Vec3, contact::model::Flattened, geometry::FacesAround};
 
 /// Gauss points are looked at in elements whose mean stress uses up this part of the yield stress: within an element
-/// stress varies by a tenth or so.
-const LOOKED_AT: f64 = 0.7;
+/// stress varies by a tenth or so, and by more at the edge of contact.
+const LOOKED_AT: f64 = 0.5;
 /// Elements whose Gauss points use up this part of the yield stress are taken along in the search for the flow.
 const TAKEN_ALONG: f64 = 0.8;
 /// No pressure causes more than this part of its peak as von Mises stress: 0.577 where a half-space keeps its volume

@@ -96,6 +96,8 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
             .collect();
         println!("{peak_mpa} MPa at {x}: {deepest:.5} mm");
         assert!(deepest > 0.003, "{deepest}");
+        let apart = set_mm.iter().zip(&exact_mm).map(|(a, b)| (a - b).abs());
+        println!("{:.1e} of that apart", apart.fold(0.0, f64::max) / deepest);
         for ((set, tried), exact) in set_mm.iter().zip(&tried_mm).zip(&exact_mm) {
             assert!((set - exact).abs() < 2e-3 * deepest, "{set} {exact}");
             assert!((set - tried).abs() < 1e-6, "{set} {tried}");
