@@ -186,7 +186,7 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
                     let mut overclosure_mm = overclosures[lane];
                     if let Some(plastic) = &self.plastic {
                         let set_mm = F64x4::new([plastic.set_mm(node), 0.0, 0.0, 0.0]);
-                        overclosure_mm[0] = overclosure_mm[0] - set_mm;
+                        overclosure_mm[0] -= set_mm;
                     }
                     self.candidates.push(Candidate {
                         node,

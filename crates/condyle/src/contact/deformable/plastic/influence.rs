@@ -23,13 +23,16 @@ pub(in super::super) struct Influence {
     node_tiles: Vec<Vec<u32>>,
     place_of: Vec<(u32, u32)>,
     half_solved: Vec<OnceLock<HalfSolved>>,
-    blocks: Mutex<BTreeMap<(u32, u32), Arc<[f64]>>>,
+    blocks: Mutex<Blocks>,
     elements: Vec<OnceLock<Box<YieldingElement>>>,
     /// What makes the mean stress of every element.
     pub means: Vec<ElementMean>,
     /// Of every node of the surface the elements that it is nearest to.
     pub stacks: Vec<Vec<u32>>,
 }
+
+/// What unit forces on the nodes of a tile move those of another by, by both tiles.
+type Blocks = BTreeMap<(u32, u32), Arc<[f64]>>;
 
 /// Forces on mesh nodes, or displacements of these, by the tiles of the nodes.
 pub(super) type ByTile = BTreeMap<u32, Vec<f64>>;
