@@ -11,7 +11,9 @@ use std::{
 };
 
 use condyle_io::cache::Cache;
-use condyle_io::results::{CreepSummary, ErrorEstimate, ErrorParts, Summary};
+use condyle_io::results::{
+    CreepSummary, ErrorEstimate, ErrorParts, PlasticSummary, Summary, UnderSurfaceSummary,
+};
 use condyle_lab::{Outcome, RunOptions};
 
 use crate::{
@@ -162,6 +164,7 @@ fn rows(summary: &Summary) -> Vec<SummaryLine> {
     rows.extend(rows_of_wear(summary));
     rows.extend(summary.creep.iter().flat_map(rows_of_creep));
     rows.extend(rows_of_contact(summary));
+    rows.extend(summary.under_surface.iter().flat_map(rows_under_surface));
     rows.extend(rows_of_motion(summary));
     rows.extend(rows_of_work(summary));
     rows.extend(summary.error.iter().flat_map(rows_of_error));
@@ -257,6 +260,43 @@ fn rows_of_contact(summary: &Summary) -> [SummaryLine; 3] {
                 summary.last_cycle_peak_pressure_mpa,
                 summary.first_cycle_contact_area_mm2,
                 summary.last_cycle_contact_area_mm2
+            ),
+        ),
+    ]
+}
+
+fn rows_under_surface(under: &UnderSurfaceSummary) -> Vec<SummaryLine> {
+    let at = |stress: f64, depth: f64| format!("{stress:.1} MPa, {depth:.1} mm below the surface");
+    let shear = at(under.peak_max_shear_mpa, under.peak_max_shear_depth_mm);
+    let von_mises = at(under.peak_von_mises_mpa, under.peak_von_mises_depth_mm);
+    let when = when(under.peak_max_shear_cycle);
+    let mut rows = vec![
+        ("largest shear stress", format!("{shear}, {when}")),
+        ("largest von Mises stress", von_mises),
+    ];
+    rows.extend(under.plastic.iter().flat_map(rows_of_plasticity));
+    rows
+}
+
+fn rows_of_plasticity(plastic: &PlasticSummary) -> [SummaryLine; 2] {
+    let PlasticSummary {
+        max_permanent_set_mm,
+        first_cycle_permanent_set_mm,
+        max_plastic_strain,
+        yielded_elements,
+        ratcheting_elements,
+    } = plastic;
+    [
+        (
+            "permanent set",
+            format!(
+                "{max_permanent_set_mm:.4} mm, after the first cycle {first_cycle_permanent_set_mm:.4} mm"
+            ),
+        ),
+        (
+            "  yielded elements",
+            format!(
+                "{yielded_elements}, {ratcheting_elements} of them in every cycle still; plastic strain up to {max_plastic_strain:.4}"
             ),
         ),
     ]

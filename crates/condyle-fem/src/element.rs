@@ -301,6 +301,18 @@ impl Element {
         std::array::from_fn(|p| elastic.stress(&strains[p].less(&eigenstrains[p])))
     }
 
+    /// The mean over the volume of the gradient of every nodal function; that of the incompatible modes is zero.
+    pub(crate) fn mean_gradients(&self) -> [Vec3; 8] {
+        let volume: f64 = self.points.iter().map(|point| point.volume).sum();
+        std::array::from_fn(|node| {
+            let parts = self.points.iter();
+            let sum: Vec3 = parts
+                .map(|point| point.gradients[node] * point.volume)
+                .sum();
+            sum / volume
+        })
+    }
+
     /// Share of every Gauss point of the volume.
     pub(crate) fn volumes(&self) -> [f64; POINTS] {
         std::array::from_fn(|p| self.points[p].volume)

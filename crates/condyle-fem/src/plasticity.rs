@@ -54,6 +54,13 @@ pub(crate) struct Softening {
 }
 
 impl ElasticPlastic {
+    /// Part of the yield stress that an elastic strain after what the material remembers uses up.
+    pub(crate) fn use_of_yield(&self, strain: &Strain, before: &PlasticPoint) -> f64 {
+        let trial = self.elastic.stress(&strain.less(&before.strain));
+        let relative = trial.deviator().plus(-1.0, &before.backstress);
+        relative.von_mises() / self.hardening.yield_stress(before.accumulated)
+    }
+
     /// The response to a strain after what the material remembers.
     ///
     /// With the trial stress $s$ and $\xi = s - \beta$, $q = \sqrt{3/2} |\xi|$, the step $\Delta p$ solves

@@ -183,21 +183,6 @@ impl ElasticSolid {
             .collect()
     }
 
-    /// Mean stress of every element under displacements of the nodes: that of its centre, where stress is
-    /// most exact.
-    ///
-    /// # Panics
-    /// If there are fewer displacements than nodes.
-    pub fn stresses(&self, displacements: &[Vec3]) -> Vec<Stress> {
-        let stresses = self.gauss_stresses(displacements).into_iter();
-        let mean = |(stresses, element): ([Stress; POINTS], &Element)| {
-            let volumes = element.volumes();
-            let volume: f64 = volumes.iter().sum();
-            Stress::weighted(volumes.map(|part| part / volume).into_iter().zip(stresses))
-        };
-        stresses.zip(&self.elements).map(mean).collect()
-    }
-
     /// Strains of every element.
     pub(crate) fn elements(&self) -> &[Element] {
         &self.elements

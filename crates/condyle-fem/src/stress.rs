@@ -67,17 +67,6 @@ impl Stress {
         let [first, _, third] = self.principal();
         0.5 * (first - third)
     }
-
-    /// Sum of some stresses with weights.
-    pub(crate) fn weighted(parts: impl Iterator<Item = (f64, Self)>) -> Self {
-        let mut sum = [0.0; 6];
-        for (weight, stress) in parts {
-            for (sum, part) in sum.iter_mut().zip(stress.0) {
-                *sum += weight * part;
-            }
-        }
-        Self(sum)
-    }
 }
 
 #[cfg(test)]

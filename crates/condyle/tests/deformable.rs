@@ -314,3 +314,29 @@ fn the_compliance_is_renewed_where_the_insert_has_become_thinner() {
     wear(&mut pair, 0.1);
     assert_eq!(state(&pair, renewed.clone()), renewed);
 }
+
+#[test]
+fn a_contact_after_a_stop_has_the_compliance_of_the_same_tiles() {
+    // What is known of the compliance bounds what a search looks at, and so its round-off.
+    let pair = generic();
+    let before = law(&pair.insert, 0.07);
+    let motion = sliding(&pair, &before);
+    let mut contact = pair.contact(&before);
+    contact.respond(&motion);
+    let memory = contact.into_memory();
+    let names: Vec<&str> = memory
+        .state
+        .fields
+        .iter()
+        .map(|f| f.name.as_str())
+        .collect();
+    assert_eq!(names, ["compliance_tiles_asked_for"]);
+    let after = law(&pair.insert, 0.07);
+    let state = memory.state.clone();
+    let resumed = ContactMemory {
+        state,
+        ..ContactMemory::default()
+    };
+    let resumed = after.contact(pair.bodies(), resumed).into_memory();
+    assert_eq!(resumed.state, memory.state);
+}

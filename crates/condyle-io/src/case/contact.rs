@@ -2,6 +2,7 @@
 
 use condyle::contact::{Foundation, PressureTable, Search, softening_modulus};
 
+use super::plasticity::PlasticityChoice;
 use crate::keyed::{
     Choices, Key, Log, Offered, Section, Settings, Variants, Writer, choice, settings, variants,
     within,
@@ -103,6 +104,8 @@ pub struct Contact {
     pub model: ContactModelWord,
     /// Pressure against overclosure; of the foundation alone.
     pub law: PressureLawChoice,
+    /// Whether and how the insert yields; of the deformable insert alone.
+    pub plasticity: PlasticityChoice,
     /// Friction.
     pub friction: Friction,
     /// How contact is found.
@@ -115,20 +118,31 @@ impl Contact {
         [
             ModelOfContact::keys(),
             vec![PressureLawChoice::choices().by],
+            vec![PlasticityChoice::choices().by],
             Self::other_keys(),
         ]
         .concat()
     }
 
-    /// The choice of the model, which brings the key of the law, or that and `of_law`.
-    pub(super) fn models(of_law: &[Key]) -> Choices {
+    /// The same but for those of a deformable insert alone.
+    pub(super) fn keys_of_page() -> Vec<Key> {
+        let of_deformable = PlasticityChoice::choices().by.name;
+        let mut keys = Self::keys();
+        keys.retain(|key| key.name != of_deformable);
+        keys
+    }
+
+    /// The choice of the model, which brings the key of the law, or that and `of_law`, or the key of plasticity, or
+    /// that and `of_plasticity`.
+    pub(super) fn models(of_law: &[Key], of_plasticity: &[Key]) -> Choices {
         let key = &ModelOfContact::keys()[0];
         let law = [&[PressureLawChoice::choices().by], of_law].concat();
+        let plasticity = [&[PlasticityChoice::choices().by], of_plasticity].concat();
         let offered = ContactModelWord::ALL.iter().map(|model| Offered {
             word: model.word(),
             keys: match model {
                 ContactModelWord::Foundation => law.clone(),
-                ContactModelWord::Deformable => Vec::new(),
+                ContactModelWord::Deformable => plasticity.clone(),
             },
         });
         let default = ContactModelWord::Foundation.word();
@@ -141,16 +155,27 @@ impl Contact {
 
     pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let model = ModelOfContact::read(section, log).map(|of| of.model);
-        let law = match model {
-            Some(ContactModelWord::Deformable) => {
-                let of_laws = PressureLawChoice::choices().offered;
-                let of_laws: Vec<Key> = of_laws.into_iter().flat_map(|law| law.keys).collect();
-                Self::models(&of_laws).read(section, &Self::other_keys(), log);
-                Some(PressureLawChoice::Linear)
+        let word = model.unwrap_or(ContactModelWord::Foundation);
+        let (of_law, of_plasticity) = (
+            all_keys(&PressureLawChoice::choices()),
+            all_keys(&PlasticityChoice::choices()),
+        );
+        Self::models(&of_law[1..], &of_plasticity[1..]).check_keys_of_others(
+            word.word(),
+            section,
+            log,
+        );
+        let common = [ModelOfContact::keys(), Self::other_keys()].concat();
+        let (law, plasticity) = match word {
+            ContactModelWord::Deformable => {
+                let common = [common, of_law].concat();
+                let plasticity = PlasticityChoice::read(section, &common, log);
+                (Some(PressureLawChoice::Linear), plasticity)
             }
-            Some(ContactModelWord::Foundation) | None => {
-                let common = [ModelOfContact::keys(), Self::other_keys()].concat();
-                PressureLawChoice::read(section, &common, log)
+            ContactModelWord::Foundation => {
+                let common = [common, of_plasticity].concat();
+                let law = PressureLawChoice::read(section, &common, log);
+                (law, Some(PlasticityChoice::None))
             }
         };
         let friction = Friction::read(section, log);
@@ -158,6 +183,7 @@ impl Contact {
         Some(Self {
             model: model?,
             law: law?,
+            plasticity: plasticity?,
             friction: friction?,
             finding: finding?,
         })
@@ -166,10 +192,18 @@ impl Contact {
     pub(super) fn write(&self, out: &mut Writer) {
         let model = self.model;
         ModelOfContact { model }.write(out);
-        if model == ContactModelWord::Foundation {
-            self.law.write(out);
+        match model {
+            ContactModelWord::Foundation => self.law.write(out),
+            ContactModelWord::Deformable => self.plasticity.write(out),
         }
         self.friction.write(out);
         self.finding.write(out);
     }
+}
+
+/// The key that chooses, and those that all words bring.
+fn all_keys(choices: &Choices) -> Vec<Key> {
+    let offered = choices.offered.iter();
+    let keys = offered.flat_map(|offer| offer.keys.clone());
+    [choices.by.clone()].into_iter().chain(keys).collect()
 }

@@ -19,6 +19,7 @@ use super::march::{March, Update};
 use super::material::Material;
 use super::output::Output;
 use super::placement::{FemurPlacement, InsertPlacement};
+use super::plasticity::PlasticityChoice;
 use super::pressure_table;
 use super::time::Time;
 use super::waveform::{waveform_keys, ways};
@@ -93,8 +94,9 @@ fn contact() -> TableSchema {
     let laws = PressureLawChoice::choices();
     TableSchema::new("Model of contact, pressure law and friction.")
         .with_keys(&Contact::keys())
-        .with_choices(&Contact::models(&[]))
+        .with_choices(&Contact::models(&[], &[]))
         .with_choices(&laws)
+        .with_choices(&PlasticityChoice::choices())
         .with_one_of_under(&laws, "tabulated", &pressure_table::WAYS)
 }
 

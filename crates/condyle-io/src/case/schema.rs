@@ -18,6 +18,7 @@ use super::march::{March, Update};
 use super::material::Material;
 use super::output::Output;
 use super::placement::{FemurPlacement, InsertPlacement};
+use super::plasticity::PlasticityChoice;
 use super::time::Time;
 use super::waveform::{WaveformSource, knots_key};
 use super::wear::{Wear, WearLaws};
@@ -70,9 +71,12 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
     page.section("`[material]`", &Material::keys());
     page.chosen(
         "`[contact]`",
-        &Contact::keys(),
+        &Contact::keys_of_page(),
         &PressureLawChoice::choices(),
     );
+    let plasticity = PlasticityChoice::choices();
+    let by = std::slice::from_ref(&plasticity.by);
+    page.chosen("`[contact]` of a deformable insert", by, &plasticity);
     machine(&mut page);
     page.section("`[[activity]]`", &ActivityKeys::keys());
     page.push(ACTIVITIES);

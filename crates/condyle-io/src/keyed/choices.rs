@@ -95,6 +95,28 @@ impl Choices {
         }
     }
 
+    /// Reports keys that only other words than `word` bring.
+    pub(crate) fn check_keys_of_others(
+        &self,
+        word: &str,
+        section: &Section<'_>,
+        log: &mut Log<'_>,
+    ) {
+        let own = self.offered.iter().filter(|offer| offer.word == word);
+        let known: Vec<&str> = own.flat_map(|offer| names(&offer.keys)).collect();
+        for (key, _) in section.other_keys(&known) {
+            let name: &str = key.get_ref();
+            if let Some(owner) = self.owner_of(name) {
+                let reason = KeyReason::OtherChoice {
+                    key: name.to_owned(),
+                    owner: self.assignment(owner),
+                    chosen: self.assignment(word),
+                };
+                log.problem(key.span(), reason);
+            }
+        }
+    }
+
     fn owner_of(&self, name: &str) -> Option<&'static str> {
         let has = |offer: &&Offered| names(&offer.keys).any(|key| key == name);
         self.offered.iter().find(has).map(|offer| offer.word)

@@ -136,6 +136,7 @@ mod tests {
             repeats: true,
             worst_quality: 1.0,
             creep: Some(creep),
+            under_surface: None,
         }
     }
 

@@ -26,8 +26,10 @@ impl InsertFields {
         let surface = march.insert().surface_nodes();
         let mesh = mesh_on_side(march.insert().mesh(), side);
         let count = mesh.nodes.len();
+        let mut scalars = scalars(march, count);
+        scalars.extend(under_surface(march, &mesh));
         Self {
-            scalars: scalars(march, count),
+            scalars,
             vectors: vec![("principal_direction", directions(march, side, count))],
             articulating: spread(surface, &vec![1; surface.len()], 0, count),
             mesh,
@@ -57,6 +59,30 @@ fn scalars(march: &March, count: usize) -> Vec<(&'static str, Vec<f64>)> {
     arrays
 }
 
+/// What the last update found in the inside of a deformable insert; nothing of a foundation.
+fn under_surface(march: &March, mesh: &HexMesh) -> Vec<(&'static str, Vec<f64>)> {
+    let Some(under) = &march.state().under_surface else {
+        return Vec::new();
+    };
+    let around = |values: &[f64]| mean_around(mesh, values);
+    let mut arrays = vec![
+        ("von_mises_mpa", around(&under.von_mises_mpa)),
+        ("max_shear_mpa", around(&under.max_shear_mpa)),
+    ];
+    if let Some(plastic) = &under.plastic {
+        let surface = march.insert().surface_nodes();
+        let set_mm = spread(surface, &plastic.permanent_set_mm, 0.0, mesh.nodes.len());
+        let regimes = plastic.regime.iter();
+        let regimes: Vec<f64> = regimes.map(|regime| f64::from(regime.number())).collect();
+        arrays.extend([
+            ("permanent_set_mm", set_mm),
+            ("plastic_strain", most_around(mesh, &plastic.plastic_strain)),
+            ("plastic_regime", most_around(mesh, &regimes)),
+        ]);
+    }
+    arrays
+}
+
 fn directions(march: &March, side: Side, count: usize) -> Vec<[f64; 3]> {
     let directions = march.fields().principal_direction.iter();
     let on_side = |vector: &[f64; 3]| point_on_side(&Vec3::from(*vector), side).into();
@@ -71,4 +97,29 @@ fn spread<T: Copy>(surface: &[u32], values: &[T], none: T, nodes: usize) -> Vec<
         all[node as usize] = value;
     }
     all
+}
+
+/// Values of elements as values at nodes: the mean of those around each.
+fn mean_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); mesh.nodes.len()];
+    for (hex, value) in mesh.hexes.iter().zip(values) {
+        for &node in hex {
+            let (sum, count) = &mut sums[node as usize];
+            *sum += value;
+            *count += 1.0;
+        }
+    }
+    let mean = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { 0.0 };
+    sums.into_iter().map(mean).collect()
+}
+
+/// Values of elements as values at nodes: the largest of those around each.
+fn most_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
+    let mut most = vec![0.0; mesh.nodes.len()];
+    for (hex, &value) in mesh.hexes.iter().zip(values) {
+        for &node in hex {
+            most[node as usize] = value.max(most[node as usize]);
+        }
+    }
+    most
 }

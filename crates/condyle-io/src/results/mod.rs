@@ -24,6 +24,7 @@ mod slip_paths;
 mod summary;
 mod tables;
 #[cfg(feature = "file-system")]
+mod under_surface;
 mod write_over;
 
 /// What the columns of `kinematics.csv` are.
@@ -54,3 +55,4 @@ pub use lock::FolderLock;
 pub use plausibility::PlausibilityWarning;
 pub use summary::{Summary, SummaryInput};
 pub use tables::{kinematics_csv, wear_csv};
+pub use under_surface::{PlasticSummary, UnderSurfaceSummary};

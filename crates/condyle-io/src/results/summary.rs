@@ -14,6 +14,7 @@ use super::{
     femur_pose::NeutralPose,
     law_wear::LawWear,
     plausibility::PlausibilityWarning,
+    under_surface::UnderSurfaceSummary,
 };
 
 /// What a summary is made from.
@@ -97,6 +98,9 @@ pub struct Summary {
     /// Cycles done before the last cycle solved.
     #[serde(default)]
     pub last_cycle: f64,
+    /// Stress below the surface and what has yielded; not there where the insert is no solid.
+    #[serde(flatten)]
+    pub under_surface: Option<UnderSurfaceSummary>,
     /// Range of AP in the first cycle, mm.
     pub ap_range_mm: f64,
     /// Range of IE in the first cycle, degrees.
@@ -179,6 +183,7 @@ impl Summary {
             first_cycle_contact_area_mm2: first.peak_contact_area_mm2,
             last_cycle_contact_area_mm2: last.peak_contact_area_mm2,
             last_cycle: state.cycles_before(updates.len() - 1),
+            under_surface: UnderSurfaceSummary::of(state),
             ap_range_mm: joint_range(first_cycle, AP),
             ie_range_deg: joint_range(first_cycle, IE),
             medial_load_share: medial_load_share(first_cycle),

@@ -111,7 +111,7 @@ pub(super) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
     })
 }
 
-/// Pressure beyond what polyethylene bears without yielding below the surface.
+/// Pressure beyond what polyethylene bears without yielding below the surface, of an insert that does not yield.
 pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FIRST_YIELD * YIELD_MPA;
     let peak = finished.summary.peak_pressure_mpa;
@@ -120,7 +120,9 @@ pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
         let extents = cycles.map(|(cycle, pressures)| extent(finished, cycle, pressures, limit));
         extents.collect::<Vec<_>>().join("; ")
     };
-    (peak > limit).then(|| PlausibilityWarning {
+    let under = finished.summary.under_surface.as_ref();
+    let yields = under.is_some_and(|under| under.plastic.is_some());
+    (peak > limit && !yields).then(|| PlausibilityWarning {
         check: "pressure_beyond_yield".to_owned(),
         value: peak,
         limit,

@@ -58,13 +58,22 @@ pub(super) fn small(results: &Results, px_per_mm: f64) -> Vec<Small> {
         shades: Shades::Viridis,
         ..map
     });
+    let set = plain(results, surface, "permanent_set_mm", px_per_mm).map(|map| Map {
+        id: "map-set",
+        title: "Permanent set",
+        unit: "mm",
+        largest: "Deepest",
+        shades: Shades::Viridis,
+        ..map
+    });
     let captions = [
         "Largest contact pressure that each node sees in one gait cycle, the mean over its share of the surface, last update.",
         "Distance that the femur slides over each place while it presses on it, in one gait cycle, last update.",
         "What part of pressure times sliding goes across the main direction at each place, last update: 0 where the femur slides to and fro on a line, 0.5 where it goes round a circle.",
         "How far creep has taken the surface down under load, last update; no mass is lost by it.",
+        "How far yielding has taken the surface down for good, last update; wear is not in it.",
     ];
-    let maps = [pressure, sliding, cross_shear, creep]
+    let maps = [pressure, sliding, cross_shear, creep, set]
         .into_iter()
         .zip(captions);
     let maps = maps.filter_map(|(map, caption)| {

@@ -27,7 +27,7 @@ use serde::Serialize;
 
 use crate::figure::{Panel, css, variables};
 use crate::results::{
-    case::{creeps, is_deformable, title},
+    case::{creeps, is_deformable, title, yields},
     contents::Results,
 };
 
@@ -55,6 +55,7 @@ struct Page<'a> {
     tiles: Vec<numbers::Tile>,
     missing: Vec<&'static str>,
     is_deformable: bool,
+    yields: bool,
     wear_map: Option<String>,
     compartments: Vec<compartments::Comparison>,
     laws: Vec<laws::Law>,
@@ -92,6 +93,7 @@ impl<'a> Page<'a> {
             tiles: numbers::tiles(results),
             missing: story::missing(results),
             is_deformable: results.case.as_deref().is_some_and(is_deformable),
+            yields: results.case.as_deref().is_some_and(yields),
             wear_map: wear_map(results, LARGE).map(|map| map.svg()),
             compartments: compartments::comparisons(results),
             laws: laws::laws(results),

@@ -53,7 +53,7 @@ const fn known(
     }
 }
 
-const GROUPS: [(&str, &[Known]); 4] = [
+const GROUPS: [(&str, &[Known]); 5] = [
     (
         "Wear",
         &[
@@ -151,6 +151,89 @@ const GROUPS: [(&str, &[Known]); 4] = [
                 "Medial share of the load",
                 "%",
                 "Medial part of the axial force over the first cycle, weighted by force.",
+            ),
+        ],
+    ),
+    (
+        "Below the surface",
+        &[
+            known(
+                "peak_max_shear_mpa",
+                "Largest shear stress",
+                "MPa",
+                "At the centre of an element, where the pressure of a cycle solved is highest.",
+            ),
+            known(
+                "peak_max_shear_depth_mm",
+                "How deep that is",
+                "mm",
+                "Below the surface, to half an element.",
+            ),
+            known(
+                "peak_max_shear_cycle",
+                "Cycles before that",
+                "",
+                "After how many cycles the cycle with that stress comes; 0 is the first.",
+            ),
+            known(
+                "peak_max_shear_percent",
+                "When in that cycle",
+                "%",
+                "Where the pressure of that cycle is highest.",
+            ),
+            known(
+                "peak_von_mises_mpa",
+                "Largest von Mises stress",
+                "MPa",
+                "The same of the equivalent stress.",
+            ),
+            known(
+                "peak_von_mises_depth_mm",
+                "How deep that is",
+                "mm",
+                "Below the surface, to half an element.",
+            ),
+            known(
+                "first_cycle_max_shear_mpa",
+                "Largest shear stress, first cycle",
+                "MPa",
+                "Of the unworn insert.",
+            ),
+            known(
+                "first_cycle_max_shear_depth_mm",
+                "How deep that is",
+                "mm",
+                "Below the surface, to half an element.",
+            ),
+            known(
+                "max_permanent_set_mm",
+                "Permanent set",
+                "mm",
+                "How far the surface has given way for good by yielding, at most; wear is not in it.",
+            ),
+            known(
+                "first_cycle_permanent_set_mm",
+                "Permanent set, first cycle",
+                "mm",
+                "The same after the first cycle that repeats itself.",
+            ),
+            known(
+                "max_plastic_strain",
+                "Largest plastic strain",
+                "",
+                "Accumulated, at a Gauss point.",
+            ),
+            known(
+                "yielded_elements",
+                "Elements that have yielded",
+                "",
+                "Of those above.",
+            ),
+            known(
+                "ratcheting_elements",
+                "Elements that yield in every cycle",
+                "",
+                "By more than a strain of 1e-5 in the last cycle; the others have shaken down.",
             ),
         ],
     ),
@@ -324,7 +407,7 @@ pub(super) fn groups(results: &Results) -> Vec<Group> {
 }
 
 /// Where the neutral pose stands among the groups: after the motion that counts from it.
-const NEUTRAL_PLACE: usize = 3;
+const NEUTRAL_PLACE: usize = 4;
 
 /// Where the femur stands when AP, ML and IS read zero.
 fn neutral(summary: &Summary) -> Group {
@@ -430,6 +513,7 @@ fn shown(number: &Known, value: f64, digits: i32) -> String {
         ("medial_load_share", _) => fixed(100.0 * value, 1),
         ("worst_quality" | "added_inertia", _) => fixed(value, 3),
         ("cycles_solved", _) => fixed(value, 1),
+        ("max_plastic_strain", _) => fixed(value, 4),
         (_, "") => fixed(value, 0),
         _ => significant(value, digits),
     }

@@ -30,6 +30,15 @@ pub(crate) fn is_deformable(case: &str) -> bool {
     model == Some("deformable")
 }
 
+/// Whether the insert of the case yields.
+pub(crate) fn yields(case: &str) -> bool {
+    let case: Option<Table> = case.parse().ok();
+    let plasticity = case
+        .as_ref()
+        .and_then(|case| case.get("contact")?.get("plasticity")?.as_str());
+    plasticity.is_some_and(|plasticity| plasticity != "none")
+}
+
 /// Whether the insert of the case creeps.
 pub(crate) fn creeps(case: &str) -> bool {
     let case: Option<Table> = case.parse().ok();
@@ -77,6 +86,13 @@ mod tests {
         assert!(is_deformable("[contact]\nmodel = \"deformable\""));
         assert!(!is_deformable("[contact]\nmodel = \"foundation\""));
         assert!(!is_deformable("model = \"deformable\""));
+    }
+
+    #[test]
+    fn an_insert_yields_where_the_case_says_how() {
+        assert!(yields("[contact]\nplasticity = \"j2\""));
+        assert!(!yields("[contact]\nplasticity = \"none\""));
+        assert!(!yields("[contact]\nmodel = \"deformable\""));
     }
 
     #[test]

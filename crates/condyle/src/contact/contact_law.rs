@@ -2,7 +2,11 @@
 
 use std::{fmt::Debug, sync::Arc};
 
-use super::{memory::ContactMemory, model::ContactModel};
+use super::{
+    memory::{ContactMemory, ContactState},
+    model::ContactModel,
+    under_surface::UnderSurface,
+};
 use crate::geometry::{ArticulatingSurface, FemoralSurface, Insert};
 
 /// The bodies of a contact as they are now.
@@ -33,6 +37,17 @@ pub trait ContactLaw: Debug + Send + Sync {
     /// Bytes that the law keeps of an insert, beside what a contact takes, if so many nodes ever touch.
     fn memory_bytes(&self, _insert: &Insert, _ever_touched: f64) -> f64 {
         0.0
+    }
+
+    /// What is below the surface of an insert under loads on surface nodes along the inward normals, N, after a
+    /// contact has left `state`; none of an insert that is no solid.
+    fn under_surface(
+        &self,
+        _insert: &Insert,
+        _state: &ContactState,
+        _loads: &[(u32, f64)],
+    ) -> Option<UnderSurface> {
+        None
     }
 
     /// The same law with `factor` times the slip tolerance, for the estimate of what that costs in accuracy.

@@ -9,6 +9,7 @@
 //! | `slip_work` | pressure times slip by direction: cross-shear and principal direction |
 //! | `foundation` | the elastic foundation: rigid bodies, and pressure from local overclosure |
 //! | `deformable` | the deformable insert: pressure under which an elastic body just touches the femur |
+//! | `under_surface` | stress below the surface, and what has yielded there |
 //! | `pressed` | what contacts have in common: shares under pressure, and what they add up to |
 //! | `broad_phase` | which blocks of nodes may touch, by brute force or coherently |
 
@@ -24,6 +25,7 @@ mod pressure_law;
 mod pressure_table;
 mod share_block;
 mod slip_work;
+mod under_surface;
 
 pub use broad_phase::Search;
 pub use contact_law::{Bodies, ContactLaw};
@@ -32,8 +34,10 @@ pub use foundation::Foundation;
 pub use history::{CycleHistory, Moment, NodeHistory, Record};
 pub use memory::{ContactCache, ContactMemory, ContactState, StateField};
 pub use model::{
-    ContactModel, Landing, Linearization, MOST_REGIONS, Response, Tangent, TouchedNode,
+    ContactModel, Flattened, Landing, Linearization, MOST_REGIONS, Response, Settled, Tangent,
+    TouchedNode,
 };
 pub use pressure_law::{PressureLaw, confined_modulus, softening_modulus};
 pub use pressure_table::{PressureTable, PressureTableError};
 pub use slip_work::SlipWork;
+pub use under_surface::{PlasticUnderSurface, Regime, UnderSurface};

@@ -93,6 +93,22 @@ pub struct Landing {
     pub peak_pressure_mpa: f64,
 }
 
+/// Whether a contact has found its own state at a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Settled {
+    /// It has: the step may be accepted.
+    Yes,
+    /// It has changed since it responded, and is to be asked again: the step is to be solved anew.
+    RespondAgain,
+}
+
+/// A load that the material of the insert does not carry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flattened {
+    /// The largest plastic strain when the search for a balance was given up.
+    pub plastic_strain: f64,
+}
+
 /// A contact between femur and insert: the machine sees this, never a mesh.
 ///
 /// The machine asks [`respond`](Self::respond) as often as it needs to find an increment's end, says
@@ -101,6 +117,9 @@ pub struct Landing {
 pub trait ContactModel {
     /// How many surface nodes there are.
     fn node_count(&self) -> usize;
+
+    /// The next increments are of another cycle than those before, that of another activity for instance.
+    fn begin_cycle(&mut self) {}
 
     /// The next motions are of this increment of the cycle, much like those of the same increment a
     /// cycle before.
@@ -113,6 +132,24 @@ pub trait ContactModel {
     /// The answer depends on the motion and on what was accepted, not on the responses before, but
     /// for what a model says it rounds.
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_>;
+
+    /// A step is to end at a motion, that of the last response or one as near: a model with a history finds what
+    /// the step adds to it, in trial, and the responses after that are with it.
+    ///
+    /// # Errors
+    /// A load that the insert does not carry.
+    fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, Flattened> {
+        Ok(Settled::Yes)
+    }
+
+    /// The step that settled last is not gone on from: what it would have added is dropped.
+    fn reject(&mut self) {}
+
+    /// How far the surface at rest lies from where it lay when the same increment landed a cycle before, mm, times how
+    /// much more exactly than a motion it is to repeat itself; a cycle does not before that has become small.
+    fn moved_in_a_cycle_mm(&self) -> f64 {
+        0.0
+    }
 
     /// A step has ended at a motion, and the machine goes on from there: a model with a history adds
     /// the step to it. The motion is that of the last response, or so near that the model may take the

@@ -5,8 +5,8 @@ use std::ops::{ControlFlow, Range};
 
 use super::{
     Activity, CreepRecord, CreepState, CycleRecord, DepthField, DepthFields, MarchError,
-    MarchState, NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UpdateRecord, Updates,
-    WearTest,
+    MarchState, NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord,
+    UpdateRecord, Updates, WearTest,
     activity_wear::SharedStep,
     creep::CreepStep,
     creep_contact::CreepContact,
@@ -23,7 +23,10 @@ use super::{
 };
 use crate::{
     Vec3,
-    contact::{Bodies, ContactCache, ContactMemory, ContactModel, ContactState, CycleHistory},
+    contact::{
+        Bodies, ContactCache, ContactMemory, ContactModel, ContactState, CycleHistory, Record,
+        UnderSurface,
+    },
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     machine::{Chain, Cycle, CycleRow, MachineState, Simulator, SolverCounters, TimeSettings},
     spatial::Pose,
@@ -327,6 +330,7 @@ impl March {
         let mut taken = vec![DepthField::wear(step.depth_mm.clone())];
         let mut creep = self.state.creep.clone();
         taken.extend(self.crept(&mut creep, &solved, &step));
+        let (under, under_record) = self.under_surface(&solved).unzip();
         let before = self.lower(&solved.surface, &taken)?;
         self.state.creep = creep;
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
@@ -338,6 +342,11 @@ impl March {
             self.creep_record(&taken, &rates.area_mm2),
             before.worst_quality,
         );
+        let record = UpdateRecord {
+            under_surface: under_record,
+            ..record
+        };
+        self.state.under_surface = under;
         self.state.updates.push(record);
         self.state.counters = solved.counters;
         let outside_mm3 = outside_mm3(&worn, &rates.area_mm2, &step.depth_mm);
@@ -406,6 +415,24 @@ impl March {
             surface,
         };
         Rates::of(&wearing, cycles, worn)
+    }
+
+    /// What is below the surface at the increment with the highest pressure, if the insert is a solid.
+    fn under_surface(&self, solved: &Solved) -> Option<(UnderSurface, UnderSurfaceRecord)> {
+        let (activity, row) = highest(&solved.cycles)?;
+        let cycle = &solved.cycles[activity];
+        let surface = &solved.surface;
+        let load = |record: &Record| {
+            let area_mm2 = surface.shares[record.node as usize].area_mm2;
+            (record.node, record.moment.pressure_mpa * area_mm2)
+        };
+        let touched = cycle.history.instant(&cycle.instants[row]).iter();
+        let loads: Vec<(u32, f64)> = touched.map(load).collect();
+        let contact = self.test.contact.as_ref();
+        let under = contact.under_surface(&self.insert, &solved.memory.state, &loads)?;
+        let place = (activity, cycle.rows[row].percent);
+        let record = UnderSurfaceRecord::of(&under, &self.insert, surface, place);
+        Some((under, record))
     }
 
     /// What the laws beside that of the test would have worn in an interval of these cycles.
@@ -558,6 +585,7 @@ impl March {
             repeats: cycles.iter().all(|cycle| cycle.repeats),
             worst_quality,
             creep,
+            under_surface: None,
         }
     }
 
@@ -615,6 +643,18 @@ fn remember(
     let last = CycleRecord { cycles, rows };
     let first = first_and_last.take().map(|(first, _)| first);
     *first_and_last = Some((first.unwrap_or_else(|| last.clone()), last));
+}
+
+/// The activity and the row of the highest pressure of all cycles, the first of them.
+fn highest(cycles: &[Cycle]) -> Option<(usize, usize)> {
+    let rows = cycles.iter().enumerate().flat_map(|(activity, cycle)| {
+        let rows = cycle.rows.iter().enumerate();
+        rows.map(move |(row, own)| ((activity, row), own.peak_pressure_mpa))
+    });
+    let higher = |most: ((usize, usize), f64), next: ((usize, usize), f64)| {
+        if next.1 > most.1 { next } else { most }
+    };
+    rows.reduce(higher).map(|(place, _)| place)
 }
 
 /// The history of one cycle of every activity, with the activity's share.

@@ -38,6 +38,7 @@ mod solved_cycle;
 mod state;
 mod step;
 mod step_record;
+mod under_surface_record;
 mod wear_test;
 
 pub use accumulated_error::AccumulatedError;
@@ -56,4 +57,5 @@ pub use schedule::{Schedule, Updates};
 pub use solved_cycle::SolvedCycle;
 pub use state::{ActivityState, MarchState, SNAPSHOT_PARTS, Snapshot};
 pub use step_record::StepRecord;
+pub use under_surface_record::{PlasticRecord, UnderSurfaceRecord};
 pub use wear_test::{Activity, WearTest};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::CreepRecord;
+use super::{CreepRecord, UnderSurfaceRecord};
 use crate::machine::CycleRow;
 
 /// How far a march has come.
@@ -41,6 +41,8 @@ pub struct UpdateRecord {
     pub worst_quality: f64,
     /// Creep so far, if the insert creeps.
     pub creep: Option<CreepRecord>,
+    /// What is below the surface where the pressure is highest, if the insert is a solid.
+    pub under_surface: Option<UnderSurfaceRecord>,
 }
 
 /// The motions and loads of one solved cycle, and how many cycles of wear it came after.

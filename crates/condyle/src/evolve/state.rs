@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     Vec3,
-    contact::ContactState,
+    contact::{ContactState, UnderSurface},
     geometry::Insert,
     machine::{MachineState, SolverCounters, WarmStart},
 };
@@ -109,6 +109,9 @@ pub struct MarchState {
     pub laws_beside: Vec<LawBeside>,
     /// The history of the contact.
     pub contact: ContactState,
+    /// What is below the surface at the increment of the last update with the highest pressure, if the insert is a
+    /// solid.
+    pub under_surface: Option<UnderSurface>,
     /// One an activity.
     pub activities: Vec<ActivityState>,
     /// Where the femoral frame's origin is in the insert frame at neutral, mm.
@@ -149,6 +152,7 @@ impl MarchState {
             outside_mm3: Some(0.0),
             laws_beside: Vec::new(),
             contact,
+            under_surface: None,
             activities: machines.into_iter().map(ActivityState::before).collect(),
             zero_mm,
             settled: [0.0; 6],

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::{Mechanism, Readings, explicit::NoStep, implicit::NotConverged};
+use crate::contact::Flattened;
 
 /// Why a cycle was not solved.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -32,6 +33,17 @@ pub enum CycleError {
         /// Where the joints were before it.
         readings: Readings,
     },
+    /// A load that presses the insert flat.
+    #[error(
+        "the load presses the insert flat at {percent:.2} % of the cycle: where plastic strain has come to {plastic_strain:.2} the \
+         insert finds no balance; check the load, and [contact] yield_stress_mpa and its hardening, or take plasticity = \"none\""
+    )]
+    Flattened {
+        /// Place in the cycle, %.
+        percent: f64,
+        /// The largest plastic strain when the search for a balance was given up.
+        plastic_strain: f64,
+    },
     /// Explicit steps of a joint that weighs nothing.
     #[error(
         "the explicit integrator needs inertia on every loaded freedom, and {joint} has none; give it some, or \
@@ -53,12 +65,21 @@ impl CycleError {
         }
     }
 
+    /// That of a load at a phase of the cycle.
+    pub(super) fn flattened(phase: f64, flattened: Flattened) -> Self {
+        Self::Flattened {
+            percent: 100.0 * phase,
+            plastic_strain: flattened.plastic_strain,
+        }
+    }
+
     /// That of explicit steps which ended early.
     pub(super) fn of_explicit(mechanism: &Mechanism, failed: &NoStep) -> Self {
         match failed {
             NoStep::NoInertia(index) => Self::NoInertia {
                 joint: mechanism.joint(*index).long_name,
             },
+            NoStep::Flattened { phase, flattened } => Self::flattened(*phase, *flattened),
             NoStep::Unstable { phase, positions } => Self::Unstable {
                 percent: 100.0 * phase,
                 readings: Readings::new(mechanism, positions),

@@ -4,7 +4,10 @@ use super::{
     Chain, JointIndex, Kinematics, Machine, MachineState, SolverCounters, balance::Balance,
     stable_step::Quickness,
 };
-use crate::{contact::ContactModel, spatial::RelativeMotion};
+use crate::{
+    contact::{ContactModel, Flattened},
+    spatial::RelativeMotion,
+};
 
 /// Steps after which stability is asked for again; each time costs one more contact evaluation.
 const STEPS_PER_STABILITY: usize = 16;
@@ -18,6 +21,8 @@ pub(super) enum NoStep {
     NoInertia(JointIndex),
     /// The motion left all bounds.
     Unstable { phase: f64, positions: [f64; 6] },
+    /// The insert does not carry the load.
+    Flattened { phase: f64, flattened: Flattened },
 }
 
 /// Everything that explicit steps need beside the state.
@@ -52,6 +57,9 @@ impl Explicit<'_> {
                 left -= 1;
                 phase = if left == 0 { to } else { phase + step };
                 let (next, motion) = self.step(&now, phase, step, stable.inertia_factor)?;
+                let settled = self.contact.settle(&motion);
+                // A step is so short that what the contact finds may count from the next one on.
+                settled.map_err(|flattened| NoStep::Flattened { phase, flattened })?;
                 self.contact.accept(&motion);
                 now = next;
                 if left == 0 {

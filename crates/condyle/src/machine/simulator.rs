@@ -3,17 +3,24 @@
 use std::ops::{ControlFlow, Range};
 
 use super::{
-    Chain, Cycle, CycleError, CycleRow, Integration, Machine, MachineState, SolverCounters,
-    TimeSettings, WarmStart, balance::Balance, explicit::Explicit, implicit::Implicit,
-    repetition::Repetition, step_error::step_error_mm,
+    Chain, Cycle, CycleError, CycleRow, Integration, Machine, MachineState, Mechanism,
+    SolverCounters, TimeSettings, WarmStart,
+    balance::Balance,
+    explicit::Explicit,
+    implicit::{Implicit, NotConverged, Stepped},
+    repetition::Repetition,
+    step_error::step_error_mm,
 };
 use crate::{
-    contact::{ContactModel, CycleHistory, Moment, Record, TouchedNode},
+    contact::{ContactModel, CycleHistory, Flattened, Moment, Record, Settled, TouchedNode},
     spatial::RelativeMotion,
 };
 
 /// How often a step may be halved before it is given up.
 const MOST_HALVINGS: u32 = 8;
+/// How often a step is solved anew for a contact whose own state goes with the load; each time that state is right to
+/// about three times as much.
+const MOST_TURNS: u32 = 20;
 
 /// Where the machine goes on from.
 struct Accepted {
@@ -87,6 +94,7 @@ impl<'a> Simulator<'a> {
         let mut state = *start;
         let mut landed: Vec<Option<Landed>> = vec![None; count];
         self.history.clear(count);
+        self.contact.begin_cycle();
         let mut repeats = false;
         let mut solved = 0;
         while !repeats && solved < count * self.time.most_cycles_to_repeat {
@@ -95,9 +103,10 @@ impl<'a> Simulator<'a> {
             let end = self.increment(&state, place, counters)?;
             state = end.state;
             let here = self.land(place, &end);
+            let rests = self.contact.moved_in_a_cycle_mm() <= self.time.repeat_tolerance_mm;
             repeats = landed[place]
                 .replace(here)
-                .is_some_and(|before| repetition.is_met(&state, &before.state));
+                .is_some_and(|before| rests && repetition.is_met(&state, &before.state));
             state.phase %= 1.0;
             solved += 1;
             if watch(solved).is_break() {
@@ -254,7 +263,8 @@ impl<'a> Simulator<'a> {
             trusts_prediction: self.time.trusts_prediction,
             counters,
         };
-        match implicit.step(state, to - state.phase, warm_start, watch) {
+        let stepped = settled(&mut implicit, state, to - state.phase, warm_start, watch);
+        match stepped {
             Ok(next) if halvings == 0 || self.is_exact_enough(state, &next.state) => {
                 self.contact.accept(&next.motion);
                 Ok(Accepted {
@@ -266,10 +276,9 @@ impl<'a> Simulator<'a> {
                     warm_start: Some(next.warm_start),
                 })
             }
-            Err(failed) if halvings == 0 => {
-                Err(CycleError::of_implicit(self.machine.mechanism, &failed))
-            }
+            Err(failed) if halvings == 0 => Err(failed.error(self.machine.mechanism)),
             Ok(_) | Err(_) => {
+                self.contact.reject();
                 counters.halvings += 1;
                 let half = (state.phase + to) / 2.0;
                 let middle = self.advance(state, half, None, halvings - 1, counters, watch)?;
@@ -286,4 +295,43 @@ impl<'a> Simulator<'a> {
         let at_most_mm = self.time.increment_error_mm;
         at_most_mm == 0.0 || step_error_mm(self.machine, from, to) <= at_most_mm
     }
+}
+
+/// Why an implicit step was given up.
+enum GivenUp {
+    NotConverged(NotConverged),
+    Flattened { phase: f64, flattened: Flattened },
+}
+
+impl GivenUp {
+    fn error(self, mechanism: &Mechanism) -> CycleError {
+        match self {
+            Self::NotConverged(failed) => CycleError::of_implicit(mechanism, &failed),
+            Self::Flattened { phase, flattened } => CycleError::flattened(phase, flattened),
+        }
+    }
+}
+
+/// An implicit step at whose end the contact has found its own state: solved anew until it has.
+fn settled(
+    implicit: &mut Implicit<'_>,
+    from: &MachineState,
+    step: f64,
+    warm_start: Option<&WarmStart>,
+    watch: &mut dyn FnMut(f64),
+) -> Result<Stepped, GivenUp> {
+    let mut next = implicit.step(from, step, warm_start, watch);
+    for _ in 0..MOST_TURNS {
+        let ended = next.map_err(GivenUp::NotConverged)?;
+        let settled = implicit.contact.settle(&ended.motion);
+        let flattened = |flattened| GivenUp::Flattened {
+            phase: ended.state.phase,
+            flattened,
+        };
+        if settled.map_err(flattened)? == Settled::Yes {
+            return Ok(ended);
+        }
+        next = implicit.step(from, step, Some(&ended.warm_start), watch);
+    }
+    next.map_err(GivenUp::NotConverged)
 }

@@ -116,6 +116,7 @@ impl Case {
         )?;
         law.search = self.contact.finding.search.search();
         law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
+        law.hardening = self.contact.plasticity.hardening();
         Ok(law)
     }
 

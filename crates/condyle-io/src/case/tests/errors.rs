@@ -150,6 +150,52 @@ fn a_deformable_insert_is_written_without_a_law() {
 }
 
 #[test]
+fn what_is_no_yield_stress_is_named_with_its_place() {
+    let of = |keys: &str| {
+        refusal(&format!(
+            "[contact]\nmodel = \"deformable\"\nplasticity = \"j2\"\n{keys}\n"
+        ))
+    };
+    let shown = of("hardening = [[0.0, 14.0], [0.1, 13.0]]");
+    assert_shows(
+        &shown,
+        &[
+            "`hardening`: the hardening curve falls at point 2, from 14 to 13",
+            " 4 | hardening",
+        ],
+    );
+    let shown = of("hardening = [[0.01, 14.0], [0.1, 20.0]]");
+    assert_shows(
+        &shown,
+        &["must start at plastic strain 0 with the yield stress"],
+    );
+    let shown = of("hardening = [[0.0, 15.0], [0.1, 20.0]]");
+    assert_shows(
+        &shown,
+        &["`hardening` starts at 15 MPa, and yield_stress_mpa is 14"],
+    );
+    let shown = of("yield_stress_mpa = 0.0");
+    assert_shows(&shown, &["yield_stress_mpa", " 4 | yield_stress_mpa = 0.0"]);
+    let shown = refusal("[contact]\nmodel = \"deformable\"\nyield_stress_mpa = 12.0\n");
+    assert_shows(
+        &shown,
+        &["`yield_stress_mpa` belongs to plasticity = \"j2\""],
+    );
+    let shown = refusal("[contact]\nplasticity = \"j2\"\n");
+    assert_shows(&shown, &["`plasticity` belongs to model = \"deformable\""]);
+}
+
+#[test]
+fn a_case_with_plasticity_is_written_and_read_again() {
+    let keys =
+        "plasticity = \"j2\"\nyield_stress_mpa = 12.0\nhardening = [[0.0, 12.0], [0.1, 20.0]]";
+    let text = format!("[contact]\nmodel = \"deformable\"\n{keys}\n");
+    let case = parsed(&text).expect("it is a good case");
+    let again = parsed(&case.to_toml()).expect("what is written is a good case");
+    assert_eq!(again.contact, case.contact);
+}
+
+#[test]
 fn table_of_another_law_contradicts() {
     let shown = refusal("[contact]\nlaw = \"linear\"\ntable = [[0.0, 0.0], [0.1, 5.0]]\n");
     assert_shows(

@@ -9,14 +9,15 @@ use super::{
     compliance::Compliance,
     covered::{EdgeOfContact, squares, squares_everywhere},
     peak::PeakSearch,
+    plastic::{FOUND_MM, NodeLoad, PLASTIC_FIELD, PlasticInsert},
 };
 use crate::{
     Vector,
     contact::{
         broad_phase::BroadPhase,
         contact_law::Bodies,
-        memory::{ContactCache, ContactMemory, ContactState},
-        model::{ContactModel, Landing, Linearization, Response, Tangent},
+        memory::{ContactCache, ContactMemory, ContactState, StateField},
+        model::{ContactModel, Flattened, Landing, Linearization, Response, Settled, Tangent},
         pressed::{Coulomb, NearBlock, NearBlocks, PressedBlocks, Sliding, Tractions4},
         share_block::ShareBlock,
     },
@@ -30,6 +31,10 @@ use crate::{
 /// A node may touch where the bodies at rest are nearer than this, mm: beside a contact a thin layer bulges,
 /// by a few hundredths of what it gives way.
 const MOST_BULGE_MM: f64 = 0.1;
+
+/// The field of the contact's state with the tiles of the compliance that were asked for: a search goes the same way
+/// in their company alone, to the last bit.
+pub(super) const TILES_FIELD: &str = "compliance_tiles_asked_for";
 
 /// How a deformable contact is computed beside the compliance.
 #[derive(Clone, Copy)]
@@ -61,6 +66,9 @@ pub(super) struct DeformableContact<'a, B> {
     along: Vec<AlongNormal>,
     /// What the contact after this one is to know.
     state: ContactState,
+    /// How the insert yields, if it does, and the loads of the last response.
+    plastic: Option<PlasticInsert>,
+    node_loads: Vec<NodeLoad>,
 }
 
 /// Loads of a block of shares, and their derivatives by six motions.
@@ -138,10 +146,18 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             inward: nearby.blocks.iter().map(inward).collect(),
             along: Vec::new(),
             state: memory.state,
+            plastic: None,
+            node_loads: Vec::new(),
             bodies,
             rubbing,
             nearby,
         }
+    }
+
+    /// The same of an insert that yields.
+    pub fn yielding(mut self, plastic: Option<PlasticInsert>) -> Self {
+        self.plastic = plastic;
+        self
     }
 
     /// Lists the nodes that may touch.
@@ -167,7 +183,11 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             for (lane, &node) in shares.nodes.iter().enumerate() {
                 let is_near = gap_mm.lane(lane) <= MOST_BULGE_MM;
                 if is_near && shares.area_mm2.lane(lane) > 0.0 {
-                    let overclosure_mm = overclosures[lane];
+                    let mut overclosure_mm = overclosures[lane];
+                    if let Some(plastic) = &self.plastic {
+                        let set_mm = F64x4::new([plastic.set_mm(node), 0.0, 0.0, 0.0]);
+                        overclosure_mm[0] -= set_mm;
+                    }
                     self.candidates.push(Candidate {
                         node,
                         overclosure_mm,
@@ -185,8 +205,11 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         let compliance = self
             .compliance
             .near(candidates.map(|candidate| candidate.node));
+        self.node_loads.clear();
         for (place, load) in self.pressing.solve(&self.candidates, &compliance) {
             let (number, lane) = self.lanes[place];
+            let node_load = (self.candidates[place].node, load[0].lane(0).max(0.0));
+            self.node_loads.push(node_load);
             let block = &mut loads[number];
             block.load_n[lane] = load[0].lane(0).max(0.0);
             for (motion, by) in block.by_motion.iter_mut().enumerate() {
@@ -216,8 +239,17 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         self.bodies.surface.positions.len()
     }
 
+    fn begin_cycle(&mut self) {
+        if let Some(plastic) = &mut self.plastic {
+            plastic.cycle.begin();
+        }
+    }
+
     fn begin_increment(&mut self, increment: usize) {
         self.nearby.begin_increment(increment);
+        if let Some(plastic) = &mut self.plastic {
+            plastic.cycle.begin_increment(increment);
+        }
     }
 
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
@@ -236,7 +268,46 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
+    fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, Flattened> {
+        let Some(plastic) = &mut self.plastic else {
+            return Ok(Settled::Yes);
+        };
+        let shares = &self.bodies.surface.shares;
+        let pressures = self.node_loads.iter();
+        let peak_mpa = pressures
+            .map(|&(node, load_n)| load_n / shares[node as usize].area_mm2)
+            .fold(0.0, f64::max);
+        let near = self.candidates.iter().map(|candidate| candidate.node);
+        let around = self.bodies.insert.faces_around();
+        let moved_mm = plastic.flow(&self.node_loads, peak_mpa, near, around)?;
+        Ok(if moved_mm <= FOUND_MM {
+            Settled::Yes
+        } else {
+            Settled::RespondAgain
+        })
+    }
+
+    fn accept(&mut self, _motion: &RelativeMotion) {
+        if let Some(plastic) = &mut self.plastic {
+            plastic.accept();
+        }
+    }
+
+    fn reject(&mut self) {
+        if let Some(plastic) = &mut self.plastic {
+            plastic.reject();
+        }
+    }
+
+    fn moved_in_a_cycle_mm(&self) -> f64 {
+        let plastic = self.plastic.as_ref();
+        plastic.map_or(0.0, |plastic| plastic.cycle.moved_mm())
+    }
+
     fn land(&mut self, motion: &RelativeMotion) -> Landing {
+        if let Some(plastic) = &mut self.plastic {
+            plastic.land();
+        }
         let mut touched = self.pressed.touched(&self.nearby.blocks, motion);
         let (surface, faces) = (self.bodies.surface, self.bodies.insert.faces_around());
         let pressure2 = squares(&touched);
@@ -260,8 +331,22 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
     }
 
     fn into_memory(self: Box<Self>) -> ContactMemory {
+        let mut state = self.state;
+        state.fields.retain(|field| field.name != PLASTIC_FIELD);
+        state.fields.retain(|field| field.name != TILES_FIELD);
+        let known = self.compliance.known_tiles();
+        if !known.is_empty() {
+            state.fields.push(StateField {
+                name: TILES_FIELD.to_owned(),
+                values: known.into_iter().map(f64::from).collect(),
+            });
+        }
+        let plastic = self.plastic.map(PlasticInsert::into_memory);
+        state
+            .fields
+            .extend(plastic.and_then(|plastic| plastic.field()));
         ContactMemory {
-            state: self.state,
+            state,
             cache: ContactCache::of(self.nearby.into_cache()),
         }
     }

@@ -1,17 +1,15 @@
 //! The compliance of an insert's surface by finite elements.
 
 use std::{
+    collections::BTreeMap,
     fmt,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
-use condyle_fem::{Elastic, ElasticSolid, HalfSolved, HexMesh, SolidError};
+use condyle_fem::{Elastic, ElasticSolid, HalfSolved, HexMesh, SolidError, Strain};
 
-use super::compliance::SurfaceCompliance;
-use crate::{
-    Vec3,
-    geometry::{Insert, bounds},
-};
+use super::{compliance::SurfaceCompliance, plastic::Influence, tiles::tiles};
+use crate::{Vec3, geometry::Insert};
 
 /// So many nodes at most are solved for together: forces on nodes that are near load the same part of the factor.
 const TILE_NODES: usize = 48;
@@ -33,6 +31,8 @@ pub(super) struct ElasticSurface {
     /// Surface nodes that lie together, and of every tile its loads.
     tiles: Vec<Vec<u32>>,
     loads: Mutex<Vec<Option<Arc<HalfSolved>>>>,
+    /// What moves inside; of an insert that yields.
+    influence: OnceLock<Influence>,
 }
 
 impl fmt::Debug for ElasticSurface {
@@ -54,7 +54,7 @@ impl ElasticSurface {
             hexes: insert.mesh().hexes.clone(),
         };
         let surface = insert.surface_at(mesh_nodes);
-        let tiles = tiles(&surface.positions);
+        let tiles = tiles(&surface.positions, TILE_NODES);
         let held = insert.backside_nodes().iter().copied();
         Ok(Self {
             solid: ElasticSolid::new(&mesh, elastic, held)?,
@@ -62,6 +62,7 @@ impl ElasticSurface {
             loads: Mutex::new(vec![None; tiles.len()]),
             directions: surface.normals.iter().map(|normal| -normal).collect(),
             tiles,
+            influence: OnceLock::new(),
         })
     }
 
@@ -81,12 +82,88 @@ impl ElasticSurface {
             && self.nodes == insert.surface_nodes()
     }
 
+    /// The insert as a solid.
+    pub fn solid(&self) -> &ElasticSolid {
+        &self.solid
+    }
+
+    /// What moves inside the insert.
+    pub fn influence(&self) -> &Influence {
+        self.influence.get_or_init(|| {
+            let nodes = self.nodes.iter();
+            let places: Vec<Vec3> = nodes
+                .map(|&node| self.solid.mesh().nodes[node as usize])
+                .collect();
+            Influence::of_nothing(&self.solid, &places, self.tiles.len())
+        })
+    }
+
+    /// Nodes of the surface that lie together.
+    pub fn nodes_of_tile(&self, tile: usize) -> &[u32] {
+        &self.tiles[tile]
+    }
+
+    /// What unit loads on a tile move all mesh nodes by, mm/N: a row for every axis of every mesh node.
+    pub fn moved_below(&self, tile: usize) -> &[f32] {
+        let loads: Vec<(u32, Vec3)> = self.tiles[tile]
+            .iter()
+            .map(|&node| self.unit(node))
+            .collect();
+        self.influence().by_surface(&self.solid, tile, &loads)
+    }
+
+    /// Loads on nodes of the surface by their tiles.
+    pub fn by_tile(&self, loads: &[(u32, f64)]) -> BTreeMap<u32, Vec<f64>> {
+        let load_of: BTreeMap<u32, f64> = loads.iter().copied().collect();
+        let mut by_tile = BTreeMap::new();
+        for (number, tile) in self.tiles.iter().enumerate() {
+            let of = |node: &u32| load_of.get(node).copied();
+            if tile.iter().any(|node| of(node).is_some()) {
+                let loads = tile.iter().map(|node| of(node).unwrap_or(0.0));
+                by_tile.insert(number as u32, loads.collect());
+            }
+        }
+        by_tile
+    }
+
+    /// How far loads along the inward normals of nodes and eigenstrains of elements move all mesh nodes, mm.
+    pub fn moved_by(
+        &self,
+        loads: &[(u32, f64)],
+        eigenstrains: &BTreeMap<usize, [Strain; 8]>,
+    ) -> Vec<Vec3> {
+        let mut forces: Vec<(u32, Vec3)> = Vec::new();
+        for &(node, load_n) in loads {
+            let (node, along) = self.unit(node);
+            forces.push((node, along * load_n));
+        }
+        for (&element, strains) in eigenstrains {
+            let own = self.influence().element(&self.solid, element as u32);
+            let own = own.forces(&self.solid, strains);
+            let nodes = self.solid.mesh().hexes[element];
+            forces.extend(nodes.into_iter().zip(own));
+        }
+        self.solid.displacements(&forces)
+    }
+
+    /// How far mesh nodes of the surface move along the inward normals, mm.
+    pub fn along_normals(&self, moved_mm: &[Vec3]) -> Vec<f64> {
+        let nodes = self.nodes.iter().zip(&self.directions);
+        nodes
+            .map(|(&node, along)| moved_mm[node as usize].dot(along))
+            .collect()
+    }
+
+    /// The mesh node of a node of the surface, and the inward normal there.
+    fn unit(&self, node: u32) -> (u32, Vec3) {
+        (self.nodes[node as usize], self.directions[node as usize])
+    }
+
     /// Unit loads on a tile of nodes.
     fn loads(&self, tile: usize) -> Arc<HalfSolved> {
         let mut loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
         let solved = loads[tile].get_or_insert_with(|| {
-            let nodes = self.tiles[tile].iter().map(|&node| node as usize);
-            let forces = nodes.map(|node| (self.nodes[node], self.directions[node]));
+            let forces = self.tiles[tile].iter().map(|&node| self.unit(node));
             Arc::new(self.solid.half_solved(&forces.collect::<Vec<_>>()))
         });
         Arc::clone(solved)
@@ -101,23 +178,4 @@ impl SurfaceCompliance for ElasticSurface {
     fn between(&self, one: usize, other: usize) -> Vec<f64> {
         self.loads(one).moved_along(&self.loads(other))
     }
-}
-
-/// Nodes shared out into tiles that lie together: the larger extent halved until few are left.
-fn tiles(positions: &[Vec3]) -> Vec<Vec<u32>> {
-    let mut open = vec![(0..positions.len() as u32).collect::<Vec<u32>>()];
-    let mut tiles = Vec::new();
-    while let Some(mut nodes) = open.pop() {
-        if nodes.len() <= TILE_NODES {
-            tiles.push(nodes);
-        } else {
-            let at = |node: &u32| positions[*node as usize];
-            let (low, high) = bounds(nodes.iter().map(|node| &positions[*node as usize]));
-            let axis = (high - low).imax();
-            nodes.sort_by(|a, b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b)));
-            let second = nodes.split_off(nodes.len() / 2);
-            open.extend([second, nodes]);
-        }
-    }
-    tiles
 }

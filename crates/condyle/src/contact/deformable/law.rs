@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use super::{
     compliance::Compliance,
-    contact::{DeformableContact, Rubbing},
+    contact::{DeformableContact, Rubbing, TILES_FIELD},
     elastic_surface::ElasticSurface,
+    plastic::{PLASTIC_FIELD, PlasticInsert, Remembered},
     settings::Deformable,
+    under_surface::under_surface,
 };
 use crate::{
     Vec3,
@@ -15,6 +17,7 @@ use crate::{
         contact_law::{Bodies, ContactLaw},
         memory::{ContactMemory, ContactState, StateField},
         model::ContactModel,
+        under_surface::UnderSurface,
     },
     geometry::Insert,
 };
@@ -43,18 +46,24 @@ impl ContactLaw for Deformable {
         memory: ContactMemory,
     ) -> Box<dyn ContactModel + 'a> {
         let (compliance, state) = self.compliance(bodies.insert, &memory.state);
+        let plastic = self.plastic(&state, &compliance);
+        compliance.know_tiles(tiles_of(&state));
         let memory = ContactMemory { state, ..memory };
         let rubbing = Rubbing {
             friction: self.coulomb(),
             sample_reuse_mm: self.sample_reuse_mm,
         };
         match self.search {
-            Search::Coherent => Box::new(DeformableContact::<Coherent>::after(
-                memory, bodies, rubbing, compliance,
-            )),
-            Search::BruteForce => Box::new(DeformableContact::<BruteForce>::after(
-                memory, bodies, rubbing, compliance,
-            )),
+            Search::Coherent => {
+                let contact =
+                    DeformableContact::<Coherent>::after(memory, bodies, rubbing, compliance);
+                Box::new(contact.yielding(plastic))
+            }
+            Search::BruteForce => {
+                let contact =
+                    DeformableContact::<BruteForce>::after(memory, bodies, rubbing, compliance);
+                Box::new(contact.yielding(plastic))
+            }
         }
     }
 
@@ -69,6 +78,17 @@ impl ContactLaw for Deformable {
     fn memory_bytes(&self, insert: &Insert, ever_touched: f64) -> f64 {
         let surface = self.surface(insert, insert.unworn_nodes());
         surface.map_or(0.0, |surface| surface.source.bytes(ever_touched))
+    }
+
+    fn under_surface(
+        &self,
+        insert: &Insert,
+        state: &ContactState,
+        loads: &[(u32, f64)],
+    ) -> Option<UnderSurface> {
+        let (compliance, state) = self.compliance(insert, state);
+        let remembered = self.hardening.as_ref().map(|_| Remembered::of(&state));
+        Some(under_surface(&compliance.source, remembered, loads))
     }
 
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
@@ -90,12 +110,29 @@ impl Deformable {
         if is_much_thinner(insert, &used)
             && let Ok(renewed) = self.surface(insert, now)
         {
-            return (renewed, state_of(now));
+            return (renewed, state_of(now, state));
         }
         let surface = self.surface(insert, &used);
         // A case checks its insert as it is built.
         let surface = surface.expect("the insert is an elastic solid");
         (surface, state.clone())
+    }
+}
+
+impl Deformable {
+    /// How the insert yields, if it does, after what the state remembers.
+    fn plastic(
+        &self,
+        state: &ContactState,
+        compliance: &Arc<Compliance<ElasticSurface>>,
+    ) -> Option<PlasticInsert> {
+        let hardening = self.hardening.clone()?;
+        let remembered = Remembered::of(state);
+        Some(PlasticInsert::after(
+            remembered,
+            Arc::clone(compliance),
+            hardening,
+        ))
     }
 }
 
@@ -112,13 +149,25 @@ fn used_nodes(insert: &Insert, state: &ContactState) -> Vec<Vec3> {
     }
 }
 
-fn state_of(nodes: &[Vec3]) -> ContactState {
+/// The tiles of the compliance that were asked for.
+fn tiles_of(state: &ContactState) -> impl Iterator<Item = u32> {
+    let fields = state.fields.iter();
+    let tiles = fields.filter(|field| field.name == TILES_FIELD);
+    tiles
+        .flat_map(|field| &field.values)
+        .map(|&tile| tile as u32)
+}
+
+/// The state with the nodes whose compliance is used, and the plastic strains that it had.
+fn state_of(nodes: &[Vec3], before: &ContactState) -> ContactState {
+    let plastic = before.fields.iter();
+    let plastic = plastic.filter(|field| field.name == PLASTIC_FIELD);
     let field = StateField {
         name: NODES_FIELD.to_owned(),
         values: nodes.iter().flatten().copied().collect(),
     };
     ContactState {
-        fields: vec![field],
+        fields: [field].into_iter().chain(plastic.cloned()).collect(),
     }
 }
 

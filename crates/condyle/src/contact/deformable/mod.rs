@@ -6,7 +6,7 @@
 //! tells which gaps need not be looked at), and adds up what these do as in [`pressed`](super::pressed). How the surface
 //! gives way (`compliance`) is computed by finite elements (`elastic_surface`), between the nodes that ever come near
 //! (`near_matrix`). Where an increment ends it says how much of every share presses (`covered`), and what the highest
-//! pressure is (`peak`).
+//! pressure is (`peak`). Below the surface the insert may yield (`plastic`), and has stress there (`under_surface`).
 
 mod along_normal;
 mod candidate;
@@ -21,8 +21,11 @@ mod elastic_surface;
 mod law;
 mod near_matrix;
 mod peak;
+mod plastic;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod tiles;
+mod under_surface;
 
 pub use settings::Deformable;

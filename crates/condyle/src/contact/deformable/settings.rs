@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use condyle_fem::{Elastic, SolidError};
+use condyle_fem::{Elastic, Hardening, SolidError};
 
 use super::{compliance::Compliance, elastic_surface::ElasticSurface};
 use crate::{
@@ -23,8 +23,9 @@ const MOST_REMEMBERED: usize = 4;
 ///
 /// with the gaps g of the bodies at rest: nothing is tuned. Every node's share of the surface presses along the
 /// femur's normal and rubs with regularised Coulomb friction. Wear goes into the gap; C is that of the insert
-/// unworn, and made anew where an insert has become thinner by more than a twentieth. Limits: no tangential
-/// compliance (half a percent of the pressure), no plastic flow, a tray that does not give.
+/// unworn, and made anew where an insert has become thinner by more than a twentieth. With a yield stress the insert flows below
+/// its surface (von Mises, small strains), and what that leaves of a dent goes into the gap; the stiffness stays.
+/// Limits: no tangential compliance (half a percent of the pressure), a tray that does not give.
 #[derive(Debug)]
 pub struct Deformable {
     /// The elastic material, MPa.
@@ -37,6 +38,8 @@ pub struct Deformable {
     pub search: Search,
     /// Motion up to which a sample of the femur is extrapolated, mm; 0 takes every sample anew.
     pub sample_reuse_mm: f64,
+    /// The yield stress of the insert, MPa, if it yields.
+    pub hardening: Option<Hardening>,
     remembered: Arc<Remembered>,
 }
 
@@ -48,6 +51,7 @@ impl Clone for Deformable {
     fn clone(&self) -> Self {
         Self {
             remembered: Arc::clone(&self.remembered),
+            hardening: self.hardening.clone(),
             ..*self
         }
     }
@@ -70,6 +74,7 @@ impl Deformable {
             slip_tolerance_mm_per_s,
             search: Search::default(),
             sample_reuse_mm: Foundation::SAMPLE_REUSE_MM,
+            hardening: None,
             remembered: Arc::default(),
         };
         law.surface(insert, insert.unworn_nodes())?;

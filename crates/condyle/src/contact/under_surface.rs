@@ -1,0 +1,57 @@
+//! What is below the surface of an insert that is a solid: stress, and what has yielded.
+
+use serde::{Deserialize, Serialize};
+
+/// Plastic strain that accumulates at a place in a cycle below which the place counts as shaken down: the flow of an
+/// increment is found to some 3e-6.
+const SHAKEN_DOWN: f64 = 1e-5;
+
+/// What is below the surface of an insert that is a solid.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct UnderSurface {
+    /// Of every element its equivalent stress of von Mises, the mean of the stress over the element, MPa.
+    pub von_mises_mpa: Vec<f64>,
+    /// Of every element the largest shear stress of the same mean, MPa.
+    pub max_shear_mpa: Vec<f64>,
+    /// What has yielded, if the insert does.
+    pub plastic: Option<PlasticUnderSurface>,
+}
+
+/// What of an insert has yielded.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PlasticUnderSurface {
+    /// Of every node of the surface how far it has given way for good along the inward normal, mm.
+    pub permanent_set_mm: Vec<f64>,
+    /// Of every element the largest accumulated plastic strain at its Gauss points.
+    pub plastic_strain: Vec<f64>,
+    /// What every element does in a cycle that repeats itself.
+    pub regime: Vec<Regime>,
+}
+
+/// What a place of an insert does in a cycle that repeats itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Regime {
+    /// It has never yielded.
+    #[default]
+    Elastic,
+    /// It has, and does so no more.
+    ShakenDown,
+    /// It yields in every cycle: its strain grows, or goes to and fro.
+    Ratcheting,
+}
+
+impl Regime {
+    /// That of a place that has yielded, by what accumulates in a cycle.
+    pub fn of_flow(plastic_strain: f64) -> Self {
+        if plastic_strain > SHAKEN_DOWN {
+            Self::Ratcheting
+        } else {
+            Self::ShakenDown
+        }
+    }
+
+    /// The number of it in files: 0 elastic, 1 shaken down, 2 ratcheting.
+    pub fn number(self) -> u8 {
+        self as u8
+    }
+}
