@@ -177,6 +177,13 @@ fn verify_stress_under_a_ball_against_hertz() {
     }
 }
 
+/// What the state says of elements that have yielded; nothing where none has.
+fn plastic_strains(state: &ContactState) -> Vec<f64> {
+    let mut fields = state.fields.iter();
+    let field = fields.find(|field| field.name.starts_with("plastic_strain"));
+    field.map_or(Vec::new(), |field| field.values.clone())
+}
+
 #[test]
 fn verify_first_yield_below_the_surface_and_shakedown_on_the_second_press() {
     let ratio = 0.46;
@@ -190,12 +197,9 @@ fn verify_first_yield_below_the_surface_and_shakedown_on_the_second_press() {
     let mut depth_mm = 0.06;
     let first_n = loop {
         let landing = press(contact.as_mut(), depth_mm);
-        let state = pair.contact(ContactState::default()).into_memory().state;
-        assert!(state.fields.is_empty());
         contact = {
             let state = contact.into_memory().state;
-            let has_yielded = !state.fields.is_empty();
-            if has_yielded {
+            if !plastic_strains(&state).is_empty() {
                 break force_n(&landing);
             }
             pair.contact(state)
@@ -240,9 +244,8 @@ fn verify_first_yield_below_the_surface_and_shakedown_on_the_second_press() {
     }
     let again = press(contact.as_mut(), 0.2);
     assert!((force_n(&again) / force_n(&loaded) - 1.0).abs() < 1e-3);
-    let points = |state: &ContactState| state.fields[0].values.clone();
-    let after = points(&contact.into_memory().state);
-    let before = points(&before);
+    let after = plastic_strains(&contact.into_memory().state);
+    let before = plastic_strains(&before);
     assert_eq!(after.len(), before.len());
     // The second press is elastic, but for what the first one was found to.
     for (place, (after, before)) in after.iter().zip(&before).enumerate() {

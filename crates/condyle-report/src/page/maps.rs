@@ -50,22 +50,18 @@ pub(super) fn small(results: &Results, px_per_mm: f64) -> Vec<Small> {
         shades: Shades::Magma,
         ..map
     });
-    let creep = plain(results, surface, "creep_depth_mm", px_per_mm).map(|map| Map {
-        id: "map-creep",
-        title: "Creep",
-        unit: "mm",
-        largest: "Deepest",
-        shades: Shades::Viridis,
-        ..map
-    });
-    let set = plain(results, surface, "permanent_set_mm", px_per_mm).map(|map| Map {
-        id: "map-set",
-        title: "Permanent set",
-        unit: "mm",
-        largest: "Deepest",
-        shades: Shades::Viridis,
-        ..map
-    });
+    let depth = |id, title, field| {
+        plain(results, surface, field, px_per_mm).map(|map| Map {
+            id,
+            title,
+            unit: "mm",
+            largest: "Deepest",
+            shades: Shades::Viridis,
+            ..map
+        })
+    };
+    let creep = depth("map-creep", "Creep", "creep_depth_mm");
+    let set = depth("map-set", "Permanent set", "permanent_set_mm");
     let captions = [
         "Largest contact pressure that each node sees in one gait cycle, the mean over its share of the surface, last update.",
         "Distance that the femur slides over each place while it presses on it, in one gait cycle, last update.",
