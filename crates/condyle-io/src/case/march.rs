@@ -11,7 +11,7 @@ settings! {
 
     /// Updates of the worn shape, evenly over the cycles.
     FixedUpdates {
-        /// How often the worn shape is brought up to date, evenly over the cycles.
+        /// How often the worn shape is brought up to date, evenly over the cycles; where the insert creeps, first after a tenth of such an interval.
         updates: u64 = 10, in within(1.0, 10_000.0);
     }
 
