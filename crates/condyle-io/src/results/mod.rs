@@ -20,11 +20,12 @@ mod plausibility;
 #[cfg(feature = "file-system")]
 mod replace;
 mod sides;
+#[cfg(feature = "file-system")]
 mod slip_paths;
 mod summary;
 mod tables;
-#[cfg(feature = "file-system")]
 mod under_surface;
+#[cfg(feature = "file-system")]
 mod write_over;
 
 /// What the columns of `kinematics.csv` are.

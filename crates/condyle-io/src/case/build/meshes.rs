@@ -109,6 +109,7 @@ impl ShellOf {
 }
 
 /// What the shell of a body is checked for, once it lies in the frame of a knee.
+#[cfg(feature = "file-system")]
 pub(in crate::case) fn checks_of(body: Body) -> ShellChecks {
     match body {
         Body::Femur => ShellOf::FEMUR.checks,
