@@ -11,6 +11,7 @@ use super::super::mesh_file::LengthUnit;
 use super::body_size::check_triangles;
 use super::error::{BuildError, BuildWarning};
 use super::pieces::stray_piece;
+#[cfg(feature = "file-system")]
 use super::wrong_axes::Body;
 use crate::keyed::DataFile;
 use crate::mesh::{parse_surface, surface_bytes};
