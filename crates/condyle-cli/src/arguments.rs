@@ -36,6 +36,8 @@ pub enum Command {
     Converge(Converge),
     /// Run a case again with each of its assumptions changed, and see which of them its results hang on.
     Sensitivity(Sensitivity),
+    /// Run a case many times with inputs that scatter as they do from test to test, and see how far its results do.
+    Uncertainty(Uncertainty),
     /// Hold a run against measured kinematics, weighed wear and a scanned surface.
     Compare(Compare),
     /// Find the constants of the wear law with which runs wear as fast as the specimens did.
@@ -172,6 +174,24 @@ pub struct Sensitivity {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Print the results and their changes as JSON, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct Uncertainty {
+    /// The case file.
+    pub case: PathBuf,
+    /// Runs with other inputs.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub runs: u32,
+    /// Of the chance by which inputs are chosen: the same seed gives the same numbers.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Runs at the same time, as many as the machine has cores if not given; the results are the same on any number.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+    /// Print all as JSON, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
 }

@@ -18,6 +18,7 @@ mod run;
 mod schema;
 mod sensitivity;
 mod standard_error;
+mod uncertainty;
 
 use std::process::ExitCode;
 
@@ -51,6 +52,7 @@ fn obey(command: Command) -> ExitCode {
         Command::Report(arguments) => report::report(&arguments),
         Command::Converge(arguments) => converge::converge(&arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(&arguments),
+        Command::Uncertainty(arguments) => uncertainty::uncertainty(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::CalibrateWear(arguments) => calibrate_wear::calibrate_wear(&arguments),
     }

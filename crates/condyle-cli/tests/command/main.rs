@@ -25,4 +25,5 @@ mod preview;
 mod sensitivity;
 mod shapes;
 mod slip_paths;
+mod uncertainty;
 mod words;

@@ -4,12 +4,16 @@ mod converge;
 mod converge_files;
 mod converge_plan;
 pub mod knight_2007;
+mod many_runs;
 mod observed_order;
 pub mod sensitivity;
+mod table;
+pub mod uncertainty;
 
 pub use converge::{
     ConvergeHappening, ConvergeOptions, Converged, Convergence, Listener, Point, QUANTITIES,
     Quantity, converge,
 };
 pub use converge_plan::{ConvergeError, ConvergePlan, Planned};
+pub use many_runs::CaseFailed;
 pub use observed_order::{Extrapolation, extrapolate};

@@ -3,7 +3,7 @@
 use condyle_io::results::Summary;
 use serde::Serialize;
 
-use super::assumption::Change;
+use super::{super::table::aligned, assumption::Change};
 
 /// A result that is compared.
 #[derive(Clone, Copy, Debug)]
@@ -183,22 +183,6 @@ impl Sensitivity {
 
 fn name(changed: &Changed) -> String {
     format!("{}: {}", changed.assumption, changed.change)
-}
-
-/// Rows as Markdown, the first of them the head.
-fn aligned(rows: &[Vec<String>]) -> String {
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths: Vec<usize> = (0..rows[0].len()).filter_map(width).collect();
-    let line = |row: &[String]| {
-        let cells = row.iter().zip(&widths);
-        let cells: Vec<String> = cells
-            .map(|(cell, width)| format!("{cell:<width$}"))
-            .collect();
-        format!("| {} |\n", cells.join(" | "))
-    };
-    let rule: Vec<String> = widths.iter().map(|width| "-".repeat(*width)).collect();
-    let body: String = rows[1..].iter().map(|row| line(row)).collect();
-    line(&rows[0]) + &line(&rule) + &body
 }
 
 #[cfg(test)]

@@ -3,43 +3,16 @@
 mod assumption;
 mod found;
 
-use std::{
-    ops::ControlFlow,
-    path::Path,
-    sync::{
-        Mutex,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
-};
+use std::path::Path;
 
-use condyle::evolve::MarchError;
-use condyle_io::{
-    cache::Cache,
-    case::Case,
-    results::{LawWear, NeutralPose, Summary, SummaryInput},
-};
-use thiserror::Error;
+use condyle_io::{case::Case, results::Summary};
 
-use crate::{
-    RunError,
-    run::{self, build, start},
-};
+use super::many_runs::{CaseFailed, first_line, in_parallel, marched};
+use crate::{RunError, run};
 use assumption::changes_of;
 
 pub use assumption::Change;
 pub use found::{Changed, Results, Sensitivity, SensitivityQuantity, sensitivity_quantities};
-
-/// Why a study of sensitivities is not done.
-#[derive(Debug, Error)]
-pub enum SensitivityError {
-    /// The case as it is.
-    #[error(transparent)]
-    Case(#[from] RunError),
-    /// Its march.
-    #[error("the case as it is: {0}")]
-    March(#[from] MarchError),
-}
 
 /// Runs the case at `case_path` as it is and with each of its assumptions changed, `threads` at a
 /// time; nothing is written, and results do not depend on the threads.
@@ -52,7 +25,7 @@ pub fn sensitivity(
     case_path: &Path,
     threads: usize,
     tell: &(dyn Fn(&Change) + Sync),
-) -> Result<Sensitivity, SensitivityError> {
+) -> Result<Sensitivity, CaseFailed> {
     let case = Case::read(case_path).map_err(RunError::Case)?;
     let as_given = marched(&case)?;
     let changes = changes_of(&case);
@@ -73,67 +46,5 @@ fn changed(case_path: &Path, case: &Case, change: &Change) -> Option<Result<Summ
         Ok(other) if other == *case => None,
         Ok(other) => Some(marched(&other).map_err(|error| first_line(&error))),
         Err(error) => Some(Err(first_line(&error))),
-    }
-}
-
-fn first_line(words: &impl ToString) -> String {
-    let words = words.to_string();
-    words.lines().next().unwrap_or_default().to_owned()
-}
-
-/// The summary of a case whose march is done.
-fn marched(case: &Case) -> Result<Summary, SensitivityError> {
-    let built = build(case, 1, &Cache::of_user())?;
-    let mut march = start(case, built.test, &built.warnings)?;
-    while !march.is_done() {
-        let _ = march.update(&mut |_| ControlFlow::Continue(()))?;
-    }
-    let summary = Summary::new(SummaryInput {
-        state: march.state(),
-        increments: march.test().time.increments,
-        hexahedra: march.insert().mesh().hexes.len(),
-        articulating_nodes: march.insert().surface_nodes().len(),
-        wall_s: 0.0,
-        inputs_blake3: String::new(),
-        warnings: Vec::new(),
-        error: None,
-        neutral_pose: NeutralPose::of(&march, case.heading.side),
-        activities: Vec::new(),
-        wear_laws: LawWear::of(&march, &case.wear),
-    });
-    Ok(summary.expect("a march that is done has an update"))
-}
-
-/// `work` for each of `count` indices, in their order, `threads` at a time.
-fn in_parallel<T: Send>(count: usize, threads: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    let done: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
-    let taken = AtomicUsize::new(0);
-    let run = || {
-        loop {
-            let index = taken.fetch_add(1, Ordering::Relaxed);
-            let Some(place) = done.get(index) else { break };
-            *place.lock().expect("no thread panics with it") = Some(work(index));
-        }
-    };
-    thread::scope(|scope| {
-        for _ in 0..threads.clamp(1, count.max(1)) {
-            scope.spawn(run);
-        }
-    });
-    let found = |place: Mutex<Option<T>>| place.into_inner().expect("no thread panics with it");
-    done.into_iter().filter_map(found).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn work_keeps_its_order_on_any_number_of_threads() {
-        let squares: Vec<usize> = (0..20).map(|i| i * i).collect();
-        for threads in [0, 1, 3, 50] {
-            assert_eq!(in_parallel(20, threads, |i| i * i), squares);
-        }
-        assert!(in_parallel(0, 4, |i| i).is_empty());
     }
 }

@@ -1,0 +1,111 @@
+//! How far a test would scatter whose inputs are never quite the same.
+
+mod found;
+mod latin_hypercube;
+mod scatter;
+
+use std::{ops::ControlFlow, path::Path};
+
+use condyle::{evolve::March, geometry::TriangleMesh};
+use condyle_io::{
+    cache::Cache,
+    case::{Assignment, Case},
+    results::Summary,
+};
+
+use super::many_runs::{CaseFailed, first_line, in_parallel, marched};
+use crate::{
+    RunError,
+    run::{self, InMemory, Outcome, RunKeeper, run_in_memory},
+};
+use latin_hypercube::latin_hypercube;
+use scatter::{Scatter, deviations, left_out, scatters_of};
+
+pub use found::{Input, Spread, Uncertainty};
+
+/// How an uncertainty is found.
+#[derive(Clone, Copy, Debug)]
+pub struct UncertaintyOptions {
+    /// Runs with other inputs; at least 2.
+    pub runs: usize,
+    /// Of the chance by which inputs are chosen.
+    pub seed: u64,
+    /// Runs at the same time; results do not depend on it.
+    pub threads: usize,
+}
+
+/// Runs the case at `case_path` as it is, with its estimate of the error, and again with inputs that scatter:
+/// friction, loads, springs, placement, thickness, modulus and wear factor, as far as the case has them. The inputs
+/// are a Latin hypercube of normal distributions cut off at three standard deviations, and know nothing of each
+/// other. Nothing is written.
+///
+/// `tell` hears of every run with other inputs that is done, from any thread.
+///
+/// # Errors
+/// A case that cannot be run as it is. A run with other inputs that fails is counted among the results.
+pub fn uncertainty(
+    case_path: &Path,
+    options: UncertaintyOptions,
+    tell: &(dyn Fn() + Sync),
+) -> Result<Uncertainty, CaseFailed> {
+    let case = Case::read(case_path).map_err(RunError::Case)?;
+    let as_given = with_error(&case)?;
+    let scatters = scatters_of(&case);
+    let points = drawn(options, scatters.len());
+    let ran = in_parallel(points.len(), options.threads, |index| {
+        let found = off_by(case_path, &case, &scatters, &points[index]);
+        tell();
+        found
+    });
+    let inputs = scatters.iter().map(|scatter| Input::of(scatter)).collect();
+    let mut found = Uncertainty::of(&as_given, inputs, &points, &ran);
+    found.seed = options.seed;
+    found.left_out = left_out(&case);
+    Ok(found)
+}
+
+/// For each run, by how many standard deviations each input is off.
+fn drawn(options: UncertaintyOptions, inputs: usize) -> Vec<Vec<f64>> {
+    let mut points = latin_hypercube(options.runs, inputs, options.seed);
+    let values = points.iter_mut().flatten();
+    values.for_each(|share| *share = deviations(*share));
+    points
+}
+
+/// A run whose inputs are off by so many standard deviations, or why there is none.
+fn off_by(
+    case_path: &Path,
+    case: &Case,
+    scatters: &[&Scatter],
+    point: &[f64],
+) -> Result<Summary, String> {
+    let inputs = scatters.iter().zip(point);
+    let set: Vec<Assignment> = inputs
+        .flat_map(|(scatter, deviations)| scatter.off_by(case, *deviations))
+        .collect();
+    let other = run::changed(case_path, &set).map_err(|error| first_line(&error))?;
+    marched(&other).map_err(|error| first_line(&error))
+}
+
+/// The summary of a case, with its estimate of the error if it asks for one.
+fn with_error(case: &Case) -> Result<Summary, RunError> {
+    let how = InMemory {
+        threads: 1,
+        cache: Cache::of_user(),
+        wear_law: None,
+    };
+    let outcome = run_in_memory(case, &how, &mut Nothing, &mut |_| ControlFlow::Continue(()))?;
+    match outcome {
+        Outcome::Done(summary) | Outcome::DoneBefore(summary) => Ok(*summary),
+        Outcome::Interrupted(_) => unreachable!("nobody asks it to stop"),
+    }
+}
+
+/// Keeps nothing of a run.
+struct Nothing;
+
+impl RunKeeper for Nothing {
+    fn settled(&mut self, _: &March, _: &TriangleMesh) {}
+
+    fn updated(&mut self, _: &March) {}
+}
