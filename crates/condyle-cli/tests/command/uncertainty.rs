@@ -4,15 +4,20 @@ use serde_json::Value;
 
 use crate::bench::Bench;
 
-const TINY: &str = "\
-[insert]
+const TINY: &str = r#"[insert]
 edge_mm = 3.0
 layers = 1
 [march]
 updates = 2
 [time]
 increments = 40
-";
+[machine.axial_force]
+waveform = "paper-like"
+[machine.ap_force]
+waveform = "iso-like"
+[machine.ie_torque]
+waveform = "iso-like"
+"#;
 
 fn found(text: &str, arguments: &[&str]) -> Value {
     let bench = Bench::with_case(text);
@@ -45,7 +50,9 @@ fn the_same_seed_gives_the_same_numbers_on_any_number_of_threads() {
 #[test]
 fn verify_the_mass_scatters_with_the_wear_factor_and_the_depth_with_it() {
     // Of displacement control nothing but friction, load, placement and wear factor reaches the mass.
-    let text = format!("[machine]\npreset = \"stanmore-displacement\"\n{TINY}");
+    let text = "[machine]\npreset = \"stanmore-displacement\"\n[machine.axial_force]\nwaveform = \"paper-like\"\n";
+    let text =
+        format!("{text}[insert]\nedge_mm = 3.0\n[march]\nupdates = 2\n[time]\nincrements = 40\n");
     let one = found(&text, &["--runs", "60"]);
     let inputs = one["inputs"].as_array().unwrap();
     let of_mass = |name: &str| {

@@ -99,8 +99,8 @@ pub struct Spread {
 pub struct Uncertainty {
     /// Runs with other inputs that came to their end.
     pub runs: usize,
-    /// Runs that did not, by why; their number.
-    pub not_run: BTreeMap<String, usize>,
+    /// Why others did not.
+    pub not_run: Vec<String>,
     /// Of the chance by which inputs were chosen.
     pub seed: u64,
     /// What scatters.
@@ -130,10 +130,8 @@ impl Uncertainty {
         points: &[Vec<f64>],
         ran: &[Result<Summary, String>],
     ) -> Self {
-        let mut not_run = BTreeMap::new();
-        for why in ran.iter().filter_map(|ran| ran.as_ref().err()) {
-            *not_run.entry(why.clone()).or_insert(0) += 1;
-        }
+        let failed = ran.iter().filter_map(|ran| ran.as_ref().err());
+        let not_run = failed.map(|why| why.trim().to_owned()).collect();
         let done = || {
             points
                 .iter()
@@ -206,8 +204,10 @@ impl Uncertainty {
             "{} runs, seed {}: standard deviations are known to {known:.0} %.\n",
             self.runs, self.seed
         );
-        for (why, count) in &self.not_run {
-            text += &format!("Not among them: {count} that could not be run: {why}\n");
+        if let Some(why) = self.not_run.first() {
+            let count = self.not_run.len();
+            text +=
+                &format!("Not among them: {count} that could not be run, the first since: {why}\n");
         }
         if !self.left_out.is_empty() {
             text += &format!("This case has no key for: {}.\n", self.left_out.join(", "));

@@ -19,7 +19,7 @@ use crate::{
     run::{self, InMemory, Outcome, RunKeeper, run_in_memory},
 };
 use latin_hypercube::latin_hypercube;
-use scatter::{Scatter, deviations, left_out, scatters_of};
+use scatter::{Scatter, deviations, scatters};
 
 pub use found::{Input, Spread, Uncertainty};
 
@@ -50,7 +50,8 @@ pub fn uncertainty(
 ) -> Result<Uncertainty, CaseFailed> {
     let case = Case::read(case_path).map_err(RunError::Case)?;
     let as_given = with_error(&case)?;
-    let scatters = scatters_of(&case);
+    let (scatters, left_out): (Vec<_>, Vec<_>) =
+        scatters().partition(|scatter| takes(case_path, &case, scatter));
     let points = drawn(options, scatters.len());
     let ran = in_parallel(points.len(), options.threads, |index| {
         let found = off_by(case_path, &case, &scatters, &points[index]);
@@ -60,8 +61,14 @@ pub fn uncertainty(
     let inputs = scatters.iter().map(|scatter| Input::of(scatter)).collect();
     let mut found = Uncertainty::of(&as_given, inputs, &points, &ran);
     found.seed = options.seed;
-    found.left_out = left_out(&case);
+    found.left_out = left_out.iter().map(|scatter| scatter.name).collect();
     Ok(found)
+}
+
+/// Whether a case has keys of a scatter: it takes them as they are.
+fn takes(case_path: &Path, case: &Case, scatter: &Scatter) -> bool {
+    let set = scatter.off_by(case, 0.0);
+    !set.is_empty() && run::changed(case_path, &set).is_ok()
 }
 
 /// For each run, by how many standard deviations each input is off.

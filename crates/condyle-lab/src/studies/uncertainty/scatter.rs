@@ -17,6 +17,8 @@ pub(super) struct Scatter {
     /// Its keys, of which a case may have some; all that it has go together.
     keys: &'static [&'static str],
     by: By,
+    /// What a key is worth that is not written.
+    otherwise: Option<f64>,
     /// Where the number is from.
     pub source: &'static str,
 }
@@ -41,24 +43,28 @@ const SCATTERS: &[Scatter] = &[
         name: "friction",
         keys: &["contact.friction"],
         by: Part(0.2),
+        otherwise: None,
         source: "assumed: 0.07 in serum is between 0.04 and 0.1",
     },
     Scatter {
         name: "axial force",
         keys: &["machine.axial_force.scale"],
         by: Part(0.02),
+        otherwise: Some(1.0),
         source: MACHINE,
     },
     Scatter {
         name: "AP force",
         keys: &["machine.ap_force.scale"],
         by: Part(0.02),
+        otherwise: Some(1.0),
         source: MACHINE,
     },
     Scatter {
         name: "IE torque",
         keys: &["machine.ie_torque.scale"],
         by: Part(0.02),
+        otherwise: Some(1.0),
         source: MACHINE,
     },
     Scatter {
@@ -68,78 +74,77 @@ const SCATTERS: &[Scatter] = &[
             "machine.springs.anterior_n_per_mm",
         ],
         by: Part(0.05),
+        otherwise: None,
         source: "assumed: how springs of a drawing differ",
     },
     Scatter {
         name: "free play of springs",
         keys: &["machine.springs.free_play_mm"],
         by: Step(0.25),
+        otherwise: None,
         source: SET_UP,
     },
     Scatter {
         name: "varus-valgus axis, medial",
         keys: &["machine.vv_axis_medial_mm"],
         by: Step(0.5),
+        otherwise: None,
         source: SET_UP,
     },
     Scatter {
         name: "flexion of the femur",
         keys: &["femur.flexion_deg"],
         by: Step(0.5),
+        otherwise: None,
         source: SET_UP,
     },
     Scatter {
         name: "external rotation of the femur",
         keys: &["femur.external_rotation_deg"],
         by: Step(0.5),
+        otherwise: None,
         source: SET_UP,
     },
     Scatter {
         name: "posterior slope",
         keys: &["insert.posterior_slope_deg"],
         by: Step(0.5),
+        otherwise: None,
         source: SET_UP,
     },
     Scatter {
         name: "axial rotation of the insert",
         keys: &["insert.axial_rotation_deg"],
         by: Step(0.5),
+        otherwise: None,
         source: SET_UP,
     },
     Scatter {
         name: "thickness",
         keys: &["insert.thickness_mm"],
         by: Step(0.05),
+        otherwise: None,
         source: "assumed: a tolerance of 0.1 mm, taken as two deviations",
     },
     Scatter {
         name: "Young's modulus",
         keys: &["material.youngs_modulus_mpa"],
         by: Part(0.1),
+        otherwise: None,
         source: "sathasivam-walker1994: 400 to 600 MPa, taken as two deviations to either side",
     },
     Scatter {
         name: "wear factor",
         keys: &["wear.wear_factor_mm3_per_nm"],
         by: Part(0.054),
+        otherwise: None,
         source: "saikko2005: 5.4 % from pin to pin of one material on one machine",
     },
 ];
 
-/// The scatters that a case has keys for.
-pub(super) fn scatters_of(case: &Case) -> Vec<&'static Scatter> {
-    let has = |scatter: &&Scatter| !scatter.values(case).is_empty();
-    SCATTERS.iter().filter(has).collect()
-}
-
-/// The scatters that a case has no key for, by their names.
-pub(super) fn left_out(case: &Case) -> Vec<&'static str> {
-    let none = |scatter: &&Scatter| scatter.values(case).is_empty();
-    SCATTERS
-        .iter()
-        .filter(none)
-        .map(|scatter| scatter.name)
-        .collect()
+/// All scatters, whether a case has keys for them or not.
+pub(super) fn scatters() -> impl Iterator<Item = &'static Scatter> {
+    SCATTERS.iter()
 }
 
 /// How many standard deviations off a value is below which lies this share of all: normal, cut off at
@@ -162,7 +167,7 @@ impl Scatter {
         }
     }
 
-    /// The keys with values that are so many standard deviations off.
+    /// The keys with values that are so many standard deviations off; none where the case has no such keys.
     pub fn off_by(&self, case: &Case, deviations: f64) -> Vec<Assignment> {
         let other = |value: f64| match self.by {
             Part(part) => value * (1.0 + part * deviations),
@@ -177,7 +182,7 @@ impl Scatter {
 
     /// Keys that the case has, each a number that scatters.
     fn values(&self, case: &Case) -> Vec<(&'static str, f64)> {
-        let value = |key: &&'static str| Some((*key, case.number_at(key)?));
+        let value = |key: &&'static str| Some((*key, case.number_at(key).or(self.otherwise)?));
         let scatters = |(_, value): &(&str, f64)| *value != 0.0 || matches!(self.by, Step(_));
         self.keys
             .iter()
@@ -214,23 +219,19 @@ mod tests {
     #[test]
     fn all_keys_of_a_scatter_move_together() {
         let case = default_case();
-        let all = scatters_of(&case);
-        let springs = all
-            .iter()
-            .find(|scatter| scatter.name == "stiffness of springs")
-            .unwrap();
-        let set: Vec<String> = springs
-            .off_by(&case, 2.0)
-            .iter()
-            .map(ToString::to_string)
-            .collect();
+        let springs = scatters().find(|scatter| scatter.name == "stiffness of springs");
+        let springs = springs.unwrap();
+        let set = springs.off_by(&case, 2.0).into_iter();
+        let set: Vec<String> = set.map(|set| set.to_string()).collect();
         assert_eq!(set.len(), 2, "{set:?}");
         assert!(set[0].contains("37.18"), "{set:?}");
         assert_eq!(springs.deviation(), "5 %");
     }
 
     #[test]
-    fn every_scatter_has_a_key_in_the_default_case() {
-        assert_eq!(left_out(&default_case()), Vec::<&str>::new());
+    fn what_is_nothing_has_no_part_of_itself() {
+        let case = Case::parse("[contact]\nfriction = 0.0\n", "case", Path::new("")).unwrap();
+        let friction = scatters().find(|scatter| scatter.name == "friction");
+        assert!(friction.unwrap().off_by(&case, 1.0).is_empty());
     }
 }
