@@ -28,7 +28,18 @@ class CondyleError(Exception):
     """Whatever condyle refuses or cannot do; its text is that of the command."""
 
 
-class BadInput(CondyleError, ValueError):
+class _WithProblems(CondyleError):
+    problems: tuple[Problem, ...]
+
+    def __init__(self, message: str, problems: tuple[Problem, ...] = ()) -> None:
+        super().__init__(message, problems)
+        self.problems = problems
+
+    def __str__(self) -> str:
+        return self.args[0]
+
+
+class BadInput(_WithProblems, ValueError):
     """A case, a mesh, a waveform or a folder that cannot be used: exit code 2 of the command.
 
     >>> import condyle
@@ -43,15 +54,8 @@ class BadInput(CondyleError, ValueError):
     problems: tuple[Problem, ...]
     """Everything that is wrong, each thing with its place; empty where there is no file to point into."""
 
-    def __init__(self, message: str, problems: tuple[Problem, ...] = ()) -> None:
-        super().__init__(message, problems)
-        self.problems = problems
 
-    def __str__(self) -> str:
-        return self.args[0]
-
-
-class NotSolved(CondyleError, ArithmeticError):
+class NotSolved(_WithProblems, ArithmeticError):
     """The physics could not be solved: exit code 3 of the command.
 
     The text has the instant, the pose and what is out of balance.
@@ -59,13 +63,6 @@ class NotSolved(CondyleError, ArithmeticError):
 
     problems: tuple[Problem, ...]
     """The place in the case that is likely behind it, if there is one."""
-
-    def __init__(self, message: str, problems: tuple[Problem, ...] = ()) -> None:
-        super().__init__(message, problems)
-        self.problems = problems
-
-    def __str__(self) -> str:
-        return self.args[0]
 
 
 class Interrupted(CondyleError):
