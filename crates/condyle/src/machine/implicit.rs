@@ -105,7 +105,9 @@ impl Implicit<'_> {
             differences: BackwardDifferences::from(from, step_s),
         };
         let levers = self.machine.levers();
-        let mut iteration = NewtonIteration::new(levers, step.predicted(warm_start), warm_start);
+        let may_leave_n = self.trusts_prediction.then_some(self.force_tolerance_n);
+        let start = step.predicted(warm_start);
+        let mut iteration = NewtonIteration::new(levers, may_leave_n, start, warm_start);
         let loads = self.machine.loads_at(step.phase);
         for _ in 0..MOST_ITERATIONS {
             let kinematics = step.kinematics(&iteration);
@@ -122,7 +124,7 @@ impl Implicit<'_> {
                 break;
             }
             self.counters.newton_iterations += 1;
-            if self.trusts_prediction && iteration.predicted_n() <= self.force_tolerance_n {
+            if iteration.is_predicted_done() {
                 let kinematics = step.kinematics(&iteration);
                 let configuration = self.chain.at(&kinematics.positions);
                 let motion = configuration.motion(&kinematics.rates);

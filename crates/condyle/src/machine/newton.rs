@@ -15,6 +15,9 @@ const SHORTEST_CORRECTION_MM: f64 = 1e-9;
 const CAUTION: f64 = 2.0;
 /// A whole correction that leaves more of the residual is none of the last, quadratic ones.
 const CONVERGING: f64 = 0.1;
+/// A correction by the tangent of the one before is predicted to leave this many times the part of the residual that
+/// the one before left.
+const CHORD_CAUTION: f64 = 3.0;
 /// Farthest that one iteration may move, mm; on the lever, rad.
 const LONGEST_CORRECTION_MM: f64 = 1.0;
 
@@ -30,6 +33,9 @@ pub(super) struct NewtonIteration {
     mean_slip: [Vec3; MOST_REGIONS],
     /// Whether all of it was taken.
     is_whole: bool,
+    /// What may be left of a residual, N, by prediction alone; none where every correction is to have a tangent of its
+    /// own, and what it leaves is to be computed.
+    may_leave_n: Option<f64>,
     /// Predicted length of the residual where the iteration is now, N; infinite where nothing is
     /// known of it.
     predicted_n: f64,
@@ -38,13 +44,21 @@ pub(super) struct NewtonIteration {
     contraction_per_n: f64,
     /// How many times that a correction is predicted to leave.
     caution: f64,
+    /// The tangent of the last correction.
+    tangent: Option<JointStiffness>,
 }
 
 impl NewtonIteration {
     /// An iteration that starts from `positions`, and may know the contraction from a cycle before.
-    pub fn new(levers: Levers, positions: [f64; 6], warm_start: Option<&WarmStart>) -> Self {
+    pub fn new(
+        levers: Levers,
+        may_leave_n: Option<f64>,
+        positions: [f64; 6],
+        warm_start: Option<&WarmStart>,
+    ) -> Self {
         Self {
             levers,
+            may_leave_n,
             positions,
             residual_n: f64::INFINITY,
             taken: JointMotions::zero(),
@@ -53,6 +67,7 @@ impl NewtonIteration {
             predicted_n: f64::INFINITY,
             contraction_per_n: warm_start.map_or(f64::INFINITY, |last| last.contraction_per_n),
             caution: CAUTION,
+            tangent: None,
         }
     }
 
@@ -66,9 +81,10 @@ impl NewtonIteration {
         self.residual_n
     }
 
-    /// Predicted length of the residual where it is now, N.
-    pub fn predicted_n(&self) -> f64 {
-        self.predicted_n
+    /// Whether no more is left, as predicted, than may be.
+    pub fn is_predicted_done(&self) -> bool {
+        self.may_leave_n
+            .is_some_and(|may_leave_n| self.predicted_n <= may_leave_n)
     }
 
     /// What the last whole correction left of a residual, over its square, 1/N.
@@ -79,6 +95,7 @@ impl NewtonIteration {
     /// Moves to better positions; false where there are none.
     ///
     /// A correction that has made the residual longer is backtracked, another is followed by the next.
+    /// `tangent` is asked for the tangent here where that of the last correction does not serve.
     pub fn improve(
         &mut self,
         residual: &JointForces,
@@ -90,12 +107,23 @@ impl NewtonIteration {
             return self.backtrack(residual_n, &mean_slip);
         }
         self.mean_slip = mean_slip;
-        let solved = tangent().correction(residual);
+        self.learn(residual_n);
+        let (tangent, leaves_n) = self
+            .chord(residual_n)
+            .unwrap_or_else(|| (tangent(), self.newton_leaves_n(residual_n)));
+        let solved = tangent.correction(residual);
         let Some(correction) = solved.filter(JointMotions::is_finite) else {
             return false;
         };
         let part = correction.part_within(LONGEST_CORRECTION_MM, &self.levers);
-        self.predict(residual_n, part == 1.0);
+        self.is_whole = part == 1.0;
+        self.predicted_n = if self.is_whole {
+            leaves_n
+        } else {
+            f64::INFINITY
+        };
+        self.residual_n = residual_n;
+        self.tangent = Some(tangent);
         self.taken = correction * part;
         self.taken.move_from(&mut self.positions);
         true
@@ -125,27 +153,37 @@ impl NewtonIteration {
         self.is_whole = false;
     }
 
-    /// Predicts the residual after a correction from one of `residual_n`.
+    /// Learns the contraction from what the last correction, if it was whole, has left.
     ///
-    /// Near the solution each whole correction leaves c r^2 of a residual r. One that shortened r0
-    /// to r1 says that c = r1/r0^2; before there is one, a cycle ago says it, with caution.
-    fn predict(&mut self, residual_n: f64, is_whole: bool) {
-        let left = residual_n / self.residual_n;
-        if self.is_whole {
-            self.contraction_per_n = if left <= CONVERGING {
-                left / self.residual_n
-            } else {
-                f64::INFINITY
-            };
-            self.caution = 1.0;
+    /// Near the solution each leaves c r^2 of a residual r. One that shortened r0 to r1 says that c = r1/r0^2; before
+    /// there is one, a cycle ago says it, with caution.
+    fn learn(&mut self, residual_n: f64) {
+        if !self.is_whole {
+            return;
         }
-        self.predicted_n = if is_whole {
-            self.caution * self.contraction_per_n * residual_n * residual_n
+        let left = residual_n / self.residual_n;
+        self.contraction_per_n = if left <= CONVERGING {
+            left / self.residual_n
         } else {
             f64::INFINITY
         };
-        self.residual_n = residual_n;
-        self.is_whole = is_whole;
+        self.caution = 1.0;
+    }
+
+    /// What a whole correction by the tangent here is predicted to leave of a residual, N.
+    fn newton_leaves_n(&self, residual_n: f64) -> f64 {
+        self.caution * self.contraction_per_n * residual_n * residual_n
+    }
+
+    /// The tangent of the last correction, and what a whole one by it is predicted to leave of a residual, N; none
+    /// where that is more than may be left.
+    ///
+    /// A tangent is the dearest part of a correction, and the last one need not be that good: the method of chords
+    /// leaves about the part that the correction before left.
+    fn chord(&self, residual_n: f64) -> Option<(JointStiffness, f64)> {
+        let leaves_n = CHORD_CAUTION * residual_n / self.residual_n * residual_n;
+        let serves = self.is_whole && leaves_n <= self.may_leave_n?;
+        Some((self.tangent.filter(|_| serves)?, leaves_n))
     }
 }
 
