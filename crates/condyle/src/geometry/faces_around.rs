@@ -6,6 +6,9 @@ pub struct FacesAround {
     first: Vec<usize>,
     /// The other corners of each, going on from the node.
     faces: Vec<[u32; 3]>,
+    /// The nodes that have a face in common with node i are `beside[first_beside[i]..first_beside[i + 1]]`, each once.
+    first_beside: Vec<usize>,
+    beside: Vec<u32>,
 }
 
 impl FacesAround {
@@ -27,10 +30,26 @@ impl FacesAround {
                 next[node as usize] += 1;
             }
         }
-        Self {
+        let mut around = Self {
             first,
             faces: sorted,
+            first_beside: vec![0],
+            beside: Vec::with_capacity(8 * node_count),
+        };
+        for node in 0..node_count {
+            around.list_beside(node);
         }
+        around
+    }
+
+    fn list_beside(&mut self, node: usize) {
+        let start = self.beside.len();
+        for &other in self.faces[self.first[node]..self.first[node + 1]].as_flattened() {
+            if !self.beside[start..].contains(&other) {
+                self.beside.push(other);
+            }
+        }
+        self.first_beside.push(self.beside.len());
     }
 
     /// How many nodes the surface has.
@@ -44,26 +63,28 @@ impl FacesAround {
         &self.faces[self.first[node]..self.first[node + 1]]
     }
 
+    /// The nodes that have a face in common with a node.
+    fn beside(&self, node: u32) -> &[u32] {
+        let node = node as usize;
+        &self.beside[self.first_beside[node]..self.first_beside[node + 1]]
+    }
+
     /// A node, and then those around it: all that have a face in common with it and, if these are
     /// fewer than `least` in all, those around them too.
     pub fn patch(&self, node: u32, least: usize) -> Vec<u32> {
         let mut nodes = Vec::with_capacity(32);
         nodes.push(node);
-        self.add_around(node, &mut nodes);
+        nodes.extend_from_slice(self.beside(node));
         if nodes.len() < least {
-            for beside in 1..nodes.len() {
-                self.add_around(nodes[beside], &mut nodes);
+            for ring in 1..nodes.len() {
+                for other in self.beside(nodes[ring]) {
+                    if !nodes.contains(other) {
+                        nodes.push(*other);
+                    }
+                }
             }
         }
         nodes
-    }
-
-    fn add_around(&self, node: u32, nodes: &mut Vec<u32>) {
-        for other in self.of(node as usize).iter().flatten() {
-            if !nodes.contains(other) {
-                nodes.push(*other);
-            }
-        }
     }
 }
 

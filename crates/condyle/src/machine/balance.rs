@@ -109,22 +109,22 @@ impl<'a> Balance<'a> {
         let contact = self.response.tangent();
         let on_femur = self.response.wrench.reaction();
         let screws = &self.configuration.screws;
+        let carried = self.configuration.carried_twists(&self.kinematics.rates);
         let mut tangent = JointStiffness::zero();
         for k in 0..6 {
             // The twist is the sum of s_i v_i. Moving joint k changes its own rate v_k by the slope of
             // the step, and it turns every screw s_i that it carries, so that s_i v_i turns too.
-            let mut twist_change = screws[k] * slopes.rate;
-            for i in k + 1..6 {
-                twist_change +=
-                    self.configuration.screw_derivative(i, k) * self.kinematics.rates[i];
-            }
+            let twist_change = screws[k] * slopes.rate + screws[k].bracket(&carried[k]);
             // The wrench changes because the pose moves along s_k, and because the twist changes.
             let by_pose = &contact.by_pose * &screws[k];
             let change = (by_pose + &contact.by_twist * &twist_change).reaction();
             for j in 0..6 {
-                // The product rule of W . s_j: the wrench changes, and s_j turns where k carries it.
-                tangent[(j, k)] = -change.power(&screws[j])
-                    - on_femur.power(&self.configuration.screw_derivative(j, k));
+                tangent[(j, k)] = -change.power(&screws[j]);
+            }
+            // The product rule of W . s_j: the wrench changes, and s_j turns where k carries it.
+            let on_carried = on_femur.on_bracket_with(&screws[k]);
+            for j in k + 1..6 {
+                tangent[(j, k)] -= on_carried.power(&screws[j]);
             }
         }
         tangent

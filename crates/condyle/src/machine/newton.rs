@@ -17,7 +17,7 @@ const CAUTION: f64 = 2.0;
 const CONVERGING: f64 = 0.1;
 /// A correction by the tangent of the one before is predicted to leave this many times the part of the residual that
 /// the one before left.
-const CHORD_CAUTION: f64 = 3.0;
+const CHORD_CAUTION: f64 = 4.0;
 /// Farthest that one iteration may move, mm; on the lever, rad.
 const LONGEST_CORRECTION_MM: f64 = 1.0;
 

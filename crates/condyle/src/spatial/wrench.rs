@@ -47,6 +47,16 @@ impl<On: Body, In: Body> Wrench<On, In> {
         twist.numbers().dot(&self.numbers())
     }
 
+    /// The wrench whose power on any screw is this one's on the bracket of `carrying` with that screw: how the load
+    /// on a joint changes as another turns it.
+    ///
+    /// W . \[a, b\] = (m x a_w + f x a_v) . b_w + (f x a_w) . b_v.
+    pub fn on_bracket_with(&self, carrying: &Twist<On, In>) -> Self {
+        let (m, f) = (&self.moment, &self.force);
+        let (turn, shift) = (&carrying.angular, &carrying.linear);
+        Self::new(m.cross(turn) + f.cross(shift), f.cross(turn))
+    }
+
     /// The six numbers side by side.
     pub fn numbers(&self) -> Vec6 {
         let (m, f) = (&self.moment, &self.force);
