@@ -99,8 +99,8 @@ pub struct HeldOut {
     pub left_before: Left,
 }
 
-/// Fits a pressure table with which the case at `case_path` presses, under the forces of the first cycle of its first activity, as its
-/// deformable insert does; then runs both.
+/// Fits a pressure table with which the foundation of a case presses, under the forces of the first cycle of its first
+/// activity, as its deformable insert does; then runs both.
 ///
 /// `tell` hears of what is begun.
 ///
