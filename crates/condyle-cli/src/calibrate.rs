@@ -48,7 +48,7 @@ fn keep_and_print(law: &CalibratedLaw, arguments: &Calibrate) -> ExitCode {
     let mut lines = Lines::default();
     lines.line(format_args!("{}", law.table_of_left().trim_end()));
     lines.line(format_args!(
-        "the peak pressure is off by {} % at most in stance, which every run with the table says",
+        "the peak pressure is off by {} % at most in stance, first cycle and last, which every run with the table says",
         law.peak_error_percent
     ));
     lines.line(format_args!(

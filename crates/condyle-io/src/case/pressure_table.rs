@@ -49,7 +49,7 @@ pub(super) const WAYS_OF_STRAIN: [&str; 2] = BY_STRAIN.ways;
 settings! {
     /// How well a table is known.
     TableError {
-        /// By how much the peak pressure with this table is off that of the deformable insert it was fitted to, at most in stance; `condyle calibrate` writes it, and a run with the table says it.
+        /// By how much the peak pressure with this table is off that of the deformable insert it was fitted to, at most in stance, first cycle and last; `condyle calibrate` writes it, and a run with the table says it.
         peak_error_percent: Option<f64> = None, in within(0.0, 1000.0);
     }
 }

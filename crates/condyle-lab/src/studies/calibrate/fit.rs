@@ -9,6 +9,8 @@ use super::target::{Carried, Target};
 
 /// Pressures of the table's points, as parts of the highest pressure of the deformable insert.
 const PARTS: [f64; 9] = [0.03, 0.08, 0.15, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0];
+/// The table goes up to this pressure at least.
+const LEAST_PEAK_MPA: f64 = 1.0;
 /// What a bend of the table counts beside a relative error of pressure and area, so that points which no pose feels
 /// lie between the others.
 const BEND: f64 = 0.01;
@@ -164,7 +166,7 @@ impl Fit<'_> {
     /// Pressures of the table's points, from zero.
     fn pressures_mpa(&self) -> Vec<f64> {
         let peaks = self.targets.iter().map(|target| target.peak_mpa);
-        let highest = peaks.fold(0.0, f64::max);
+        let highest = peaks.fold(LEAST_PEAK_MPA, f64::max);
         let above = PARTS.iter().map(|part| part * highest);
         [0.0].into_iter().chain(above).collect()
     }

@@ -13,11 +13,11 @@ use std::{
 
 use condyle::{
     contact::{
-        Bodies, ContactLaw, ContactMemory, Foundation, MOST_REGIONS, PressureLaw, PressureTable,
-        confined_modulus,
+        Bodies, ContactLaw, ContactMemory, ContactModel, Foundation, MOST_REGIONS, PressureLaw,
+        PressureTable, confined_modulus,
     },
     evolve::March,
-    geometry::Insert,
+    geometry::{ArticulatingSurface, Insert},
 };
 use condyle_io::{
     cache::Cache,
@@ -73,7 +73,7 @@ pub struct CalibratedIncrement {
 pub struct CalibratedLaw {
     /// Points of overclosure over thickness, and pressure, MPa.
     pub table: Vec<(f64, f64)>,
-    /// By how much the peak pressure is off in stance at most, %: of the first cycle.
+    /// By how much the peak pressure is off in stance at most, in the first cycle and the last, %.
     pub peak_error_percent: f64,
     /// The increments that it was fitted to.
     pub increments: Vec<CalibratedIncrement>,
@@ -120,7 +120,8 @@ pub fn calibrate(
     let mut calibrated = with_table(&case, table.clone(), None);
     let left = Left::between(&run_quietly(&calibrated)?, &deformable);
     let left_before = Left::between(&run_quietly(&foundation(&case))?, &deformable);
-    let peak_error_percent = left.first_cycle.peak_pressure.most_percent;
+    let worst = |cycle: &CycleLeft| cycle.peak_pressure.most_percent;
+    let peak_error_percent = worst(&left.first_cycle).max(worst(&left.last_cycle));
     // As it is said, rather than to the last bit.
     let said = (peak_error_percent * 10.0).ceil() / 10.0;
     calibrated = with_table(&case, table.clone(), Some(said));
@@ -223,12 +224,10 @@ impl Recorded {
         let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
         let mut law = foundation(case).foundation();
         law.pressure = PressureLaw::Linear { modulus_mpa };
-        let targets = {
-            let mut contact = law.contact(bodies, ContactMemory::default());
-            let few = self.few_of_stance().into_iter();
-            let armed = few.map(|target| target.with_arms(contact.as_mut(), &surface.positions));
-            armed.collect::<Vec<_>>()
-        };
+        // Forces are met more exactly than extrapolated samples give them.
+        law.sample_reuse_mm = 0.0;
+        let targets =
+            self.few_that_are_carried(law.contact(bodies, ContactMemory::default()), &surface);
         let fit = Fit {
             bodies,
             foundation: law,
@@ -237,6 +236,23 @@ impl Recorded {
         let table = fit.table(modulus_mpa);
         let increments = increments(&fit, &table);
         (table, increments)
+    }
+
+    /// Few increments of stance whose forces a foundation carries, with where they act.
+    fn few_that_are_carried(
+        &self,
+        mut contact: Box<dyn ContactModel + '_>,
+        surface: &ArticulatingSurface,
+    ) -> Vec<Target> {
+        let few = self.few_of_stance().into_iter();
+        let armed = few.map(|target| target.with_arms(contact.as_mut(), &surface.positions));
+        let mut armed: Vec<Target> = armed.collect();
+        armed.retain(|target| {
+            target
+                .carried(contact.as_mut(), [0.0; MOST_REGIONS])
+                .is_some()
+        });
+        armed
     }
 
     /// Increments of stance, evenly.
@@ -263,7 +279,7 @@ fn increments(fit: &Fit<'_>, table: &PressureTable) -> Vec<CalibratedIncrement> 
     let pairs = fit.targets.iter().zip(carried);
     let told = pairs.filter_map(|(target, carried)| {
         let carried = carried?;
-        let (force_n, _) = target.at_same_pose(contact.as_mut());
+        let force_n = target.force_at_same_pose_n(contact.as_mut());
         Some(CalibratedIncrement {
             percent: target.percent,
             axial_force_n: target.force_n(),
@@ -272,7 +288,7 @@ fn increments(fit: &Fit<'_>, table: &PressureTable) -> Vec<CalibratedIncrement> 
             deformable_area_mm2: target.area_mm2,
             area_mm2: carried.area_mm2,
             force_at_same_approach_n: force_n,
-            deeper_mm: carried.lower_mm.iter().sum::<f64>() / MOST_REGIONS as f64,
+            deeper_mm: target.mean_by_force(carried.lower_mm),
         })
     });
     told.collect()

@@ -9,7 +9,7 @@ impl CalibratedLaw {
     pub fn markdown(&self) -> String {
         let mut page = String::from("# Calibrated pressure law\n\n");
         page += &format!(
-            "With this table the peak pressure of the rigid model is off by {} % at most in stance (first cycle).\n\n",
+            "With this table the peak pressure of the rigid model is off by {} % at most in stance, in the first cycle and the last.\n\n",
             self.peak_error_percent
         );
         page += "Off the deformable insert, with the law before and with the table; stance has a fifth of the highest axial force and more:\n\n";

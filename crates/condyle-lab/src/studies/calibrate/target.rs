@@ -9,7 +9,9 @@ use condyle::{
 use nalgebra::Rotation3;
 
 /// Forces on the sides are met to this, N.
-const FORCE_TOLERANCE_N: f64 = 0.01;
+const FORCE_TOLERANCE_N: f64 = 0.05;
+/// A side that carries less is as if it carried nothing, N.
+const LEAST_FORCE_N: f64 = 1.0;
 /// Most iterations until they are.
 const ITERATIONS: usize = 30;
 /// By how much the femur is lowered to see how stiff the sides are, mm.
@@ -57,10 +59,15 @@ impl Target {
         self.region_force_n.iter().sum()
     }
 
-    /// The foundation where the femur is on the deformable insert.
-    pub fn at_same_pose(&self, contact: &mut dyn ContactModel) -> (f64, Landing) {
-        let landing = land(contact, &self.pose);
-        (forces(&landing).iter().sum(), landing)
+    /// Axial force of a foundation where the femur is on the deformable insert, N.
+    pub fn force_at_same_pose_n(&self, contact: &mut dyn ContactModel) -> f64 {
+        forces(&land(contact, &self.pose)).iter().sum()
+    }
+
+    /// A number of every region, the mean weighted by force.
+    pub fn mean_by_force(&self, of_regions: [f64; MOST_REGIONS]) -> f64 {
+        let pairs = self.region_force_n.iter().zip(of_regions);
+        pairs.map(|(force_n, of)| force_n * of).sum::<f64>() / self.force_n()
     }
 
     /// Takes where the forces act from a contact that presses at this pose.
@@ -91,8 +98,7 @@ impl Target {
         for _ in 0..ITERATIONS {
             let landing = land(contact, &self.lowered(lower_mm));
             let found = forces(&landing);
-            let missing: [f64; MOST_REGIONS] =
-                std::array::from_fn(|region| self.region_force_n[region] - found[region]);
+            let missing = self.missing_n(found);
             if missing
                 .iter()
                 .all(|missing| missing.abs() < FORCE_TOLERANCE_N)
@@ -114,10 +120,23 @@ impl Target {
         None
     }
 
+    /// What regions that carry something are short of, N.
+    fn missing_n(&self, found_n: [f64; MOST_REGIONS]) -> [f64; MOST_REGIONS] {
+        std::array::from_fn(|region| {
+            let wanted_n = self.region_force_n[region];
+            if wanted_n > LEAST_FORCE_N {
+                wanted_n - found_n[region]
+            } else {
+                0.0
+            }
+        })
+    }
+
     /// The pose with the femur lowered over every region by so much.
     fn lowered(&self, lower_mm: [f64; MOST_REGIONS]) -> Pose {
         let ([left, right], [left_arm, right_arm]) = (lower_mm, self.arms_mm);
-        let is_on_both = self.region_force_n.iter().all(|force| *force > 1.0);
+        let mut forces = self.region_force_n.iter();
+        let is_on_both = forces.all(|force| *force > LEAST_FORCE_N);
         // A side that carries nothing goes along with the other.
         let (tilt, middle) = if is_on_both && (right_arm - left_arm).abs() > 1.0 {
             let tilt = (right - left) / (right_arm - left_arm);
