@@ -40,6 +40,8 @@ pub enum Command {
     Uncertainty(Uncertainty),
     /// Hold a run against measured kinematics, weighed wear and a scanned surface.
     Compare(Compare),
+    /// Fit a pressure law with which the rigid model follows the deformable insert, and say what is left.
+    Calibrate(Calibrate),
     /// Find the constants of the wear law with which runs wear as fast as the specimens did.
     CalibrateWear(CalibrateWear),
 }
@@ -206,6 +208,23 @@ pub struct Compare {
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print compare.json, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct Calibrate {
+    /// The case file; with either model of contact.
+    pub case: PathBuf,
+    /// Folder for pressure_table.csv, the case that uses it, calibration.md and calibration.json; it must not be there yet.
+    #[arg(short, long, value_name = "DIR")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Also say how far the table carries on this case, which it is not fitted to; may be given several times.
+    #[arg(long, value_name = "CASE")]
+    pub hold_out: Vec<PathBuf>,
+    /// Print calibration.json, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
 }

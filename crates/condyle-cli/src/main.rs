@@ -2,6 +2,7 @@
 
 mod activity_table;
 mod arguments;
+mod calibrate;
 mod calibrate_wear;
 mod check;
 mod compare;
@@ -54,6 +55,7 @@ fn obey(command: Command) -> ExitCode {
         Command::Sensitivity(arguments) => sensitivity::sensitivity(&arguments),
         Command::Uncertainty(arguments) => uncertainty::uncertainty(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::CalibrateWear(arguments) => calibrate_wear::calibrate_wear(&arguments),
     }
 }

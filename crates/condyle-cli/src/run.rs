@@ -164,6 +164,7 @@ fn rows(summary: &Summary) -> Vec<SummaryLine> {
     rows.extend(rows_of_wear(summary));
     rows.extend(summary.creep.iter().flat_map(rows_of_creep));
     rows.extend(rows_of_contact(summary));
+    rows.extend(summary.pressure_law_peak_error_percent.map(row_of_law));
     rows.extend(summary.under_surface.iter().flat_map(rows_under_surface));
     rows.extend(rows_of_motion(summary));
     rows.extend(rows_of_work(summary));
@@ -263,6 +264,11 @@ fn rows_of_contact(summary: &Summary) -> [SummaryLine; 3] {
             ),
         ),
     ]
+}
+
+fn row_of_law(percent: f64) -> SummaryLine {
+    let said = format!("fitted to a deformable insert, whose peak it misses by up to {percent} %");
+    ("  pressure law", said)
 }
 
 fn rows_under_surface(under: &UnderSurfaceSummary) -> Vec<SummaryLine> {

@@ -1,5 +1,7 @@
 //! The deformable insert by finite elements, against closed forms and finite differences.
 
+mod half_space;
+
 use std::f64::consts::PI;
 
 use condyle::{
@@ -9,12 +11,13 @@ use condyle::{
         Landing, PressureLaw, confined_modulus,
     },
     geometry::{
-        ArticulatingSurface, FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape,
-        Insert, Meshing, flat_insert,
+        ArticulatingSurface, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape,
+        GenericInsertShape, Insert, Meshing, flat_insert,
     },
     spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6},
 };
 use condyle_fem::Elastic;
+use half_space::{grown, half_space};
 
 const RADIUS_MM: f64 = 24.0;
 const MODULUS_MPA: f64 = 463.0;
@@ -87,47 +90,9 @@ fn covered_mm2(landing: &Landing) -> f64 {
     landing.touched.iter().map(|node| node.covered_mm2).sum()
 }
 
-/// Elements from the middle of the half-space along an axis.
-const ELEMENTS: f64 = 15.0;
-/// How many of them have the default edge.
-const EVEN_ELEMENTS: f64 = 7.0;
-/// How much larger than the one before each of the others is.
-const GROWTH: f64 = 1.8;
-
-/// How far a plane of nodes of the half-space lies from its middle, from where it lay in a grid of default edges.
-fn grown(from_middle_mm: f64) -> f64 {
-    let edge_mm = 1.05;
-    let number = (from_middle_mm.abs() / edge_mm).round();
-    let beyond = (number - EVEN_ELEMENTS).max(0.0);
-    let grown = GROWTH * (GROWTH.powf(beyond) - 1.0) / (GROWTH - 1.0);
-    (number - beyond + grown) * edge_mm * from_middle_mm.signum()
-}
-
-/// A block so large, a quarter of a metre about its middle, that the ball does not feel where it ends.
-fn half_space() -> Insert {
-    let edge_mm = 1.05;
-    let meshing = Meshing {
-        edge_mm,
-        layers: ELEMENTS as usize,
-    };
-    let size_mm = 2.0 * ELEMENTS * edge_mm;
-    let grid = flat_insert((size_mm, size_mm), ELEMENTS * edge_mm, meshing).unwrap();
-    let mut mesh = grid.mesh().clone();
-    for node in &mut mesh.nodes {
-        *node = node.map(grown);
-    }
-    let bottom_mm = mesh.nodes.iter().map(|node| node.y).fold(0.0, f64::min);
-    let at = |height_mm: f64| {
-        let mut quads = mesh.boundary_quads();
-        quads.retain(|quad| mesh.positions(quad).all(|node| node.y == height_mm));
-        quads
-    };
-    Insert::new(mesh.clone(), &at(0.0), &at(bottom_mm)).unwrap()
-}
-
 #[test]
 fn verify_hertz_on_a_half_space_of_the_default_elements() {
-    let pair = Pair::new(FemoralSurface::sphere(RADIUS_MM), half_space());
+    let pair = Pair::new(FemoralSurface::sphere(RADIUS_MM), half_space(1.05, 15));
     let law = law(&pair.insert, 0.0);
     let mut contact = pair.contact(&law);
     for (x, z) in [(0.0, 0.0), (0.3, 0.1), (0.5, 0.5), (0.2, -0.4)] {
@@ -143,6 +108,99 @@ fn verify_hertz_on_a_half_space_of_the_default_elements() {
         assert!((radius_mm / 3.130 - 1.0).abs() < 0.03, "{radius_mm}");
         assert!((peak_mpa / 48.7 - 1.0).abs() < 0.02, "{peak_mpa}");
     }
+}
+
+/// A flat block without Poisson's effect, which under a flat body has one pressure everywhere, E d / h; the nodes are
+/// moved aside by up to so much. Gives force and pressures over those, less one.
+fn off_an_even_pressure(aside_mm: f64) -> (f64, Vec<f64>) {
+    let (thickness_mm, depth_mm, radius_mm) = (8.0, 0.1, 1e6);
+    let meshing = Meshing {
+        edge_mm: 1.5,
+        layers: 4,
+    };
+    let grid = flat_insert((15.0, 12.0), thickness_mm, meshing).unwrap();
+    let insert = half_space::moved(&grid, |node| {
+        let inside = |at: f64, half_mm: f64| 1.0 - (at / half_mm).powi(2);
+        let most_mm = aside_mm * inside(node.x, 7.5) * inside(node.z, 6.0);
+        let by = Vec3::new((3.1 * node.z + node.y).sin(), 0.0, (2.3 * node.x).cos());
+        node + most_mm * by
+    });
+    let pair = Pair::new(FemoralSurface::sphere(radius_mm), insert);
+    let elastic = Elastic::new(MODULUS_MPA, 0.0).unwrap();
+    let law = Deformable::new(elastic, 0.0, 1.0, &pair.insert).unwrap();
+    let mut contact = pair.contact(&law);
+    let motion = over([0.0, radius_mm - depth_mm, 0.0]);
+    let force_n = down_n(contact.as_mut(), &motion);
+    let landing = contact.land(&motion);
+    assert_eq!(landing.touched.len(), pair.surface.positions.len());
+    let even_mpa = MODULUS_MPA * depth_mm / thickness_mm;
+    let pressures = landing.touched.iter().map(|node| node.pressure_mpa);
+    let off = pressures.map(|mpa| mpa / even_mpa - 1.0).collect();
+    (force_n / (even_mpa * 15.0 * 12.0) - 1.0, off)
+}
+
+#[test]
+fn verify_a_flat_femur_presses_evenly_on_nodes_that_lie_anyhow() {
+    // A third of an edge aside, a share is not what the element shares a pressure out by: that is what is left there.
+    for (aside_mm, accepted) in [(0.0, 1e-3), (0.5, 0.03)] {
+        let (force, off) = off_an_even_pressure(aside_mm);
+        let most = off.iter().fold(0.0, |most: f64, off| most.max(off.abs()));
+        println!("{aside_mm} mm aside: force off by {force:.1e}, pressure by {most:.1e}");
+        // The ball is 0.05 % of the depth rounder than flat.
+        assert!(force.abs() < 1e-3, "{force}");
+        assert!(most < accepted, "{most}");
+    }
+}
+
+/// A block as a half-space in the plane of x and y, and long along z.
+fn long_half_space(edge_mm: f64, length_mm: f64) -> Insert {
+    let elements = 13;
+    let half_mm = f64::from(elements) * edge_mm;
+    let meshing = Meshing {
+        edge_mm,
+        layers: 13,
+    };
+    let grid = flat_insert((2.0 * half_mm, 16.0 * edge_mm), half_mm, meshing).unwrap();
+    let along = length_mm / (16.0 * edge_mm);
+    half_space::moved(&grid, |node| {
+        Vec3::new(
+            grown(node.x, edge_mm),
+            grown(node.y, edge_mm),
+            along * node.z,
+        )
+    })
+}
+
+#[test]
+fn verify_a_cylinder_on_a_thick_block_against_hertz() {
+    // Where the block is long nothing moves along it: contact of a line, with the load of the middle.
+    let (radius_mm, length_mm) = (RADIUS_MM, 400.0);
+    let pair = Pair::new(
+        FemoralSurface::Cylinder(Cylinder { radius_mm }),
+        long_half_space(0.5, length_mm),
+    );
+    let law = law(&pair.insert, 0.0);
+    let mut contact = pair.contact(&law);
+    let motion = over([0.0, radius_mm - 0.35, 0.0]);
+    contact.respond(&motion);
+    let landing = contact.land(&motion);
+    let positions = &pair.surface.positions;
+    let middle = || {
+        let touched = landing.touched.iter();
+        touched.filter(|node| positions[node.node as usize].z.abs() < 1e-9)
+    };
+    let width_mm = length_mm / 16.0;
+    let load_n_per_mm = middle().map(|node| -node.force_n.y).sum::<f64>() / width_mm;
+    let half_width_mm = middle().map(|node| node.covered_mm2).sum::<f64>() / width_mm / 2.0;
+    let peak_mpa = middle().map(|node| node.pressure_mpa).fold(0.0, f64::max);
+    let modulus_mpa = MODULUS_MPA / (1.0 - POISSON * POISSON);
+    let exact_mm = (4.0 * load_n_per_mm * radius_mm / (PI * modulus_mpa)).sqrt();
+    let exact_mpa = 2.0 * load_n_per_mm / (PI * exact_mm);
+    println!(
+        "{load_n_per_mm:.2} N/mm: half width {half_width_mm:.3} mm, exactly {exact_mm:.3}; peak {peak_mpa:.2} MPa, exactly {exact_mpa:.2}"
+    );
+    assert!((half_width_mm / exact_mm - 1.0).abs() < 0.03);
+    assert!((peak_mpa / exact_mpa - 1.0).abs() < 0.02);
 }
 
 fn generic() -> Pair {

@@ -1,5 +1,7 @@
 //! The insert that yields under a ball, against closed forms.
 
+mod half_space;
+
 use std::f64::consts::PI;
 
 use condyle::{
@@ -7,44 +9,16 @@ use condyle::{
     contact::{
         Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Deformable, Landing, Settled,
     },
-    geometry::{ArticulatingSurface, FemoralSurface, Insert, Meshing, flat_insert},
+    geometry::{ArticulatingSurface, FemoralSurface, Insert},
     spatial::{Pose, RelativeMotion},
 };
 use condyle_fem::{Elastic, Hardening};
+use half_space::half_space;
 
 const RADIUS_MM: f64 = 24.0;
 const MODULUS_MPA: f64 = 463.0;
 const YIELD_MPA: f64 = 14.0;
 const EDGE_MM: f64 = 0.3;
-
-/// How far a plane of nodes lies from the middle, from where it lay in a grid of even edges: beyond seven elements
-/// each is 1.8 times as large as the one before.
-fn grown(from_middle_mm: f64) -> f64 {
-    let number = (from_middle_mm.abs() / EDGE_MM).round();
-    let beyond = (number - 7.0_f64).max(0.0);
-    let grown = 1.8 * (1.8_f64.powf(beyond) - 1.0) / 0.8;
-    (number - beyond + grown) * EDGE_MM * from_middle_mm.signum()
-}
-
-/// A block so large that the ball does not feel where it ends.
-fn half_space() -> Insert {
-    let meshing = Meshing {
-        edge_mm: EDGE_MM,
-        layers: 13,
-    };
-    let grid = flat_insert((26.0 * EDGE_MM, 26.0 * EDGE_MM), 13.0 * EDGE_MM, meshing).unwrap();
-    let mut mesh = grid.mesh().clone();
-    for node in &mut mesh.nodes {
-        *node = node.map(grown);
-    }
-    let bottom_mm = mesh.nodes.iter().map(|node| node.y).fold(0.0, f64::min);
-    let at = |height_mm: f64| {
-        let mut quads = mesh.boundary_quads();
-        quads.retain(|quad| mesh.positions(quad).all(|node| node.y == height_mm));
-        quads
-    };
-    Insert::new(mesh.clone(), &at(0.0), &at(bottom_mm)).unwrap()
-}
 
 struct Pair {
     femur: FemoralSurface,
@@ -55,7 +29,7 @@ struct Pair {
 
 impl Pair {
     fn new(ratio: f64, hardening: Option<Hardening>) -> Self {
-        let insert = half_space();
+        let insert = half_space(EDGE_MM, 13);
         let elastic = Elastic::new(MODULUS_MPA, ratio).unwrap();
         let mut law = Deformable::new(elastic, 0.0, 1.0, &insert).unwrap();
         law.hardening = hardening;

@@ -5,6 +5,7 @@ mod bad_case;
 mod bench;
 mod cache;
 mod calibrate;
+mod calibrate_law;
 mod changes;
 mod compare_kinematics;
 mod compare_surface;

@@ -92,6 +92,7 @@ fn law_comment(law: &PressureLaw, thickness_mm: f64) -> String {
             "d / h = (p / K) (1 + (p / s)^2), K = {modulus_mpa:.3} MPa, s = {softening_stress_mpa:.3} MPa, {local}"
         ),
         PressureLaw::Tabulated(_) => "The table of the case, whatever the thickness.".to_owned(),
+        PressureLaw::TabulatedStrain(_) => format!("The table of the case over thickness, {local}"),
     }
 }
 
@@ -105,6 +106,12 @@ fn law_table(law: &PressureLaw, thickness_mm: f64) -> Vec<PressureOverclosure> {
         } => return softening_table(law, *modulus_mpa, *softening_stress_mpa, thickness_mm),
         PressureLaw::Tabulated(table) => {
             return table.points().iter().map(|&(d, p)| row(p, d)).collect();
+        }
+        PressureLaw::TabulatedStrain(table) => {
+            let points = table.points().iter();
+            return points
+                .map(|&(strain, p)| row(p, strain * thickness_mm))
+                .collect();
         }
     };
     let step = TABLE_ENDS_AT * thickness_mm / rows as f64;

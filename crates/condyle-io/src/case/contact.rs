@@ -3,6 +3,7 @@
 use condyle::contact::{Foundation, PressureTable, Search, softening_modulus};
 
 use super::plasticity::PlasticityChoice;
+use super::pressure_table::StrainTable;
 use crate::keyed::{
     Choices, Key, Log, Offered, Section, Settings, Variants, Writer, choice, settings, variants,
     within,
@@ -94,6 +95,18 @@ variants! {
         Softening(SofteningCurve) = "softening",
         /// Points of pressure against overclosure.
         Tabulated(PressureTable) = "tabulated",
+        /// Points of pressure against overclosure over thickness.
+        TabulatedStrain(StrainTable) = "tabulated-strain",
+    }
+}
+
+impl PressureLawChoice {
+    /// By how much the peak pressure is off that of the deformable insert that the law was fitted to, %, if that is known.
+    pub fn peak_error_percent(&self) -> Option<f64> {
+        match self {
+            Self::TabulatedStrain(table) => table.error.peak_error_percent,
+            Self::Linear | Self::Logarithmic | Self::Softening(_) | Self::Tabulated(_) => None,
+        }
     }
 }
 

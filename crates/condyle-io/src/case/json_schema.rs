@@ -98,6 +98,7 @@ fn contact() -> TableSchema {
         .with_choices(&laws)
         .with_choices(&PlasticityChoice::choices())
         .with_one_of_under(&laws, "tabulated", &pressure_table::WAYS)
+        .with_one_of_under(&laws, "tabulated-strain", &pressure_table::WAYS_OF_STRAIN)
 }
 
 fn march() -> TableSchema {

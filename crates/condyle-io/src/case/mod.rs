@@ -84,7 +84,7 @@ pub use output::Output;
 pub use overriding::{Override, OverrideError};
 pub use placement::{FemurPlacement, InsertOrigin, InsertPlacement};
 pub use plasticity::{FirstYield, J2Plasticity, PlasticityChoice, PlasticityReason};
-pub use pressure_table::PressureTableReason;
+pub use pressure_table::{PressureTableReason, StrainTable, TableError};
 pub use reader::CaseReader;
 pub use schema::schema_markdown;
 pub use time::{IntegratorWord, Time};

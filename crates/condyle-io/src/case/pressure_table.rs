@@ -5,26 +5,87 @@ use thiserror::Error;
 
 use crate::keyed::{
     Cell, ColumnReason, Columns, DataFile, Key, KeyReason, Kind, Log, Placed, Reason, Section,
-    Setting, Settings, WhereSilent, Writer, pairs,
+    Setting, Settings, WhereSilent, Writer, pairs, settings, within,
 };
 
-/// Points in the case file.
-const TABLE: &str = "table";
-/// A CSV file of points.
-const TABLE_FILE: &str = "table_file";
-/// The keys of which one gives the points.
-pub(super) const WAYS: [&str; 2] = [TABLE, TABLE_FILE];
-/// Header of a file of points.
-const HEADER: [&str; 2] = ["overclosure_mm", "pressure_mpa"];
+/// How a pressure table is given.
+struct Form {
+    /// The word of the law that needs it.
+    law: &'static str,
+    /// The keys of which one gives the points: those in the case file, and a CSV file.
+    ways: [&'static str; 2],
+    /// What the points are.
+    doc: &'static str,
+    /// Header of a file of points.
+    header: [&'static str; 2],
+    /// Units of the columns, and how their names end.
+    units: [(&'static str, &'static str); 2],
+}
+
+const BY_OVERCLOSURE: Form = Form {
+    law: "tabulated",
+    ways: ["table", "table_file"],
+    doc: "Points [overclosure in mm, pressure in MPa], rising from [0.0, 0.0].",
+    header: ["overclosure_mm", "pressure_mpa"],
+    units: [("mm", "_mm"), ("MPa", "_mpa")],
+};
+
+const BY_STRAIN: Form = Form {
+    law: "tabulated-strain",
+    ways: ["strain_table", "strain_table_file"],
+    doc: "Points [overclosure over thickness, pressure in MPa], rising from [0.0, 0.0].",
+    header: ["overclosure_over_thickness", "pressure_mpa"],
+    units: [
+        ("parts of the thickness", "_over_thickness"),
+        ("MPa", "_mpa"),
+    ],
+};
+
+/// The keys of which one gives the points of a table by overclosure.
+pub(super) const WAYS: [&str; 2] = BY_OVERCLOSURE.ways;
+/// The keys of which one gives the points of a table by overclosure over thickness.
+pub(super) const WAYS_OF_STRAIN: [&str; 2] = BY_STRAIN.ways;
+
+settings! {
+    /// How well a table is known.
+    TableError {
+        /// By how much the peak pressure with this table is off that of the deformable insert it was fitted to, at most in stance, first cycle and last; `condyle calibrate` writes it, and a run with the table says it.
+        peak_error_percent: Option<f64> = None, in within(0.0, 1000.0);
+    }
+}
+
+/// Pressure against overclosure over thickness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrainTable {
+    /// The points, with the overclosure of a layer 1 mm thick.
+    pub points: PressureTable,
+    /// How well they are known.
+    pub error: TableError,
+}
 
 /// Points that make no pressure table.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("`{key}`: {error}")]
+#[error("`{key}`: {}", in_words(.error, *.is_over_thickness))]
 pub struct PressureTableReason {
     /// The key that gives them.
     pub key: &'static str,
+    /// Whether they are points of overclosure over thickness.
+    pub is_over_thickness: bool,
     /// Why.
     pub error: PressureTableError,
+}
+
+/// The error, without a unit where the overclosure has none.
+fn in_words(error: &PressureTableError, is_over_thickness: bool) -> String {
+    match error {
+        PressureTableError::NotFromZero {
+            overclosure_mm: strain,
+            pressure_mpa,
+        } if is_over_thickness => format!(
+            "a pressure table starts at overclosure over thickness 0 and pressure 0 MPa, this one at {strain} and {pressure_mpa} MPa"
+        ),
+        error => error.to_string(),
+    }
 }
 
 impl Reason for PressureTableReason {
@@ -35,33 +96,92 @@ impl Reason for PressureTableReason {
 
 impl Settings for PressureTable {
     fn keys() -> Vec<Key> {
+        BY_OVERCLOSURE.keys()
+    }
+
+    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        BY_OVERCLOSURE.read(section, log)
+    }
+
+    fn write(&self, out: &mut Writer) {
+        BY_OVERCLOSURE.write(self, out);
+    }
+}
+
+impl Settings for StrainTable {
+    fn keys() -> Vec<Key> {
+        [BY_STRAIN.keys(), TableError::keys()].concat()
+    }
+
+    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let points = BY_STRAIN.read(section, log);
+        let error = TableError::read(section, log);
+        Some(Self {
+            points: points?,
+            error: error?,
+        })
+    }
+
+    fn write(&self, out: &mut Writer) {
+        BY_STRAIN.write(&self.points, out);
+        self.error.write(out);
+    }
+}
+
+impl StrainTable {
+    /// The points as a file that `strain_table_file` reads.
+    pub fn to_csv(&self) -> String {
+        let rows = self.points.points().iter();
+        let rows = rows.map(|(strain, pressure_mpa)| format!("{strain:?},{pressure_mpa:?}\n"));
+        format!(
+            "{}\n{}",
+            BY_STRAIN.header.join(","),
+            rows.collect::<String>()
+        )
+    }
+}
+
+impl Form {
+    fn keys(&self) -> Vec<Key> {
         let points = Key {
-            name: TABLE,
-            doc: "Points [overclosure in mm, pressure in MPa], rising from [0.0, 0.0].".into(),
+            name: self.ways[0],
+            doc: self.doc.into(),
             kind: Kind::Pairs,
             silent: WhereSilent::LeftOut,
             limits: None,
         };
-        vec![points, file_key()]
+        vec![points, self.file_key()]
     }
 
-    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        match (section.value(TABLE), section.value(TABLE_FILE)) {
-            (Some(_), None) => inline(section, log),
-            (None, Some(_)) => from_file(section, log),
+    fn file_key(&self) -> Key {
+        let header = self.header.join(",");
+        Key {
+            name: self.ways[1],
+            doc: format!("CSV file of these points, with the header {header}.").into(),
+            kind: DataFile::kind(),
+            silent: WhereSilent::LeftOut,
+            limits: None,
+        }
+    }
+
+    fn read(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
+        let [table, file] = self.ways;
+        match (section.value(table), section.value(file)) {
+            (Some(_), None) => self.inline(section, log),
+            (None, Some(_)) => self.from_file(section, log),
             (Some(_), Some(_)) => {
                 let reason = KeyReason::Both {
                     section: section.name(),
-                    first: TABLE.to_owned(),
-                    second: TABLE_FILE.to_owned(),
+                    first: table.to_owned(),
+                    second: file.to_owned(),
                 };
-                log.problem(section.key_span(TABLE_FILE), reason);
+                log.problem(section.key_span(file), reason);
                 None
             }
             (None, None) => {
                 let reason = KeyReason::NoneOf {
                     section: section.name(),
-                    keys: "`table` or `table_file` for law = \"tabulated\"".to_owned(),
+                    keys: format!("`{table}` or `{file}` for law = {:?}", self.law),
                 };
                 log.problem(section.value_span("law"), reason);
                 None
@@ -69,44 +189,75 @@ impl Settings for PressureTable {
         }
     }
 
-    fn write(&self, out: &mut Writer) {
-        for key in Self::keys().iter().filter(|key| key.name == TABLE) {
-            out.comment(&key.doc);
-            out.pairs(key.name, self.points());
+    fn write(&self, table: &PressureTable, out: &mut Writer) {
+        out.comment(self.doc);
+        out.pairs(self.ways[0], table.points());
+    }
+
+    fn reason(&self, key: &'static str, error: PressureTableError) -> PressureTableReason {
+        PressureTableReason {
+            key,
+            is_over_thickness: self.law == BY_STRAIN.law,
+            error,
         }
     }
-}
 
-fn file_key() -> Key {
-    Key {
-        name: TABLE_FILE,
-        doc: "CSV file of these points, with the header overclosure_mm,pressure_mpa.".into(),
-        kind: DataFile::kind(),
-        silent: WhereSilent::LeftOut,
-        limits: None,
+    /// The points that stand in the case itself.
+    fn inline(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
+        let key = self.ways[0];
+        let value = section.value(key)?;
+        let pairs = pairs(value, key, log)?;
+        let points = pairs.iter().map(|&([d, p], _)| (d, p)).collect();
+        let placed = PressureTable::new(points).map_err(|error| {
+            let at = pairs.get(place_of(&error)).map(|(_, span)| span.clone());
+            log.problem(at.unwrap_or(value.span()), self.reason(key, error));
+        });
+        placed.ok()
     }
-}
 
-/// The points that stand in the case itself.
-fn inline(section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
-    let value = section.value(TABLE)?;
-    let pairs = pairs(value, TABLE, log)?;
-    let points = pairs.iter().map(|&([d, p], _)| (d, p)).collect();
-    let table = PressureTable::new(points);
-    let placed = table.map_err(|error| {
-        let at = pairs.get(place_of(&error)).map(|(_, span)| span.clone());
-        let reason = PressureTableReason { key: TABLE, error };
-        log.problem(at.unwrap_or(value.span()), reason);
-    });
-    placed.ok()
-}
+    /// The points of a CSV file.
+    fn from_file(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
+        let key = self.ways[1];
+        let value = section.value(key)?;
+        let file = DataFile::read(value, &self.file_key(), log)?;
+        let source = file.source(section, key, log)?;
+        log.noted(&source, self.csv_points(source.inner(), source.name()))
+    }
 
-/// The points of a CSV file.
-fn from_file(section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
-    let value = section.value(TABLE_FILE)?;
-    let file = DataFile::read(value, &file_key(), log)?;
-    let source = file.source(section, TABLE_FILE, log)?;
-    log.noted(&source, csv_points(source.inner(), source.name()))
+    fn csv_points(&self, text: &str, file: &str) -> Result<PressureTable, Vec<Placed>> {
+        let header = self.header.join(",");
+        let columns = Columns::split(text, file, &header).map_err(|placed| vec![placed])?;
+        self.check_header(&columns)?;
+        let (overclosures, pressures) = (columns.numbers(0)?, columns.numbers(1)?);
+        let point = |(d, p): (&Cell, &Cell)| (d.value, p.value);
+        let points = overclosures.iter().zip(&pressures).map(point).collect();
+        PressureTable::new(points).map_err(|error| {
+            let cell = overclosures.get(place_of(&error));
+            let at = cell.map_or(0..0, |cell| cell.span.clone());
+            vec![Placed::new(at, self.reason(self.ways[1], error))]
+        })
+    }
+
+    fn check_header(&self, columns: &Columns<'_>) -> Result<(), Vec<Placed>> {
+        let names = columns.names();
+        let problem = |index: usize| {
+            let (unit, suffix) = self.units[index];
+            let column = names[index].to_owned();
+            let reason = ColumnReason::OtherUnit {
+                column,
+                unit,
+                suffix,
+            };
+            Placed::new(columns.name_span(index), reason)
+        };
+        let wrong = |&index: &usize| names[index] != self.header[index];
+        let problems: Vec<Placed> = (0..2).filter(wrong).map(problem).collect();
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(problems)
+        }
+    }
 }
 
 /// Which point an error is about.
@@ -114,41 +265,5 @@ fn place_of(error: &PressureTableError) -> usize {
     match *error {
         PressureTableError::TooShort { .. } | PressureTableError::NotFromZero { .. } => 0,
         PressureTableError::NotRising { index } => index,
-    }
-}
-
-fn csv_points(text: &str, file: &str) -> Result<PressureTable, Vec<Placed>> {
-    let columns = Columns::split(text, file, &HEADER.join(",")).map_err(|placed| vec![placed])?;
-    check_header(&columns)?;
-    let (overclosures, pressures) = (columns.numbers(0)?, columns.numbers(1)?);
-    let point = |(d, p): (&Cell, &Cell)| (d.value, p.value);
-    let points = overclosures.iter().zip(&pressures).map(point).collect();
-    PressureTable::new(points).map_err(|error| {
-        let cell = overclosures.get(place_of(&error));
-        let at = cell.map_or(0..0, |cell| cell.span.clone());
-        let key = TABLE_FILE;
-        vec![Placed::new(at, PressureTableReason { key, error })]
-    })
-}
-
-fn check_header(columns: &Columns<'_>) -> Result<(), Vec<Placed>> {
-    let names = columns.names();
-    let units = [("mm", "_mm"), ("MPa", "_mpa")];
-    let problem = |index: usize| {
-        let (unit, suffix) = units[index];
-        let column = names[index].to_owned();
-        let reason = ColumnReason::OtherUnit {
-            column,
-            unit,
-            suffix,
-        };
-        Placed::new(columns.name_span(index), reason)
-    };
-    let wrong = |&index: &usize| names[index] != HEADER[index];
-    let problems: Vec<Placed> = (0..2).filter(wrong).map(problem).collect();
-    if problems.is_empty() {
-        Ok(())
-    } else {
-        Err(problems)
     }
 }

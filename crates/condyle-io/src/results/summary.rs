@@ -42,6 +42,9 @@ pub struct SummaryInput<'a> {
     pub wear_laws: Vec<LawWear>,
     /// What each of several activities did.
     pub activities: Vec<ActivitySummary>,
+    /// By how much peak pressures are off the deformable insert that the pressure law was fitted to, %; none where
+    /// nobody says.
+    pub pressure_law_peak_error_percent: Option<f64>,
 }
 
 /// The numbers of a finished run; units are in the names.
@@ -84,6 +87,10 @@ pub struct Summary {
     /// Highest pressure of the last cycle solved, MPa.
     #[serde(default)]
     pub last_cycle_peak_pressure_mpa: f64,
+    /// By how much peak pressures are off the deformable insert that the pressure law was fitted to, at most in stance,
+    /// %; not there where the case does not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_law_peak_error_percent: Option<f64>,
     /// Largest contact area in any cycle, mm2.
     pub peak_contact_area_mm2: f64,
     /// Cycles done before the cycle that has it.
@@ -178,6 +185,7 @@ impl Summary {
             peak_pressure_cycle: pressure.cycle,
             first_cycle_peak_pressure_mpa: first.peak_pressure_mpa,
             last_cycle_peak_pressure_mpa: last.peak_pressure_mpa,
+            pressure_law_peak_error_percent: input.pressure_law_peak_error_percent,
             peak_contact_area_mm2: area.value,
             peak_contact_area_cycle: area.cycle,
             first_cycle_contact_area_mm2: first.peak_contact_area_mm2,

@@ -179,6 +179,7 @@ impl<'a> Run<'a> {
             neutral_pose: NeutralPose::of(&self.march, self.case.heading.side),
             wear_laws: self.wear_laws(),
             activities: ActivitySummary::of(&self.march),
+            pressure_law_peak_error_percent: self.case.contact.law.peak_error_percent(),
         })
         .expect("a march that is done has an update")
     }

@@ -9,7 +9,7 @@ use std::{
     thread,
 };
 
-use condyle::evolve::MarchError;
+use condyle::evolve::{March, MarchError};
 use condyle_io::{
     cache::Cache,
     case::Case,
@@ -46,6 +46,11 @@ pub(super) fn marched(case: &Case) -> Result<Summary, CaseFailed> {
     while !march.is_done() {
         let _ = march.update(&mut |_| ControlFlow::Continue(()))?;
     }
+    Ok(summary_of(case, &march))
+}
+
+/// What a march that is done found, without its error.
+pub(super) fn summary_of(case: &Case, march: &March) -> Summary {
     let summary = Summary::new(SummaryInput {
         state: march.state(),
         increments: march.test().time.increments,
@@ -55,11 +60,12 @@ pub(super) fn marched(case: &Case) -> Result<Summary, CaseFailed> {
         inputs_blake3: String::new(),
         warnings: Vec::new(),
         error: None,
-        neutral_pose: NeutralPose::of(&march, case.heading.side),
+        neutral_pose: NeutralPose::of(march, case.heading.side),
         activities: Vec::new(),
-        wear_laws: LawWear::of(&march, &case.wear),
+        wear_laws: LawWear::of(march, &case.wear),
+        pressure_law_peak_error_percent: case.contact.law.peak_error_percent(),
     });
-    Ok(summary.expect("a march that is done has an update"))
+    summary.expect("a march that is done has an update")
 }
 
 /// `work` for each of `count` indices, in their order, `threads` at a time.

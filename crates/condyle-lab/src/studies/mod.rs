@@ -1,5 +1,6 @@
 //! Studies over runs of a case.
 
+pub mod calibrate;
 mod converge;
 mod converge_files;
 mod converge_plan;

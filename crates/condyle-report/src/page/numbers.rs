@@ -117,6 +117,12 @@ const GROUPS: [(&str, &[Known]); 5] = [
                 "Of the last cycle that was solved.",
             ),
             known(
+                "pressure_law_peak_error_percent",
+                "Peak pressure off the deformable insert",
+                "%",
+                "By how much the pressure law, fitted to a deformable insert, misses its peak at most in stance.",
+            ),
+            known(
                 "peak_contact_area_mm2",
                 "Largest contact area",
                 "mm\u{b2}",

@@ -37,6 +37,8 @@ pub enum PressureLaw {
     },
     /// Pressure against overclosure whatever the thickness, as Abaqus tabulates it.
     Tabulated(PressureTable),
+    /// Pressure against the strain d/h: the table is that of a layer 1 mm thick.
+    TabulatedStrain(PressureTable),
 }
 
 /// Share of the layer's thickness at which the logarithmic law goes on as a straight line, so
@@ -91,9 +93,10 @@ impl PressureLaw {
     /// As an overclosure of a layer 1 mm thick it gives the same pressure.
     pub fn measure(&self, overclosure_mm: f64, per_thickness: f64) -> f64 {
         match self {
-            Self::Linear { .. } | Self::Logarithmic { .. } | Self::Softening { .. } => {
-                overclosure_mm * per_thickness
-            }
+            Self::Linear { .. }
+            | Self::Logarithmic { .. }
+            | Self::Softening { .. }
+            | Self::TabulatedStrain(_) => overclosure_mm * per_thickness,
             Self::Tabulated(_) => overclosure_mm,
         }
     }
@@ -121,6 +124,10 @@ impl PressureLaw {
                 (softening_stress_mpa * value, slope_mpa_per_mm)
             }
             Self::Tabulated(table) => table.pressure(overclosure_mm),
+            Self::TabulatedStrain(table) => {
+                let (value, slope) = table.pressure(overclosure_mm / thickness_mm);
+                (value, slope / thickness_mm)
+            }
         }
     }
 }
@@ -172,7 +179,8 @@ mod tests {
                 modulus_mpa: 2000.0,
             },
             SOFTENING,
-            PressureLaw::Tabulated(table),
+            PressureLaw::Tabulated(table.clone()),
+            PressureLaw::TabulatedStrain(table),
         ];
         for law in laws {
             for overclosure in [0.02, 0.25, 0.5, 3.0, 9.5] {
@@ -218,7 +226,8 @@ mod tests {
             PressureLaw::Linear { modulus_mpa },
             PressureLaw::Logarithmic { modulus_mpa },
             SOFTENING,
-            PressureLaw::Tabulated(table),
+            PressureLaw::Tabulated(table.clone()),
+            PressureLaw::TabulatedStrain(table),
         ] {
             let pressure = law.pressure(overclosure, thickness).0;
             let measure = law.measure(overclosure, 1.0 / thickness);

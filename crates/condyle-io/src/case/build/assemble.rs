@@ -133,6 +133,9 @@ impl Case {
                 softening_stress_mpa: curve.softening_stress_mpa,
             },
             PressureLawChoice::Tabulated(table) => PressureLaw::Tabulated(table.clone()),
+            PressureLawChoice::TabulatedStrain(table) => {
+                PressureLaw::TabulatedStrain(table.points.clone())
+            }
         };
         Foundation {
             pressure,

@@ -528,6 +528,25 @@ fn pressure_table_must_rise_from_zero_and_be_given_once() {
 }
 
 #[test]
+fn strain_table_must_rise_from_zero_and_be_given_once() {
+    let table = |rest: &str| refusal(&format!("[contact]\nlaw = \"tabulated-strain\"\n{rest}\n"));
+    assert_shows(
+        &table("strain_table = [[0.01, 0.0], [0.02, 1.0]]"),
+        &[
+            "`strain_table`: a pressure table starts at overclosure over thickness 0",
+            "at 0.01 and 0 MPa",
+        ],
+    );
+    assert_shows(
+        &table(""),
+        &["[contact] needs one of `strain_table` or `strain_table_file`"],
+    );
+    assert_shows(&table("table = [[0.0, 0.0], [0.1, 5.0]]"), &["`table`"]);
+    let rising = "strain_table = [[0.0, 0.0], [0.02, 1.0]]\npeak_error_percent = -1.0";
+    assert_shows(&table(rising), &["peak_error_percent"]);
+}
+
+#[test]
 fn all_problems_are_reported_at_once_in_the_order_of_the_file() {
     let text = "sides = \"left\"\n[femur]\nspacing_mm = 1e3\n[insert]\nedge_m = 1\n[time]\n\
                 increments = \"many\"\n";

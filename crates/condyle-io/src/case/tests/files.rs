@@ -5,7 +5,7 @@ use std::path::Path;
 use condyle::machine::knee;
 
 use super::assert_shows;
-use crate::case::{Case, CaseChannel};
+use crate::case::{Case, CaseChannel, PressureLawChoice};
 
 /// A folder with `wave.csv` of this text, and a case that takes its flexion from it.
 fn with_csv(csv: &str, extra: &str) -> Result<Case, String> {
@@ -198,6 +198,26 @@ fn verify_scale_offset_and_low_pass_of_samples() {
         let error = flexion.at(percent / 100.0).0 - (3.0 - 10.0 * wave(percent));
         assert!(error.abs() < 0.02, "{percent} %: {error}");
     }
+}
+
+#[test]
+fn verify_a_strain_table_is_read_back_from_its_file_and_its_case() {
+    let inline = "[contact]\nlaw = \"tabulated-strain\"\nstrain_table = [[0.0, 0.0], [0.005, 5.0]]\npeak_error_percent = 4.5\n";
+    let case = Case::parse(inline, "case.toml", Path::new("")).unwrap();
+    assert_eq!(case.contact.law.peak_error_percent(), Some(4.5));
+    let written = Case::parse(&case.to_toml(), "case.toml", Path::new("")).unwrap();
+    assert_eq!(written.contact, case.contact);
+    let PressureLawChoice::TabulatedStrain(table) = &case.contact.law else {
+        panic!("it is a table of strain");
+    };
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("curve.csv"), table.to_csv()).unwrap();
+    let text = "[contact]\nlaw = \"tabulated-strain\"\nstrain_table_file = \"curve.csv\"\npeak_error_percent = 4.5\n";
+    let from_file = Case::parse(text, "case.toml", folder.path()).unwrap();
+    assert_eq!(from_file.contact, case.contact);
+    let foundation = case.foundation();
+    let pressure = foundation.pressure.pressure(0.02, 8.0).0;
+    assert!((pressure - 2.5).abs() < 1e-12, "{pressure}");
 }
 
 #[test]

@@ -1,0 +1,173 @@
+//! A pressure table by least squares, so that a foundation presses as a deformable insert does.
+
+use condyle::contact::{
+    Bodies, ContactLaw, ContactMemory, Foundation, MOST_REGIONS, PressureLaw, PressureTable,
+};
+use nalgebra::{DMatrix, DVector};
+
+use super::target::{Carried, Target};
+
+/// Pressures of the table's points, as parts of the highest pressure of the deformable insert.
+const PARTS: [f64; 9] = [0.03, 0.08, 0.15, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0];
+/// The table goes up to this pressure at least.
+const LEAST_PEAK_MPA: f64 = 1.0;
+/// What a bend of the table counts beside a relative error of pressure and area, so that points which no pose feels
+/// lie between the others.
+const BEND: f64 = 0.01;
+/// Step of the differences in the logarithm of strain.
+const STEP: f64 = 1e-3;
+/// Most rounds of the fit.
+const ROUNDS: usize = 15;
+/// A round that makes the sum of squares less by no more than this part of it is the last.
+const LEAST_GAIN: f64 = 1e-4;
+/// What is put in for an increment that a table does not carry.
+const NOT_CARRIED: f64 = 10.0;
+
+/// A fit of a pressure table on the bodies of a deformable insert.
+pub(super) struct Fit<'a> {
+    pub bodies: Bodies<'a>,
+    /// The foundation but for its law.
+    pub foundation: Foundation,
+    pub targets: &'a [Target],
+}
+
+/// A table with what it does.
+struct Tried {
+    /// Logarithms of the strain from each point to the next.
+    logarithms: DVector<f64>,
+    residuals: DVector<f64>,
+    lower_mm: Vec<[f64; MOST_REGIONS]>,
+}
+
+impl Tried {
+    fn squares(&self) -> f64 {
+        self.residuals.norm_squared()
+    }
+}
+
+impl Fit<'_> {
+    /// The table with the least squares of the relative errors of peak pressure and area, where every region carries
+    /// the force that it carries on the deformable insert: by Levenberg's and Marquardt's method, from a straight line.
+    pub fn table(&self, modulus_mpa: f64) -> PressureTable {
+        let pressures = self.pressures_mpa();
+        let start = pressures.windows(2);
+        let start = start.map(|pair| ((pair[1] - pair[0]) / modulus_mpa).ln());
+        let start = DVector::from_iterator(PARTS.len(), start);
+        let mut best = self.tried(start, &vec![[0.0; MOST_REGIONS]; self.targets.len()]);
+        let mut damping = 1e-2;
+        for _ in 0..ROUNDS {
+            let Some(next) = self.improved(&best, &mut damping) else {
+                break;
+            };
+            let gain = 1.0 - next.squares() / best.squares();
+            best = next;
+            if gain < LEAST_GAIN {
+                break;
+            }
+        }
+        self.table_of(&best.logarithms)
+    }
+
+    /// A table with less squares; none where none is found.
+    fn improved(&self, best: &Tried, damping: &mut f64) -> Option<Tried> {
+        let slopes = self.slopes(best);
+        let (normal, gradient) = (slopes.tr_mul(&slopes), slopes.tr_mul(&best.residuals));
+        for _ in 0..8 {
+            let mut damped = normal.clone();
+            for i in 0..damped.nrows() {
+                damped[(i, i)] += *damping * (normal[(i, i)] + 1e-6);
+            }
+            let step = damped.cholesky()?.solve(&gradient);
+            let next = self.tried(&best.logarithms - step, &best.lower_mm);
+            if next.squares() < best.squares() {
+                *damping *= 0.2;
+                return Some(next);
+            }
+            *damping *= 5.0;
+        }
+        None
+    }
+
+    /// Derivatives of the residuals by the logarithms.
+    fn slopes(&self, at: &Tried) -> DMatrix<f64> {
+        let columns: Vec<DVector<f64>> = (0..at.logarithms.len())
+            .map(|i| {
+                let mut logarithms = at.logarithms.clone();
+                logarithms[i] += STEP;
+                (self.tried(logarithms, &at.lower_mm).residuals - &at.residuals) / STEP
+            })
+            .collect();
+        DMatrix::from_columns(&columns)
+    }
+
+    fn tried(&self, logarithms: DVector<f64>, near_mm: &[[f64; MOST_REGIONS]]) -> Tried {
+        let carried = self.carried(&self.table_of(&logarithms), near_mm);
+        let mut residuals = Vec::new();
+        for (carried, target) in carried.iter().zip(self.targets) {
+            let errors = carried.map_or([NOT_CARRIED; 2], |carried| {
+                [
+                    (carried.peak_mpa / target.peak_mpa).ln(),
+                    (carried.area_mm2 / target.area_mm2).ln(),
+                ]
+            });
+            residuals.extend(errors);
+        }
+        let weight = BEND * (self.targets.len() as f64).sqrt();
+        residuals.extend(self.bends(&logarithms).map(|bend| weight * bend));
+        let lower_mm = carried.iter().zip(near_mm);
+        let lower_mm = lower_mm.map(|(carried, near)| carried.map_or(*near, |it| it.lower_mm));
+        Tried {
+            lower_mm: lower_mm.collect(),
+            residuals: DVector::from_vec(residuals),
+            logarithms,
+        }
+    }
+
+    /// Peak and area under the forces of the targets with a table, from starts that are near.
+    pub fn carried(
+        &self,
+        table: &PressureTable,
+        near_mm: &[[f64; MOST_REGIONS]],
+    ) -> Vec<Option<Carried>> {
+        let law = Foundation {
+            pressure: PressureLaw::TabulatedStrain(table.clone()),
+            ..self.foundation.clone()
+        };
+        let mut contact = law.contact(self.bodies, ContactMemory::default());
+        let places = self.targets.iter().zip(near_mm);
+        let carried = places.map(|(target, near)| target.carried(contact.as_mut(), *near));
+        carried.collect()
+    }
+
+    /// Changes of the logarithm of the slope from each piece of the table to the next.
+    fn bends(&self, logarithms: &DVector<f64>) -> impl Iterator<Item = f64> {
+        let pressures = self.pressures_mpa();
+        let pieces = pressures.windows(2).zip(logarithms.iter());
+        let slopes: Vec<f64> = pieces
+            .map(|(pair, logarithm)| (pair[1] - pair[0]).ln() - logarithm)
+            .collect();
+        let bends: Vec<f64> = slopes
+            .windows(3)
+            .map(|three| three[2] - 2.0 * three[1] + three[0])
+            .collect();
+        bends.into_iter()
+    }
+
+    fn table_of(&self, logarithms: &DVector<f64>) -> PressureTable {
+        let mut strain = 0.0;
+        let mut points = vec![(0.0, 0.0)];
+        for (pressure, logarithm) in self.pressures_mpa()[1..].iter().zip(logarithms.iter()) {
+            strain += logarithm.exp();
+            points.push((strain, *pressure));
+        }
+        PressureTable::new(points).expect("exponentials and pressures rise")
+    }
+
+    /// Pressures of the table's points, from zero.
+    fn pressures_mpa(&self) -> Vec<f64> {
+        let peaks = self.targets.iter().map(|target| target.peak_mpa);
+        let highest = peaks.fold(LEAST_PEAK_MPA, f64::max);
+        let above = PARTS.iter().map(|part| part * highest);
+        [0.0].into_iter().chain(above).collect()
+    }
+}
