@@ -15,6 +15,7 @@ mod written;
 pub(crate) use clock::Clock;
 pub use error::RunError;
 pub use event::{Outcome, Reached, RunEvent};
+pub(crate) use in_memory::marched;
 pub use in_memory::{InMemory, RunKeeper, run_in_memory};
 pub(crate) use memory::memory_mb;
 pub use options::RunOptions;
