@@ -25,5 +25,6 @@ mod preview;
 mod sensitivity;
 mod shapes;
 mod slip_paths;
+mod study;
 mod uncertainty;
 mod words;
