@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use condyle_io::case::{Assignment, Preset, Side};
+use condyle_lab::studies::study::Shard;
 
 /// A virtual wear test of a joint replacement: from an implant to its wear.
 #[derive(Parser)]
@@ -38,6 +39,8 @@ pub enum Command {
     Sensitivity(Sensitivity),
     /// Run a case many times with inputs that scatter as they do from test to test, and see how far its results do.
     Uncertainty(Uncertainty),
+    /// Run a case many times with what varies of it: designs of tests, sensitivity, ranking, the best within limits.
+    Study(Study),
     /// Hold a run against measured kinematics, weighed wear and a scanned surface.
     Compare(Compare),
     /// Fit a pressure law with which the rigid model follows the deformable insert, and say what is left.
@@ -194,6 +197,74 @@ pub struct Uncertainty {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
     /// Print all as JSON, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct Study {
+    #[command(subcommand)]
+    pub command: Option<StudyCommand>,
+    /// The study file: which case, what varies, how tests are chosen, what is asked. The same command goes on with a study
+    /// that was stopped.
+    #[arg(required = true)]
+    pub study: Option<PathBuf>,
+    /// Folder for study.db, table.csv, answers.json, the pictures and study.html [default: results/ and the study's name].
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Tests at the same time, as many as the machine has cores if not given; the table is the same on any number.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
+    /// Only every N-th test, from test i on: for many machines. `condyle study merge` puts the parts together.
+    #[arg(long, value_name = "i/N")]
+    pub shard: Option<Shard>,
+    /// Print answers.json, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Subcommand)]
+pub enum StudyCommand {
+    /// Write the table of a study, as far as it is, as CSV.
+    Export(StudyExport),
+    /// Make one test of a study, by the number of its row, a whole run in a folder of its own.
+    RunRow(RunRow),
+    /// Put the shards of a study together, and answer it.
+    Merge(StudyMerge),
+}
+
+#[derive(Args)]
+pub struct StudyExport {
+    /// The study's folder.
+    pub folder: PathBuf,
+    /// The file to write; standard output if not given.
+    #[arg(long, value_name = "FILE.csv")]
+    pub csv: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct RunRow {
+    /// The study file.
+    pub study: PathBuf,
+    /// The number in the first column of the table.
+    pub row: u64,
+    /// Folder for the results [default: row-N in the study's folder].
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct StudyMerge {
+    /// The study file.
+    pub study: PathBuf,
+    /// The folders of its shards.
+    #[arg(required = true)]
+    pub shards: Vec<PathBuf>,
+    /// Folder for all together [default: results/ and the study's name].
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print answers.json, and nothing else on standard output.
     #[arg(long)]
     pub json: bool,
 }

@@ -2,10 +2,7 @@
 
 use std::{fs, io, path::Path, process::ExitCode};
 
-use condyle_lab::studies::{
-    CaseFailed,
-    calibrate::{CalibrateRequest, CalibratedLaw, calibrate as fit},
-};
+use condyle_lab::studies::calibrate::{CalibrateRequest, CalibratedLaw, calibrate as fit};
 
 use crate::{
     arguments::Calibrate,
@@ -29,10 +26,7 @@ pub fn calibrate(arguments: &Calibrate) -> ExitCode {
         Err(error) => {
             // Nothing is in it.
             let _ = fs::remove_dir(out);
-            match error {
-                CaseFailed::Case(error) => exit::fail_run(&error),
-                error @ CaseFailed::March(_) => exit::fail(error, exit::PHYSICS),
-            }
+            exit::fail_run(&error)
         }
     }
 }

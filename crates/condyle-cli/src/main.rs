@@ -19,6 +19,7 @@ mod run;
 mod schema;
 mod sensitivity;
 mod standard_error;
+mod study;
 mod uncertainty;
 
 use std::process::ExitCode;
@@ -54,6 +55,7 @@ fn obey(command: Command) -> ExitCode {
         Command::Converge(arguments) => converge::converge(&arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(&arguments),
         Command::Uncertainty(arguments) => uncertainty::uncertainty(&arguments),
+        Command::Study(arguments) => study::study(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::CalibrateWear(arguments) => calibrate_wear::calibrate_wear(&arguments),

@@ -5,10 +5,7 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
-use condyle_lab::studies::{
-    CaseFailed,
-    sensitivity::{Change, sensitivity as study},
-};
+use condyle_lab::studies::sensitivity::{Change, sensitivity as study};
 
 use crate::{arguments::Sensitivity, converge::threads, exit, output, standard_error::tell};
 
@@ -22,7 +19,6 @@ pub fn sensitivity(arguments: &Sensitivity) -> ExitCode {
     match study(&arguments.case, threads(arguments.threads), &tell_of) {
         Ok(found) if arguments.json => output::print(&output::json(&found)),
         Ok(found) => output::print(&found.markdown()),
-        Err(CaseFailed::Case(error)) => exit::fail_run(&error),
-        Err(error @ CaseFailed::March(_)) => exit::fail(error, exit::PHYSICS),
+        Err(error) => exit::fail_run(&error),
     }
 }

@@ -5,10 +5,7 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
-use condyle_lab::studies::{
-    CaseFailed,
-    uncertainty::{UncertaintyOptions, uncertainty as study},
-};
+use condyle_lab::studies::uncertainty::{UncertaintyOptions, uncertainty as study};
 
 use crate::{arguments::Uncertainty, converge::threads, exit, output, standard_error::tell};
 
@@ -32,7 +29,6 @@ pub fn uncertainty(arguments: &Uncertainty) -> ExitCode {
     match study(&arguments.case, options, &tell_of) {
         Ok(found) if arguments.json => output::print(&output::json(&found)),
         Ok(found) => output::print(&found.markdown()),
-        Err(CaseFailed::Case(error)) => exit::fail_run(&error),
-        Err(error @ CaseFailed::March(_)) => exit::fail(error, exit::PHYSICS),
+        Err(error) => exit::fail_run(&error),
     }
 }

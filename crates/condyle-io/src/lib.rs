@@ -30,3 +30,5 @@ pub mod keyed;
 pub mod measured;
 pub mod mesh;
 pub mod results;
+#[cfg(feature = "file-system")]
+pub mod study;

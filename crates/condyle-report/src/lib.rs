@@ -14,6 +14,7 @@ mod page;
 mod pictures;
 mod plots;
 mod results;
+pub mod study;
 
 pub use condyle_fem::Vec3;
 pub use error::ReportError;

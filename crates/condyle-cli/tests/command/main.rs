@@ -26,5 +26,6 @@ mod preview;
 mod sensitivity;
 mod shapes;
 mod slip_paths;
+mod study;
 mod uncertainty;
 mod words;

@@ -218,6 +218,15 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     ("condyle_report::plots", &["condyle_report::figure"]),
     (
+        "condyle_report::study",
+        &[
+            "condyle_report::error",
+            "condyle_report::figure",
+            "condyle_report::file",
+            "condyle_report::number",
+        ],
+    ),
+    (
         "condyle_report::bodies",
         &[
             "condyle_report::error",

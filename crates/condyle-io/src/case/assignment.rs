@@ -58,6 +58,12 @@ impl Assignment {
         Ok(Self { key, text })
     }
 
+    /// The one that gives `key` a value, written as in a case, but a word needs no quotes.
+    pub(crate) fn of(key: &str, text: String) -> Self {
+        let key = key.to_owned();
+        Self { key, text }
+    }
+
     /// Whether its key is a dotted path, which says where it stands without a look at the case.
     pub(super) fn is_placed(&self) -> bool {
         self.key.contains('.')
@@ -70,9 +76,7 @@ impl Assignment {
 
     /// The same with the dotted path of its key in `case`.
     pub(super) fn placed_in(&self, case: &Case) -> Result<Self, AssignmentError> {
-        let paths: Vec<String> = case.keys().into_iter().map(|(path, _)| path).collect();
-        let near = |names: &[&str]| likeliest(&self.key, names);
-        let key = path_called("key", &self.key, &paths, near)?;
+        let key = case.path_of_key(&self.key)?;
         let text = self.text.clone();
         Ok(Self { key, text })
     }
@@ -90,6 +94,19 @@ impl Assignment {
     /// The key and the value, as messages name them.
     pub(super) fn in_words(&self) -> String {
         format!("{} = {}", self.key, self.text)
+    }
+}
+
+impl Case {
+    /// The dotted path of the key that `written` names: a dotted path as it is, or the last word of one, with or without
+    /// its unit.
+    pub(crate) fn path_of_key(&self, written: &str) -> Result<String, KeyNameError> {
+        if written.contains('.') {
+            return Ok(written.to_owned());
+        }
+        let paths: Vec<String> = self.keys().into_iter().map(|(path, _)| path).collect();
+        let near = |names: &[&str]| likeliest(written, names);
+        path_called("key", written, &paths, near)
     }
 }
 

@@ -55,7 +55,9 @@ pub use activity::{Activities, Activity, ActivityKeys};
 pub use activity_reason::ActivityReason;
 pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
-pub use build::{Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, StrayPiece, WrongAxes};
+pub use build::{
+    Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, SharedBodies, StrayPiece, WrongAxes,
+};
 pub use channel::CaseChannel;
 pub use contact::{
     Contact, ContactModelWord, Finding, Friction, PressureLawChoice, SearchWord, SofteningCurve,

@@ -196,6 +196,7 @@ fn of_kind(kind: &Kind, limits: Option<Limits>) -> Value {
         Kind::Word(words) => json!({ "type": "string", "enum": words }),
         Kind::ThreeWords(words) => list(&json!({ "type": "string", "enum": words }), 3),
         Kind::Names => json!({ "type": "array", "items": { "type": "string" } }),
+        Kind::Levels => json!({ "type": "array", "minItems": 1 }),
         Kind::TwoNumbers => list(&limited("number", limits), 2),
         Kind::ThreeNumbers => list(&limited("number", limits), 3),
         // Limits of points hold for what becomes of them, once scaled and offset.

@@ -25,6 +25,8 @@ pub enum Kind {
     ThreeWords(&'static [&'static str]),
     /// Any names.
     Names,
+    /// Numbers or words, one or more.
+    Levels,
     /// Two numbers.
     TwoNumbers,
     /// Three numbers.
@@ -45,6 +47,7 @@ impl fmt::Display for Kind {
             Self::Word(words) => f.write_str(&quoted_list(words)),
             Self::ThreeWords(words) => write!(f, "three words of {}", quoted_list(words)),
             Self::Names => f.write_str("a list of names in quotes"),
+            Self::Levels => f.write_str("a list of numbers or of words in quotes"),
             Self::TwoNumbers => f.write_str("a list of two numbers"),
             Self::ThreeNumbers => f.write_str("a list of three numbers"),
             Self::Pairs => f.write_str("a list of pairs of numbers"),

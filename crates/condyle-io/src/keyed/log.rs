@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use super::base::Base;
 use super::problem::{Placed, Problem};
+#[cfg(feature = "file-system")]
+use super::problems::Problems;
 use super::reason::Reason;
 use super::source::Source;
 
@@ -44,6 +46,12 @@ impl<'a> Log<'a> {
     pub(crate) fn placed(&mut self, source: Option<&Source>, placed: Placed) {
         let source = source.unwrap_or(&self.source);
         self.problems.push(Problem::placed(source, placed));
+    }
+
+    /// Notes what is wrong with another file that was read for this one.
+    #[cfg(feature = "file-system")]
+    pub(crate) fn of_other_file(&mut self, problems: &Problems) {
+        self.problems.extend_from_slice(problems.problems());
     }
 
     /// What `source`, a file that this one names, was read as, or nothing and its problems noted.

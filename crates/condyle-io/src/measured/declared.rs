@@ -1,8 +1,7 @@
 //! What a file of measured data is made of.
 
-use super::setting::Names;
 use crate::case::{Axes, LengthUnit};
-use crate::keyed::{DataFile, choice, settings, within};
+use crate::keyed::{DataFile, Names, choice, settings, within};
 
 choice! {
     /// Which cycle of the run a measured one is held against.

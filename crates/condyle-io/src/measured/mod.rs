@@ -13,8 +13,8 @@ mod phases;
 mod read;
 mod reason;
 mod scan;
-mod setting;
 
+pub use crate::keyed::Names;
 pub use declared::{
     AlignWord, CycleWord, FitWord, GravimetricKeys, IntervalWord, KinematicsKeys, ScanKeys,
 };
@@ -24,4 +24,3 @@ pub use phases::Phase;
 pub use read::Measured;
 pub use reason::MeasuredReason;
 pub use scan::Scan;
-pub use setting::Names;

@@ -16,6 +16,7 @@ pub(crate) use clock::Clock;
 pub use error::RunError;
 pub use event::{Outcome, Reached, RunEvent};
 pub use in_memory::{InMemory, RunKeeper, run_in_memory};
+pub(crate) use in_memory::{march_watched, marched};
 pub(crate) use memory::memory_mb;
 pub use options::RunOptions;
 pub(crate) use prepare::{build, changed, start};

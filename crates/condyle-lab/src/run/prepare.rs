@@ -5,7 +5,7 @@ use std::path::Path;
 use condyle::evolve::{March, WearTest};
 use condyle_io::{
     cache::Cache,
-    case::{Assignment, BuildWarning, Built, Case, ChangeError},
+    case::{Assignment, BuildWarning, Built, Case, ChangeError, SharedBodies},
 };
 
 use super::{bridged::check_at_rest, error::RunError, memory::check_memory};
@@ -52,7 +52,17 @@ pub(crate) fn changed(case_path: &Path, changes: &[Assignment]) -> Result<Case, 
 }
 
 pub(crate) fn build(case: &Case, threads: usize, cache: &Cache) -> Result<Built, RunError> {
-    case.build_kept(threads, cache)
+    build_sharing(case, threads, cache, &SharedBodies::default())
+}
+
+/// The bodies of a case, of which it may have some in common with other cases.
+pub(crate) fn build_sharing(
+    case: &Case,
+    threads: usize,
+    cache: &Cache,
+    bodies: &SharedBodies,
+) -> Result<Built, RunError> {
+    case.build_sharing(threads, cache, bodies)
         .map_err(|source| RunError::of_build(case, source))
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use condyle_io::{
-    case::{Assignment, Case},
+    case::{Assignment, Case, SharedBodies},
     keyed::DataFile,
     results::{Found, ResultsError, ResultsFolder, Summary},
 };
@@ -76,6 +76,7 @@ fn run_read(
     let means = Means {
         threads: options.threads,
         cache: &options.cache,
+        bodies: &SharedBodies::default(),
         out: Some(&options.out),
         wear_law: None,
     };

@@ -5,7 +5,7 @@ use std::{ops::ControlFlow, path::Path, time::Duration};
 use condyle::{evolve::March, geometry::TriangleMesh, wear::NamedLaw};
 use condyle_io::{
     cache::Cache,
-    case::{BuildWarning, Case},
+    case::{BuildWarning, Case, SharedBodies},
     results::{ActivitySummary, Checkpoint, LawWear, NeutralPose, Summary, SummaryInput},
 };
 
@@ -14,7 +14,7 @@ use super::{
     clock::Clock,
     error::RunError,
     event::{Listener, Outcome, Reached, RunEvent},
-    prepare::{build, start},
+    prepare::{build_sharing, start},
 };
 use crate::{accuracy, plausibility};
 
@@ -31,6 +31,8 @@ pub(super) enum Begun {
 pub(super) struct Means<'a> {
     pub threads: usize,
     pub cache: &'a Cache,
+    /// Bodies that it may have in common with other runs.
+    pub bodies: &'a SharedBodies,
     /// The folder where it is kept, if in one.
     pub out: Option<&'a Path>,
     /// A law of wear that takes the place of the case's.
@@ -60,7 +62,8 @@ impl<'a> Run<'a> {
         on_event: &mut Listener<'_>,
     ) -> Result<Self, RunError> {
         let mut clock = Clock::default();
-        let mut built = clock.time(|| build(case, means.threads, means.cache))?;
+        let mut built =
+            clock.time(|| build_sharing(case, means.threads, means.cache, means.bodies))?;
         for warning in &built.warnings {
             let _ = on_event(RunEvent::Warning(warning.to_string()));
         }
@@ -107,6 +110,19 @@ impl<'a> Run<'a> {
             return Ok(Outcome::Done(Box::new(summary)));
         }
         Ok(Outcome::Interrupted(Reached::by(&self.march)))
+    }
+
+    /// Updates until all cycles are done, then the march and what it found, of which no error is estimated and nothing
+    /// doubted; `watch` sees the march before the first update and after each.
+    pub fn marched(mut self, watch: &mut dyn FnMut(&March)) -> Result<(March, Summary), RunError> {
+        watch(&self.march);
+        let mut keep = |run: &Run<'_>| {
+            watch(&run.march);
+            Ok(())
+        };
+        let _ = self.march_on(&mut keep, &mut |_| ControlFlow::Continue(()))?;
+        let summary = self.summary_without_error();
+        Ok((self.march, summary))
     }
 
     /// Updates until all cycles are done; a break if somebody asked to stop before.

@@ -1,6 +1,7 @@
 //! Studies over runs of a case.
 
 pub mod calibrate;
+mod chance;
 mod converge;
 mod converge_files;
 mod converge_plan;
@@ -8,6 +9,7 @@ pub mod knight_2007;
 mod many_runs;
 mod observed_order;
 pub mod sensitivity;
+pub mod study;
 mod table;
 pub mod uncertainty;
 
@@ -16,5 +18,4 @@ pub use converge::{
     Quantity, converge,
 };
 pub use converge_plan::{ConvergeError, ConvergePlan, Planned};
-pub use many_runs::CaseFailed;
 pub use observed_order::{Extrapolation, extrapolate};

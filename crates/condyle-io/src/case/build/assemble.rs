@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use condyle::contact::{ContactLaw, Deformable, Foundation, PressureLaw, confined_modulus};
-use condyle::evolve::{Schedule, Updates, WearTest};
+use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 use condyle_fem::Elastic;
@@ -14,8 +14,9 @@ use super::super::law_change::LeftOutConstant;
 use super::super::march::Update;
 use super::super::time::IntegratorWord;
 use super::error::{BuildError, BuildWarning};
-use super::femur::Preparing;
+use super::femur::{BuiltFemur, Preparing};
 use super::machine::start_flexion_rad;
+use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
 
 /// A wear test ready to run, and what was put right on the way to it.
@@ -42,28 +43,53 @@ impl Case {
     /// # Errors
     /// As [`Case::build`].
     pub fn build_kept(&self, threads: usize, keep: &dyn Keep) -> Result<Built, BuildError> {
-        let mut warnings = self.constants_left_out();
-        let insert = self.built_insert(&self.insert, &mut warnings)?;
+        self.build_sharing(threads, keep, &SharedBodies::default())
+    }
+
+    /// As [`Case::build_kept`], to the same bytes, with the bodies that it has in common with others.
+    ///
+    /// # Errors
+    /// As [`Case::build`].
+    pub fn build_sharing(
+        &self,
+        threads: usize,
+        keep: &dyn Keep,
+        bodies: &SharedBodies,
+    ) -> Result<Built, BuildError> {
+        let make = |warnings: &mut _| self.built_insert(&self.insert, warnings);
+        let (insert, of_insert) = bodies.insert(self, make)?;
         let activities = self.built_activities(insert.dish_low_point_mm());
-        let femur = self.femur.build(
-            &self.femur_placement,
-            self.heading.side,
-            start_flexion_rad(&activities[0].machine),
-            Preparing {
+        let flexion_rad = start_flexion_rad(&activities[0].machine);
+        let (femur, of_femur) = bodies.femur(self, flexion_rad, |warnings| {
+            let limits = &self.limits;
+            let preparing = Preparing {
                 threads,
                 keep,
-                limits: &self.limits,
-            },
-            &mut warnings,
-        )?;
-        let contact = self.contact_law(&insert)?;
-        let test = WearTest {
-            femur: Arc::new(femur.surface),
+                limits,
+            };
+            let (placement, side) = (&self.femur_placement, self.heading.side);
+            self.femur
+                .build(placement, side, flexion_rad, preparing, warnings)
+        })?;
+        let warnings = [self.constants_left_out(), of_insert, of_femur].concat();
+        let test = self.assembled(insert, &femur, activities)?;
+        Ok(Built { test, warnings })
+    }
+
+    /// A wear test of bodies and activities.
+    fn assembled(
+        &self,
+        insert: Arc<Insert>,
+        femur: &BuiltFemur,
+        activities: Vec<Activity>,
+    ) -> Result<WearTest, BuildError> {
+        Ok(WearTest {
+            contact: self.contact_law(&insert)?,
+            femur: Arc::clone(&femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
-            insert: Arc::new(insert),
+            insert,
             activities,
-            contact,
             wear: self.wear.law(),
             laws_beside: self.wear.beside(),
             creep: self.creep.law(),
@@ -78,8 +104,7 @@ impl Case {
                     },
                 },
             },
-        };
-        Ok(Built { test, warnings })
+        })
     }
 
     /// Constants of the file that its wear law, chosen from outside, does not have.

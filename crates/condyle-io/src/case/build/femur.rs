@@ -1,6 +1,7 @@
 //! The femoral component as the contact sees it.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use condyle::Vec3;
 use condyle::geometry::{
@@ -23,7 +24,7 @@ use crate::mesh::surface_bytes;
 
 /// A femoral surface, the axis it flexes about and where that starts over the insert.
 pub(super) struct BuiltFemur {
-    pub surface: FemoralSurface,
+    pub surface: Arc<FemoralSurface>,
     /// (x, y) in the femoral frame.
     pub flexion_axis_mm: (f64, f64),
     /// (x, z) of the flexion axis in the insert frame.
@@ -59,20 +60,23 @@ impl Femur {
                     spacing_mm: femur.spacing_mm,
                 };
                 BuiltFemur {
-                    surface: placed(GenericFemur::new(shape), placement.motion((0.0, 0.0))),
+                    surface: Arc::new(placed(
+                        GenericFemur::new(shape),
+                        placement.motion((0.0, 0.0)),
+                    )),
                     flexion_axis_mm: (0.0, 0.0),
                     start_mm: start(femur.start_mm).unwrap_or(over_the_dish(&shape, flexion_rad)),
                 }
             }
             Self::Sphere(femur) => BuiltFemur {
-                surface: FemoralSurface::sphere(femur.radius_mm),
+                surface: Arc::new(FemoralSurface::sphere(femur.radius_mm)),
                 flexion_axis_mm: (0.0, 0.0),
                 start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
             },
             Self::Cylinder(femur) => BuiltFemur {
-                surface: FemoralSurface::Cylinder(Cylinder {
+                surface: Arc::new(FemoralSurface::Cylinder(Cylinder {
                     radius_mm: femur.radius_mm,
-                }),
+                })),
                 flexion_axis_mm: (0.0, 0.0),
                 start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
             },
@@ -163,7 +167,7 @@ impl MeshFemur {
         let flexion_axis_mm = self.axis_mm(&prepared.shell.mesh);
         let (x, z) = on_the_right(self.start_mm.unwrap_or_default(), side);
         BuiltFemur {
-            surface: FemoralSurface::Mesh(prepared.field),
+            surface: Arc::new(FemoralSurface::Mesh(prepared.field)),
             flexion_axis_mm,
             start_mm: (x + axis_ahead_mm(flexion_axis_mm, flexion_rad), z),
         }

@@ -14,6 +14,7 @@ mod meshes;
 mod off_centre;
 mod pieces;
 mod rigid_motion;
+mod shared;
 #[cfg(test)]
 mod tests;
 mod wrong_axes;
@@ -32,4 +33,5 @@ pub(super) use off_centre::MOST_ACROSS_MM;
 pub use pieces::StrayPiece;
 #[cfg(feature = "file-system")]
 pub(super) use rigid_motion::middle_of_mesh;
+pub use shared::SharedBodies;
 pub use wrong_axes::{Body, WrongAxes};

@@ -5,11 +5,7 @@ mod left;
 mod page;
 mod target;
 
-use std::{
-    ops::ControlFlow,
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::path::{Path, PathBuf};
 
 use condyle::{
     contact::{
@@ -21,12 +17,17 @@ use condyle::{
 };
 use condyle_io::{
     cache::Cache,
-    case::{Assignment, Case, ContactModelWord, PressureLawChoice, StrainTable, TableError},
+    case::{
+        Assignment, Case, ContactModelWord, PressureLawChoice, SharedBodies, StrainTable,
+        TableError,
+    },
 };
 use serde::Serialize;
 
-use super::many_runs::{CaseFailed, summary_of};
-use crate::run::{build, changed, start};
+use crate::{
+    RunError,
+    run::{changed, march_watched},
+};
 use fit::Fit;
 use left::{Ran, is_stance};
 use target::Target;
@@ -109,7 +110,7 @@ pub struct HeldOut {
 pub fn calibrate(
     request: &CalibrateRequest,
     tell: &mut dyn FnMut(&str),
-) -> Result<CalibratedLaw, CaseFailed> {
+) -> Result<CalibratedLaw, RunError> {
     let case = changed(&request.case, &request.changes)?;
     tell("the deformable insert");
     let mut recorded = Recorded::default();
@@ -150,7 +151,7 @@ impl CalibratedLaw {
     }
 }
 
-fn held_out(path: &Path, table: &PressureTable) -> Result<HeldOut, CaseFailed> {
+fn held_out(path: &Path, table: &PressureTable) -> Result<HeldOut, RunError> {
     let case = changed(path, &[])?;
     let deformable = run_quietly(&deformable(&case))?;
     let calibrated = run_quietly(&with_table(&case, table.clone(), None))?;
@@ -188,29 +189,28 @@ struct Recorded {
     targets: Vec<Target>,
 }
 
-fn run_quietly(case: &Case) -> Result<Ran, CaseFailed> {
+fn run_quietly(case: &Case) -> Result<Ran, RunError> {
     run(case, &mut Recorded::default())
 }
 
 /// Runs a case to its end.
-fn run(case: &Case, recorded: &mut Recorded) -> Result<Ran, CaseFailed> {
-    let began = Instant::now();
-    let built = build(case, 1, &Cache::of_user())?;
-    let mut march = start(case, built.test, &built.warnings)?;
-    recorded.insert = Some(march.insert().clone());
-    while !march.is_done() {
-        let _ = march.update(&mut |_| ControlFlow::Continue(()))?;
-        if recorded.targets.is_empty() {
-            let cycle = march.last_cycle();
-            recorded.targets = cycle.iter().flat_map(Target::of).collect();
-        }
-    }
-    let mut summary = summary_of(case, &march);
-    summary.wall_s = began.elapsed().as_secs_f64();
+fn run(case: &Case, recorded: &mut Recorded) -> Result<Ran, RunError> {
+    let watch = &mut |march: &March| recorded.see(march);
+    let (march, summary) = march_watched(case, &Cache::of_user(), &SharedBodies::default(), watch)?;
     Ok(Ran { march, summary })
 }
 
 impl Recorded {
+    /// Keeps the insert before it wears, and the first cycle.
+    fn see(&mut self, march: &March) {
+        if self.insert.is_none() {
+            self.insert = Some(march.insert().clone());
+        } else if self.targets.is_empty() {
+            let cycle = march.last_cycle();
+            self.targets = cycle.iter().flat_map(Target::of).collect();
+        }
+    }
+
     /// The table that is fitted to some increments of stance, and what it does in them.
     fn fitted(&self, case: &Case, march: &March) -> (PressureTable, Vec<CalibratedIncrement>) {
         let insert = self.insert.as_ref().expect("a run has an insert");

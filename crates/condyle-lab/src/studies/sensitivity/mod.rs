@@ -5,10 +5,17 @@ mod found;
 
 use std::path::Path;
 
-use condyle_io::{case::Case, results::Summary};
+use condyle_io::{
+    cache::Cache,
+    case::{Case, SharedBodies},
+    results::Summary,
+};
 
-use super::many_runs::{CaseFailed, first_line, in_parallel, marched};
-use crate::{RunError, run};
+use super::many_runs::{first_line, in_parallel};
+use crate::{
+    RunError,
+    run::{self, marched},
+};
 use assumption::changes_of;
 
 pub use assumption::Change;
@@ -25,13 +32,14 @@ pub fn sensitivity(
     case_path: &Path,
     threads: usize,
     tell: &(dyn Fn(&Change) + Sync),
-) -> Result<Sensitivity, CaseFailed> {
-    let case = Case::read(case_path).map_err(RunError::Case)?;
-    let as_given = marched(&case)?;
+) -> Result<Sensitivity, RunError> {
+    let case = Case::read(case_path)?;
+    let bodies = SharedBodies::default();
+    let as_given = marched(&case, &Cache::of_user(), &bodies)?;
     let changes = changes_of(&case);
     let ran = in_parallel(changes.len(), threads, |index| {
         let change = &changes[index];
-        let found = changed(case_path, &case, change);
+        let found = changed(case_path, &case, change, &bodies);
         tell(change);
         found
     });
@@ -41,10 +49,16 @@ pub fn sensitivity(
 }
 
 /// What a run with one change found, or why it found nothing; none where the case stays the same.
-fn changed(case_path: &Path, case: &Case, change: &Change) -> Option<Result<Summary, String>> {
+fn changed(
+    case_path: &Path,
+    case: &Case,
+    change: &Change,
+    bodies: &SharedBodies,
+) -> Option<Result<Summary, String>> {
+    let ran = |other| marched(other, &Cache::of_user(), bodies);
     match run::changed(case_path, &change.assignments) {
         Ok(other) if other == *case => None,
-        Ok(other) => Some(marched(&other).map_err(|error| first_line(&error))),
+        Ok(other) => Some(ran(&other).map_err(|error| first_line(&error))),
         Err(error) => Some(Err(first_line(&error))),
     }
 }

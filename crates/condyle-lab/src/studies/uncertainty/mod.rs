@@ -1,7 +1,6 @@
 //! How far a test would scatter whose inputs are never quite the same.
 
 mod found;
-mod latin_hypercube;
 mod scatter;
 
 use std::{ops::ControlFlow, path::Path};
@@ -9,16 +8,16 @@ use std::{ops::ControlFlow, path::Path};
 use condyle::{evolve::March, geometry::TriangleMesh};
 use condyle_io::{
     cache::Cache,
-    case::{Assignment, Case},
+    case::{Assignment, Case, SharedBodies},
     results::Summary,
 };
 
-use super::many_runs::{CaseFailed, first_line, in_parallel, marched};
+use super::chance::latin_hypercube;
+use super::many_runs::{first_line, in_parallel};
 use crate::{
     RunError,
-    run::{self, InMemory, Outcome, RunKeeper, run_in_memory},
+    run::{self, InMemory, Outcome, RunKeeper, marched, run_in_memory},
 };
-use latin_hypercube::latin_hypercube;
 use scatter::{Scatter, deviations, scatters};
 
 pub use found::{Input, Spread, Uncertainty};
@@ -47,14 +46,16 @@ pub fn uncertainty(
     case_path: &Path,
     options: UncertaintyOptions,
     tell: &(dyn Fn() + Sync),
-) -> Result<Uncertainty, CaseFailed> {
-    let case = Case::read(case_path).map_err(RunError::Case)?;
+) -> Result<Uncertainty, RunError> {
+    let case = Case::read(case_path)?;
     let as_given = with_error(&case)?;
     let (scatters, left_out): (Vec<_>, Vec<_>) =
         scatters().partition(|scatter| takes(case_path, &case, scatter));
     let points = drawn(options, scatters.len());
+    let bodies = SharedBodies::default();
     let ran = in_parallel(points.len(), options.threads, |index| {
-        let found = off_by(case_path, &case, &scatters, &points[index]);
+        let set = off_by(&case, &scatters, &points[index]);
+        let found = ran_with(case_path, &set, &bodies).map_err(|error| first_line(&error));
         tell();
         found
     });
@@ -79,19 +80,22 @@ fn drawn(options: UncertaintyOptions, inputs: usize) -> Vec<Vec<f64>> {
     points
 }
 
-/// A run whose inputs are off by so many standard deviations, or why there is none.
-fn off_by(
-    case_path: &Path,
-    case: &Case,
-    scatters: &[&Scatter],
-    point: &[f64],
-) -> Result<Summary, String> {
+/// What inputs that are off by so many standard deviations set.
+fn off_by(case: &Case, scatters: &[&Scatter], point: &[f64]) -> Vec<Assignment> {
     let inputs = scatters.iter().zip(point);
-    let set: Vec<Assignment> = inputs
+    inputs
         .flat_map(|(scatter, deviations)| scatter.off_by(case, *deviations))
-        .collect();
-    let other = run::changed(case_path, &set).map_err(|error| first_line(&error))?;
-    marched(&other).map_err(|error| first_line(&error))
+        .collect()
+}
+
+/// A run with other values.
+fn ran_with(
+    case_path: &Path,
+    set: &[Assignment],
+    bodies: &SharedBodies,
+) -> Result<Summary, RunError> {
+    let other = run::changed(case_path, set)?;
+    marched(&other, &Cache::of_user(), bodies)
 }
 
 /// The summary of a case, with its estimate of the error if it asks for one.

@@ -1,34 +1,56 @@
-//! Points that fill a cube evenly along every axis.
+//! Numbers of chance that a seed means the same for ever, on any machine.
 
-/// The numbers of a seed: SplitMix64 (Steele, Lea and Flood 2014), so that a seed means the same for ever.
-struct Numbers(u64);
+/// The numbers of a seed: SplitMix64 (Steele, Lea and Flood 2014).
+pub(super) struct Numbers(u64);
+
+/// What is added from one number to the next: 2^64 over the golden ratio.
+const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
 impl Numbers {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
+    pub fn of(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// Those of one of many things that a seed has, each with numbers of its own.
+    pub fn of_one(seed: u64, which: u64) -> Self {
+        Self(mixed(seed.wrapping_add(STEP)) ^ mixed(which.wrapping_add(STEP).wrapping_mul(STEP)))
+    }
+
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(STEP);
+        mixed(self.0)
     }
 
     /// Between 0 and 1, neither of them.
-    fn share(&mut self) -> f64 {
+    pub fn share(&mut self) -> f64 {
         ((self.next() >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
     }
 
+    /// One of `count` places.
+    pub fn place(&mut self, count: usize) -> usize {
+        (self.share() * count as f64) as usize
+    }
+
     /// Puts values into an order of chance (Fisher and Yates).
-    fn shuffle(&mut self, values: &mut [usize]) {
+    pub fn shuffle(&mut self, values: &mut [usize]) {
         for last in (1..values.len()).rev() {
-            let other = (self.share() * (last + 1) as f64) as usize;
+            let other = self.place(last + 1);
             values.swap(last, other);
         }
     }
 }
 
+/// The bits of a number mixed so that each depends on all.
+pub(super) fn mixed(value: u64) -> u64 {
+    let mixed = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    mixed ^ (mixed >> 31)
+}
+
 /// `points` in the unit cube of `axes` dimensions: along each axis, one lies in each of as many equal slices
 /// (McKay, Beckman and Conover 1979). The same seed gives the same points.
 pub(super) fn latin_hypercube(points: usize, axes: usize, seed: u64) -> Vec<Vec<f64>> {
-    let mut numbers = Numbers(seed);
+    let mut numbers = Numbers::of(seed);
     let mut all = vec![vec![0.0; axes]; points];
     for axis in 0..axes {
         let mut slices: Vec<usize> = (0..points).collect();

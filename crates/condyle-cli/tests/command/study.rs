@@ -1,0 +1,328 @@
+//! `condyle study`, through the front door.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::bench::Bench;
+
+const TINY: &str = "\
+[insert]
+edge_mm = 4.0
+layers = 1
+[march]
+cycles = 100_000
+updates = 1
+[time]
+increments = 40
+";
+
+/// Two inputs by a design.
+fn of(design: &str) -> String {
+    format!(
+        "case = \"case.toml\"\n[design]\n{design}\n\
+         [[vary]]\nkey = \"contact.friction\"\nlow = 0.02\nhigh = 0.1\n\
+         [[vary]]\nkey = \"machine.axial_force.scale\"\ndistribution = \"truncated-normal\"\n\
+         standard_deviation = 0.05\nlow = 0.8\nhigh = 1.2\n"
+    )
+}
+
+fn bench(study: &str) -> Bench {
+    let bench = Bench::with_case(TINY);
+    bench.write("study.toml", study);
+    bench
+}
+
+/// The table of a study that must work.
+#[track_caller]
+fn table(bench: &Bench, arguments: &[&str]) -> String {
+    let said = bench.say(&[&["study", "study.toml", "--out", "out"], arguments].concat());
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    fs::read_to_string(bench.path("out/table.csv")).unwrap()
+}
+
+fn answers(bench: &Bench) -> Value {
+    let text = fs::read_to_string(bench.path("out/answers.json")).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+#[test]
+fn every_design_gives_the_same_table_on_any_number_of_threads() {
+    for (design, tests) in [
+        ("kind = \"latin-hypercube\"\nsize = 5", 5),
+        ("kind = \"sobol\"\nsize = 4", 4),
+        ("kind = \"saltelli\"\nsize = 2", 8),
+        ("kind = \"morris\"\nwalks = 2", 6),
+        ("kind = \"full-factorial\"\npoints = 2", 4),
+        ("kind = \"one-at-a-time\"", 7),
+        (
+            "kind = \"optimise\"\nsize = 12\nminimise = \"max_depth_mm\"",
+            12,
+        ),
+    ] {
+        let one = table(&bench(&of(design)), &["--threads", "1"]);
+        assert_eq!(
+            one,
+            table(&bench(&of(design)), &["--threads", "3"]),
+            "{design}"
+        );
+        assert_eq!(one.lines().count(), 1 + tests, "{design}: {one}");
+        assert!(!one.contains("failed"), "{one}");
+    }
+}
+
+#[test]
+fn seeds_differ_and_pictures_are_there() {
+    let one = bench(&of("size = 6"));
+    let first = table(&one, &[]);
+    assert_ne!(first, table(&bench(&of("size = 6\nseed = 2")), &[]));
+    for name in [
+        "study.html",
+        "tornado.svg",
+        "scatter.svg",
+        "distributions.svg",
+        "main_effects.svg",
+        "pareto.svg",
+    ] {
+        assert!(one.path("out").join(name).is_file(), "{name}");
+    }
+    assert_eq!(answers(&one)["kept"], 6);
+}
+
+#[test]
+fn a_study_that_is_killed_goes_on_and_does_nothing_twice() {
+    use std::{process::Stdio, thread::sleep, time::Duration};
+    let study = of("size = 40");
+    let whole = table(&bench(&study), &[]);
+    let killed = bench(&study);
+    let mut kept_before = 0;
+    for _ in 0..6 {
+        let mut command =
+            killed.command(&["study", "study.toml", "--out", "out", "--threads", "2"]);
+        let mut child = command
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        sleep(Duration::from_millis(250));
+        let _ = child.kill();
+        child.wait().unwrap();
+        let said = killed.say(&["study", "export", "out"]);
+        let kept = if said.code == Some(0) {
+            said.out.lines().count() - 1
+        } else {
+            0
+        };
+        assert!(kept >= kept_before, "{kept} of {kept_before}");
+        assert!(
+            said.out.lines().skip(1).all(|line| whole.contains(line)),
+            "{}",
+            said.out
+        );
+        kept_before = kept;
+    }
+    assert_eq!(table(&killed, &[]), whole);
+}
+
+#[test]
+fn tests_that_fail_are_rows_with_their_reasons() {
+    let study = "case = \"case.toml\"\n[design]\nkind = \"rows\"\nfile = \"rows.csv\"\n";
+    let bench = bench(study);
+    // Both are in their ranges, and make no case together: an insert thinner than its dishes are deep.
+    bench.write(
+        "rows.csv",
+        "insert.thickness_mm,time.force_tolerance_n\n9,0.001\n9,1e-12\n",
+    );
+    let table = table(&bench, &[]);
+    assert_eq!(table.lines().count(), 3, "{table}");
+    assert!(
+        table.lines().nth(1).unwrap().starts_with("0,done,,9,"),
+        "{table}"
+    );
+}
+
+#[test]
+fn shards_put_together_are_the_whole() {
+    let study = of("size = 7");
+    let whole = table(&bench(&study), &[]);
+    let parts = bench(&study);
+    for shard in ["1/3", "2/3", "3/3"] {
+        let out = format!("part-{}", &shard[..1]);
+        let said = parts.say(&["study", "study.toml", "--shard", shard, "--out", &out]);
+        assert_eq!(said.code, Some(0), "{}", said.err);
+        assert!(said.err.contains("condyle study merge"), "{}", said.err);
+    }
+    let wrong = parts.say(&["study", "study.toml", "--shard", "1/2", "--out", "part-1"]);
+    wrong.assert_refused(2, &["another shard"]);
+    let said = parts.say(&[
+        "study",
+        "merge",
+        "study.toml",
+        "part-1",
+        "part-2",
+        "part-3",
+        "--out",
+        "out",
+    ]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert_eq!(
+        fs::read_to_string(parts.path("out/table.csv")).unwrap(),
+        whole
+    );
+}
+
+#[test]
+fn a_row_made_a_run_has_the_numbers_of_the_table() {
+    let bench = bench(&of("size = 3"));
+    let table = table(&bench, &[]);
+    let said = bench.say(&["study", "run-row", "study.toml", "2", "--out", "row"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    let mass = bench.summary("row").mass_loss_mg.to_string();
+    assert!(
+        table.lines().nth(3).unwrap().contains(&mass),
+        "{mass} in {table}"
+    );
+    bench
+        .say(&["study", "run-row", "study.toml", "3"])
+        .assert_refused(2, &["no row 3", "0 to 2"]);
+}
+
+#[test]
+fn designs_are_ranked_under_the_same_disturbances() {
+    let study = format!(
+        "{}[[alternative]]\nname = \"shallow\"\nset = [\"insert.sagittal_radius_mm=80\"]\n\
+         [[alternative]]\nname = \"deep\"\nset = [\"insert.sagittal_radius_mm=45\"]\n\
+         [answers]\nrank_by = \"peak_pressure_mpa\"\n",
+        of("size = 5")
+    );
+    let bench = bench(&study);
+    let table = table(&bench, &[]);
+    let row = |number: usize| -> Vec<&str> {
+        table.lines().nth(1 + number).unwrap().split(',').collect()
+    };
+    assert_eq!((row(0)[1], row(1)[1]), ("shallow", "deep"));
+    assert_eq!(row(0)[4..6], row(1)[4..6], "{table}");
+    let ranking = &answers(&bench)["ranking"];
+    assert_eq!(ranking["disturbances"], 5);
+    assert_eq!(ranking["designs"][0]["name"], "deep", "{ranking}");
+    assert_eq!(ranking["designs"][0]["beats"][1], 1.0);
+}
+
+#[test]
+fn a_search_finds_the_end_that_wears_least_and_says_how_it_ended() {
+    let study = "case = \"case.toml\"\n[design]\nkind = \"optimise\"\nsize = 60\n\
+                 [[vary]]\nkey = \"contact.friction\"\nlow = 0.02\nhigh = 0.1\n\
+                 [[limit]]\noutput = \"peak_pressure_mpa\"\nmost = 100\n";
+    let bench = bench(study);
+    let said = bench.say(&["study", "study.toml", "--out", "out"]);
+    assert_eq!(said.code, Some(0), "{}", said.err);
+    assert!(said.out.contains("The search"), "{}", said.out);
+    let best = &answers(&bench)["best"];
+    assert!(
+        best["row"].is_u64() && best["outputs"][0][1].as_f64().unwrap() > 0.0,
+        "{best}"
+    );
+}
+
+#[test]
+fn what_is_wrong_with_a_study_is_said_with_its_place() {
+    let case = "case = \"case.toml\"\n";
+    let vary = |key: &str, rest: &str| format!("{case}[[vary]]\nkey = \"{key}\"\n{rest}\n");
+    let range = "low = 0.0\nhigh = 0.1";
+    for (study, expected) in [
+        (case.to_owned(), vec!["varies nothing", "[[vary]]"]),
+        (
+            vary("contact.frictoin", range),
+            vec![
+                "has no key `frictoin`",
+                "study.toml",
+                "did you mean `friction`?",
+            ],
+        ),
+        (
+            vary("contact.friction", "low = -0.1\nhigh = 0.1"),
+            vec!["contact.friction = -0.1", "outside its range"],
+        ),
+        (
+            vary(
+                "contact.friction",
+                "distribution = \"normal\"\nstandard_deviation = 0.02",
+            ),
+            vec!["-0.01"],
+        ),
+        (
+            vary("contact.friction", "low = 0.2\nhigh = 0.1"),
+            vec!["empty"],
+        ),
+        (
+            vary("contact.friction", "levels = [0.1]\nlow = 0.2"),
+            vec!["low"],
+        ),
+        (
+            vary("contact.friction", "distribution = \"nomal\""),
+            vec!["did you mean \"normal\"?"],
+        ),
+        (
+            vary("femur.file", "levels = [\"none.stl\"]"),
+            vec!["femur.file"],
+        ),
+        (
+            vary("contact.friction", range)
+                + "[[vary]]\nkey = \"contact.friction\"\nlow = 0\nhigh = 1\n",
+            vec!["varies twice"],
+        ),
+        (
+            vary("contact.friction", range) + "[answers]\noutputs = [\"mass_los_mg\"]\n",
+            vec!["did you mean `mass_loss_mg`?"],
+        ),
+        (
+            vary("contact.friction", range) + "[design]\nkind = \"morris\"\nlevels = 3\n",
+            vec!["even number"],
+        ),
+        (
+            vary("contact.friction", range) + "[design]\nkind = \"full-factorial\"\nsize = 3\n",
+            vec!["size"],
+        ),
+        (
+            vary("contact.friction", range) + "[[limit]]\noutput = \"mass_loss_mg\"\n",
+            vec!["`least`, `most` or both"],
+        ),
+        (
+            vary("contact.friction", range)
+                + "[[correlation]]\nkeys = [\"contact.friction\", \"a.b\"]\ncoefficient = 0.5\n",
+            vec!["`a.b`"],
+        ),
+        ("case = \"none.toml\"\n".to_owned(), vec!["none.toml"]),
+        ("[design]\n".to_owned(), vec!["needs `case`"]),
+        (
+            case.to_owned() + "[design]\nkind = \"rows\"\nfile = \"rows.csv\"\n",
+            vec!["3 cells where the first line has 2"],
+        ),
+    ] {
+        let bench = bench(&study);
+        bench.write("rows.csv", "contact.friction,wear.law\n0.1,archard,1\n");
+        let said = bench.say(&["study", "study.toml", "--out", "out"]);
+        assert_eq!(said.code, Some(2), "{study}\n{}{}", said.out, said.err);
+        let shown = said.err.replace("\n  | ", " ").replace("\n        ", " ");
+        for words in expected {
+            assert!(shown.contains(words), "no {words:?} in {shown}\nof {study}");
+        }
+    }
+}
+
+#[test]
+fn folders_of_something_else_are_refused() {
+    let one = bench(&of("size = 3"));
+    table(&one, &[]);
+    one.write("study.toml", &of("size = 4"));
+    let said = one.say(&["study", "study.toml", "--out", "out"]);
+    said.assert_refused(2, &["another study"]);
+    fs::create_dir(one.path("full")).unwrap();
+    fs::write(one.path("full/notes.txt"), "mine").unwrap();
+    one.say(&["study", "study.toml", "--out", "full"])
+        .assert_refused(2, &["not empty"]);
+    one.say(&["study", "export", "full"])
+        .assert_refused(2, &["holds no study"]);
+    one.say(&["study", "study.toml", "--shard", "4/3"])
+        .assert_refused(2, &["2/4"]);
+}

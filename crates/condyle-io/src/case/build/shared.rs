@@ -1,0 +1,128 @@
+//! Bodies that cases of a study have in common.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use condyle::geometry;
+
+use super::super::contents::Case;
+use super::super::femur::Femur;
+use super::super::heading::Side;
+use super::super::insert::Insert;
+use super::super::limits::Limits;
+use super::super::placement::{FemurPlacement, InsertPlacement};
+use super::error::BuildWarning;
+use super::femur::BuiltFemur;
+
+/// Bodies of each kind that are kept, the newest: those of a few levels or designs, whatever the number of cases.
+const MOST_KEPT: usize = 8;
+
+/// Bodies that were built, for other cases that have the same: a case built beside others is that built alone, to
+/// the bit.
+///
+/// A mesh file must not change meanwhile.
+#[derive(Default)]
+pub struct SharedBodies {
+    inserts: Kept<InsertInputs, geometry::Insert>,
+    femurs: Kept<FemurInputs, BuiltFemur>,
+}
+
+/// A body, with what was put right on the way to it.
+pub(super) type WithWarnings<T> = (Arc<T>, Vec<BuildWarning>);
+
+/// All that an insert follows from.
+#[derive(PartialEq)]
+pub(super) struct InsertInputs(Insert, InsertPlacement, Side, Limits);
+
+/// All that a femur follows from; last its flexion at the start, rad.
+#[derive(PartialEq)]
+pub(super) struct FemurInputs(Femur, FemurPlacement, Side, Limits, f64);
+
+impl SharedBodies {
+    pub(super) fn insert<E>(
+        &self,
+        case: &Case,
+        make: impl FnOnce(&mut Vec<BuildWarning>) -> Result<geometry::Insert, E>,
+    ) -> Result<WithWarnings<geometry::Insert>, E> {
+        let inputs = InsertInputs(
+            case.insert.clone(),
+            case.insert_placement.clone(),
+            case.heading.side,
+            case.limits.clone(),
+        );
+        self.inserts.found_or_made(inputs, make)
+    }
+
+    pub(super) fn femur<E>(
+        &self,
+        case: &Case,
+        flexion_rad: f64,
+        make: impl FnOnce(&mut Vec<BuildWarning>) -> Result<BuiltFemur, E>,
+    ) -> Result<WithWarnings<BuiltFemur>, E> {
+        let inputs = FemurInputs(
+            case.femur.clone(),
+            case.femur_placement.clone(),
+            case.heading.side,
+            case.limits.clone(),
+            flexion_rad,
+        );
+        self.femurs.found_or_made(inputs, make)
+    }
+}
+
+/// The newest of what was made, each by what it was made of.
+struct Kept<I, T>(Mutex<Vec<(I, WithWarnings<T>)>>);
+
+impl<I, T> Default for Kept<I, T> {
+    fn default() -> Self {
+        Self(Mutex::new(Vec::new()))
+    }
+}
+
+impl<I: PartialEq, T> Kept<I, T> {
+    /// What was made of the same inputs, or is made now. Two that come at once may both make it.
+    fn found_or_made<E>(
+        &self,
+        inputs: I,
+        make: impl FnOnce(&mut Vec<BuildWarning>) -> Result<T, E>,
+    ) -> Result<WithWarnings<T>, E> {
+        if let Some(found) = self.find(&inputs) {
+            return Ok(found);
+        }
+        let mut warnings = Vec::new();
+        let made = (Arc::new(make(&mut warnings)?), warnings);
+        self.keep(inputs, made.clone());
+        Ok(made)
+    }
+
+    fn find(&self, inputs: &I) -> Option<WithWarnings<T>> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let same = kept.iter().find(|(of, _)| of == inputs);
+        same.map(|(_, found)| found.clone())
+    }
+
+    fn keep(&self, inputs: I, made: WithWarnings<T>) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() == MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((inputs, made));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_made_of_the_same_is_shared_and_the_oldest_goes() {
+        let kept: Kept<usize, usize> = Kept::default();
+        let made = |inputs: usize| {
+            let made = kept.found_or_made(inputs, |_| Ok::<_, ()>(inputs));
+            made.expect("nothing goes wrong").0
+        };
+        let first = made(0);
+        assert!(Arc::ptr_eq(&first, &made(0)));
+        (1..=MOST_KEPT).for_each(|inputs| drop(made(inputs)));
+        assert!(!Arc::ptr_eq(&first, &made(0)));
+    }
+}

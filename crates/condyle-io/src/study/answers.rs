@@ -1,0 +1,111 @@
+//! What is asked of a study.
+
+use super::declared::{AnswersKeys, BoundKeys};
+use super::output::{OUTPUTS, Output};
+use super::reason::StudyReason;
+use crate::keyed::{Log, Section, Settings, likeliest, names, read_table};
+
+/// What is asked of a study.
+#[derive(Clone, Debug)]
+pub struct Answers {
+    /// Outputs that answers and pictures are about, one or more.
+    pub outputs: Vec<&'static Output>,
+    /// The output that designs are ranked by, the least first.
+    pub rank_by: &'static Output,
+    /// Two outputs that are both to be small.
+    pub pareto: Option<[&'static Output; 2]>,
+    /// What outputs must keep to.
+    pub bounds: Vec<Bound>,
+}
+
+/// What an output must keep to.
+#[derive(Clone, Copy, Debug)]
+pub struct Bound {
+    /// The output.
+    pub output: &'static Output,
+    /// Least that is allowed.
+    pub least: Option<f64>,
+    /// Most that is allowed.
+    pub most: Option<f64>,
+}
+
+impl Answers {
+    /// Reads `[answers]` and every `[[limit]]`.
+    pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let bounds = root.list("limit", log);
+        let bounds = bounds.map(|all| all.iter().map(|one| Bound::read(one, log)).collect());
+        let keys: AnswersKeys = read_table(root, "answers", log)?;
+        let section = root.table("answers", log);
+        let mut output = |key: &str, name: &String| output(name, key, &section, log);
+        let outputs: Option<Vec<_>> = keys
+            .outputs
+            .0
+            .iter()
+            .map(|name| output("outputs", name))
+            .collect();
+        let rank_by = keys.rank_by.map(|name| output("rank_by", &name));
+        let pareto: Option<Option<Vec<_>>> = keys
+            .pareto
+            .map(|two| two.0.iter().map(|name| output("pareto", name)).collect());
+        let outputs = outputs?;
+        let Some(&first) = outputs.first() else {
+            log.problem(section.value_span("outputs"), StudyReason::NoOutput);
+            return None;
+        };
+        let two = pareto.map_or(Some(outputs.clone()), |two| two)?;
+        let bounds: Option<Vec<Bound>> = bounds?;
+        Some(Self {
+            rank_by: rank_by.unwrap_or(Some(first))?,
+            pareto: two.first_chunk().copied(),
+            bounds: bounds?,
+            outputs,
+        })
+    }
+}
+
+impl Bound {
+    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let known: Vec<&str> = names(&BoundKeys::keys()).collect();
+        section.check_keys(&known, log);
+        let keys = BoundKeys::read(section, log)?;
+        let output = output(&keys.output, "output", section, log)?;
+        let (least, most) = (keys.least, keys.most);
+        if least.is_none() && most.is_none() {
+            log.problem(section.span(), StudyReason::NoBound);
+            return None;
+        }
+        Some(Self {
+            output,
+            least,
+            most,
+        })
+    }
+
+    /// How far a value is beyond what is allowed; 0 inside.
+    pub fn excess(&self, value: f64) -> f64 {
+        let above = self.most.map_or(0.0, |most| value - most);
+        let below = self.least.map_or(0.0, |least| least - value);
+        above.max(below).max(0.0)
+    }
+}
+
+/// The output called `name` by the key `key`.
+pub(super) fn output(
+    name: &str,
+    key: &str,
+    section: &Section<'_>,
+    log: &mut Log<'_>,
+) -> Option<&'static Output> {
+    let found = Output::named(name);
+    if found.is_none() {
+        let all: Vec<&str> = OUTPUTS.iter().map(|output| output.name).collect();
+        let (name, near, outputs) = (name.to_owned(), likeliest(name, &all), all.join(", "));
+        let reason = StudyReason::UnknownOutput {
+            name,
+            near,
+            outputs,
+        };
+        log.problem(section.value_span(key), reason);
+    }
+    found
+}

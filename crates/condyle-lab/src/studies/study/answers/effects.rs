@@ -1,0 +1,178 @@
+//! How outputs go with inputs, of any design.
+
+use serde::Serialize;
+
+use condyle_io::study::{Design, Input, Output};
+
+use super::super::{
+    error::StudyError,
+    plan::Plan,
+    store::{Column, Store},
+};
+use super::{Named, mean};
+
+/// Slices of an input's values, each with as many tests.
+const SLICES: usize = 10;
+
+/// How an output goes with an input.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Effect {
+    /// The output.
+    pub output: &'static str,
+    /// The key of the input.
+    pub input: String,
+    /// What the input is called.
+    pub name: String,
+    /// Correlation of ranks (Spearman 1904); of words, none.
+    pub rank_correlation: Option<f64>,
+    /// Mean value of the input in each slice or at each level, and mean of the output there.
+    pub means: Vec<(f64, f64)>,
+    /// The levels, where they are words.
+    pub words: Vec<String>,
+    /// What the means of the output span, in its unit.
+    pub span: f64,
+    /// The value of the input and of the output in each test, for a picture; of many tests, some.
+    #[serde(skip)]
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Points of a scatter at most: more fill a picture, and its file.
+const MOST_POINTS: usize = 400;
+
+pub(super) fn all(
+    plan: &Plan,
+    store: &Store,
+    outputs: &[Named<'_, Output>],
+) -> Result<Vec<Effect>, StudyError> {
+    let mut effects = Vec::new();
+    for (place, input) in plan.study().inputs.iter().enumerate() {
+        let column = store.column(plan, &input.key)?;
+        effects.extend(outputs.iter().map(|output| {
+            let pairs = pairs(plan, place, &column, &output.column);
+            Effect::of(output.of, input, &column, pairs)
+        }));
+    }
+    Ok(effects)
+}
+
+/// The value of an input and of an output in each test that tells of both. Of tests one at a time, those in which another
+/// input is moved tell nothing.
+fn pairs(plan: &Plan, place: usize, input: &Column, output: &Column) -> Vec<(f64, f64)> {
+    let is_one_at_a_time = matches!(plan.study().design, Design::OneAtATime(_));
+    let tells = |row: usize| {
+        let moved = || plan.test(row as u64).map(|test| test.values);
+        !is_one_at_a_time
+            || moved()
+                .is_some_and(|values| values[place].is_some() || values.iter().all(Option::is_none))
+    };
+    let both = input
+        .values
+        .iter()
+        .copied()
+        .zip(output.values.iter().copied());
+    let known = both
+        .enumerate()
+        .filter(|(_, (x, y))| x.is_finite() && y.is_finite());
+    known
+        .filter(|(row, _)| tells(*row))
+        .map(|(_, pair)| pair)
+        .collect()
+}
+
+impl Effect {
+    fn of(output: &Output, input: &Input, column: &Column, mut pairs: Vec<(f64, f64)>) -> Self {
+        let every = pairs.len().div_ceil(MOST_POINTS).max(1);
+        let points = pairs.iter().copied().step_by(every).collect();
+        let correlation = rank_correlation(&pairs);
+        pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
+        let means = means(&pairs);
+        let of_output = || means.iter().map(|mean| mean.1);
+        let span = of_output().fold(f64::NEG_INFINITY, f64::max)
+            - of_output().fold(f64::INFINITY, f64::min);
+        Self {
+            output: output.name,
+            input: input.key.clone(),
+            name: input.name.clone(),
+            rank_correlation: correlation.filter(|_| column.words.is_empty()),
+            words: column.words.clone(),
+            span: if span.is_finite() { span } else { 0.0 },
+            points,
+            means,
+        }
+    }
+}
+
+/// Mean of the input and of the output, at each value of few and in slices of many; `sorted` by the input.
+fn means(sorted: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let by_value: Vec<&[(f64, f64)]> = sorted.chunk_by(|one, other| one.0 == other.0).collect();
+    let slices: Vec<&[(f64, f64)]> = if by_value.len() <= SLICES {
+        by_value
+    } else {
+        sorted.chunks(sorted.len().div_ceil(SLICES)).collect()
+    };
+    let mean_of = |slice: &[(f64, f64)]| {
+        let (x, y): (Vec<f64>, Vec<f64>) = slice.iter().copied().unzip();
+        (mean(&x), mean(&y))
+    };
+    slices.into_iter().map(mean_of).collect()
+}
+
+/// Pearson's correlation of ranks; none of less than three tests, and where either stays the same.
+fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
+    let (x, y): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
+    let (x, y) = (ranks(&x), ranks(&y));
+    let (mean_x, mean_y) = (mean(&x), mean(&y));
+    let [mut both, mut of_x, mut of_y] = [0.0; 3];
+    for (x, y) in x.iter().zip(&y) {
+        let (x, y) = (x - mean_x, y - mean_y);
+        both += x * y;
+        of_x += x * x;
+        of_y += y * y;
+    }
+    (pairs.len() > 2 && of_x > 0.0 && of_y > 0.0).then(|| both / (of_x * of_y).sqrt())
+}
+
+/// The rank of each value; equal ones share the middle of theirs.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&one, &other| values[one].total_cmp(&values[other]));
+    let mut ranks = vec![0.0; values.len()];
+    let mut first = 0;
+    for equal in order.chunk_by(|&one, &other| values[one] == values[other]) {
+        let rank = first as f64 + (equal.len() as f64 - 1.0) / 2.0;
+        equal.iter().for_each(|&place| ranks[place] = rank);
+        first += equal.len();
+    }
+    ranks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_ranks_and_their_correlation() {
+        assert_eq!(ranks(&[3.0, 1.0, 3.0, 2.0]), [2.5, 0.0, 2.5, 1.0]);
+        let cubes: Vec<(f64, f64)> = (-5..6)
+            .map(|x| (f64::from(x), f64::from(x).powi(3)))
+            .collect();
+        assert!((rank_correlation(&cubes).unwrap() - 1.0).abs() < 1e-12);
+        assert_eq!(
+            rank_correlation(&[(1.0, 2.0), (2.0, 2.0), (3.0, 2.0)]),
+            None
+        );
+    }
+
+    #[test]
+    fn verify_means_of_levels_and_of_slices() {
+        assert_eq!(
+            means(&[(1.0, 2.0), (1.0, 4.0), (2.0, 5.0)]),
+            [(1.0, 3.0), (2.0, 5.0)]
+        );
+        let line: Vec<(f64, f64)> = (0..100)
+            .map(|x| (f64::from(x), 2.0 * f64::from(x)))
+            .collect();
+        let means = means(&line);
+        assert_eq!((means.len(), means[0]), (10, (4.5, 9.0)));
+    }
+}

@@ -1,0 +1,248 @@
+//! Answers as tables in Markdown.
+
+use super::super::super::table::aligned;
+use super::{Answers, Best, Ranking};
+
+/// Rows of a table of inputs at most; the page has all.
+const MOST_ROWS: usize = 12;
+
+/// A heading, and rows of which the first is the head.
+type Table = (String, Vec<Vec<String>>);
+
+pub(super) fn markdown(answers: &Answers) -> String {
+    let tables = all(answers);
+    let mut parts: Vec<String> = tables.iter().map(|(_, rows)| aligned(rows)).collect();
+    parts.insert(1, failed(answers).unwrap_or_default());
+    parts.push(answers.best.as_ref().map(how_it_ended).unwrap_or_default());
+    parts.retain(|part| !part.is_empty());
+    parts.join("\n")
+}
+
+pub(super) fn all(answers: &Answers) -> Vec<Table> {
+    let parts = [
+        Some(spreads(answers)),
+        answers.ranking.as_ref().map(ranking),
+        indices(answers),
+        elementary(answers),
+        effects(answers),
+        answers.best.as_ref().map(best),
+    ];
+    parts.into_iter().flatten().collect()
+}
+
+fn table(heading: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
+    let head = head.iter().map(|title| (*title).to_owned()).collect();
+    (
+        heading.to_owned(),
+        std::iter::once(head).chain(rows).collect(),
+    )
+}
+
+/// Four significant digits.
+fn shown(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value:.0}");
+    }
+    let decimals = (3 - value.abs().log10().floor() as i32).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+fn range([low, high]: [f64; 2]) -> String {
+    format!("{low:.3} to {high:.3}")
+}
+
+fn spreads(answers: &Answers) -> Table {
+    let head = [
+        "output",
+        "unit",
+        "least",
+        "5 %",
+        "median",
+        "95 %",
+        "most",
+        "mean",
+        "SD",
+        "beyond its limit",
+    ];
+    let rows = answers.spreads.iter().map(|spread| {
+        let [_, p5, _, p50, _, p95, _] = spread.percentiles.map(shown);
+        let beyond = spread.beyond.iter().map(|beyond| {
+            let [low, high] = beyond.interval.map(percent);
+            format!("{} ({low} to {high})", percent(beyond.share))
+        });
+        let (mean, deviation) = (shown(spread.mean), shown(spread.standard_deviation));
+        let beyond: Vec<String> = beyond.collect();
+        let names = [
+            spread.title.to_owned(),
+            spread.unit.to_owned(),
+            shown(spread.least),
+        ];
+        let numbers = [
+            p5,
+            p50,
+            p95,
+            shown(spread.most),
+            mean,
+            deviation,
+            beyond.join(", "),
+        ];
+        names.into_iter().chain(numbers).collect()
+    });
+    table("Outputs", &head, rows)
+}
+
+fn failed(answers: &Answers) -> Option<String> {
+    let failed: u64 = answers.failed.iter().map(|failed| failed.tests).sum();
+    let first = answers.failed.first()?;
+    Some(format!(
+        "{failed} of {} tests failed, {} of them since: {}\n",
+        answers.kept, first.tests, first.reason
+    ))
+}
+
+fn ranking(ranking: &Ranking) -> Table {
+    let mean = format!("{}, {}", ranking.title, ranking.unit);
+    let against = ranking
+        .designs
+        .iter()
+        .map(|design| format!("beats {}", design.name));
+    let fixed = [
+        "design".to_owned(),
+        mean,
+        "SD".to_owned(),
+        "within limits".to_owned(),
+        "best".to_owned(),
+    ];
+    let head: Vec<String> = fixed.into_iter().chain(against).collect();
+    let rows = ranking.designs.iter().enumerate().map(|(own, design)| {
+        let beats = design.beats.iter().enumerate().map(|(other, share)| {
+            if own == other {
+                "-".to_owned()
+            } else {
+                percent(*share)
+            }
+        });
+        let fixed = [
+            design.name.clone(),
+            shown(design.mean),
+            shown(design.standard_deviation),
+            percent(design.within_limits),
+            percent(design.best),
+        ];
+        fixed.into_iter().chain(beats).collect()
+    });
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    table("Ranking", &head, rows)
+}
+
+fn indices(answers: &Answers) -> Option<Table> {
+    let output = answers.indices.first()?.output;
+    let mut own: Vec<_> = answers
+        .indices
+        .iter()
+        .filter(|index| index.output == output)
+        .collect();
+    own.sort_by(|one, other| other.total.total_cmp(&one.total));
+    let rows = own.into_iter().take(MOST_ROWS).map(|index| {
+        vec![
+            index.input.clone(),
+            format!("{:.3}", index.first),
+            range(index.first_interval),
+            format!("{:.3}", index.total),
+            range(index.total_interval),
+        ]
+    });
+    let input = format!("input, by {output}");
+    Some(table(
+        "Indices of Sobol",
+        &[input.as_str(), "first", "95 %", "total", "95 %"],
+        rows,
+    ))
+}
+
+fn elementary(answers: &Answers) -> Option<Table> {
+    let output = answers.elementary.first()?.output;
+    let mut own: Vec<_> = answers
+        .elementary
+        .iter()
+        .filter(|effect| effect.output == output)
+        .collect();
+    own.sort_by(|one, other| other.mu_star.total_cmp(&one.mu_star));
+    let rows = own.into_iter().take(MOST_ROWS).map(|effect| {
+        vec![
+            effect.input.clone(),
+            format!(
+                "{} +/- {}",
+                shown(effect.mu_star),
+                shown(effect.mu_star_half_interval)
+            ),
+            shown(effect.mu),
+            shown(effect.sigma),
+        ]
+    });
+    let input = format!("input, by {output}");
+    Some(table(
+        "Elementary effects of Morris",
+        &[input.as_str(), "mu*", "mu", "sigma"],
+        rows,
+    ))
+}
+
+/// Of designs that have no table of their own.
+fn effects(answers: &Answers) -> Option<Table> {
+    let output = answers.effects.first()?.output;
+    if !answers.indices.is_empty() || !answers.elementary.is_empty() || answers.best.is_some() {
+        return None;
+    }
+    let mut own: Vec<_> = answers
+        .effects
+        .iter()
+        .filter(|effect| effect.output == output)
+        .collect();
+    own.sort_by(|one, other| other.span.total_cmp(&one.span));
+    let rows = own.into_iter().take(MOST_ROWS).map(|effect| {
+        let correlation = effect.rank_correlation.map(|one| format!("{one:+.2}"));
+        vec![
+            effect.name.clone(),
+            shown(effect.span),
+            correlation.unwrap_or_else(|| "-".to_owned()),
+        ]
+    });
+    let head = [
+        "input".to_owned(),
+        format!("moves {output} by"),
+        "rank correlation".to_owned(),
+    ];
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    Some(table("What moves it", &head, rows))
+}
+
+fn best(best: &Best) -> Table {
+    let head = match best.row {
+        Some(row) => format!("least {}: row {row}", best.minimised),
+        None => "no test keeps every limit".to_owned(),
+    };
+    let inputs = best
+        .inputs
+        .iter()
+        .map(|(key, value)| (key.as_str(), *value));
+    let rows = inputs.chain(best.outputs.iter().copied());
+    let rows = rows.map(|(name, value)| vec![name.to_owned(), shown(value)]);
+    table("Best", &[head.as_str(), "value"], rows)
+}
+
+fn how_it_ended(best: &Best) -> String {
+    let (generations, step) = (best.generations, percent(best.step));
+    if best.is_converged {
+        return format!(
+            "The search closed in after {generations} generations: its steps are {step} of the ranges.\n"
+        );
+    }
+    format!(
+        "The search has not closed in: after {generations} generations its steps are {step} of the ranges. Allow more tests.\n"
+    )
+}

@@ -1,0 +1,109 @@
+//! Points of Sobol, scrambled.
+
+use super::super::super::chance::{Numbers, mixed};
+use super::Place;
+use super::sobol_directions::DIRECTIONS;
+
+/// Axes that there are directions for, the first among them.
+pub(in super::super) const MOST_AXES: usize = DIRECTIONS.len() + 1;
+const BITS: usize = 32;
+
+/// Where point `row` lies along each of `axes`: the points of Sobol with the directions of Joe and Kuo (2008), every axis
+/// scrambled by Owen's method (1995) with the chance of `seed`. Of the first 2^m points one lies in each of as many equal
+/// slices of every axis.
+pub(in super::super) fn sobol_places(row: u64, axes: usize, seed: u64) -> Vec<Place> {
+    let place = |axis: usize| {
+        let scrambled = scrambled(point(row, axis), Numbers::of_one(seed, axis as u64).next());
+        Place::Share((f64::from(scrambled) + 0.5) / (1_u64 << BITS) as f64)
+    };
+    (0..axes).map(place).collect()
+}
+
+/// Point `row` along `axis` as a binary fraction.
+fn point(row: u64, axis: usize) -> u32 {
+    let directions = directions(axis);
+    let is_set = |bit: &usize| row >> bit & 1 == 1;
+    let set = (0..BITS).filter(is_set);
+    set.fold(0, |point, bit| point ^ directions[bit])
+}
+
+/// The directions of an axis, by the recurrence of its primitive polynomial (Bratley and Fox 1988).
+fn directions(axis: usize) -> [u32; BITS] {
+    let mut directions = std::array::from_fn(|bit| 1 << (BITS - 1 - bit));
+    let Some((polynomial, first)) = axis.checked_sub(1).map(|row| DIRECTIONS[row]) else {
+        return directions;
+    };
+    let degree = first.len();
+    for bit in 0..BITS {
+        directions[bit] = if bit < degree {
+            first[bit] << (BITS - 1 - bit)
+        } else {
+            let above = directions[bit - degree];
+            let inner = (1..degree).filter(|term| polynomial >> (degree - 1 - term) & 1 == 1);
+            inner.fold(above ^ (above >> degree), |sum, term| {
+                sum ^ directions[bit - term]
+            })
+        };
+    }
+    directions
+}
+
+/// Owen's nested uniform scrambling: every bit is turned or not by chance that the bits above it choose.
+fn scrambled(point: u32, seed: u64) -> u32 {
+    (0..BITS).fold(0, |sum, bit| {
+        let above = u64::from(point)
+            .checked_shr((BITS - bit) as u32)
+            .unwrap_or_default();
+        let chance = mixed(seed ^ mixed((above << 6 | bit as u64).wrapping_add(1)));
+        let turned = (point >> (BITS - 1 - bit) & 1) ^ (chance >> 63) as u32;
+        sum | turned << (BITS - 1 - bit)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cross_points_are_those_of_scipy() {
+        // scipy.stats.qmc.Sobol(6, scramble=False) goes by Gray code: its points 1, 2 and 6.
+        let coordinate = |row, axis| f64::from(point(row, axis)) / 2f64.powi(32);
+        let first: Vec<f64> = (0..6).map(|axis| coordinate(1, axis)).collect();
+        assert_eq!(first, [0.5; 6]);
+        let third: Vec<f64> = (0..6).map(|axis| coordinate(3, axis)).collect();
+        assert_eq!(third, [0.75, 0.25, 0.25, 0.25, 0.75, 0.75]);
+        let fifth: Vec<f64> = (0..6).map(|axis| coordinate(5, axis)).collect();
+        assert_eq!(fifth, [0.625, 0.125, 0.875, 0.625, 0.625, 0.875]);
+    }
+
+    #[test]
+    fn verify_every_axis_has_one_point_in_each_slice_before_and_after_scrambling() {
+        for axis in 0..MOST_AXES {
+            for log_count in [1, 4, 9] {
+                let count = 1_u64 << log_count;
+                for seed in [None, Some(1), Some(2)] {
+                    let slice = |row| {
+                        let point = point(row, axis);
+                        let point = seed.map_or(point, |seed| scrambled(point, seed));
+                        point >> (32 - log_count)
+                    };
+                    let mut slices: Vec<u32> = (0..count).map(slice).collect();
+                    slices.sort_unstable();
+                    assert!(slices.iter().copied().eq(0..count as u32), "axis {axis}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn verify_pairs_of_axes_fill_the_square_evenly() {
+        // The first axes are a (0, m, 2)-net: each of 16 x 16 boxes has one of 256 points.
+        let mut boxes: Vec<(u32, u32)> = (0..256)
+            .map(|row| [0, 1].map(|axis| scrambled(point(row, axis), axis as u64) >> 28))
+            .map(|[x, y]| (x, y))
+            .collect();
+        boxes.sort_unstable();
+        boxes.dedup();
+        assert_eq!(boxes.len(), 256);
+    }
+}

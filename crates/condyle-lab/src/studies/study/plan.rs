@@ -1,0 +1,222 @@
+//! The tests of a study, each by its number.
+
+use std::path::Path;
+
+use condyle_io::{
+    case::{Assignment, Case},
+    keyed::{Level, Variants},
+    study::{Design, Input, OUTPUTS, Study, Variation},
+};
+
+use super::{
+    design::{
+        Correlated, MOST_AXES, Place, Saltelli, factorial_places, latin_places, morris_places,
+        one_at_a_time_places, sobol_places,
+    },
+    error::StudyError,
+    quantile::{along, at_share},
+};
+use crate::{RunError, run};
+
+/// Tests of a study, at most.
+const MOST_TESTS: f64 = 1e9;
+
+/// A study that is ready to be done.
+pub struct Plan {
+    study: Study,
+    correlated: Option<Correlated>,
+    /// Tests of one design.
+    tests: u64,
+    inputs_blake3: String,
+}
+
+/// One test of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Test {
+    /// Its number.
+    pub row: u64,
+    /// Which of the designs that are compared it is of.
+    pub alternative: usize,
+    /// The value of every input; none where it is as the case has it.
+    pub values: Vec<Option<Level>>,
+}
+
+impl Plan {
+    /// Reads the study at `path` and checks that its tests can be chosen.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the study.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let study = Study::read(path)?;
+        let inputs_blake3 = study.inputs_blake3().map_err(RunError::Inputs)?;
+        let tests = tests(&study);
+        if tests * designs(&study) as f64 > MOST_TESTS {
+            let most = MOST_TESTS;
+            return Err(StudyError::TooManyTests { tests, most });
+        }
+        check_axes(&study)?;
+        let correlated = if study.correlations.is_empty() {
+            None
+        } else {
+            let correlated = Correlated::new(study.inputs.len(), &study.correlations);
+            Some(correlated.ok_or(StudyError::Contradiction)?)
+        };
+        Ok(Self {
+            correlated,
+            tests: tests as u64,
+            inputs_blake3,
+            study,
+        })
+    }
+
+    /// What the file says.
+    pub fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// Hash of all that the tests follow from, in hexadecimal.
+    pub fn inputs_blake3(&self) -> &str {
+        &self.inputs_blake3
+    }
+
+    /// Tests in all; of a search, at most.
+    pub fn tests(&self) -> u64 {
+        self.tests * designs(&self.study) as u64
+    }
+
+    /// Test `row`; none of a search, which knows a test only after those before it.
+    pub fn test(&self, row: u64) -> Option<Test> {
+        let designs = designs(&self.study) as u64;
+        let (of_design, alternative) = (row / designs, (row % designs) as usize);
+        let values = match &self.study.design {
+            Design::Optimise(_) => return None,
+            Design::Rows(_) => {
+                let row = &self.study.rows[of_design as usize];
+                row.iter().cloned().map(Some).collect()
+            }
+            _ => self.at(&self.places(of_design)),
+        };
+        Some(Test {
+            row,
+            alternative,
+            values,
+        })
+    }
+
+    /// The values of inputs at these places.
+    pub(super) fn at(&self, places: &[Place]) -> Vec<Option<Level>> {
+        let inputs = self.study.inputs.iter().zip(places);
+        let value = |(input, place): (&Input, &Place)| match *place {
+            Place::AsItIs => None,
+            Place::Share(share) => Some(at_share(input, share)),
+            Place::Along(part) => Some(along(input, part)),
+        };
+        inputs.map(value).collect()
+    }
+
+    fn places(&self, row: u64) -> Vec<Place> {
+        let inputs = self.study.inputs.len();
+        let mut places = match &self.study.design {
+            Design::LatinHypercube(keys) => latin_places(row, self.tests, inputs, keys.seed),
+            Design::Sobol(keys) => sobol_places(row, inputs, keys.seed),
+            Design::Saltelli(keys) => Saltelli::places(row, inputs, keys.seed),
+            Design::Morris(keys) => morris_places(row, inputs, keys.levels, keys.seed),
+            Design::FullFactorial(keys) => factorial_places(row, &counts(&self.study, keys.points)),
+            Design::OneAtATime(keys) => {
+                one_at_a_time_places(row, &counts(&self.study, keys.points))
+            }
+            Design::Rows(_) | Design::Optimise(_) => Vec::new(),
+        };
+        if let Some(correlated) = &self.correlated {
+            correlated.apply(&mut places);
+        }
+        places
+    }
+
+    /// The case of a test.
+    ///
+    /// # Errors
+    /// Values that do not go together.
+    pub fn case_of(&self, test: &Test) -> Result<Case, RunError> {
+        run::changed(&self.study.case_path, &self.assignments(test))
+    }
+
+    /// What a test sets of the case.
+    pub fn assignments(&self, test: &Test) -> Vec<Assignment> {
+        self.study.assignments(test.alternative, &test.values)
+    }
+
+    /// The values of a test as the table has them: those of the case where it sets none.
+    pub(super) fn written_values(&self, test: &Test) -> Vec<Option<Level>> {
+        let inputs = self.study.inputs.iter().zip(&test.values);
+        let value = |(input, value): (&Input, &Option<Level>)| {
+            value.clone().or_else(|| self.study.value_of_case(input))
+        };
+        inputs.map(value).collect()
+    }
+
+    /// The design that a test is of; none where there is but one.
+    pub(super) fn design_of(&self, test: &Test) -> Option<&str> {
+        let design = self.study.alternatives.get(test.alternative)?;
+        Some(&design.name)
+    }
+
+    /// Columns of the table for the inputs and the outputs.
+    pub(super) fn columns(&self) -> (Vec<&str>, Vec<&'static str>) {
+        let inputs = self.study.inputs.iter().map(|input| input.key.as_str());
+        (
+            inputs.collect(),
+            OUTPUTS.iter().map(|output| output.name).collect(),
+        )
+    }
+}
+
+/// Designs that are compared, at least the case itself.
+pub(super) fn designs(study: &Study) -> usize {
+    study.alternatives.len().max(1)
+}
+
+/// How many values each input has.
+fn counts(study: &Study, points: u64) -> Vec<u64> {
+    let count = |input: &Input| match &input.variation {
+        Variation::Levels(keys) => keys.levels.0.len() as u64,
+        _ => points,
+    };
+    study.inputs.iter().map(count).collect()
+}
+
+/// Tests of one design, as a number that may be too large for any.
+fn tests(study: &Study) -> f64 {
+    let inputs = study.inputs.len() as f64;
+    let numbers = |points| counts(study, points).into_iter().map(|count| count as f64);
+    match &study.design {
+        // Designs without disturbances are each tried once.
+        _ if study.inputs.is_empty() => 1.0,
+        Design::LatinHypercube(keys) | Design::Sobol(keys) => keys.size as f64,
+        Design::Saltelli(keys) => keys.size as f64 * (inputs + 2.0),
+        Design::Morris(keys) => keys.walks as f64 * (inputs + 1.0),
+        Design::FullFactorial(keys) => numbers(keys.points).product(),
+        Design::OneAtATime(keys) => 1.0 + numbers(keys.points).sum::<f64>(),
+        Design::Rows(_) => study.rows.len() as f64,
+        Design::Optimise(keys) => keys.size as f64,
+    }
+}
+
+/// Refuses more inputs than points of Sobol have axes.
+fn check_axes(study: &Study) -> Result<(), StudyError> {
+    let inputs = study.inputs.len();
+    let most = match &study.design {
+        Design::Sobol(_) => MOST_AXES,
+        Design::Saltelli(_) => MOST_AXES / 2,
+        _ => usize::MAX,
+    };
+    if inputs <= most {
+        return Ok(());
+    }
+    let design = study.design.word();
+    Err(StudyError::TooManyInputs {
+        design,
+        most,
+        inputs,
+    })
+}

@@ -1,0 +1,277 @@
+//! Tests run side by side, and kept as they are done.
+
+use std::{
+    fs,
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+    sync::{
+        Mutex,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, SyncSender, sync_channel},
+    },
+    thread,
+};
+
+use condyle_io::{results::ResultsFolder, study::Design};
+
+use super::{
+    error::StudyError,
+    plan::{Plan, Test},
+    search::search,
+    shard::Shard,
+    store::{DATABASE, Keeping, Store},
+    test_run::{TestBench, TestResult},
+};
+
+/// Tests that may wait to be kept.
+const WAITING: usize = 64;
+
+/// How a study is run.
+#[derive(Clone, Debug)]
+pub struct StudyOptions {
+    /// Folder for the database and the answers.
+    pub out: PathBuf,
+    /// Tests at the same time; the table does not depend on it.
+    pub threads: usize,
+    /// Which part of the study.
+    pub shard: Shard,
+}
+
+/// How far a study is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Tests that were kept before this run of the study.
+    pub before: u64,
+    /// Tests that are kept.
+    pub kept: u64,
+    /// Tests in all; of a search, at most.
+    pub tests: u64,
+}
+
+/// How a study ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StudyEnd {
+    /// All tests are kept.
+    Done,
+    /// Somebody asked to stop; what was found is kept, and the same command goes on.
+    Interrupted,
+}
+
+/// Hears how far a study is, and may stop it by breaking.
+pub type Listener<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+/// Runs every test of a plan that is not kept yet. What a test found is kept as soon as it is done: a study that is
+/// killed at any instant goes on with the others.
+///
+/// # Errors
+/// A folder of something else, or that cannot be written. A test that fails is kept with its reason.
+pub fn run_study(
+    plan: &Plan,
+    options: &StudyOptions,
+    listener: &mut Listener<'_>,
+) -> Result<StudyEnd, StudyError> {
+    let is_search = matches!(plan.study().design, Design::Optimise(_));
+    if is_search && !options.shard.is_whole() {
+        return Err(StudyError::NoShards);
+    }
+    let out = &options.out;
+    fs::create_dir_all(out).map_err(|source| StudyError::Refused {
+        path: out.clone(),
+        source,
+    })?;
+    let _lock = ResultsFolder::lock(out)?;
+    let shard = options.shard;
+    let store = Store::open(out, &Keeping { plan, shard })?;
+    let bench = TestBench::new(plan);
+    let mut work = Work::new(&bench, &store, options, plan)?;
+    let is_interrupted = if is_search {
+        search(plan, &mut |tests| work.done(plan, tests, listener))?.is_interrupted
+    } else {
+        work.rest(plan, shard, listener)?.is_break()
+    };
+    Ok(if is_interrupted {
+        StudyEnd::Interrupted
+    } else {
+        StudyEnd::Done
+    })
+}
+
+/// Numbers of the tests of a plan that the folder `out` does not keep; its database is made if it is not there.
+///
+/// # Errors
+/// A folder of something else; a search, whose tests are not known before they are due.
+pub fn missing(plan: &Plan, out: &Path) -> Result<Vec<u64>, StudyError> {
+    if matches!(plan.study().design, Design::Optimise(_)) {
+        return Err(StudyError::NoShards);
+    }
+    let shard = Shard::WHOLE;
+    let kept = Store::open(out, &Keeping { plan, shard })?.kept(plan.tests())?;
+    let rows = (0..).zip(kept);
+    Ok(rows
+        .filter(|(_, is_kept)| !is_kept)
+        .map(|(row, _)| row)
+        .collect())
+}
+
+/// The folder `out` with the tests of all `shards` of a plan.
+///
+/// # Errors
+/// A folder of another study.
+pub fn merge(plan: &Plan, shards: &[PathBuf], out: &Path) -> Result<Done, StudyError> {
+    let shard = Shard::WHOLE;
+    let store = Store::open(out, &Keeping { plan, shard })?;
+    for folder in shards {
+        Store::existing(folder, plan)?;
+        store.take_all(&folder.join(DATABASE))?;
+    }
+    let (kept, tests) = (store.count()?, plan.tests());
+    Ok(Done { kept, tests })
+}
+
+/// How many tests are kept, of how many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Done {
+    /// Tests that are kept.
+    pub kept: u64,
+    /// Tests in all; of a search, at most.
+    pub tests: u64,
+}
+
+/// What runs tests and keeps what they find.
+struct Work<'a> {
+    bench: &'a TestBench<'a>,
+    store: &'a Store,
+    threads: usize,
+    kept: Vec<bool>,
+    progress: Progress,
+}
+
+type Found = (Test, TestResult);
+
+impl<'a> Work<'a> {
+    fn new(
+        bench: &'a TestBench<'a>,
+        store: &'a Store,
+        options: &StudyOptions,
+        plan: &Plan,
+    ) -> Result<Self, StudyError> {
+        let kept = store.kept(plan.tests())?;
+        let before = kept.iter().filter(|is_kept| **is_kept).count() as u64;
+        let progress = Progress {
+            before,
+            kept: before,
+            tests: options.shard.count(plan.tests()),
+        };
+        Ok(Self {
+            bench,
+            store,
+            threads: options.threads.max(1),
+            kept,
+            progress,
+        })
+    }
+
+    /// Runs the tests of a shard that are not kept.
+    fn rest(
+        &mut self,
+        plan: &Plan,
+        shard: Shard,
+        listener: &mut Listener<'_>,
+    ) -> Result<ControlFlow<()>, StudyError> {
+        let kept = std::mem::take(&mut self.kept);
+        let is_left = |row: &u64| shard.has(*row) && !kept[*row as usize];
+        let tests = (0..plan.tests())
+            .filter(is_left)
+            .filter_map(|row| plan.test(row));
+        self.run(plan, tests, listener)
+    }
+
+    /// Runs those of `tests` that are not kept, and gives what all of them found; a break if somebody asked to stop.
+    fn done(
+        &mut self,
+        plan: &Plan,
+        tests: Vec<Test>,
+        listener: &mut Listener<'_>,
+    ) -> Result<ControlFlow<(), Vec<TestResult>>, StudyError> {
+        let rows: Vec<u64> = tests.iter().map(|test| test.row).collect();
+        let left = tests
+            .into_iter()
+            .filter(|test| !self.kept[test.row as usize]);
+        let left: Vec<Test> = left.collect();
+        if self.run(plan, left.into_iter(), listener)?.is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+        let found: Result<Vec<Option<TestResult>>, StudyError> = rows
+            .iter()
+            .map(|row| self.store.outputs(*row, plan))
+            .collect();
+        let missing = || Err("it was not kept".to_owned());
+        let found = found?
+            .into_iter()
+            .map(|found| found.unwrap_or_else(missing));
+        Ok(ControlFlow::Continue(found.collect()))
+    }
+
+    /// Runs `tests` on all threads, and keeps them here as they are done.
+    fn run(
+        &mut self,
+        plan: &Plan,
+        tests: impl Iterator<Item = Test> + Send,
+        listener: &mut Listener<'_>,
+    ) -> Result<ControlFlow<()>, StudyError> {
+        let (tests, stop) = (Mutex::new(tests), AtomicBool::new(false));
+        let (sender, receiver) = sync_channel(WAITING);
+        let bench = self.bench;
+        thread::scope(|scope| {
+            for _ in 0..self.threads {
+                let (sender, tests, stop) = (sender.clone(), &tests, &stop);
+                scope.spawn(move || work_on(bench, tests, &sender, stop));
+            }
+            drop(sender);
+            let kept = self.keep_all(plan, &receiver, listener);
+            stop.store(true, Ordering::Relaxed);
+            // What was on its way is not lost.
+            let found: Vec<Found> = receiver.iter().collect();
+            let flow = kept?;
+            self.store.keep(plan, &found)?;
+            Ok(flow)
+        })
+    }
+
+    fn keep_all(
+        &mut self,
+        plan: &Plan,
+        receiver: &Receiver<Found>,
+        listener: &mut Listener<'_>,
+    ) -> Result<ControlFlow<()>, StudyError> {
+        if listener(self.progress).is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+        while let Ok(first) = receiver.recv() {
+            let found: Vec<Found> = std::iter::once(first).chain(receiver.try_iter()).collect();
+            self.store.keep(plan, &found)?;
+            self.progress.kept += found.len() as u64;
+            if listener(self.progress).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+/// Takes tests and hands over what they find until there are none, or somebody asked to stop.
+fn work_on(
+    bench: &TestBench<'_>,
+    tests: &Mutex<impl Iterator<Item = Test>>,
+    sender: &SyncSender<Found>,
+    stop: &AtomicBool,
+) {
+    while !stop.load(Ordering::Relaxed) {
+        let test = tests.lock().expect("no thread panics with it").next();
+        let Some(test) = test else { break };
+        let result = bench.run(&test);
+        if sender.send((test, result)).is_err() {
+            break;
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Clouds of tests: scatter matrix, main effects, Pareto front.
+
+use crate::figure::{Axis, Curve, Panel, sheet};
+
+const MOST_INTERVALS: usize = 4;
+
+/// Points, and a line through or along them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cloud {
+    /// What goes up.
+    pub title: String,
+    /// Its unit.
+    pub unit: String,
+    /// What goes to the right.
+    pub across: String,
+    /// Ticks of the horizontal axis, where and their texts; round numbers if empty.
+    pub marks: Vec<(f64, String)>,
+    /// The points; may be empty.
+    pub points: Vec<(f64, f64)>,
+    /// The line; may be empty.
+    pub line: Vec<(f64, f64)>,
+}
+
+/// The text of an SVG file with the clouds in rows of `columns`; `keys` says what points and line are.
+pub fn clouds_svg(title: &str, clouds: &[Cloud], columns: usize, keys: [&str; 2]) -> String {
+    let size = if columns > 2 {
+        (236.0, 190.0)
+    } else {
+        (480.0, 300.0)
+    };
+    let panels: Vec<Panel> = clouds
+        .iter()
+        .enumerate()
+        .map(|(index, one)| panel(index, one, size))
+        .collect();
+    let names: Vec<String> = clouds
+        .iter()
+        .map(|one| format!("{} over {}", one.title, one.across))
+        .collect();
+    let key = [("specimen", keys[0]), ("last", keys[1])];
+    let used: Vec<(&str, &str)> = key
+        .into_iter()
+        .filter(|(_, meaning)| !meaning.is_empty())
+        .collect();
+    sheet(title, &names.join("; "), &panels, columns.max(1), &used)
+}
+
+fn panel(index: usize, cloud: &Cloud, size: (f64, f64)) -> Panel {
+    let all = || cloud.points.iter().chain(&cloud.line);
+    let low = all().map(|point| point.0).fold(f64::INFINITY, f64::min);
+    let high = all().map(|point| point.0).fold(f64::NEG_INFINITY, f64::max);
+    let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
+    let up = all().map(|point| point.1.abs()).fold(0.0, f64::max);
+    Panel {
+        id: format!("cloud-{index}"),
+        title: cloud.title.clone(),
+        unit: format!("{} over {}", cloud.unit, cloud.across)
+            .trim_start()
+            .to_owned(),
+        positive: String::new(),
+        x: across(cloud, low, high),
+        x_marks: cloud.marks.clone(),
+        x_unit: "",
+        x_title: "",
+        size,
+        from_zero: false,
+        least_span: 1e-6 * up.max(1e-6),
+        curves: vec![
+            curve("specimen", &apart(&cloud.points), true),
+            curve("last", &cloud.line, true),
+        ],
+        desc: format!("{} over {}.", cloud.title, cloud.across),
+    }
+}
+
+/// Round numbers; around marks, a little room.
+fn across(cloud: &Cloud, low: f64, high: f64) -> Axis {
+    if cloud.marks.is_empty() {
+        let span = 1e-9 * low.abs().max(high.abs()).max(1e-9);
+        return Axis::covering(low, high, span, MOST_INTERVALS);
+    }
+    let room = 0.15 * (high - low).max(1e-6);
+    Axis {
+        low: low - room,
+        high: high + room,
+        step: high - low + 2.0 * room,
+    }
+}
+
+fn curve(class: &'static str, points: &[(f64, f64)], dots: bool) -> Curve {
+    Curve {
+        class,
+        points: points.to_vec(),
+        dots,
+        end: None,
+    }
+}
+
+/// The points with a gap after each, so that no line joins them.
+fn apart(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    points
+        .iter()
+        .flat_map(|point| [*point, (point.0, f64::NAN)])
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_point_has_a_dot_and_no_line_joins_the_cloud() {
+        let cloud = Cloud {
+            title: "mass".to_owned(),
+            unit: "mg".to_owned(),
+            across: "friction & more".to_owned(),
+            marks: Vec::new(),
+            points: vec![(1e-7, 2.0), (2e-7, 3.0), (3e-7, 1.0)],
+            line: Vec::new(),
+        };
+        let svg = clouds_svg("A study", &[cloud], 3, ["tests", ""]);
+        assert_eq!(svg.matches("<circle").count(), 3);
+        assert!(roxmltree::Document::parse(&svg).is_ok());
+        let specimen = svg
+            .split("class=\"specimen\" d=\"")
+            .nth(1)
+            .unwrap_or_default();
+        assert!(!specimen.split('"').next().unwrap_or_default().contains('l'));
+    }
+}
