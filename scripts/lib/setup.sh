@@ -47,6 +47,18 @@ need_node() {
     fi
 }
 
+# The packages of web/package-lock.json in web/node_modules.
+need_web() {
+    need_command node nodejs
+    need_command npm npm
+    local installed=web/node_modules/installed-lock.json
+    if ! cmp -s web/package-lock.json "$installed"; then
+        npm ci --prefix web --no-audit --no-fund --loglevel=error >/dev/null ||
+            skip "the packages of web/package-lock.json cannot be installed from npm"
+        cp web/package-lock.json "$installed"
+    fi
+}
+
 # A headless browser and the library that drives it; sets $chromium.
 need_browser() {
     need_node

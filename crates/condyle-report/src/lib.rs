@@ -1,6 +1,7 @@
 //! From a results folder to a page and pictures; knows no solver.
 //!
-//! [`write_report`] makes `report.html`: one file, no network, no JavaScript.
+//! [`write_report`] makes `report.html`: one file, no network; it moves where there are scripts, and says the same
+//! without them. [`report_html`] is the still page alone.
 //! The pictures on it can also be had alone, as SVG files on white, for a README or a book.
 //! The same results folder gives the same bytes: the page names no path, no date and no wall time.
 
@@ -14,11 +15,12 @@ mod page;
 mod pictures;
 mod plots;
 mod results;
+pub mod scene;
 pub mod study;
 
 pub use condyle_fem::Vec3;
 pub use error::ReportError;
-pub use page::report_html;
+pub use page::{moving_report_html, report_html};
 pub use pictures::{
     kinematics_svg, wear_curve_svg, wear_map_svg, write_kinematics, write_wear_curve,
     write_wear_map,
@@ -36,6 +38,7 @@ pub use results::{
 use std::path::{Path, PathBuf};
 
 use file::write_text;
+use scene::Scene;
 
 /// Writes `report.html` into a results folder and returns its path.
 ///
@@ -45,6 +48,8 @@ use file::write_text;
 /// The folder is missing or holds no result at all, a file in it is damaged,
 /// or the page cannot be written.
 pub fn write_report(results_dir: &Path) -> Result<PathBuf, ReportError> {
-    let html = report_html(&Results::read(results_dir)?);
+    let results = Results::read(results_dir)?;
+    let scene = Scene::read(results_dir, &results);
+    let html = moving_report_html(&results, &scene);
     write_text(results_dir.join("report.html"), &html)
 }

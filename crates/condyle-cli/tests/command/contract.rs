@@ -147,6 +147,8 @@ fn the_folder_has_the_files_of_the_contract_and_no_others() {
         "case.toml",
         "checkpoint",
         "checksums",
+        "cycle_first_pressure.csv",
+        "cycle_last_pressure.csv",
         "femur.vtu",
         "femur_pose.csv",
         "insert.pvd",

@@ -237,11 +237,21 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "condyle_report::scene",
+        &[
+            "condyle_report::error",
+            "condyle_report::results",
+            "condyle_io",
+            "condyle_fem",
+        ],
+    ),
+    (
         "condyle_report::page",
         &[
             "condyle_report::figure",
             "condyle_report::number",
             "condyle_report::results",
+            "condyle_report::scene",
             // What the summary says of each activity.
             "condyle_io::results::activities",
             // The table of joints that the columns of kinematics.csv are made by.

@@ -13,6 +13,7 @@ use super::{
     checkpoint::{Checkpoint, CheckpointError},
     checksums::{CHECKSUMS, DamagedFile, check_all, is_listed, write_checksum},
     cycle_files::{KeptCycle, cycle_pvd, femur_vtu, frame_name, insert_frame},
+    cycle_pressures::{cycle_pressure_csv, cycle_pressure_file},
     femur_pose::femur_pose_csv,
     insert_series::{insert_file_name, insert_pvd, insert_vtu},
     lock::{FolderLock, LOCK},
@@ -161,7 +162,7 @@ pub struct ResultsFolder {
 }
 
 /// Files of a run that are never written over by another; the one written first comes first.
-pub(super) const SIGNS_OF_A_RUN: [&str; 14] = [
+pub(super) const SIGNS_OF_A_RUN: [&str; 16] = [
     "case.toml",
     "checkpoint",
     "summary.json",
@@ -176,6 +177,8 @@ pub(super) const SIGNS_OF_A_RUN: [&str; 14] = [
     "slip_paths.csv",
     "cycle_first.pvd",
     "cycle_last.pvd",
+    "cycle_first_pressure.csv",
+    "cycle_last_pressure.csv",
 ];
 
 /// Seconds spent by the parts of a run that is not done; gone once it is, so that what is left
@@ -431,6 +434,20 @@ impl ResultsFolder {
         let percents: Vec<f64> = cycle.rows.iter().map(|row| row.percent).collect();
         let pvd = cycle_pvd(kept, &percents);
         self.replace(&format!("{}.pvd", kept.name()), pvd.as_bytes())
+    }
+
+    /// Writes the pressures of the cycle that the march has just solved, where it is the first or the last; to be
+    /// done before [`Self::write_update`], as [`Self::write_cycles`].
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_pressures(&self, march: &March) -> Result<(), ResultsError> {
+        for cycle in KeptCycle::solved_by(march) {
+            if let Some(table) = cycle_pressure_csv(march) {
+                self.replace(&cycle_pressure_file(cycle), table.as_bytes())?;
+            }
+        }
+        Ok(())
     }
 
     /// Writes all that the march has found so far, and last of all the checkpoint: whatever it

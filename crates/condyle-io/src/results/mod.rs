@@ -7,6 +7,7 @@ mod checksums;
 mod creep;
 mod cycle_files;
 mod cycle_motion;
+mod cycle_pressures;
 mod error_estimate;
 mod femur_pose;
 #[cfg(feature = "file-system")]
@@ -44,6 +45,7 @@ pub use cycle_files::{
     frame_name, insert_frame,
 };
 pub use cycle_motion::joint_range;
+pub use cycle_pressures::{cycle_pressure_csv, cycle_pressure_file};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, Quantity, QuantityErrors};
 pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]

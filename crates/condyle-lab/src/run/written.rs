@@ -61,6 +61,7 @@ impl WrittenRun {
         if let Some(femur) = &self.in_frames {
             self.folder.write_cycles(&run.march, femur, side)?;
         }
+        self.folder.write_pressures(&run.march)?;
         self.folder
             .write_update(&run.march, side, &self.inputs_blake3)?;
         let spent_s = run.spent().as_secs_f64();

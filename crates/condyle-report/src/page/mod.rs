@@ -10,6 +10,7 @@ mod doubts;
 mod key_words;
 mod laws;
 mod maps;
+mod moving;
 mod numbers;
 mod ranges;
 mod rate;
@@ -30,6 +31,7 @@ use crate::results::{
     case::{creeps, is_deformable, title, yields},
     contents::Results,
 };
+use crate::scene::Scene;
 
 const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
@@ -74,10 +76,11 @@ struct Page<'a> {
     accuracy: Option<accuracy::Accuracy>,
     provenance: Vec<story::Fact>,
     case: Option<&'a str>,
+    moving: Option<moving::Moving>,
 }
 
 impl<'a> Page<'a> {
-    fn of(results: &'a Results) -> Self {
+    fn of(results: &'a Results, scene: Option<&Scene>) -> Self {
         let (light, dark) = variables();
         Self {
             style: STYLE,
@@ -112,6 +115,7 @@ impl<'a> Page<'a> {
             accuracy: accuracy::accuracy(results),
             provenance: story::provenance(results),
             case: results.case.as_deref(),
+            moving: scene.and_then(moving::Moving::of),
         }
     }
 }
@@ -120,7 +124,20 @@ impl<'a> Page<'a> {
 ///
 /// It asks for nothing outside itself and needs no JavaScript; what `results` lacks is left out.
 pub fn report_html(results: &Results) -> String {
-    render(Page::of(results)).expect("the template is part of the program, and its tests render it")
+    page_of(results, None)
+}
+
+/// The same page with bodies that move and curves that can be asked, where there are scripts; without
+/// them, and printed, it is the still one.
+///
+/// It asks for nothing outside itself.
+pub fn moving_report_html(results: &Results, scene: &Scene) -> String {
+    page_of(results, Some(scene))
+}
+
+fn page_of(results: &Results, scene: Option<&Scene>) -> String {
+    render(Page::of(results, scene))
+        .expect("the template is part of the program, and its tests render it")
 }
 
 fn svgs(panels: &[Panel]) -> Vec<String> {

@@ -37,6 +37,8 @@ pub(super) struct Tile {
     label: &'static str,
     value: String,
     unit: &'static str,
+    /// Estimated discretisation error, in the unit.
+    error: Option<String>,
 }
 
 const fn known(
@@ -385,9 +387,16 @@ pub(super) fn tiles(results: &Results) -> Vec<Tile> {
             label,
             value,
             unit: number.unit,
+            error: total_error(summary, key),
         })
     };
     named.into_iter().filter_map(tile).collect()
+}
+
+/// The estimated discretisation error of a number, where the summary has one.
+fn total_error(summary: &Summary, key: &str) -> Option<String> {
+    let total = summary.object("error")?.get(key)?.get("total")?.as_f64()?;
+    Some(significant(total, 2))
 }
 
 /// All numbers in groups; what the report does not know comes last under its own name.

@@ -3,9 +3,9 @@
 pub(crate) mod case;
 pub(crate) mod contents;
 pub(crate) mod measure;
-mod read;
+pub(crate) mod read;
 pub(crate) mod side;
 pub(crate) mod summary;
 pub(crate) mod surface;
-mod surface_of_mesh;
+pub(crate) mod surface_of_mesh;
 pub(crate) mod table;

@@ -69,7 +69,7 @@ fn activities(
 }
 
 fn surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
-    let Some(path) = last_mesh(folder)? else {
+    let Some((_, path)) = meshes(folder)?.pop() else {
         return Ok(None);
     };
     check_file(&path)?;
@@ -77,18 +77,19 @@ fn surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
     SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path).map(Some)
 }
 
-/// The last mesh that a run wrote: `insert_NNNN.vtu` with the largest number.
-fn last_mesh(folder: &Path) -> Result<Option<PathBuf>, ReportError> {
+/// The meshes that a run wrote: `insert_NNNN.vtu`, and the number of updates of each, which rises.
+pub(crate) fn meshes(folder: &Path) -> Result<Vec<(u32, PathBuf)>, ReportError> {
     let failed = |source| ReportError::Read {
         path: folder.to_owned(),
         source,
     };
-    let mut last = None;
+    let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        last = last.max(update_of(&path).map(|update| (update, path)));
+        found.extend(update_of(&path).map(|update| (update, path)));
     }
-    Ok(last.map(|(_, path)| path))
+    found.sort_unstable();
+    Ok(found)
 }
 
 fn update_of(path: &Path) -> Option<u32> {
@@ -109,7 +110,8 @@ fn summary(path: PathBuf) -> Result<Option<Summary>, ReportError> {
     }
 }
 
-fn table(path: &Path) -> Result<Option<Table>, ReportError> {
+/// The table of a file; none where there is no such file.
+pub(crate) fn table(path: &Path) -> Result<Option<Table>, ReportError> {
     text(path)?
         .map(|text| Table::parse(&text, path))
         .transpose()

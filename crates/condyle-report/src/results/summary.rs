@@ -1,6 +1,6 @@
 //! `summary.json`.
 
-use condyle_io::results::{ActivitySummary, LawWear, PlausibilityWarning};
+use condyle_io::results::{ActivitySummary, LawWear, NeutralPose, PlausibilityWarning};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
@@ -32,6 +32,11 @@ impl Summary {
     /// The object called `key`: numbers and texts that belong together.
     pub fn object(&self, key: &str) -> Option<&Map<String, Value>> {
         self.values.get(key)?.as_object()
+    }
+
+    /// Where the femur is at neutral.
+    pub fn neutral_pose(&self) -> Option<NeutralPose> {
+        NeutralPose::deserialize(self.values.get("neutral_pose")?).ok()
     }
 
     /// What makes the run doubtful; nothing where that is not said.

@@ -14,6 +14,35 @@ const ARTICULATING: &str = "articulating";
 /// No place on the surface.
 const NOWHERE: u32 = u32::MAX;
 
+/// The articulating surface of a hexahedral mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct Articulating {
+    /// Its nodes by their numbers in the mesh, in rising order.
+    pub nodes: Vec<u32>,
+    /// Nodes of each quad, numbered as in `nodes`.
+    pub quads: Vec<[u32; 4]>,
+}
+
+impl Articulating {
+    /// The boundary faces all of whose nodes are marked 1; none where there is none.
+    pub fn of(mesh: &HexMesh, marks: &[f64]) -> Option<Self> {
+        let quads = (marks.len() == mesh.nodes.len()).then(|| marked_boundary(mesh, marks))?;
+        if quads.is_empty() {
+            return None;
+        }
+        let nodes: Vec<u32> = BTreeSet::from_iter(quads.iter().flatten().copied())
+            .into_iter()
+            .collect();
+        let mut place = vec![NOWHERE; mesh.nodes.len()];
+        for (new, &old) in (0..).zip(&nodes) {
+            place[old as usize] = new;
+        }
+        let renumbered = |quad: &[u32; 4]| quad.map(|node| place[node as usize]);
+        let quads = quads.iter().map(renumbered).collect();
+        Some(Self { nodes, quads })
+    }
+}
+
 impl SurfaceFields {
     /// The boundary faces of a mesh all of whose nodes have `articulating` = 1, with its point data.
     ///
@@ -32,13 +61,10 @@ impl SurfaceFields {
             path: path.to_owned(),
             field: ARTICULATING,
         })?;
-        let quads = marked_boundary(mesh, marks);
-        if quads.is_empty() {
-            return Err(ReportError::NoSurface {
-                path: path.to_owned(),
-            });
-        }
-        Ok(compact(mesh, point_data, &quads))
+        let articulating = Articulating::of(mesh, marks).ok_or_else(|| ReportError::NoSurface {
+            path: path.to_owned(),
+        })?;
+        Ok(compact(mesh, point_data, articulating))
     }
 }
 
@@ -81,26 +107,21 @@ fn sorted(mut quad: [u32; 4]) -> [u32; 4] {
     quad
 }
 
-/// Keeps the nodes of `quads` only, in the order of the mesh.
-fn compact(mesh: &HexMesh, point_data: &[(String, Vec<f64>)], quads: &[[u32; 4]]) -> SurfaceFields {
-    let kept: Vec<u32> = BTreeSet::from_iter(quads.iter().flatten().copied())
-        .into_iter()
-        .collect();
-    let mut place = vec![NOWHERE; mesh.nodes.len()];
-    for (new, &old) in (0..).zip(&kept) {
-        place[old as usize] = new;
-    }
+/// Keeps the nodes of the surface only, in the order of the mesh.
+fn compact(
+    mesh: &HexMesh,
+    point_data: &[(String, Vec<f64>)],
+    surface: Articulating,
+) -> SurfaceFields {
+    let kept = &surface.nodes;
     let pick = |values: &[f64]| kept.iter().map(|&node| values[node as usize]).collect();
     SurfaceFields {
         nodes: kept.iter().map(|&node| mesh.nodes[node as usize]).collect(),
-        quads: quads
-            .iter()
-            .map(|quad| quad.map(|node| place[node as usize]))
-            .collect(),
         fields: point_data
             .iter()
             .map(|(name, values)| (name.clone(), pick(values)))
             .collect(),
+        quads: surface.quads,
     }
 }
 

@@ -1,0 +1,194 @@
+//! A scene read from a results folder.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use condyle_io::{
+    mesh::{VtuFile, parse_vtu_triangles, read_vtu_points},
+    results::{KeptCycle, check_file, cycle_pressure_file},
+};
+
+use super::{Scene, SceneBody, SceneCycle};
+use crate::{
+    error::ReportError,
+    results::{
+        contents::Results,
+        read::{meshes, table},
+        summary::Summary,
+        table::Table,
+    },
+};
+
+/// Point data that is 1 on nodes of the articulating surface.
+const ARTICULATING: &str = "articulating";
+
+/// Increments of a cycle by the text of their percent.
+type ByPercent = BTreeMap<u64, usize>;
+
+impl Scene {
+    /// What a results folder has to show; what is missing, damaged or of another version is left out, and told.
+    pub fn read(folder: &Path, results: &Results) -> Self {
+        let mut scene = of_meshes(folder, results);
+        scene.femur = femur(folder, &mut scene.missing);
+        let summary = results.summary.as_ref();
+        scene.neutral_pose = summary.and_then(Summary::neutral_pose);
+        scene.cycles = cycles(folder, &mut scene.missing);
+        let tables = [("wear", &results.wear), ("kinematics", &results.kinematics)];
+        let tables = tables.into_iter();
+        scene.tables = tables
+            .filter_map(|(name, table)| Some((name, table.clone()?)))
+            .collect();
+        scene.missing = (scene.missing.iter())
+            .map(|why| without_folder(why, folder))
+            .collect();
+        scene
+    }
+}
+
+/// A message whose files have no folder: the same run gives the same page wherever it is.
+fn without_folder(message: &str, folder: &Path) -> String {
+    let folder = format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR);
+    message.replace(&folder, "")
+}
+
+/// The insert at every update that can be read.
+fn of_meshes(folder: &Path, results: &Results) -> Scene {
+    let wear = results.wear.as_ref();
+    let cycles = wear
+        .and_then(|wear| wear.column("cycles"))
+        .unwrap_or_default();
+    let mut scene = Scene::default();
+    for (update, path) in meshes(folder).unwrap_or_default() {
+        let cycles = match update.checked_sub(1) {
+            None => 0.0,
+            Some(row) => cycles.get(row as usize).copied().unwrap_or(f64::NAN),
+        };
+        if let Err(why) = add_mesh(&mut scene, cycles, &path) {
+            scene.missing.push(why);
+        }
+    }
+    scene
+}
+
+/// Adds the mesh of an update, or says why not.
+fn add_mesh(scene: &mut Scene, cycles: f64, path: &Path) -> Result<(), String> {
+    let file = read_mesh(path).map_err(|error| error.to_string())?;
+    if scene.insert.is_none() {
+        let marks = file.values(ARTICULATING);
+        let begun = marks.and_then(|marks| Scene::of_insert(&file.mesh, marks));
+        let missing = std::mem::take(&mut scene.missing);
+        *scene = begun.ok_or_else(|| without(path, "has no articulating surface"))?;
+        scene.missing = missing;
+    }
+    let fields = file.point_data.iter();
+    let fields = fields.map(|(name, values)| (name.as_str(), values.as_slice()));
+    if scene.add_update(cycles, &file.mesh.nodes, fields) {
+        return Ok(());
+    }
+    Err(without(
+        path,
+        "is of another insert than the file before it",
+    ))
+}
+
+fn without(path: &Path, why: &str) -> String {
+    format!("{} {why}, and is left out.", path.display())
+}
+
+fn read_mesh(path: &Path) -> Result<VtuFile, ReportError> {
+    check_file(path)?;
+    Ok(read_vtu_points(path)?)
+}
+
+fn femur(folder: &Path, missing: &mut Vec<String>) -> Option<SceneBody> {
+    let path = folder.join("femur.vtu");
+    let bytes = fs::read(&path).ok()?;
+    let checked = check_file(&path).map_err(ReportError::from);
+    let read = checked.and_then(|()| Ok(parse_vtu_triangles(&path, &bytes)?));
+    match read {
+        Ok(mesh) => Some(SceneBody {
+            nodes: mesh.vertices,
+            triangles: mesh.triangles,
+        }),
+        Err(error) => {
+            missing.push(error.to_string());
+            None
+        }
+    }
+}
+
+/// The cycles of `femur_pose.csv`, with their pressures where the folder has them.
+fn cycles(folder: &Path, missing: &mut Vec<String>) -> Vec<SceneCycle> {
+    let Some(poses) = read_table(&folder.join("femur_pose.csv"), missing) else {
+        return Vec::new();
+    };
+    let mut cycles = of_poses(&poses);
+    for (cycle, kept) in cycles.iter_mut().zip(KeptCycle::BOTH) {
+        let file: PathBuf = folder.join(cycle_pressure_file(kept));
+        if let Some(pressures) = read_table(&file, missing) {
+            cycle.add_pressures(&pressures);
+        }
+    }
+    cycles
+}
+
+fn read_table(path: &Path, missing: &mut Vec<String>) -> Option<Table> {
+    table(path).unwrap_or_else(|error| {
+        missing.push(error.to_string());
+        None
+    })
+}
+
+/// The cycles whose poses a table like `femur_pose.csv` has, the first and the last.
+pub(super) fn of_poses(poses: &Table) -> Vec<SceneCycle> {
+    let columns: Option<Vec<&[f64]>> = poses
+        .names()
+        .iter()
+        .map(|name| poses.column(name))
+        .collect();
+    let Some([cycles, percents, numbers @ ..]) = columns.as_deref() else {
+        return Vec::new();
+    };
+    let mut found: Vec<SceneCycle> = Vec::new();
+    for row in 0..poses.rows() {
+        let Ok(pose) =
+            <[f64; 12]>::try_from(numbers.iter().map(|column| column[row]).collect::<Vec<_>>())
+        else {
+            return Vec::new();
+        };
+        if found.last().is_none_or(|last| last.cycles != cycles[row]) {
+            found.push(SceneCycle {
+                name: if found.is_empty() { "first" } else { "last" },
+                cycles: cycles[row],
+                ..SceneCycle::default()
+            });
+        }
+        if let Some(last) = found.last_mut() {
+            last.percents.push(percents[row]);
+            last.poses.push(pose);
+        }
+    }
+    found.truncate(2);
+    found
+}
+
+impl SceneCycle {
+    /// Adds the pressures of a table like `cycle_last_pressure.csv`; what names no increment is left out.
+    pub fn add_pressures(&mut self, table: &Table) {
+        let column = |name| table.column(name).unwrap_or_default();
+        let (percents, nodes) = (column("percent"), column("node"));
+        let by_percent: ByPercent = (self.percents.iter().enumerate())
+            .map(|(increment, percent)| (percent.to_bits(), increment))
+            .collect();
+        self.pressures = vec![Vec::new(); self.percents.len()];
+        let rows = percents.iter().zip(nodes).zip(column("pressure_mpa"));
+        for ((percent, node), pressure_mpa) in rows {
+            if let Some(&increment) = by_percent.get(&percent.to_bits()) {
+                self.pressures[increment].push((*node as u32, *pressure_mpa));
+            }
+        }
+    }
+}

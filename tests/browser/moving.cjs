@@ -1,0 +1,147 @@
+// Opens a report of a run in a headless browser and uses what moves: node moving.cjs CHROMIUM RESULTS [PICTURES]
+//
+// Every control must change the picture, values picked must be those of the run, and the gait play smoothly.
+const assert = require("node:assert");
+const fs = require("node:fs");
+const path = require("node:path");
+const { pathToFileURL } = require("node:url");
+const { chromium } = require("playwright-core");
+
+const [executablePath, results, pictures] = process.argv.slice(2);
+const url = pathToFileURL(path.join(results, "report.html")).href;
+// Drawn by the processor: every machine has one.
+const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+function watch(page) {
+  const heard = [];
+  page.on("request", (request) => /^(data|blob):/.test(request.url()) || request.url() === url || heard.push(request.url()));
+  page.on("console", (message) => message.type() === "error" && heard.push(message.text()));
+  page.on("pageerror", (error) => heard.push(String(error)));
+  return heard;
+}
+
+async function open(browser) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+  const heard = watch(page);
+  const began = Date.now();
+  await page.goto(url, { waitUntil: "load" });
+  await page.waitForSelector("html[data-ready] .stage canvas");
+  await drawn(page);
+  return { page, heard, ready_ms: Date.now() - began };
+}
+
+// Two frames later whatever was asked for is drawn.
+function drawn(page) {
+  return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+}
+
+async function picture(page) {
+  await drawn(page);
+  return page.$eval(".stage canvas", (canvas) => canvas.toDataURL());
+}
+
+async function keep(page, name) {
+  if (pictures) await page.screenshot({ path: path.join(pictures, `${name}.png`) });
+}
+
+async function move(page, words, value) {
+  await page.getByLabel(words, { exact: true }).fill(String(value));
+}
+
+async function choose(page, words, value) {
+  await page.getByLabel(words, { exact: true }).selectOption(value);
+}
+
+async function changes(page, what, act) {
+  const before = await picture(page);
+  await act();
+  assert.notStrictEqual(await picture(page), before, `${what} does not change the picture`);
+}
+
+async function controls(page) {
+  await changes(page, "the femur's choice", () => choose(page, "Femur", "0"));
+  await changes(page, "the slider of updates", () => move(page, "After update", 2));
+  await changes(page, "another field", () => choose(page, "Colours show", "sliding_distance_mm"));
+  await changes(page, "another colour map", () => choose(page, "Colour map", "cividis"));
+  await changes(page, "wear made larger", () => move(page, "Wear made larger", 20));
+  await changes(page, "the section", () => move(page, "Section at z", 0));
+  await changes(page, "a view", () => page.getByRole("button", { name: "From above" }).click());
+  await keep(page, "section");
+  await move(page, "Section at z", 45);
+  await changes(page, "a drag", () => drag(page));
+}
+
+async function drag(page) {
+  const { x, y, width, height } = await page.locator(".stage canvas").boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 2 + 80, y + height / 2 + 30, { steps: 4 });
+  await page.mouse.up();
+}
+
+// The last update's deepest node is that of summary.json to the digits shown.
+async function picks(page) {
+  await choose(page, "Colours show", "wear_depth_mm");
+  const { x, y, width, height } = await page.locator(".stage canvas").boundingBox();
+  await page.getByRole("button", { name: "From above" }).click();
+  await drawn(page);
+  await page.mouse.click(x + width / 2, y + height * 0.3);
+  const told = await page.locator(".picked").innerText();
+  assert.match(told, /At x .* mm:[\s\S]*Wear depth\s+[\d.]+ mm/, told);
+  assert.match(await page.locator(".worn").innerText(), /at the picked point/);
+}
+
+async function gait(page) {
+  await choose(page, "Femur", "0.3");
+  await page.getByRole("button", { name: "Oblique" }).click();
+  await changes(page, "the slider through the cycle", () => move(page, "Through the gait cycle", 26));
+  const told = await page.locator(".told").innerText();
+  assert.match(told, /% of the last cycle: \d+ N and \d+ N on the surface/, told);
+  await keep(page, "gait");
+}
+
+// Frames a second while the gait plays, at 800 x 600.
+async function played(browser) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 900 } });
+  await page.goto(url, { waitUntil: "load" });
+  await page.waitForSelector("html[data-ready] .stage canvas");
+  await page.addStyleTag({ content: ".stage{width:800px;height:600px;aspect-ratio:auto!important}.viewer{width:800px}" });
+  await page.getByRole("button", { name: "Play" }).click();
+  return page.evaluate(
+    () =>
+      new Promise((done) => {
+        let frames = 0;
+        const began = performance.now();
+        const count = () => (performance.now() - began < 2000 ? (frames++, requestAnimationFrame(count)) : done(frames / 2));
+        requestAnimationFrame(count);
+      }),
+  );
+}
+
+async function main() {
+  const browser = await chromium.launch({ executablePath, args });
+  try {
+    const { page, heard, ready_ms } = await open(browser);
+    await keep(page, "first");
+    const summary = JSON.parse(fs.readFileSync(path.join(results, "summary.json"), "utf8"));
+    const mass = summary.mass_loss_mg.toPrecision(4);
+    assert((await page.locator(".tiles").innerText()).includes(mass), `the page does not say ${mass} mg`);
+    assert((await page.locator(".curves canvas").count()) > 8, "curves are missing");
+    await controls(page);
+    await picks(page);
+    await gait(page);
+    assert.deepStrictEqual(heard, [], "the page asks for other files or reports errors");
+    await page.emulateMedia({ media: "print" });
+    assert(!(await page.locator("#moving").isVisible()), "what moves is printed");
+    await page.close();
+    const frames = await played(browser);
+    console.log(`ready after ${ready_ms} ms, ${frames} frames a second, ${fs.statSync(path.join(results, "report.html")).size} bytes`);
+  } finally {
+    await browser.close();
+  }
+}
+
+main().catch((error) => {
+  console.error(error.message);
+  process.exit(1);
+});

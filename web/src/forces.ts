@@ -1,0 +1,42 @@
+// The forces of the two sides of the knee, from the pressures of an instant.
+
+import { Vector3 } from "three";
+import type { Pressed } from "./scene";
+import type { Force } from "./stage";
+
+// Share of the surface of every node, mm²: a quarter of each face around it.
+export function shares(places: Float32Array, quads: ArrayLike<number>): Float32Array {
+  const share = new Float32Array(places.length / 3);
+  const at = (node: number) => new Vector3().fromArray(places, 3 * node);
+  for (let i = 0; i < quads.length; i += 4) {
+    const corners = [0, 1, 2, 3].map((corner) => quads[i + corner]!);
+    const [a, b, c, d] = corners.map(at);
+    const area = c!.sub(a!).cross(d!.sub(b!)).length() / 2;
+    for (const node of corners) share[node]! += area / 4;
+  }
+  return share;
+}
+
+// One at the centre of pressure of each side, left (z below 0) and right; MPa times mm² is N.
+export function forces({ nodes, pressures }: Pressed, places: Float32Array, share: Float32Array): Force[] {
+  const sides = [new Side(), new Side()];
+  nodes.forEach((node, index) => {
+    const side = sides[places[3 * node + 2]! < 0 ? 0 : 1]!;
+    side.add(pressures[index]! * share[node]!, new Vector3().fromArray(places, 3 * node));
+  });
+  return sides.filter((side) => side.newtons > 0).map((side) => side.force());
+}
+
+class Side {
+  newtons = 0;
+  private readonly moment = new Vector3();
+
+  add(newtons: number, at: Vector3): void {
+    this.newtons += newtons;
+    this.moment.addScaledVector(at, newtons);
+  }
+
+  force(): Force {
+    return { newtons: this.newtons, at: this.moment.clone().divideScalar(this.newtons) };
+  }
+}

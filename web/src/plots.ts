@@ -1,0 +1,103 @@
+// Curves with hover, zoom and a linked cursor; their data as CSV, their pictures as PNG and SVG.
+
+import uPlot from "uplot";
+import { button, element } from "./dom";
+import { inDigits, withUnit, type Quantity } from "./quantities";
+import { savePicture, saveText } from "./save";
+import { curvesSvg } from "./curves_svg";
+
+export interface Curve {
+  name: string;
+  values: (number | null)[];
+  colour: string;
+}
+
+export interface Curves {
+  title: string;
+  across: Quantity;
+  up: Quantity;
+  at: number[];
+  curves: Curve[];
+}
+
+export interface PlotOptions {
+  // Plots of the same key share their cursor.
+  linked?: string;
+  // What a click on an instant does.
+  chosen?: (index: number) => void;
+  height?: number;
+}
+
+export class Plot {
+  readonly box: HTMLElement;
+  private readonly plot: uPlot;
+  private readonly shown: HTMLElement;
+
+  constructor(curves: Curves, options: PlotOptions = {}) {
+    this.shown = element("div", { class: "plot" });
+    this.box = element("figure", { class: "curves" }, element("figcaption", {}, curves.title), this.shown, saves(curves, () => this.plot));
+    const size = { width: 320, height: options.height ?? 190 };
+    this.plot = new uPlot({ ...size, ...settings(curves, options) }, data(curves), this.shown);
+    if (options.chosen) {
+      const chosen = options.chosen;
+      this.plot.over.addEventListener("click", () => this.plot.cursor.idx != null && chosen(this.plot.cursor.idx));
+    }
+    new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width, size.height)).observe(this.shown);
+  }
+
+  // Puts the cursor on an instant.
+  point(index: number): void {
+    const across = this.plot.data[0][index];
+    if (across === undefined) return;
+    this.plot.setCursor({ left: this.plot.valToPos(across, "x"), top: -1 }, false);
+  }
+
+  private fit(width: number, height: number): void {
+    if (width > 0 && Math.abs(width - this.plot.width) > 1) this.plot.setSize({ width, height });
+  }
+}
+
+function data({ at, curves }: Curves): uPlot.AlignedData {
+  return [at, ...curves.map((curve) => curve.values)];
+}
+
+function settings({ across, up, curves }: Curves, { linked }: PlotOptions): Omit<uPlot.Options, "width" | "height"> {
+  const ink = "currentColor";
+  const axis = { stroke: () => getComputedStyle(document.body).color, font: "11px sans-serif", labelFont: "11px sans-serif", labelSize: 16, grid: { stroke: "#8884", width: 1 }, ticks: { stroke: "#8884", width: 1 } };
+  const values = (_: uPlot, all: number[]) => all.map(inDigits);
+  return {
+    scales: { x: { time: false } },
+    axes: [
+      { ...axis, label: withUnit(across), size: 26, values },
+      { ...axis, label: withUnit(up), size: 48, values },
+    ],
+    cursor: { drag: { x: true, y: false }, ...(linked ? { sync: { key: linked, scales: ["x", null] as [string, null] } } : {}) },
+    series: [
+      { label: across.label, value: (_, value) => (value === null ? "–" : inDigits(value)) },
+      ...curves.map(({ name, colour }) => ({
+        label: name,
+        stroke: colour || ink,
+        width: 1.6,
+        points: { show: curves.length === 1 },
+        value: (_: uPlot, value: number | null) => (value === null ? "–" : `${inDigits(value)} ${up.unit}`),
+      })),
+    ],
+  };
+}
+
+function saves(curves: Curves, plot: () => uPlot): HTMLElement {
+  const name = curves.title.toLowerCase().replaceAll(/[^a-z0-9]+/g, "_");
+  return element(
+    "div",
+    { class: "saves" },
+    button("CSV", () => saveText(`${name}.csv`, csv(curves), "text/csv")),
+    button("PNG", () => savePicture(`${name}.png`, plot().ctx.canvas)),
+    button("SVG", () => saveText(`${name}.svg`, curvesSvg(curves), "image/svg+xml")),
+  );
+}
+
+export function csv({ across, up, at, curves }: Curves): string {
+  const head = [across.name, ...curves.map((curve) => (curves.length > 1 ? `${up.name} ${curve.name}` : up.name))];
+  const rows = at.map((x, index) => [x, ...curves.map((curve) => curve.values[index] ?? "")]);
+  return [head, ...rows].map((row) => row.join(",")).join("\n") + "\n";
+}

@@ -1,0 +1,122 @@
+// A scene as condyle writes it: bodies, updates and cycles as arrays (crates/condyle-report/src/scene).
+
+export interface CycleFacts {
+  name: string;
+  cycles: number;
+  increments: number;
+  has_pressure: boolean;
+}
+
+export interface Pose {
+  femoral_origin_mm: number[];
+  rotation: number[][];
+}
+
+interface Facts {
+  // JSON has no NaN: an update whose cycles are not known has none.
+  updates: (number | null)[];
+  fields: string[];
+  cycles: CycleFacts[];
+  neutral_pose: Pose | null;
+  has_femur: boolean;
+  tables: { name: string; columns: string[] }[];
+  missing: string[];
+}
+
+interface Entry {
+  name: string;
+  kind: "u16" | "u32" | "f64" | "q16";
+  offset: number;
+  length: number;
+  range?: [number, number];
+}
+
+type Whole = Uint16Array | Uint32Array;
+
+export interface Pressed {
+  nodes: Whole;
+  pressures: Float32Array;
+}
+
+export class Scene {
+  readonly facts: Facts;
+  private readonly entries = new Map<string, Entry>();
+  private readonly start: number;
+
+  constructor(private readonly buffer: ArrayBuffer) {
+    const length = Number(new DataView(buffer).getBigUint64(0, true));
+    const head = new TextDecoder().decode(new Uint8Array(buffer, 8, length));
+    const { facts, arrays } = JSON.parse(head) as { facts: Facts; arrays: Entry[] };
+    this.facts = facts;
+    this.start = 8 + length;
+    for (const entry of arrays) this.entries.set(entry.name, entry);
+  }
+
+  has(name: string): boolean {
+    return this.entries.has(name);
+  }
+
+  whole(name: string): Whole {
+    const { kind, offset, length } = this.entry(name);
+    const Kind = kind === "u32" ? Uint32Array : Uint16Array;
+    return new Kind(this.buffer, this.start + offset, length);
+  }
+
+  exact(name: string): Float64Array {
+    const { offset, length } = this.entry(name);
+    return new Float64Array(this.buffer, this.start + offset, length);
+  }
+
+  // Values of an array that was kept in 16 bits of its range.
+  values(name: string): Float32Array {
+    const { offset, length, range } = this.entry(name);
+    const [low, high] = range ?? [0, 0];
+    const levels = new Uint16Array(this.buffer, this.start + offset, length);
+    return Float32Array.from(levels, (level) => low + ((high - low) * level) / 65535);
+  }
+
+  // The articulating surface after an update, mm.
+  surface(update: number): Float32Array {
+    const moved = this.values(`surface.moved.${update}`);
+    return this.values("surface.nodes").map((place, index) => place + moved[index]!);
+  }
+
+  field(name: string, update: number): Float32Array {
+    return this.values(`field.${name}.${update}`);
+  }
+
+  fieldRange(name: string): [number, number] {
+    return this.entry(`field.${name}.0`).range ?? [0, 0];
+  }
+
+  // The nodes under pressure at every increment of a cycle.
+  pressed(cycle: CycleFacts): Pressed[] {
+    const starts = this.whole(`cycle.${cycle.name}.starts`);
+    const nodes = this.whole(`cycle.${cycle.name}.nodes`);
+    const pressures = this.values(`cycle.${cycle.name}.pressure_mpa`);
+    const all: Pressed[] = [];
+    for (let i = 0; i + 1 < starts.length; i++) {
+      const [from, to] = [starts[i]!, starts[i + 1]!];
+      all.push({ nodes: nodes.slice(from, to), pressures: pressures.slice(from, to) });
+    }
+    return all;
+  }
+
+  highestPressure(cycle: CycleFacts): number {
+    return this.entry(`cycle.${cycle.name}.pressure_mpa`).range?.[1] ?? 0;
+  }
+
+  columns(table: string): string[] {
+    return this.facts.tables.find((found) => found.name === table)?.columns ?? [];
+  }
+
+  column(table: string, name: string): Float64Array {
+    return this.exact(`table.${table}.${name}`);
+  }
+
+  private entry(name: string): Entry {
+    const entry = this.entries.get(name);
+    if (!entry) throw new Error(`the scene has no array ${name}`);
+    return entry;
+  }
+}

@@ -1,0 +1,276 @@
+// The bodies in three dimensions.
+
+import {
+  ArrowHelper,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  HemisphereLight,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Plane,
+  Raycaster,
+  Scene as World,
+  SphereGeometry,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { paint, type MapName } from "./colours";
+import { element } from "./dom";
+import type { Pose, Scene } from "./scene";
+
+export type View = "above" | "front" | "side" | "oblique";
+
+const DIRECTIONS: Record<View, [number, number, number]> = {
+  above: [-0.001, 1, 0],
+  front: [1, 0.12, 0],
+  side: [0, 0.12, 1],
+  oblique: [0.75, 0.85, 0.6],
+};
+
+// A newton is so many millimetres of an arrow.
+const MM_A_NEWTON = 0.02;
+const SKIN = 0xd9d7cf;
+const FEMUR = 0x9fb0bf;
+
+export interface Force {
+  at: Vector3;
+  newtons: number;
+}
+
+export class Stage {
+  readonly canvas: HTMLCanvasElement;
+  private readonly renderer: WebGLRenderer;
+  private readonly world = new World();
+  private readonly camera = new PerspectiveCamera(28, 4 / 3, 1, 2000);
+  private readonly controls: OrbitControls;
+  private readonly surface: Mesh<BufferGeometry, MeshLambertMaterial>;
+  private readonly colours: Float32Array;
+  private readonly femur?: Mesh<BufferGeometry, MeshLambertMaterial>;
+  private readonly marker: Mesh;
+  private readonly section = new Plane(new Vector3(0, 0, -1), 0);
+  private readonly solids: MeshLambertMaterial[];
+  private readonly arrows: ArrowHelper[] = [];
+  private readonly unworn: Float32Array;
+  private readonly neutral = new Matrix4();
+  private isAsked = false;
+
+  constructor(
+    private readonly host: HTMLElement,
+    scene: Scene,
+  ) {
+    // Pictures are saved from what was drawn last.
+    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.renderer.localClippingEnabled = true;
+    this.canvas = this.renderer.domElement;
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", "The insert and the femur; turn by dragging, or by the buttons below");
+    host.append(this.canvas);
+
+    this.unworn = scene.values("surface.nodes");
+    this.colours = new Float32Array(this.unworn.length);
+    this.surface = new Mesh(surfaceGeometry(scene, this.colours), new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }));
+    const skin = new Mesh(bodyGeometry(scene, "skin"), new MeshLambertMaterial({ color: SKIN, side: DoubleSide }));
+    this.world.add(this.surface, skin);
+    this.solids = [this.surface.material, skin.material];
+    if (scene.facts.has_femur) {
+      this.femur = new Mesh(bodyGeometry(scene, "femur"), new MeshLambertMaterial({ color: FEMUR, transparent: true, side: DoubleSide }));
+      this.femur.renderOrder = 1;
+      this.world.add(this.femur);
+      this.solids.push(this.femur.material);
+    }
+    if (scene.facts.neutral_pose) this.neutral.copy(matrix(scene.facts.neutral_pose)).invert();
+    this.marker = new Mesh(new SphereGeometry(0.5, 16, 12), new MeshBasicMaterial({ color: 0xd8382c }));
+    this.marker.visible = false;
+    this.world.add(this.marker, ...lights(this.camera), this.camera);
+
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.addEventListener("change", () => this.ask());
+    this.showFemur(0.3);
+    this.look("oblique");
+    new ResizeObserver(() => this.fit()).observe(host);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.ask());
+    this.fit();
+  }
+
+  // Places of the surface's nodes, mm, with what they have moved since they were unworn made larger.
+  place(nodes: Float32Array, exaggeration: number): void {
+    const places = this.surface.geometry.getAttribute("position") as BufferAttribute;
+    const shown = places.array as Float32Array;
+    for (let i = 0; i < nodes.length; i++) {
+      const from = this.unworn[i]!;
+      shown[i] = from + exaggeration * (nodes[i]! - from);
+    }
+    places.needsUpdate = true;
+    this.surface.geometry.computeVertexNormals();
+    this.ask();
+  }
+
+  colour(values: Float32Array, range: [number, number], map: MapName): void {
+    paint(values, range, map, this.colours);
+    this.surface.geometry.getAttribute("color").needsUpdate = true;
+    this.ask();
+  }
+
+  // Moves the femur to a pose of the insert frame; without one, to neutral.
+  moveFemur(pose?: Matrix4): void {
+    if (!this.femur) return;
+    this.femur.matrixAutoUpdate = false;
+    if (pose) this.femur.matrix.multiplyMatrices(pose, this.neutral);
+    else this.femur.matrix.identity();
+    this.femur.matrixWorldNeedsUpdate = true;
+    this.ask();
+  }
+
+  showFemur(opacity: number): void {
+    if (!this.femur) return;
+    this.femur.visible = opacity > 0;
+    this.femur.material.opacity = opacity;
+    this.femur.material.depthWrite = opacity === 1;
+    this.ask();
+  }
+
+  // Takes away what lies beyond z, mm; nothing without one.
+  cut(z?: number): void {
+    this.section.constant = z ?? 0;
+    for (const material of this.solids) material.clippingPlanes = z === undefined ? null : [this.section];
+    this.ask();
+  }
+
+  // Arrows down onto the surface, as long as the forces are large.
+  press(forces: Force[]): void {
+    this.world.remove(...this.arrows.splice(0));
+    for (const { at, newtons } of forces) {
+      const length = Math.max(newtons * MM_A_NEWTON, 1);
+      const tail = at.clone().add(new Vector3(0, length, 0));
+      this.arrows.push(new ArrowHelper(new Vector3(0, -1, 0), tail, length, 0xd8382c, Math.min(4, length), 2.4));
+    }
+    if (this.arrows.length) this.world.add(...this.arrows);
+    this.ask();
+  }
+
+  look(view: View): void {
+    const bounds = this.surface.geometry.boundingSphere!;
+    const direction = new Vector3(...DIRECTIONS[view]).normalize();
+    this.controls.target.copy(bounds.center);
+    this.camera.position.copy(bounds.center).addScaledVector(direction, 4.1 * bounds.radius);
+    this.controls.update();
+    this.ask();
+  }
+
+  // The node of the surface nearest to a place on the screen, and marks it; none beside it.
+  pick(event: PointerEvent): number | undefined {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const place = new Vector2((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height);
+    const ray = new Raycaster();
+    ray.setFromCamera(place, this.camera);
+    this.surface.geometry.computeBoundingSphere();
+    const hit = ray.intersectObject(this.surface)[0];
+    if (!hit?.face) return undefined;
+    const places = this.surface.geometry.getAttribute("position");
+    const corners = [hit.face.a, hit.face.b, hit.face.c];
+    const away = (node: number) => new Vector3().fromBufferAttribute(places, node).distanceTo(hit.point);
+    const node = corners.reduce((best, next) => (away(next) < away(best) ? next : best));
+    this.mark(node);
+    return node;
+  }
+
+  mark(node: number): void {
+    this.marker.position.fromBufferAttribute(this.surface.geometry.getAttribute("position"), node);
+    this.marker.visible = true;
+    this.ask();
+  }
+
+  // Draws now; whoever only changed something asks, and many changes are drawn once.
+  draw(): void {
+    const paper = getComputedStyle(this.host).getPropertyValue("--panel").trim();
+    this.renderer.setClearColor(new Color(paper || "#f4f3ef"));
+    this.renderer.render(this.world, this.camera);
+  }
+
+  dispose(): void {
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.canvas.remove();
+  }
+
+  private ask(): void {
+    if (this.isAsked) return;
+    this.isAsked = true;
+    requestAnimationFrame(() => {
+      this.isAsked = false;
+      this.draw();
+    });
+  }
+
+  private fit(): void {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (!width || !height) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.ask();
+  }
+}
+
+function surfaceGeometry(scene: Scene, colours: Float32Array): BufferGeometry {
+  const quads = scene.whole("surface.quads");
+  const triangles = new Uint32Array(1.5 * quads.length);
+  for (let i = 0; 4 * i < quads.length; i++) {
+    const [a, b, c, d] = quads.subarray(4 * i, 4 * i + 4);
+    triangles.set([a!, b!, c!, a!, c!, d!], 6 * i);
+  }
+  const geometry = geometryOf(scene.values("surface.nodes"), triangles);
+  geometry.setAttribute("color", new BufferAttribute(colours, 3));
+  return geometry;
+}
+
+function bodyGeometry(scene: Scene, name: string): BufferGeometry {
+  return geometryOf(scene.values(`${name}.nodes`), Uint32Array.from(scene.whole(`${name}.triangles`)));
+}
+
+function geometryOf(places: Float32Array, triangles: Uint32Array): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(places, 3));
+  geometry.setIndex(new BufferAttribute(triangles, 1));
+  geometry.computeVertexNormals();
+  geometry.computeBoundingSphere();
+  return geometry;
+}
+
+function lights(camera: PerspectiveCamera) {
+  const lamp = new DirectionalLight(0xffffff, 1.6);
+  lamp.position.set(0.4, 0.8, 1);
+  // The lamp goes with the eye.
+  camera.add(lamp);
+  return [new HemisphereLight(0xffffff, 0x8a8780, 1.7)];
+}
+
+function matrix({ femoral_origin_mm: [x, y, z], rotation }: Pose): Matrix4 {
+  return matrixOf([x!, y!, z!, ...rotation.flat()]);
+}
+
+// Origin, then the rotation row by row.
+export function matrixOf(numbers: ArrayLike<number>): Matrix4 {
+  const n = (index: number) => numbers[index]!;
+  return new Matrix4().set(n(3), n(4), n(5), n(0), n(6), n(7), n(8), n(1), n(9), n(10), n(11), n(2), 0, 0, 0, 1);
+}
+
+// Says why there is no picture, where the browser has no WebGL.
+export function stageOr(host: HTMLElement, scene: Scene): Stage | undefined {
+  try {
+    return new Stage(host, scene);
+  } catch {
+    host.append(element("p", { class: "note" }, "This browser cannot draw in three dimensions (WebGL is off); the flat maps below show the same."));
+    return undefined;
+  }
+}

@@ -1,0 +1,296 @@
+// The stage with its controls: what is shown, at which update or instant, in which colours.
+
+import { gradient, type MapName } from "./colours";
+import { button, choice, element, labelled, slider } from "./dom";
+import { forces, shares } from "./forces";
+import { cyclesInWords, inDigits, quantity, withUnit } from "./quantities";
+import { savePicture } from "./save";
+import { matrixOf, stageOr, type Stage, type View } from "./stage";
+import type { CycleFacts, Pressed, Scene } from "./scene";
+
+// What the surface may be coloured by besides the fields of an update.
+const IN_CYCLE = "pressure_mpa";
+// Whatever a cycle takes in life, here it takes so long, s.
+const SECONDS_A_CYCLE = 4;
+// Millimetres of the section slider beyond the middle.
+const SECTION_MM = 45;
+
+const VIEWS: [View, string][] = [
+  ["oblique", "Oblique"],
+  ["above", "From above"],
+  ["front", "From the front"],
+  ["side", "From the side"],
+];
+
+interface Cycle {
+  facts: CycleFacts;
+  pressed: Pressed[];
+  poses: Float64Array;
+  percents: Float64Array;
+  // The update whose surface it pressed on.
+  update: number;
+}
+
+export class Viewer {
+  readonly box = element("div", { class: "viewer" });
+  readonly stage: Stage | undefined;
+  // Hears which instant of the cycle is shown.
+  onInstant: (index: number) => void = () => {};
+  // Hears which node was picked.
+  onPick: (node: number) => void = () => {};
+  private readonly cycles: Cycle[];
+  private field: string;
+  private map: MapName = "viridis";
+  private update: number;
+  private instant = 0;
+  private exaggeration = 1;
+  private isInCycle = false;
+  private cycle: Cycle | undefined;
+  private playing = 0;
+  private surface = new Float32Array();
+  private share = new Float32Array();
+  private node: number | undefined;
+  private readonly told = element("output", { class: "told" });
+  private readonly picked = element("div", { class: "picked", "aria-live": "polite" });
+  private readonly bar = element("div", { class: "bar" });
+  private readonly barEnds = element("div", { class: "ends" });
+  private readonly fields: HTMLSelectElement;
+  private readonly updates: HTMLInputElement;
+  private readonly instants: HTMLInputElement;
+  private readonly play = button("Play", () => this.togglePlay());
+
+  constructor(private readonly scene: Scene) {
+    const { updates, fields } = scene.facts;
+    const host = element("div", { class: "stage" });
+    this.stage = stageOr(host, scene);
+    this.update = updates.length - 1;
+    this.field = fields.includes("wear_depth_mm") ? "wear_depth_mm" : (fields[0] ?? IN_CYCLE);
+    this.cycles = cyclesOf(scene);
+    this.cycle = this.cycles.at(-1);
+    this.fields = choice(this.shownFields(), (field) => this.colourBy(field));
+    this.fields.value = this.field;
+    this.updates = slider(0, updates.length - 1, 1, this.update, (update) => this.showUpdate(update));
+    this.instants = slider(0, Math.max(0, (this.cycle?.percents.length ?? 1) - 1), 1, 0, (instant) => this.showInstant(instant));
+    this.box.append(host, this.legend(), this.told, this.controls(), this.picked);
+    this.listen();
+    this.showUpdate(this.update);
+  }
+
+  showUpdate(update: number): void {
+    this.stop();
+    this.isInCycle = false;
+    this.update = update;
+    this.updates.value = String(update);
+    if (this.field === IN_CYCLE) this.field = this.fields.value = this.scene.facts.fields[0] ?? IN_CYCLE;
+    this.surface = this.scene.surface(update) as Float32Array<ArrayBuffer>;
+    this.stage?.moveFemur();
+    this.stage?.press([]);
+    this.place();
+    this.say(`After ${cyclesInWords(this.scene.facts.updates[update] ?? null)}`);
+  }
+
+  showInstant(instant: number): void {
+    const cycle = this.cycle;
+    if (!cycle) return;
+    if (!this.isInCycle) this.enter(cycle);
+    this.instant = instant;
+    this.instants.value = String(instant);
+    const pressed = cycle.pressed[instant];
+    this.stage?.moveFemur(matrixOf(cycle.poses.subarray(12 * instant, 12 * instant + 12)));
+    if (pressed) {
+      const found = forces(pressed, this.surface, this.share);
+      this.stage?.press(found);
+      const sides = found.map(({ newtons }) => `${Math.round(newtons)} N`).join(" and ");
+      this.say(`${inDigits(cycle.percents[instant]!)} % of the ${cycle.facts.name} cycle${sides ? `: ${sides} on the surface` : ""}`);
+    }
+    this.recolour();
+    this.onInstant(instant);
+  }
+
+  // Values of all fields at a node, the update as shown.
+  valuesAt(node: number): [string, number][] {
+    const { fields } = this.scene.facts;
+    return fields.map((name) => [name, this.scene.field(name, this.update)[node]!]);
+  }
+
+  get shownField(): string {
+    return this.field;
+  }
+
+  dispose(): void {
+    this.stop();
+    this.stage?.dispose();
+  }
+
+  private enter(cycle: Cycle): void {
+    this.isInCycle = true;
+    this.surface = this.scene.surface(cycle.update) as Float32Array<ArrayBuffer>;
+    this.share = shares(this.surface, this.scene.whole("surface.quads")) as Float32Array<ArrayBuffer>;
+    if (cycle.facts.has_pressure) this.field = this.fields.value = IN_CYCLE;
+    this.place();
+  }
+
+  private colourBy(field: string): void {
+    if (field === IN_CYCLE) this.showInstant(this.instant);
+    else {
+      this.field = field;
+      this.recolour();
+    }
+  }
+
+  private place(): void {
+    this.stage?.place(this.surface, this.exaggeration);
+    if (this.node !== undefined) this.stage?.mark(this.node);
+    this.recolour();
+  }
+
+  private recolour(): void {
+    const range = this.range();
+    this.stage?.colour(this.values(), range, this.map);
+    this.bar.style.background = gradient(this.map);
+    const { unit } = quantity(this.field);
+    const ends = [0, 0.25, 0.5, 0.75, 1].map((part) => inDigits(range[0] + part * (range[1] - range[0])));
+    this.barEnds.replaceChildren(...ends.map((end, index) => element("span", {}, index === 4 ? `${end} ${unit}` : end)));
+  }
+
+  private values(): Float32Array {
+    const update = this.isInCycle ? this.cycle!.update : this.update;
+    if (this.field !== IN_CYCLE) return this.scene.field(this.field, update);
+    const values = new Float32Array(this.surface.length / 3);
+    const pressed = this.cycle?.pressed[this.instant];
+    pressed?.nodes.forEach((node, index) => (values[node] = pressed.pressures[index]!));
+    return values;
+  }
+
+  private range(): [number, number] {
+    if (this.field !== IN_CYCLE) return this.scene.fieldRange(this.field);
+    return [0, this.cycle ? this.scene.highestPressure(this.cycle.facts) : 1];
+  }
+
+  private togglePlay(): void {
+    if (this.playing) return this.stop();
+    this.play.textContent = "Pause";
+    const count = this.cycle?.percents.length ?? 1;
+    const began = performance.now() - (1000 * SECONDS_A_CYCLE * this.instant) / count;
+    const frame = (now: number) => {
+      const part = ((now - began) / 1000 / SECONDS_A_CYCLE) % 1;
+      this.showInstant(Math.max(0, Math.floor(part * count)));
+      this.playing = requestAnimationFrame(frame);
+    };
+    this.playing = requestAnimationFrame(frame);
+  }
+
+  private stop(): void {
+    cancelAnimationFrame(this.playing);
+    this.playing = 0;
+    this.play.textContent = "Play";
+  }
+
+  private say(words: string): void {
+    this.told.textContent = words;
+  }
+
+  private shownFields(): [string, string][] {
+    const options = this.scene.facts.fields.map((name): [string, string] => [name, withUnit(quantity(name))]);
+    if (this.cycles.some(({ facts }) => facts.has_pressure)) options.push([IN_CYCLE, "Pressure through the cycle, MPa"]);
+    return options;
+  }
+
+  private legend(): HTMLElement {
+    return element("div", { class: "legend" }, this.bar, this.barEnds);
+  }
+
+  private controls(): HTMLElement {
+    const box = element("div", { class: "controls" });
+    box.append(labelled("Colours show", this.fields), labelled("After update", this.updates));
+    if (this.cycles.length) box.append(labelled("Through the gait cycle", this.instants), this.play);
+    if (this.cycles.length > 1) box.append(labelled("Cycle", this.cycleChoice()));
+    box.append(labelled("Wear made larger", slider(1, 20, 1, 1, (times) => this.exaggerate(times))));
+    box.append(labelled("Section at z", this.sectionSlider()));
+    if (this.scene.facts.has_femur) box.append(labelled("Femur", this.femurChoice()));
+    const maps: [string, string][] = [["viridis", "Viridis"], ["cividis", "Cividis"]];
+    box.append(labelled("Colour map", choice(maps, (map) => this.useMap(map as MapName))));
+    box.append(element("div", { class: "views" }, ...this.viewButtons()));
+    return box;
+  }
+
+  private viewButtons(): HTMLElement[] {
+    const views = VIEWS.map(([view, words]) => button(words, () => this.stage?.look(view)));
+    return [...views, button("Save picture", () => this.savePicture())];
+  }
+
+  private cycleChoice(): HTMLSelectElement {
+    const options = this.cycles.map(({ facts }): [string, string] => [facts.name, `${facts.name}, after ${cyclesInWords(facts.cycles)}`]);
+    const select = choice(options, (name) => this.useCycle(name));
+    select.value = this.cycle!.facts.name;
+    return select;
+  }
+
+  private useCycle(name: string): void {
+    this.cycle = this.cycles.find(({ facts }) => facts.name === name);
+    this.isInCycle = false;
+    this.showInstant(this.instant);
+  }
+
+  private femurChoice(): HTMLSelectElement {
+    const options: [string, string][] = [["0.3", "see-through"], ["1", "solid"], ["0", "hidden"]];
+    return choice(options, (opacity) => this.stage?.showFemur(Number(opacity)));
+  }
+
+  private sectionSlider(): HTMLInputElement {
+    const moved = (z: number) => this.stage?.cut(z >= SECTION_MM ? undefined : z);
+    return slider(-SECTION_MM, SECTION_MM, 1, SECTION_MM, moved);
+  }
+
+  private exaggerate(times: number): void {
+    this.exaggeration = times;
+    this.place();
+  }
+
+  private useMap(map: MapName): void {
+    this.map = map;
+    this.recolour();
+  }
+
+  private savePicture(): void {
+    if (!this.stage) return;
+    this.stage.draw();
+    savePicture(`${this.field}.png`, this.stage.canvas);
+  }
+
+  private listen(): void {
+    const canvas = this.stage?.canvas;
+    if (!canvas) return;
+    let began = [0, 0];
+    canvas.addEventListener("pointerdown", (event) => (began = [event.clientX, event.clientY]));
+    canvas.addEventListener("pointerup", (event) => {
+      // A drag turns the bodies; a press without one picks.
+      if (Math.hypot(event.clientX - began[0]!, event.clientY - began[1]!) < 4) this.pick(event);
+    });
+  }
+
+  private pick(event: PointerEvent): void {
+    const node = this.stage?.pick(event);
+    if (node === undefined) return;
+    this.node = node;
+    const [x, y, z] = this.surface.subarray(3 * node, 3 * node + 3);
+    const place = `x ${inDigits(x!)}, y ${inDigits(y!)}, z ${inDigits(z!)} mm`;
+    const rows = this.valuesAt(node).map(([name, value]) => {
+      const { label, unit } = quantity(name);
+      return element("div", {}, element("dt", {}, label), element("dd", {}, `${inDigits(value)} ${unit}`));
+    });
+    this.picked.replaceChildren(element("p", {}, `At ${place}:`), element("dl", { class: "facts" }, ...rows));
+    this.onPick(node);
+  }
+}
+
+function cyclesOf(scene: Scene): Cycle[] {
+  const last = scene.facts.updates.length - 1;
+  return scene.facts.cycles.map((facts, index) => ({
+    facts,
+    pressed: scene.has(`cycle.${facts.name}.starts`) ? scene.pressed(facts) : [],
+    poses: scene.exact(`cycle.${facts.name}.poses`),
+    percents: scene.exact(`cycle.${facts.name}.percents`),
+    update: index === 0 ? 0 : Math.max(0, last - 1),
+  }));
+}
