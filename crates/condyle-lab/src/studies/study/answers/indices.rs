@@ -7,7 +7,8 @@ use condyle_io::study::{Design, Output};
 use super::super::super::chance::Numbers;
 use super::super::plan::Plan;
 use super::interval::middle;
-use super::{Named, mean};
+use super::moments::mean;
+use super::named::Named;
 
 /// Samples of the bases by which intervals are found.
 const RESAMPLES: u64 = 500;
