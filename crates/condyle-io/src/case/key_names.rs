@@ -55,6 +55,26 @@ impl Case {
         }
     }
 
+    /// The number at the dotted `path` as the case has it; of what is done to a waveform, which a case has done already, as
+    /// its file says it, or nothing done.
+    pub fn number_at_or_written(&self, path: &str) -> Option<f64> {
+        let of_silence = || match leaf(path) {
+            "scale" => Some(1.0),
+            "offset" => Some(0.0),
+            _ => None,
+        };
+        let written = || {
+            let mut keys = Vec::new();
+            add_keys(self.origin.source.inner().parse().ok()?, "", &mut keys);
+            let (_, value) = keys.into_iter().find(|(key, _)| key == path)?;
+            value
+                .as_float()
+                .or_else(|| Some(value.as_integer()? as f64))
+        };
+        let number = self.number_at(path).or_else(written);
+        number.or_else(of_silence)
+    }
+
     /// The word at the dotted `path`, defaults too; none where the case has no such word.
     pub fn word_at(&self, path: &str) -> Option<String> {
         self.value_at(path)?.as_str().map(str::to_owned)

@@ -51,7 +51,10 @@ impl Study {
 
     /// The value of an input in the case as it is; none where the case leaves it out.
     pub fn value_of_case(&self, input: &Input) -> Option<Level> {
-        let number = self.case.number_at(&input.key).map(Level::Number);
+        let number = self
+            .case
+            .number_at_or_written(&input.key)
+            .map(Level::Number);
         number.or_else(|| self.case.word_at(&input.key).map(Level::Word))
     }
 

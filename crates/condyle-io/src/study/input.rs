@@ -120,7 +120,7 @@ fn filled(
         Variation::Triangular(keys) => &mut keys.mode,
         Variation::Uniform(_) | Variation::Levels(_) => return Some(variation),
     };
-    *middle = middle.or_else(|| case.number_at(key));
+    *middle = middle.or_else(|| case.number_at_or_written(key));
     if middle.is_none() {
         let key = key.to_owned();
         log.problem(span.clone(), StudyReason::NoMiddle { key });

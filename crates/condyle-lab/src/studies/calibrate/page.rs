@@ -75,74 +75,72 @@ fn of_held_out(held_out: &HeldOut) -> String {
 }
 
 fn of_left(before: &Left, after: &Left) -> String {
-    let stance = |off: &OffInStance| {
-        let OffInStance {
-            mean_percent,
-            most_percent,
-            of_highest_percent,
-        } = off;
-        format!(
-            "{mean_percent:.1} % (most {most_percent:.1} %, of the highest {of_highest_percent:+.1} %)"
-        )
-    };
-    type Said<'a> = (&'a str, Box<dyn Fn(&Left) -> String + 'a>);
-    let said: Vec<Said<'_>> = vec![
-        (
-            "peak pressure in stance, first cycle",
-            Box::new(|left| stance(&left.first_cycle.peak_pressure)),
-        ),
-        (
-            "the same, last cycle",
-            Box::new(|left| stance(&left.last_cycle.peak_pressure)),
-        ),
-        (
-            "contact area in stance, first cycle",
-            Box::new(|left| stance(&left.first_cycle.contact_area)),
-        ),
-        (
-            "the same, last cycle",
-            Box::new(|left| stance(&left.last_cycle.contact_area)),
-        ),
-        (
-            "AP, first cycle",
-            Box::new(|left| format!("{:.3} mm", left.first_cycle.ap_mm)),
-        ),
-        (
-            "IE, first cycle",
-            Box::new(|left| format!("{:.3} degrees", left.first_cycle.ie_deg)),
-        ),
-        (
-            "mass lost",
-            Box::new(|left| {
-                format!(
-                    "{:+.2} % ({:.2} mg, {:.2} on the deformable insert)",
-                    left.mass_loss_percent, left.mass_loss_mg, left.deformable_mass_loss_mg
-                )
-            }),
-        ),
-        (
-            "deepest wear",
-            Box::new(|left| {
-                format!(
-                    "{:+.2} % ({:.4} mm, {:.4} on the deformable insert)",
-                    left.max_depth_percent, left.max_depth_mm, left.deformable_max_depth_mm
-                )
-            }),
-        ),
-        (
-            "time",
-            Box::new(|left| {
-                format!(
-                    "{:.2} s ({:.2} s on the deformable insert)",
-                    left.wall_s, left.deformable_wall_s
-                )
-            }),
-        ),
-    ];
-    let mut rows = vec![["", "law before", "table"].map(str::to_owned).to_vec()];
-    rows.extend(
-        said.iter()
-            .map(|(what, of)| vec![(*what).to_owned(), of(before), of(after)]),
-    );
+    let [mut rows, after] = [before, after].map(|left| {
+        let [mut said, of_run] = [of_cycles(left), of_run(left)];
+        said.extend(of_run);
+        said
+    });
+    for (row, after) in rows.iter_mut().zip(after) {
+        row.extend(after.into_iter().skip(1));
+    }
+    rows.insert(0, ["", "law before", "table"].map(str::to_owned).to_vec());
     aligned(&rows)
+}
+
+/// What is left of the first and the last cycle.
+fn of_cycles(left: &Left) -> Vec<Vec<String>> {
+    let (first, last) = (&left.first_cycle, &left.last_cycle);
+    vec![
+        row(
+            "peak pressure in stance, first cycle",
+            in_stance(first.peak_pressure),
+        ),
+        row("the same, last cycle", in_stance(last.peak_pressure)),
+        row(
+            "contact area in stance, first cycle",
+            in_stance(first.contact_area),
+        ),
+        row("the same, last cycle", in_stance(last.contact_area)),
+        row("AP, first cycle", format!("{:.3} mm", first.ap_mm)),
+        row("IE, first cycle", format!("{:.3} degrees", first.ie_deg)),
+    ]
+}
+
+/// What is left of the whole run.
+fn of_run(left: &Left) -> Vec<Vec<String>> {
+    let beside = |percent: f64, found: String, wanted: String| {
+        format!("{percent:+.2} % ({found}, {wanted} on the deformable insert)")
+    };
+    let mass = beside(
+        left.mass_loss_percent,
+        format!("{:.2} mg", left.mass_loss_mg),
+        format!("{:.2}", left.deformable_mass_loss_mg),
+    );
+    let depth = beside(
+        left.max_depth_percent,
+        format!("{:.4} mm", left.max_depth_mm),
+        format!("{:.4}", left.deformable_max_depth_mm),
+    );
+    let (wall_s, deformable_s) = (left.wall_s, left.deformable_wall_s);
+    let time = format!("{wall_s:.2} s ({deformable_s:.2} s on the deformable insert)");
+    vec![
+        row("mass lost", mass),
+        row("deepest wear", depth),
+        row("time", time),
+    ]
+}
+
+fn row(what: &str, said: String) -> Vec<String> {
+    vec![what.to_owned(), said]
+}
+
+fn in_stance(off: OffInStance) -> String {
+    let OffInStance {
+        mean_percent,
+        most_percent,
+        of_highest_percent,
+    } = off;
+    format!(
+        "{mean_percent:.1} % (most {most_percent:.1} %, of the highest {of_highest_percent:+.1} %)"
+    )
 }

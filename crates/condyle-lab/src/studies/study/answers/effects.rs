@@ -9,7 +9,8 @@ use super::super::{
     plan::Plan,
     store::{Column, Store},
 };
-use super::{Named, mean};
+use super::moments::mean;
+use super::named::Named;
 
 /// Slices of an input's values, each with as many tests.
 const SLICES: usize = 10;

@@ -5,7 +5,8 @@ use serde::Serialize;
 use condyle_io::study::{Design, Output};
 
 use super::super::{design::Walk, plan::Plan};
-use super::{Named, mean, standard_deviation};
+use super::moments::{mean, standard_deviation};
+use super::named::Named;
 
 /// How an output changes when an input goes from its low end to its high one, by walks (Morris 1991; Campolongo et al.
 /// 2007), in the unit of the output.

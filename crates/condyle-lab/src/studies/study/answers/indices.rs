@@ -7,7 +7,8 @@ use condyle_io::study::{Design, Output};
 use super::super::super::chance::Numbers;
 use super::super::plan::Plan;
 use super::interval::middle;
-use super::{Named, mean};
+use super::moments::mean;
+use super::named::Named;
 
 /// Samples of the bases by which intervals are found.
 const RESAMPLES: u64 = 500;
@@ -143,7 +144,7 @@ mod tests {
     #[test]
     fn verify_indices_of_ishigami() {
         let (a, b) = (7.0, 0.1);
-        let found = indices(3, 4096, |shares| {
+        let found = indices(3, 16_384, |shares| {
             let x: Vec<f64> = shares
                 .iter()
                 .map(|share| PI * (2.0 * share - 1.0))

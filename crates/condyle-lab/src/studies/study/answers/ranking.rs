@@ -8,7 +8,7 @@ use super::super::{
     store::Store,
 };
 use super::interval::of_share;
-use super::{mean, standard_deviation};
+use super::moments::{mean, standard_deviation};
 
 /// How designs compare, each tried under the same disturbances.
 #[derive(Clone, Debug, PartialEq, Serialize)]

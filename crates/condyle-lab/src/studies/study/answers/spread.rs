@@ -6,7 +6,9 @@ use condyle_io::study::{Bound, Output};
 
 use super::super::plan::Plan;
 use super::interval::{of_share, quantile};
-use super::{Named, is_of_sample, mean, standard_deviation};
+use super::moments::{mean, standard_deviation};
+use super::named::Named;
+use super::sample::is_of_sample;
 
 /// Percentiles that are told.
 pub const PERCENTILES: [f64; 7] = [2.5, 5.0, 25.0, 50.0, 75.0, 95.0, 97.5];

@@ -1,7 +1,9 @@
 //! Answers as tables in Markdown.
 
 use super::super::super::table::aligned;
-use super::{Answers, Best, Ranking};
+use super::all::Answers;
+use super::best::Best;
+use super::ranking::Ranking;
 
 /// Rows of a table of inputs at most; the page has all.
 const MOST_ROWS: usize = 12;
@@ -9,25 +11,29 @@ const MOST_ROWS: usize = 12;
 /// A heading, and rows of which the first is the head.
 type Table = (String, Vec<Vec<String>>);
 
-pub(super) fn markdown(answers: &Answers) -> String {
-    let tables = all(answers);
-    let mut parts: Vec<String> = tables.iter().map(|(_, rows)| aligned(rows)).collect();
-    parts.insert(1, failed(answers).unwrap_or_default());
-    parts.push(answers.best.as_ref().map(how_it_ended).unwrap_or_default());
-    parts.retain(|part| !part.is_empty());
-    parts.join("\n")
-}
+impl Answers {
+    /// Tables in Markdown, short enough for a terminal.
+    pub fn markdown(&self) -> String {
+        let tables = self.tables();
+        let mut parts: Vec<String> = tables.iter().map(|(_, rows)| aligned(rows)).collect();
+        parts.insert(1, failed(self).unwrap_or_default());
+        parts.push(self.best.as_ref().map(how_it_ended).unwrap_or_default());
+        parts.retain(|part| !part.is_empty());
+        parts.join("\n")
+    }
 
-pub(super) fn all(answers: &Answers) -> Vec<Table> {
-    let parts = [
-        Some(spreads(answers)),
-        answers.ranking.as_ref().map(ranking),
-        indices(answers),
-        elementary(answers),
-        effects(answers),
-        answers.best.as_ref().map(best),
-    ];
-    parts.into_iter().flatten().collect()
+    /// Tables with their headings, the first row of each its head.
+    pub(in super::super) fn tables(&self) -> Vec<Table> {
+        let parts = [
+            Some(spreads(self)),
+            self.ranking.as_ref().map(ranking),
+            indices(self),
+            elementary(self),
+            effects(self),
+            self.best.as_ref().map(best),
+        ];
+        parts.into_iter().flatten().collect()
+    }
 }
 
 fn table(heading: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {

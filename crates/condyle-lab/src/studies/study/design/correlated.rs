@@ -4,7 +4,7 @@ use condyle_io::study::Correlation;
 use nalgebra::DMatrix;
 
 use super::super::quantile::{deviations, share_below};
-use super::Place;
+use super::place::Place;
 
 /// Makes inputs that know nothing of each other go together: of their normal scores z it takes L z, where L L^T is the
 /// matrix of correlations.

@@ -1,6 +1,6 @@
 //! Every value with every other, or one at a time.
 
-use super::Place;
+use super::place::Place;
 
 /// Where test `row` has its inputs, of which input `i` has `counts[i]` values: the last input changes fastest.
 pub(in super::super) fn factorial_places(row: u64, counts: &[u64]) -> Vec<Place> {

@@ -1,8 +1,8 @@
 //! A Latin hypercube, test by test.
 
 use super::super::super::chance::Numbers;
-use super::Place;
 use super::permutation::Permutation;
+use super::place::Place;
 
 /// Where test `row` of `tests` has its inputs: along each, one test lies in each of as many equal slices (McKay, Beckman
 /// and Conover 1979).

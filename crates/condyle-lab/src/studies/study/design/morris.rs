@@ -1,7 +1,7 @@
 //! Walks through the inputs, one step each.
 
 use super::super::super::chance::Numbers;
-use super::Place;
+use super::place::Place;
 
 /// One walk: from a point on a grid, every input steps once, in an order of chance (Morris 1991).
 pub(in super::super) struct Walk {

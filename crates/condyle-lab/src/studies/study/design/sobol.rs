@@ -1,7 +1,7 @@
 //! Points of Sobol, scrambled.
 
 use super::super::super::chance::{Numbers, mixed};
-use super::Place;
+use super::place::Place;
 use super::sobol_directions::DIRECTIONS;
 
 /// Axes that there are directions for, the first among them.
