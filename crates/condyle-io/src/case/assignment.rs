@@ -59,7 +59,7 @@ impl Assignment {
     }
 
     /// The one that gives `key` a value, written as in a case, but a word needs no quotes.
-    pub(crate) fn of(key: &str, text: String) -> Self {
+    pub fn of(key: &str, text: String) -> Self {
         let key = key.to_owned();
         Self { key, text }
     }

@@ -79,6 +79,8 @@ pub(crate) use source::{Source, read_source};
 pub(crate) use synonyms::SYNONYMS;
 pub(crate) use unit::split_unit;
 pub(crate) use unknown::{likeliest, nearest};
-pub(crate) use value::{number, quoted, quoted_list};
+#[cfg(feature = "file-system")]
+pub(crate) use value::quoted;
+pub(crate) use value::{number, quoted_list};
 pub(crate) use variants::variants;
 pub(crate) use words::{read_word, wrong_type};
