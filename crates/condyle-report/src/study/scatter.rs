@@ -54,7 +54,7 @@ fn panel(index: usize, cloud: &Cloud, size: (f64, f64)) -> Panel {
     Panel {
         id: format!("cloud-{index}"),
         title: cloud.title.clone(),
-        unit: format!("{} over {}", cloud.unit, cloud.across)
+        unit: format!("{} over {}", cloud.unit, short(&cloud.across))
             .trim_start()
             .to_owned(),
         positive: String::new(),
@@ -71,6 +71,13 @@ fn panel(index: usize, cloud: &Cloud, size: (f64, f64)) -> Panel {
         ],
         desc: format!("{} over {}.", cloud.title, cloud.across),
     }
+}
+
+/// The last word of a key, or what fits over a small picture.
+fn short(across: &str) -> String {
+    const LONGEST: usize = 22;
+    let last = across.rsplit('.').next().unwrap_or(across);
+    last.chars().take(LONGEST).collect()
 }
 
 /// Round numbers; around marks, a little room.

@@ -296,12 +296,7 @@ fn front(front: &Front) -> Option<Picture> {
             .map(|(_, one, other)| (*one, *other))
             .collect(),
     };
-    let svg = clouds_svg(
-        "Pareto front",
-        &[cloud],
-        1,
-        ["tests within all limits", "none is better in both"],
-    );
+    let svg = clouds_svg("Pareto front", &[cloud], 1, ["within limits", "the front"]);
     Some((
         "pareto.svg",
         "Tests within all limits; on the line, none is better in both.".to_owned(),
