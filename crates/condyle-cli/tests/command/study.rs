@@ -15,6 +15,8 @@ cycles = 100_000
 updates = 1
 [time]
 increments = 40
+[machine.axial_force]
+waveform = \"paper-like\"
 ";
 
 /// Two inputs by a design.

@@ -168,7 +168,7 @@ impl Form {
         let [table, file] = self.ways;
         match (section.value(table), section.value(file)) {
             (Some(_), None) => self.inline(section, log),
-            (None, Some(_)) => self.from_file(section, log),
+            (None, Some(_)) => self.of_file(section, log),
             (Some(_), Some(_)) => {
                 let reason = KeyReason::Both {
                     section: section.name(),
@@ -216,7 +216,7 @@ impl Form {
     }
 
     /// The points of a CSV file.
-    fn from_file(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
+    fn of_file(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
         let key = self.ways[1];
         let value = section.value(key)?;
         let file = DataFile::read(value, &self.file_key(), log)?;

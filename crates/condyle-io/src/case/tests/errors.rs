@@ -287,7 +287,8 @@ fn unknown_word_offers_the_nearest_and_lists_all() {
         &[
             "`law` cannot be \"logaritmic\"",
             "   :       ^^^^^^^^^^^^",
-            "did you mean \"logarithmic\"? It can be \"linear\", \"logarithmic\", \"softening\", \"tabulated\" or \"tabulated-strain\"",
+            "did you mean \"logarithmic\"? It can be \"linear\", \"logarithmic\", \"softening\", \"tabulated\" or",
+            "\"tabulated-strain\"",
         ],
     );
     let shown = refusal("side = \"up\"\n");
