@@ -15,7 +15,7 @@ impl Store {
     pub fn write_csv(&self, out: &mut dyn Write) -> Result<io::Result<()>, StudyError> {
         self.checked(|connection| {
             let mut statement = connection.prepare("SELECT * FROM tests ORDER BY \"row\"")?;
-            let names: Vec<String> = statement.column_names().into_iter().map(cell).collect();
+            let names: Vec<String> = statement.column_names().map(cell).collect();
             let mut written = writeln!(out, "{}", names.join(","));
             let mut rows = statement.query([])?;
             while let Some(row) = rows.next()? {
