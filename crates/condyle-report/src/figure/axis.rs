@@ -2,6 +2,9 @@
 
 use crate::number::fixed;
 
+/// More are hard to read.
+const MOST_DECIMALS: usize = 5;
+
 /// A range with ticks at multiples of a round step; both ends are ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Axis {
@@ -31,9 +34,18 @@ impl Axis {
         (0..=self.intervals()).map(|tick| self.low + tick as f64 * self.step)
     }
 
-    /// A tick's text, with as many decimals as the step has.
+    /// A tick's text, with as many decimals as the step has; by a power of ten where these would be many.
     pub(crate) fn label(&self, tick: f64) -> String {
-        fixed(tick, decimals(self.step))
+        let decimals = decimals(self.step);
+        if decimals <= MOST_DECIMALS {
+            return fixed(tick, decimals);
+        }
+        if tick.abs() < self.step / 2.0 {
+            return fixed(0.0, 0);
+        }
+        let power = tick.abs().log10().floor();
+        let digits = decimals.saturating_sub(-power as usize);
+        format!("{}e{power}", fixed(tick / 10f64.powf(power), digits))
     }
 
     /// Where `value` lies from the low end, 0, to the high end, 1.
@@ -110,5 +122,12 @@ mod tests {
             .label(2e4),
             "20\u{202f}000"
         );
+        let factors = Axis {
+            low: 2e-7,
+            high: 3e-7,
+            step: 5e-8,
+        };
+        let labels: Vec<String> = factors.ticks().map(|tick| factors.label(tick)).collect();
+        assert_eq!(labels, ["2.0e-7", "2.5e-7", "3.0e-7"]);
     }
 }

@@ -73,11 +73,23 @@ fn panel(index: usize, cloud: &Cloud, size: (f64, f64)) -> Panel {
     }
 }
 
-/// The last word of a key, or what fits over a small picture.
+/// The last word of a key, or what fits over a small picture; two of one that says little alone.
 fn short(across: &str) -> String {
-    const LONGEST: usize = 22;
-    let last = across.rsplit('.').next().unwrap_or(across);
-    last.chars().take(LONGEST).collect()
+    const LONGEST: usize = 18;
+    let mut words = across.rsplit('.');
+    let last = words.next().unwrap_or(across);
+    let whole = match words.next() {
+        Some(before) if matches!(last, "scale" | "offset") => format!("{before}.{last}"),
+        _ => last.to_owned(),
+    };
+    if whole.chars().count() <= LONGEST {
+        return whole;
+    }
+    whole
+        .chars()
+        .take(LONGEST - 1)
+        .chain(['\u{2026}'])
+        .collect()
 }
 
 /// Round numbers; around marks, a little room.

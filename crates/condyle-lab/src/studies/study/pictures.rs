@@ -7,7 +7,7 @@ use condyle_report::study::{
     write_study_page,
 };
 
-use super::answers::{Answers, Best, Effect, Front, Ranking, Spread};
+use super::answers::{Answers, Best, Effect, Front, Ranking, Spread, shown};
 use super::error::StudyError;
 
 /// Inputs that pictures show at most, those that matter most.
@@ -181,9 +181,23 @@ fn tornado(answers: &Answers) -> Option<Picture> {
         middle: Some(spread.mean),
         bars,
     });
-    let said = "From the least to the most of the means over a tenth of each input's values, or at each of its levels; the \
-                line is the mean of all tests.";
-    Some(("tornado.svg", said.to_owned(), svg))
+    let by_chance = effects_on(answers, spread.output)
+        .iter()
+        .filter_map(|effect| effect.span_by_chance)
+        .reduce(f64::max)
+        .map(|most| {
+            let unit = superscript(spread.unit);
+            format!(
+                " An input that does nothing would span up to {} {unit} by chance.",
+                shown(most)
+            )
+        });
+    let said = format!(
+        "From the least to the most of the means over a tenth of each input's values, or at each of its levels; the line \
+         is the mean of all tests.{}",
+        by_chance.unwrap_or_default()
+    );
+    Some(("tornado.svg", said, svg))
 }
 
 fn distributions(answers: &Answers) -> Option<Picture> {

@@ -22,3 +22,4 @@ pub use front::Front;
 pub use indices::Indices;
 pub use ranking::{Designed, Ranking};
 pub use spread::{Beyond, Spread};
+pub(super) use table::shown;

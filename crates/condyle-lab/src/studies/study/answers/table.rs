@@ -45,7 +45,7 @@ fn table(heading: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) 
 }
 
 /// Four significant digits.
-fn shown(value: f64) -> String {
+pub(in super::super) fn shown(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value:.0}");
     }
@@ -215,12 +215,14 @@ fn effects(answers: &Answers) -> Option<Table> {
         vec![
             effect.name.clone(),
             shown(effect.span),
+            effect.span_by_chance.map_or_else(|| "-".to_owned(), shown),
             correlation.unwrap_or_else(|| "-".to_owned()),
         ]
     });
     let head = [
         "input".to_owned(),
         format!("moves {output} by"),
+        "by chance up to".to_owned(),
         "rank correlation".to_owned(),
     ];
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
