@@ -12,7 +12,7 @@ use super::input::Input;
 use super::reason::StudyReason;
 use super::rows::{Rows, read_rows};
 use super::tried::Trial;
-use crate::case::Case;
+use crate::case::{Case, CaseReader};
 use crate::files::{Disk, Files};
 use crate::keyed::{Base, Log, Problems, Section, Settings, Variants, read_document, read_source};
 
@@ -33,18 +33,32 @@ impl Study {
     /// # Errors
     /// Everything that is wrong with either, a key that the case does not have, and values that it does not take.
     pub fn read(path: &Path) -> Result<Self, Problems> {
-        let disk: Arc<dyn Files> = Arc::new(Disk);
-        let source = read_source(disk.as_ref(), path).map_err(Problems::unreadable)?;
-        let base = Base::of(&disk, path);
+        Self::read_in(Disk, path)
+    }
+
+    /// The same from `files`, which have the case and the files that it names as well.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_in(files: impl Files + 'static, path: &Path) -> Result<Self, Problems> {
+        let files: Arc<dyn Files> = Arc::new(files);
+        let source = read_source(files.as_ref(), path).map_err(Problems::unreadable)?;
+        let base = Base::of(&files, path);
+        let cases = CaseReader::sharing(Arc::clone(&files));
         let study = read_document(&source, base, |root, log| {
-            read_study(root, base.folder, log)
+            read_study(root, base.folder, cases, log)
         })?;
         let text = source.inner().clone();
         Ok(Self { text, ..study })
     }
 }
 
-fn read_study(root: &Section<'_>, folder: &Path, log: &mut Log<'_>) -> Option<Study> {
+fn read_study(
+    root: &Section<'_>,
+    folder: &Path,
+    cases: CaseReader,
+    log: &mut Log<'_>,
+) -> Option<Study> {
     root.check_keys(TABLES, log);
     let heading = HeadingKeys::read(root, log);
     let section = root.table("design", log);
@@ -52,13 +66,8 @@ fn read_study(root: &Section<'_>, folder: &Path, log: &mut Log<'_>) -> Option<St
     let answers = Answers::read(root, log);
     let (heading, design) = (heading?, design?);
     let case_path = heading.case.path().to_path_buf();
-    let case = match Case::read(&case_path) {
-        Ok(case) => case,
-        Err(problems) => {
-            log.of_other_file(&problems);
-            return None;
-        }
-    };
+    let case = cases.read(&case_path);
+    let case = case.map_err(|problems| log.of_other_file(&problems)).ok()?;
     let Rows { inputs, rows } = inputs(root, &design, &case, log)?;
     let alternatives = alternatives(root, log)?;
     let correlations = correlations(root, &inputs, log)?;
@@ -66,6 +75,7 @@ fn read_study(root: &Section<'_>, folder: &Path, log: &mut Log<'_>) -> Option<St
         .canonicalize()
         .unwrap_or_else(|_| folder.to_path_buf());
     let trial = Trial {
+        cases: &cases,
         case_path: &case_path,
         folder: &folder,
     };
@@ -95,6 +105,7 @@ fn read_study(root: &Section<'_>, folder: &Path, log: &mut Log<'_>) -> Option<St
         rows,
         text: String::new(),
         folder,
+        cases,
     })
 }
 

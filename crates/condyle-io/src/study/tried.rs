@@ -5,7 +5,7 @@ use std::path::Path;
 use super::alternative::Alternative;
 use super::input::Input;
 use super::reason::StudyReason;
-use crate::case::{Assignment, Case, ChangeError};
+use crate::case::{Assignment, CaseReader, ChangeError};
 use crate::keyed::{Level, Log};
 
 /// What sets `key` of a case; files are counted from `folder`, the study's.
@@ -24,6 +24,7 @@ pub(super) fn assignment(folder: &Path, key: &str, level: &Level) -> Assignment 
 
 /// A case, and the study's folder.
 pub(super) struct Trial<'a> {
+    pub cases: &'a CaseReader,
     pub case_path: &'a Path,
     pub folder: &'a Path,
 }
@@ -69,7 +70,7 @@ impl Trial<'_> {
 
     /// Why the case does not take what is set, and what to do.
     fn refused(&self, set: &[Assignment]) -> Option<(String, Option<String>)> {
-        match Case::read_changed(self.case_path, set) {
+        match self.cases.read_changed(self.case_path, set) {
             Ok(_) => None,
             Err(ChangeError::Assignment(error)) => Some((error.to_string(), None)),
             Err(ChangeError::Case(problems)) => {
