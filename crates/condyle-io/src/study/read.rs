@@ -7,6 +7,7 @@ use super::alternative::Alternative;
 use super::answers::{Answers, output};
 use super::contents::Study;
 use super::correlation::Correlation;
+use super::count::check_count;
 use super::declared::{Design, HeadingKeys, Variation};
 use super::input::Input;
 use super::reason::StudyReason;
@@ -15,6 +16,10 @@ use super::tried::Trial;
 use crate::case::{Case, CaseReader};
 use crate::files::{Disk, Files};
 use crate::keyed::{Base, Log, Problems, Section, Settings, Variants, read_document, read_source};
+
+/// Values that are tried on the case before the first test, at most: a thousand files of rows would take a while, and what the
+/// case does not take is then the row's reason.
+const MOST_TRIED: usize = 512;
 
 const TABLES: &[&str] = &[
     "case",
@@ -80,9 +85,9 @@ fn read_study(
         folder: &folder,
     };
     check_twice(&inputs, log);
-    inputs
-        .iter()
-        .for_each(|input| trial.check_input(input, &inputs, log));
+    inputs.iter().fold(MOST_TRIED, |left, input| {
+        trial.check_input(input, &inputs, left, log)
+    });
     alternatives
         .iter()
         .for_each(|one| trial.check_alternative(one, log));
@@ -118,6 +123,7 @@ fn inputs(root: &Section<'_>, design: &Design, case: &Case, log: &mut Log<'_>) -
         }
         return read_rows(&root.table("design", log), &keys.file, case, log);
     }
+    check_count("inputs", listed.len(), root.key_span("vary"), log)?;
     let read: Vec<Option<Input>> = listed
         .iter()
         .map(|one| Input::read(one, case, log))
@@ -136,6 +142,7 @@ fn inputs(root: &Section<'_>, design: &Design, case: &Case, log: &mut Log<'_>) -
 
 fn alternatives(root: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Alternative>> {
     let listed = root.list("alternative", log)?;
+    check_count("designs", listed.len(), root.key_span("alternative"), log)?;
     let read: Vec<_> = listed
         .iter()
         .map(|one| Alternative::read(one, log))

@@ -30,9 +30,18 @@ pub(super) struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// Reports every end of an input that the case does not take, alone or with the others as they may be.
-    pub fn check_input(&self, input: &Input, others: &[Input], log: &mut Log<'_>) {
-        for level in input.ends() {
+    /// Reports what an input has at its ends and the case does not take, alone or with the others as they may be; no more than
+    /// `left` values are tried, which is how many then remain.
+    pub fn check_input(
+        &self,
+        input: &Input,
+        others: &[Input],
+        left: usize,
+        log: &mut Log<'_>,
+    ) -> usize {
+        let ends = input.ends();
+        let remain = left.saturating_sub(ends.len());
+        for level in ends.into_iter().take(left) {
             let own = assignment(self.folder, &input.key, &level);
             let Some((why, advice)) = self.refused(std::slice::from_ref(&own)) else {
                 continue;
@@ -49,9 +58,10 @@ impl Trial<'_> {
                     advice,
                 };
                 log.problem(input.span.clone(), reason);
-                return;
+                break;
             }
         }
+        remain
     }
 
     /// Reports what a design sets and the case does not take.
