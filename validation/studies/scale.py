@@ -108,7 +108,7 @@ def main() -> None:
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
         distributed.Client(cluster) as client,
     ):
-        dask_s = seconds_of(study, client=client, tests_a_task=max(1, given.tests // 20))
+        dask_s = seconds_of(study, client=client)
         cost_s = task_cost_s(given.study, client, 500)
     mean_s = sum(times_s) / len(times_s)
     print("| what | measured |\n| --- | --- |")
