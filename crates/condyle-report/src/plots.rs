@@ -49,7 +49,7 @@ fn panel((index, plot): (usize, &Plot)) -> Panel {
         x: horizontal(plot),
         x_marks: plot.x_marks.clone(),
         x_unit: "",
-        x_title: plot.x_title,
+        x_title: plot.x_title.to_owned(),
         size: SIZE,
         from_zero: plot.from_zero,
         least_span: plot.least_span,

@@ -46,7 +46,7 @@ pub(crate) struct Panel {
     /// Unit of the horizontal axis, after its last tick; may be empty.
     pub(crate) x_unit: &'static str,
     /// What the horizontal axis shows, on a line below it; may be empty.
-    pub(crate) x_title: &'static str,
+    pub(crate) x_title: String,
     /// Width and height, px.
     pub(crate) size: (f64, f64),
     /// Whether the vertical axis starts at 0.
@@ -96,10 +96,12 @@ impl Panel {
     }
 
     fn heading(&self) -> String {
-        let (title, unit) = (escape(&self.title), escape(&self.unit));
-        let mut out = format!(
-            r#"<text x="{LEFT}" y="16" class="title">{title}<tspan class="unit">, {unit}</tspan></text>"#
-        );
+        let title = escape(&self.title);
+        let unit = match escape(&self.unit) {
+            unit if unit.is_empty() => String::new(),
+            unit => format!(r#"<tspan class="unit">, {unit}</tspan>"#),
+        };
+        let mut out = format!(r#"<text x="{LEFT}" y="16" class="title">{title}{unit}</text>"#);
         if !self.positive.is_empty() {
             let x = self.right();
             let positive = escape(&self.positive);
@@ -155,7 +157,7 @@ impl Panel {
         let (x, y, title) = (
             (LEFT + self.right()) / 2.0,
             self.bottom() + 33.0,
-            escape(self.x_title),
+            escape(&self.x_title),
         );
         format!(r#"<text x="{x:.1}" y="{y}" text-anchor="middle">{title}</text>"#)
     }

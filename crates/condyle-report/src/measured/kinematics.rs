@@ -81,7 +81,7 @@ fn panel(channel: &PlottedColumn, title: String, positive: &str, curves: Vec<Cur
         },
         x_marks: Vec::new(),
         x_unit: "%",
-        x_title: "",
+        x_title: String::new(),
         size: SIZE,
         from_zero: false,
         least_span: channel.least_span / 5.0,

@@ -64,7 +64,7 @@ fn panel(curves: Vec<Curve>) -> Panel {
         x: Axis::covering(0.0, most, 1e-6, 6),
         x_marks: Vec::new(),
         x_unit: "",
-        x_title: "million cycles",
+        x_title: "million cycles".to_owned(),
         size: SIZE,
         from_zero: true,
         least_span: f64::MIN_POSITIVE,

@@ -182,7 +182,7 @@ fn panel(
         },
         x_marks: Vec::new(),
         x_unit: "%",
-        x_title: "",
+        x_title: String::new(),
         size: SIZE,
         from_zero: channel.from_zero,
         least_span: channel.least_span,

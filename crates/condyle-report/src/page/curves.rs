@@ -86,7 +86,7 @@ fn panel(quantity: &Quantity, table: &Table) -> Option<Panel> {
         x: Axis::covering(0.0, points.last()?.0, 1e-6, 5),
         x_marks: Vec::new(),
         x_unit: "",
-        x_title: unit.name,
+        x_title: unit.name.to_owned(),
         size: SIZE,
         from_zero: true,
         least_span: f64::MIN_POSITIVE,

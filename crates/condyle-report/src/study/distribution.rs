@@ -69,7 +69,7 @@ fn panel((index, one): (usize, &Distribution)) -> Panel {
         x: Axis::covering(low, high, 1e-9 * high.abs().max(1e-9), MOST_INTERVALS),
         x_marks: Vec::new(),
         x_unit: "",
-        x_title: "",
+        x_title: String::new(),
         size: SIZE,
         from_zero: true,
         least_span: 1e-6,

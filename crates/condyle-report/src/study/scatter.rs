@@ -24,14 +24,14 @@ pub struct Cloud {
 /// The text of an SVG file with the clouds in rows of `columns`; `keys` says what points and line are.
 pub fn clouds_svg(title: &str, clouds: &[Cloud], columns: usize, keys: [&str; 2]) -> String {
     let size = if columns > 2 {
-        (236.0, 190.0)
+        (236.0, 206.0)
     } else {
         (480.0, 300.0)
     };
     let panels: Vec<Panel> = clouds
         .iter()
         .enumerate()
-        .map(|(index, one)| panel(index, one, size))
+        .map(|(index, one)| panel(index, one, span_of(clouds, &one.title), size))
         .collect();
     let names: Vec<String> = clouds
         .iter()
@@ -45,8 +45,27 @@ pub fn clouds_svg(title: &str, clouds: &[Cloud], columns: usize, keys: [&str; 2]
     sheet(title, &names.join("; "), &panels, columns.max(1), &used)
 }
 
-fn panel(index: usize, cloud: &Cloud, size: (f64, f64)) -> Panel {
-    let all = || cloud.points.iter().chain(&cloud.line);
+/// How far the clouds of one output reach at most: with axes of that length, what moves it little looks so.
+fn span_of(clouds: &[Cloud], title: &str) -> f64 {
+    let own = clouds.iter().filter(|cloud| cloud.title == title);
+    let span = |cloud: &Cloud| {
+        let up = cloud.all().map(|point| point.1);
+        let (low, high) = up.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), up| {
+            (low.min(up), high.max(up))
+        });
+        (high - low).max(0.0)
+    };
+    own.map(span).fold(0.0, f64::max)
+}
+
+impl Cloud {
+    fn all(&self) -> impl Iterator<Item = &(f64, f64)> {
+        self.points.iter().chain(&self.line)
+    }
+}
+
+fn panel(index: usize, cloud: &Cloud, span: f64, size: (f64, f64)) -> Panel {
+    let all = || cloud.all();
     let low = all().map(|point| point.0).fold(f64::INFINITY, f64::min);
     let high = all().map(|point| point.0).fold(f64::NEG_INFINITY, f64::max);
     let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
@@ -54,17 +73,15 @@ fn panel(index: usize, cloud: &Cloud, size: (f64, f64)) -> Panel {
     Panel {
         id: format!("cloud-{index}"),
         title: cloud.title.clone(),
-        unit: format!("{} over {}", cloud.unit, short(&cloud.across))
-            .trim_start()
-            .to_owned(),
+        unit: cloud.unit.clone(),
         positive: String::new(),
         x: across(cloud, low, high),
         x_marks: cloud.marks.clone(),
         x_unit: "",
-        x_title: "",
+        x_title: short(&cloud.across),
         size,
         from_zero: false,
-        least_span: 1e-6 * up.max(1e-6),
+        least_span: span.max(1e-6 * up.max(1e-6)),
         curves: vec![
             curve("specimen", &apart(&cloud.points), true),
             curve("last", &cloud.line, true),
@@ -73,9 +90,9 @@ fn panel(index: usize, cloud: &Cloud, size: (f64, f64)) -> Panel {
     }
 }
 
-/// The last word of a key, or what fits over a small picture; two of one that says little alone.
+/// The last word of a key, or what fits under a small picture; two of one that says little alone.
 fn short(across: &str) -> String {
-    const LONGEST: usize = 18;
+    const LONGEST: usize = 28;
     let mut words = across.rsplit('.');
     let last = words.next().unwrap_or(across);
     let whole = match words.next() {
