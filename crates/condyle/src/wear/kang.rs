@@ -95,14 +95,15 @@ impl Kang {
     fn weighed_work_mpa_mm(&self, cycle: &MeanCycle<'_>) -> [f64; 2] {
         let mut work = [0.0; 2];
         let at_most = (-self.decay_per_mpa * self.most_pressure_mpa).exp();
-        for (share, moment) in cycle.moments() {
+        // Inside out: the moments of all activities are a chain, which steps slowly from outside.
+        cycle.moments().for_each(|(share, moment)| {
             let slip_work = share * moment.pressure_mpa * moment.distance_mm();
             if moment.pressure_mpa > self.most_pressure_mpa {
                 work[1] += slip_work * at_most;
             } else {
                 work[0] += slip_work * (-self.decay_per_mpa * moment.pressure_mpa).exp();
             }
-        }
+        });
         work
     }
 }
