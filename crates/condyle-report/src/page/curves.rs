@@ -57,18 +57,30 @@ const QUANTITIES: [Quantity; 6] = [
 
 /// A panel for each quantity that the folder holds, mass loss and depth first.
 pub(crate) fn panels(results: &Results) -> Vec<Panel> {
+    panels_up_to(results, most_cycles(results))
+}
+
+/// The cycles at the last update.
+pub(crate) fn most_cycles(results: &Results) -> f64 {
+    let table = results.wear.as_ref();
+    let cycles = table.and_then(|table| table.column("cycles"));
+    cycles.unwrap_or_default().iter().copied().fold(0.0, f64::max)
+}
+
+/// The same with an axis that goes to so many cycles.
+pub(crate) fn panels_up_to(results: &Results, most: f64) -> Vec<Panel> {
     let Some(table) = &results.wear else {
         return Vec::new();
     };
     QUANTITIES
         .iter()
-        .filter_map(|quantity| panel(quantity, table))
+        .filter_map(|quantity| panel(quantity, table, most))
         .collect()
 }
 
-fn panel(quantity: &Quantity, table: &Table) -> Option<Panel> {
+fn panel(quantity: &Quantity, table: &Table, most: f64) -> Option<Panel> {
     let cycles = table.column("cycles")?;
-    let unit = CycleUnit::of(cycles.iter().copied().fold(0.0, f64::max));
+    let unit = CycleUnit::of(most);
     let points = points(quantity, cycles, table.column(quantity.column)?, unit.size);
     let &(_, last) = points.last()?;
     let end = format!("{}\u{a0}{}", significant(last, 3), quantity.unit);
@@ -83,7 +95,7 @@ fn panel(quantity: &Quantity, table: &Table) -> Option<Panel> {
         title: quantity.title.to_owned(),
         unit: quantity.unit.to_owned(),
         positive: String::new(),
-        x: Axis::covering(0.0, points.last()?.0, 1e-6, 5),
+        x: Axis::covering(0.0, most / unit.size, 1e-6, 5),
         x_marks: Vec::new(),
         x_unit: "",
         x_title: unit.name,

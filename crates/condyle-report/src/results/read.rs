@@ -126,12 +126,20 @@ fn activities(
 }
 
 fn surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
-    let Some((_, path)) = meshes(folder)?.pop() else {
-        return Ok(None);
-    };
-    check_file(&path)?;
-    let file = read_vtu_points(&path)?;
-    SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path).map(Some)
+    let last = meshes(folder)?.pop();
+    last.map(|(_, path)| surface_of(&path)).transpose()
+}
+
+/// The articulating surface before the first cycle; none where there is no mesh of it.
+pub(crate) fn unworn_surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
+    let first = meshes(folder)?.into_iter().find(|(update, _)| *update == 0);
+    first.map(|(_, path)| surface_of(&path)).transpose()
+}
+
+fn surface_of(path: &Path) -> Result<SurfaceFields, ReportError> {
+    check_file(path)?;
+    let file = read_vtu_points(path)?;
+    SurfaceFields::of_mesh(&file.mesh, &file.point_data, path)
 }
 
 /// The meshes that a run wrote: `insert_NNNN.vtu`, and the number of updates of each, which rises.
@@ -162,6 +170,8 @@ fn case(path: PathBuf) -> Result<Option<String>, ReportError> {
         return Ok(None);
     };
     match text.parse::<toml::Table>() {
+        // A run ends every line of it.
+        Ok(_) if !text.is_empty() && !text.ends_with('\n') => Err(ReportError::CutShort { path }),
         Ok(_) => Ok(Some(text)),
         Err(error) => Err(ReportError::NotACase {
             path,
