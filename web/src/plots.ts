@@ -10,6 +10,8 @@ export interface Curve {
   name: string;
   values: (number | null)[];
   colour: string;
+  // Dots without a line between them.
+  isDotted?: boolean;
 }
 
 export interface Curves {
@@ -99,11 +101,13 @@ function settings({ across, up, curves }: Curves, { linked }: PlotOptions): Omit
     cursor: { drag: { x: true, y: false }, ...(linked ? { sync: { key: linked, scales: ["x", null] as [string, null] } } : {}) },
     series: [
       { label: across.label, value: (_, value) => (value === null ? "–" : inDigits(value)) },
-      ...curves.map(({ name, colour }) => ({
+      ...curves.map(({ name, colour, isDotted }) => ({
         label: name,
         stroke: colour || ink,
         width: 1.6,
-        points: { show: curves.length === 1 },
+        spanGaps: true,
+        ...(isDotted ? { paths: () => null } : {}),
+        points: { show: isDotted || curves.filter((curve) => !curve.isDotted).length === 1 },
         value: (_: uPlot, value: number | null) => (value === null ? "–" : `${inDigits(value)} ${up.unit}`),
       })),
     ],

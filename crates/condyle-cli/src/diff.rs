@@ -128,8 +128,11 @@ fn add_maps(differences: &Differences, lines: &mut Lines) {
 
 /// So many significant digits, without powers of ten where few zeros do.
 fn digits(value: f64, count: i32) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     let magnitude = value.abs().log10().floor() as i32;
-    if value == 0.0 || !(-4..7).contains(&magnitude) {
+    if !(-4..7).contains(&magnitude) {
         return format!("{value:.*e}", (count - 1) as usize);
     }
     format!("{value:.*}", (count - 1 - magnitude).max(0) as usize)

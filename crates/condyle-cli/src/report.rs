@@ -37,7 +37,8 @@ fn side_by_side(folders: &[PathBuf], arguments: &Report) -> ExitCode {
         Ok((page, runs)) => {
             for run in &runs {
                 let left_out = run.results.left_out.iter();
-                left_out.for_each(|why| tell(format_args!("warning: left out of {}: {why}", run.name)));
+                left_out
+                    .for_each(|why| tell(format_args!("warning: left out of {}: {why}", run.name)));
             }
             folders.iter().for_each(|folder| note_unfinished(folder));
             output::print(&format!("wrote {}\n", page.display()))

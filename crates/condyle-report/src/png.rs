@@ -28,7 +28,11 @@ pub fn png(svg: &str, dots: f32) -> Option<Vec<u8>> {
     let tree = Tree::from_str(svg, &options).ok()?;
     let size = tree.size().to_int_size().scale_by(dots)?;
     let mut dots_of = Pixmap::new(size.width(), size.height())?;
-    resvg::render(&tree, Transform::from_scale(dots, dots), &mut dots_of.as_mut());
+    resvg::render(
+        &tree,
+        Transform::from_scale(dots, dots),
+        &mut dots_of.as_mut(),
+    );
     dots_of.encode_png().ok()
 }
 
@@ -50,7 +54,8 @@ mod tests {
     #[test]
     fn a_picture_has_its_shapes_and_its_letters() {
         let square = r#"<path class="last" d="M10 10H60V60"/>"#;
-        let lettered = format!(r#"{square}<text x="10" y="80">Wear \u{2212}0.4 mm\u{b2}</text>"#);
+        let letters = "Wear \u{2212}0.4 mm\u{b2}";
+        let lettered = format!(r#"{square}<text x="10" y="80">{letters}</text>"#);
         let [bare, shape, both] =
             ["", square, &lettered].map(|body| inked(&alone("a", "b", (200.0, 100.0), body)));
         assert_eq!(bare, 0);

@@ -40,7 +40,10 @@ fn says(bench: &Bench, name: &str, how: &str) {
     for (heading, of) in headings {
         // Without its last mesh a run shows the one before.
         let is_shown = page.contains(heading);
-        assert!(is_shown || of == name, "{name} {how}: {heading} is not shown");
+        assert!(
+            is_shown || of == name,
+            "{name} {how}: {heading} is not shown"
+        );
     }
 }
 
@@ -111,5 +114,13 @@ fn a_folder_of_which_nothing_can_be_read_is_refused_with_the_reasons() {
     bench.write("out/summary.json", "{");
     bench.write("out/wear.csv", "cycles,mass_loss_mg\n1");
     let said = bench.say(&["report", "out"]);
-    said.assert_refused(2, &["Nothing in the folder", "summary.json", "wear.csv", "cut short"]);
+    said.assert_refused(
+        2,
+        &[
+            "Nothing in the folder",
+            "summary.json",
+            "wear.csv",
+            "cut short",
+        ],
+    );
 }

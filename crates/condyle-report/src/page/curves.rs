@@ -64,7 +64,11 @@ pub(crate) fn panels(results: &Results) -> Vec<Panel> {
 pub(crate) fn most_cycles(results: &Results) -> f64 {
     let table = results.wear.as_ref();
     let cycles = table.and_then(|table| table.column("cycles"));
-    cycles.unwrap_or_default().iter().copied().fold(0.0, f64::max)
+    cycles
+        .unwrap_or_default()
+        .iter()
+        .copied()
+        .fold(0.0, f64::max)
 }
 
 /// The same with an axis that goes to so many cycles.
@@ -72,9 +76,38 @@ pub(crate) fn panels_up_to(results: &Results, most: f64) -> Vec<Panel> {
     let Some(table) = &results.wear else {
         return Vec::new();
     };
-    QUANTITIES
-        .iter()
-        .filter_map(|quantity| panel(quantity, table, most))
+    let panels = QUANTITIES.iter().filter_map(|quantity| {
+        let mut panel = panel(quantity, table, most)?;
+        if let (MASS, Some(measured)) = (quantity.column, &results.measured_wear) {
+            // Below the run's own curve.
+            panel
+                .curves
+                .splice(0..0, weighed(measured, CycleUnit::of(most).size));
+        }
+        Some(panel)
+    });
+    panels.collect()
+}
+
+/// The column that specimens are weighed for.
+const MASS: &str = "mass_loss_mg";
+
+/// What each specimen lost.
+fn weighed(measured: &Table, unit: f64) -> Vec<Curve> {
+    let Some(cycles) = measured.column("cycles") else {
+        return Vec::new();
+    };
+    let specimens = measured.names().iter().filter(|name| *name != "cycles");
+    let columns = specimens.filter_map(|name| measured.column(name));
+    columns
+        .map(|losses| Curve {
+            class: "specimen",
+            points: (cycles.iter().map(|cycles| cycles / unit))
+                .zip(losses.iter().copied())
+                .collect(),
+            dots: true,
+            end: None,
+        })
         .collect()
 }
 

@@ -74,6 +74,8 @@ struct Page<'a> {
     wear_curves: Vec<String>,
     channels: Vec<String>,
     cycles: Option<(String, String)>,
+    /// Whether motions are measured, and wear.
+    measured: [bool; 2],
     ranges: Vec<ranges::ChannelRange>,
     small_maps: Vec<maps::Small>,
     numbers: Vec<numbers::Group>,
@@ -115,6 +117,7 @@ impl<'a> Page<'a> {
             wear_curves: svgs(&wear_panels(results)),
             channels: svgs(&kinematics_panels(results)),
             cycles: channels::cycle_names(results),
+            measured: [&results.measured_kinematics, &results.measured_wear].map(Option::is_some),
             ranges: ranges::ranges(results),
             small_maps: maps::small(results, SMALL),
             numbers: numbers::groups(results),

@@ -516,7 +516,8 @@ fn under(key: &str, row: Listed) -> Listed {
 }
 
 /// What a number of the summary is called, and its unit, in the order of the page; of results, not of the work.
-pub(crate) fn results_in_words() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+pub(crate) fn results_in_words() -> impl Iterator<Item = (&'static str, &'static str, &'static str)>
+{
     const WORK: &str = "Computation";
     let of_results = GROUPS.iter().filter(|(heading, _)| *heading != WORK);
     let numbers = of_results.flat_map(|(_, numbers)| *numbers);
@@ -525,7 +526,10 @@ pub(crate) fn results_in_words() -> impl Iterator<Item = (&'static str, &'static
 
 /// The value of a number in its unit, as the page shows it.
 pub(crate) fn shown_value(key: &str, value: f64, digits: i32) -> String {
-    known_by(key).map_or_else(|| significant(value, digits), |number| shown(number, value, digits))
+    known_by(key).map_or_else(
+        || significant(value, digits),
+        |number| shown(number, value, digits),
+    )
 }
 
 fn known_by(key: &str) -> Option<&'static Known> {

@@ -65,6 +65,8 @@ impl Results {
         let mut of = |name: &str| part(table(&folder.join(name)), on_damage);
         let (wear, kinematics) = (of("wear.csv")?, of("kinematics.csv")?);
         let slip_paths = of("slip_paths.csv")?;
+        let measured_kinematics = of("compare/compare_kinematics.csv")?;
+        let measured_wear = of("compare/compare_wear.csv")?;
         Ok(Self {
             activities: activities(folder, summary.as_ref(), on_damage)?,
             summary,
@@ -74,6 +76,8 @@ impl Results {
             surface: part(surface(folder), on_damage)?,
             side: case.as_deref().map_or_else(Side::default, side),
             case,
+            measured_kinematics,
+            measured_wear,
             left_out: Vec::new(),
         })
     }

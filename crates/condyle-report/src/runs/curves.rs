@@ -51,7 +51,9 @@ fn curve(one: &Table, two: &Table, cycle: &'static str, name: &str) -> Option<Cu
         .iter()
         .filter_map(|&(percent, value)| Some((percent, at(&there, percent)? - value)))
         .collect();
-    let largest = apart.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let largest = apart
+        .iter()
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     let rms = (apart.iter().map(|(_, off)| off * off).sum::<f64>() / apart.len() as f64).sqrt();
     let values = || here.iter().map(|point| point.1);
     let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);

@@ -57,9 +57,14 @@ fn notes(first: &Run, second: &Run) -> Vec<String> {
         notes.extend(run.lacks());
     }
     let maps = first.maps_apart(second);
-    notes.extend(maps.map(|why| format!("Maps cannot be subtracted: {why}.")));
+    notes.extend(maps.map(|why| {
+        let [one, two] = [first, second].map(|run| &run.name);
+        format!("Maps of {one} and {two} cannot be subtracted: {why}.")
+    }));
     if first.results.side != second.results.side {
-        notes.push("One is a right knee and the other a left one: medial is on opposite sides.".to_owned());
+        notes.push(
+            "One is a right knee and the other a left one: medial is on opposite sides.".to_owned(),
+        );
     }
     let version = |run: &Run| Some(run.results.summary.as_ref()?.text("version")?.to_owned());
     if let Some((one, two)) = version(first).zip(version(second))
@@ -75,7 +80,10 @@ impl Run {
     fn lacks(&self) -> Option<String> {
         let Self { name, results, .. } = self;
         let gone: Vec<&str> = [
-            ("summary.json (the run is not finished)", results.summary.is_none()),
+            (
+                "summary.json (the run is not finished)",
+                results.summary.is_none(),
+            ),
             ("kinematics.csv", results.kinematics.is_none()),
             ("case.toml", results.case.is_none()),
         ]

@@ -70,7 +70,11 @@ pub(super) fn numbers(first: &Summary, second: &Summary) -> Vec<NumberDifference
         })
     };
     let mut numbers: Vec<_> = results_in_words().filter_map(difference).collect();
-    numbers.sort_by(|one, two| rank(two).partial_cmp(&rank(one)).unwrap_or(std::cmp::Ordering::Equal));
+    numbers.sort_by(|one, two| {
+        rank(two)
+            .partial_cmp(&rank(one))
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
     numbers
 }
 

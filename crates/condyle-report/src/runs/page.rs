@@ -31,16 +31,27 @@ pub fn runs_html(runs: &[Run]) -> String {
     let Some((first, others)) = runs.split_first() else {
         return String::new();
     };
-    let differences: Vec<_> = others.iter().map(|run| Differences::of(first, run)).collect();
+    let differences: Vec<_> = others
+        .iter()
+        .map(|run| Differences::of(first, run))
+        .collect();
     let mut tables = vec![numbers(runs)];
     for difference in &differences {
         tables.extend(of_difference(difference));
     }
     let title = format!("{} runs side by side", runs.len());
     let lede = format!("Every run is held against the first, {}.", first.name);
-    let mut notes: Vec<String> = differences.iter().flat_map(|one| one.notes.clone()).collect();
+    let mut notes: Vec<String> = differences
+        .iter()
+        .flat_map(|one| one.notes.clone())
+        .collect();
     let mut known = Vec::new();
-    notes.retain(|note| !known.contains(note) && { known.push(note.clone()); true });
+    notes.retain(|note| {
+        !known.contains(note) && {
+            known.push(note.clone());
+            true
+        }
+    });
     let sheets = Sheets {
         kicker: "condyle \u{b7} virtual wear tests",
         title: &title,
@@ -113,12 +124,24 @@ fn of_difference(difference: &Differences) -> Vec<Table> {
     let against = |what: &str| format!("{second} against {first}: {what}");
     let tables = [
         (against("what was set otherwise"), settings(difference)),
-        (against("numbers, by size over their errors"), differing(difference)),
-        (against("curves, by size over their range"), curves(difference)),
-        (against("maps, by size over their largest value"), maps(difference)),
+        (
+            against("numbers, by size over their errors"),
+            differing(difference),
+        ),
+        (
+            against("curves, by size over their range"),
+            curves(difference),
+        ),
+        (
+            against("maps, by size over their largest value"),
+            maps(difference),
+        ),
     ];
     // A head alone tells nothing.
-    tables.into_iter().filter(|(_, rows)| rows.len() > 1).collect()
+    tables
+        .into_iter()
+        .filter(|(_, rows)| rows.len() > 1)
+        .collect()
 }
 
 fn head<const N: usize>(names: [&str; N]) -> Vec<Vec<String>> {
@@ -135,13 +158,23 @@ fn settings(difference: &Differences) -> Vec<Vec<String>> {
 }
 
 fn differing(difference: &Differences) -> Vec<Vec<String>> {
-    let mut rows = head(["Quantity", "Unit", "Difference", "%", "Errors together", "That is"]);
+    let mut rows = head([
+        "Quantity",
+        "Unit",
+        "Difference",
+        "%",
+        "Errors together",
+        "That is",
+    ]);
     let row = |one: &NumberDifference| {
         let errors = one.errors();
         vec![
             one.label.to_owned(),
             one.unit.to_owned(),
-            signed(one.difference, shown_value(one.key, one.difference.abs(), 3)),
+            signed(
+                one.difference,
+                shown_value(one.key, one.difference.abs(), 3),
+            ),
             percent(one.difference_percent),
             errors.map_or_else(|| "\u{2013}".to_owned(), |errors| significant(errors, 2)),
             one.verdict(),
@@ -152,7 +185,15 @@ fn differing(difference: &Differences) -> Vec<Vec<String>> {
 }
 
 fn curves(difference: &Differences) -> Vec<Vec<String>> {
-    let mut rows = head(["Curve", "Cycle", "Unit", "Root mean square", "% of range", "Largest", "At %"]);
+    let mut rows = head([
+        "Curve",
+        "Cycle",
+        "Unit",
+        "Root mean square",
+        "% of range",
+        "Largest",
+        "At %",
+    ]);
     let cells = difference.curves.iter().take(MOST_ROWS).map(|one| {
         vec![
             one.title.to_owned(),
@@ -169,7 +210,14 @@ fn curves(difference: &Differences) -> Vec<Vec<String>> {
 }
 
 fn maps(difference: &Differences) -> Vec<Vec<String>> {
-    let mut rows = head(["Map", "Unit", "Largest", "% of the largest value", "At x, z, mm", "Mean size"]);
+    let mut rows = head([
+        "Map",
+        "Unit",
+        "Largest",
+        "% of the largest value",
+        "At x, z, mm",
+        "Mean size",
+    ]);
     let cells = difference.maps.iter().map(|one| {
         vec![
             one.title.to_owned(),

@@ -7,6 +7,8 @@ use crate::results::surface::SurfaceFields;
 
 /// A line of a run each; the seventh looks like the first again.
 const LINES: [&str; 6] = ["run-1", "run-2", "run-3", "run-4", "run-5", "run-6"];
+/// Class of curves that are of no run.
+const MEASURED: &str = "specimen";
 /// Scale of the maps, px per mm.
 const PX_PER_MM: f64 = 4.6;
 /// Space between maps, and for the name above one, px.
@@ -52,7 +54,9 @@ fn together(of_runs: impl Iterator<Item = Vec<Panel>>, pick: Pick) -> Vec<Panel>
     let mut all: Vec<Panel> = Vec::new();
     for (run, panels) in of_runs.enumerate() {
         for mut panel in panels {
-            let curve = pick(std::mem::take(&mut panel.curves)).map(|curve| Curve {
+            let mut own = std::mem::take(&mut panel.curves);
+            own.retain(|curve| curve.class != MEASURED);
+            let curve = pick(own).map(|curve| Curve {
                 class: line(run),
                 dots: false,
                 end: None,
@@ -104,9 +108,11 @@ fn rows(runs: &[Run], of: &MapOf) -> Option<String> {
     let mut placed = values(runs, of);
     placed.extend(differences(runs, of));
     let first = placed.first()?;
-    let [width, height] = placed.iter().fold([first.size.0, first.size.1], |[w, h], one| {
-        [w.max(one.size.0), h.max(one.size.1)]
-    });
+    let [width, height] = placed
+        .iter()
+        .fold([first.size.0, first.size.1], |[w, h], one| {
+            [w.max(one.size.0), h.max(one.size.1)]
+        });
     let (columns, rows) = placed.iter().fold((0, 0), |(columns, rows), one| {
         (columns.max(one.column + 1), rows.max(one.row + 1))
     });
@@ -154,7 +160,11 @@ fn differences(runs: &[Run], of: &MapOf) -> Vec<Placed> {
         return Vec::new();
     };
     let off = |run: &Run| {
-        let surfaces = first.results.surface.as_ref().zip(run.results.surface.as_ref());
+        let surfaces = first
+            .results
+            .surface
+            .as_ref()
+            .zip(run.results.surface.as_ref());
         let (one, two) = surfaces.filter(|_| first.maps_apart(run).is_none())?;
         apart(one, two, of.field)
     };

@@ -39,11 +39,15 @@ impl Run {
             return Some("one of the runs has no last mesh".to_owned());
         }
         let (Some(one), Some(two)) = (&self.unworn, &other.unworn) else {
-            return Some("insert_0000.vtu, by which meshes are told apart, is missing or damaged".to_owned());
+            return Some(
+                "insert_0000.vtu, by which meshes are told apart, is missing or damaged".to_owned(),
+            );
         };
         if one.quads != two.quads {
             let [here, there] = [one, two].map(|surface| surface.nodes.len());
-            return Some(format!("the inserts have other meshes ({here} and {there} nodes)"));
+            return Some(format!(
+                "the inserts have other meshes ({here} and {there} nodes)"
+            ));
         }
         let mut pairs = one.nodes.iter().zip(&two.nodes);
         let is_elsewhere = pairs.any(|(here, there)| (here - there).norm() > SAME_PLACE_MM);

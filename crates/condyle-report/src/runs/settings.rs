@@ -22,7 +22,9 @@ pub(super) fn settings(first: &str, second: &str) -> Vec<SettingDifference> {
     let mut keys: Vec<&String> = first.keys().chain(second.keys()).collect();
     keys.sort_unstable();
     keys.dedup();
-    let differ = keys.into_iter().filter(|key| first.get(*key) != second.get(*key));
+    let differ = keys
+        .into_iter()
+        .filter(|key| first.get(*key) != second.get(*key));
     differ
         .map(|key| SettingDifference {
             key: key.clone(),
@@ -72,7 +74,10 @@ mod tests {
         let second = "[contact]\nfriction = 0.06\nlaw = \"linear\"\n[[activity]]\nname = \"stairs\"\nshare = 1\n";
         let told = settings(first, second);
         let keys: Vec<&str> = told.iter().map(|told| told.key.as_str()).collect();
-        assert_eq!(keys, ["activity[0].name", "activity[0].share", "contact.friction"]);
+        assert_eq!(
+            keys,
+            ["activity[0].name", "activity[0].share", "contact.friction"]
+        );
         assert_eq!(told[1].first, None);
         assert_eq!(told[2].second.as_deref(), Some("0.06"));
     }
