@@ -22,7 +22,7 @@ export interface Curves {
   curves: Curve[];
 }
 
-// Height of the line of values below a plot.
+// Height of a line of values below a plot.
 const LEGEND_PX = 26;
 
 export interface PlotOptions {
@@ -48,7 +48,8 @@ export class Plot {
     this.height = options.height ?? 190;
     this.box = element("figure", { class: "curves" }, element("figcaption", {}, curves.title), this.shown, saves(curves, () => this.drawn()));
     // The height that it will have, so that nothing moves when it is drawn.
-    this.shown.style.minHeight = `${this.height + LEGEND_PX}px`;
+    const lines = curves.curves.length > 1 ? curves.curves.length + 1 : 1;
+    this.shown.style.minHeight = `${this.height + LEGEND_PX * lines}px`;
     const seen = ([entry]: IntersectionObserverEntry[]) => this.see(entry!.isIntersecting);
     new IntersectionObserver(seen, { rootMargin: "200px" }).observe(this.shown);
     new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width)).observe(this.shown);
