@@ -20,6 +20,7 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import { paint, type MapName } from "./colours";
 import { element } from "./dom";
 import { Matter } from "./matter";
@@ -44,6 +45,8 @@ const MM_A_NEWTON = 0.02;
 const SKIN = 0xd9d7cf;
 const FEMUR = 0x9fb0bf;
 const CUT_FACE = 0xb9ad8c;
+// Walls that meet at a larger angle are not smoothed into each other.
+const SHARP_RAD = Math.PI / 6;
 // A scale is at least so long on the screen, px, and one of these lengths, mm.
 const SCALE_PX = 50;
 const SCALES_MM = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
@@ -91,7 +94,7 @@ export class Stage {
     this.unworn = scene.values("surface.nodes");
     this.colours = new Float32Array(this.unworn.length);
     this.surface = new Mesh(surfaceGeometry(scene, this.colours), new Matter({ side: FrontSide }));
-    const skin = new Mesh(bodyGeometry(scene, "skin"), new Matter({ colour: SKIN, side: FrontSide }));
+    const skin = new Mesh(toCreasedNormals(bodyGeometry(scene, "skin"), SHARP_RAD), new Matter({ colour: SKIN, side: FrontSide }));
     this.inside = [this.surface, skin].map((mesh) => new Mesh(mesh.geometry, this.cutFace));
     for (const mesh of this.inside) mesh.visible = false;
     this.world.add(this.surface, skin, ...this.inside);

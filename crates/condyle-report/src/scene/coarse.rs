@@ -6,6 +6,9 @@ use condyle_fem::Vec3;
 
 use super::SceneBody;
 
+/// Cosine of the angle, 30 degrees, from which an edge is one that the eye sees.
+const SHARP_COSINE: f64 = 0.866;
+
 /// What becomes one node: a cube of a grid, or a node of the border by itself.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Cell {
@@ -16,7 +19,7 @@ enum Cell {
 impl SceneBody {
     /// The body with at most about `most` triangles; itself where it has no more.
     ///
-    /// The border stays as it is. The other nodes of every cube of a grid become the one of them that is nearest to their
+    /// The border stays as it is, and so do sharp edges. The other nodes of every cube of a grid become the one of them that is nearest to their
     /// mean: all nodes stay on the surface, and a triangle of edge `h` is off a surface of radius `R` by up to `h^2 / (8 R)`.
     pub(super) fn coarser(&self, most: usize) -> Self {
         // Cubes become so much wider, so many times at most: a border may be longer than can be drawn with `most`.
@@ -44,20 +47,31 @@ impl SceneBody {
         twice.map(|normal| normal.norm() / 2.0).sum()
     }
 
-    /// Of each node, whether it is on an edge of one triangle alone.
+    /// Of each node, whether it is on an edge of one triangle alone, or of two that meet at an angle.
     fn border(&self) -> Vec<bool> {
-        let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
-        let edges = self.triangles.iter().flat_map(sides);
-        let mut edges: Vec<_> = edges.map(|(a, b)| (a.min(b), a.max(b))).collect();
-        edges.sort_unstable();
+        let of_triangle = |triangle: &[u32; 3]| {
+            let [a, b, c] = *triangle;
+            let normal = self.normal(triangle);
+            [(a, b), (b, c), (c, a)].map(|(from, to)| ((from.min(to), from.max(to)), normal))
+        };
+        let mut edges: Vec<((u32, u32), Vec3)> =
+            self.triangles.iter().flat_map(of_triangle).collect();
+        edges.sort_by_key(|(edge, _)| *edge);
         let mut border = vec![false; self.nodes.len()];
-        for same in edges.chunk_by(|one, next| one == next) {
-            if let &[(a, b)] = same {
+        for same in edges.chunk_by(|one, next| one.0 == next.0) {
+            let is_sharp = |pair: &[(_, Vec3)]| pair[0].1.dot(&pair[1].1) < SHARP_COSINE;
+            if same.len() == 1 || same.windows(2).any(is_sharp) {
+                let (a, b) = same[0].0;
                 border[a as usize] = true;
                 border[b as usize] = true;
             }
         }
         border
+    }
+
+    fn normal(&self, triangle: &[u32; 3]) -> Vec3 {
+        let [a, b, c] = triangle.map(|node| self.nodes[node as usize]);
+        (b - a).cross(&(c - a)).normalize()
     }
 
     fn clustered(&self, edge: f64, border: &[bool]) -> Self {
@@ -179,6 +193,41 @@ mod tests {
             assert!(coarse.nodes.contains(place));
         }
         assert!(coarse.triangles.len() <= 4000);
+    }
+
+    #[test]
+    fn the_edges_of_a_box_stay_where_they_are() {
+        // Two sides of a box, each of many squares.
+        let side = 40_u32;
+        let at = |i: u32, j: u32| {
+            let (i, j) = (f64::from(i), f64::from(j));
+            let half = f64::from(side) / 2.0;
+            Vec3::new(j, (i - half).max(0.0), (half - i).max(0.0))
+        };
+        let nodes = (0..=side).flat_map(|i| (0..=side).map(move |j| at(i, j)));
+        let node = |i: u32, j: u32| i * (side + 1) + j;
+        let quad = |i: u32, j: u32| {
+            let [a, b, c, d] = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)];
+            let [a, b, c, d] = [a, b, c, d].map(|(i, j)| node(i, j));
+            [[a, b, c], [a, c, d]]
+        };
+        let quads = (0..side).flat_map(|i| (0..side).flat_map(move |j| quad(i, j)));
+        let folded = SceneBody {
+            nodes: nodes.collect(),
+            triangles: quads.collect(),
+        };
+        let coarse = folded.coarser(1000);
+        assert!(coarse.triangles.len() <= 1000);
+        // Both sides are covered: areas as vectors add up to the same.
+        let vector = |body: &SceneBody| -> Vec3 {
+            let corners = |triangle: &[u32; 3]| triangle.map(|node| body.nodes[node as usize]);
+            let corners = body.triangles.iter().map(corners);
+            corners.map(|[a, b, c]| (b - a).cross(&(c - a))).sum()
+        };
+        assert!((vector(&coarse) - vector(&folded)).norm() < 1e-9 * folded.area());
+        for j in 0..=side {
+            assert!(coarse.nodes.contains(&at(side / 2, j)));
+        }
     }
 
     #[test]

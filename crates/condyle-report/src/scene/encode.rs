@@ -12,6 +12,8 @@ use crate::results::table::Table;
 
 /// Triangles of the femur in a picture: with more, a processor does not draw thirty pictures a second.
 const FEMUR_TRIANGLES: usize = 5000;
+/// The same of the insert's walls and backside, which nothing is read from.
+const SKIN_TRIANGLES: usize = 2500;
 
 /// What is said of a scene beside its arrays.
 #[derive(Serialize)]
@@ -85,7 +87,7 @@ impl Scene {
             return;
         };
         arrays.whole("surface.quads", insert.articulating.quads.as_flattened());
-        add_body(arrays, "skin", &insert.skin);
+        add_body(arrays, "skin", &insert.skin.coarser(SKIN_TRIANGLES));
         add_places(arrays, "surface.nodes", &first.nodes);
         let moved = |update: usize| {
             let nodes = self.updates[update].nodes.iter().zip(&first.nodes);
