@@ -10,6 +10,11 @@ use super::{
 };
 use crate::results::table::Table;
 
+/// Triangles of the femur in a picture: with more, a processor does not draw thirty pictures a second.
+const FEMUR_TRIANGLES: usize = 5000;
+/// The same of the insert's walls and backside, which nothing is read from.
+const SKIN_TRIANGLES: usize = 2500;
+
 /// What is said of a scene beside its arrays.
 #[derive(Serialize)]
 struct Facts<'a> {
@@ -44,7 +49,7 @@ impl Scene {
         self.add_insert(&mut arrays);
         let fields = self.add_fields(&mut arrays);
         if let Some(femur) = &self.femur {
-            add_body(&mut arrays, "femur", femur);
+            add_body(&mut arrays, "femur", &femur.coarser(FEMUR_TRIANGLES));
         }
         for cycle in &self.cycles {
             self.add_cycle(&mut arrays, cycle);
@@ -82,7 +87,7 @@ impl Scene {
             return;
         };
         arrays.whole("surface.quads", insert.articulating.quads.as_flattened());
-        add_body(arrays, "skin", &insert.skin);
+        add_body(arrays, "skin", &insert.skin.coarser(SKIN_TRIANGLES));
         add_places(arrays, "surface.nodes", &first.nodes);
         let moved = |update: usize| {
             let nodes = self.updates[update].nodes.iter().zip(&first.nodes);
