@@ -188,6 +188,14 @@ export class Stage {
     this.ask();
   }
 
+  // Looks from where another stage is looked at.
+  lookAs(other: Stage): void {
+    this.camera.position.copy(other.camera.position);
+    this.controls.target.copy(other.controls.target);
+    this.controls.update();
+    this.ask();
+  }
+
   // Draws now; whoever only changed something asks, and many changes are drawn once.
   draw(): void {
     const paper = getComputedStyle(this.host).getPropertyValue("--panel").trim();

@@ -1,0 +1,193 @@
+// The laboratory as a web page: a case, its run, and what can be changed of both.
+
+import plotStyle from "uplot/dist/uPlot.min.css";
+import { element } from "../dom";
+import { Plot } from "../plots";
+import { inDigits, quantity } from "../quantities";
+import { save, saveText } from "../save";
+import viewStyle from "../style.css";
+import genericCase from "../../../cases/stanmore-force.toml";
+import { take, takeDropped, type Bodies } from "./dropped";
+import { Editor } from "./editor";
+import { Laboratory } from "./laboratory";
+import { comparison, doubts, tiles } from "./numbers";
+import style from "./page.css";
+import type { Failure, Told } from "./program";
+import { CaseSchema } from "./schema";
+import { ShownRun, type Found } from "./shown_run";
+import { Sliders } from "./sliders";
+import { zip } from "./zip";
+
+const BLUE = "#2f6db5";
+const GREY = "#8a8f96";
+
+function byId(id: string): HTMLElement {
+  return document.getElementById(id)!;
+}
+
+class Page {
+  private readonly laboratory: Laboratory;
+  private readonly shown = new ShownRun(byId("bodies"), byId("worn"), byId("gait"));
+  private readonly sliders: Sliders;
+  private editor: Editor | undefined;
+  private now: Found | undefined;
+  private kept: Found | undefined;
+  private runs = 0;
+
+  constructor(module: WebAssembly.Module) {
+    // The first line names a schema file for editors of the disk.
+    const text = genericCase.replace(/^#:schema.*\n/, "");
+    this.laboratory = new Laboratory(module, text, {
+      told: (told) => this.hear(told),
+      found: (found) => this.find(found),
+      failed: (failure) => this.fail(failure),
+      busy: (isBusy) => document.documentElement.toggleAttribute("data-busy", isBusy),
+    });
+    this.sliders = new Sliders(() => this.laboratory.text, (text) => this.change(text));
+    byId("sliders").append(this.sliders.box);
+    this.sliders.show();
+    this.buttons();
+    this.takeFiles();
+  }
+
+  async begin(): Promise<void> {
+    const run = this.laboratory.run();
+    this.editor = new Editor(new CaseSchema(await this.laboratory.schema()), (text) => this.typed(text));
+    this.editor.text = this.laboratory.text;
+    byId("text").append(this.editor.box);
+    await run;
+  }
+
+  private buttons(): void {
+    const pressed: Record<string, () => unknown> = {
+      "cancel": () => (this.laboratory.cancel(), this.say("The run is stopped; what is shown is the run before it.")),
+      "keep": () => this.keep(),
+      "save-case": () => saveText("case.toml", this.laboratory.text, "text/plain"),
+      "save-results": () => this.saveResults(),
+      "save-report": () => this.saveReport(),
+    };
+    for (const [id, act] of Object.entries(pressed)) byId(id).addEventListener("click", () => void act());
+  }
+
+  private takeFiles(): void {
+    const hears = {
+      bodies: (bodies: Bodies) => void this.draft(bodies),
+      caseText: (text: string) => this.open(text),
+      refused: (why: string) => this.fail({ message: why, problems: [] }),
+    };
+    takeDropped(hears);
+    const input = byId("files") as HTMLInputElement;
+    input.addEventListener("change", () => void take([...(input.files ?? [])], hears).then(() => (input.value = "")));
+  }
+
+  private async draft(bodies: Bodies): Promise<void> {
+    byId("remarks").replaceChildren();
+    const text = await this.laboratory.draft(bodies);
+    if (text !== undefined) this.open(text);
+  }
+
+  private open(text: string): void {
+    this.change(text);
+    this.sliders.show();
+  }
+
+  private change(text: string): void {
+    if (this.editor) this.editor.text = text;
+    this.laboratory.change(text);
+  }
+
+  private typed(text: string): void {
+    this.laboratory.change(text);
+    this.sliders.show();
+  }
+
+  private hear({ reached, remark, warning }: Told): void {
+    if (remark ?? warning) byId("remarks").append(element("li", {}, remark ?? warning!));
+    else if (reached) this.say(`${inDigits(reached.cycles / 1e6)} of ${inDigits(reached.of_cycles / 1e6)} million cycles`);
+    else this.say("All cycles are done; how accurate they are is being estimated");
+  }
+
+  private say(words: string): void {
+    byId("state").textContent = words;
+  }
+
+  private find(found: Found): void {
+    const { summary } = found;
+    this.now = found;
+    this.shown.show(found);
+    byId("tiles").replaceChildren(...tiles(summary));
+    byId("doubts").replaceChildren(...doubts(summary));
+    byId("doubtful").hidden = byId("doubts").childElementCount === 0;
+    const solved = summary.wall_s + (summary.error?.wall_s ?? 0);
+    this.say(`${inDigits(summary.cycles / 1e6)} million cycles, solved in ${inDigits(solved)} s on this machine`);
+    this.compare();
+    document.documentElement.dataset["ready"] = "yes";
+    document.documentElement.dataset["runs"] = String(++this.runs);
+  }
+
+  private fail(failure: Failure | null): void {
+    this.editor?.tell(failure);
+    byId("failure").hidden = !failure;
+    byId("failure").textContent = failure?.message ?? "";
+    if (failure) this.say("This case does not run; what is shown is the run before it.");
+  }
+
+  private keep(): void {
+    this.kept = this.now;
+    this.compare();
+  }
+
+  private compare(): void {
+    const box = byId("comparison");
+    box.hidden = !this.kept;
+    const { kept, now } = this;
+    if (!kept || !now) return;
+    const plots = ["mass_loss_mg", "max_depth_mm"].map((name) => this.beside(kept, now, name).box);
+    byId("compared").replaceChildren(comparison(kept.summary, now.summary), ...plots);
+  }
+
+  private beside(kept: Found, now: Found, name: string): Plot {
+    const of = ({ scene }: Found, column: string) => [0, ...scene.column("wear", column)];
+    const at = [...new Set([...of(kept, "cycles"), ...of(now, "cycles")])].sort((a, b) => a - b);
+    const values = (found: Found) => at.map((cycles) => of(found, name)[of(found, "cycles").indexOf(cycles)] ?? null);
+    return new Plot({
+      title: quantity(name).label,
+      across: { name: "cycles", label: "Million cycles", unit: "" },
+      up: quantity(name),
+      at: at.map((cycles) => cycles / 1e6),
+      curves: [
+        { name: "kept", colour: GREY, values: values(kept) },
+        { name: "now", colour: BLUE, values: values(now) },
+      ],
+    });
+  }
+
+  private async saveResults(): Promise<void> {
+    const files = await this.laboratory.kept("results");
+    if (files) save("results.zip", await zip(files));
+  }
+
+  private async saveReport(): Promise<void> {
+    const files = await this.laboratory.kept("results");
+    const report = files?.["results/report.html"];
+    if (report) save("report.html", new Blob([report as BlobPart], { type: "text/html" }));
+  }
+}
+
+async function compiled(): Promise<WebAssembly.Module> {
+  const response = await fetch("condyle-web.wasm");
+  if (!response.ok) throw new Error(`condyle-web.wasm: the server says ${response.status}`);
+  return WebAssembly.compile(await response.arrayBuffer());
+}
+
+async function start(): Promise<void> {
+  document.head.append(element("style", {}, plotStyle + viewStyle + style));
+  const page = new Page(await compiled());
+  await page.begin();
+  if ("serviceWorker" in navigator) await navigator.serviceWorker.register("service_worker.js");
+}
+
+start().catch((error: unknown) => {
+  byId("failure").hidden = false;
+  byId("failure").textContent = `error: the page cannot start: ${String(error)}`;
+});
