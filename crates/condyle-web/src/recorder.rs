@@ -81,8 +81,11 @@ impl RunKeeper for Recorder {
             .collect();
         self.scene = Scene::of_insert(&fields.mesh, &marks).unwrap_or_default();
         let femur = femur_on_side(femur, &march.neutral_pose(), self.side);
+        // As `femur.vtu` has its places: in 32 bits.
+        let rounded = |place: f64| f64::from(place as f32);
+        let nodes = femur.vertices.iter().map(|place| place.map(rounded));
         self.scene.femur = Some(SceneBody {
-            nodes: femur.vertices,
+            nodes: nodes.collect(),
             triangles: femur.triangles,
         });
         self.add_update(march);

@@ -2,11 +2,7 @@
 
 use std::{fs, ops::ControlFlow, path::Path};
 
-use condyle_io::{
-    cache::Cache,
-    case::Case,
-    results::{NeutralPose, Summary},
-};
+use condyle_io::{cache::Cache, case::Case, results::Summary};
 use condyle_lab::{InMemory, Outcome, Reached, RunError, RunEvent, RunOptions};
 
 use crate::{
@@ -28,7 +24,7 @@ pub fn run(case: &Path, out: &Path) -> Result<(), Failure> {
     let outcome =
         condyle_lab::run_in_memory(&case, &how, &mut recorder, &mut |event| heard.hear(&event));
     let summary = done(outcome)?;
-    let scene = recorder.into_scene(neutral_pose(&summary));
+    let scene = recorder.into_scene(summary.neutral_pose);
     write(out, "scene", &scene.to_bytes())?;
     write(out, "summary.json", json(&summary).as_bytes())
 }
@@ -60,10 +56,6 @@ fn done(outcome: Result<Outcome, RunError>) -> Result<Box<Summary>, Failure> {
         }
         Err(error) => Err(Failure::from(&error)),
     }
-}
-
-fn neutral_pose(summary: &Summary) -> NeutralPose {
-    summary.neutral_pose
 }
 
 fn json(summary: &Summary) -> String {
