@@ -41,8 +41,10 @@ export function paint(values: ArrayLike<number>, [low, high]: [number, number], 
   const colours = TABLES[map];
   const scale = (LEVELS - 1) / (high > low ? high - low : 1);
   for (let i = 0; i < values.length; i++) {
-    const level = Math.max(0, Math.min(LEVELS - 1, Math.round((values[i]! - low) * scale)));
-    into.set(colours.subarray(3 * level, 3 * level + 3), 3 * i);
+    const level = 3 * Math.max(0, Math.min(LEVELS - 1, Math.round((values[i]! - low) * scale)));
+    into[3 * i] = colours[level]!;
+    into[3 * i + 1] = colours[level + 1]!;
+    into[3 * i + 2] = colours[level + 2]!;
   }
 }
 

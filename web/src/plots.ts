@@ -20,6 +20,9 @@ export interface Curves {
   curves: Curve[];
 }
 
+// Height of the line of values below a plot.
+const LEGEND_PX = 26;
+
 export interface PlotOptions {
   // Plots of the same key share their cursor.
   linked?: string;
@@ -30,30 +33,52 @@ export interface PlotOptions {
 
 export class Plot {
   readonly box: HTMLElement;
-  private readonly plot: uPlot;
-  private readonly shown: HTMLElement;
+  private plot: uPlot | undefined;
+  private readonly shown = element("div", { class: "plot" });
+  private readonly height: number;
+  private isSeen = false;
+  private pointed: number | undefined;
 
-  constructor(curves: Curves, options: PlotOptions = {}) {
-    this.shown = element("div", { class: "plot" });
-    this.box = element("figure", { class: "curves" }, element("figcaption", {}, curves.title), this.shown, saves(curves, () => this.plot));
-    const size = { width: 320, height: options.height ?? 190 };
-    this.plot = new uPlot({ ...size, ...settings(curves, options) }, data(curves), this.shown);
-    if (options.chosen) {
-      const chosen = options.chosen;
-      this.plot.over.addEventListener("click", () => this.plot.cursor.idx != null && chosen(this.plot.cursor.idx));
-    }
-    new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width, size.height)).observe(this.shown);
+  constructor(
+    private readonly curves: Curves,
+    private readonly options: PlotOptions = {},
+  ) {
+    this.height = options.height ?? 190;
+    this.box = element("figure", { class: "curves" }, element("figcaption", {}, curves.title), this.shown, saves(curves, () => this.drawn()));
+    // The height that it will have, so that nothing moves when it is drawn.
+    this.shown.style.minHeight = `${this.height + LEGEND_PX}px`;
+    const seen = ([entry]: IntersectionObserverEntry[]) => this.see(entry!.isIntersecting);
+    new IntersectionObserver(seen, { rootMargin: "200px" }).observe(this.shown);
+    new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width)).observe(this.shown);
   }
 
   // Puts the cursor on an instant.
   point(index: number): void {
-    const across = this.plot.data[0][index];
-    if (across === undefined) return;
+    this.pointed = index;
+    const across = this.curves.at[index];
+    if (!this.plot || !this.isSeen || across === undefined) return;
     this.plot.setCursor({ left: this.plot.valToPos(across, "x"), top: -1 }, false);
   }
 
-  private fit(width: number, height: number): void {
-    if (width > 0 && Math.abs(width - this.plot.width) > 1) this.plot.setSize({ width, height });
+  // A curve is drawn once it comes into sight.
+  private see(isSeen: boolean): void {
+    this.isSeen = isSeen;
+    if (!isSeen) return;
+    this.drawn();
+    if (this.pointed !== undefined) this.point(this.pointed);
+  }
+
+  private drawn(): uPlot {
+    if (this.plot) return this.plot;
+    const size = { width: this.shown.clientWidth || 320, height: this.height };
+    const plot = new uPlot({ ...size, ...settings(this.curves, this.options) }, data(this.curves), this.shown);
+    const { chosen } = this.options;
+    if (chosen) plot.over.addEventListener("click", () => plot.cursor.idx != null && chosen(plot.cursor.idx));
+    return (this.plot = plot);
+  }
+
+  private fit(width: number): void {
+    if (this.plot && width > 0 && Math.abs(width - this.plot.width) > 1) this.plot.setSize({ width, height: this.height });
   }
 }
 

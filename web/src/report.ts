@@ -1,6 +1,7 @@
 // The moving part of a report: its scene stands in the page, compressed.
 
 import { element } from "./dom";
+import { offerPictures } from "./figures";
 import { RunView } from "./run_view";
 import { Scene } from "./scene";
 import style from "./style.css";
@@ -20,6 +21,7 @@ async function start(): Promise<void> {
   if (view.viewer) moving.append(view.viewer.box);
   moving.append(view.worn);
   moving.hidden = false;
+  offerPictures(document);
   document.getElementById("moving-gait")?.append(view.gait);
   document.documentElement.dataset["ready"] = "yes";
 }

@@ -1,10 +1,11 @@
 // A run as it is looked at: the bodies, and curves that are linked with them.
 
 import { element } from "./dom";
+import { FlatMaps } from "./flat_maps";
 import { Plot, type Curves } from "./plots";
 import { cyclesInWords, quantity } from "./quantities";
 import type { Scene } from "./scene";
-import { Viewer } from "./viewer";
+import { updateAfter, Viewer } from "./viewer";
 
 const BLUE = "#2f6db5";
 const RED = "#c2492f";
@@ -16,24 +17,31 @@ export class RunView {
   readonly worn = element("div", { class: "worn" });
   readonly gait = element("div", { class: "gait" });
   private readonly history = element("div");
+  private readonly maps: FlatMaps;
 
-  constructor(private readonly scene: Scene) {
+  // Flat maps of the run that `root` holds are linked with the bodies.
+  constructor(
+    private readonly scene: Scene,
+    root: ParentNode = document,
+  ) {
+    this.maps = new FlatMaps(root, (x, z) => this.viewer?.pickAt(x, z));
     if (scene.facts.updates.length) this.viewer = new Viewer(scene);
     this.drawWear();
     this.drawGait();
-    if (this.viewer) this.viewer.onPick = (node) => this.drawHistory(node);
+    if (this.viewer) this.viewer.onPick = (node) => this.picked(this.viewer!, node);
   }
 
   private drawWear(): void {
     if (!this.scene.columns("wear").includes("mass_loss_mg")) return;
+    const after = [0, ...this.scene.column("wear", "cycles")];
     const curve = (name: string): Curves => ({
       title: quantity(name).label,
       across: MILLION_CYCLES,
       up: quantity(name),
-      at: [0, ...this.scene.column("wear", "cycles")].map((cycles) => cycles / 1e6),
+      at: after.map((cycles) => cycles / 1e6),
       curves: [{ name: quantity(name).label, colour: BLUE, values: [0, ...this.scene.column("wear", name)] }],
     });
-    const chosen = (index: number) => this.viewer?.showUpdate(Math.min(index, this.scene.facts.updates.length - 1));
+    const chosen = (index: number) => this.viewer?.showUpdate(updateAfter(this.scene, after[index]!));
     const names = ["mass_loss_mg", "max_depth_mm"].filter((name) => this.scene.columns("wear").includes(name));
     for (const name of names) this.worn.append(new Plot(curve(name), { linked: "wear", chosen }).box);
     this.worn.append(this.history);
@@ -63,6 +71,12 @@ export class RunView {
         values: [...column.subarray(from, to)],
       })),
     };
+  }
+
+  private picked(viewer: Viewer, node: number): void {
+    const [x, , z] = viewer.placeOf(node);
+    this.maps.mark(x, z);
+    this.drawHistory(node);
   }
 
   private drawHistory(node: number): void {

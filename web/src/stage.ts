@@ -2,18 +2,16 @@
 
 import {
   ArrowHelper,
+  BackSide,
   BufferAttribute,
   BufferGeometry,
   Color,
-  DirectionalLight,
   DoubleSide,
-  HemisphereLight,
+  FrontSide,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
-  MeshLambertMaterial,
   PerspectiveCamera,
-  Plane,
   Raycaster,
   Scene as World,
   SphereGeometry,
@@ -24,8 +22,10 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { paint, type MapName } from "./colours";
 import { element } from "./dom";
+import { Matter } from "./matter";
 import type { Pose, Scene } from "./scene";
 
+export type Axis = "x" | "z";
 export type View = "above" | "front" | "side" | "oblique";
 
 const DIRECTIONS: Record<View, [number, number, number]> = {
@@ -35,10 +35,18 @@ const DIRECTIONS: Record<View, [number, number, number]> = {
   oblique: [0.75, 0.85, 0.6],
 };
 
+// Drawn by the processor: dots to a point of the screen, of a picture that is at rest.
+const FINE_AT_REST = 2;
+// A picture is at rest after so long without a change, ms.
+const REST_MS = 250;
 // A newton is so many millimetres of an arrow.
 const MM_A_NEWTON = 0.02;
 const SKIN = 0xd9d7cf;
 const FEMUR = 0x9fb0bf;
+const CUT_FACE = 0xb9ad8c;
+// A scale is at least so long on the screen, px, and one of these lengths, mm.
+const SCALE_PX = 50;
+const SCALES_MM = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 
 export interface Force {
   at: Vector3;
@@ -51,37 +59,46 @@ export class Stage {
   private readonly world = new World();
   private readonly camera = new PerspectiveCamera(28, 4 / 3, 1, 2000);
   private readonly controls: OrbitControls;
-  private readonly surface: Mesh<BufferGeometry, MeshLambertMaterial>;
+  private readonly surface: Mesh<BufferGeometry, Matter>;
   private readonly colours: Float32Array;
-  private readonly femur?: Mesh<BufferGeometry, MeshLambertMaterial>;
+  private readonly femur?: Mesh<BufferGeometry, Matter>;
   private readonly marker: Mesh;
-  private readonly section = new Plane(new Vector3(0, 0, -1), 0);
-  private readonly solids: MeshLambertMaterial[];
+  private readonly sections: Partial<Record<Axis, number>> = {};
+  // What is inside of the insert is of one colour: seen through a section it is the face of the cut.
+  private readonly cutFace = new Matter({ colour: CUT_FACE, isFlat: true, side: BackSide });
+  private readonly inside: Mesh[];
+  private readonly solids: Matter[];
+  private readonly scale = element("div", { class: "scale" });
   private readonly arrows: ArrowHelper[] = [];
   private readonly unworn: Float32Array;
   private readonly neutral = new Matrix4();
+  private readonly isSlow = isDrawnByProcessor();
+  private paper = new Color();
+  private readonly end = new AbortController();
   private isAsked = false;
+  private resting = 0;
 
   constructor(
     private readonly host: HTMLElement,
     scene: Scene,
   ) {
-    // Pictures are saved from what was drawn last.
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
-    this.renderer.localClippingEnabled = true;
+    // A processor smooths edges of pictures at rest, by more dots. Pictures are saved from what was drawn last.
+    this.renderer = new WebGLRenderer({ antialias: !this.isSlow, preserveDrawingBuffer: true });
     this.canvas = this.renderer.domElement;
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", "The insert and the femur; turn by dragging, or by the buttons below");
-    host.append(this.canvas);
+    host.append(this.canvas, this.scale);
 
     this.unworn = scene.values("surface.nodes");
     this.colours = new Float32Array(this.unworn.length);
-    this.surface = new Mesh(surfaceGeometry(scene, this.colours), new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }));
-    const skin = new Mesh(bodyGeometry(scene, "skin"), new MeshLambertMaterial({ color: SKIN, side: DoubleSide }));
-    this.world.add(this.surface, skin);
-    this.solids = [this.surface.material, skin.material];
+    this.surface = new Mesh(surfaceGeometry(scene, this.colours), new Matter({ side: FrontSide }));
+    const skin = new Mesh(bodyGeometry(scene, "skin"), new Matter({ colour: SKIN, side: FrontSide }));
+    this.inside = [this.surface, skin].map((mesh) => new Mesh(mesh.geometry, this.cutFace));
+    for (const mesh of this.inside) mesh.visible = false;
+    this.world.add(this.surface, skin, ...this.inside);
+    this.solids = [this.surface.material, skin.material, this.cutFace];
     if (scene.facts.has_femur) {
-      this.femur = new Mesh(bodyGeometry(scene, "femur"), new MeshLambertMaterial({ color: FEMUR, transparent: true, side: DoubleSide }));
+      this.femur = new Mesh(bodyGeometry(scene, "femur"), new Matter({ colour: FEMUR, isGlass: true, side: DoubleSide }));
       this.femur.renderOrder = 1;
       this.world.add(this.femur);
       this.solids.push(this.femur.material);
@@ -89,14 +106,15 @@ export class Stage {
     if (scene.facts.neutral_pose) this.neutral.copy(matrix(scene.facts.neutral_pose)).invert();
     this.marker = new Mesh(new SphereGeometry(0.5, 16, 12), new MeshBasicMaterial({ color: 0xd8382c }));
     this.marker.visible = false;
-    this.world.add(this.marker, ...lights(this.camera), this.camera);
+    this.world.add(this.marker, this.camera);
 
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener("change", () => this.ask());
     this.showFemur(0.3);
     this.look("oblique");
     new ResizeObserver(() => this.fit()).observe(host);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.ask());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.choosePaper(), { signal: this.end.signal });
+    this.choosePaper();
     this.fit();
   }
 
@@ -132,27 +150,29 @@ export class Stage {
   showFemur(opacity: number): void {
     if (!this.femur) return;
     this.femur.visible = opacity > 0;
-    this.femur.material.opacity = opacity;
-    this.femur.material.depthWrite = opacity === 1;
+    this.femur.material.seeThrough(opacity);
     this.ask();
   }
 
-  // Takes away what lies beyond z, mm; nothing without one.
-  cut(z?: number): void {
-    this.section.constant = z ?? 0;
-    for (const material of this.solids) material.clippingPlanes = z === undefined ? null : [this.section];
+  // Takes away what lies beyond a place of an axis, mm; nothing without one.
+  cut(axis: Axis, at?: number): void {
+    this.sections[axis] = at;
+    const { x, z } = this.sections;
+    for (const matter of this.solids) matter.cutAt(x, z);
+    for (const mesh of this.inside) mesh.visible = x !== undefined || z !== undefined;
     this.ask();
   }
 
   // Arrows down onto the surface, as long as the forces are large.
   press(forces: Force[]): void {
-    this.world.remove(...this.arrows.splice(0));
-    for (const { at, newtons } of forces) {
+    forces.forEach(({ at, newtons }, index) => {
       const length = Math.max(newtons * MM_A_NEWTON, 1);
-      const tail = at.clone().add(new Vector3(0, length, 0));
-      this.arrows.push(new ArrowHelper(new Vector3(0, -1, 0), tail, length, 0xd8382c, Math.min(4, length), 2.4));
-    }
-    if (this.arrows.length) this.world.add(...this.arrows);
+      const arrow = this.arrow(index);
+      arrow.visible = true;
+      arrow.position.set(at.x, at.y + length, at.z);
+      arrow.setLength(length, Math.min(4, length), 2.4);
+    });
+    for (const arrow of this.arrows.slice(forces.length)) arrow.visible = false;
     this.ask();
   }
 
@@ -172,7 +192,8 @@ export class Stage {
     const ray = new Raycaster();
     ray.setFromCamera(place, this.camera);
     this.surface.geometry.computeBoundingSphere();
-    const hit = ray.intersectObject(this.surface)[0];
+    const { x = Infinity, z = Infinity } = this.sections;
+    const hit = ray.intersectObject(this.surface).find(({ point }) => point.x <= x && point.z <= z);
     if (!hit?.face) return undefined;
     const places = this.surface.geometry.getAttribute("position");
     const corners = [hit.face.a, hit.face.b, hit.face.c];
@@ -196,33 +217,73 @@ export class Stage {
     this.ask();
   }
 
-  // Draws now; whoever only changed something asks, and many changes are drawn once.
+  // Draws now, as finely as a picture at rest; whoever only changed something asks, and many changes are drawn once.
   draw(): void {
-    const paper = getComputedStyle(this.host).getPropertyValue("--panel").trim();
-    this.renderer.setClearColor(new Color(paper || "#f4f3ef"));
-    this.renderer.render(this.world, this.camera);
+    clearTimeout(this.resting);
+    this.drawWith(this.isSlow ? FINE_AT_REST : Math.min(devicePixelRatio, 2));
+    this.canvas.dataset["still"] = "yes";
   }
 
   dispose(): void {
+    clearTimeout(this.resting);
+    this.end.abort();
     this.controls.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
     this.canvas.remove();
+    this.scale.remove();
+  }
+
+  private arrow(index: number): ArrowHelper {
+    return (this.arrows[index] ??= this.newArrow());
+  }
+
+  private newArrow(): ArrowHelper {
+    const arrow = new ArrowHelper(new Vector3(0, -1, 0), new Vector3(), 1, 0xd8382c);
+    this.world.add(arrow);
+    return arrow;
+  }
+
+  private choosePaper(): void {
+    const paper = getComputedStyle(this.host).getPropertyValue("--panel").trim();
+    this.paper = new Color(paper || "#f4f3ef");
+    this.ask();
+  }
+
+  private drawWith(dots: number): void {
+    if (this.renderer.getPixelRatio() !== dots) this.renderer.setPixelRatio(dots);
+    this.renderer.setClearColor(this.paper);
+    this.renderer.render(this.world, this.camera);
+    this.drawScale();
+  }
+
+  // How long some millimetres are where the eye looks at.
+  private drawScale(): void {
+    const away = this.camera.position.distanceTo(this.controls.target);
+    const pixelsAMm = this.host.clientHeight / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * away);
+    const mm = SCALES_MM.find((length) => length * pixelsAMm >= SCALE_PX) ?? SCALES_MM.at(-1)!;
+    const [width, words] = [`${(mm * pixelsAMm).toFixed(1)}px`, `${mm} mm`];
+    if (this.scale.style.width !== width) this.scale.style.width = width;
+    if (this.scale.textContent !== words) this.scale.textContent = words;
   }
 
   private ask(): void {
+    delete this.canvas.dataset["still"];
     if (this.isAsked) return;
     this.isAsked = true;
     requestAnimationFrame(() => {
       this.isAsked = false;
-      this.draw();
+      if (this.end.signal.aborted) return;
+      if (!this.isSlow) return this.draw();
+      this.drawWith(1);
+      clearTimeout(this.resting);
+      this.resting = setTimeout(() => this.draw(), REST_MS);
     });
   }
 
   private fit(): void {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (!width || !height) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -255,14 +316,6 @@ function geometryOf(places: Float32Array, triangles: Uint32Array): BufferGeometr
   return geometry;
 }
 
-function lights(camera: PerspectiveCamera) {
-  const lamp = new DirectionalLight(0xffffff, 1.6);
-  lamp.position.set(0.4, 0.8, 1);
-  // The lamp goes with the eye.
-  camera.add(lamp);
-  return [new HemisphereLight(0xffffff, 0x8a8780, 1.7)];
-}
-
 function matrix({ femoral_origin_mm: [x, y, z], rotation }: Pose): Matrix4 {
   return matrixOf([x!, y!, z!, ...rotation.flat()]);
 }
@@ -271,6 +324,13 @@ function matrix({ femoral_origin_mm: [x, y, z], rotation }: Pose): Matrix4 {
 export function matrixOf(numbers: ArrayLike<number>): Matrix4 {
   const n = (index: number) => numbers[index]!;
   return new Matrix4().set(n(3), n(4), n(5), n(0), n(6), n(7), n(8), n(1), n(9), n(10), n(11), n(2), 0, 0, 0, 1);
+}
+
+// Whether the browser draws without a graphics card. WebGL that is off altogether is found out by whoever draws.
+function isDrawnByProcessor(): boolean {
+  const found = element("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
+  found?.getExtension("WEBGL_lose_context")?.loseContext();
+  return found === null;
 }
 
 // Says why there is no picture, where the browser has no WebGL.

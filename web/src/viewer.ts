@@ -5,15 +5,19 @@ import { button, choice, element, labelled, slider } from "./dom";
 import { forces, shares } from "./forces";
 import { cyclesInWords, inDigits, quantity, withUnit } from "./quantities";
 import { savePicture } from "./save";
-import { matrixOf, stageOr, type Stage, type View } from "./stage";
+import { matrixOf, stageOr, type Axis, type Force, type Stage, type View } from "./stage";
 import type { CycleFacts, Pressed, Scene } from "./scene";
 
 // What the surface may be coloured by besides the fields of an update.
 const IN_CYCLE = "pressure_mpa";
 // Whatever a cycle takes in life, here it takes so long, s.
 const SECONDS_A_CYCLE = 4;
+// Words of an instant stand so long while the cycle plays, ms.
+const READ_MS = 150;
 // Millimetres of the section slider beyond the middle.
 const SECTION_MM = 45;
+// A place so far from every node is beside the surface, mm.
+const REACH_MM = 3;
 
 const VIEWS: [View, string][] = [
   ["oblique", "Oblique"],
@@ -50,6 +54,9 @@ export class Viewer {
   private surface = new Float32Array();
   private share = new Float32Array();
   private node: number | undefined;
+  private legendShown = "";
+  private values: Float32Array = new Float32Array();
+  private toldAt = 0;
   private readonly told = element("output", { class: "told" });
   private readonly picked = element("div", { class: "picked", "aria-live": "polite" });
   private readonly bar = element("div", { class: "bar" });
@@ -100,8 +107,7 @@ export class Viewer {
     if (pressed) {
       const found = forces(pressed, this.surface, this.share);
       this.stage?.press(found);
-      const sides = found.map(({ newtons }) => `${Math.round(newtons)} N`).join(" and ");
-      this.say(`${inDigits(cycle.percents[instant]!)} % of the ${cycle.facts.name} cycle${sides ? `: ${sides} on the surface` : ""}`);
+      this.tell(cycle, instant, found);
     }
     this.recolour();
     this.onInstant(instant);
@@ -130,6 +136,15 @@ export class Viewer {
     this.stage?.dispose();
   }
 
+  private tell({ facts, percents }: Cycle, instant: number, found: Force[]): void {
+    // While it plays, no more often than can be read.
+    const now = performance.now();
+    if (this.playing && now - this.toldAt < READ_MS) return;
+    this.toldAt = now;
+    const sides = found.map(({ newtons }) => `${Math.round(newtons)} N`).join(" and ");
+    this.say(`${inDigits(percents[instant]!)} % of the ${facts.name} cycle${sides ? `: ${sides} on the surface` : ""}`);
+  }
+
   private enter(cycle: Cycle): void {
     this.isInCycle = true;
     this.surface = this.scene.surface(cycle.update) as Float32Array<ArrayBuffer>;
@@ -154,17 +169,24 @@ export class Viewer {
 
   private recolour(): void {
     const range = this.range();
-    this.stage?.colour(this.values(), range, this.map);
+    this.stage?.colour(this.shownValues(), range, this.map);
+    this.drawLegend(range);
+  }
+
+  private drawLegend(range: [number, number]): void {
+    const shown = [this.map, this.field, ...range].join();
+    if (shown === this.legendShown) return;
+    this.legendShown = shown;
     this.bar.style.background = gradient(this.map);
     const { unit } = quantity(this.field);
     const ends = [0, 0.25, 0.5, 0.75, 1].map((part) => inDigits(range[0] + part * (range[1] - range[0])));
     this.barEnds.replaceChildren(...ends.map((end, index) => element("span", {}, index === 4 ? `${end} ${unit}` : end)));
   }
 
-  private values(): Float32Array {
-    const update = this.isInCycle ? this.cycle!.update : this.update;
-    if (this.field !== IN_CYCLE) return this.scene.field(this.field, update);
-    const values = new Float32Array(this.surface.length / 3);
+  private shownValues(): Float32Array {
+    if (this.field !== IN_CYCLE) return this.scene.field(this.field, this.isInCycle ? this.cycle!.update : this.update);
+    if (this.values.length !== this.surface.length / 3) this.values = new Float32Array(this.surface.length / 3);
+    const values = this.values.fill(0);
     const pressed = this.cycle?.pressed[this.instant];
     pressed?.nodes.forEach((node, index) => (values[node] = pressed.pressures[index]!));
     return values;
@@ -182,7 +204,8 @@ export class Viewer {
     const began = performance.now() - (1000 * SECONDS_A_CYCLE * this.instant) / count;
     const frame = (now: number) => {
       const part = ((now - began) / 1000 / SECONDS_A_CYCLE) % 1;
-      this.showInstant(Math.max(0, Math.floor(part * count)));
+      const instant = Math.max(0, Math.floor(part * count));
+      if (instant !== this.instant || !this.isInCycle) this.showInstant(instant);
       this.playing = requestAnimationFrame(frame);
     };
     this.playing = requestAnimationFrame(frame);
@@ -214,7 +237,7 @@ export class Viewer {
     if (this.cycles.length) box.append(labelled("Through the gait cycle", this.instants), this.play);
     if (this.cycles.length > 1) box.append(labelled("Cycle", this.cycleChoice()));
     box.append(labelled("Wear made larger", slider(1, 20, 1, 1, (times) => this.exaggerate(times))));
-    box.append(labelled("Section at z", this.sectionSlider()));
+    box.append(labelled("Section at z", this.sectionSlider("z")), labelled("Section at x", this.sectionSlider("x")));
     if (this.scene.facts.has_femur) box.append(labelled("Femur", this.femurChoice()));
     const maps: [string, string][] = [["viridis", "Viridis"], ["cividis", "Cividis"]];
     box.append(labelled("Colour map", choice(maps, (map) => this.useMap(map as MapName))));
@@ -224,7 +247,7 @@ export class Viewer {
 
   private viewButtons(): HTMLElement[] {
     const views = VIEWS.map(([view, words]) => button(words, () => this.stage?.look(view)));
-    return [...views, button("Save picture", () => this.savePicture())];
+    return [...views, button("Pick the highest", () => this.pickHighest()), button("Save picture", () => this.savePicture())];
   }
 
   private cycleChoice(): HTMLSelectElement {
@@ -245,8 +268,8 @@ export class Viewer {
     return choice(options, (opacity) => this.stage?.showFemur(Number(opacity)));
   }
 
-  private sectionSlider(): HTMLInputElement {
-    const moved = (z: number) => this.stage?.cut(z >= SECTION_MM ? undefined : z);
+  private sectionSlider(axis: Axis): HTMLInputElement {
+    const moved = (at: number) => this.stage?.cut(axis, at >= SECTION_MM ? undefined : at);
     return slider(-SECTION_MM, SECTION_MM, 1, SECTION_MM, moved);
   }
 
@@ -279,10 +302,38 @@ export class Viewer {
 
   private pick(event: PointerEvent): void {
     const node = this.stage?.pick(event);
-    if (node === undefined) return;
+    if (node !== undefined) this.choose(node);
+  }
+
+  // Picks the node nearest to x, z, mm, from above; none farther than a few millimetres.
+  pickAt(x: number, z: number): void {
+    const away = (node: number) => Math.hypot(this.surface[3 * node]! - x, this.surface[3 * node + 2]! - z);
+    const node = this.best((one) => -away(one));
+    if (away(node) <= REACH_MM) this.choose(node);
+  }
+
+  // Picks the node with the highest value of what is shown.
+  pickHighest(): void {
+    const values = this.shownValues();
+    this.choose(this.best((node) => values[node]!));
+  }
+
+  private best(score: (node: number) => number): number {
+    let best = 0;
+    for (let node = 1; 3 * node < this.surface.length; node++) if (score(node) > score(best)) best = node;
+    return best;
+  }
+
+  // Where a node is, mm.
+  placeOf(node: number): [number, number, number] {
+    return [...this.surface.subarray(3 * node, 3 * node + 3)] as [number, number, number];
+  }
+
+  private choose(node: number): void {
     this.node = node;
-    const [x, y, z] = this.surface.subarray(3 * node, 3 * node + 3);
-    const place = `x ${inDigits(x!)}, y ${inDigits(y!)}, z ${inDigits(z!)} mm`;
+    this.stage?.mark(node);
+    const [x, y, z] = this.placeOf(node);
+    const place = `x ${inDigits(x)}, y ${inDigits(y)}, z ${inDigits(z)} mm`;
     const rows = this.valuesAt(node).map(([name, value]) => {
       const { label, unit } = quantity(name);
       return element("div", {}, element("dt", {}, label), element("dd", {}, `${inDigits(value)} ${unit}`));
@@ -293,12 +344,17 @@ export class Viewer {
 }
 
 function cyclesOf(scene: Scene): Cycle[] {
-  const last = scene.facts.updates.length - 1;
-  return scene.facts.cycles.map((facts, index) => ({
+  return scene.facts.cycles.map((facts) => ({
     facts,
     pressed: scene.has(`cycle.${facts.name}.starts`) ? scene.pressed(facts) : [],
     poses: scene.exact(`cycle.${facts.name}.poses`),
     percents: scene.exact(`cycle.${facts.name}.percents`),
-    update: index === 0 ? 0 : Math.max(0, last - 1),
+    update: updateAfter(scene, facts.cycles),
   }));
+}
+
+// The update after so many cycles, or the nearest one that is there.
+export function updateAfter(scene: Scene, cycles: number): number {
+  const away = scene.facts.updates.map((after) => (after === null ? Infinity : Math.abs(after - cycles)));
+  return Math.max(0, away.indexOf(Math.min(...away)));
 }

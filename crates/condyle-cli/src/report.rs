@@ -11,13 +11,20 @@ use crate::{
 
 pub fn report(arguments: &Report) -> ExitCode {
     let folder = &arguments.results;
-    let mut written = vec![condyle_report::write_report(folder)];
+    let (page, left_out) = match condyle_report::write_report_of_what_can_be_read(folder) {
+        Ok(written) => written,
+        Err(error) => return exit::fail(error, exit::BAD_INPUT),
+    };
+    for why in left_out {
+        tell(format_args!("warning: left out of the page: {why}"));
+    }
+    note_unfinished(folder);
+    let mut written = vec![Ok(page)];
     if arguments.pictures {
         written.push(condyle_report::write_wear_map(folder));
         written.push(condyle_report::write_wear_curve(folder));
         written.push(condyle_report::write_kinematics(folder));
     }
-    note_unfinished(folder);
     let mut lines = Lines::default();
     for file in written {
         match file {

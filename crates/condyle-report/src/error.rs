@@ -19,6 +19,14 @@ pub enum ReportError {
         /// The path asked for.
         folder: PathBuf,
     },
+    /// The folder holds results, and none of them can be read.
+    #[error("Nothing in the folder {folder} can be read. {reasons}")]
+    NothingReadable {
+        /// The path asked for.
+        folder: PathBuf,
+        /// Why, a sentence a file.
+        reasons: String,
+    },
     /// A file that one picture needs is not in the folder.
     #[error(
         "The file {path} is missing, and {picture} cannot be drawn without it. Run the case again."
@@ -52,6 +60,20 @@ pub enum ReportError {
         path: PathBuf,
         /// What is wrong, with line and column.
         source: serde_json::Error,
+    },
+    /// A case file is no TOML.
+    #[error("The file {path} is not a case: {message}.")]
+    NotACase {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        message: String,
+    },
+    /// A table does not end with the end of a line.
+    #[error("The file {path} is cut short: its last line does not end.")]
+    CutShort {
+        /// The file.
+        path: PathBuf,
     },
     /// A table holds something that is not a number.
     #[error("Line {line} of {path}: column `{column}` holds `{text}`, which is not a number.")]

@@ -48,8 +48,24 @@ use scene::Scene;
 /// The folder is missing or holds no result at all, a file in it is damaged,
 /// or the page cannot be written.
 pub fn write_report(results_dir: &Path) -> Result<PathBuf, ReportError> {
-    let results = Results::read(results_dir)?;
-    let scene = Scene::read(results_dir, &results);
-    let html = moving_report_html(&results, &scene);
+    write_page(results_dir, &Results::read(results_dir)?)
+}
+
+/// Writes `report.html` of what can be read of a results folder; returns its path, and what is left out of it because it
+/// cannot be read.
+///
+/// # Errors
+/// The folder is missing, nothing in it can be read, or the page cannot be written.
+pub fn write_report_of_what_can_be_read(
+    results_dir: &Path,
+) -> Result<(PathBuf, Vec<String>), ReportError> {
+    let results = Results::read_what_can_be(results_dir)?;
+    let page = write_page(results_dir, &results)?;
+    Ok((page, results.left_out))
+}
+
+fn write_page(results_dir: &Path, results: &Results) -> Result<PathBuf, ReportError> {
+    let scene = Scene::read(results_dir, results);
+    let html = moving_report_html(results, &scene);
     write_text(results_dir.join("report.html"), &html)
 }

@@ -158,17 +158,13 @@ fn a_damaged_mesh_is_found_by_name_wherever_it_is_read() {
     let place = bytes.len() - bytes.len() / 3;
     bytes[place] ^= 1;
     fs::write(&file, &bytes).unwrap();
-    let commands: [&[&str]; 2] = [
-        &["report", "out"],
-        &["run", "case.toml", "--out", "out", "--resume"],
-    ];
-    for command in commands {
-        let said = bench.say(command);
-        assert_ne!(said.code, Some(0), "{command:?}");
-        for words in ["insert_0003.vtu: the file is damaged", "--force"] {
-            assert!(said.err.contains(words), "{words}: {}", said.err);
-        }
-    }
+    let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
+    assert_ne!(said.code, Some(0));
+    let words = ["insert_0003.vtu: the file is damaged", "--force"];
+    assert!(words.iter().all(|word| said.err.contains(word)), "{}", said.err);
+    let said = bench.say(&["report", "out"]);
+    assert_eq!(said.code, Some(0));
+    assert!(said.err.contains(words[0]), "{}", said.err);
     fs::remove_file(bench.path("out/summary.json")).unwrap();
     let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
     said.assert_refused(2, &["insert_0003.vtu: the file is damaged"]);

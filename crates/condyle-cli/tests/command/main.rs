@@ -19,6 +19,7 @@ mod left_knee;
 mod measured;
 mod new_from_meshes;
 mod output;
+mod partial_results;
 mod physics;
 mod places;
 mod plausibility;

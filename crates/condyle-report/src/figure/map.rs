@@ -92,9 +92,9 @@ impl Map<'_> {
     /// The map with something drawn over it, by [`Map::place`], and what it shows in a sentence.
     pub(crate) fn svg_with(&self, desc: &str, over: &str) -> String {
         let ((width, height), id) = (self.size(), self.id);
-        let (title, desc) = (escape(self.title), escape(desc));
+        let (title, desc, place) = (escape(self.title), escape(desc), self.place_in_words());
         format!(
-            r#"<svg class="fig" role="img" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width:.1} {height:.1}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}{over}</svg>"#,
+            r#"<svg class="fig" role="img" data-map="{place}" aria-labelledby="{id}-t {id}-d" viewBox="0 0 {width:.1} {height:.1}"><title id="{id}-t">{title}</title><desc id="{id}-d">{desc}</desc>{}{over}</svg>"#,
             self.body()
         )
     }
@@ -187,6 +187,14 @@ impl Map<'_> {
         let [(_, x_high), (z_low, _)] = self.surface.bounds();
         let scale = self.px_per_mm;
         move |x, z| (LEFT + (z - z_low) * scale, TOP + (x_high - x) * scale)
+    }
+
+    /// What [`Map::place`] follows, for programs of the page: x at the top, z at the left, mm; where these are, px, and px
+    /// per mm.
+    fn place_in_words(&self) -> String {
+        let [(_, x_high), (z_low, _)] = self.surface.bounds();
+        let scale = self.px_per_mm;
+        format!("{x_high} {z_low} {LEFT} {TOP} {scale}")
     }
 
     fn surface_picture(&self, bands: &Axis) -> String {

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod activities;
+mod agreement;
 mod captions;
 mod channels;
 mod compartments;
@@ -56,6 +57,8 @@ struct Page<'a> {
     rate: Option<String>,
     tiles: Vec<numbers::Tile>,
     missing: Vec<&'static str>,
+    left_out: Vec<String>,
+    disagreements: Vec<String>,
     is_deformable: bool,
     yields: bool,
     wear_map: Option<String>,
@@ -95,6 +98,8 @@ impl<'a> Page<'a> {
             rate: rate::rate(results),
             tiles: numbers::tiles(results),
             missing: story::missing(results),
+            left_out: story::left_out(results, scene),
+            disagreements: agreement::disagreements(results),
             is_deformable: results.case.as_deref().is_some_and(is_deformable),
             yields: results.case.as_deref().is_some_and(yields),
             wear_map: wear_map(results, LARGE).map(|map| map.svg()),

@@ -16,7 +16,6 @@ const PROGRAM: &[u8] = include_bytes!("moving.js.zz");
 pub(super) struct Moving {
     program: String,
     scene: String,
-    missing: Vec<String>,
 }
 
 impl Moving {
@@ -25,7 +24,6 @@ impl Moving {
         (scene.has_surface() || !scene.tables.is_empty()).then(|| Self {
             program: STANDARD.encode(PROGRAM),
             scene: STANDARD.encode(deflated(&scene.to_bytes())),
-            missing: scene.missing.clone(),
         })
     }
 }

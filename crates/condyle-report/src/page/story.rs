@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::key_words::in_words;
 use crate::number::{cycles, fixed, significant};
 use crate::results::{case::cycles_asked, contents::Results, measure::Region};
+use crate::scene::Scene;
 
 /// The result in two sentences; of a run that is not finished, as far as it is.
 pub(super) fn lede(results: &Results) -> Option<String> {
@@ -138,10 +139,22 @@ pub(super) fn missing(results: &Results) -> Vec<&'static str> {
         ("summary.json", results.summary.is_none()),
         ("wear.csv", results.wear.is_none()),
         ("kinematics.csv", results.kinematics.is_none()),
+        ("slip_paths.csv", results.slip_paths.is_none()),
         ("insert_*.vtu", results.surface.is_none()),
         ("case.toml", results.case.is_none()),
     ]
     .into_iter()
     .filter_map(|(name, gone)| gone.then_some(name))
     .collect()
+}
+
+/// What could not be read, and why, each once.
+pub(super) fn left_out(results: &Results, scene: Option<&Scene>) -> Vec<String> {
+    let mut all = results.left_out.clone();
+    for why in scene.into_iter().flat_map(|scene| &scene.missing) {
+        if !all.contains(why) {
+            all.push(why.clone());
+        }
+    }
+    all
 }

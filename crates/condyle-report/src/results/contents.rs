@@ -23,4 +23,6 @@ pub struct Results {
     pub case: Option<String>,
     /// Which knee it is.
     pub side: Side,
+    /// What could not be read, and why; only of [`Results::read_what_can_be`].
+    pub left_out: Vec<String>,
 }

@@ -13,38 +13,80 @@ use super::{
 };
 use crate::error::ReportError;
 
+/// What is done about a part that cannot be read: the reading ends, or goes on without it.
+type OnDamage<'a> = &'a mut dyn FnMut(ReportError) -> Result<(), ReportError>;
+
 impl Results {
     /// Reads what a results folder holds; parts that are not there become `None`.
     ///
     /// # Errors
     /// The folder is missing or holds no result at all, or a file in it is damaged.
     pub fn read(folder: &Path) -> Result<Self, ReportError> {
+        let results = Self::read_parts(folder, &mut Err)?;
+        results.or_none_at_all(folder)
+    }
+
+    /// Reads what can be read of a results folder: parts that are damaged become `None` too, and [`Results::left_out`]
+    /// says why.
+    ///
+    /// # Errors
+    /// The folder is missing or holds no result that can be read.
+    pub fn read_what_can_be(folder: &Path) -> Result<Self, ReportError> {
+        let mut left_out = Vec::new();
+        let mut note = |error: ReportError| {
+            left_out.push(without_folder(&error.to_string(), folder));
+            Ok(())
+        };
+        let results = Self::read_parts(folder, &mut note)?;
+        if left_out.is_empty() {
+            return results.or_none_at_all(folder);
+        }
+        let results = Self {
+            left_out,
+            ..results
+        };
+        if results.has_any() {
+            return Ok(results);
+        }
+        Err(ReportError::NothingReadable {
+            folder: folder.to_owned(),
+            reasons: results.left_out.join(" "),
+        })
+    }
+
+    fn read_parts(folder: &Path, on_damage: OnDamage<'_>) -> Result<Self, ReportError> {
         if !folder.is_dir() {
             return Err(ReportError::NoFolder {
                 folder: folder.to_owned(),
             });
         }
-        let case = text(&folder.join("case.toml"))?;
-        let summary = summary(folder.join("summary.json"))?;
-        let results = Self {
-            activities: activities(folder, summary.as_ref())?,
+        let case = part(case(folder.join("case.toml")), on_damage)?;
+        let summary = part(summary(folder.join("summary.json")), on_damage)?;
+        let mut of = |name: &str| part(table(&folder.join(name)), on_damage);
+        let (wear, kinematics) = (of("wear.csv")?, of("kinematics.csv")?);
+        let slip_paths = of("slip_paths.csv")?;
+        Ok(Self {
+            activities: activities(folder, summary.as_ref(), on_damage)?,
             summary,
-            wear: table(&folder.join("wear.csv"))?,
-            kinematics: table(&folder.join("kinematics.csv"))?,
-            slip_paths: table(&folder.join("slip_paths.csv"))?,
-            surface: surface(folder)?,
+            wear,
+            kinematics,
+            slip_paths,
+            surface: part(surface(folder), on_damage)?,
             side: case.as_deref().map_or_else(Side::default, side),
             case,
-        };
-        results.or_none_at_all(folder)
+            left_out: Vec::new(),
+        })
+    }
+
+    fn has_any(&self) -> bool {
+        self.summary.is_some()
+            || self.wear.is_some()
+            || self.kinematics.is_some()
+            || self.surface.is_some()
     }
 
     fn or_none_at_all(self, folder: &Path) -> Result<Self, ReportError> {
-        let any = self.summary.is_some()
-            || self.wear.is_some()
-            || self.kinematics.is_some()
-            || self.surface.is_some();
-        if any {
+        if self.has_any() {
             return Ok(self);
         }
         Err(ReportError::NoResults {
@@ -53,17 +95,32 @@ impl Results {
     }
 }
 
+/// A part; none where it cannot be read and the reading goes on.
+fn part<T>(
+    read: Result<Option<T>, ReportError>,
+    on_damage: OnDamage<'_>,
+) -> Result<Option<T>, ReportError> {
+    read.or_else(|error| on_damage(error).map(|()| None))
+}
+
+/// A message whose files have no folder: the same run gives the same page wherever it is.
+pub(crate) fn without_folder(message: &str, folder: &Path) -> String {
+    let folder = format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR);
+    message.replace(&folder, "")
+}
+
 /// Each of several activities, and its table.
 fn activities(
     folder: &Path,
     summary: Option<&Summary>,
+    on_damage: OnDamage<'_>,
 ) -> Result<Vec<(ActivitySummary, Option<Table>)>, ReportError> {
     let listed = summary.map_or_else(Vec::new, Summary::activities);
     let with_table = |activity: ActivitySummary| {
         // A summary that somebody wrote may name any file: only one of the folder itself is read.
         let name = Path::new(&activity.kinematics_file).file_name();
-        let table = name.map(|name| table(&folder.join(name))).transpose()?;
-        Ok((activity, table.flatten()))
+        let table = name.map(|name| part(table(&folder.join(name)), on_damage));
+        Ok((activity, table.transpose()?.flatten()))
     };
     listed.into_iter().map(with_table).collect()
 }
@@ -100,6 +157,19 @@ fn update_of(path: &Path) -> Option<u32> {
         .ok()
 }
 
+fn case(path: PathBuf) -> Result<Option<String>, ReportError> {
+    let Some(text) = text(&path)? else {
+        return Ok(None);
+    };
+    match text.parse::<toml::Table>() {
+        Ok(_) => Ok(Some(text)),
+        Err(error) => Err(ReportError::NotACase {
+            path,
+            message: error.message().to_owned(),
+        }),
+    }
+}
+
 fn summary(path: PathBuf) -> Result<Option<Summary>, ReportError> {
     let Some(text) = text(&path)? else {
         return Ok(None);
@@ -112,9 +182,15 @@ fn summary(path: PathBuf) -> Result<Option<Summary>, ReportError> {
 
 /// The table of a file; none where there is no such file.
 pub(crate) fn table(path: &Path) -> Result<Option<Table>, ReportError> {
-    text(path)?
-        .map(|text| Table::parse(&text, path))
-        .transpose()
+    let Some(text) = text(path)? else {
+        return Ok(None);
+    };
+    if !text.ends_with('\n') {
+        return Err(ReportError::CutShort {
+            path: path.to_owned(),
+        });
+    }
+    Table::parse(&text, path).map(Some)
 }
 
 fn text(path: &Path) -> Result<Option<String>, ReportError> {

@@ -10,6 +10,9 @@ use super::{
 };
 use crate::results::table::Table;
 
+/// Triangles of the femur in a picture: with more, a processor does not draw thirty pictures a second.
+const FEMUR_TRIANGLES: usize = 5000;
+
 /// What is said of a scene beside its arrays.
 #[derive(Serialize)]
 struct Facts<'a> {
@@ -44,7 +47,7 @@ impl Scene {
         self.add_insert(&mut arrays);
         let fields = self.add_fields(&mut arrays);
         if let Some(femur) = &self.femur {
-            add_body(&mut arrays, "femur", femur);
+            add_body(&mut arrays, "femur", &femur.coarser(FEMUR_TRIANGLES));
         }
         for cycle in &self.cycles {
             self.add_cycle(&mut arrays, cycle);

@@ -4,6 +4,7 @@
 //! programs read, the same from both.
 
 mod arrays;
+mod coarse;
 mod encode;
 mod read;
 

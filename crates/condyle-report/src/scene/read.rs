@@ -16,7 +16,7 @@ use crate::{
     error::ReportError,
     results::{
         contents::Results,
-        read::{meshes, table},
+        read::{meshes, table, without_folder},
         summary::Summary,
         table::Table,
     },
@@ -24,6 +24,17 @@ use crate::{
 
 /// Point data that is 1 on nodes of the articulating surface.
 const ARTICULATING: &str = "articulating";
+
+/// Files that only what moves needs, and what is so without each.
+const MOVING_FILES: [(&str, &str); 4] = [
+    ("femur.vtu", "the femur is not shown"),
+    ("femur_pose.csv", "nothing moves through the cycle"),
+    (
+        "cycle_first_pressure.csv",
+        "the first cycle has no pressures",
+    ),
+    ("cycle_last_pressure.csv", "the last cycle has no pressures"),
+];
 
 /// Increments of a cycle by the text of their percent.
 type ByPercent = BTreeMap<u64, usize>;
@@ -36,6 +47,11 @@ impl Scene {
         let summary = results.summary.as_ref();
         scene.neutral_pose = summary.and_then(Summary::neutral_pose);
         scene.cycles = cycles(folder, &mut scene.missing);
+        let is_gone = |(name, _): &&(&str, &str)| !folder.join(name).exists();
+        let gone = MOVING_FILES.iter().filter(is_gone);
+        scene.missing.extend(gone.map(|(name, without)| {
+            format!("{name} is not in the folder: {without}.")
+        }));
         let tables = [("wear", &results.wear), ("kinematics", &results.kinematics)];
         let tables = tables.into_iter();
         scene.tables = tables
@@ -48,12 +64,6 @@ impl Scene {
     }
 }
 
-/// A message whose files have no folder: the same run gives the same page wherever it is.
-fn without_folder(message: &str, folder: &Path) -> String {
-    let folder = format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR);
-    message.replace(&folder, "")
-}
-
 /// The insert at every update that can be read.
 fn of_meshes(folder: &Path, results: &Results) -> Scene {
     let wear = results.wear.as_ref();
@@ -61,7 +71,9 @@ fn of_meshes(folder: &Path, results: &Results) -> Scene {
         .and_then(|wear| wear.column("cycles"))
         .unwrap_or_default();
     let mut scene = Scene::default();
-    for (update, path) in meshes(folder).unwrap_or_default() {
+    let meshes = meshes(folder).unwrap_or_default();
+    let not_there = not_there(&meshes, results);
+    for (update, path) in meshes {
         let cycles = match update.checked_sub(1) {
             None => 0.0,
             Some(row) => cycles.get(row as usize).copied().unwrap_or(f64::NAN),
@@ -70,7 +82,26 @@ fn of_meshes(folder: &Path, results: &Results) -> Scene {
             scene.missing.push(why);
         }
     }
+    scene.missing.extend(not_there);
     scene
+}
+
+/// Updates without a mesh, where others have one: up to the last that the summary tells of.
+fn not_there(meshes: &[(u32, PathBuf)], results: &Results) -> Option<String> {
+    let (last, _) = meshes.last()?;
+    let summary = results.summary.as_ref();
+    let told = summary.and_then(|summary| summary.number("updates"));
+    let all = 0..=told.map_or(*last, |updates| updates as u32).max(*last);
+    let is_there = |update: &u32| meshes.iter().any(|(there, _)| there == update);
+    let gone: Vec<String> = all
+        .filter(|update| !is_there(update))
+        .map(|update| format!("insert_{update:04}.vtu"))
+        .collect();
+    let (first, rest) = gone.split_first()?;
+    Some(match rest {
+        [] => format!("{first} is not in the folder."),
+        [.., last] => format!("{} files from {first} to {last} are not in the folder.", gone.len()),
+    })
 }
 
 /// Adds the mesh of an update, or says why not.

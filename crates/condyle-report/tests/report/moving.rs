@@ -38,6 +38,8 @@ fn a_damaged_mesh_before_the_last_is_left_out_and_told() {
         "{:?}",
         scene.missing
     );
+    let gone = "9 files from insert_0000.vtu to insert_0009.vtu are not in the folder.";
+    assert_eq!(scene.missing[1], gone);
     let page = write_report(folder.path()).expect("the rest is whole");
     let html = fs::read_to_string(page).expect("the page is there");
     assert!(html.contains("Left out of this page") && html.contains("insert_0003.vtu"));
@@ -72,12 +74,10 @@ fn the_cycles_of_the_poses_have_their_pressures() {
 #[test]
 fn poses_cut_off_are_told_and_the_rest_is_shown() {
     let folder = folder();
-    let cut = &POSES[..POSES.len() - 9];
+    let cut = format!("{}\n", &POSES[..POSES.len() - 9]);
     fs::write(folder.path().join("femur_pose.csv"), cut).expect("can be written");
     let scene = scene_of(folder.path());
     assert!(scene.cycles.is_empty() && scene.has_surface());
-    assert_eq!(
-        scene.missing,
-        ["Line 4 of femur_pose.csv has 10 values; its header names 14 columns."]
-    );
+    let told = "Line 4 of femur_pose.csv has 10 values; its header names 14 columns.";
+    assert!(scene.missing.iter().any(|why| why == told));
 }

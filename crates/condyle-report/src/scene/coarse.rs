@@ -1,0 +1,190 @@
+//! A body of fewer triangles, for a picture that a processor draws.
+
+use std::collections::BTreeMap;
+
+use condyle_fem::Vec3;
+
+use super::SceneBody;
+
+/// What becomes one node: a cube of a grid, or a node of the border by itself.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Cell {
+    Cube([i64; 3]),
+    Border(u32),
+}
+
+impl SceneBody {
+    /// The body with at most about `most` triangles; itself where it has no more.
+    ///
+    /// The border stays as it is. The other nodes of every cube of a grid become the one of them that is nearest to their
+    /// mean: all nodes stay on the surface, and a triangle of edge `h` is off a surface of radius `R` by up to `h^2 / (8 R)`.
+    pub(super) fn coarser(&self, most: usize) -> Self {
+        // Cubes become so much wider, so many times at most: a border may be longer than can be drawn with `most`.
+        const WIDER: f64 = 1.1;
+        const TIMES: usize = 24;
+        if self.triangles.len() <= most {
+            return self.clone();
+        }
+        // Two triangles to the square that a cube cuts out of the surface.
+        let edge = (2.0 * self.area() / most as f64).sqrt();
+        let border = self.border();
+        let mut body = self.clustered(edge, &border);
+        for times in 1..=TIMES {
+            if body.triangles.len() <= most {
+                break;
+            }
+            body = self.clustered(edge * WIDER.powi(times as i32), &border);
+        }
+        body
+    }
+
+    fn area(&self) -> f64 {
+        let corners = |triangle: &[u32; 3]| triangle.map(|node| self.nodes[node as usize]);
+        let twice = (self.triangles.iter().map(corners)).map(|[a, b, c]| (b - a).cross(&(c - a)));
+        twice.map(|normal| normal.norm() / 2.0).sum()
+    }
+
+    /// Of each node, whether it is on an edge of one triangle alone.
+    fn border(&self) -> Vec<bool> {
+        let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
+        let edges = self.triangles.iter().flat_map(sides);
+        let mut edges: Vec<_> = edges.map(|(a, b)| (a.min(b), a.max(b))).collect();
+        edges.sort_unstable();
+        let mut border = vec![false; self.nodes.len()];
+        for same in edges.chunk_by(|one, next| one == next) {
+            if let &[(a, b)] = same {
+                border[a as usize] = true;
+                border[b as usize] = true;
+            }
+        }
+        border
+    }
+
+    fn clustered(&self, edge: f64, border: &[bool]) -> Self {
+        let cell = |(node, is_border): (u32, &bool)| match is_border {
+            true => Cell::Border(node),
+            false => Cell::Cube(
+                <[f64; 3]>::from(self.nodes[node as usize] / edge).map(|at| at.floor() as i64),
+            ),
+        };
+        let cells: Vec<Cell> = (0..).zip(border).map(cell).collect();
+        let mut members: BTreeMap<Cell, Vec<u32>> = BTreeMap::new();
+        for (node, cell) in (0..).zip(&cells) {
+            members.entry(*cell).or_default().push(node);
+        }
+        let place: BTreeMap<Cell, u32> = members.keys().copied().zip(0..).collect();
+        let nodes = members.values().map(|members| self.middle(members));
+        let renumbered = |triangle: &[u32; 3]| triangle.map(|node| place[&cells[node as usize]]);
+        let mut body = Self {
+            nodes: nodes.collect(),
+            triangles: self.triangles.iter().map(renumbered).collect(),
+        };
+        body.triangles
+            .retain(|[a, b, c]| a != b && b != c && c != a);
+        body.triangles = unpaired(body.triangles);
+        body
+    }
+
+    /// The node nearest to the mean of some.
+    fn middle(&self, members: &[u32]) -> Vec3 {
+        let at = |member: &u32| self.nodes[*member as usize];
+        let sum: Vec3 = members.iter().map(at).sum();
+        let mean = sum / members.len() as f64;
+        let away = |node: &Vec3| (node - mean).norm_squared();
+        let nearest = members.iter().map(at);
+        let nearest = nearest.min_by(|a, b| away(a).total_cmp(&away(b)));
+        nearest.unwrap_or(mean)
+    }
+}
+
+/// Triangles without those that lie on one another, which face both ways: a closed surface stays closed.
+fn unpaired(mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
+    triangles.sort_by_key(|triangle| sorted(*triangle));
+    let same = triangles.chunk_by(|one, next| sorted(*one) == sorted(*next));
+    let odd = same.filter(|same| same.len() % 2 == 1);
+    odd.map(|same| same[0]).collect()
+}
+
+fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
+    triangle.sort_unstable();
+    triangle
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    /// Radius of a tube, as that of a condyle, and of the ring that it is bent to, mm.
+    const RADIUS_MM: f64 = 25.0;
+    const RING_MM: f64 = 30.0;
+
+    fn ring() -> SceneBody {
+        let (along, around) = (160_u32, 120_u32);
+        let at = |i: u32, j: u32| {
+            let (way, turn) = (
+                TAU * f64::from(i) / f64::from(along),
+                TAU * f64::from(j) / f64::from(around),
+            );
+            let out = RING_MM + RADIUS_MM * turn.cos();
+            Vec3::new(out * way.cos(), RADIUS_MM * turn.sin(), out * way.sin())
+        };
+        let nodes = (0..along).flat_map(|i| (0..around).map(move |j| at(i, j)));
+        let node = |i: u32, j: u32| i % along * around + j % around;
+        let quad = |i: u32, j: u32| {
+            let [a, b, c, d] = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)];
+            let [a, b, c, d] = [a, b, c, d].map(|(i, j)| node(i, j));
+            [[a, b, c], [a, c, d]]
+        };
+        let quads = (0..along).flat_map(|i| (0..around).flat_map(move |j| quad(i, j)));
+        SceneBody {
+            nodes: nodes.collect(),
+            triangles: quads.collect(),
+        }
+    }
+
+    #[test]
+    fn a_coarse_ring_is_closed_and_as_far_off_as_is_said() {
+        let coarse = ring().coarser(6000);
+        assert!(coarse.triangles.len() <= 6000 && coarse.triangles.len() > 3000);
+        let mut edges = BTreeMap::new();
+        for [a, b, c] in &coarse.triangles {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *edges.entry((from.min(to), from.max(to))).or_insert(0) += 1;
+            }
+        }
+        assert!(edges.values().all(|count| count % 2 == 0), "it has a hole");
+        let middles = coarse.triangles.iter().map(|triangle| {
+            let [a, b, c] = triangle.map(|node| coarse.nodes[node as usize]);
+            (a + b + c) / 3.0
+        });
+        let off = middles.map(|middle| {
+            let out = middle.x.hypot(middle.z) - RING_MM;
+            (out.hypot(middle.y) - RADIUS_MM).abs()
+        });
+        let most = off.fold(0.0, f64::max);
+        assert!(most < 0.35, "{most}");
+    }
+
+    #[test]
+    fn a_border_stays_where_it_is() {
+        let mut open = ring();
+        let half = open.triangles.len() / 2;
+        open.triangles.truncate(half);
+        let coarse = open.coarser(4000);
+        let border = open.border();
+        let places = open.nodes.iter().zip(&border).filter(|(_, is)| **is);
+        for (place, _) in places {
+            assert!(coarse.nodes.contains(place));
+        }
+        assert!(coarse.triangles.len() <= 4000);
+    }
+
+    #[test]
+    fn a_body_of_few_triangles_stays_as_it_is() {
+        let ring = ring();
+        let same = ring.coarser(ring.triangles.len());
+        assert_eq!(same.triangles, ring.triangles);
+    }
+}

@@ -1,0 +1,55 @@
+// Saves the still pictures of the page: as SVG on white, as PNG.
+
+import { button, element } from "./dom";
+import { save } from "./save";
+
+// Dots of a PNG to a point of the picture.
+const DOTS = 2;
+
+// Puts two buttons below every picture of a section.
+export function offerPictures(root: ParentNode): void {
+  for (const svg of root.querySelectorAll<SVGSVGElement>("svg.fig")) {
+    const name = svg.querySelector("title")?.textContent?.toLowerCase().replaceAll(/[^a-z0-9]+/g, "_") || "picture";
+    const saves = element(
+      "span",
+      { class: "saves" },
+      button("SVG", () => save(`${name}.svg`, new Blob([alone(svg)], { type: "image/svg+xml" }))),
+      button("PNG", () => void savePng(`${name}.png`, svg)),
+    );
+    const box = element("span", { class: "figure-box" });
+    svg.replaceWith(box);
+    box.append(svg, saves);
+  }
+}
+
+// The picture as a file that needs no page: its style inside, on white.
+function alone(svg: SVGSVGElement): string {
+  const copy = svg.cloneNode(true) as SVGSVGElement;
+  const { width, height } = svg.viewBox.baseVal;
+  copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+  copy.setAttribute("width", String(width));
+  copy.setAttribute("height", String(height));
+  const style = document.createElementNS("http://www.w3.org/2000/svg", "style");
+  style.textContent = pictureRules();
+  const paper = document.createElementNS("http://www.w3.org/2000/svg", "rect");
+  for (const [key, value] of Object.entries({ width, height, fill: "#fff" })) paper.setAttribute(key, String(value));
+  copy.prepend(style, paper);
+  return new XMLSerializer().serializeToString(copy);
+}
+
+// The rules of the page that are of pictures, and its colours on white.
+function pictureRules(): string {
+  const rules = [...document.styleSheets].flatMap((sheet) => [...sheet.cssRules]);
+  const kept = rules.filter((rule) => rule instanceof CSSStyleRule && /^:root$|\.fig\b/.test(rule.selectorText));
+  return kept.map((rule) => rule.cssText).join("\n");
+}
+
+async function savePng(name: string, svg: SVGSVGElement): Promise<void> {
+  const image = new Image();
+  const { width, height } = svg.viewBox.baseVal;
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(alone(svg))}`;
+  await image.decode();
+  const canvas = element("canvas", { width: DOTS * width, height: DOTS * height });
+  canvas.getContext("2d")!.drawImage(image, 0, 0, canvas.width, canvas.height);
+  canvas.toBlob((blob) => blob && save(name, blob), "image/png");
+}
