@@ -35,6 +35,7 @@ export class Plot {
   readonly box: HTMLElement;
   private plot: uPlot | undefined;
   private readonly shown = element("div", { class: "plot" });
+  private readonly observers: (IntersectionObserver | ResizeObserver)[];
   private readonly height: number;
   private isSeen = false;
   private pointed: number | undefined;
@@ -48,8 +49,14 @@ export class Plot {
     // The height that it will have, so that nothing moves when it is drawn.
     this.shown.style.minHeight = `${this.height + LEGEND_PX}px`;
     const seen = ([entry]: IntersectionObserverEntry[]) => this.see(entry!.isIntersecting);
-    new IntersectionObserver(seen, { rootMargin: "200px" }).observe(this.shown);
-    new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width)).observe(this.shown);
+    this.observers = [new IntersectionObserver(seen, { rootMargin: "200px" }), new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width))];
+    for (const observer of this.observers) observer.observe(this.shown);
+  }
+
+  // Lets go of what plots of the same key share.
+  dispose(): void {
+    for (const observer of this.observers) observer.disconnect();
+    this.plot?.destroy();
   }
 
   // Puts the cursor on an instant.

@@ -2,7 +2,7 @@
 
 import { element } from "./dom";
 import { FlatMaps } from "./flat_maps";
-import { Plot, type Curves } from "./plots";
+import { Plot, type Curves, type PlotOptions } from "./plots";
 import { cyclesInWords, quantity } from "./quantities";
 import type { Scene } from "./scene";
 import { updateAfter, Viewer } from "./viewer";
@@ -18,6 +18,7 @@ export class RunView {
   readonly gait = element("div", { class: "gait" });
   private readonly history = element("div");
   private readonly maps: FlatMaps;
+  private readonly plots: Plot[] = [];
 
   // Flat maps of the run that `root` holds are linked with the bodies.
   constructor(
@@ -29,6 +30,18 @@ export class RunView {
     this.drawWear();
     this.drawGait();
     if (this.viewer) this.viewer.onPick = (node) => this.picked(this.viewer!, node);
+  }
+
+  // Lets go of the run; what it drew stays until it is taken away.
+  dispose(): void {
+    this.viewer?.dispose();
+    this.plots.forEach((plot) => plot.dispose());
+  }
+
+  private plotted(curves: Curves, options: PlotOptions): Plot {
+    const plot = new Plot(curves, options);
+    this.plots.push(plot);
+    return plot;
   }
 
   private drawWear(): void {
@@ -43,7 +56,7 @@ export class RunView {
     });
     const chosen = (index: number) => this.viewer?.showUpdate(updateAfter(this.scene, after[index]!));
     const names = ["mass_loss_mg", "max_depth_mm"].filter((name) => this.scene.columns("wear").includes(name));
-    for (const name of names) this.worn.append(new Plot(curve(name), { linked: "wear", chosen }).box);
+    for (const name of names) this.worn.append(this.plotted(curve(name), { linked: "wear", chosen }).box);
     this.worn.append(this.history);
   }
 
@@ -52,7 +65,7 @@ export class RunView {
     const cycles = columns.includes("cycles") ? parts(this.scene.column("kinematics", "cycles")) : [];
     if (!cycles.length || !columns.includes("percent")) return;
     const chosen = (index: number) => this.viewer?.showInstant(index);
-    const plots = columns.slice(2).map((name) => new Plot(this.channel(name, cycles), { linked: "gait", chosen, height: 160 }));
+    const plots = columns.slice(2).map((name) => this.plotted(this.channel(name, cycles), { linked: "gait", chosen, height: 160 }));
     this.gait.append(...plots.map((plot) => plot.box));
     if (this.viewer) this.viewer.onInstant = (index) => plots.forEach((plot) => plot.point(index));
   }
@@ -90,7 +103,7 @@ export class RunView {
       at: updates.map((cycles) => (cycles ?? 0) / 1e6),
       curves: [{ name: label, colour: BLUE, values: updates.map((_, update) => this.scene.field(name, update)[node]!) }],
     };
-    this.history.replaceChildren(new Plot(curves, { linked: "wear" }).box);
+    this.history.replaceChildren(this.plotted(curves, { linked: "wear" }).box);
   }
 }
 

@@ -32,6 +32,7 @@ class Page {
   private editor: Editor | undefined;
   private now: Found | undefined;
   private kept: Found | undefined;
+  private plots: Plot[] = [];
   private runs = 0;
 
   constructor(module: WebAssembly.Module) {
@@ -102,7 +103,9 @@ class Page {
   }
 
   private hear({ reached, remark, warning }: Told): void {
-    if (remark ?? warning) byId("remarks").append(element("li", {}, remark ?? warning!));
+    if (remark) byId("remarks").append(element("li", {}, remark));
+    // A warning is told again by the summary.
+    else if (warning) this.say(warning);
     else if (reached) this.say(`${inDigits(reached.cycles / 1e6)} of ${inDigits(reached.of_cycles / 1e6)} million cycles`);
     else this.say("All cycles are done; how accurate they are is being estimated");
   }
@@ -142,8 +145,9 @@ class Page {
     box.hidden = !this.kept;
     const { kept, now } = this;
     if (!kept || !now) return;
-    const plots = ["mass_loss_mg", "max_depth_mm"].map((name) => this.beside(kept, now, name).box);
-    byId("compared").replaceChildren(comparison(kept.summary, now.summary), ...plots);
+    this.plots.forEach((plot) => plot.dispose());
+    this.plots = ["mass_loss_mg", "max_depth_mm"].map((name) => this.beside(kept, now, name));
+    byId("compared").replaceChildren(comparison(kept.summary, now.summary), ...this.plots.map((plot) => plot.box));
   }
 
   private beside(kept: Found, now: Found, name: string): Plot {

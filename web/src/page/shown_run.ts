@@ -20,12 +20,13 @@ export class ShownRun {
 
   show({ scene }: Found): void {
     const before = this.view?.viewer;
-    const view = new RunView(scene);
+    // The page has no flat maps to be linked with.
+    const view = new RunView(scene, this.bodies);
     this.bodies.replaceChildren(...(view.viewer ? [view.viewer.box] : []));
     this.worn.replaceChildren(view.worn);
     this.gait.replaceChildren(view.gait);
     if (before && view.viewer) view.viewer.lookAs(before);
-    before?.dispose();
+    this.view?.dispose();
     this.view = view;
   }
 }
