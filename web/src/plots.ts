@@ -110,6 +110,8 @@ function settings({ across, up, curves }: Curves, { linked }: PlotOptions): Omit
         label: name,
         stroke: colour || ink,
         width: 1.6,
+        // Curves of two runs have their points at other cycles.
+        spanGaps: true,
         points: { show: curves.length === 1 },
         value: (_: uPlot, value: number | null) => (value === null ? "–" : `${inDigits(value)} ${up.unit}`),
       })),
