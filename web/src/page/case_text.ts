@@ -6,10 +6,11 @@ export interface Place {
   key: string;
 }
 
-const HEADING = /^\s*\[([^[\]]+)\]\s*(#.*)?$/;
+// Of a table, or of one of a list of tables; rows of numbers over several lines are no headings.
+const HEADING = /^\s*\[\[?\s*([A-Za-z_][\w.-]*)\s*\]\]?\s*(#.*)?$/;
 
 export function headingOf(line: string): string | undefined {
-  return HEADING.exec(line)?.[1]?.trim();
+  return HEADING.exec(line)?.[1];
 }
 
 // The table that a line is in; none before the first.
@@ -68,11 +69,11 @@ function parts(line: string): { before: string; value: string; after: string } {
   return { before: before!, value: value!, after: after! };
 }
 
-// Behind the last key of a table.
+// Behind the last line of a table that is neither empty nor a remark.
 function endOfTable(lines: string[], heading: number): number {
   let last = heading;
-  for (let i = heading + 1; i < lines.length && headingOf(lines[i]!) === undefined && !lines[i]!.startsWith("[["); i++) {
-    if (keyOf(lines[i]!)) last = i;
+  for (let i = heading + 1; i < lines.length && headingOf(lines[i]!) === undefined; i++) {
+    if (/^\s*[^\s#]/.test(lines[i]!)) last = i;
   }
   return last + 1;
 }
