@@ -24,8 +24,9 @@ def used_packages():
 
     `cargo metadata` knows the licences, and lists what no feature asks for; `cargo tree` does not.
     """
-    told = json.loads(said_by("metadata", "--format-version", "1"))
-    lines = said_by("tree", "--workspace", "--target", "all", "--prefix", "none", "--format", "{p}")
+    told = json.loads(said_by("metadata", "--all-features", "--format-version", "1"))
+    of_all = ["--workspace", "--all-features", "--target", "all"]
+    lines = said_by("tree", *of_all, "--prefix", "none", "--format", "{p}")
     used = {tuple(line.split()[:2]) for line in lines.splitlines()}
     return [p for p in told["packages"] if (p["name"], f"v{p['version']}") in used]
 

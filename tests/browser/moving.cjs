@@ -33,9 +33,10 @@ async function open(browser) {
   return { page, heard, ready_ms: Date.now() - began };
 }
 
-// Two frames later whatever was asked for is drawn.
-function drawn(page) {
-  return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+// Two frames later whatever was asked for is under way, and at rest it is drawn finely.
+async function drawn(page) {
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.waitForSelector(".stage canvas[data-still]");
 }
 
 async function picture(page) {
@@ -67,10 +68,12 @@ async function controls(page) {
   await changes(page, "another field", () => choose(page, "Colours show", "sliding_distance_mm"));
   await changes(page, "another colour map", () => choose(page, "Colour map", "cividis"));
   await changes(page, "wear made larger", () => move(page, "Wear made larger", 20));
-  await changes(page, "the section", () => move(page, "Section at z", 0));
+  await changes(page, "the section across", () => move(page, "Section at z", 0));
+  await changes(page, "the section along", () => move(page, "Section at x", 0));
   await changes(page, "a view", () => page.getByRole("button", { name: "From above" }).click());
   await keep(page, "section");
   await move(page, "Section at z", 45);
+  await move(page, "Section at x", 45);
   await changes(page, "a drag", () => drag(page));
 }
 
@@ -83,6 +86,48 @@ async function drag(page) {
 }
 
 // The last update's deepest node is that of summary.json to the digits shown.
+async function highest(page, summary) {
+  await move(page, "After update", 10);
+  await choose(page, "Colours show", "wear_depth_mm");
+  await changes(page, "picking the highest", () => page.getByRole("button", { name: "Pick the highest" }).click());
+  const told = await page.locator(".picked").innerText();
+  const depth_mm = Number(/Wear depth\s+([\d.]+) mm/.exec(told)[1]);
+  assert(Math.abs(depth_mm - summary.max_depth_mm) < 1e-4, `${depth_mm} mm picked, ${summary.max_depth_mm} in summary.json`);
+}
+
+// A place picked on a flat map is marked on every map and on the bodies, and read.
+async function linked(page) {
+  const maps = page.locator("svg[data-map]");
+  const map = maps.nth(1);
+  await map.scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await map.boundingBox();
+  const before = await page.locator(".picked").innerText();
+  await changes(page, "a place of a flat map", () => page.mouse.click(x + width * 0.6, y + height * 0.45));
+  assert.notStrictEqual(await page.locator(".picked").innerText(), before);
+  assert.strictEqual(await page.locator("svg[data-map] .picked-place").count(), await maps.count());
+  const [ring, clicked] = [await map.locator(".picked-place").boundingBox(), [x + width * 0.6, y + height * 0.45]];
+  const off = Math.hypot(ring.x + ring.width / 2 - clicked[0], ring.y + ring.height / 2 - clicked[1]);
+  assert(off < 12, `the mark is ${off} px from where was clicked`);
+}
+
+// Curves are drawn as they come into sight; a still picture is saved as it is seen.
+async function curves(page) {
+  await page.locator(".gait").scrollIntoViewIfNeeded();
+  for (const box of await page.locator(".gait .curves").all()) {
+    await box.scrollIntoViewIfNeeded();
+    await box.locator("canvas").waitFor();
+  }
+  assert((await page.locator(".curves canvas").count()) > 8, "curves are missing");
+  for (const [kind, begins] of [["SVG", "<svg"], ["PNG", "\u0089PNG"]]) {
+    const box = page.locator(".figure-box").first();
+    await box.hover();
+    const saved = page.waitForEvent("download");
+    await box.getByRole("button", { name: kind }).click();
+    const file = await (await saved).path();
+    assert(fs.readFileSync(file, "latin1").startsWith(begins), `what is saved is no ${kind}`);
+  }
+}
+
 async function picks(page) {
   await choose(page, "Colours show", "wear_depth_mm");
   const { x, y, width, height } = await page.locator(".stage canvas").boundingBox();
@@ -130,9 +175,11 @@ async function main() {
     const summary = JSON.parse(fs.readFileSync(path.join(results, "summary.json"), "utf8"));
     const mass = summary.mass_loss_mg.toPrecision(3);
     assert((await page.locator(".tiles").innerText()).includes(mass), `the page does not say ${mass} mg`);
-    assert((await page.locator(".curves canvas").count()) > 8, "curves are missing");
     await controls(page);
     await picks(page);
+    await highest(page, summary);
+    await linked(page);
+    await curves(page);
     await gait(page);
     assert.deepStrictEqual(heard, [], "the page asks for other files or reports errors");
     await page.emulateMedia({ media: "print" });

@@ -10,6 +10,8 @@ export interface Curve {
   name: string;
   values: (number | null)[];
   colour: string;
+  // Dots without a line between them.
+  isDotted?: boolean;
 }
 
 export interface Curves {
@@ -20,7 +22,7 @@ export interface Curves {
   curves: Curve[];
 }
 
-// Height of the line of values below a plot.
+// Height of a line of values below a plot.
 const LEGEND_PX = 26;
 
 export interface PlotOptions {
@@ -47,7 +49,8 @@ export class Plot {
     this.height = options.height ?? 190;
     this.box = element("figure", { class: "curves" }, element("figcaption", {}, curves.title), this.shown, saves(curves, () => this.drawn()));
     // The height that it will have, so that nothing moves when it is drawn.
-    this.shown.style.minHeight = `${this.height + LEGEND_PX}px`;
+    const lines = curves.curves.length > 1 ? curves.curves.length + 1 : 1;
+    this.shown.style.minHeight = `${this.height + LEGEND_PX * lines}px`;
     const seen = ([entry]: IntersectionObserverEntry[]) => this.see(entry!.isIntersecting);
     this.observers = [new IntersectionObserver(seen, { rootMargin: "200px" }), new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width))];
     for (const observer of this.observers) observer.observe(this.shown);
@@ -106,13 +109,14 @@ function settings({ across, up, curves }: Curves, { linked }: PlotOptions): Omit
     cursor: { drag: { x: true, y: false }, ...(linked ? { sync: { key: linked, scales: ["x", null] as [string, null] } } : {}) },
     series: [
       { label: across.label, value: (_, value) => (value === null ? "–" : inDigits(value)) },
-      ...curves.map(({ name, colour }) => ({
+      ...curves.map(({ name, colour, isDotted }) => ({
         label: name,
         stroke: colour || ink,
         width: 1.6,
         // Curves of two runs have their points at other cycles.
         spanGaps: true,
-        points: { show: curves.length === 1 },
+        ...(isDotted ? { paths: () => null } : {}),
+        points: { show: isDotted || curves.filter((curve) => !curve.isDotted).length === 1 },
         value: (_: uPlot, value: number | null) => (value === null ? "–" : `${inDigits(value)} ${up.unit}`),
       })),
     ],

@@ -2,6 +2,7 @@
 
 import { element } from "./dom";
 import { FlatMaps } from "./flat_maps";
+import { withMeasured, withWeighings } from "./measured";
 import { Plot, type Curves, type PlotOptions } from "./plots";
 import { cyclesInWords, quantity } from "./quantities";
 import type { Scene } from "./scene";
@@ -47,16 +48,19 @@ export class RunView {
   private drawWear(): void {
     if (!this.scene.columns("wear").includes("mass_loss_mg")) return;
     const after = [0, ...this.scene.column("wear", "cycles")];
-    const curve = (name: string): Curves => ({
+    const ofRun = (name: string): Curves => ({
       title: quantity(name).label,
       across: MILLION_CYCLES,
       up: quantity(name),
       at: after.map((cycles) => cycles / 1e6),
       curves: [{ name: quantity(name).label, colour: BLUE, values: [0, ...this.scene.column("wear", name)] }],
     });
-    const chosen = (index: number) => this.viewer?.showUpdate(updateAfter(this.scene, after[index]!));
     const names = ["mass_loss_mg", "max_depth_mm"].filter((name) => this.scene.columns("wear").includes(name));
-    for (const name of names) this.worn.append(this.plotted(curve(name), { linked: "wear", chosen }).box);
+    for (const name of names) {
+      const curves = withWeighings(ofRun(name), this.scene);
+      const chosen = (index: number) => this.viewer?.showUpdate(updateAfter(this.scene, 1e6 * curves.at[index]!));
+      this.worn.append(this.plotted(curves, { linked: "wear", chosen }).box);
+    }
     this.worn.append(this.history);
   }
 
@@ -65,7 +69,7 @@ export class RunView {
     const cycles = columns.includes("cycles") ? parts(this.scene.column("kinematics", "cycles")) : [];
     if (!cycles.length || !columns.includes("percent")) return;
     const chosen = (index: number) => this.viewer?.showInstant(index);
-    const plots = columns.slice(2).map((name) => this.plotted(this.channel(name, cycles), { linked: "gait", chosen, height: 160 }));
+    const plots = columns.slice(2).map((name) => this.plotted(withMeasured(this.channel(name, cycles), this.scene), { linked: "gait", chosen, height: 160 }));
     this.gait.append(...plots.map((plot) => plot.box));
     if (this.viewer) this.viewer.onInstant = (index) => plots.forEach((plot) => plot.point(index));
   }

@@ -31,8 +31,12 @@ pub enum Command {
     Schema,
     /// Write a case as an Abaqus input file, to check condyle against Abaqus.
     Export(Export),
-    /// Write the report page of a results folder again.
+    /// Write the report page of a results folder again; of several, one page with all of them side by side.
     Report(Report),
+    /// Write the pictures of a results folder as files, without a browser.
+    Plot(Plot),
+    /// Say in which numbers, curves and maps two runs differ, beside their discretisation errors.
+    Diff(Diff),
     /// Run a case over finer and finer values of one of its numbers, and see what changes.
     Converge(Converge),
     /// Run a case again with each of its assumptions changed, and see which of them its results hang on.
@@ -139,11 +143,50 @@ pub struct Export {
 
 #[derive(Args)]
 pub struct Report {
-    /// The results folder.
-    pub results: PathBuf,
+    /// The results folder; several are shown side by side on a page of their own, held against the first.
+    #[arg(required = true, value_name = "RESULTS")]
+    pub results: Vec<PathBuf>,
     /// Also write wear_map.svg, wear.svg and kinematics.svg.
     #[arg(long)]
     pub pictures: bool,
+    /// The page of several folders [default: runs.html].
+    #[arg(short, long, value_name = "FILE.html", conflicts_with = "pictures")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct Plot {
+    /// The results folder.
+    pub results: PathBuf,
+    /// Folder for the pictures [default: pictures in the results folder].
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Dots of a PNG to a point of the picture.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub dots: u8,
+    /// Only these files; both, where this condyle was built with the feature `png`, if not given.
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    pub format: Vec<PictureFormat>,
+}
+
+/// How a picture is written.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum PictureFormat {
+    /// Lines and letters, at any size.
+    Svg,
+    /// Dots.
+    Png,
+}
+
+#[derive(Args)]
+pub struct Diff {
+    /// The results folder that the other is held against.
+    pub first: PathBuf,
+    /// The other results folder.
+    pub second: PathBuf,
+    /// Print the differences as JSON, and nothing else on standard output.
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Args)]

@@ -23,10 +23,16 @@ pub fn compare(arguments: &Compare) -> ExitCode {
     note_unfinished(&arguments.results);
     let out = arguments.out.clone();
     let out = out.unwrap_or_else(|| default_folder(arguments));
-    let written = match comparison.write(&out) {
+    let mut written = match comparison.write(&out) {
         Ok(written) => written,
         Err(error) => return fail(&error),
     };
+    if out == default_folder(arguments) {
+        match condyle_report::write_report_of_what_can_be_read(&arguments.results) {
+            Ok((page, _)) => written.push(page),
+            Err(error) => return exit::fail(error, exit::BAD_INPUT),
+        }
+    }
     if arguments.json {
         return output::print_beside(&comparison.json(), &out);
     }

@@ -7,11 +7,13 @@ mod calibrate_wear;
 mod check;
 mod compare;
 mod converge;
+mod diff;
 mod exit;
 mod export;
 mod law_table;
 mod new;
 mod output;
+mod plot;
 mod processor;
 mod progress;
 mod report;
@@ -52,6 +54,8 @@ fn obey(command: Command) -> ExitCode {
         Command::Schema => schema::schema(),
         Command::Export(arguments) => export::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Plot(arguments) => plot::plot(&arguments),
+        Command::Diff(arguments) => diff::diff(&arguments),
         Command::Converge(arguments) => converge::converge(&arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(&arguments),
         Command::Uncertainty(arguments) => uncertainty::uncertainty(&arguments),

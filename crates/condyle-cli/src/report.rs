@@ -1,6 +1,11 @@
 //! `condyle report`.
 
-use std::{path::Path, process::ExitCode};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use condyle_report::runs::{Run, write_runs};
 
 use crate::{
     arguments::Report,
@@ -10,7 +15,39 @@ use crate::{
 };
 
 pub fn report(arguments: &Report) -> ExitCode {
-    let folder = &arguments.results;
+    match arguments.results.as_slice() {
+        [folder] if arguments.out.is_none() => of_one(folder, arguments.pictures),
+        [_] => exit::fail(
+            "--out is for the page of several runs; the report of one stands in its folder",
+            exit::BAD_INPUT,
+        ),
+        folders => side_by_side(folders, arguments),
+    }
+}
+
+fn side_by_side(folders: &[PathBuf], arguments: &Report) -> ExitCode {
+    if arguments.pictures {
+        let said = "--pictures is for one results folder; condyle plot writes the pictures of each";
+        return exit::fail(said, exit::BAD_INPUT);
+    }
+    let runs: Result<Vec<Run>, _> = folders.iter().map(|folder| Run::read(folder)).collect();
+    let out = arguments.out.clone();
+    let out = out.unwrap_or_else(|| PathBuf::from("runs.html"));
+    match runs.and_then(|runs| Ok((write_runs(&out, &runs)?, runs))) {
+        Ok((page, runs)) => {
+            for run in &runs {
+                let left_out = run.results.left_out.iter();
+                left_out
+                    .for_each(|why| tell(format_args!("warning: left out of {}: {why}", run.name)));
+            }
+            folders.iter().for_each(|folder| note_unfinished(folder));
+            output::print(&format!("wrote {}\n", page.display()))
+        }
+        Err(error) => exit::fail(error, exit::BAD_INPUT),
+    }
+}
+
+fn of_one(folder: &Path, has_pictures: bool) -> ExitCode {
     let (page, left_out) = match condyle_report::write_report_of_what_can_be_read(folder) {
         Ok(written) => written,
         Err(error) => return exit::fail(error, exit::BAD_INPUT),
@@ -20,7 +57,7 @@ pub fn report(arguments: &Report) -> ExitCode {
     }
     note_unfinished(folder);
     let mut written = vec![Ok(page)];
-    if arguments.pictures {
+    if has_pictures {
         written.push(condyle_report::write_wear_map(folder));
         written.push(condyle_report::write_wear_curve(folder));
         written.push(condyle_report::write_kinematics(folder));

@@ -14,18 +14,24 @@ mod number;
 mod page;
 mod pictures;
 mod plots;
+#[cfg(feature = "png")]
+mod png;
 mod results;
+pub mod runs;
 pub mod scene;
+mod sheets;
 pub mod study;
 
 pub use condyle_fem::Vec3;
 pub use error::ReportError;
 pub use page::{moving_report_html, report_html};
 pub use pictures::{
-    kinematics_svg, wear_curve_svg, wear_map_svg, write_kinematics, write_wear_curve,
-    write_wear_map,
+    Picture, kinematics_svg, pictures, wear_curve_svg, wear_map_svg, write_kinematics,
+    write_wear_curve, write_wear_map,
 };
 pub use plots::{Plot, plots_svg};
+#[cfg(feature = "png")]
+pub use png::png;
 pub use results::{
     contents::Results,
     measure::{Extreme, Region},

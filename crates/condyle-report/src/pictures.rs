@@ -3,13 +3,70 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::ReportError;
-use crate::figure::{alone, sheet};
+use crate::figure::{Map, Panel, alone, sheet};
 use crate::file::write_text;
-use crate::page::{kinematics_panels, wear_map, wear_panels};
+use crate::page::{MAPS, kinematics_panels, slip_map, wear_map, wear_panels};
 use crate::results::contents::Results;
 
 /// Scale of the map, px per mm.
 const PX_PER_MM: f64 = 8.0;
+
+/// A picture of the report as a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Its name, without an ending.
+    pub name: &'static str,
+    /// The text of an SVG file.
+    pub svg: String,
+}
+
+/// All pictures of a report that a folder has the numbers for: maps, slip paths, wear over cycles, motion and load.
+pub fn pictures(results: &Results) -> Vec<Picture> {
+    let picture = |(name, svg): (&'static str, Option<String>)| Some(Picture { name, svg: svg? });
+    let others = [
+        ("slip_paths", slip_map(results, PX_PER_MM, map_with)),
+        ("wear", sheet_of_wear(&wear_panels(results))),
+        ("kinematics", sheet_of_motion(&kinematics_panels(results))),
+    ];
+    let maps = MAPS.iter().zip(MAP_NAMES).map(|(map, name)| {
+        let surface = results.surface.as_ref();
+        let map = surface.and_then(|surface| map.drawn(surface, results.side, PX_PER_MM));
+        (name, map.map(|map| map_with(&map, &map.desc(), "")))
+    });
+    maps.chain(others).filter_map(picture).collect()
+}
+
+/// Names of the maps' files, in the order of [`MAPS`].
+const MAP_NAMES: [&str; 6] = [
+    "wear_map",
+    "peak_pressure_map",
+    "sliding_distance_map",
+    "cross_shear_map",
+    "creep_map",
+    "permanent_set_map",
+];
+
+fn map_with(map: &Map<'_>, desc: &str, over: &str) -> String {
+    alone(map.title, desc, map.size(), &(map.body() + over))
+}
+
+/// Curves over cycles as a file; `None` without any.
+fn sheet_of_wear(panels: &[Panel]) -> Option<String> {
+    let desc = "What wears against cycles.";
+    let key = [("last", "each dot is an update of the shape")];
+    (!panels.is_empty()).then(|| sheet("Wear over the test", desc, panels, 2, &key))
+}
+
+/// Motions and loads as a file; `None` without any.
+fn sheet_of_motion(panels: &[Panel]) -> Option<String> {
+    let desc = "Motions and loads against percent of the gait cycle.";
+    let key = [
+        ("first", "first cycle"),
+        ("last", "last cycle, against % of the gait cycle"),
+    ];
+    let title = "Motion and load in a gait cycle";
+    (!panels.is_empty()).then(|| sheet(title, desc, panels, 3, &key))
+}
 
 /// The wear map of the last update as the text of an SVG file.
 ///
@@ -48,14 +105,7 @@ pub fn wear_curve_svg(results_dir: &Path) -> Result<String, ReportError> {
             picture: PICTURE,
         });
     }
-    let desc = "Mass loss and maximum wear depth against cycles.";
-    Ok(sheet(
-        "Wear over the test",
-        desc,
-        &panels,
-        2,
-        &[("last", "each dot is an update of the shape")],
-    ))
+    Ok(sheet_of_wear(&panels).unwrap_or_default())
 }
 
 /// Motions and loads of the first and last cycle as the text of an SVG file.
@@ -68,28 +118,11 @@ pub fn kinematics_svg(results_dir: &Path) -> Result<String, ReportError> {
     if results.kinematics.is_none() {
         return Err(missing(results_dir, "kinematics.csv", PICTURE));
     }
-    let panels = kinematics_panels(&results);
-    if panels.is_empty() {
-        let path = results_dir.join("kinematics.csv");
-        let columns = "percent, flexion_deg, axial_force_n, ap_mm, ie_deg";
-        return Err(ReportError::MissingColumns {
-            path,
-            columns,
-            picture: PICTURE,
-        });
-    }
-    let desc = "Motions and loads against percent of the gait cycle.";
-    let key = [
-        ("first", "first cycle"),
-        ("last", "last cycle, against % of the gait cycle"),
-    ];
-    Ok(sheet(
-        "Motion and load in a gait cycle",
-        desc,
-        &panels,
-        3,
-        &key,
-    ))
+    sheet_of_motion(&kinematics_panels(&results)).ok_or_else(|| ReportError::MissingColumns {
+        path: results_dir.join("kinematics.csv"),
+        columns: "percent, flexion_deg, axial_force_n, ap_mm, ie_deg",
+        picture: PICTURE,
+    })
 }
 
 /// Writes `wear_map.svg` into a results folder and returns its path.

@@ -161,7 +161,11 @@ fn a_damaged_mesh_is_found_by_name_wherever_it_is_read() {
     let said = bench.say(&["run", "case.toml", "--out", "out", "--resume"]);
     assert_ne!(said.code, Some(0));
     let words = ["insert_0003.vtu: the file is damaged", "--force"];
-    assert!(words.iter().all(|word| said.err.contains(word)), "{}", said.err);
+    assert!(
+        words.iter().all(|word| said.err.contains(word)),
+        "{}",
+        said.err
+    );
     let said = bench.say(&["report", "out"]);
     assert_eq!(said.code, Some(0));
     assert!(said.err.contains(words[0]), "{}", said.err);

@@ -26,6 +26,7 @@ mod plausibility;
 mod preview;
 mod sensitivity;
 mod shapes;
+mod side_by_side;
 mod slip_paths;
 mod study;
 mod uncertainty;

@@ -217,6 +217,20 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &["condyle_report::number", "condyle_report::results"],
     ),
     ("condyle_report::plots", &["condyle_report::figure"]),
+    ("condyle_report::png", &["condyle_report::figure"]),
+    ("condyle_report::sheets", &["condyle_report::figure"]),
+    (
+        "condyle_report::runs",
+        &[
+            "condyle_report::error",
+            "condyle_report::figure",
+            "condyle_report::file",
+            "condyle_report::number",
+            "condyle_report::page",
+            "condyle_report::results",
+            "condyle_report::sheets",
+        ],
+    ),
     (
         "condyle_report::study",
         &[
@@ -224,6 +238,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::figure",
             "condyle_report::file",
             "condyle_report::number",
+            "condyle_report::sheets",
         ],
     ),
     (

@@ -43,9 +43,11 @@ impl Comparison {
         let mut files = vec![("compare.json", self.json())];
         if let Some(kinematics) = &self.kinematics {
             files.push(("compare_kinematics.svg", kinematics.svg()));
+            files.push(("compare_kinematics.csv", kinematics.csv()));
         }
         if let Some(gravimetric) = &self.gravimetric {
             files.push(("compare_wear.svg", gravimetric.svg()));
+            files.push(("compare_wear.csv", gravimetric.csv()));
         }
         if let Some(surface) = &self.surface {
             files.push(("compare_surface.csv", surface.csv()));
@@ -68,7 +70,50 @@ impl KinematicsComparison {
     }
 }
 
+impl KinematicsComparison {
+    /// What was measured, less what alignment takes out: a row an instant of the run's cycle, a column a measured column; a
+    /// cell is empty where nothing was measured.
+    fn csv(&self) -> String {
+        let mut text = String::from("cycles,percent");
+        for column in &self.columns {
+            text += ",";
+            text += column.column;
+        }
+        text += "\n";
+        let points = self.columns.iter().flat_map(|column| &column.points);
+        let mut percents: Vec<f64> = points.map(|point| point[0]).collect();
+        percents.sort_by(f64::total_cmp);
+        percents.dedup();
+        for percent in percents {
+            write!(text, "{},{percent}", self.cycles_before)
+                .expect("writing to a string cannot fail");
+            for column in &self.columns {
+                let there = column.points.iter().find(|point| point[0] == percent);
+                let measured = there.map_or_else(String::new, |point| point[2].to_string());
+                write!(text, ",{measured}").expect("writing to a string cannot fail");
+            }
+            text += "\n";
+        }
+        text
+    }
+}
+
 impl GravimetricComparison {
+    /// What was weighed, soak-corrected: a row a weighing, a column a specimen.
+    fn csv(&self) -> String {
+        let mut text = String::from("cycles");
+        for specimen in 1..=self.specimens.len() {
+            write!(text, ",specimen_{specimen}_mg").expect("writing to a string cannot fail");
+        }
+        text += "\n";
+        for weighing in &self.weighings {
+            let losses = weighing.loss_mg.iter().map(|loss| format!(",{loss}"));
+            let losses: String = losses.collect();
+            writeln!(text, "{}{losses}", weighing.cycles).expect("writing to a string cannot fail");
+        }
+        text
+    }
+
     fn svg(&self) -> String {
         let specimen = |index: usize| {
             let point = |weighing: &super::Weighing| (weighing.cycles, weighing.loss_mg[index]);

@@ -45,12 +45,19 @@ pub(crate) fn sheet(
 }
 
 fn key_line(key: &[(&str, &str)], y: f64) -> String {
-    let entry = |(index, (class, meaning)): (usize, &(&str, &str))| {
-        let x = 46.0 + 130.0 * index as f64;
+    // What a letter takes, and the least from one entry to the next, px.
+    const LETTER: f64 = 6.2;
+    const PITCH: f64 = 130.0;
+    let mut x = 46.0;
+    let mut line = String::new();
+    for (class, meaning) in key {
         let (end, text, base) = (x + 24.0, x + 32.0, y + 3.8);
-        format!(
-            r#"<path class="{class}" d="M{x} {y}H{end}"/><text x="{text}" y="{base}">{meaning}</text>"#
-        )
-    };
-    key.iter().enumerate().map(entry).collect()
+        x += PITCH.max(56.0 + LETTER * meaning.chars().count() as f64);
+        let meaning = escape(meaning);
+        line += &format!(
+            r#"<path class="{class}" d="M{} {y}H{end}"/><text x="{text}" y="{base}">{meaning}</text>"#,
+            end - 24.0
+        );
+    }
+    line
 }

@@ -38,9 +38,7 @@ fn increments(results: &Results) -> Option<String> {
     let told = results.summary.as_ref()?.number("increments")?;
     let cycles = results.kinematics.as_ref()?.column("cycles")?;
     let lengths = cycles.chunk_by(|one, next| one == next).map(<[f64]>::len);
-    let wrong = lengths
-        .into_iter()
-        .find(|length| *length as f64 != told)?;
+    let wrong = lengths.into_iter().find(|length| *length as f64 != told)?;
     Some(format!(
         "summary.json tells of {told} increments a cycle, and kinematics.csv has a cycle of {wrong}: one of them is cut short, \
          or of another run."

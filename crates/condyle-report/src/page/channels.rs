@@ -122,7 +122,32 @@ pub(super) fn cycle_names(results: &Results) -> Option<(String, String)> {
 /// A panel for each channel that the folder holds, of the first activity.
 pub(crate) fn panels(results: &Results) -> Vec<Panel> {
     let table = results.kinematics.as_ref();
-    table.map_or_else(Vec::new, |table| panels_of(table, ""))
+    let mut panels = table.map_or_else(Vec::new, |table| panels_of(table, ""));
+    if let Some(measured) = &results.measured_kinematics {
+        for panel in &mut panels {
+            let mut channels = CHANNELS.iter();
+            let channel = channels.find(|channel| panel_id(channel) == panel.id);
+            let curve = channel.and_then(|channel| measured_curve(measured, channel.column));
+            panel.curves.extend(curve);
+        }
+    }
+    panels
+}
+
+fn panel_id(channel: &PlottedColumn) -> String {
+    format!("k-{}", channel.column)
+}
+
+/// What was measured of a column; a break where nothing was.
+fn measured_curve(measured: &Table, column: &str) -> Option<Curve> {
+    let (percents, values) = (measured.column("percent")?, measured.column(column)?);
+    let points = percents.iter().copied().zip(values.iter().copied());
+    Some(Curve {
+        class: "specimen",
+        points: points.collect(),
+        dots: false,
+        end: None,
+    })
 }
 
 /// A panel for each channel of a table, which `activity` tells from those of others on the page.
@@ -171,7 +196,7 @@ fn panel(
         .collect();
     let any = values.iter().any(|value| value.is_finite());
     any.then(|| Panel {
-        id: format!("k-{}", channel.column),
+        id: panel_id(channel),
         title: channel.title.to_owned(),
         unit: channel.unit.to_owned(),
         positive: channel.positive.to_owned(),

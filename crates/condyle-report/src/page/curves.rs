@@ -57,18 +57,63 @@ const QUANTITIES: [Quantity; 6] = [
 
 /// A panel for each quantity that the folder holds, mass loss and depth first.
 pub(crate) fn panels(results: &Results) -> Vec<Panel> {
+    panels_up_to(results, most_cycles(results))
+}
+
+/// The cycles at the last update.
+pub(crate) fn most_cycles(results: &Results) -> f64 {
+    let table = results.wear.as_ref();
+    let cycles = table.and_then(|table| table.column("cycles"));
+    cycles
+        .unwrap_or_default()
+        .iter()
+        .copied()
+        .fold(0.0, f64::max)
+}
+
+/// The same with an axis that goes to so many cycles.
+pub(crate) fn panels_up_to(results: &Results, most: f64) -> Vec<Panel> {
     let Some(table) = &results.wear else {
         return Vec::new();
     };
-    QUANTITIES
-        .iter()
-        .filter_map(|quantity| panel(quantity, table))
+    let panels = QUANTITIES.iter().filter_map(|quantity| {
+        let mut panel = panel(quantity, table, most)?;
+        if let (MASS, Some(measured)) = (quantity.column, &results.measured_wear) {
+            // Below the run's own curve.
+            panel
+                .curves
+                .splice(0..0, weighed(measured, CycleUnit::of(most).size));
+        }
+        Some(panel)
+    });
+    panels.collect()
+}
+
+/// The column that specimens are weighed for.
+const MASS: &str = "mass_loss_mg";
+
+/// What each specimen lost.
+fn weighed(measured: &Table, unit: f64) -> Vec<Curve> {
+    let Some(cycles) = measured.column("cycles") else {
+        return Vec::new();
+    };
+    let specimens = measured.names().iter().filter(|name| *name != "cycles");
+    let columns = specimens.filter_map(|name| measured.column(name));
+    columns
+        .map(|losses| Curve {
+            class: "specimen",
+            points: (cycles.iter().map(|cycles| cycles / unit))
+                .zip(losses.iter().copied())
+                .collect(),
+            dots: true,
+            end: None,
+        })
         .collect()
 }
 
-fn panel(quantity: &Quantity, table: &Table) -> Option<Panel> {
+fn panel(quantity: &Quantity, table: &Table, most: f64) -> Option<Panel> {
     let cycles = table.column("cycles")?;
-    let unit = CycleUnit::of(cycles.iter().copied().fold(0.0, f64::max));
+    let unit = CycleUnit::of(most);
     let points = points(quantity, cycles, table.column(quantity.column)?, unit.size);
     let &(_, last) = points.last()?;
     let end = format!("{}\u{a0}{}", significant(last, 3), quantity.unit);
@@ -83,7 +128,7 @@ fn panel(quantity: &Quantity, table: &Table) -> Option<Panel> {
         title: quantity.title.to_owned(),
         unit: quantity.unit.to_owned(),
         positive: String::new(),
-        x: Axis::covering(0.0, points.last()?.0, 1e-6, 5),
+        x: Axis::covering(0.0, most / unit.size, 1e-6, 5),
         x_marks: Vec::new(),
         x_unit: "",
         x_title: unit.name,

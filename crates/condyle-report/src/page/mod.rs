@@ -19,8 +19,10 @@ mod slip;
 mod story;
 
 pub(crate) use channels::{PlottedColumn, channel, panels as kinematics_panels};
-pub(crate) use curves::panels as wear_panels;
-pub(crate) use maps::wear_map;
+pub(crate) use curves::{most_cycles, panels as wear_panels, panels_up_to as wear_panels_up_to};
+pub(crate) use maps::{MAPS, MapOf, wear_map};
+pub(crate) use numbers::{results_in_words, shown_value};
+pub(crate) use slip::slip_map;
 
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
@@ -72,6 +74,8 @@ struct Page<'a> {
     wear_curves: Vec<String>,
     channels: Vec<String>,
     cycles: Option<(String, String)>,
+    /// Whether motions are measured, and wear.
+    measured: [bool; 2],
     ranges: Vec<ranges::ChannelRange>,
     small_maps: Vec<maps::Small>,
     numbers: Vec<numbers::Group>,
@@ -113,6 +117,7 @@ impl<'a> Page<'a> {
             wear_curves: svgs(&wear_panels(results)),
             channels: svgs(&kinematics_panels(results)),
             cycles: channels::cycle_names(results),
+            measured: [&results.measured_kinematics, &results.measured_wear].map(Option::is_some),
             ranges: ranges::ranges(results),
             small_maps: maps::small(results, SMALL),
             numbers: numbers::groups(results),

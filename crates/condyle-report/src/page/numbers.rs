@@ -395,8 +395,7 @@ pub(super) fn tiles(results: &Results) -> Vec<Tile> {
 
 /// The estimated discretisation error of a number, where the summary has one.
 fn total_error(summary: &Summary, key: &str) -> Option<String> {
-    let total = summary.object("error")?.get(key)?.get("total")?.as_f64()?;
-    Some(significant(total, 2))
+    Some(significant(summary.total_error(key)?, 2))
 }
 
 /// All numbers in groups; what the report does not know comes last under its own name.
@@ -514,6 +513,23 @@ fn under(key: &str, row: Listed) -> Listed {
         label: format!("{group}: {}", row.label),
         ..row
     }
+}
+
+/// What a number of the summary is called, and its unit, in the order of the page; of results, not of the work.
+pub(crate) fn results_in_words() -> impl Iterator<Item = (&'static str, &'static str, &'static str)>
+{
+    const WORK: &str = "Computation";
+    let of_results = GROUPS.iter().filter(|(heading, _)| *heading != WORK);
+    let numbers = of_results.flat_map(|(_, numbers)| *numbers);
+    numbers.map(|number| (number.key, number.label, number.unit))
+}
+
+/// The value of a number in its unit, as the page shows it.
+pub(crate) fn shown_value(key: &str, value: f64, digits: i32) -> String {
+    known_by(key).map_or_else(
+        || significant(value, digits),
+        |number| shown(number, value, digits),
+    )
 }
 
 fn known_by(key: &str) -> Option<&'static Known> {

@@ -16,8 +16,13 @@ struct SlipPath {
     slips: Vec<(f64, f64)>,
 }
 
-/// The bare surface with the paths, each about its place; `None` without any.
-pub(super) fn slip_map(results: &Results, px_per_mm: f64) -> Option<String> {
+/// The bare surface with the paths, each about its place, as `picture` makes it of the map, a sentence and what is drawn
+/// over it; `None` without any.
+pub(crate) fn slip_map(
+    results: &Results,
+    px_per_mm: f64,
+    picture: impl Fn(&Map<'_>, &str, &str) -> String,
+) -> Option<String> {
     let (surface, table) = (results.surface.as_ref()?, results.slip_paths.as_ref()?);
     let paths = slip_paths(table)?;
     let bare = vec![0.0; surface.nodes.len()];
@@ -27,7 +32,7 @@ pub(super) fn slip_map(results: &Results, px_per_mm: f64) -> Option<String> {
         "Paths of the femur past {} places of the articulating surface from above, anterior up, shortened and widened.",
         paths.len()
     );
-    (!paths.is_empty()).then(|| map.svg_with(&desc, &drawn))
+    (!paths.is_empty()).then(|| picture(&map, &desc, &drawn))
 }
 
 fn bare_map<'a>(

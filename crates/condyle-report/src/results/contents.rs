@@ -23,6 +23,11 @@ pub struct Results {
     pub case: Option<String>,
     /// Which knee it is.
     pub side: Side,
+    /// Motions and loads that were measured, where `condyle compare` has laid them beside the run: `percent`, and columns as
+    /// those of `kinematics`.
+    pub measured_kinematics: Option<Table>,
+    /// Mass that specimens lost, mg, by `cycles`: a column a specimen.
+    pub measured_wear: Option<Table>,
     /// What could not be read, and why; only of [`Results::read_what_can_be`].
     pub left_out: Vec<String>,
 }

@@ -65,6 +65,8 @@ impl Results {
         let mut of = |name: &str| part(table(&folder.join(name)), on_damage);
         let (wear, kinematics) = (of("wear.csv")?, of("kinematics.csv")?);
         let slip_paths = of("slip_paths.csv")?;
+        let measured_kinematics = of("compare/compare_kinematics.csv")?;
+        let measured_wear = of("compare/compare_wear.csv")?;
         Ok(Self {
             activities: activities(folder, summary.as_ref(), on_damage)?,
             summary,
@@ -74,6 +76,8 @@ impl Results {
             surface: part(surface(folder), on_damage)?,
             side: case.as_deref().map_or_else(Side::default, side),
             case,
+            measured_kinematics,
+            measured_wear,
             left_out: Vec::new(),
         })
     }
@@ -126,12 +130,20 @@ fn activities(
 }
 
 fn surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
-    let Some((_, path)) = meshes(folder)?.pop() else {
-        return Ok(None);
-    };
-    check_file(&path)?;
-    let file = read_vtu_points(&path)?;
-    SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path).map(Some)
+    let last = meshes(folder)?.pop();
+    last.map(|(_, path)| surface_of(&path)).transpose()
+}
+
+/// The articulating surface before the first cycle; none where there is no mesh of it.
+pub(crate) fn unworn_surface(folder: &Path) -> Result<Option<SurfaceFields>, ReportError> {
+    let first = meshes(folder)?.into_iter().find(|(update, _)| *update == 0);
+    first.map(|(_, path)| surface_of(&path)).transpose()
+}
+
+fn surface_of(path: &Path) -> Result<SurfaceFields, ReportError> {
+    check_file(path)?;
+    let file = read_vtu_points(path)?;
+    SurfaceFields::of_mesh(&file.mesh, &file.point_data, path)
 }
 
 /// The meshes that a run wrote: `insert_NNNN.vtu`, and the number of updates of each, which rises.
@@ -162,6 +174,8 @@ fn case(path: PathBuf) -> Result<Option<String>, ReportError> {
         return Ok(None);
     };
     match text.parse::<toml::Table>() {
+        // A run ends every line of it.
+        Ok(_) if !text.is_empty() && !text.ends_with('\n') => Err(ReportError::CutShort { path }),
         Ok(_) => Ok(Some(text)),
         Err(error) => Err(ReportError::NotACase {
             path,

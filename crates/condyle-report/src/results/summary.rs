@@ -24,6 +24,11 @@ impl Summary {
         self.values.get(key)?.as_f64()
     }
 
+    /// The estimated discretisation error of the number called `key`, in the same unit, where the run estimated it.
+    pub fn total_error(&self, key: &str) -> Option<f64> {
+        self.object("error")?.get(key)?.get("total")?.as_f64()
+    }
+
     /// The text called `key`.
     pub fn text(&self, key: &str) -> Option<&str> {
         self.values.get(key)?.as_str()

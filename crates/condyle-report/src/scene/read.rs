@@ -49,10 +49,15 @@ impl Scene {
         scene.cycles = cycles(folder, &mut scene.missing);
         let is_gone = |(name, _): &&(&str, &str)| !folder.join(name).exists();
         let gone = MOVING_FILES.iter().filter(is_gone);
-        scene.missing.extend(gone.map(|(name, without)| {
-            format!("{name} is not in the folder: {without}.")
-        }));
-        let tables = [("wear", &results.wear), ("kinematics", &results.kinematics)];
+        scene
+            .missing
+            .extend(gone.map(|(name, without)| format!("{name} is not in the folder: {without}.")));
+        let tables = [
+            ("wear", &results.wear),
+            ("kinematics", &results.kinematics),
+            ("measured_wear", &results.measured_wear),
+            ("measured_kinematics", &results.measured_kinematics),
+        ];
         let tables = tables.into_iter();
         scene.tables = tables
             .filter_map(|(name, table)| Some((name, table.clone()?)))
@@ -100,7 +105,10 @@ fn not_there(meshes: &[(u32, PathBuf)], results: &Results) -> Option<String> {
     let (first, rest) = gone.split_first()?;
     Some(match rest {
         [] => format!("{first} is not in the folder."),
-        [.., last] => format!("{} files from {first} to {last} are not in the folder.", gone.len()),
+        [.., last] => format!(
+            "{} files from {first} to {last} are not in the folder.",
+            gone.len()
+        ),
     })
 }
 

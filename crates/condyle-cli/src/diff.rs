@@ -1,0 +1,139 @@
+//! `condyle diff`.
+
+use std::{path::Path, process::ExitCode};
+
+use condyle_report::runs::{Differences, Run};
+
+use crate::{
+    arguments::Diff,
+    exit,
+    output::{self, Lines},
+    report::note_unfinished,
+};
+
+/// Curves that are listed, at most; the others are smaller.
+const MOST_CURVES: usize = 8;
+
+pub fn diff(arguments: &Diff) -> ExitCode {
+    let read = |folder: &Path| {
+        note_unfinished(folder);
+        Run::read(folder)
+    };
+    let runs = read(&arguments.first).and_then(|first| Ok((first, read(&arguments.second)?)));
+    let (first, second) = match runs {
+        Ok(runs) => runs,
+        Err(error) => return exit::fail(error, exit::BAD_INPUT),
+    };
+    let differences = Differences::of(&first, &second);
+    if arguments.json {
+        return output::print(&output::json(&differences));
+    }
+    output::print(&in_words(&differences))
+}
+
+fn in_words(differences: &Differences) -> String {
+    let mut lines = Lines::default();
+    let [first, second] = &differences.runs;
+    lines.line(format_args!("A  {first}\nB  {second}"));
+    for note in &differences.notes {
+        lines.line(format_args!("note: {note}"));
+    }
+    add_settings(differences, &mut lines);
+    add_numbers(differences, &mut lines);
+    add_curves(differences, &mut lines);
+    add_maps(differences, &mut lines);
+    if differences.is_none() {
+        lines.line("nothing differs of what both have");
+    }
+    lines.text().to_owned()
+}
+
+fn add_settings(differences: &Differences, lines: &mut Lines) {
+    if differences.settings.is_empty() {
+        return;
+    }
+    lines.line("set otherwise, A and B");
+    for one in &differences.settings {
+        let said = |value: &Option<String>| value.clone().unwrap_or_else(|| "-".to_owned());
+        let (first, second) = (said(&one.first), said(&one.second));
+        lines.line(format_args!("  {:<38}  {first}  {second}", one.key));
+    }
+}
+
+fn add_numbers(differences: &Differences, lines: &mut Lines) {
+    if differences.numbers.is_empty() {
+        return;
+    }
+    lines.line(format_args!(
+        "{:<40}{:>12}{:>12}{:>12}{:>10}{:>10}  {}",
+        "numbers, by size over errors", "A", "B", "B - A", "%", "errors", "that is"
+    ));
+    for one in &differences.numbers {
+        let percent = one.difference_percent;
+        let percent = percent.map_or_else(|| "-".to_owned(), |percent| format!("{percent:+.2}"));
+        let errors = one.errors();
+        let errors = errors.map_or_else(|| "-".to_owned(), |errors| digits(errors, 2));
+        let difference = digits(one.difference, 4);
+        let [first, second] = [one.first, one.second].map(|value| digits(value, 5));
+        lines.line(format_args!(
+            "  {:<38}{first:>12}{second:>12}{difference:>12}{percent:>10}{errors:>10}  {}",
+            one.key,
+            one.verdict()
+        ));
+    }
+}
+
+fn add_curves(differences: &Differences, lines: &mut Lines) {
+    if differences.curves.is_empty() {
+        return;
+    }
+    lines.line(format_args!(
+        "{:<40}{:>12}{:>12}{:>12}{:>10}",
+        "curves, by size over range", "rms", "% of range", "largest", "at %"
+    ));
+    for one in differences.curves.iter().take(MOST_CURVES) {
+        let name = format!("{}, {} cycle", one.column, one.cycle);
+        let of_range = one.rms_percent_of_range;
+        let of_range = of_range.map_or_else(|| "-".to_owned(), |percent| format!("{percent:.2}"));
+        let [rms, largest] = [one.rms, one.largest].map(|value| digits(value, 4));
+        lines.line(format_args!(
+            "  {name:<38}{rms:>12}{of_range:>12}{largest:>12}{:>10.1}",
+            one.largest_at_percent
+        ));
+    }
+    let left = differences.curves.len().saturating_sub(MOST_CURVES);
+    if left > 0 {
+        lines.line(format_args!("  and {left} more that differ less"));
+    }
+}
+
+fn add_maps(differences: &Differences, lines: &mut Lines) {
+    if differences.maps.is_empty() {
+        return;
+    }
+    lines.line(format_args!(
+        "{:<40}{:>12}{:>12}{:>12}  {}",
+        "maps, by size over largest value", "largest", "%", "mean size", "at x, z, mm"
+    ));
+    for one in &differences.maps {
+        let percent = one.largest_percent;
+        let percent = percent.map_or_else(|| "-".to_owned(), |percent| format!("{percent:+.2}"));
+        let [largest, mean] = [one.largest, one.mean_absolute].map(|value| digits(value, 4));
+        lines.line(format_args!(
+            "  {:<38}{largest:>12}{percent:>12}{mean:>12}  {:.1}, {:.1}",
+            one.field, one.x_mm, one.z_mm
+        ));
+    }
+}
+
+/// So many significant digits, without powers of ten where few zeros do.
+fn digits(value: f64, count: i32) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if !(-4..7).contains(&magnitude) {
+        return format!("{value:.*e}", (count - 1) as usize);
+    }
+    format!("{value:.*}", (count - 1 - magnitude).max(0) as usize)
+}
