@@ -9,7 +9,6 @@
 //! | `run CASE OUT` | runs it in memory; OUT has what the page shows, `scene`, and `summary.json` |
 //! | `keep CASE OUT` | runs it into the results folder OUT, report and all |
 //! | `draft CASE FEMUR INSERT` | writes a case of two meshes, as `condyle new` does |
-//! | `schema OUT` | writes the JSON schema of cases |
 //!
 //! It ends with 0, with 2 on bad input and with 3 where the physics could not be solved, as the command does.
 
@@ -20,9 +19,7 @@ mod recorder;
 mod runs;
 mod told;
 
-use std::{env, fs, path::Path, process::ExitCode};
-
-use condyle_io::case::Case;
+use std::{env, path::Path, process::ExitCode};
 
 use failure::Failure;
 use told::{Told, tell};
@@ -48,13 +45,8 @@ fn done(words: &[&str]) -> Result<(), Failure> {
         ["draft", case, femur, insert] => {
             draft::draft(Path::new(case), Path::new(femur), Path::new(insert))
         }
-        ["schema", out] => written(out, &Case::json_schema()),
         _ => Err(Failure::of_words(format!(
             "{words:?}: this is no call; the program is for the web page, and says in its source which there are"
         ))),
     }
-}
-
-fn written(path: &str, content: &str) -> Result<(), Failure> {
-    fs::write(path, content).map_err(|error| Failure::of_file(Path::new(path), &error))
 }

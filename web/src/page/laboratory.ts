@@ -37,12 +37,6 @@ export class Laboratory {
     this.checks = new Solver(module);
   }
 
-  // The JSON schema of cases.
-  async schema(): Promise<string> {
-    const answer = await this.checks.call({ words: ["schema", "schema.json"], files: {}, wanted: "schema.json" });
-    return decode(answer!.files["schema.json"]!);
-  }
-
   // Checks a changed text, and runs it once it stays as it is.
   change(text: string): void {
     this.text = text;

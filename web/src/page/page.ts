@@ -6,6 +6,7 @@ import { Plot } from "../plots";
 import { inDigits, quantity } from "../quantities";
 import { save, saveText } from "../save";
 import viewStyle from "../style.css";
+import schema from "../../../cases/condyle.schema.json";
 import genericCase from "../../../cases/stanmore-force.toml";
 import { take, takeDropped, type Bodies } from "./dropped";
 import { Editor } from "./editor";
@@ -29,7 +30,7 @@ class Page {
   private readonly laboratory: Laboratory;
   private readonly shown = new ShownRun(byId("bodies"), byId("worn"), byId("gait"));
   private readonly sliders: Sliders;
-  private editor: Editor | undefined;
+  private readonly editor: Editor;
   private now: Found | undefined;
   private kept: Found | undefined;
   private plots: Plot[] = [];
@@ -45,18 +46,17 @@ class Page {
       busy: (isBusy) => document.documentElement.toggleAttribute("data-busy", isBusy),
     });
     this.sliders = new Sliders(() => this.laboratory.text, (text) => this.change(text));
+    this.editor = new Editor(new CaseSchema(schema), (text) => this.typed(text));
+    this.editor.text = text;
+    byId("text").append(this.editor.box);
     byId("sliders").append(this.sliders.box);
     this.sliders.show();
     this.buttons();
     this.takeFiles();
   }
 
-  async begin(): Promise<void> {
-    const run = this.laboratory.run();
-    this.editor = new Editor(new CaseSchema(await this.laboratory.schema()), (text) => this.typed(text));
-    this.editor.text = this.laboratory.text;
-    byId("text").append(this.editor.box);
-    await run;
+  begin(): Promise<void> {
+    return this.laboratory.run();
   }
 
   private buttons(): void {
@@ -93,7 +93,7 @@ class Page {
   }
 
   private change(text: string): void {
-    if (this.editor) this.editor.text = text;
+    this.editor.text = text;
     this.laboratory.change(text);
   }
 
@@ -129,7 +129,7 @@ class Page {
   }
 
   private fail(failure: Failure | null): void {
-    this.editor?.tell(failure);
+    this.editor.tell(failure);
     byId("failure").hidden = !failure;
     byId("failure").textContent = failure?.message ?? "";
     if (failure) this.say("This case does not run; what is shown is the run before it.");

@@ -1,8 +1,10 @@
 // The JSON schema of cases, as far as completion needs it.
 
-interface Schema {
+export interface Schema {
   properties?: Record<string, Schema>;
   items?: Schema;
+  // A key that means something else for each shape, law or model.
+  anyOf?: Schema[];
   enum?: unknown[];
   description?: string;
   type?: string;
@@ -15,22 +17,19 @@ export interface Offer {
 }
 
 export class CaseSchema {
-  private readonly root: Schema;
-
-  constructor(json: string) {
-    this.root = JSON.parse(json) as Schema;
-  }
+  constructor(private readonly root: Schema) {}
 
   // Keys of a table, by its dotted name.
   keys(table: string): Offer[] {
     const found = Object.entries(this.table(table)?.properties ?? {});
-    return found.filter(([, { type }]) => type !== "object").map(([word, { description }]) => ({ word, about: description ?? "" }));
+    return found.filter(([, { type }]) => type !== "object").map(([word, key]) => ({ word, about: about(key) ?? "" }));
   }
 
   // Words that a key takes.
   values(table: string, key: string): Offer[] {
-    const words = this.table(table)?.properties?.[key]?.enum ?? [];
-    return words.map((word) => ({ word: JSON.stringify(word), about: "" }));
+    const found = this.table(table)?.properties?.[key];
+    const words = meanings(found).flatMap((meaning) => meaning.enum ?? []);
+    return [...new Set(words)].map((word) => ({ word: JSON.stringify(word), about: "" }));
   }
 
   // Dotted names of all tables.
@@ -48,7 +47,7 @@ export class CaseSchema {
   }
 
   about(table: string, key: string): string | undefined {
-    return this.table(table)?.properties?.[key]?.description;
+    return about(this.table(table)?.properties?.[key]);
   }
 
   private table(name: string): Schema | undefined {
@@ -58,4 +57,12 @@ export class CaseSchema {
     };
     return name ? name.split(".").reduce(step, this.root as Schema | undefined) : this.root;
   }
+}
+
+function meanings(key: Schema | undefined): Schema[] {
+  return key?.anyOf ?? (key ? [key] : []);
+}
+
+function about(key: Schema | undefined): string | undefined {
+  return key?.description ?? meanings(key).find(({ description }) => description)?.description;
 }
