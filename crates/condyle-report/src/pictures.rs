@@ -53,19 +53,27 @@ fn map_with(map: &Map<'_>, desc: &str, over: &str) -> String {
 /// Curves over cycles as a file; `None` without any.
 fn sheet_of_wear(panels: &[Panel]) -> Option<String> {
     let desc = "What wears against cycles.";
-    let key = [("last", "each dot is an update of the shape")];
+    let run = ("last", "each dot is an update of the shape");
+    let key = [&[run][..], &measured(panels, "weighed")].concat();
     (!panels.is_empty()).then(|| sheet("Wear over the test", desc, panels, 2, &key))
 }
 
 /// Motions and loads as a file; `None` without any.
 fn sheet_of_motion(panels: &[Panel]) -> Option<String> {
     let desc = "Motions and loads against percent of the gait cycle.";
-    let key = [
-        ("first", "first cycle"),
-        ("last", "last cycle, against % of the gait cycle"),
-    ];
+    let first = ("first", "first cycle");
+    let last = ("last", "last cycle, against % of the gait cycle");
+    let key = [&[first, last][..], &measured(panels, "measured")].concat();
     let title = "Motion and load in a gait cycle";
     (!panels.is_empty()).then(|| sheet(title, desc, panels, 3, &key))
+}
+
+/// The key of what was measured, where a panel has it.
+fn measured(panels: &[Panel], word: &'static str) -> Vec<(&'static str, &'static str)> {
+    const MEASURED: &str = "specimen";
+    let mut curves = panels.iter().flat_map(|panel| &panel.curves);
+    let is_there = curves.any(|curve| curve.class == MEASURED);
+    Vec::from_iter(is_there.then_some((MEASURED, word)))
 }
 
 /// The wear map of the last update as the text of an SVG file.

@@ -173,7 +173,7 @@ fn differing(difference: &Differences) -> Vec<Vec<String>> {
             one.unit.to_owned(),
             signed(
                 one.difference,
-                shown_value(one.key, one.difference.abs(), 3),
+                &shown_value(one.key, one.difference.abs(), 3),
             ),
             percent(one.difference_percent),
             errors.map_or_else(|| "\u{2013}".to_owned(), |errors| significant(errors, 2)),
@@ -201,7 +201,7 @@ fn curves(difference: &Differences) -> Vec<Vec<String>> {
             one.unit.to_owned(),
             significant(one.rms, 3),
             percent(one.rms_percent_of_range),
-            signed(one.largest, significant(one.largest.abs(), 3)),
+            signed(one.largest, &significant(one.largest.abs(), 3)),
             significant(one.largest_at_percent, 3),
         ]
     });
@@ -222,7 +222,7 @@ fn maps(difference: &Differences) -> Vec<Vec<String>> {
         vec![
             one.title.to_owned(),
             one.unit.to_owned(),
-            signed(one.largest, significant(one.largest.abs(), 3)),
+            signed(one.largest, &significant(one.largest.abs(), 3)),
             percent(one.largest_percent),
             format!("{}, {}", significant(one.x_mm, 3), significant(one.z_mm, 3)),
             significant(one.mean_absolute, 3),
@@ -237,7 +237,7 @@ fn percent(value: Option<f64>) -> String {
 }
 
 /// A size with the sign of a value.
-fn signed(value: f64, size: String) -> String {
+fn signed(value: f64, size: &str) -> String {
     let sign = if value < 0.0 { '\u{2212}' } else { '+' };
     format!("{sign}{size}")
 }

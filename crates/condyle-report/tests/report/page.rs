@@ -209,7 +209,9 @@ fn the_case_is_shown_as_text() {
 #[test]
 fn an_empty_run_still_makes_a_page_that_says_what_is_missing() {
     let html = report_html(&Results::default());
-    assert!(html.contains("summary.json, wear.csv, kinematics.csv, slip_paths.csv, insert_*.vtu, case.toml"));
+    assert!(html.contains(
+        "summary.json, wear.csv, kinematics.csv, slip_paths.csv, insert_*.vtu, case.toml"
+    ));
     assert!(!html.contains("<svg"));
 }
 
