@@ -13,12 +13,14 @@ from __future__ import annotations
 from ._condyle import VERSION
 from .case import Case
 from .check import Check
-from .errors import BadInput, CondyleError, Interrupted, NotSolved, Problem
+from .errors import BadInput, CondyleError, Interrupted, NotSolved, Problem, StudyInterrupted
 from .knee import Contact, Cycle, Knee
 from .laws import NodeCycle
-from .progress import Bar, Progress
+from .progress import Bar, Progress, StudyProgress
 from .result import Result
 from .run import open, run
+from .study import Study
+from .study_result import StudyResult, open_study
 from .table import Table
 
 __version__ = VERSION
@@ -38,7 +40,12 @@ __all__ = [
     "Problem",
     "Progress",
     "Result",
+    "Study",
+    "StudyInterrupted",
+    "StudyProgress",
+    "StudyResult",
     "Table",
     "open",
+    "open_study",
     "run",
 ]

@@ -191,6 +191,11 @@ class Case:
         return self._raw
 
     @property
+    def arrays(self) -> dict[str, bytes]:
+        """Bodies that came as arrays, as .ply files under the names that the case has for them, for the package itself."""
+        return dict(self._files)
+
+    @property
     def has_arrays(self) -> bool:
         """Whether a body of it came as arrays, and is in no file yet."""
         return bool(self._files)

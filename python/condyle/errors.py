@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["BadInput", "CondyleError", "Interrupted", "NotSolved", "Problem"]
+__all__ = ["BadInput", "CondyleError", "Interrupted", "NotSolved", "Problem", "StudyInterrupted"]
 
 
 class Problem(NamedTuple):
@@ -85,3 +85,19 @@ class Interrupted(CondyleError):
 
     def __str__(self) -> str:
         return f"interrupted: {self.updates} updates are done, {self.cycles:.0f} of {self.of_cycles:.0f} cycles"
+
+
+class StudyInterrupted(CondyleError):
+    """A study that its progress callback stopped by answering ``False``; the same call goes on with it."""
+
+    kept: int
+    """Tests that are kept."""
+    tests: int
+    """Tests in all."""
+
+    def __init__(self, kept: int, tests: int) -> None:
+        super().__init__(kept, tests)
+        self.kept, self.tests = kept, tests
+
+    def __str__(self) -> str:
+        return f"interrupted: {self.kept} of {self.tests} tests are kept; the same call goes on"

@@ -3,6 +3,7 @@
 use std::fmt::Display;
 
 use condyle_io::keyed::{Problem, Problems};
+use condyle_lab::studies::study::StudyError;
 use condyle_lab::{Reached, RunError};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
@@ -30,6 +31,20 @@ pub fn of_run(error: &RunError) -> PyErr {
     raised(class, |class| {
         of_kind(class, message.trim_end(), error.in_case())
     })
+}
+
+/// A study that is not done.
+pub fn of_study(error: &StudyError) -> PyErr {
+    match error {
+        StudyError::Study(problems) => of_problems(problems),
+        StudyError::Run(error) => of_run(error),
+        other => bad_input(other),
+    }
+}
+
+/// A study that somebody asked to stop.
+pub fn study_interrupted(kept: u64, tests: u64) -> PyErr {
+    raised("StudyInterrupted", |class| class.call1((kept, tests)))
 }
 
 /// Physics that could not be solved.

@@ -19,6 +19,7 @@ mod processor;
 mod record;
 mod recorder;
 mod run;
+mod study;
 mod table;
 
 use pyo3::prelude::*;
@@ -36,6 +37,8 @@ mod _condyle {
     use super::knee::RawKnee;
     #[pymodule_export]
     use super::run::{run_in_memory, run_into_folder};
+    #[pymodule_export]
+    use super::study::{RawHeldStudy, RawStudy};
 
     /// Done before anything else.
     #[pymodule_init]

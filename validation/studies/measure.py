@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Times a study of few tests on one worker and on two, beside the runs alone, and scales to ten thousand."""
+"""Times a study of few tests on one worker and on two, beside the run alone, and one of ten thousand on two."""
 
 import argparse
 import json
@@ -8,6 +8,19 @@ import re
 import subprocess
 import time
 from pathlib import Path
+
+
+WHOLE = 10_000
+
+
+def of_size(given: Path, tests: int, work: Path) -> Path:
+    """The study with so many tests, beside its results."""
+    text = given.read_text()
+    case = given.parent / re.search(r'case = "(.*)"', text)[1]
+    text = re.sub(r"size = [0-9_]+", f"size = {tests}", text)
+    path = work / f"study-{tests}.toml"
+    path.write_text(re.sub(r'case = ".*"', f'case = "{case.resolve()}"', text))
+    return path
 
 
 def study(command: str, path: Path, out: Path, threads: int) -> tuple[float, float]:
@@ -41,22 +54,20 @@ def main() -> None:
     parser.add_argument("--tests", type=int, default=400)
     given = parser.parse_args()
     case = given.study.parent / re.search(r'case = "(.*)"', given.study.read_text())[1]
-    text = given.study.read_text().replace(re.search(r"size = [0-9_]+", given.study.read_text())[0], f"size = {given.tests}")
-    text = re.sub(r'case = ".*"', f'case = "{case.resolve()}"', text)
-    path = given.work / "study.toml"
-    path.write_text(text)
+    path = of_size(given.study, given.tests, given.work)
     alone = run_alone(given.condyle, case, given.work)
     one, memory_one = study(given.condyle, path, given.work / "one", 1)
     two, memory_two = study(given.condyle, path, given.work / "two", 2)
     same = (given.work / "one/table.csv").read_bytes() == (given.work / "two/table.csv").read_bytes()
+    whole, memory_whole = study(given.condyle, of_size(given.study, WHOLE, given.work), given.work / "whole", 2)
     a_test = one / given.tests
     rows = [
         ("tests", f"{given.tests}"),
         ("march of one run alone, as `condyle run` says it", f"{1000 * alone:.0f} ms"),
         ("a test of the study on one worker", f"{1000 * a_test:.0f} ms, {100 * (a_test / alone - 1):+.1f} %"),
         ("throughput of two workers over that of one", f"{one / two:.2f}"),
-        ("10,000 tests on two workers, scaled", f"{10_000 * two / given.tests / 60:.1f} minutes"),
-        ("memory, one worker and two", f"{memory_one:.0f} MB, {memory_two:.0f} MB"),
+        (f"{WHOLE:,} tests on two workers, with their answers", f"{whole / 60:.1f} minutes"),
+        ("memory, one worker, two, and two with all those", f"{memory_one:.0f} MB, {memory_two:.0f} MB, {memory_whole:.0f} MB"),
         ("the same bytes of the table", "yes" if same else "no"),
     ]
     print("| what | measured |\n| --- | --- |")

@@ -268,6 +268,11 @@ fn what_is_wrong_with_a_study_is_said_with_its_place() {
             vec!["did you mean \"normal\"?"],
         ),
         (
+            case.to_owned()
+                + &"[[vary]]\nkey = \"contact.friction\"\nlow = 0.0\nhigh = 0.1\n".repeat(257),
+            vec!["257 inputs, and 256 are the most"],
+        ),
+        (
             vary("femur.file", "levels = [\"none.stl\"]"),
             vec!["femur.file"],
         ),

@@ -10,6 +10,7 @@ use condyle_io::{
     measured::Measured,
     mesh::{parse_pvd, parse_surface, parse_vtu_points, read_hexahedra},
     results::Checkpoint,
+    study::Study,
 };
 
 use super::seeds;
@@ -51,6 +52,13 @@ pub fn all(folder: &Path) -> Vec<Reader> {
         }),
         Reader::new("pressure_table", seeds::pressure_table(), |bytes| {
             case("table.csv", bytes);
+        }),
+        Reader::new("strain_table", seeds::strain_table(), |bytes| {
+            case("strain.csv", bytes);
+        }),
+        Reader::new("study", seeds::study(), |bytes| study("study.toml", bytes)),
+        Reader::new("study_rows", seeds::study_rows(), |bytes| {
+            study("rows.csv", bytes);
         }),
         Reader::new("measured", seeds::measured("measured.toml"), |bytes| {
             measured("measured.toml", bytes);
@@ -103,12 +111,32 @@ fn vtu(bytes: &[u8]) {
 
 /// Reads a case of which one file is not what it should be, and shows what is wrong.
 fn case(name: &str, bytes: &[u8]) {
-    let mut files = MemoryFiles::default();
-    for (good, content) in seeds::case_files() {
-        files = files.with(good, content);
-    }
-    let read = CaseReader::new(files.with(name, bytes)).read(Path::new("case.toml"));
+    // A case has one law of pressure.
+    let path = match name {
+        "strain.csv" => "strain.toml",
+        _ => "case.toml",
+    };
+    let read = CaseReader::new(good_files().with(name, bytes)).read(Path::new(path));
     if let Err(problems) = read {
+        let _ = problems.to_string();
+    }
+}
+
+fn good_files() -> MemoryFiles {
+    let files = seeds::case_files().into_iter();
+    files.fold(MemoryFiles::default(), |files, (name, content)| {
+        files.with(name, content)
+    })
+}
+
+/// The same of a study of a case.
+fn study(name: &str, bytes: &[u8]) {
+    let files = good_files().with(name, bytes);
+    let path = match name {
+        "rows.csv" => "rows.toml",
+        _ => "study.toml",
+    };
+    if let Err(problems) = Study::read_in(files, Path::new(path)) {
         let _ = problems.to_string();
     }
 }

@@ -298,14 +298,50 @@ pub fn pressure_table() -> Vec<Vec<u8>> {
     ]
 }
 
+const STRAIN_CASE: &str = "[contact]\nlaw = \"tabulated-strain\"\nstrain_table_file = \"strain.csv\"\npeak_error_percent = 4.5\n";
+
+pub fn strain_table() -> Vec<Vec<u8>> {
+    vec![
+        b"# made up\noverclosure_over_thickness,pressure_mpa\n0,0\n0.005,5\n0.02,15\n0.05,30\n"
+            .to_vec(),
+    ]
+}
+
+const ROWS_STUDY: &str = "case = \"strain.toml\"\n[design]\nkind = \"rows\"\nfile = \"rows.csv\"\n";
+
+pub fn study() -> Vec<Vec<u8>> {
+    let shipped = include_str!("../../../../cases/studies/generic-implant.toml");
+    let every_table = "case = \"strain.toml\"\ntitle = \"hostile\"\n[design]\nkind = \"sobol\"\nsize = 8\nseed = 1\n\
+        [[vary]]\nkey = \"contact.friction\"\nlow = 0.02\nhigh = 0.1\n\
+        [[vary]]\nkey = \"insert.thickness_mm\"\ndistribution = \"triangular\"\nlow = 8.0\nmode = 9.0\nhigh = 10.0\n\
+        [[vary]]\nkey = \"wear.law\"\nlevels = [\"archard\", \"kang\"]\n\
+        [[correlation]]\nkeys = [\"contact.friction\", \"insert.thickness_mm\"]\ncoefficient = 0.3\n\
+        [[alternative]]\nname = \"flat\"\nset = [\"insert.sagittal_radius_mm=70\"]\n\
+        [[limit]]\noutput = \"peak_pressure_mpa\"\nmost = 40.0\n\
+        [answers]\noutputs = [\"mass_loss_mg\"]\n";
+    let search = "case = \"strain.toml\"\n[design]\nkind = \"optimise\"\nsize = 40\nminimise = \"mass_loss_mg\"\n\
+        [[vary]]\nkey = \"insert.sagittal_radius_mm\"\nlow = 45.0\nhigh = 60.0\n";
+    let shipped = shipped.replace("../stanmore-force.toml", "strain.toml");
+    let texts = [shipped.as_str(), every_table, search];
+    texts.map(|text| text.as_bytes().to_vec()).to_vec()
+}
+
+pub fn study_rows() -> Vec<Vec<u8>> {
+    vec![b"# made up\ncontact.friction,insert.thickness_mm,wear.law\n0.04,9,archard\n0.07,9.5,kang\n".to_vec()]
+}
+
 /// The files of the case that names others.
-pub fn case_files() -> [(&'static str, Vec<u8>); 5] {
+pub fn case_files() -> [(&'static str, Vec<u8>); 9] {
     [
         ("case.toml", CASE.as_bytes().to_vec()),
         ("f.stl", b"solid".to_vec()),
         ("i.stl", b"solid".to_vec()),
         ("wave.csv", waveform().remove(1)),
         ("table.csv", pressure_table().remove(0)),
+        ("strain.toml", STRAIN_CASE.as_bytes().to_vec()),
+        ("strain.csv", strain_table().remove(0)),
+        ("rows.toml", ROWS_STUDY.as_bytes().to_vec()),
+        ("rows.csv", study_rows().remove(0)),
     ]
 }
 

@@ -25,10 +25,18 @@ pub struct CaseReader {
 impl CaseReader {
     /// Reads cases, and the files that they name, from `files`.
     pub fn new(files: impl Files + 'static) -> Self {
-        Self {
-            files: Arc::new(files),
-            wear_laws: WEAR_LAWS,
-        }
+        Self::sharing(Arc::new(files))
+    }
+
+    /// Reads cases from files that others read as well.
+    pub(crate) fn sharing(files: Arc<dyn Files>) -> Self {
+        let wear_laws = WEAR_LAWS;
+        Self { files, wear_laws }
+    }
+
+    /// What they are read from.
+    pub(crate) fn files(&self) -> &dyn Files {
+        self.files.as_ref()
     }
 
     /// The same with other wear laws to choose from.

@@ -8,7 +8,7 @@ use super::correlation::Correlation;
 use super::declared::{Design, Variation};
 use super::input::Input;
 use super::tried::assignment;
-use crate::case::{Assignment, Case};
+use crate::case::{Assignment, Case, CaseReader, ChangeError};
 use crate::keyed::Level;
 
 /// A study as its file describes it, checked, with every default filled in.
@@ -35,6 +35,7 @@ pub struct Study {
     /// The file itself.
     pub text: String,
     pub(super) folder: PathBuf,
+    pub(super) cases: CaseReader,
 }
 
 impl Study {
@@ -47,6 +48,14 @@ impl Study {
             Some(assignment(&self.folder, &input.key, value.as_ref()?))
         };
         design.chain(inputs.filter_map(set)).collect()
+    }
+
+    /// The case with some of its values changed.
+    ///
+    /// # Errors
+    /// As [`CaseReader::read_changed`].
+    pub fn changed_case(&self, changes: &[Assignment]) -> Result<Case, ChangeError> {
+        self.cases.read_changed(&self.case_path, changes)
     }
 
     /// The value of an input in the case as it is; none where the case leaves it out.

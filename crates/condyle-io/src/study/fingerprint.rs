@@ -1,6 +1,6 @@
 //! A hash of all that the tests of a study follow from.
 
-use std::{fs, io};
+use std::io;
 
 use super::contents::Study;
 use super::declared::Design;
@@ -20,7 +20,8 @@ impl Study {
         hasher.update(self.case.inputs_blake3()?.as_bytes());
         hasher.update(self.in_words().as_bytes());
         for file in self.files() {
-            hasher.update(blake3::hash(&fs::read(file)?).as_bytes());
+            let bytes = self.cases.files().read(&file)?;
+            hasher.update(blake3::hash(&bytes).as_bytes());
         }
         Ok(hasher.finalize().to_hex().to_string())
     }

@@ -1,5 +1,6 @@
 //! One input of a study.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::declared::{InputKeys, Variation};
@@ -9,6 +10,9 @@ use crate::keyed::{Level, Log, Section, Settings, Variants};
 
 /// So many standard deviations from its mean, a normal input must still be allowed: of a million values 63 lie beyond.
 const NORMAL_REACH: f64 = 4.0;
+
+/// So many levels are all tried.
+const FEW: usize = 64;
 
 /// One input of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,10 +52,15 @@ impl Input {
     }
 
     /// One whose values are given row by row.
-    pub(super) fn of_rows(key: &str, levels: Vec<Level>, span: Range<usize>, case: &Case) -> Self {
+    pub(super) fn of_rows(
+        key: &str,
+        column: impl Iterator<Item = Level>,
+        span: Range<usize>,
+        case: &Case,
+    ) -> Self {
         use super::declared::LevelKeys;
         use crate::keyed::Levels;
-        let levels = Levels(levels);
+        let levels = Levels(telling(column));
         Self {
             key: key.to_owned(),
             name: key.to_owned(),
@@ -71,7 +80,7 @@ impl Input {
         !matches!(self.variation, Variation::Levels(_))
     }
 
-    /// Values that the case must take if it is to take all: the ends of a distribution, or every level.
+    /// Values that the case must take if it is to take all: the ends of a distribution, or its levels, of many those that tell of all.
     pub(super) fn ends(&self) -> Vec<Level> {
         let numbers = |ends: [f64; 2]| ends.map(|end| self.level(end)).to_vec();
         match &self.variation {
@@ -83,7 +92,8 @@ impl Input {
             }
             Variation::TruncatedNormal(keys) => numbers([keys.low, keys.high]),
             Variation::Triangular(keys) => numbers([keys.low, keys.high]),
-            Variation::Levels(keys) => keys.levels.0.clone(),
+            Variation::Levels(keys) if keys.levels.0.len() <= FEW => keys.levels.0.clone(),
+            Variation::Levels(keys) => telling(keys.levels.0.iter().cloned()),
         }
     }
 
@@ -94,6 +104,26 @@ impl Input {
         }
         Level::Number(format!("{number:.11e}").parse().unwrap_or(number))
     }
+}
+
+/// The least and the most of numbers, and every word.
+fn telling(levels: impl Iterator<Item = Level>) -> Vec<Level> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let (mut words, mut seen) = (Vec::new(), BTreeSet::new());
+    for level in levels {
+        match level {
+            Level::Number(number) => (low, high) = (low.min(number), high.max(number)),
+            Level::Word(word) => {
+                if seen.insert(word.clone()) {
+                    words.push(Level::Word(word));
+                }
+            }
+        }
+    }
+    if low <= high {
+        words.extend([Level::Number(low), Level::Number(high)]);
+    }
+    words
 }
 
 /// How an input varies; levels need no word for that.

@@ -7,6 +7,7 @@ mod alternative;
 mod answers;
 mod contents;
 mod correlation;
+mod count;
 mod declared;
 mod fingerprint;
 mod input;

@@ -7,14 +7,19 @@ use super::alternative::Alternative;
 use super::answers::{Answers, output};
 use super::contents::Study;
 use super::correlation::Correlation;
+use super::count::check_count;
 use super::declared::{Design, HeadingKeys, Variation};
 use super::input::Input;
 use super::reason::StudyReason;
 use super::rows::{Rows, read_rows};
 use super::tried::Trial;
-use crate::case::Case;
+use crate::case::{Case, CaseReader};
 use crate::files::{Disk, Files};
 use crate::keyed::{Base, Log, Problems, Section, Settings, Variants, read_document, read_source};
+
+/// Values that are tried on the case before the first test, at most: a thousand files of rows would take a while, and what the
+/// case does not take is then the row's reason.
+const MOST_TRIED: usize = 512;
 
 const TABLES: &[&str] = &[
     "case",
@@ -33,18 +38,32 @@ impl Study {
     /// # Errors
     /// Everything that is wrong with either, a key that the case does not have, and values that it does not take.
     pub fn read(path: &Path) -> Result<Self, Problems> {
-        let disk: Arc<dyn Files> = Arc::new(Disk);
-        let source = read_source(disk.as_ref(), path).map_err(Problems::unreadable)?;
-        let base = Base::of(&disk, path);
+        Self::read_in(Disk, path)
+    }
+
+    /// The same from `files`, which have the case and the files that it names as well.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_in(files: impl Files + 'static, path: &Path) -> Result<Self, Problems> {
+        let files: Arc<dyn Files> = Arc::new(files);
+        let source = read_source(files.as_ref(), path).map_err(Problems::unreadable)?;
+        let base = Base::of(&files, path);
+        let cases = CaseReader::sharing(Arc::clone(&files));
         let study = read_document(&source, base, |root, log| {
-            read_study(root, base.folder, log)
+            read_study(root, base.folder, cases, log)
         })?;
         let text = source.inner().clone();
         Ok(Self { text, ..study })
     }
 }
 
-fn read_study(root: &Section<'_>, folder: &Path, log: &mut Log<'_>) -> Option<Study> {
+fn read_study(
+    root: &Section<'_>,
+    folder: &Path,
+    cases: CaseReader,
+    log: &mut Log<'_>,
+) -> Option<Study> {
     root.check_keys(TABLES, log);
     let heading = HeadingKeys::read(root, log);
     let section = root.table("design", log);
@@ -52,13 +71,8 @@ fn read_study(root: &Section<'_>, folder: &Path, log: &mut Log<'_>) -> Option<St
     let answers = Answers::read(root, log);
     let (heading, design) = (heading?, design?);
     let case_path = heading.case.path().to_path_buf();
-    let case = match Case::read(&case_path) {
-        Ok(case) => case,
-        Err(problems) => {
-            log.of_other_file(&problems);
-            return None;
-        }
-    };
+    let case = cases.read(&case_path);
+    let case = case.map_err(|problems| log.of_other_file(&problems)).ok()?;
     let Rows { inputs, rows } = inputs(root, &design, &case, log)?;
     let alternatives = alternatives(root, log)?;
     let correlations = correlations(root, &inputs, log)?;
@@ -66,13 +80,14 @@ fn read_study(root: &Section<'_>, folder: &Path, log: &mut Log<'_>) -> Option<St
         .canonicalize()
         .unwrap_or_else(|_| folder.to_path_buf());
     let trial = Trial {
+        cases: &cases,
         case_path: &case_path,
         folder: &folder,
     };
     check_twice(&inputs, log);
-    inputs
-        .iter()
-        .for_each(|input| trial.check_input(input, &inputs, log));
+    inputs.iter().fold(MOST_TRIED, |left, input| {
+        trial.check_input(input, &inputs, left, log)
+    });
     alternatives
         .iter()
         .for_each(|one| trial.check_alternative(one, log));
@@ -95,6 +110,7 @@ fn read_study(root: &Section<'_>, folder: &Path, log: &mut Log<'_>) -> Option<St
         rows,
         text: String::new(),
         folder,
+        cases,
     })
 }
 
@@ -107,6 +123,7 @@ fn inputs(root: &Section<'_>, design: &Design, case: &Case, log: &mut Log<'_>) -
         }
         return read_rows(&root.table("design", log), &keys.file, case, log);
     }
+    check_count("inputs", listed.len(), root.key_span("vary"), log)?;
     let read: Vec<Option<Input>> = listed
         .iter()
         .map(|one| Input::read(one, case, log))
@@ -125,6 +142,7 @@ fn inputs(root: &Section<'_>, design: &Design, case: &Case, log: &mut Log<'_>) -
 
 fn alternatives(root: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Alternative>> {
     let listed = root.list("alternative", log)?;
+    check_count("designs", listed.len(), root.key_span("alternative"), log)?;
     let read: Vec<_> = listed
         .iter()
         .map(|one| Alternative::read(one, log))

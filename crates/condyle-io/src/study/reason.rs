@@ -10,6 +10,16 @@ pub enum StudyReason {
     /// Nothing varies.
     #[error("the study varies nothing")]
     NothingVaries,
+    /// More inputs or designs than anybody means.
+    #[error("the study has {count} {what}, and {most} are the most")]
+    TooMany {
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        count: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// A value that the case does not take.
     #[error("the case does not take `{key} = {}`: {why}", text(value))]
     Refused {
@@ -150,6 +160,7 @@ impl Reason for StudyReason {
             Self::NothingVaries => {
                 "add `[[vary]]` with `key = \"contact.friction\"`, `low` and `high`"
             }
+            Self::TooMany { .. } => "divide it into several studies",
             Self::NotSet { .. } => "write each as `\"insert.thickness_mm=8\"`",
             Self::Twice { .. } => "keep one of the two, or give both values as columns of rows",
             Self::NoMiddle { .. } => "give `mean` or `mode`, or write the key in the case",

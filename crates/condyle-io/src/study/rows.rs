@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::count::check_count;
 use super::input::Input;
 use super::reason::StudyReason;
 use crate::case::Case;
@@ -23,32 +24,16 @@ pub(super) fn read_rows(
     let source = file.source(section, "file", log)?;
     let table = log.noted(&source, split(source.inner()))?;
     let at = section.value_span("file");
+    check_count("inputs", table.keys.len(), at.clone(), log)?;
     let input = |(place, key): (usize, &String)| {
         let column = table.rows.iter().map(|row| row[place].clone());
-        Input::of_rows(key, ends(column), at.clone(), case)
+        Input::of_rows(key, column, at.clone(), case)
     };
     let inputs = table.keys.iter().enumerate().map(input).collect();
     Some(Rows {
         inputs,
         rows: table.rows,
     })
-}
-
-/// The least and the most of numbers, and every word: what the case must take if it is to take all.
-fn ends(column: impl Iterator<Item = Level>) -> Vec<Level> {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    let mut ends: Vec<Level> = Vec::new();
-    for level in column {
-        match level {
-            Level::Number(number) => (low, high) = (low.min(number), high.max(number)),
-            Level::Word(_) if ends.contains(&level) => {}
-            Level::Word(_) => ends.push(level),
-        }
-    }
-    if low <= high {
-        ends.extend([Level::Number(low), Level::Number(high)]);
-    }
-    ends
 }
 
 struct Table {

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::alternative::Alternative;
 use super::input::Input;
 use super::reason::StudyReason;
-use crate::case::{Assignment, Case, ChangeError};
+use crate::case::{Assignment, CaseReader, ChangeError};
 use crate::keyed::{Level, Log};
 
 /// What sets `key` of a case; files are counted from `folder`, the study's.
@@ -24,14 +24,24 @@ pub(super) fn assignment(folder: &Path, key: &str, level: &Level) -> Assignment 
 
 /// A case, and the study's folder.
 pub(super) struct Trial<'a> {
+    pub cases: &'a CaseReader,
     pub case_path: &'a Path,
     pub folder: &'a Path,
 }
 
 impl Trial<'_> {
-    /// Reports every end of an input that the case does not take, alone or with the others as they may be.
-    pub fn check_input(&self, input: &Input, others: &[Input], log: &mut Log<'_>) {
-        for level in input.ends() {
+    /// Reports what an input has at its ends and the case does not take, alone or with the others as they may be; no more than
+    /// `left` values are tried, which is how many then remain.
+    pub fn check_input(
+        &self,
+        input: &Input,
+        others: &[Input],
+        left: usize,
+        log: &mut Log<'_>,
+    ) -> usize {
+        let ends = input.ends();
+        let remain = left.saturating_sub(ends.len());
+        for level in ends.into_iter().take(left) {
             let own = assignment(self.folder, &input.key, &level);
             let Some((why, advice)) = self.refused(std::slice::from_ref(&own)) else {
                 continue;
@@ -48,9 +58,10 @@ impl Trial<'_> {
                     advice,
                 };
                 log.problem(input.span.clone(), reason);
-                return;
+                break;
             }
         }
+        remain
     }
 
     /// Reports what a design sets and the case does not take.
@@ -69,7 +80,7 @@ impl Trial<'_> {
 
     /// Why the case does not take what is set, and what to do.
     fn refused(&self, set: &[Assignment]) -> Option<(String, Option<String>)> {
-        match Case::read_changed(self.case_path, set) {
+        match self.cases.read_changed(self.case_path, set) {
             Ok(_) => None,
             Err(ChangeError::Assignment(error)) => Some((error.to_string(), None)),
             Err(ChangeError::Case(problems)) => {

@@ -7,7 +7,7 @@ use std::{
 
 use condyle::evolve::{MarchError, PlacementError};
 use condyle_io::{
-    case::{AssignmentError, BuildError, Case},
+    case::{AssignmentError, BuildError, Case, ChangeError},
     keyed::Problems,
     results::ResultsError,
 };
@@ -63,6 +63,15 @@ pub enum RunError {
         /// Where the results so far are, if in a folder.
         out: Option<PathBuf>,
     },
+}
+
+impl From<ChangeError> for RunError {
+    fn from(error: ChangeError) -> Self {
+        match error {
+            ChangeError::Case(problems) => Self::Case(problems),
+            ChangeError::Assignment(error) => Self::Change(error),
+        }
+    }
 }
 
 impl RunError {

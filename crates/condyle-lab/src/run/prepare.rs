@@ -5,7 +5,7 @@ use std::path::Path;
 use condyle::evolve::{March, WearTest};
 use condyle_io::{
     cache::Cache,
-    case::{Assignment, BuildWarning, Built, Case, ChangeError, SharedBodies},
+    case::{Assignment, BuildWarning, Built, Case, SharedBodies},
 };
 
 use super::{bridged::check_at_rest, error::RunError, memory::check_memory};
@@ -45,10 +45,7 @@ pub fn settled(case: &Case, threads: usize, cache: &Cache) -> Result<March, RunE
 
 /// The case at `case_path` with some of its values changed.
 pub(crate) fn changed(case_path: &Path, changes: &[Assignment]) -> Result<Case, RunError> {
-    Case::read_changed(case_path, changes).map_err(|error| match error {
-        ChangeError::Case(problems) => RunError::Case(problems),
-        ChangeError::Assignment(error) => RunError::Change(error),
-    })
+    Ok(Case::read_changed(case_path, changes)?)
 }
 
 pub(crate) fn build(case: &Case, threads: usize, cache: &Cache) -> Result<Built, RunError> {

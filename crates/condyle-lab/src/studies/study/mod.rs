@@ -3,6 +3,7 @@
 mod answers;
 mod design;
 mod error;
+mod held;
 mod pictures;
 mod plan;
 mod quantile;
@@ -18,8 +19,9 @@ pub use answers::{
     Spread,
 };
 pub use error::StudyError;
+pub use held::HeldFolder;
 pub use plan::{Plan, Test};
-pub use runner::{Done, Progress, StudyEnd, StudyOptions, merge, missing, run_study};
+pub use runner::{Done, Progress, StudyEnd, StudyOptions, merge, run_study};
 pub use shard::Shard;
 pub use store::{DATABASE, Store};
 pub use test_run::{TestBench, TestResult};

@@ -104,12 +104,7 @@ fn progress(best: &Best) -> Option<Picture> {
 
 fn indices(answers: &Answers) -> Option<Picture> {
     let output = answers.indices.first()?.output;
-    let mut own: Vec<_> = answers
-        .indices
-        .iter()
-        .filter(|index| index.output == output)
-        .collect();
-    own.sort_by(|one, other| other.total.total_cmp(&one.total));
+    let own = answers.indices_of(output);
     let bar = |index: &super::answers::Indices| Bar {
         name: index.input.clone(),
         span: [0.0, index.total],
@@ -127,12 +122,7 @@ fn indices(answers: &Answers) -> Option<Picture> {
 
 fn elementary(answers: &Answers) -> Option<Picture> {
     let output = answers.elementary.first()?.output;
-    let mut own: Vec<_> = answers
-        .elementary
-        .iter()
-        .filter(|one| one.output == output)
-        .collect();
-    own.sort_by(|one, other| other.mu_star.total_cmp(&one.mu_star));
+    let own = answers.elementary_on(output);
     let bar = |one: &super::answers::Elementary| Bar {
         name: one.input.clone(),
         span: [0.0, one.mu_star],
@@ -148,14 +138,9 @@ fn elementary(answers: &Answers) -> Option<Picture> {
     Some(("morris.svg", said.to_owned(), svg))
 }
 
-/// Effects on an output, the largest first.
+/// Effects on an output, the largest of them.
 fn effects_on<'a>(answers: &'a Answers, output: &str) -> Vec<&'a Effect> {
-    let mut own: Vec<_> = answers
-        .effects
-        .iter()
-        .filter(|effect| effect.output == output)
-        .collect();
-    own.sort_by(|one, other| other.span.total_cmp(&one.span));
+    let mut own = answers.effects_on(output);
     own.truncate(MOST_INPUTS);
     own
 }

@@ -16,7 +16,7 @@ use super::{
     error::StudyError,
     quantile::{along, at_share},
 };
-use crate::{RunError, run};
+use crate::RunError;
 
 /// Tests of a study, at most.
 const MOST_TESTS: f64 = 1e9;
@@ -47,7 +47,14 @@ impl Plan {
     /// # Errors
     /// Everything that is wrong with the study.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
-        let study = Study::read(path)?;
+        Self::of(Study::read(path)?)
+    }
+
+    /// The tests of a study, if they can be chosen.
+    ///
+    /// # Errors
+    /// More of them than anybody waits for, or more inputs than the design takes.
+    pub fn of(study: Study) -> Result<Self, StudyError> {
         let inputs_blake3 = study.inputs_blake3().map_err(RunError::Inputs)?;
         let tests = tests(&study);
         if tests * designs(&study) as f64 > MOST_TESTS {
@@ -82,6 +89,11 @@ impl Plan {
     /// Tests in all; of a search, at most.
     pub fn tests(&self) -> u64 {
         self.tests * designs(&self.study) as u64
+    }
+
+    /// Whether a test follows from those before it.
+    pub fn is_search(&self) -> bool {
+        matches!(self.study.design, Design::Optimise(_))
     }
 
     /// Test `row`; none of a search, which knows a test only after those before it.
@@ -138,7 +150,7 @@ impl Plan {
     /// # Errors
     /// Values that do not go together.
     pub fn case_of(&self, test: &Test) -> Result<Case, RunError> {
-        run::changed(&self.study.case_path, &self.assignments(test))
+        Ok(self.study.changed_case(&self.assignments(test))?)
     }
 
     /// What a test sets of the case.

@@ -1,7 +1,6 @@
 //! Tests run side by side, and kept as they are done.
 
 use std::{
-    fs,
     ops::ControlFlow,
     path::{Path, PathBuf},
     sync::{
@@ -12,14 +11,13 @@ use std::{
     thread,
 };
 
-use condyle_io::{results::ResultsFolder, study::Design};
-
 use super::{
     error::StudyError,
+    held::HeldFolder,
     plan::{Plan, Test},
     search::search,
     shard::Shard,
-    store::{DATABASE, Keeping, Store},
+    store::{DATABASE, Store},
     test_run::{TestBench, TestResult},
 };
 
@@ -70,20 +68,14 @@ pub fn run_study(
     options: &StudyOptions,
     listener: &mut Listener<'_>,
 ) -> Result<StudyEnd, StudyError> {
-    let is_search = matches!(plan.study().design, Design::Optimise(_));
+    let is_search = plan.is_search();
     if is_search && !options.shard.is_whole() {
         return Err(StudyError::NoShards);
     }
-    let out = &options.out;
-    fs::create_dir_all(out).map_err(|source| StudyError::Refused {
-        path: out.clone(),
-        source,
-    })?;
-    let _lock = ResultsFolder::lock(out)?;
     let shard = options.shard;
-    let store = Store::open(out, &Keeping { plan, shard })?;
-    let bench = TestBench::new(plan);
-    let mut work = Work::new(&bench, &store, options, plan)?;
+    let folder = HeldFolder::take_for(plan, shard, &options.out)?;
+    let bench = TestBench::default();
+    let mut work = Work::new(&bench, &folder.store, options, plan)?;
     let is_interrupted = if is_search {
         search(plan, &mut |tests| work.done(plan, tests, listener))?.is_interrupted
     } else {
@@ -96,30 +88,13 @@ pub fn run_study(
     })
 }
 
-/// Numbers of the tests of a plan that the folder `out` does not keep; its database is made if it is not there.
-///
-/// # Errors
-/// A folder of something else; a search, whose tests are not known before they are due.
-pub fn missing(plan: &Plan, out: &Path) -> Result<Vec<u64>, StudyError> {
-    if matches!(plan.study().design, Design::Optimise(_)) {
-        return Err(StudyError::NoShards);
-    }
-    let shard = Shard::WHOLE;
-    let kept = Store::open(out, &Keeping { plan, shard })?.kept(plan.tests())?;
-    let rows = (0..).zip(kept);
-    Ok(rows
-        .filter(|(_, is_kept)| !is_kept)
-        .map(|(row, _)| row)
-        .collect())
-}
-
 /// The folder `out` with the tests of all `shards` of a plan.
 ///
 /// # Errors
 /// A folder of another study.
 pub fn merge(plan: &Plan, shards: &[PathBuf], out: &Path) -> Result<Done, StudyError> {
-    let shard = Shard::WHOLE;
-    let store = Store::open(out, &Keeping { plan, shard })?;
+    let whole = HeldFolder::take(plan, out)?;
+    let store = &whole.store;
     for folder in shards {
         Store::existing(folder, plan)?;
         store.take_all(&folder.join(DATABASE))?;
@@ -139,7 +114,7 @@ pub struct Done {
 
 /// What runs tests and keeps what they find.
 struct Work<'a> {
-    bench: &'a TestBench<'a>,
+    bench: &'a TestBench,
     store: &'a Store,
     threads: usize,
     kept: Vec<bool>,
@@ -150,7 +125,7 @@ type Found = (Test, TestResult);
 
 impl<'a> Work<'a> {
     fn new(
-        bench: &'a TestBench<'a>,
+        bench: &'a TestBench,
         store: &'a Store,
         options: &StudyOptions,
         plan: &Plan,
@@ -225,7 +200,7 @@ impl<'a> Work<'a> {
         thread::scope(|scope| {
             for _ in 0..self.threads {
                 let (sender, tests, stop) = (sender.clone(), &tests, &stop);
-                scope.spawn(move || work_on(bench, tests, &sender, stop));
+                scope.spawn(move || work_on(plan, bench, tests, &sender, stop));
             }
             drop(sender);
             let kept = self.keep_all(plan, &receiver, listener);
@@ -261,7 +236,8 @@ impl<'a> Work<'a> {
 
 /// Takes tests and hands over what they find until there are none, or somebody asked to stop.
 fn work_on(
-    bench: &TestBench<'_>,
+    plan: &Plan,
+    bench: &TestBench,
     tests: &Mutex<impl Iterator<Item = Test>>,
     sender: &SyncSender<Found>,
     stop: &AtomicBool,
@@ -269,7 +245,7 @@ fn work_on(
     while !stop.load(Ordering::Relaxed) {
         let test = tests.lock().expect("no thread panics with it").next();
         let Some(test) = test else { break };
-        let result = bench.run(&test);
+        let result = bench.run(plan, &test);
         if sender.send((test, result)).is_err() {
             break;
         }

@@ -18,29 +18,25 @@ use std::ops::ControlFlow;
 pub type TestResult = Result<Vec<f64>, String>;
 
 /// What the tests of a study are run with: bodies that do not vary are built once.
-pub struct TestBench<'a> {
-    plan: &'a Plan,
+pub struct TestBench {
     bodies: SharedBodies,
     cache: Cache,
 }
 
-impl<'a> TestBench<'a> {
-    /// For the tests of a plan.
-    pub fn new(plan: &'a Plan) -> Self {
-        let (bodies, cache) = (SharedBodies::default(), Cache::of_user());
-        Self {
-            plan,
-            bodies,
-            cache,
-        }
-    }
-
-    /// Runs a test. One that fails stops nothing: that is what it found.
-    pub fn run(&self, test: &Test) -> TestResult {
-        let case = self.plan.case_of(test);
+impl TestBench {
+    /// Runs a test of a plan. One that fails stops nothing: that is what it found.
+    pub fn run(&self, plan: &Plan, test: &Test) -> TestResult {
+        let case = plan.case_of(test);
         let summary = case.and_then(|case| marched(&case, &self.cache, &self.bodies));
         let summary = summary.map_err(|error| reason(&error))?;
         Ok(OUTPUTS.iter().map(|output| (output.of)(&summary)).collect())
+    }
+}
+
+impl Default for TestBench {
+    fn default() -> Self {
+        let (bodies, cache) = (SharedBodies::default(), Cache::of_user());
+        Self { bodies, cache }
     }
 }
 

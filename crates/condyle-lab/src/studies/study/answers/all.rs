@@ -82,6 +82,32 @@ impl Answers {
     }
 }
 
+impl Answers {
+    /// Effects of inputs on an output, the largest first.
+    pub(in super::super) fn effects_on(&self, output: &str) -> Vec<&Effect> {
+        let own = self.effects.iter().filter(|one| one.output == output);
+        largest_first(own, |one| one.span)
+    }
+
+    /// Elementary effects of inputs on an output, the largest first.
+    pub(in super::super) fn elementary_on(&self, output: &str) -> Vec<&Elementary> {
+        let own = self.elementary.iter().filter(|one| one.output == output);
+        largest_first(own, |one| one.mu_star)
+    }
+
+    /// Sobol's indices of an output, the largest total first.
+    pub(in super::super) fn indices_of(&self, output: &str) -> Vec<&Indices> {
+        let own = self.indices.iter().filter(|one| one.output == output);
+        largest_first(own, |one| one.total)
+    }
+}
+
+fn largest_first<'a, T>(own: impl Iterator<Item = &'a T>, size: impl Fn(&T) -> f64) -> Vec<&'a T> {
+    let mut own: Vec<&T> = own.collect();
+    own.sort_by(|one, other| size(other).total_cmp(&size(one)));
+    own
+}
+
 fn outputs<'a>(plan: &Plan, store: &Store) -> Result<Vec<Named<'a, Output>>, StudyError> {
     let outputs = plan.study().answers.outputs.iter();
     let named = |of: &&'static Output| {

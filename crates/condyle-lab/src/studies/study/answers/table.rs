@@ -147,12 +147,7 @@ fn ranking(ranking: &Ranking) -> Table {
 
 fn indices(answers: &Answers) -> Option<Table> {
     let output = answers.indices.first()?.output;
-    let mut own: Vec<_> = answers
-        .indices
-        .iter()
-        .filter(|index| index.output == output)
-        .collect();
-    own.sort_by(|one, other| other.total.total_cmp(&one.total));
+    let own = answers.indices_of(output);
     let rows = own.into_iter().take(MOST_ROWS).map(|index| {
         vec![
             index.input.clone(),
@@ -172,12 +167,7 @@ fn indices(answers: &Answers) -> Option<Table> {
 
 fn elementary(answers: &Answers) -> Option<Table> {
     let output = answers.elementary.first()?.output;
-    let mut own: Vec<_> = answers
-        .elementary
-        .iter()
-        .filter(|effect| effect.output == output)
-        .collect();
-    own.sort_by(|one, other| other.mu_star.total_cmp(&one.mu_star));
+    let own = answers.elementary_on(output);
     let rows = own.into_iter().take(MOST_ROWS).map(|effect| {
         vec![
             effect.input.clone(),
@@ -204,12 +194,7 @@ fn effects(answers: &Answers) -> Option<Table> {
     if !answers.indices.is_empty() || !answers.elementary.is_empty() || answers.best.is_some() {
         return None;
     }
-    let mut own: Vec<_> = answers
-        .effects
-        .iter()
-        .filter(|effect| effect.output == output)
-        .collect();
-    own.sort_by(|one, other| other.span.total_cmp(&one.span));
+    let own = answers.effects_on(output);
     let rows = own.into_iter().take(MOST_ROWS).map(|effect| {
         let correlation = effect.rank_correlation.map(|one| format!("{one:+.2}"));
         vec![

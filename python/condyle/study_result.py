@@ -1,0 +1,109 @@
+"""What the tests of a study found, and what they tell."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ._extras import extra
+from .errors import BadInput
+from .units import unit_of
+
+if TYPE_CHECKING:
+    import os
+
+    import numpy as np
+    import pandas as pd
+    from numpy.typing import NDArray
+
+__all__ = ["StudyResult", "open_study"]
+
+
+class StudyResult:
+    """The folder of a study: its table, and its answers."""
+
+    __slots__ = ("_answers", "_folder", "_table")
+
+    def __init__(self, folder: Path, answers: dict[str, Any]) -> None:
+        """Use :meth:`Study.run` or :func:`open_study`."""
+        self._folder, self._answers = folder, answers
+        self._table: dict[str, NDArray[Any]] | None = None
+
+    @property
+    def folder(self) -> Path:
+        """Where ``study.db``, ``table.csv``, ``answers.json``, ``study.html`` and the pictures are."""
+        return self._folder
+
+    @property
+    def answers(self) -> dict[str, Any]:
+        """All answers, as ``answers.json`` has them: scatter, sensitivity, ranking, Pareto front, the best."""
+        return self._answers
+
+    @property
+    def table(self) -> Mapping[str, NDArray[Any]]:
+        """A column an input and an output, and ``row``, ``status`` and ``reason``; a value a test that is kept.
+
+        Numbers are float64, not a number where a test failed; ``row`` is int64, and words are objects.
+        """
+        if self._table is None:
+            self._table = _read(self._folder)
+        return self._table
+
+    def __getitem__(self, column: str) -> NDArray[np.float64]:
+        """A column of the table."""
+        if column not in self.table:
+            raise KeyError(f"there is no column {column!r}; there are {', '.join(self.table)}")
+        return self.table[column]
+
+    def to_pandas(self) -> pd.DataFrame:
+        """The table as a data frame with the tests' numbers as its index; units are in ``.attrs["units"]``."""
+        frame = extra("pandas", "pandas").DataFrame(dict(self.table)).set_index("row")
+        frame.attrs["units"] = {name: unit_of(name) for name in frame.columns}
+        return frame
+
+    def to_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Writes the table as a Parquet file; needs pandas and pyarrow."""
+        extra("pyarrow", "parquet")
+        self.to_pandas().to_parquet(path)
+
+    def __repr__(self) -> str:
+        return f"<condyle.StudyResult of {self._answers['kept']} tests in {self._folder}>"
+
+
+def open_study(folder: str | os.PathLike[str]) -> StudyResult:
+    """The study in a folder that ``condyle study`` or :meth:`Study.run` wrote.
+
+    Raises:
+        BadInput: a folder without a study, or with one that was cut off before it was answered.
+    """
+    path = Path(folder)
+    try:
+        answers = json.loads((path / "answers.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        said = "no study" if not (path / "study.db").is_file() else "a study that is not done; the same study goes on with it"
+        raise BadInput(f"{path}: the folder holds {said}") from error
+    return StudyResult(path, answers)
+
+
+def _read(folder: Path) -> dict[str, NDArray[Any]]:
+    import sqlite3
+
+    import numpy as np
+
+    with sqlite3.connect(folder / "study.db") as database:
+        found = database.execute('SELECT * FROM tests ORDER BY "row"')
+        names = [column[0] for column in found.description]
+        rows = found.fetchall()
+    database.close()
+    columns = zip(*rows) if rows else ([] for _ in names)
+    return {name: _array(np, name, column) for name, column in zip(names, columns)}
+
+
+def _array(np: Any, name: str, column: Any) -> NDArray[Any]:
+    if name == "row":
+        return np.array(column, dtype=np.int64)
+    if any(isinstance(value, str) for value in column):
+        return np.array(column, dtype=object)
+    return np.array(column, dtype=np.float64)

@@ -1,0 +1,283 @@
+"""Studies: the same bytes wherever tests run, whatever happens to the workers, and the answers of known functions."""
+
+import json
+import os
+import pickle
+import signal
+import subprocess
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import condyle
+
+TABLES: dict[str, Any] = {
+    "title": "Friction and load",
+    "design": {"kind": "latin-hypercube", "size": 24, "seed": 3},
+    "vary": [
+        {"key": "contact.friction", "low": 0.03, "high": 0.1},
+        {"key": "machine.axial_force.scale", "distribution": "normal", "standard_deviation": 0.02},
+        {"key": "wear.law", "levels": ["archard", "kang"]},
+    ],
+    "limit": [{"output": "peak_pressure_mpa", "most": 40.0}],
+}
+
+
+@pytest.fixture(scope="module")
+def study(small: condyle.Case) -> condyle.Study:
+    return condyle.Study.from_dict(TABLES, case=small)
+
+
+@pytest.fixture(scope="module")
+def done(study: condyle.Study, tmp_path_factory: pytest.TempPathFactory) -> condyle.StudyResult:
+    return study.run(tmp_path_factory.mktemp("study") / "one", threads=1)
+
+
+def table(result: condyle.StudyResult) -> bytes:
+    return (result.folder / "table.csv").read_bytes()
+
+
+def test_the_table_has_every_test(study: condyle.Study, done: condyle.StudyResult) -> None:
+    assert study.tests == done.answers["kept"] == len(done["row"]) == 24
+    assert set(done.table["status"]) == {"done"} and set(done.table["wear.law"]) == {"archard", "kang"}
+    friction = done["contact.friction"]
+    assert friction.min() >= 0.03 and friction.max() <= 0.1 and len(set(friction)) == 24
+    frame = done.to_pandas()
+    assert frame.loc[7, "mass_loss_mg"] == done["mass_loss_mg"][7] and frame.attrs["units"]["mass_loss_mg"] == "mg"
+    with pytest.raises(KeyError, match="there is no column 'mass'"):
+        done["mass"]
+
+
+def test_a_row_is_a_run(study: condyle.Study, done: condyle.StudyResult) -> None:
+    row = 5
+    case = study.case(row)
+    assert case["contact.friction"] == done["contact.friction"][row]
+    assert condyle.run(case, fields=False).mass_loss_mg == done["mass_loss_mg"][row]
+    with pytest.raises(condyle.BadInput, match="the study has no row 24"):
+        study.case(24)
+
+
+@pytest.mark.parametrize("workers", ["threads", "thread pool", "processes"])
+def test_the_same_bytes_wherever_tests_run(
+    study: condyle.Study, done: condyle.StudyResult, tmp_path: Path, workers: str
+) -> None:
+    if workers == "threads":
+        other = study.run(tmp_path / "other", threads=3)
+    elif workers == "thread pool":
+        with ThreadPoolExecutor(2) as pool:
+            other = study.run(tmp_path / "other", executor=pool, tests_a_task=5)
+    else:
+        with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+            other = study.run(tmp_path / "other", executor=pool, tests_a_task=5)
+    assert table(other) == table(done) and other.answers == done.answers
+
+
+def test_the_command_writes_the_same(command: str, small: condyle.Case, done: condyle.StudyResult, tmp_path: Path) -> None:
+    from condyle._toml import document
+
+    small.write(tmp_path / "case.toml")
+    file = tmp_path / "study.toml"
+    file.write_text('case = "case.toml"\n' + document(TABLES))
+    subprocess.run([command, "study", file, "--out", tmp_path / "out"], check=True, capture_output=True)
+    assert (tmp_path / "out" / "table.csv").read_bytes() == table(done)
+    opened = condyle.open_study(tmp_path / "out")
+    assert opened.answers == done.answers and opened["mass_loss_mg"].tolist() == done["mass_loss_mg"].tolist()
+    read = condyle.Study.read(file)
+    assert read.run(tmp_path / "out").answers == done.answers
+
+
+def test_half_of_the_workers_die_and_nothing_is_lost(
+    study: condyle.Study, done: condyle.StudyResult, tmp_path: Path
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(n_workers=4, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        pids = sorted(client.run(os.getpid).values())
+        told: list[int] = []
+
+        def kill_half(progress: condyle.StudyProgress) -> None:
+            told.append(progress.kept)
+            if 0 < progress.kept < study.tests and pids:
+                for pid in pids[:2]:
+                    os.kill(pid, signal.SIGKILL)
+                pids.clear()
+
+        other = study.run(tmp_path / "other", kill_half, client=client, tests_a_task=2)
+    assert not pids, "no worker was killed"
+    assert told[0] == 0 and told[-1] == study.tests
+    assert table(other) == table(done) and other.answers == done.answers
+
+
+def test_a_study_that_was_stopped_goes_on(study: condyle.Study, done: condyle.StudyResult, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    with pytest.raises(condyle.StudyInterrupted, match="the same call goes on") as stopped:
+        study.run(out, lambda progress: progress.kept < 4, threads=1)
+    assert 4 <= stopped.value.kept < study.tests
+    with ThreadPoolExecutor(1) as pool, pytest.raises(condyle.StudyInterrupted):
+        study.run(out, lambda progress: progress.kept < 12, executor=pool, tests_a_task=3)
+    with pytest.raises(RuntimeError, match="mine"):
+        study.run(out, _raise, threads=1)
+    with pytest.raises(condyle.BadInput, match="a study that is not done"):
+        condyle.open_study(out)
+    told: list[float] = []
+    result = study.run(out, lambda progress: told.append(progress.part), threads=2)
+    assert told[0] >= 0.5 and told[-1] == 1.0
+    assert table(result) == table(done)
+
+
+def _raise(progress: condyle.StudyProgress) -> None:
+    raise RuntimeError("mine")
+
+
+def test_shards_are_merged(
+    study: condyle.Study, command: str, small: condyle.Case, done: condyle.StudyResult, tmp_path: Path
+) -> None:
+    from condyle._toml import document
+
+    small.write(tmp_path / "case.toml")
+    (tmp_path / "study.toml").write_text('case = "case.toml"\n' + document(TABLES))
+    parts = [tmp_path / f"part-{number}" for number in (1, 2)]
+    for number, part in enumerate(parts, 1):
+        shard = ["--shard", f"{number}/2", "--out", part]
+        subprocess.run([command, "study", tmp_path / "study.toml", *shard], check=True, capture_output=True)
+    read = condyle.Study.read(tmp_path / "study.toml")
+    assert table(read.merge(parts, tmp_path / "whole")) == table(done)
+
+
+def test_a_test_that_fails_is_a_row(small: condyle.Case, tmp_path: Path) -> None:
+    # Each value is in its range; the second insert is too fine for the memory that it may take, which is seen as it is built.
+    (tmp_path / "rows.csv").write_text("insert.edge_mm,limits.memory_gb\n4,2\n0.2,0.1\n")
+    tables = {"design": {"kind": "rows", "file": "rows.csv"}}
+    study = condyle.Study.from_dict(tables, folder=tmp_path, case=small)
+    with ThreadPoolExecutor(1) as pool:
+        other = study.run(tmp_path / "pool", executor=pool)
+    result = study.run(tmp_path / "here")
+    assert result.table["status"].tolist() == ["done", "failed"] and "memory" in result.table["reason"][1]
+    assert np.isnan(result["mass_loss_mg"][1]) and result["mass_loss_mg"][0] > 0.0
+    assert table(other) == table(result) and result.answers["failed"][0]["tests"] == 1
+
+
+def test_bodies_may_be_arrays(small: condyle.Case, result: condyle.Result, tmp_path: Path) -> None:
+    case = small.with_femur(result.femur_points_mm, result.femur_triangles)
+    tables = {"design": {"kind": "one-at-a-time"}, "vary": [{"key": "contact.friction", "levels": [0.04]}]}
+    study = condyle.Study.from_dict(tables, case=case)
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        found = pickle.loads(pickle.dumps(study)).run(tmp_path / "out", executor=pool)
+    assert found["contact.friction"].tolist() == [0.07, 0.04]
+    assert found["mass_loss_mg"][1] == condyle.run(study.case(1), fields=False).mass_loss_mg
+
+
+def test_bad_input_says_where(small: condyle.Case, study: condyle.Study, done: condyle.StudyResult, tmp_path: Path) -> None:
+    wrong = {**TABLES, "vary": [{"key": "contact.frictoin", "low": 0.0, "high": 1.0}]}
+    with pytest.raises(condyle.BadInput, match="frictoin") as error:
+        condyle.Study.from_dict(wrong, case=small)
+    assert error.value.problems[0].line is not None
+    with pytest.raises(condyle.BadInput, match="case"):
+        condyle.Study.from_dict(TABLES)
+    other = condyle.Study.from_dict({**TABLES, "design": {"kind": "sobol", "size": 8}}, case=small)
+    with pytest.raises(condyle.BadInput, match="another study"):
+        other.run(done.folder)
+    with pytest.raises(condyle.BadInput, match="no study"):
+        condyle.open_study(tmp_path)
+    search = {"kind": "optimise", "size": 40, "minimise": "mass_loss_mg"}
+    vary = [{"key": "insert.sagittal_radius_mm", "low": 45.0, "high": 60.0}]
+    with ThreadPoolExecutor(1) as pool, pytest.raises(condyle.BadInput, match="a search goes from test to test"):
+        condyle.Study.from_dict({"design": search, "vary": vary}, case=small).run(tmp_path / "search", executor=pool)
+    with pytest.raises(ValueError, match="not both"), ThreadPoolExecutor(1) as pool:
+        study.run(tmp_path / "both", executor=pool, client=object())
+
+
+def test_a_worker_with_other_files_is_told(small: condyle.Case, result: condyle.Result, tmp_path: Path) -> None:
+    from condyle._workers import Source, run_rows
+
+    study = condyle.Study.from_dict(TABLES, case=small)
+    other = Source(*study._source[:4], "0" * 64, condyle.__version__)
+    with pytest.raises(condyle.BadInput, match="other meshes"):
+        run_rows(other, [0])
+    with pytest.raises(condyle.BadInput, match="a worker has condyle"):
+        run_rows(study._source._replace(version="0.0.1"), [0])
+
+
+def ishigami(x: np.ndarray) -> np.ndarray:
+    """On (0, 1)^3, scaled to (-pi, pi)."""
+    x = np.pi * (2.0 * x - 1.0)
+    return np.sin(x[:, 0]) + 7.0 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+
+
+def g_function(x: np.ndarray) -> np.ndarray:
+    """Of Sobol, with a = 0, 1, 4.5."""
+    a = np.array([0.0, 1.0, 4.5])
+    return np.prod((np.abs(4.0 * x - 2.0) + a) / (1.0 + a), axis=1)
+
+
+# First and total indices in closed form (Saltelli et al. 2008).
+EXACT = {
+    "ishigami": ([0.3139, 0.4424, 0.0], [0.5576, 0.4424, 0.2437]),
+    "g-function": ([0.7200, 0.1800, 0.0238], [0.7873, 0.2423, 0.0343]),
+}
+
+
+def made_up(design: dict[str, Any], function: Any, case: condyle.Case, out: Path) -> tuple[np.ndarray, np.ndarray, dict[str, Any]]:
+    """A study whose tests are not run: places of its inputs in (0, 1), ``function`` of them, and what the study makes of it."""
+    ranges = {"contact.friction": (0.02, 0.12), "material.poissons_ratio": (0.3, 0.46), "insert.thickness_mm": (8.0, 12.0)}
+    vary = [{"key": key, "low": low, "high": high} for key, (low, high) in ranges.items()]
+    study = condyle.Study.from_dict({"design": design, "vary": vary, "answers": {"outputs": ["mass_loss_mg"]}}, case=case)
+    places = np.empty((study.tests, 3))
+    for row in range(study.tests):
+        changes = dict(change.split("=") for change in study._raw.changes(row, None))
+        places[row] = [(float(changes[key]) - low) / (high - low) for key, (low, high) in ranges.items()]
+    found = function(places)
+    held = study._raw.hold(os.fspath(out))
+    held.keep(study._raw, [(row, [float(value)] + [0.0] * 9) for row, value in enumerate(found)])
+    held.close()
+    return places, found, study.answered(out).answers
+
+
+@pytest.mark.parametrize(("name", "function"), [("ishigami", ishigami), ("g-function", g_function)])
+def test_sobol_indices_are_those_of_salib(name: str, function: Any, small: condyle.Case, tmp_path: Path) -> None:
+    salib = pytest.importorskip("SALib.analyze.sobol")
+    design = {"kind": "saltelli", "size": 2048, "seed": 5}
+    _, found, answers = made_up(design, function, small, tmp_path / "out")
+    problem = {"num_vars": 3, "names": ["a", "b", "c"], "bounds": [[0.0, 1.0]] * 3}
+    own = answers["indices"]
+    first, total = ([index[kind] for index in own] for kind in ("first", "total"))
+    theirs = salib.analyze(problem, found, calc_second_order=False, seed=1)
+    np.testing.assert_allclose(first, theirs["S1"], atol=0.01)
+    np.testing.assert_allclose(total, theirs["ST"], atol=0.01)
+    exact_first, exact_total = EXACT[name]
+    np.testing.assert_allclose(first, exact_first, atol=0.03)
+    np.testing.assert_allclose(total, exact_total, atol=0.03)
+    for index, exact in zip(own, exact_total):
+        low, high = index["total_interval"]
+        assert low - 0.01 <= exact <= high + 0.01
+
+
+def test_elementary_effects_are_those_of_salib(small: condyle.Case, tmp_path: Path) -> None:
+    salib = pytest.importorskip("SALib.analyze.morris")
+    design = {"kind": "morris", "walks": 40, "levels": 8, "seed": 5}
+    places, found, answers = made_up(design, ishigami, small, tmp_path / "out")
+    problem = {"num_vars": 3, "names": ["a", "b", "c"], "bounds": [[0.0, 1.0]] * 3}
+    theirs = salib.analyze(problem, places, found, num_levels=8, seed=1)
+    own = answers["elementary"]
+    np.testing.assert_allclose([one["mu"] for one in own], theirs["mu"], rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose([one["mu_star"] for one in own], theirs["mu_star"], rtol=1e-6)
+    np.testing.assert_allclose([one["sigma"] for one in own], theirs["sigma"], rtol=1e-6)
+
+
+def test_the_table_goes_to_parquet(done: condyle.StudyResult, tmp_path: Path) -> None:
+    pandas = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    done.to_parquet(tmp_path / "table.parquet")
+    read = pandas.read_parquet(tmp_path / "table.parquet")
+    assert read["mass_loss_mg"].tolist() == done["mass_loss_mg"].tolist()
+
+
+def test_answers_are_those_in_the_folder(done: condyle.StudyResult) -> None:
+    assert json.loads((done.folder / "answers.json").read_text()) == done.answers
+    assert (done.folder / "study.html").stat().st_size > 10_000
