@@ -179,6 +179,7 @@ async function saved(page) {
     const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
     assert.strictEqual(download.suggestedFilename(), file);
     await download.saveAs(path.join(made, file));
+    if (file !== "case.toml") await page.waitForFunction((file) => document.getElementById("state").textContent.startsWith(`${file} is saved`), file);
   }
   assert.strictEqual(fs.readFileSync(path.join(made, "case.toml"), "utf8"), QUICK);
 }

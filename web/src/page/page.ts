@@ -106,8 +106,13 @@ class Page {
     if (remark) byId("remarks").append(element("li", {}, remark));
     // A warning is told again by the summary.
     else if (warning) this.say(warning);
-    else if (reached) this.say(`${inDigits(reached.cycles / 1e6)} of ${inDigits(reached.of_cycles / 1e6)} million cycles`);
-    else this.say("All cycles are done; how accurate they are is being estimated");
+    else if (reached) this.reach(reached.cycles / reached.of_cycles, `${inDigits(reached.cycles / 1e6)} of ${inDigits(reached.of_cycles / 1e6)} million cycles`);
+    else this.reach(1, "All cycles are done; how accurate they are is being estimated");
+  }
+
+  private reach(part: number, words: string): void {
+    (byId("progress") as HTMLProgressElement).value = part;
+    this.say(words);
   }
 
   private say(words: string): void {
@@ -168,13 +173,17 @@ class Page {
 
   private async saveResults(): Promise<void> {
     const files = await this.laboratory.kept("results");
-    if (files) save("results.zip", await zip(files));
+    if (!files) return;
+    save("results.zip", await zip(files));
+    this.say("results.zip is saved: unpacked, it is a folder that the command reads");
   }
 
   private async saveReport(): Promise<void> {
     const files = await this.laboratory.kept("results");
     const report = files?.["results/report.html"];
-    if (report) save("report.html", new Blob([report as BlobPart], { type: "text/html" }));
+    if (!report) return;
+    save("report.html", new Blob([report as BlobPart], { type: "text/html" }));
+    this.say("report.html is saved");
   }
 }
 
