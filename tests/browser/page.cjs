@@ -216,6 +216,8 @@ async function offline(context, server, url) {
   await page.reload();
   await page.waitForSelector("html[data-ready] .stage canvas");
   await page.setViewportSize({ width: 390, height: 800 });
+  await page.emulateMedia({ colorScheme: "dark" });
+  await picture(page);
   const overhang = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert(overhang <= 0, `the page is ${overhang} px wider than a telephone`);
   await keep(page, "telephone");

@@ -287,7 +287,8 @@ export class Stage {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.ask();
+    // Before it stands in the page nobody can say what colour that has.
+    this.choosePaper();
   }
 }
 
