@@ -98,3 +98,19 @@ for line in map(json.loads, sys.stdin):
 first() {
     if chrt -f 50 true 2>/dev/null; then chrt -f 50 "$@"; else "$@"; fi
 }
+
+# Builds the web page; sets $page to its folder, and $wasm to the program in it.
+need_page() {
+    need_web
+    local target=wasm32-wasip1 built=${CARGO_TARGET_DIR:-$PWD/target}
+    if [[ ! -d $(rustc --print sysroot)/lib/rustlib/$target ]]; then
+        rustup target add "$target" || skip "there is no $target, and rustup cannot add it"
+    fi
+    cargo build --profile web --target "$target" --locked --quiet -p condyle-web
+    mkdir -p "$built/page"
+    page=$(cd "$built/page" && pwd)
+    wasm=$page/condyle-web.wasm
+    local program
+    program=$(cd "$built" && pwd)/$target/web/condyle-web.wasm
+    (cd web && node build_page.mjs "$program" "$page")
+}

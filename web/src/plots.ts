@@ -37,6 +37,7 @@ export class Plot {
   readonly box: HTMLElement;
   private plot: uPlot | undefined;
   private readonly shown = element("div", { class: "plot" });
+  private readonly observers: (IntersectionObserver | ResizeObserver)[];
   private readonly height: number;
   private isSeen = false;
   private pointed: number | undefined;
@@ -51,8 +52,14 @@ export class Plot {
     const lines = curves.curves.length > 1 ? curves.curves.length + 1 : 1;
     this.shown.style.minHeight = `${this.height + LEGEND_PX * lines}px`;
     const seen = ([entry]: IntersectionObserverEntry[]) => this.see(entry!.isIntersecting);
-    new IntersectionObserver(seen, { rootMargin: "200px" }).observe(this.shown);
-    new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width)).observe(this.shown);
+    this.observers = [new IntersectionObserver(seen, { rootMargin: "200px" }), new ResizeObserver(([entry]) => this.fit(entry!.contentRect.width))];
+    for (const observer of this.observers) observer.observe(this.shown);
+  }
+
+  // Lets go of what plots of the same key share.
+  dispose(): void {
+    for (const observer of this.observers) observer.disconnect();
+    this.plot?.destroy();
   }
 
   // Puts the cursor on an instant.
@@ -106,6 +113,7 @@ function settings({ across, up, curves }: Curves, { linked }: PlotOptions): Omit
         label: name,
         stroke: colour || ink,
         width: 1.6,
+        // Curves of two runs have their points at other cycles.
         spanGaps: true,
         ...(isDotted ? { paths: () => null } : {}),
         points: { show: isDotted || curves.filter((curve) => !curve.isDotted).length === 1 },

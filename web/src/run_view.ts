@@ -3,7 +3,7 @@
 import { element } from "./dom";
 import { FlatMaps } from "./flat_maps";
 import { withMeasured, withWeighings } from "./measured";
-import { Plot, type Curves } from "./plots";
+import { Plot, type Curves, type PlotOptions } from "./plots";
 import { cyclesInWords, quantity } from "./quantities";
 import type { Scene } from "./scene";
 import { updateAfter, Viewer } from "./viewer";
@@ -19,6 +19,7 @@ export class RunView {
   readonly gait = element("div", { class: "gait" });
   private readonly history = element("div");
   private readonly maps: FlatMaps;
+  private readonly plots: Plot[] = [];
 
   // Flat maps of the run that `root` holds are linked with the bodies.
   constructor(
@@ -30,6 +31,18 @@ export class RunView {
     this.drawWear();
     this.drawGait();
     if (this.viewer) this.viewer.onPick = (node) => this.picked(this.viewer!, node);
+  }
+
+  // Lets go of the run; what it drew stays until it is taken away.
+  dispose(): void {
+    this.viewer?.dispose();
+    this.plots.forEach((plot) => plot.dispose());
+  }
+
+  private plotted(curves: Curves, options: PlotOptions): Plot {
+    const plot = new Plot(curves, options);
+    this.plots.push(plot);
+    return plot;
   }
 
   private drawWear(): void {
@@ -46,7 +59,7 @@ export class RunView {
     for (const name of names) {
       const curves = withWeighings(ofRun(name), this.scene);
       const chosen = (index: number) => this.viewer?.showUpdate(updateAfter(this.scene, 1e6 * curves.at[index]!));
-      this.worn.append(new Plot(curves, { linked: "wear", chosen }).box);
+      this.worn.append(this.plotted(curves, { linked: "wear", chosen }).box);
     }
     this.worn.append(this.history);
   }
@@ -56,7 +69,7 @@ export class RunView {
     const cycles = columns.includes("cycles") ? parts(this.scene.column("kinematics", "cycles")) : [];
     if (!cycles.length || !columns.includes("percent")) return;
     const chosen = (index: number) => this.viewer?.showInstant(index);
-    const plots = columns.slice(2).map((name) => new Plot(withMeasured(this.channel(name, cycles), this.scene), { linked: "gait", chosen, height: 160 }));
+    const plots = columns.slice(2).map((name) => this.plotted(withMeasured(this.channel(name, cycles), this.scene), { linked: "gait", chosen, height: 160 }));
     this.gait.append(...plots.map((plot) => plot.box));
     if (this.viewer) this.viewer.onInstant = (index) => plots.forEach((plot) => plot.point(index));
   }
@@ -94,7 +107,7 @@ export class RunView {
       at: updates.map((cycles) => (cycles ?? 0) / 1e6),
       curves: [{ name: label, colour: BLUE, values: updates.map((_, update) => this.scene.field(name, update)[node]!) }],
     };
-    this.history.replaceChildren(new Plot(curves, { linked: "wear" }).box);
+    this.history.replaceChildren(this.plotted(curves, { linked: "wear" }).box);
   }
 }
 

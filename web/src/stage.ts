@@ -77,6 +77,7 @@ export class Stage {
   private readonly neutral = new Matrix4();
   private readonly isSlow = isDrawnByProcessor();
   private paper = new Color();
+  private readonly end = new AbortController();
   private isAsked = false;
   private resting = 0;
 
@@ -115,7 +116,7 @@ export class Stage {
     this.showFemur(0.3);
     this.look("oblique");
     new ResizeObserver(() => this.fit()).observe(host);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.choosePaper());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.choosePaper(), { signal: this.end.signal });
     this.choosePaper();
     this.fit();
   }
@@ -211,6 +212,14 @@ export class Stage {
     this.ask();
   }
 
+  // Looks from where another stage is looked at.
+  lookAs(other: Stage): void {
+    this.camera.position.copy(other.camera.position);
+    this.controls.target.copy(other.controls.target);
+    this.controls.update();
+    this.ask();
+  }
+
   // Draws now, as finely as a picture at rest; whoever only changed something asks, and many changes are drawn once.
   draw(): void {
     clearTimeout(this.resting);
@@ -220,6 +229,7 @@ export class Stage {
 
   dispose(): void {
     clearTimeout(this.resting);
+    this.end.abort();
     this.controls.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
@@ -266,6 +276,7 @@ export class Stage {
     this.isAsked = true;
     requestAnimationFrame(() => {
       this.isAsked = false;
+      if (this.end.signal.aborted) return;
       if (!this.isSlow) return this.draw();
       this.drawWith(1);
       clearTimeout(this.resting);
@@ -279,7 +290,8 @@ export class Stage {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.ask();
+    // Before it stands in the page nobody can say what colour that has.
+    this.choosePaper();
   }
 }
 

@@ -123,6 +123,14 @@ export class Viewer {
     return this.field;
   }
 
+  // Looks from where another viewer is looked at, at the same field.
+  lookAs(other: Viewer): void {
+    if (other.stage) this.stage?.lookAs(other.stage);
+    if (!this.scene.facts.fields.includes(other.field)) return;
+    this.fields.value = other.field;
+    this.colourBy(other.field);
+  }
+
   dispose(): void {
     this.stop();
     this.stage?.dispose();

@@ -6,6 +6,7 @@ pub mod measured;
 mod plausibility;
 mod preview;
 mod run;
+#[cfg(feature = "studies")]
 pub mod studies;
 
 pub use at_rest::AtRest;

@@ -32,6 +32,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "condyle-python",
         &["condyle", "condyle-fem", "condyle-io", "condyle-lab"],
     ),
+    // What the web page calls: runs in memory, their scenes, and the results folder.
+    (
+        "condyle-web",
+        &["condyle", "condyle-io", "condyle-lab", "condyle-report"],
+    ),
     // Cases with known answers: nobody uses it.
     (
         "condyle-verification",

@@ -6,6 +6,8 @@ mod error;
 mod event;
 mod in_memory;
 mod memory;
+#[cfg(feature = "studies")]
+mod one_of_many;
 mod options;
 mod prepare;
 mod run_case;
@@ -16,8 +18,9 @@ pub(crate) use clock::Clock;
 pub use error::RunError;
 pub use event::{Outcome, Reached, RunEvent};
 pub use in_memory::{InMemory, RunKeeper, run_in_memory};
-pub(crate) use in_memory::{march_watched, marched};
 pub(crate) use memory::memory_mb;
+#[cfg(feature = "studies")]
+pub(crate) use one_of_many::{march_watched, marched};
 pub use options::RunOptions;
 pub(crate) use prepare::{build, changed, start};
 pub use prepare::{check, check_changed, settled};

@@ -164,7 +164,7 @@ fn cycles(folder: &Path, missing: &mut Vec<String>) -> Vec<SceneCycle> {
     let Some(poses) = read_table(&folder.join("femur_pose.csv"), missing) else {
         return Vec::new();
     };
-    let mut cycles = of_poses(&poses);
+    let mut cycles = SceneCycle::of_poses(&poses);
     for (cycle, kept) in cycles.iter_mut().zip(KeptCycle::BOTH) {
         let file: PathBuf = folder.join(cycle_pressure_file(kept));
         if let Some(pressures) = read_table(&file, missing) {
@@ -181,40 +181,40 @@ fn read_table(path: &Path, missing: &mut Vec<String>) -> Option<Table> {
     })
 }
 
-/// The cycles whose poses a table like `femur_pose.csv` has, the first and the last.
-pub(super) fn of_poses(poses: &Table) -> Vec<SceneCycle> {
-    let columns: Option<Vec<&[f64]>> = poses
-        .names()
-        .iter()
-        .map(|name| poses.column(name))
-        .collect();
-    let Some([cycles, percents, numbers @ ..]) = columns.as_deref() else {
-        return Vec::new();
-    };
-    let mut found: Vec<SceneCycle> = Vec::new();
-    for row in 0..poses.rows() {
-        let Ok(pose) =
-            <[f64; 12]>::try_from(numbers.iter().map(|column| column[row]).collect::<Vec<_>>())
-        else {
+impl SceneCycle {
+    /// The cycles whose poses a table like `femur_pose.csv` has, the first and the last.
+    pub fn of_poses(poses: &Table) -> Vec<Self> {
+        let columns: Option<Vec<&[f64]>> = poses
+            .names()
+            .iter()
+            .map(|name| poses.column(name))
+            .collect();
+        let Some([cycles, percents, numbers @ ..]) = columns.as_deref() else {
             return Vec::new();
         };
-        if found.last().is_none_or(|last| last.cycles != cycles[row]) {
-            found.push(SceneCycle {
-                name: if found.is_empty() { "first" } else { "last" },
-                cycles: cycles[row],
-                ..SceneCycle::default()
-            });
+        let mut found: Vec<Self> = Vec::new();
+        for row in 0..poses.rows() {
+            let Ok(pose) =
+                <[f64; 12]>::try_from(numbers.iter().map(|column| column[row]).collect::<Vec<_>>())
+            else {
+                return Vec::new();
+            };
+            if found.last().is_none_or(|last| last.cycles != cycles[row]) {
+                found.push(Self {
+                    name: if found.is_empty() { "first" } else { "last" },
+                    cycles: cycles[row],
+                    ..Self::default()
+                });
+            }
+            if let Some(last) = found.last_mut() {
+                last.percents.push(percents[row]);
+                last.poses.push(pose);
+            }
         }
-        if let Some(last) = found.last_mut() {
-            last.percents.push(percents[row]);
-            last.poses.push(pose);
-        }
+        found.truncate(2);
+        found
     }
-    found.truncate(2);
-    found
-}
 
-impl SceneCycle {
     /// Adds the pressures of a table like `cycle_last_pressure.csv`; what names no increment is left out.
     pub fn add_pressures(&mut self, table: &Table) {
         let column = |name| table.column(name).unwrap_or_default();

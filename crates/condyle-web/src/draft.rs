@@ -1,0 +1,34 @@
+//! A case of two meshes.
+
+use std::{fs, path::Path};
+
+use condyle_io::case::{Draft, DraftError, Preset};
+
+use crate::{
+    failure::Failure,
+    told::{Told, tell},
+};
+
+/// Writes the case of two meshes at `path`; unit, axes and start are concluded from the shapes.
+pub fn draft(path: &Path, femur: &Path, insert: &Path) -> Result<(), Failure> {
+    let draft = Draft {
+        preset: Preset::StanmoreForce,
+        side: None,
+        femur,
+        insert,
+    };
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let drafted =
+        draft
+            .drafted(folder.unwrap_or(Path::new(".")))
+            .map_err(|error| match &error {
+                DraftError::Case(problems) => Failure::from(problems),
+                _ => Failure::of_words(error),
+            })?;
+    for remark in drafted.remarks {
+        tell(&Told::Remark(remark));
+    }
+    fs::write(path, drafted.text).map_err(|error| Failure::of_file(path, &error))
+}

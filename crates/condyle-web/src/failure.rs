@@ -1,0 +1,88 @@
+//! Why something could not be done, as the command says it.
+
+use std::{fmt::Display, io, path::Path};
+
+use condyle_io::keyed::{Problem, Problems};
+use condyle_lab::RunError;
+use serde::Serialize;
+
+/// Bad input, as the command's exit code.
+const BAD_INPUT: u8 = 2;
+/// The physics could not be solved.
+const PHYSICS: u8 = 3;
+
+/// Why something could not be done.
+#[derive(Debug, Serialize)]
+pub struct Failure {
+    /// The command's own message, with its carets.
+    message: String,
+    /// What is wrong, each with its place where it has one.
+    problems: Vec<Wrong>,
+    #[serde(skip)]
+    is_physics: bool,
+}
+
+/// One thing that is wrong.
+#[derive(Debug, Serialize)]
+struct Wrong {
+    message: String,
+    advice: Option<String>,
+    file: Option<String>,
+    line: Option<usize>,
+    column: Option<usize>,
+}
+
+impl Failure {
+    /// Something without a place.
+    pub fn of_words(words: impl Display) -> Self {
+        Self {
+            message: format!("error: {words}"),
+            problems: Vec::new(),
+            is_physics: false,
+        }
+    }
+
+    /// A file that cannot be read or written.
+    pub fn of_file(path: &Path, error: &io::Error) -> Self {
+        Self::of_words(format!("{}: {error}", path.display()))
+    }
+
+    pub fn exit_code(&self) -> u8 {
+        if self.is_physics { PHYSICS } else { BAD_INPUT }
+    }
+}
+
+impl From<&Problems> for Failure {
+    fn from(problems: &Problems) -> Self {
+        Self {
+            message: problems.to_string(),
+            problems: problems.problems().iter().map(Wrong::from).collect(),
+            is_physics: false,
+        }
+    }
+}
+
+impl From<&RunError> for Failure {
+    fn from(error: &RunError) -> Self {
+        let said = error
+            .in_case()
+            .map_or_else(|| Self::of_words(error), Self::from);
+        Self {
+            is_physics: error.is_physics(),
+            ..said
+        }
+    }
+}
+
+impl From<&Problem> for Wrong {
+    fn from(problem: &Problem) -> Self {
+        let (line, column) = problem.line_and_column().unzip();
+        Self {
+            message: problem.to_string(),
+            advice: problem.reason.advice(),
+            file: problem.file().map(str::to_owned),
+            line,
+            column,
+        }
+    }
+}

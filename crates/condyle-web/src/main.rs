@@ -1,0 +1,52 @@
+//! The program that the web page of condyle calls, built for `wasm32-wasip1`.
+//!
+//! The page keeps a few files in memory and calls this program once for every thing that it wants done; what the
+//! program tells is on standard output, one [`Told`] as JSON a line.
+//!
+//! | arguments | what it does |
+//! | --- | --- |
+//! | `check CASE` | says what is wrong with a case, as far as its text and files tell |
+//! | `run CASE OUT` | runs it in memory; OUT has what the page shows, `scene`, and `summary.json` |
+//! | `keep CASE OUT` | runs it into the results folder OUT, report and all |
+//! | `draft CASE FEMUR INSERT` | writes a case of two meshes, as `condyle new` does |
+//!
+//! It ends with 0, with 2 on bad input and with 3 where the physics could not be solved, as the command does.
+
+mod check;
+mod draft;
+mod failure;
+mod recorder;
+mod runs;
+mod told;
+
+use std::{env, path::Path, process::ExitCode};
+
+use failure::Failure;
+use told::{Told, tell};
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match done(&words) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let code = failure.exit_code();
+            tell(&Told::Failed(failure));
+            ExitCode::from(code)
+        }
+    }
+}
+
+fn done(words: &[&str]) -> Result<(), Failure> {
+    match words {
+        ["check", case] => check::check(Path::new(case)),
+        ["run", case, out] => runs::run(Path::new(case), Path::new(out)),
+        ["keep", case, out] => runs::keep(Path::new(case), Path::new(out)),
+        ["draft", case, femur, insert] => {
+            draft::draft(Path::new(case), Path::new(femur), Path::new(insert))
+        }
+        _ => Err(Failure::of_words(format!(
+            "{words:?}: this is no call; the program is for the web page, and says in its source which there are"
+        ))),
+    }
+}

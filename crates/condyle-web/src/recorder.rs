@@ -1,0 +1,105 @@
+//! Keeps of a run what the page shows.
+
+use std::path::Path;
+
+use condyle::{evolve::March, geometry::TriangleMesh};
+use condyle_io::{
+    case::Side,
+    results::{
+        InsertFields, KeptCycle, NeutralPose, cycle_pressure_csv, cycle_pressure_file,
+        femur_on_side, femur_pose_csv, kinematics_csv, wear_csv,
+    },
+};
+use condyle_lab::RunKeeper;
+use condyle_report::{
+    Table,
+    scene::{Scene, SceneBody, SceneCycle},
+};
+
+/// Keeps of a run what the page shows: the scene that its results folder would make.
+pub struct Recorder {
+    side: Side,
+    scene: Scene,
+    pressures: Vec<Table>,
+}
+
+impl Recorder {
+    pub fn new(side: Side) -> Self {
+        Self {
+            side,
+            scene: Scene::default(),
+            pressures: Vec::new(),
+        }
+    }
+
+    pub fn into_scene(mut self, neutral_pose: NeutralPose) -> Scene {
+        self.scene.neutral_pose = Some(neutral_pose);
+        self.scene
+    }
+
+    fn add_update(&mut self, march: &March) {
+        let fields = InsertFields::of(march, self.side);
+        let cycles = march.cycles();
+        let scalars = fields.scalars.iter();
+        let scalars = scalars.map(|(name, values)| (*name, values.as_slice()));
+        self.scene.add_update(cycles, &fields.mesh.nodes, scalars);
+    }
+
+    fn add_pressures(&mut self, march: &March) {
+        for cycle in KeptCycle::solved_by(march) {
+            let text = cycle_pressure_csv(march).unwrap_or_default();
+            self.pressures
+                .push(table(&text, &cycle_pressure_file(cycle)));
+        }
+    }
+
+    /// What stands in tables of a results folder.
+    fn add_tables(&mut self, march: &March) {
+        let activity = &march.state().activities[0];
+        let mechanism = march.test().machine().mechanism;
+        let kinematics = kinematics_csv(mechanism, activity.first_and_last.as_ref());
+        let poses = femur_pose_csv(march, self.side);
+        self.scene.cycles = SceneCycle::of_poses(&table(&poses, "femur_pose.csv"));
+        for (cycle, pressures) in self.scene.cycles.iter_mut().zip(&self.pressures) {
+            cycle.add_pressures(pressures);
+        }
+        let wear = wear_csv(&march.state().updates);
+        self.scene.tables = vec![
+            ("wear", table(&wear, "wear.csv")),
+            ("kinematics", table(&kinematics, "kinematics.csv")),
+        ];
+    }
+}
+
+impl RunKeeper for Recorder {
+    fn settled(&mut self, march: &March, femur: &TriangleMesh) {
+        let fields = InsertFields::of(march, self.side);
+        let marks: Vec<f64> = fields
+            .articulating
+            .iter()
+            .map(|&mark| mark.into())
+            .collect();
+        self.scene = Scene::of_insert(&fields.mesh, &marks).unwrap_or_default();
+        let femur = femur_on_side(femur, &march.neutral_pose(), self.side);
+        // As `femur.vtu` has its places: in 32 bits.
+        let rounded = |place: f64| f64::from(place as f32);
+        let nodes = femur.vertices.iter().map(|place| place.map(rounded));
+        self.scene.femur = Some(SceneBody {
+            nodes: nodes.collect(),
+            triangles: femur.triangles,
+        });
+        self.add_update(march);
+    }
+
+    fn updated(&mut self, march: &March) {
+        self.add_update(march);
+        self.add_pressures(march);
+        if march.is_done() {
+            self.add_tables(march);
+        }
+    }
+}
+
+fn table(text: &str, name: &str) -> Table {
+    Table::parse(text, Path::new(name)).expect("a table that condyle writes reads back")
+}

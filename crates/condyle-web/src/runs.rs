@@ -1,0 +1,112 @@
+//! Runs, in memory to be looked at, or into a folder to be kept.
+
+use std::{fs, ops::ControlFlow, path::Path};
+
+use condyle_io::{cache::Cache, case::Case, results::Summary};
+use condyle_lab::{InMemory, Outcome, Reached, RunError, RunEvent, RunOptions};
+
+use crate::{
+    failure::Failure,
+    recorder::Recorder,
+    told::{Told, tell},
+};
+
+/// Runs the case at `case` in memory; writes what the page shows into the folder `out`.
+pub fn run(case: &Path, out: &Path) -> Result<(), Failure> {
+    let case = read(case)?;
+    let how = InMemory {
+        threads: 1,
+        cache: Cache::off(),
+        wear_law: None,
+    };
+    let mut recorder = Recorder::new(case.heading.side);
+    let mut heard = Heard::of(&case);
+    let outcome =
+        condyle_lab::run_in_memory(&case, &how, &mut recorder, &mut |event| heard.hear(&event));
+    let summary = done(outcome)?;
+    let scene = recorder.into_scene(summary.neutral_pose);
+    write(out, "scene", &scene.to_bytes())?;
+    write(out, "summary.json", json(&summary).as_bytes())
+}
+
+/// Runs the case at `case` into the results folder `out`.
+pub fn keep(case: &Path, out: &Path) -> Result<(), Failure> {
+    let case = read(case)?;
+    let options = RunOptions {
+        out: out.to_owned(),
+        resume: false,
+        force: true,
+        threads: 1,
+        cache: Cache::off(),
+    };
+    let mut heard = Heard::of(&case);
+    let outcome = condyle_lab::run_case(&case, &options, &mut |event| heard.hear(&event));
+    done(outcome).map(|_| ())
+}
+
+fn read(case: &Path) -> Result<Case, Failure> {
+    Case::read(case).map_err(|problems| Failure::from(&problems))
+}
+
+fn done(outcome: Result<Outcome, RunError>) -> Result<Box<Summary>, Failure> {
+    match outcome {
+        Ok(Outcome::Done(summary) | Outcome::DoneBefore(summary)) => Ok(summary),
+        Ok(Outcome::Interrupted(_)) => {
+            unreachable!("the page ends the whole program to stop a run")
+        }
+        Err(error) => Err(Failure::from(&error)),
+    }
+}
+
+fn json(summary: &Summary) -> String {
+    serde_json::to_string_pretty(summary).expect("numbers and text always serialise")
+}
+
+fn write(folder: &Path, name: &str, content: &[u8]) -> Result<(), Failure> {
+    let path = folder.join(name);
+    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, content));
+    written.map_err(|error| Failure::of_file(&path, &error))
+}
+
+/// Tells the page how far a run has come.
+struct Heard {
+    reached: Reached,
+    is_estimating: bool,
+}
+
+impl Heard {
+    fn of(case: &Case) -> Self {
+        let reached = Reached {
+            updates: 0,
+            cycles: 0.0,
+            of_cycles: case.march.cycles as f64,
+        };
+        Self {
+            reached,
+            is_estimating: false,
+        }
+    }
+
+    fn hear(&mut self, event: &RunEvent<'_>) -> ControlFlow<()> {
+        match event {
+            RunEvent::Warning(warning) => tell(&Told::Warning(warning.clone())),
+            RunEvent::Started(reached) => self.reach(*reached),
+            RunEvent::Updated(update) => self.reach(Reached {
+                updates: self.reached.updates + 1,
+                cycles: update.cycles,
+                ..self.reached
+            }),
+            RunEvent::Estimating if !self.is_estimating => {
+                self.is_estimating = true;
+                tell(&Told::Estimating);
+            }
+            RunEvent::Estimating | RunEvent::Solved(_) => {}
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn reach(&mut self, reached: Reached) {
+        self.reached = reached;
+        tell(&Told::from(reached));
+    }
+}

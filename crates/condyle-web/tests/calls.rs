@@ -1,0 +1,122 @@
+//! Each call of the program, as the page makes it.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+use condyle_io::case::Case;
+use condyle_report::{Results, scene::Scene};
+use serde_json::Value;
+
+const CASE: &str = "\
+[insert]
+edge_mm = 3.0
+layers = 1
+[march]
+updates = 3
+[time]
+increments = 40
+";
+
+fn called(folder: &Path, words: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_condyle-web"));
+    let ran = program.args(words).current_dir(folder).output();
+    ran.expect("the program starts")
+}
+
+/// What was told, one JSON value a line.
+fn told(output: &Output) -> Vec<Value> {
+    let text = String::from_utf8(output.stdout.clone()).expect("it is text");
+    let lines = text.lines();
+    lines
+        .map(|line| serde_json::from_str(line).expect("a line is JSON"))
+        .collect()
+}
+
+fn folder_with(case: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    fs::write(folder.path().join("case.toml"), case).expect("it can be written");
+    folder
+}
+
+#[test]
+fn what_the_page_shows_is_what_the_results_folder_holds() {
+    let folder = folder_with(CASE);
+    let ran = called(folder.path(), &["run", "case.toml", "out"]);
+    assert!(ran.status.success(), "{ran:?}");
+    let reached = told(&ran);
+    let updates = reached
+        .iter()
+        .filter_map(|line| line["reached"]["updates"].as_u64());
+    assert_eq!(updates.collect::<Vec<_>>(), [0, 1, 2, 3]);
+    assert_eq!(reached.last(), Some(&Value::from("estimating")));
+
+    let kept = called(folder.path(), &["keep", "case.toml", "results"]);
+    assert!(kept.status.success(), "{kept:?}");
+    let results_folder = folder.path().join("results");
+    assert!(results_folder.join("report.html").exists());
+    let results = Results::read(&results_folder).expect("it is whole");
+    let scene = Scene::read(&results_folder, &results);
+    assert_eq!(scene.missing, Vec::<String>::new());
+    let shown = fs::read(folder.path().join("out/scene")).expect("it was written");
+    assert!(shown == scene.to_bytes(), "the scenes differ");
+
+    let summary = |path: &str| {
+        let text = fs::read_to_string(folder.path().join(path)).expect("it was written");
+        let mut summary: Value = serde_json::from_str(&text).expect("it is JSON");
+        summary["wall_s"] = Value::Null;
+        summary["error"]["wall_s"] = Value::Null;
+        summary
+    };
+    assert_eq!(summary("out/summary.json"), summary("results/summary.json"));
+}
+
+#[test]
+fn a_wrong_case_is_told_as_the_command_tells_it() {
+    const WRONG: &str = "[contact]\nfrictoin = 0.04\n";
+    let folder = folder_with(WRONG);
+    for words in [
+        &["check", "case.toml"][..],
+        &["run", "case.toml", "out"],
+        &["keep", "case.toml", "results"],
+    ] {
+        let output = called(folder.path(), words);
+        assert_eq!(output.status.code(), Some(2));
+        let failed = &told(&output)[0]["failed"];
+        let problems = Case::parse(WRONG, "case.toml", folder.path()).expect_err("it is wrong");
+        assert_eq!(failed["message"], problems.to_string());
+        let problem = &failed["problems"][0];
+        assert_eq!(
+            (&problem["line"], &problem["column"]),
+            (&2.into(), &1.into())
+        );
+        assert_eq!(problem["advice"], "did you mean `friction`?");
+    }
+    assert!(!folder.path().join("results").exists());
+}
+
+#[test]
+fn files_that_are_no_meshes_make_no_case() {
+    let folder = folder_with("");
+    for name in ["femur.stl", "insert.stl"] {
+        fs::write(folder.path().join(name), "solid x\nnonsense").expect("it can be written");
+    }
+    let output = called(
+        folder.path(),
+        &["draft", "drafted.toml", "femur.stl", "insert.stl"],
+    );
+    assert_eq!(output.status.code(), Some(2));
+    let message = told(&output)[0]["failed"]["message"].to_string();
+    assert!(message.contains("femur.stl:2"), "{message}");
+    assert!(!folder.path().join("drafted.toml").exists());
+}
+
+#[test]
+fn a_good_case_checks_and_what_is_no_call_is_refused() {
+    let folder = folder_with(CASE);
+    let checked = called(folder.path(), &["check", "case.toml"]);
+    assert!(checked.status.success() && checked.stdout.is_empty());
+    assert_eq!(called(folder.path(), &["nonsense"]).status.code(), Some(2));
+}

@@ -1,0 +1,260 @@
+// Uses the web page in a headless browser: node page.cjs CHROMIUM PAGE MADE BODIES
+//
+// PAGE is the folder of the page, MADE has in `node` what its program found in Node, and gets what the page saves; BODIES has
+// a femoral component and an insert as STL files.
+const assert = require("node:assert");
+const { spawn } = require("node:child_process");
+const { createHash } = require("node:crypto");
+const fs = require("node:fs");
+const path = require("node:path");
+const { chromium } = require("playwright-core");
+
+const [executablePath, folder, made, bodies] = process.argv.slice(2);
+// A machine at other work is slow.
+const PATIENCE_MS = 180_000;
+const args = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--js-flags=--expose-gc"];
+// A case of a moment.
+const QUICK = "[insert]\nedge_mm = 3.0\nlayers = 1\n[march]\nupdates = 3\n[time]\nincrements = 40\n";
+const LARGEST_MB = 1.5;
+
+function served() {
+  const server = spawn(process.execPath, [path.join(__dirname, "../../web/serve.mjs"), folder, "0"], { stdio: ["ignore", "pipe", "inherit"] });
+  return new Promise((done) => server.stdout.once("data", (url) => done({ server, url: String(url).trim() })));
+}
+
+function watch(page, url, heard) {
+  page.on("request", (request) => /^(data|blob):/.test(request.url()) || request.url().startsWith(url) || heard.push(request.url()));
+  page.on("console", (message) => message.type() === "error" && heard.push(message.text()));
+  page.on("pageerror", (error) => heard.push(String(error)));
+}
+
+async function open(context, url, heard) {
+  const page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE_MS);
+  watch(page, url, heard);
+  const began = Date.now();
+  await page.goto(url);
+  await page.waitForSelector("html[data-ready] .stage canvas");
+  return { page, ready_ms: Date.now() - began };
+}
+
+const runs = (page) => page.evaluate(() => Number(document.documentElement.dataset.runs));
+const state = (page) => page.locator("#state").innerText();
+const number = (page, name) => page.locator(`[data-number=${name}]`).innerText();
+const write = (page, text) => page.locator("#case-text").fill(text);
+
+// Does something that starts a run, and waits until that is shown.
+async function ran(page, act) {
+  const before = await runs(page);
+  await act();
+  await page.waitForFunction((count) => Number(document.documentElement.dataset.runs) > count, before);
+  return page;
+}
+
+async function picture(page) {
+  await page.waitForSelector(".stage canvas[data-still]");
+  return page.$eval(".stage canvas", (canvas) => canvas.toDataURL());
+}
+
+async function keep(page, name) {
+  await page.screenshot({ path: path.join(made, `${name}.png`) });
+}
+
+// Size of what is loaded first, as a server that knows brotli sends it.
+function loaded() {
+  const files = fs.readdirSync(folder).filter((name) => name.endsWith(".br"));
+  return files.reduce((sum, name) => sum + fs.statSync(path.join(folder, name)).size, 0) / 1e6;
+}
+
+// The same program and case give the same bytes here and in Node.
+async function sameAsInNode(page) {
+  const wanted = fs.readFileSync(path.join(made, "node/scene"));
+  const text = fs.readFileSync(path.join(__dirname, "../../cases/stanmore-force.toml"), "utf8");
+  const found = await page.evaluate(async (text) => {
+    const module = await WebAssembly.compile(await (await fetch("condyle-web.wasm")).arrayBuffer());
+    const worker = new Worker("worker.js");
+    const files = { "case.toml": new TextEncoder().encode(text) };
+    const answer = await new Promise((done) => {
+      worker.onmessage = ({ data }) => data.answer && done(data.answer);
+      worker.postMessage({ module, order: { words: ["run", "case.toml", "out"], files, wanted: "out" } });
+    });
+    worker.terminate();
+    const hash = new Uint8Array(await crypto.subtle.digest("SHA-256", answer.files["out/scene"]));
+    return { hash: [...hash].map((byte) => byte.toString(16).padStart(2, "0")).join(""), summary: new TextDecoder().decode(answer.files["out/summary.json"]) };
+  }, text);
+  assert.strictEqual(found.hash, createHash("sha256").update(wanted).digest("hex"), "the browser finds other bytes than Node");
+  const timeless = (text) => text.replaceAll(/"wall_s": [^,\n]*/g, "");
+  assert.strictEqual(timeless(found.summary), timeless(fs.readFileSync(path.join(made, "node/summary.json"), "utf8")));
+  return JSON.parse(found.summary);
+}
+
+async function numbers(page, summary) {
+  for (const name of ["mass_loss_mg", "max_depth_mm", "peak_pressure_mpa", "ap_range_mm"]) {
+    const shown = await number(page, name);
+    assert(shown.startsWith(String(Number(summary[name].toPrecision(4)))), `${name}: the page says ${shown}, the summary ${summary[name]}`);
+  }
+}
+
+async function sliders(page) {
+  const before = [await picture(page), await number(page, "mass_loss_mg")];
+  const began = Date.now();
+  await ran(page, () => page.getByLabel("Radius of the dish from the side").fill("90"));
+  const solved_ms = Date.now() - began;
+  assert.notStrictEqual(await picture(page), before[0], "the slider does not move the picture");
+  assert.notStrictEqual(await number(page, "mass_loss_mg"), before[1], "the slider does not change the mass");
+  assert.match(await page.locator("#case-text").inputValue(), /sagittal_radius_mm = 90/);
+  // The keyboard moves it too.
+  await page.getByLabel("Radius of the dish from the side").focus();
+  await ran(page, () => page.keyboard.press("ArrowLeft"));
+  assert.match(await page.locator("#case-text").inputValue(), /sagittal_radius_mm = 89/);
+  return solved_ms;
+}
+
+async function comparing(page) {
+  await page.getByRole("button", { name: "Keep this run" }).click();
+  await ran(page, () => page.getByLabel("Friction").fill("0.14"));
+  const told = await page.locator("#comparison").innerText();
+  assert.match(told, /Mass loss, mg\s+[\d.]+\s+[\d.]+\s+[−\d.]+ %/, told);
+  await keep(page, "compared");
+}
+
+async function textWithFaults(page) {
+  await write(page, "[contact]\nfrictoin = 0.04\n");
+  await page.waitForSelector("#failure:not([hidden])");
+  const told = await page.locator("#failure").innerText();
+  assert.match(told, /no key `frictoin`[\s\S]*case\.toml:2:1[\s\S]*did you mean `friction`/, told);
+  assert.match(await page.locator(".gutter .wrong").innerText(), /2/);
+  await keep(page, "fault");
+  await write(page, "[contact]\nfri");
+  const offered = await page.locator(".offers").innerText();
+  assert.match(offered, /friction/, offered);
+  await page.keyboard.press("Enter");
+  assert.strictEqual(await page.locator("#case-text").inputValue(), "[contact]\nfriction");
+  await ran(page, () => write(page, QUICK));
+  assert(await page.locator("#failure").isHidden(), "the message stays");
+}
+
+async function cancelled(page) {
+  const before = await runs(page);
+  await write(page, QUICK.replace("3.0", "0.6").replace("updates = 3", "updates = 200"));
+  await page.waitForSelector("html[data-busy]");
+  await page.waitForFunction(() => /of 5 million/.test(document.getElementById("state").textContent));
+  await page.getByRole("button", { name: "Stop" }).click();
+  assert.match(await state(page), /stopped/);
+  assert.strictEqual(await runs(page), before, "a run that was stopped is shown");
+  await ran(page, () => write(page, QUICK));
+}
+
+async function dropped(page) {
+  const files = ["femoral-component.stl", "tibial-insert.stl"].map((name) => path.join(bodies, name));
+  if (!files.every((file) => fs.existsSync(file))) throw new Error(`${bodies} has not the bodies that the page is tested with`);
+  await drop(page, [{ name: "femur.stl", text: "solid x\nnonsense" }, { name: "insert.stl", text: "solid x\nnonsense" }]);
+  await page.waitForSelector("#failure:not([hidden])");
+  assert.match(await page.locator("#failure").innerText(), /femur\.stl:2: "nonsense" is not a word of STL/);
+  await page.getByLabel("Choose two meshes").setInputFiles(files);
+  await page.waitForFunction(() => /shape = "mesh"/.test(document.getElementById("case-text").value));
+  const drafted = await page.locator("#case-text").inputValue();
+  assert.match(drafted, /length_unit = "m"/);
+  assert.match(await page.locator("#remarks").innerText(), /length_unit "m", which makes it 66\.4 mm/);
+  const coarse = drafted.replace(/edge_mm = [\d.]+/, "edge_mm = 2.0").replace(/updates = 10 /, "updates = 2 ").replace(/increments = 200/, "increments = 60");
+  await ran(page, () => write(page, coarse));
+  assert(await page.getByLabel("Distal radius").isDisabled(), "a mesh has a radius");
+  await picture(page);
+  await keep(page, "dropped");
+}
+
+// Files dropped on the page.
+async function drop(page, files) {
+  const transfer = await page.evaluateHandle((files) => {
+    const transfer = new DataTransfer();
+    for (const { name, text } of files) transfer.items.add(new File([text], name));
+    return transfer;
+  }, files);
+  await page.dispatchEvent("body", "drop", { dataTransfer: transfer });
+}
+
+async function saved(page) {
+  await ran(page, () => write(page, QUICK));
+  for (const [name, file] of [["Save the results folder", "results.zip"], ["Save the report", "report.html"], ["Save the case", "case.toml"]]) {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
+    assert.strictEqual(download.suggestedFilename(), file);
+    await download.saveAs(path.join(made, file));
+    if (file !== "case.toml") await page.waitForFunction((file) => document.getElementById("state").textContent.startsWith(`${file} is saved`), file);
+  }
+  assert.strictEqual(fs.readFileSync(path.join(made, "case.toml"), "utf8"), QUICK);
+}
+
+// What JavaScript holds, with the memory behind its arrays, MB, and nodes of the document.
+async function memory(session) {
+  await session.send("HeapProfiler.collectGarbage");
+  const { usedSize, backingStorageSize = 0 } = await session.send("Runtime.getHeapUsage");
+  const { nodes } = await session.send("Memory.getDOMCounters");
+  return { mb: (usedSize + backingStorageSize) / 1e6, nodes };
+}
+
+async function twentyRuns(page) {
+  const session = await page.context().newCDPSession(page);
+  let early;
+  for (let run = 0; run < 20; run++) {
+    await ran(page, () => page.getByLabel("Friction").fill(run % 2 ? "0.12" : "0.16"));
+    if (run === 4) early = await memory(session);
+  }
+  const late = await memory(session);
+  assert(late.mb < early.mb + 8, `after 5 runs ${early.mb.toFixed(1)} MB, after 20 ${late.mb.toFixed(1)} MB`);
+  assert(late.nodes < early.nodes + 100, `after 5 runs ${early.nodes} nodes, after 20 ${late.nodes}`);
+  return [early, late];
+}
+
+// Loaded once, the page needs no network.
+async function offline(context, server, url) {
+  const page = await context.newPage();
+  page.setDefaultTimeout(PATIENCE_MS);
+  await page.goto(url);
+  await page.evaluate(() => navigator.serviceWorker.ready);
+  server.kill();
+  await context.setOffline(true);
+  await page.reload();
+  await page.waitForSelector("html[data-ready] .stage canvas");
+  await page.setViewportSize({ width: 390, height: 800 });
+  await page.emulateMedia({ colorScheme: "dark" });
+  await picture(page);
+  const overhang = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert(overhang <= 0, `the page is ${overhang} px wider than a telephone`);
+  await keep(page, "telephone");
+}
+
+async function main() {
+  const { server, url } = await served();
+  const browser = await chromium.launch({ executablePath, args });
+  try {
+    const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true });
+    const heard = [];
+    const { page, ready_ms } = await open(context, url, heard);
+    await picture(page);
+    await keep(page, "first");
+    const summary = await sameAsInNode(page);
+    await numbers(page, summary);
+    const solved_ms = await sliders(page);
+    await comparing(page);
+    await textWithFaults(page);
+    await cancelled(page);
+    await dropped(page);
+    await saved(page);
+    const [early, late] = await twentyRuns(page);
+    assert.deepStrictEqual(heard, [], "the page asks for other files or reports errors");
+    await offline(context, server, url);
+    assert(loaded() <= LARGEST_MB, `the first load is ${loaded().toFixed(2)} MB`);
+    console.log(
+      `first result after ${ready_ms} ms, a moved slider shown after ${solved_ms} ms, first load ${loaded().toFixed(2)} MB;` +
+        ` after 5 runs ${early.mb.toFixed(1)} MB and ${early.nodes} nodes, after 20 ${late.mb.toFixed(1)} MB and ${late.nodes}`,
+    );
+  } finally {
+    await browser.close();
+    server.kill();
+  }
+}
+
+main().catch((error) => {
+  console.error(error);
+  process.exit(1);
+});

@@ -1,0 +1,51 @@
+// Bundles the page: node build_page.mjs WASM FOLDER
+//
+// The folder is then a static site: what it needs, each file also as brotli and gzip make it smaller.
+import { build } from "esbuild";
+import { createHash } from "node:crypto";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { brotliCompressSync, gzipSync } from "node:zlib";
+
+const [wasm, folder] = process.argv.slice(2);
+
+async function bundled(entry, define = {}) {
+  const { outputFiles } = await build({
+    entryPoints: [`src/page/${entry}.ts`],
+    bundle: true,
+    minify: true,
+    format: "iife",
+    target: "es2022",
+    charset: "ascii",
+    legalComments: "none",
+    loader: { ".css": "text", ".toml": "text" },
+    define,
+    write: false,
+  });
+  return outputFiles[0].contents;
+}
+
+const files = {
+  "index.html": readFileSync("index.html"),
+  "page.js": await bundled("page"),
+  "worker.js": await bundled("worker"),
+  "condyle-web.wasm": readFileSync(wasm),
+};
+const hash = createHash("sha256");
+for (const bytes of Object.values(files)) hash.update(bytes);
+files["service_worker.js"] = await bundled("service_worker", {
+  FILES: JSON.stringify(["./", ...Object.keys(files).filter((name) => name !== "index.html")]),
+  VERSION: JSON.stringify(hash.digest("hex").slice(0, 16)),
+});
+
+rmSync(folder, { recursive: true, force: true });
+mkdirSync(folder, { recursive: true });
+const sizes = [0, 0];
+for (const [name, bytes] of Object.entries(files)) {
+  const [brotli, gzip] = [brotliCompressSync(bytes), gzipSync(bytes, { level: 9 })];
+  writeFileSync(`${folder}/${name}`, bytes);
+  writeFileSync(`${folder}/${name}.br`, brotli);
+  writeFileSync(`${folder}/${name}.gz`, gzip);
+  sizes[0] += brotli.length;
+  sizes[1] += gzip.length;
+}
+console.log(`the page: ${(sizes[0] / 1e6).toFixed(2)} MB as brotli, ${(sizes[1] / 1e6).toFixed(2)} MB as gzip`);

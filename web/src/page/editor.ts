@@ -1,0 +1,151 @@
+// The case as text: line numbers, what is wrong at its place, completion of tables, keys and words.
+
+import { element } from "../dom";
+import { headingOf, keyOf, tableAt } from "./case_text";
+import type { Failure, Wrong } from "./program";
+import type { CaseSchema, Offer } from "./schema";
+
+const LINE_PX = 18;
+const MOST_OFFERS = 12;
+
+export class Editor {
+  readonly box = element("div", { class: "editor" });
+  private readonly input = element("textarea", { id: "case-text", spellcheck: "false", autocapitalize: "off", wrap: "off", "aria-label": "The case as text; Ctrl and space offer words", "aria-describedby": "case-help" });
+  private readonly gutter = element("div", { class: "gutter", "aria-hidden": "true" });
+  private readonly help = element("p", { id: "case-help", class: "note", "aria-live": "polite" });
+  private readonly list = element("ul", { class: "offers", role: "listbox", hidden: true });
+  private readonly said = element("div", { class: "said", role: "status" });
+  private offers: Offer[] = [];
+  private chosen = 0;
+
+  constructor(
+    private readonly schema: CaseSchema,
+    private readonly changed: (text: string) => void,
+  ) {
+    this.box.append(element("div", { class: "lines" }, this.gutter, this.input, this.list), this.help, this.said);
+    this.input.addEventListener("input", () => {
+      this.number([]);
+      this.offer(false);
+      this.changed(this.text);
+    });
+    this.input.addEventListener("scroll", () => (this.gutter.scrollTop = this.input.scrollTop));
+    this.input.addEventListener("keydown", (event) => this.press(event));
+    this.input.addEventListener("click", () => this.tellAbout());
+    this.input.addEventListener("keyup", () => this.tellAbout());
+    this.input.addEventListener("blur", () => this.close());
+  }
+
+  get text(): string {
+    return this.input.value;
+  }
+
+  // Shows a text that did not come from here.
+  set text(text: string) {
+    const { selectionStart, scrollTop } = this.input;
+    this.input.value = text;
+    this.input.setSelectionRange(selectionStart, selectionStart);
+    this.input.scrollTop = scrollTop;
+    this.number([]);
+  }
+
+  // Shows what is wrong, at its lines; nothing where all is well.
+  tell(failure: Failure | null): void {
+    const problems = failure?.problems ?? [];
+    this.number(problems);
+    const places = problems.filter(({ line }) => line !== null).map((problem) => this.jump(problem));
+    this.said.replaceChildren(...(failure ? [element("pre", {}, failure.message), ...places] : []));
+  }
+
+  private jump({ line, column, message }: Wrong): HTMLButtonElement {
+    const go = () => {
+      const lines = this.text.split("\n");
+      const at = lines.slice(0, line! - 1).reduce((sum, before) => sum + before.length + 1, 0) + (column ?? 1) - 1;
+      this.input.focus();
+      this.input.setSelectionRange(at, at);
+      this.input.scrollTop = (line! - 6) * LINE_PX;
+    };
+    return element("button", { type: "button", click: go }, `Line ${line}: ${message}`);
+  }
+
+  private number(problems: Wrong[]): void {
+    const wrong = new Map(problems.map(({ line, message }) => [line, message]));
+    const lines = this.text.split("\n").map((_, index) => {
+      const message = wrong.get(index + 1);
+      return message === undefined ? element("div", {}, String(index + 1)) : element("div", { class: "wrong", title: message }, `✕ ${index + 1}`);
+    });
+    this.gutter.replaceChildren(...lines);
+    this.gutter.scrollTop = this.input.scrollTop;
+  }
+
+  private caret(): { lines: string[]; line: number; before: string } {
+    const upTo = this.text.slice(0, this.input.selectionStart).split("\n");
+    return { lines: this.text.split("\n"), line: upTo.length - 1, before: upTo.at(-1)! };
+  }
+
+  private tellAbout(): void {
+    const { lines, line } = this.caret();
+    const key = keyOf(lines[line]!);
+    this.help.textContent = (key && this.schema.about(tableAt(lines, line), key)) ?? "";
+  }
+
+  // Offers what may stand at the caret; unasked, only once a word has begun.
+  private offer(isAsked: boolean): void {
+    const { lines, line, before } = this.caret();
+    const table = tableAt(lines, headingOf(lines[line]!) === undefined ? line : line - 1);
+    const [all, begun] = this.atCaret(table, before);
+    const isOffered = begun !== undefined && (isAsked || begun.length > 0);
+    const fitting = isOffered ? all.filter(({ word }) => word.startsWith(begun) && word !== begun) : [];
+    this.offers = fitting.slice(0, MOST_OFFERS);
+    this.chosen = 0;
+    this.list.style.top = `${(line + 1) * LINE_PX - this.input.scrollTop + 6}px`;
+    this.showOffers();
+  }
+
+  private atCaret(table: string, before: string): [Offer[], string | undefined] {
+    const heading = /^\s*\[([\w.]*)$/.exec(before);
+    if (heading) return [this.schema.tables(), heading[1]];
+    const value = /^\s*([\w-]+)\s*=\s*("?[\w-]*)$/.exec(before);
+    if (value) return [this.schema.values(table, value[1]!), value[2]];
+    return [this.schema.keys(table), /^\s*([\w-]*)$/.exec(before)?.[1]];
+  }
+
+  private showOffers(): void {
+    const items = this.offers.map(({ word, about }, index) =>
+      element("li", { role: "option", "aria-selected": String(index === this.chosen), pointerdown: (event) => this.take(index, event) }, element("b", {}, word), ` ${about}`),
+    );
+    this.list.replaceChildren(...items);
+    this.list.hidden = items.length === 0;
+  }
+
+  private close(): void {
+    this.offers = [];
+    this.showOffers();
+  }
+
+  private press(event: KeyboardEvent): void {
+    if (event.key === " " && event.ctrlKey) {
+      event.preventDefault();
+      this.offer(true);
+      return;
+    }
+    if (!this.offers.length) return;
+    const steps: Record<string, number> = { ArrowDown: 1, ArrowUp: this.offers.length - 1 };
+    if (event.key in steps) this.chosen = (this.chosen + steps[event.key]!) % this.offers.length;
+    else if (event.key === "Enter" || event.key === "Tab") return this.take(this.chosen, event);
+    else if (event.key === "Escape") this.offers = [];
+    else return;
+    event.preventDefault();
+    this.showOffers();
+  }
+
+  private take(index: number, event: Event): void {
+    event.preventDefault();
+    const { before } = this.caret();
+    const begun = /("?[\w.-]*)$/.exec(before)![1]!;
+    const word = this.offers[index]!.word;
+    this.close();
+    const end = this.input.selectionStart;
+    this.input.setRangeText(word, end - begun.length, end, "end");
+    this.input.dispatchEvent(new Event("input"));
+  }
+}

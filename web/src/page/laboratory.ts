@@ -1,0 +1,110 @@
+// The case that is being worked on, and its runs.
+
+import { Scene } from "../scene";
+import type { Files } from "./memory_files";
+import type { Summary } from "./numbers";
+import type { Failure, Told } from "./program";
+import type { Found } from "./shown_run";
+import { Solver } from "./solver";
+import type { Bodies } from "./dropped";
+
+const CASE = "case.toml";
+// A slider that still moves starts no run.
+const PATIENCE_MS = 120;
+
+export interface Hears {
+  told(told: Told): void;
+  found(found: Found): void;
+  failed(failure: Failure | null): void;
+  // Whether a run is on its way.
+  busy(isBusy: boolean): void;
+}
+
+export class Laboratory {
+  text: string;
+  private bodies: Files = {};
+  private readonly runs: Solver;
+  private readonly checks: Solver;
+  private timer = 0;
+
+  constructor(
+    module: WebAssembly.Module,
+    text: string,
+    private readonly hears: Hears,
+  ) {
+    this.text = text;
+    this.runs = new Solver(module);
+    this.checks = new Solver(module);
+  }
+
+  // Checks a changed text, and runs it once it stays as it is.
+  change(text: string): void {
+    this.text = text;
+    this.cancel();
+    this.timer = window.setTimeout(() => void this.checkAndRun(), PATIENCE_MS);
+  }
+
+  cancel(): void {
+    clearTimeout(this.timer);
+    this.runs.cancel();
+    this.hears.busy(false);
+  }
+
+  async run(): Promise<void> {
+    this.hears.busy(true);
+    const answer = await this.runs.call({ words: ["run", CASE, "out"], files: this.files(), wanted: "out" }, this.hears.told);
+    if (!answer) return;
+    this.hears.busy(false);
+    this.hears.failed(answer.failure);
+    const [scene, summary] = [answer.files["out/scene"], answer.files["out/summary.json"]];
+    if (answer.failure || !scene || !summary) return;
+    this.hears.found({ scene: new Scene(scene.buffer as ArrayBuffer), summary: JSON.parse(decode(summary)) as Summary });
+  }
+
+  // A case of two meshes, with unit and axes as condyle finds them.
+  async draft({ femur, insert, files }: Bodies): Promise<string | undefined> {
+    this.cancel();
+    this.hears.busy(true);
+    const answer = await this.runs.call({ words: ["draft", CASE, femur, insert], files, wanted: CASE }, this.hears.told);
+    if (!answer) return undefined;
+    this.hears.busy(false);
+    this.hears.failed(answer.failure);
+    const drafted = answer.files[CASE];
+    if (answer.failure || !drafted) return undefined;
+    this.bodies = files;
+    return decode(drafted);
+  }
+
+  // The results folder of the case; what it has is what the command writes.
+  async kept(folder: string): Promise<Files | undefined> {
+    this.cancel();
+    this.hears.busy(true);
+    const answer = await this.runs.call({ words: ["keep", CASE, folder], files: this.files(), wanted: folder }, this.hears.told);
+    if (!answer) return undefined;
+    this.hears.busy(false);
+    this.hears.failed(answer.failure);
+    return answer.failure ? undefined : answer.files;
+  }
+
+  // What the case needs besides its text, to be saved with it.
+  get meshes(): Files {
+    return this.bodies;
+  }
+
+  private async checkAndRun(): Promise<void> {
+    const answer = await this.checks.call({ words: ["check", CASE], files: this.files(), wanted: CASE });
+    if (!answer) return;
+    this.hears.failed(answer.failure);
+    if (!answer.failure) await this.run();
+  }
+
+  // The files of the case; a worker gets copies of them.
+  private files(): Files {
+    const text = new TextEncoder().encode(this.text);
+    return { ...this.bodies, [CASE]: text };
+  }
+}
+
+function decode(bytes: Uint8Array): string {
+  return new TextDecoder().decode(bytes);
+}

@@ -1,0 +1,206 @@
+// The laboratory as a web page: a case, its run, and what can be changed of both.
+
+import plotStyle from "uplot/dist/uPlot.min.css";
+import { element } from "../dom";
+import { Plot } from "../plots";
+import { inDigits, quantity } from "../quantities";
+import { save, saveText } from "../save";
+import viewStyle from "../style.css";
+import schema from "../../../cases/condyle.schema.json";
+import genericCase from "../../../cases/stanmore-force.toml";
+import { take, takeDropped, type Bodies } from "./dropped";
+import { Editor } from "./editor";
+import { Laboratory } from "./laboratory";
+import { comparison, doubts, tiles } from "./numbers";
+import style from "./page.css";
+import type { Failure, Told } from "./program";
+import { CaseSchema } from "./schema";
+import { ShownRun, type Found } from "./shown_run";
+import { Sliders } from "./sliders";
+import { zip } from "./zip";
+
+const BLUE = "#2f6db5";
+const GREY = "#8a8f96";
+
+function byId(id: string): HTMLElement {
+  return document.getElementById(id)!;
+}
+
+class Page {
+  private readonly laboratory: Laboratory;
+  private readonly shown = new ShownRun(byId("bodies"), byId("worn"), byId("gait"));
+  private readonly sliders: Sliders;
+  private readonly editor: Editor;
+  private now: Found | undefined;
+  private kept: Found | undefined;
+  private plots: Plot[] = [];
+  private runs = 0;
+
+  constructor(module: WebAssembly.Module) {
+    // The first line names a schema file for editors of the disk.
+    const text = genericCase.replace(/^#:schema.*\n/, "");
+    this.laboratory = new Laboratory(module, text, {
+      told: (told) => this.hear(told),
+      found: (found) => this.find(found),
+      failed: (failure) => this.fail(failure),
+      busy: (isBusy) => document.documentElement.toggleAttribute("data-busy", isBusy),
+    });
+    this.sliders = new Sliders(() => this.laboratory.text, (text) => this.change(text));
+    this.editor = new Editor(new CaseSchema(schema), (text) => this.typed(text));
+    this.editor.text = text;
+    byId("text").append(this.editor.box);
+    byId("sliders").append(this.sliders.box);
+    this.sliders.show();
+    this.buttons();
+    this.takeFiles();
+  }
+
+  begin(): Promise<void> {
+    return this.laboratory.run();
+  }
+
+  private buttons(): void {
+    const pressed: Record<string, () => unknown> = {
+      "cancel": () => (this.laboratory.cancel(), this.say("The run is stopped; what is shown is the run before it.")),
+      "keep": () => this.keep(),
+      "save-case": () => saveText("case.toml", this.laboratory.text, "text/plain"),
+      "save-results": () => this.saveResults(),
+      "save-report": () => this.saveReport(),
+    };
+    for (const [id, act] of Object.entries(pressed)) byId(id).addEventListener("click", () => void act());
+  }
+
+  private takeFiles(): void {
+    const hears = {
+      bodies: (bodies: Bodies) => void this.draft(bodies),
+      caseText: (text: string) => this.open(text),
+      refused: (why: string) => this.fail({ message: why, problems: [] }),
+    };
+    takeDropped(hears);
+    const input = byId("files") as HTMLInputElement;
+    input.addEventListener("change", () => void take([...(input.files ?? [])], hears).then(() => (input.value = "")));
+  }
+
+  private async draft(bodies: Bodies): Promise<void> {
+    byId("remarks").replaceChildren();
+    const text = await this.laboratory.draft(bodies);
+    if (text !== undefined) this.open(text);
+  }
+
+  private open(text: string): void {
+    this.change(text);
+    this.sliders.show();
+  }
+
+  private change(text: string): void {
+    this.editor.text = text;
+    this.laboratory.change(text);
+  }
+
+  private typed(text: string): void {
+    this.laboratory.change(text);
+    this.sliders.show();
+  }
+
+  private hear({ reached, remark, warning }: Told): void {
+    if (remark) byId("remarks").append(element("li", {}, remark));
+    // A warning is told again by the summary.
+    else if (warning) this.say(warning);
+    else if (reached) this.reach(reached.cycles / reached.of_cycles, `${inDigits(reached.cycles / 1e6)} of ${inDigits(reached.of_cycles / 1e6)} million cycles`);
+    else this.reach(1, "All cycles are done; how accurate they are is being estimated");
+  }
+
+  private reach(part: number, words: string): void {
+    (byId("progress") as HTMLProgressElement).value = part;
+    this.say(words);
+  }
+
+  private say(words: string): void {
+    byId("state").textContent = words;
+  }
+
+  private find(found: Found): void {
+    const { summary } = found;
+    this.now = found;
+    this.shown.show(found);
+    byId("tiles").replaceChildren(...tiles(summary));
+    byId("doubts").replaceChildren(...doubts(summary));
+    byId("doubtful").hidden = byId("doubts").childElementCount === 0;
+    const solved = summary.wall_s + (summary.error?.wall_s ?? 0);
+    this.say(`${inDigits(summary.cycles / 1e6)} million cycles, solved in ${inDigits(solved)} s on this machine`);
+    this.compare();
+    document.documentElement.dataset["ready"] = "yes";
+    document.documentElement.dataset["runs"] = String(++this.runs);
+  }
+
+  private fail(failure: Failure | null): void {
+    this.editor.tell(failure);
+    byId("failure").hidden = !failure;
+    byId("failure").textContent = failure?.message ?? "";
+    if (failure) this.say("This case does not run; what is shown is the run before it.");
+  }
+
+  private keep(): void {
+    this.kept = this.now;
+    this.compare();
+  }
+
+  private compare(): void {
+    const box = byId("comparison");
+    box.hidden = !this.kept;
+    const { kept, now } = this;
+    if (!kept || !now) return;
+    this.plots.forEach((plot) => plot.dispose());
+    this.plots = ["mass_loss_mg", "max_depth_mm"].map((name) => this.beside(kept, now, name));
+    byId("compared").replaceChildren(comparison(kept.summary, now.summary), ...this.plots.map((plot) => plot.box));
+  }
+
+  private beside(kept: Found, now: Found, name: string): Plot {
+    const of = ({ scene }: Found, column: string) => [0, ...scene.column("wear", column)];
+    const at = [...new Set([...of(kept, "cycles"), ...of(now, "cycles")])].sort((a, b) => a - b);
+    const values = (found: Found) => at.map((cycles) => of(found, name)[of(found, "cycles").indexOf(cycles)] ?? null);
+    return new Plot({
+      title: quantity(name).label,
+      across: { name: "cycles", label: "Million cycles", unit: "" },
+      up: quantity(name),
+      at: at.map((cycles) => cycles / 1e6),
+      curves: [
+        { name: "kept", colour: GREY, values: values(kept) },
+        { name: "now", colour: BLUE, values: values(now) },
+      ],
+    });
+  }
+
+  private async saveResults(): Promise<void> {
+    const files = await this.laboratory.kept("results");
+    if (!files) return;
+    save("results.zip", await zip(files));
+    this.say("results.zip is saved: unpacked, it is a folder that the command reads");
+  }
+
+  private async saveReport(): Promise<void> {
+    const files = await this.laboratory.kept("results");
+    const report = files?.["results/report.html"];
+    if (!report) return;
+    save("report.html", new Blob([report as BlobPart], { type: "text/html" }));
+    this.say("report.html is saved");
+  }
+}
+
+async function compiled(): Promise<WebAssembly.Module> {
+  const response = await fetch("condyle-web.wasm");
+  if (!response.ok) throw new Error(`condyle-web.wasm: the server says ${response.status}`);
+  return WebAssembly.compile(await response.arrayBuffer());
+}
+
+async function start(): Promise<void> {
+  document.head.append(element("style", {}, plotStyle + viewStyle + style));
+  const page = new Page(await compiled());
+  await page.begin();
+  if ("serviceWorker" in navigator) await navigator.serviceWorker.register("service_worker.js");
+}
+
+start().catch((error: unknown) => {
+  byId("failure").hidden = false;
+  byId("failure").textContent = `error: the page cannot start: ${String(error)}`;
+});

@@ -1,0 +1,109 @@
+// Numbers of the case that can be moved by hand.
+
+import { element, slider } from "../dom";
+import { inDigits } from "../quantities";
+import { numberOf, valueOf, withValue, type Place } from "./case_text";
+
+interface Moved extends Place {
+  label: string;
+  unit: string;
+  least: number;
+  most: number;
+  step: number;
+  // What condyle takes where the case says nothing.
+  silent: number;
+  // The shape of the body that has the key; none where every one has.
+  shape?: string;
+  // A number of the case is so many of those shown.
+  times?: number;
+}
+
+const GROUPS: [heading: string, moved: Moved[]][] = [
+  [
+    "Femur",
+    [
+      { table: "femur", key: "distal_radius_mm", label: "Distal radius", unit: "mm", least: 25, most: 60, step: 0.5, silent: 38, shape: "generic" },
+      { table: "femur", key: "posterior_radius_mm", label: "Posterior radius", unit: "mm", least: 15, most: 30, step: 0.5, silent: 22, shape: "generic" },
+      { table: "femur", key: "coronal_radius_mm", label: "Radius from the front", unit: "mm", least: 15, most: 29, step: 0.5, silent: 24, shape: "generic" },
+    ],
+  ],
+  [
+    "Insert",
+    [
+      { table: "insert", key: "sagittal_radius_mm", label: "Radius of the dish from the side", unit: "mm", least: 42, most: 120, step: 1, silent: 55, shape: "generic" },
+      { table: "insert", key: "coronal_radius_mm", label: "Radius of the dish from the front", unit: "mm", least: 25, most: 100, step: 1, silent: 30, shape: "generic" },
+      { table: "insert", key: "thickness_mm", label: "Thickness", unit: "mm", least: 4, most: 15, step: 0.5, silent: 9, shape: "generic" },
+    ],
+  ],
+  [
+    "How they lie",
+    [
+      { table: "femur", key: "varus_deg", label: "Varus of the femur", unit: "°", least: -4, most: 4, step: 0.25, silent: 0 },
+      { table: "femur", key: "external_rotation_deg", label: "External rotation of the femur", unit: "°", least: -8, most: 8, step: 0.5, silent: 0 },
+      { table: "insert", key: "posterior_slope_deg", label: "Posterior slope of the insert", unit: "°", least: -4, most: 10, step: 0.5, silent: 0 },
+    ],
+  ],
+  [
+    "Test",
+    [
+      { table: "machine.axial_force", key: "scale", label: "Load, times that of the waveform", unit: "", least: 0.4, most: 1.6, step: 0.05, silent: 1 },
+      { table: "contact", key: "friction", label: "Friction", unit: "", least: 0, most: 0.2, step: 0.01, silent: 0.07 },
+      { table: "march", key: "cycles", label: "Gait cycles", unit: "million", least: 0.5, most: 20, step: 0.5, silent: 5, times: 1e6 },
+    ],
+  ],
+];
+
+export class Sliders {
+  readonly box = element("div", { class: "sliders" });
+  private readonly rows: { moved: Moved; input: HTMLInputElement; shown: HTMLOutputElement }[] = [];
+
+  constructor(
+    private readonly text: () => string,
+    // Hears the text of the case with the number that was moved.
+    private readonly changed: (text: string) => void,
+  ) {
+    for (const [heading, all] of GROUPS) {
+      const rows = all.map((moved) => this.row(moved));
+      this.box.append(element("fieldset", {}, element("legend", {}, heading), ...rows));
+    }
+  }
+
+  // Shows what the case says by now.
+  show(): void {
+    const text = this.text();
+    for (const { moved, input, shown } of this.rows) {
+      const times = moved.times ?? 1;
+      const value = numberOf(text, moved);
+      const found = value === undefined ? moved.silent : value / times;
+      input.disabled = moved.shape !== undefined && (valueOf(text, { table: moved.table, key: "shape" }) ?? "generic") !== moved.shape;
+      // A number beyond the slider is shown as it is, and the slider goes on from there.
+      input.min = String(Math.min(moved.least, found));
+      input.max = String(Math.max(moved.most, found));
+      input.value = String(found);
+      shown.textContent = input.disabled ? "by the mesh" : inWords(found, moved);
+      input.setAttribute("aria-valuetext", shown.textContent);
+    }
+  }
+
+  private row(moved: Moved): HTMLElement {
+    const shown = element("output");
+    const input = slider(moved.least, moved.most, moved.step, moved.silent, (value) => this.move(moved, value));
+    input.id = `${moved.table}.${moved.key}`;
+    this.rows.push({ moved, input, shown });
+    return element("div", { class: "slider" }, element("label", { for: input.id }, moved.label), shown, input);
+  }
+
+  private move(moved: Moved, value: number): void {
+    const times = moved.times ?? 1;
+    // Moved in decimal steps, written with as few digits.
+    const written = Number((value * times).toPrecision(12));
+    const isWhole = times !== 1;
+    const text = isWhole ? String(written) : Number.isInteger(written) ? written.toFixed(1) : String(written);
+    this.changed(withValue(this.text(), moved, text));
+    this.show();
+  }
+}
+
+function inWords(value: number, { unit }: Moved): string {
+  return unit ? `${inDigits(value)} ${unit}` : inDigits(value);
+}

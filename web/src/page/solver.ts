@@ -1,0 +1,47 @@
+// A worker that calls the program, one call at a time; a call that is no longer wanted is ended with its worker.
+
+import type { Answer, Call, Told } from "./program";
+
+export class Solver {
+  private worker: Worker | undefined;
+  private giveUp: (() => void) | undefined;
+
+  constructor(private readonly module: WebAssembly.Module) {}
+
+  // What a call answers; nothing of one that was cancelled, or put out by the next.
+  call(order: Call, told: (told: Told) => void = () => {}): Promise<Answer | undefined> {
+    this.cancel();
+    const worker = (this.worker ??= new Worker("worker.js"));
+    return new Promise((done) => {
+      const end = (answer?: Answer) => {
+        this.giveUp = undefined;
+        done(answer);
+      };
+      this.giveUp = () => end();
+      worker.onmessage = ({ data }: MessageEvent<{ told?: Told; answer?: Answer }>) => {
+        if (data.told) told(data.told);
+        if (data.answer) end(data.answer);
+      };
+      worker.onerror = ({ message }) => {
+        this.drop();
+        end({ files: {}, failure: { message: `error: the worker of the page ended: ${message}`, problems: [] } });
+      };
+      worker.postMessage({ module: this.module, order });
+    });
+  }
+
+  get isBusy(): boolean {
+    return this.giveUp !== undefined;
+  }
+
+  cancel(): void {
+    if (!this.giveUp) return;
+    this.drop();
+    this.giveUp();
+  }
+
+  private drop(): void {
+    this.worker?.terminate();
+    this.worker = undefined;
+  }
+}
