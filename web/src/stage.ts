@@ -46,7 +46,7 @@ const SKIN = 0xd9d7cf;
 const FEMUR = 0x9fb0bf;
 const CUT_FACE = 0xb9ad8c;
 // Walls that meet at a larger angle are not smoothed into each other.
-const SHARP_RAD = Math.PI / 6;
+const SHARP_RAD = (50 * Math.PI) / 180;
 // A scale is at least so long on the screen, px, and one of these lengths, mm.
 const SCALE_PX = 50;
 const SCALES_MM = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];

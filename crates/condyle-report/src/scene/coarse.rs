@@ -17,14 +17,15 @@ enum Cell {
 }
 
 impl SceneBody {
-    /// The body with at most about `most` triangles; itself where it has no more.
+    /// The body with at most `most` triangles, or more where its border and sharp edges take them; itself where it has no more.
     ///
     /// The border stays as it is, and so do sharp edges. The other nodes of every cube of a grid become the one of them that is nearest to their
     /// mean: all nodes stay on the surface, and a triangle of edge `h` is off a surface of radius `R` by up to `h^2 / (8 R)`.
     pub(super) fn coarser(&self, most: usize) -> Self {
-        // Cubes become so much wider, so many times at most: a border may be longer than can be drawn with `most`.
+        // Cubes become so much wider, so many times at most: where border and sharp edges take many triangles, wider ones
+        // would spoil what lies between.
         const WIDER: f64 = 1.1;
-        const TIMES: usize = 24;
+        const TIMES: usize = 3;
         if self.triangles.len() <= most {
             return self.clone();
         }
