@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use condyle_io::case::{Assignment, AssignmentError, Case, CaseReader, ChangeError};
-use condyle_io::files::MemoryFiles;
 use condyle_lab::Preview;
 use pyo3::prelude::*;
 use toml_edit::DocumentMut;
@@ -31,11 +30,8 @@ impl RawCase {
         changes: Vec<String>,
     ) -> PyResult<Self> {
         let changes = assignments(&changes).map_err(|error| errors::bad_input(&error))?;
-        let memory = MemoryFiles::default().with(&path, text);
-        let with =
-            |memory: MemoryFiles, (path, bytes): (PathBuf, Vec<u8>)| memory.with(path, bytes);
-        let memory = files.into_iter().fold(memory, with);
-        let reader = CaseReader::new(FilesOfCase { memory, base });
+        let files = FilesOfCase::new(&path, text, base, files);
+        let reader = CaseReader::new(files);
         match reader.read_changed(&path, &changes) {
             Ok(case) => Ok(Self { case }),
             Err(ChangeError::Case(problems)) => Err(errors::of_problems(&problems)),

@@ -1,5 +1,6 @@
 //! Files of a case: some in memory, all others on the disk.
 
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -8,8 +9,19 @@ use condyle_io::files::{Disk, Files, MemoryFiles};
 /// Files in memory over those on the disk, where relative paths count from a folder that stays what it was.
 #[derive(Debug)]
 pub struct FilesOfCase {
-    pub memory: MemoryFiles,
-    pub base: PathBuf,
+    memory: MemoryFiles,
+    base: PathBuf,
+}
+
+impl FilesOfCase {
+    /// `text` as the file at `path`, beside `files`.
+    pub fn new(path: &Path, text: &str, base: PathBuf, files: BTreeMap<PathBuf, Vec<u8>>) -> Self {
+        let memory = MemoryFiles::default().with(path, text);
+        let memory = files
+            .into_iter()
+            .fold(memory, |memory, (path, bytes)| memory.with(path, bytes));
+        Self { memory, base }
+    }
 }
 
 impl Files for FilesOfCase {

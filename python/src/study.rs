@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use condyle_io::case::Assignment;
-use condyle_io::files::MemoryFiles;
 use condyle_io::study::{OUTPUTS, Study};
 use condyle_lab::studies::study::{
     HeldFolder, Plan, Shard, Store, StudyEnd, StudyError, StudyOptions, Test, TestBench,
@@ -42,11 +41,8 @@ impl RawStudy {
         base: PathBuf,
         files: BTreeMap<PathBuf, Vec<u8>>,
     ) -> PyResult<Self> {
-        let memory = MemoryFiles::default().with(&path, text);
-        let with =
-            |memory: MemoryFiles, (path, bytes): (PathBuf, Vec<u8>)| memory.with(path, bytes);
-        let memory = files.into_iter().fold(memory, with);
-        let study = Study::read_in(FilesOfCase { memory, base }, &path);
+        let files = FilesOfCase::new(&path, text, base, files);
+        let study = Study::read_in(files, &path);
         let study = study.map_err(|problems| errors::of_problems(&problems))?;
         Ok(Self {
             plan: Plan::of(study).map_err(|error| errors::of_study(&error))?,
