@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # Tasks that are sent ahead: enough for a thousand workers, and few enough that memory does not grow with the study.
 TASKS_AHEAD = 2000
+# A task has no more than this part of what is left.
+LAST_TASKS = 32
 # A task whose worker died is sent so often; what kills every worker is then at fault itself.
 MOST_TRIES = 10
 
@@ -122,5 +124,9 @@ def _tell(listener: Callable[[StudyProgress], Any] | None, kept: int, tests: int
 
 
 def _parts(rows: list[int], size: int) -> Iterator[list[int]]:
-    for first in range(0, len(rows), size):
-        yield rows[first : first + size]
+    """Tasks of ``size`` tests, and smaller ones towards the end: a worker would wait for another's last task."""
+    first = 0
+    while first < len(rows):
+        own = max(1, min(size, (len(rows) - first) // LAST_TASKS))
+        yield rows[first : first + own]
+        first += own

@@ -11,6 +11,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+import dask
 import distributed
 
 import condyle
@@ -19,6 +20,8 @@ from condyle import _workers
 TESTS_A_TASK = 64
 WORKERS = [1, 10, 100, 1000, 4000]
 STUDIES = [10_000, 1_000_000]
+# Workers of Dask give memory back to the system at once unless told otherwise, and ask for it again with every test.
+KEPT_MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**28}
 
 
 def study_of(path: Path, tests: int) -> condyle.Study:
@@ -104,6 +107,7 @@ def main() -> None:
     times_s = test_times_s(study, min(given.tests, 200))
     first_s = start_s(study)
     threads_s = seconds_of(study, threads=2)
+    dask.config.set({f"distributed.nanny.pre-spawn-environ.{name}": size for name, size in KEPT_MEMORY.items()})
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
         distributed.Client(cluster) as client,
