@@ -240,6 +240,10 @@ fn a_run_is_written_over_where_that_is_asked_for() {
     bench.run_into("out");
     assert_eq!(bench.say(&["report", "out", "--pictures"]).code, Some(0));
     bench.write("out/notes.txt", "mine");
+    // What was measured was held against the run that was.
+    fs::create_dir(bench.path("out/compare")).unwrap();
+    bench.write("out/compare/compare.json", "{}");
+    bench.write("out/compare/compare_wear.csv", "cycles,mass_loss_mg\n");
     bench.write("case.toml", &SMALL.replace("updates = 3", "updates = 1"));
     let said = bench.say(&["run", "case.toml", "--out", "out", "--force"]);
     assert_eq!(said.code, Some(0), "{}", said.err);

@@ -16,6 +16,17 @@ use super::{
 /// What `condyle report` adds to a run on request.
 const PICTURES: [&str; 3] = ["wear_map.svg", "wear.svg", "kinematics.svg"];
 
+/// What `condyle compare` adds: held beside another run it would be of the wrong one.
+const COMPARED: [&str; 7] = [
+    "compare/compare.json",
+    "compare/compare_kinematics.csv",
+    "compare/compare_kinematics.svg",
+    "compare/compare_surface.csv",
+    "compare/compare_surface.svg",
+    "compare/compare_wear.csv",
+    "compare/compare_wear.svg",
+];
+
 impl ResultsFolder {
     /// Whether a new run, which reads the files `read`, can be written over what `path` holds;
     /// nothing is changed.
@@ -60,9 +71,10 @@ impl ResultsFolder {
                 Ok(()) | Err(_) => {}
             }
         }
-        for cycle in KeptCycle::BOTH {
+        let folders = KeptCycle::BOTH.into_iter().map(KeptCycle::name);
+        for folder in folders.chain(["compare"]) {
             // Left where somebody has put files of their own into it.
-            let _ = fs::remove_dir(self.path().join(cycle.name()));
+            let _ = fs::remove_dir(self.path().join(folder));
         }
         Ok(())
     }
@@ -73,6 +85,7 @@ impl ResultsFolder {
         let others = SIGNS_OF_A_RUN
             .into_iter()
             .chain(PICTURES)
+            .chain(COMPARED)
             .chain([TIME_SPENT]);
         let named = others
             .filter(|name| *name != "checkpoint")
