@@ -21,7 +21,7 @@ TESTS_A_TASK = 64
 WORKERS = [1, 10, 100, 1000, 4000]
 STUDIES = [10_000, 1_000_000]
 # Workers of Dask give memory back to the system at once unless told otherwise, and ask for it again with every test.
-KEPT_MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**28}
+KEPT_MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**25}
 
 
 def study_of(path: Path, tests: int) -> condyle.Study:

@@ -101,13 +101,14 @@ export class Viewer {
     if (!cycle) return;
     if (!this.isInCycle) this.enter(cycle);
     this.instant = instant;
-    this.instants.value = String(instant);
+    const isRead = this.isToBeRead();
+    if (isRead) this.instants.value = String(instant);
     const pressed = cycle.pressed[instant];
     this.stage?.moveFemur(matrixOf(cycle.poses.subarray(12 * instant, 12 * instant + 12)));
     if (pressed) {
       const found = forces(pressed, this.surface, this.share);
       this.stage?.press(found);
-      this.tell(cycle, instant, found);
+      if (isRead) this.tell(cycle, instant, found);
     }
     this.recolour();
     this.onInstant(instant);
@@ -136,11 +137,15 @@ export class Viewer {
     this.stage?.dispose();
   }
 
-  private tell({ facts, percents }: Cycle, instant: number, found: Force[]): void {
-    // While it plays, no more often than can be read.
+  // While it plays words and controls change no more often than can be read: each change is painted.
+  private isToBeRead(): boolean {
     const now = performance.now();
-    if (this.playing && now - this.toldAt < READ_MS) return;
+    if (this.playing && now - this.toldAt < READ_MS) return false;
     this.toldAt = now;
+    return true;
+  }
+
+  private tell({ facts, percents }: Cycle, instant: number, found: Force[]): void {
     const sides = found.map(({ newtons }) => `${Math.round(newtons)} N`).join(" and ");
     this.say(`${inDigits(percents[instant]!)} % of the ${facts.name} cycle${sides ? `: ${sides} on the surface` : ""}`);
   }
@@ -214,6 +219,7 @@ export class Viewer {
   private stop(): void {
     cancelAnimationFrame(this.playing);
     this.playing = 0;
+    this.instants.value = String(this.instant);
     this.play.textContent = "Play";
   }
 

@@ -11,9 +11,9 @@ use super::{
 use crate::results::table::Table;
 
 /// Triangles of the femur in a picture: with more, a processor does not draw thirty pictures a second.
-const FEMUR_TRIANGLES: usize = 5000;
+const FEMUR_TRIANGLES: usize = 3000;
 /// The same of the insert's walls and backside, which nothing is read from.
-const SKIN_TRIANGLES: usize = 2500;
+const SKIN_TRIANGLES: usize = 1200;
 
 /// What is said of a scene beside its arrays.
 #[derive(Serialize)]
