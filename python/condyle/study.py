@@ -97,7 +97,7 @@ class Study:
     @property
     def inputs(self) -> list[str]:
         """Dotted paths of the keys that vary."""
-        return [key for key, _ in self._raw.inputs]
+        return self._raw.inputs
 
     @property
     def inputs_blake3(self) -> str:

@@ -63,19 +63,11 @@ impl RawStudy {
         self.plan.study().design.word()
     }
 
-    /// Keys of the inputs, each with what it is called.
+    /// Keys of the inputs.
     #[getter]
-    fn inputs(&self) -> Vec<(String, String)> {
+    fn inputs(&self) -> Vec<String> {
         let inputs = self.plan.study().inputs.iter();
-        inputs
-            .map(|input| (input.key.clone(), input.name.clone()))
-            .collect()
-    }
-
-    /// Whether a test follows from those before it.
-    #[getter]
-    fn is_search(&self) -> bool {
-        self.plan.is_search()
+        inputs.map(|input| input.key.clone()).collect()
     }
 
     /// Where the case is.

@@ -68,9 +68,7 @@ impl KinematicsComparison {
         let title = format!("Motion in the {} cycle, measured and predicted", self.cycle);
         compared_kinematics_svg(&title, &curves)
     }
-}
 
-impl KinematicsComparison {
     /// What was measured, less what alignment takes out: a row an instant of the run's cycle, a column a measured column; a
     /// cell is empty where nothing was measured.
     fn csv(&self) -> String {
