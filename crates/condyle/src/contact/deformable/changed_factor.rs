@@ -125,7 +125,8 @@ impl ChangedFactor {
         }
         let rows = self.nodes.iter().map(|&node| compliance.row(node));
         let rows: Vec<u32> = rows.collect();
-        let entry = |row: usize, column: usize| compliance.at(rows[row], rows[column]);
+        // Column after column of some rows is asked for, and these numbers lie side by side.
+        let entry = |row: usize, column: usize| compliance.at(rows[column], rows[row]);
         self.factor.factor(nodes.len(), entry);
         self.kept.clear();
         self.blocks.clear();

@@ -168,7 +168,7 @@ impl Pressing {
             }
             let row = compliance.row(candidate.node);
             let moved_mm = || compliance.moved(row, &self.by_panel);
-            if self.clearances.overlaps(candidate, moved_mm) {
+            if self.clearances.overlaps(candidate, compliance, moved_mm) {
                 wrong.push(place);
             }
         }

@@ -18,9 +18,17 @@ pub(super) struct NearMatrix {
     /// Places of all nodes, tile by tile: the same whichever tile was added first.
     places: Vec<u32>,
     rows: Vec<Vec<Eight>>,
-    /// The least number, and the largest off the diagonal.
-    least: f64,
-    largest: f64,
+    /// Of every node the place of its tile among those that were added, and what loads on one tile move another by at
+    /// most.
+    slots: Vec<u32>,
+    reaches: Vec<Vec<Reach>>,
+}
+
+/// How far a newton on a node of one tile moves another node, of the same or another tile, at most, mm/N.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Reach {
+    pub outwards: f64,
+    pub inwards: f64,
 }
 
 impl NearMatrix {
@@ -34,10 +42,10 @@ impl NearMatrix {
         Self {
             tiles: Vec::new(),
             row_of: vec![UNKNOWN; places.len()],
+            slots: vec![UNKNOWN; places.len()],
             places,
             rows: Vec::new(),
-            least: 0.0,
-            largest: 0.0,
+            reaches: Vec::new(),
         }
     }
 
@@ -64,14 +72,14 @@ impl NearMatrix {
         self.places[node as usize]
     }
 
-    /// No load of a newton moves another node outwards by more than this, mm/N.
-    pub fn most_bulge(&self) -> f64 {
-        -self.least
+    /// The place of a node's tile among those that were added.
+    pub fn slot(&self, node: u32) -> usize {
+        self.slots[node as usize] as usize
     }
 
-    /// No load of a newton moves another node inwards by more than this, mm/N.
-    pub fn most_dent(&self) -> f64 {
-        self.largest
+    /// Of every tile that was added how far a newton on each of all tiles moves its nodes at most, mm/N.
+    pub fn reaches(&self) -> &[Vec<Reach>] {
+        &self.reaches
     }
 
     /// How far loads move the node of a row; of loads there are panels, each with its number.
@@ -101,8 +109,11 @@ impl NearMatrix {
         let rows = first + tiles[new].len().next_multiple_of(ROWS);
         for (row, &node) in (first..).zip(&tiles[new]) {
             self.row_of[node as usize] = row as u32;
+            self.slots[node as usize] = self.tiles.len() as u32;
         }
         self.tiles.push((new, first));
+        let reaches = vec![Reach::default(); self.tiles.len()];
+        self.reaches.push(reaches);
         self.rows.resize_with(rows, Vec::new);
         for row in &mut self.rows {
             row.resize(rows / ROWS, zero());
@@ -111,16 +122,27 @@ impl NearMatrix {
             let (other, other_first) = self.tiles[place];
             let numbers = between(new, other);
             let columns = tiles[other].len();
+            let mut reach = Reach::default();
             for (i, row) in numbers.chunks_exact(columns).enumerate() {
                 for (j, &number) in row.iter().enumerate() {
                     self.set(first + i, other_first + j, number);
                     self.set(other_first + j, first + i, number);
-                    self.least = self.least.min(number);
+                    reach.outwards = reach.outwards.max(-number);
                     if (new, i) != (other, j) {
-                        self.largest = self.largest.max(number);
+                        reach.inwards = reach.inwards.max(number);
                     }
                 }
             }
+            self.reach(place, reach);
+        }
+    }
+
+    /// What the tile that was added last and another do to each other.
+    fn reach(&mut self, other: usize, reach: Reach) {
+        let last = self.reaches.len() - 1;
+        self.reaches[last][other] = reach;
+        if other < last {
+            self.reaches[other].push(reach);
         }
     }
 
