@@ -116,4 +116,11 @@ impl Strain {
     pub fn since(&self, before: &Self) -> Self {
         self.less(before)
     }
+
+    /// Equivalent strain, $\sqrt{2/3\thinspace e : e}$, of a strain without change of volume.
+    pub fn equivalent(&self) -> f64 {
+        let [x, y, z, shears @ ..] = self.0;
+        let shears = shears.iter().map(|shear| shear * shear).sum::<f64>();
+        (2.0 / 3.0 * (x * x + y * y + z * z + 2.0 * shears)).sqrt()
+    }
 }

@@ -1,6 +1,7 @@
-//! The insert that yields under a ball, against closed forms.
+//! The insert that yields under a ball and under a cylinder, against closed forms and other finite elements.
 
 mod half_space;
+mod rolling;
 
 use std::f64::consts::PI;
 
@@ -14,6 +15,7 @@ use condyle::{
 };
 use condyle_fem::{Elastic, Hardening};
 use half_space::half_space;
+use rolling::Rolling;
 
 const RADIUS_MM: f64 = 24.0;
 const MODULUS_MPA: f64 = 463.0;
@@ -227,4 +229,58 @@ fn verify_first_yield_below_the_surface_and_shakedown_on_the_second_press() {
             assert!((after - before).abs() < 2e-5, "{place} {after} {before}");
         }
     }
+}
+
+#[test]
+fn verify_a_ball_deep_in_yield_against_axisymmetric_finite_elements() {
+    // By verification/plastic-ball/axisymmetric.py, right to 0.5 %, for a yield stress of E / (1 - v^2) / 200.
+    let exact_n = [(0.02, 8.46), (0.05, 28.8), (0.08, 52.8)];
+    let ratio = 0.3;
+    let yield_mpa = contact_modulus(ratio) / 200.0;
+    let hardening = Hardening::perfectly_plastic(yield_mpa).unwrap();
+    let pair = Pair::new(ratio, Some(hardening));
+    let mut contact = pair.contact(ContactState::default());
+    let mut depth_mm = 0.0;
+    for (deepest_mm, exact_n) in exact_n {
+        let landing = loop {
+            depth_mm += 0.005;
+            let landing = press(contact.as_mut(), depth_mm);
+            if depth_mm > deepest_mm - 1e-9 {
+                break landing;
+            }
+        };
+        let force_n = force_n(&landing);
+        let area_mm2: f64 = landing.touched.iter().map(|node| node.covered_mm2).sum();
+        let elastic_n = 4.0 / 3.0 * contact_modulus(ratio) * (RADIUS_MM * depth_mm.powi(3)).sqrt();
+        println!(
+            "{depth_mm:.3} mm: {force_n:.2} N, axisymmetric {exact_n} N, elastic {elastic_n:.1} N; mean pressure {:.2} Y",
+            force_n / area_mm2 / yield_mpa
+        );
+        assert!(
+            (force_n / exact_n - 1.0).abs() < 0.03,
+            "{force_n} {exact_n}"
+        );
+        assert!(force_n < 0.95 * elastic_n);
+    }
+}
+
+/// What the passes after the first few add, if the insert is rolled over that often.
+fn in_the_third_pass(rolling: &mut Rolling, peak_over_shear_yield: f64) -> f64 {
+    let flows = rolling.flows(peak_over_shear_yield, 3);
+    println!("{peak_over_shear_yield} k: {flows:?}");
+    assert!(flows[2] > 0.8 * flows[1], "{flows:?}");
+    flows[2]
+}
+
+#[test]
+fn verify_the_shakedown_limit_of_line_contact_by_repeated_rolling() {
+    let mut rolling = Rolling::new();
+    let below = rolling.flows(3.8, 7);
+    println!("3.8 k: {below:?}");
+    assert!(below[0] > 1e-3 && below[6] < 1e-6, "{below:?}");
+    // What is added in a pass begins at the limit, and goes with what is above it.
+    let [low, high] = [4.2, 4.4].map(|times| in_the_third_pass(&mut rolling, times));
+    let limit = 4.2 - 0.2 * low / (high - low);
+    println!("nothing is added below {limit:.3} k");
+    assert!((limit / 4.0 - 1.0).abs() < 0.03, "{limit}");
 }

@@ -6,7 +6,7 @@ use condyle::{
 };
 
 /// How many elements from the middle have the smallest edge.
-const EVEN_ELEMENTS: f64 = 7.0;
+const EVEN_ELEMENTS: usize = 7;
 /// How much larger than the one before each of the others is.
 const GROWTH: f64 = 1.8;
 
@@ -38,8 +38,13 @@ pub fn moved(grid: &Insert, to: impl Fn(Vec3) -> Vec3) -> Insert {
 
 /// How far a plane of nodes lies from the middle, from where it lay in a grid of even edges.
 pub fn grown(from_middle_mm: f64, edge_mm: f64) -> f64 {
+    grown_beyond(EVEN_ELEMENTS, GROWTH, from_middle_mm, edge_mm)
+}
+
+/// The same with so many even elements, and so much growth beyond.
+pub fn grown_beyond(even: usize, growth: f64, from_middle_mm: f64, edge_mm: f64) -> f64 {
     let number = (from_middle_mm.abs() / edge_mm).round();
-    let beyond = (number - EVEN_ELEMENTS).max(0.0);
-    let grown = GROWTH * (GROWTH.powf(beyond) - 1.0) / (GROWTH - 1.0);
+    let beyond = (number - even as f64).max(0.0);
+    let grown = growth * (growth.powf(beyond) - 1.0) / (growth - 1.0);
     (number - beyond + grown) * edge_mm * from_middle_mm.signum()
 }

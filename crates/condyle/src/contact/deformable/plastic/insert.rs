@@ -9,6 +9,8 @@ use super::{
     CycleOfFlow, POINTS, Points, Remembered,
     cycle::farthest_mm,
     influence::{ByTile, Influence, product},
+    mixing::Mixing,
+    turns::Turns,
 };
 use crate::{Vec3, contact::model::Flattened, geometry::FacesAround};
 
@@ -45,6 +47,7 @@ pub(in super::super) struct PlasticInsert {
     /// What the present increment makes of some elements if it is accepted, and the set of the surface then.
     trial: Points,
     set_mm: Vec<f64>,
+    turns: Turns,
     pub cycle: CycleOfFlow,
     /// The largest part of the yield stress that stress without load uses up.
     residual_use: f64,
@@ -69,6 +72,7 @@ impl PlasticInsert {
             moved_mm: vec![Vec3::zeros(); nodes],
             committed_set_mm: Arc::new(vec![0.0; surface.node_count()]),
             set_mm: vec![0.0; surface.node_count()],
+            turns: Turns::default(),
             committed: remembered.points,
             trial: Points::new(),
             cycle: CycleOfFlow::default(),
@@ -104,16 +108,31 @@ impl PlasticInsert {
         if taken.is_empty() && self.set_mm == *self.committed_set_mm {
             return Ok(0.0);
         }
-        let forces = self.sweep(&taken)?;
-        let mut set_mm = Vec::clone(&self.committed_set_mm);
-        self.add_set(&forces, near, &mut set_mm);
-        let changed_mm = farthest_mm(&set_mm, &self.set_mm);
-        self.set_mm = set_mm;
+        let forces = match self.sweep(&taken) {
+            Ok(forces) => forces,
+            Err(flattened) => return self.turn_back().ok_or(flattened),
+        };
+        let mut found_mm = Vec::clone(&self.committed_set_mm);
+        self.add_set(&forces, near, &mut found_mm);
+        let changed_mm = farthest_mm(&found_mm, &self.set_mm);
+        self.set_mm = if changed_mm <= FOUND_MM {
+            found_mm
+        } else {
+            self.turns.next(&self.set_mm, &found_mm)
+        };
         Ok(changed_mm)
+    }
+
+    /// Tries a set nearer to that of the turns before, under whose loads there was a balance; none where there was none.
+    fn turn_back(&mut self) -> Option<f64> {
+        self.set_mm = self.turns.nearer()?;
+        self.trial.clear();
+        Some(f64::INFINITY)
     }
 
     /// Drops what was tried.
     pub fn reject(&mut self) {
+        self.turns = Turns::default();
         self.trial.clear();
         self.set_mm.clone_from(&self.committed_set_mm);
     }
@@ -296,6 +315,11 @@ impl PlasticInsert {
         let tiles = self.tiles_of(taken);
         let allowed = ON_SURFACE * self.material.hardening.yield_stress(0.0)
             / (3.0 * self.material.elastic.shear_modulus());
+        for &element in taken {
+            let before = self.before(element);
+            self.trial.entry(element).or_insert(before);
+        }
+        let (mut mixing, mut tried) = (Mixing::default(), self.strains(taken));
         for _ in 0..MOST_SWEEPS {
             let forces = self.forces();
             let moved_mm = self.influence().moved(self.solid(), &forces, &tiles);
@@ -309,25 +333,44 @@ impl PlasticInsert {
             if !changed.is_finite() || self.largest_strain() > MOST_STRAIN {
                 break;
             }
+            tried = mixing.next(&tried, &self.strains(taken), 1.0);
+            self.try_strains(taken, &tried);
         }
         Err(Flattened {
             plastic_strain: self.largest_strain(),
         })
     }
 
-    /// Lets an element flow with its nodes moved by what flows around it; how much its plastic strain changes.
+    /// Plastic strains that are tried in elements, one after the other.
+    fn strains(&self, elements: &[u32]) -> Vec<f64> {
+        let points = elements.iter().flat_map(|element| &self.trial[element]);
+        points.flat_map(|point| point.strain.0).collect()
+    }
+
+    /// Tries plastic strains in elements.
+    fn try_strains(&mut self, elements: &[u32], strains: &[f64]) {
+        let mut strains = strains.as_chunks().0.iter();
+        for element in elements {
+            let points = self.trial.get_mut(element).into_iter().flatten();
+            for (point, strain) in points.zip(&mut strains) {
+                point.strain = Strain(*strain);
+            }
+        }
+    }
+
+    /// Lets an element flow with its nodes moved by what flows around it; how far that is from the plastic strain tried.
     fn flow_element(&mut self, element: u32, moved_mm: &ByTile) -> f64 {
         let (solid, before) = (self.solid(), self.before(element));
         let trial = self.trial.get(&element).copied().unwrap_or(before);
         let nodes = self.nodes_of(element, moved_mm);
         let own = self.influence().element(solid, element);
         let flowed = own.flow(solid, &self.material, &nodes, [&trial, &before]);
-        let changes = flowed.iter().zip(&trial);
-        let change = changes
-            .map(|(flowed, trial)| (flowed.accumulated - trial.accumulated).abs())
+        let apart = flowed.iter().zip(&trial);
+        let apart = apart
+            .map(|(flowed, trial)| flowed.strain.since(&trial.strain).equivalent())
             .fold(0.0, f64::max);
         self.trial.insert(element, flowed);
-        change
+        apart
     }
 
     /// Forces of what flows in the present increment.

@@ -1,0 +1,116 @@
+//! Anderson's mixing: from what a map made of the points tried so far, where it comes back to itself.
+
+use std::collections::VecDeque;
+
+use nalgebra::{DMatrix, DVector};
+
+/// So many differences are mixed at most: more hold little that is new.
+const DEPTH: usize = 8;
+/// Part of the mean square of the differences that is added to each, so that those which say the same do not cancel
+/// to rounding.
+const LEAST_PART: f64 = 1e-12;
+/// What was seen is forgotten where what is left grows to so many times the least: there the map has bent.
+const BENT: f64 = 3.0;
+
+/// The search for a point $x$ that a map $g$ leaves where it is.
+///
+/// With what is left, $f = g(x) - x$, the next point is $x + \beta f - \sum_j \gamma_j (\Delta x_j + \beta \Delta f_j)$, of
+/// the $\gamma$ that make $|f - \sum_j \gamma_j \Delta f_j|$ least (Anderson 1965, in the form of Walker and Ni 2011).
+#[derive(Default)]
+pub(super) struct Mixing {
+    last: Option<Seen>,
+    changes: VecDeque<Seen>,
+    least: Option<f64>,
+}
+
+/// Where a part of what is left leads to and what was left, or how both changed from one point to the next.
+struct Seen {
+    reached: DVector<f64>,
+    left: DVector<f64>,
+}
+
+impl Mixing {
+    /// Where to look next, the map having made `image` of the point `tried`; going the part $\beta$ of the way.
+    pub fn next(&mut self, tried: &[f64], image: &[f64], part: f64) -> Vec<f64> {
+        let tried = DVector::from_column_slice(tried);
+        let left = DVector::from_column_slice(image) - &tried;
+        self.forget_where_bent(left.norm());
+        let seen = Seen {
+            reached: tried + part * &left,
+            left,
+        };
+        if let Some(last) = &self.last {
+            self.changes.push_back(Seen {
+                reached: &seen.reached - &last.reached,
+                left: &seen.left - &last.left,
+            });
+        }
+        if self.changes.len() > DEPTH {
+            self.changes.pop_front();
+        }
+        let mut next = seen.reached.clone();
+        if let Some(parts) = self.parts(&seen.left) {
+            for (change, part) in self.changes.iter().zip(parts.iter()) {
+                next.axpy(-part, &change.reached, 1.0);
+            }
+        }
+        self.last = Some(seen);
+        next.as_slice().to_vec()
+    }
+
+    fn forget_where_bent(&mut self, size: f64) {
+        let least = self.least.map_or(size, |least| least.min(size));
+        self.least = Some(least);
+        if size > BENT * least {
+            *self = Self {
+                least: Some(size),
+                ..Self::default()
+            };
+        }
+    }
+
+    /// The $\gamma$ of the changes; none where there are none.
+    fn parts(&self, left: &DVector<f64>) -> Option<DVector<f64>> {
+        let count = self.changes.len();
+        let of = |i: usize| &self.changes[i].left;
+        let mut products = DMatrix::from_fn(count, count, |i, j| of(i).dot(of(j)));
+        let mean = products.trace() / count as f64;
+        for i in 0..count {
+            products[(i, i)] += LEAST_PART * mean;
+        }
+        let wanted = DVector::from_fn(count, |i, _| of(i).dot(left));
+        Some(products.cholesky()?.solve(&wanted))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slow_map_is_led_to_its_fixed_point_in_few_steps() {
+        // Plain steps would take 1 / (1 - 0.99) = 100 for each factor e.
+        let factors = [0.99, 0.95, 0.7, 0.3, -0.2];
+        let map = |x: &[f64]| -> Vec<f64> {
+            let pairs = x.iter().zip(factors);
+            pairs.map(|(x, factor)| factor * x + 1.0).collect()
+        };
+        let (mut mixing, mut x) = (Mixing::default(), vec![0.0; 5]);
+        for _ in 0..8 {
+            let image = map(&x);
+            x = mixing.next(&x, &image, 1.0);
+        }
+        for (x, factor) in x.iter().zip(factors) {
+            let exact = 1.0 / (1.0 - factor);
+            assert!((x / exact - 1.0).abs() < 1e-6, "{x} {exact}");
+        }
+    }
+
+    #[test]
+    fn what_stays_stays() {
+        let mut mixing = Mixing::default();
+        for _ in 0..3 {
+            assert_eq!(mixing.next(&[1.0, 2.0], &[1.0, 2.0], 1.0), [1.0, 2.0]);
+        }
+    }
+}
