@@ -15,7 +15,7 @@ const BENT: f64 = 3.0;
 /// The search for a point $x$ that a map $g$ leaves where it is.
 ///
 /// With what is left, $f = g(x) - x$, the next point is $x + \beta f - \sum_j \gamma_j (\Delta x_j + \beta \Delta f_j)$, of
-/// the $\gamma$ that make $|f - \sum_j \gamma_j \Delta f_j|$ least (Anderson 1965, in the form of Walker and Ni 2011).
+/// the $\gamma$ that make $|f - \sum_j \gamma_j \Delta f_j|$ least [walker-ni2011].
 #[derive(Default)]
 pub(super) struct Mixing {
     last: Option<Seen>,
