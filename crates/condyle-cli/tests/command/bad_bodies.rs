@@ -265,3 +265,69 @@ fn a_femur_that_falls_off_in_the_cycle_is_physics() {
     );
     assert!(!bench.path("out/summary.json").exists());
 }
+
+/// Two layers of hexahedra, the upper of which lies on the lower and shares no node with it.
+fn unjoined_layers() -> String {
+    let (along, across) = (8, 12);
+    let mut nodes = String::from("*NODE\n");
+    let mut hexes = String::from("*ELEMENT, TYPE=C3D8\n");
+    let mut number = 0;
+    for (layer, heights) in [[-9.0, -4.0], [-4.0, 0.0]].iter().enumerate() {
+        let first = |level: usize| 1 + (2 * layer + level) * (along + 1) * (across + 1);
+        for (level, y) in heights.iter().enumerate() {
+            for place in 0..(along + 1) * (across + 1) {
+                let (i, k) = (place % (along + 1), place / (along + 1));
+                let (x, z) = (5.0 * i as f64 - 20.0, 5.0 * k as f64 - 30.0);
+                nodes += &format!("{}, {x}, {y}, {z}\n", first(level) + place);
+            }
+        }
+        for (i, k) in (0..along).flat_map(|i| (0..across).map(move |k| (i, k))) {
+            let corner = |di: usize, dk: usize| (i + di) + (k + dk) * (along + 1);
+            let around = [corner(0, 0), corner(0, 1), corner(1, 1), corner(1, 0)];
+            let both = [0, 1].map(|level| around.map(|place| first(level) + place));
+            let corners = both.as_flattened().iter().map(ToString::to_string);
+            number += 1;
+            hexes += &format!("{number}, {}\n", corners.collect::<Vec<_>>().join(", "));
+        }
+    }
+    let faces = |first: usize, face: &str| {
+        let elements = first..first + along * across;
+        elements
+            .map(|element| format!("{element}, {face}\n"))
+            .collect::<String>()
+    };
+    let (top, bottom) = (faces(1 + along * across, "S2"), faces(1, "S1"));
+    format!(
+        "{nodes}{hexes}*SURFACE, TYPE=ELEMENT, NAME=TOP\n{top}*SURFACE, TYPE=ELEMENT, NAME=BOTTOM\n{bottom}"
+    )
+}
+
+#[test]
+fn a_part_of_a_deformable_insert_that_nothing_holds() {
+    let insert = "[insert]\nshape = \"hexahedra\"\nfile = \"insert.inp\"\narticulating_surface = \"TOP\"\nbackside = \"BOTTOM\"\n";
+    let bench = Bench::with_case(&format!(
+        "{insert}[contact]\nmodel = \"deformable\"\n{SHORT}"
+    ));
+    bench.write("insert.inp", &unjoined_layers());
+    let words = [
+        "[contact] model = \"deformable\": a part of the solid can move without force, as around node",
+        "join it to what is held",
+        "case.toml:5:12",
+    ];
+    assert_refused(&bench, 2, &words);
+}
+
+#[test]
+fn a_load_that_presses_a_yielding_insert_flat_is_physics() {
+    let soft = "yield_stress_mpa = 0.5\nhardening = [[0.0, 0.5]]\n";
+    let contact = format!("[contact]\nmodel = \"deformable\"\nplasticity = \"j2\"\n{soft}");
+    let bench = Bench::with_case(&format!("{contact}{SMALL}"));
+    let said = bench.say(&["run", "case.toml", "--out", "out"]);
+    let words = [
+        "update 1",
+        "the load presses the insert flat at",
+        "check the load, and [contact] yield_stress_mpa and its hardening",
+        "kept in out",
+    ];
+    said.assert_refused(3, &words);
+}
