@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 import scipy.sparse as sp
-import scipy.sparse.linalg as linalg
+from scipy.sparse import linalg
 
 YOUNGS_MPA, POISSON, BALL_MM = 463.0, 0.3, 24.0
 STEPS = 48
