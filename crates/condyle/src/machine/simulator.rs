@@ -146,7 +146,9 @@ impl<'a> Simulator<'a> {
             pressed_mm2: touched.covered_mm2 as f32,
             moment: Moment {
                 pressure_mpa: touched.pressure_mpa,
-                slip_mm: touched.sliding_mm_per_s.map(|speed| speed * increment_s),
+                slip_mm: [0, 1].map(|along| {
+                    touched.sliding_mm_per_s[along] * increment_s - touched.along_mm[along]
+                }),
             },
         };
         let moments = landing.touched.iter().map(record);
