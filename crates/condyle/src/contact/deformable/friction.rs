@@ -51,6 +51,7 @@ pub(super) struct ElasticFriction<'a> {
     /// The last response: the femur's pose, what pressed, and the loads along the surface.
     pose: Pose,
     pressed: Vec<Pressed>,
+    rubbed_nodes: Vec<u32>,
     loads: StickSlip,
     /// Those of every node of the surface, and whether it sticks.
     loads_n: Vec<Pair>,
@@ -74,6 +75,7 @@ impl<'a> ElasticFriction<'a> {
             landed: LoadsAlong::new(),
             pose: Pose::identity(),
             pressed: Vec::new(),
+            rubbed_nodes: Vec::new(),
             loads: StickSlip::default(),
             loads_n: vec![[0.0; 2]; nodes],
             sticks: vec![false; nodes],
@@ -123,6 +125,9 @@ impl<'a> ElasticFriction<'a> {
         let compliance = compliance.near(self.asked());
         let rubbed = self.rubbed(&compliance);
         self.loads.solve(&rubbed, &compliance);
+        self.rubbed_nodes.clear();
+        self.rubbed_nodes
+            .extend(rubbed.iter().map(|rubbed| rubbed.node));
         let mut total = Wrench::zero();
         self.loads_n.fill([0.0; 2]);
         for (place, rubbed) in rubbed.iter().enumerate() {
@@ -138,7 +143,7 @@ impl<'a> ElasticFriction<'a> {
     /// The derivative of that wrench by a motion of the femur, both in its frame.
     pub fn tangent(&self) -> Mat6 {
         let mut tangent = Mat6::zeros();
-        let Some(start) = &self.start.pose else {
+        let Some(start) = self.start.pose.filter(|_| !self.pressed.is_empty()) else {
             return tangent;
         };
         let change = |pressed: &Pressed| {
@@ -168,6 +173,12 @@ impl<'a> ElasticFriction<'a> {
             loads: self.loads_now(),
         };
         self.start_mm.fill(f64::NAN);
+        for (place, node) in self.rubbed_nodes.iter().enumerate() {
+            let moved_mm = self.loads.moved_mm(place);
+            for (load, moved_mm) in along_surface(*node).into_iter().zip(moved_mm) {
+                self.start_mm[load as usize] = moved_mm;
+            }
+        }
     }
 
     /// Adds to nodes that touch what is along the surface: their loads, and how far they have gone along with the femur

@@ -15,16 +15,15 @@ const FOUND_N: f64 = 1e-7;
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 /// Limits below this are none, N.
 const LEAST_LIMIT_N: f64 = 1e-12;
-/// Sweeps go on by themselves while each leaves less than this part of the change before.
-const QUICK: f64 = 0.25;
+/// Where a load is to change by more than this part of its limit a sweep goes before a step of Newton's method, which would
+/// begin with the wrong nodes sticking.
+const FAR: f64 = 0.5;
 /// A step of Newton's method counts if it leaves at most this part.
 const LEAPS: f64 = 0.5;
-/// Sweeps after a step of Newton's method that did not count, before the next one.
+/// Sweeps after a step of Newton's method that did not count.
 const SWEEPS_BETWEEN: u32 = 10;
-/// The motions of the femur: three turns, three shifts.
-const MOTIONS: usize = 6;
-/// Sweeps after which what is left is round-off.
-const MOST_SWEEPS: u32 = 5000;
+/// Steps after which what is left is round-off.
+const MOST_STEPS: u32 = 500;
 
 /// The loads along a surface under a femur that moves past it.
 ///
@@ -49,6 +48,8 @@ pub(super) struct StickSlip {
     stiffness_n_per_mm: Vec<f64>,
     /// The loads by the panels of the compliance.
     by_panel: Vec<(usize, Eight)>,
+    /// How far each node slips under the loads.
+    slips_mm: Vec<Pair>,
 }
 
 /// A node that may carry a load along the surface.
@@ -75,27 +76,38 @@ impl StickSlip {
     /// The loads on nodes, in an order that is always the same.
     pub fn solve(&mut self, rubbed: &[Rubbed], compliance: &NearMatrix) {
         self.take(rubbed, compliance);
-        let mut left_n = self.sweep(compliance);
-        let (mut until_leap, mut is_quick) = (0, false);
-        for _ in 0..MOST_SWEEPS {
+        self.approach(compliance);
+        // What slides has its limit to the last digit.
+        for place in 0..self.rows.len() {
+            self.load(place, self.better_n(place, self.slips_mm[place]));
+        }
+    }
+
+    /// Goes to the loads until what is left is small.
+    fn approach(&mut self, compliance: &NearMatrix) {
+        let mut left_n = self.left_n();
+        for _ in 0..MOST_STEPS {
             if left_n <= FOUND_N {
                 return;
             }
-            if until_leap == 0 && !is_quick {
-                let before_n = self.loads_n.clone();
-                self.leap(compliance);
-                let now_n = self.sweep(compliance);
-                if now_n <= LEAPS * left_n {
-                    left_n = now_n;
-                    continue;
-                }
-                (0..before_n.len()).for_each(|i| self.load(i, before_n[i]));
-                until_leap = SWEEPS_BETWEEN;
+            if self.is_far() {
+                self.sweep(compliance);
+                self.find_slips(compliance);
+                left_n = self.left_n();
             }
-            let now_n = self.sweep(compliance);
-            is_quick = now_n <= QUICK * left_n;
-            until_leap = until_leap.saturating_sub(1);
-            left_n = now_n;
+            let before = (self.loads_n.clone(), self.slips_mm.clone());
+            self.leap(compliance);
+            let now_n = self.left_n();
+            if now_n <= LEAPS * left_n {
+                left_n = now_n;
+                continue;
+            }
+            let (loads_n, slips_mm) = before;
+            (0..loads_n.len()).for_each(|place| self.load(place, loads_n[place]));
+            self.slips_mm = slips_mm;
+            (0..SWEEPS_BETWEEN).for_each(|_| self.sweep(compliance));
+            self.find_slips(compliance);
+            left_n = self.left_n();
         }
     }
 
@@ -109,29 +121,46 @@ impl StickSlip {
         length(self.loads_n[place]) < AT_LIMIT * self.limits_n[place]
     }
 
+    /// How far the loads move a node along the surface, mm.
+    pub fn moved_mm(&self, place: usize) -> Pair {
+        [0, 1].map(|k| self.reach_mm[place][k] - self.slips_mm[place][k])
+    }
+
+    /// Takes nodes with their loads; where all are those of before, with the loads found then, which may be beyond the new
+    /// limits.
     fn take(&mut self, rubbed: &[Rubbed], compliance: &NearMatrix) {
         let rows = |rubbed: &Rubbed| along_surface(rubbed.node).map(|load| compliance.row(load));
-        self.rows.clear();
-        self.rows.extend(rubbed.iter().map(rows));
+        let rows: Vec<[u32; 2]> = rubbed.iter().map(rows).collect();
+        let is_same = |place: usize| rubbed[place].load_n == self.loads_n[place];
+        let are_same = rows == self.rows && (0..rows.len()).all(is_same);
+        self.rows = rows;
         self.limits_n.clear();
         self.limits_n
             .extend(rubbed.iter().map(|rubbed| rubbed.limit_n));
+        if are_same {
+            for (place, rubbed) in rubbed.iter().enumerate() {
+                let moved_mm = self.moved_mm(place);
+                self.slips_mm[place] = [0, 1].map(|k| rubbed.reach_mm[k] - moved_mm[k]);
+            }
+        }
         self.reach_mm.clear();
         self.reach_mm
             .extend(rubbed.iter().map(|rubbed| rubbed.reach_mm));
-        let rows = self.rows.iter();
-        self.stiffness_n_per_mm = rows
-            .map(|&[a, b]| {
-                let [aa, ab, bb] = [(a, a), (a, b), (b, b)].map(|(i, j)| compliance.at(i, j));
-                2.0 / (aa + bb + (aa - bb).hypot(2.0 * ab))
-            })
-            .collect();
+        if are_same {
+            return;
+        }
+        let stiffness = |&[a, b]: &[u32; 2]| {
+            let [aa, ab, bb] = [(a, a), (a, b), (b, b)].map(|(i, j)| compliance.at(i, j));
+            2.0 / (aa + bb + (aa - bb).hypot(2.0 * ab))
+        };
+        self.stiffness_n_per_mm = self.rows.iter().map(stiffness).collect();
         self.find_slots(rubbed, compliance);
         self.loads_n.clear();
         self.loads_n.resize(rubbed.len(), [0.0; 2]);
-        for (i, rubbed) in rubbed.iter().enumerate() {
-            self.load(i, within(rubbed.load_n, rubbed.limit_n));
+        for (place, rubbed) in rubbed.iter().enumerate() {
+            self.load(place, within(rubbed.load_n, rubbed.limit_n));
         }
+        self.find_slips(compliance);
     }
 
     /// Finds the panels of the nodes, and where in them each is.
@@ -172,83 +201,112 @@ impl StickSlip {
         }
     }
 
-    /// How far a node slips, mm.
-    pub fn slip_mm(&self, place: usize, compliance: &NearMatrix) -> Pair {
+    /// How far a node slips under the loads as they are, mm.
+    fn slip_mm(&self, place: usize, compliance: &NearMatrix) -> Pair {
         let moved = self.rows[place].map(|row| compliance.moved(row, &self.by_panel));
         [0, 1].map(|k| self.reach_mm[place][k] - moved[k])
     }
 
-    /// Goes from node to node, each to a better load; by how much one changes at most, N.
-    fn sweep(&mut self, compliance: &NearMatrix) -> f64 {
-        let mut most_n: f64 = 0.0;
-        for place in 0..self.rows.len() {
-            let (slip, before) = (self.slip_mm(place, compliance), self.loads_n[place]);
-            let stiffness = self.stiffness_n_per_mm[place];
-            let better = [0, 1].map(|k| before[k] + stiffness * slip[k]);
-            let better = within(better, self.limits_n[place]);
-            most_n = most_n.max(length([better[0] - before[0], better[1] - before[1]]));
-            self.load(place, better);
-        }
-        most_n
+    fn find_slips(&mut self, compliance: &NearMatrix) {
+        let places = 0..self.rows.len();
+        self.slips_mm = places
+            .map(|place| self.slip_mm(place, compliance))
+            .collect();
     }
 
-    /// A step of Newton's method for the loads that may change.
+    /// A better load on a node that slips, if the others stay.
+    fn better_n(&self, place: usize, slip_mm: Pair) -> Pair {
+        let (load_n, stiffness) = (self.loads_n[place], self.stiffness_n_per_mm[place]);
+        let better = [0, 1].map(|k| load_n[k] + stiffness * slip_mm[k]);
+        within(better, self.limits_n[place])
+    }
+
+    /// By how much a load is off a better one, N.
+    fn off_n(&self, place: usize) -> f64 {
+        let better_n = self.better_n(place, self.slips_mm[place]);
+        length([0, 1].map(|k| better_n[k] - self.loads_n[place][k]))
+    }
+
+    fn left_n(&self) -> f64 {
+        let places = 0..self.rows.len();
+        places.map(|place| self.off_n(place)).fold(0.0, f64::max)
+    }
+
+    fn is_far(&self) -> bool {
+        (0..self.rows.len()).any(|place| self.off_n(place) > FAR * self.limits_n[place])
+    }
+
+    /// Goes from node to node, each to a better load.
+    fn sweep(&mut self, compliance: &NearMatrix) {
+        for place in 0..self.rows.len() {
+            let slip_mm = self.slip_mm(place, compliance);
+            self.load(place, self.better_n(place, slip_mm));
+        }
+    }
+
+    /// A step of Newton's method for the loads that may change, those that slide put to their limits first.
     fn leap(&mut self, compliance: &NearMatrix) {
-        let slips = self.slips_mm(compliance);
-        let freedoms = self.freedoms(&slips);
-        let factor = self.factor(&freedoms, compliance);
+        let freedoms = self.freedoms();
+        let lines = self.lines(&freedoms, compliance);
+        let factor = self.factor(&freedoms, &lines);
+        let slides: Vec<bool> = (0..self.rows.len())
+            .map(|place| self.slides(place))
+            .collect();
+        let mut loads_n = self.loads_n.clone();
+        let mut by_slot = vec![0.0; self.width()];
+        for (place, load_n) in loads_n.iter_mut().enumerate() {
+            if slides[place] {
+                *load_n = to_length(*load_n, self.limits_n[place]);
+                for (k, slot) in self.slots[place].iter().enumerate() {
+                    by_slot[*slot] = load_n[k] - self.loads_n[place][k];
+                }
+            }
+        }
         let mut sides = vec![zero(); factor.rows()];
-        for (side, freedom) in sides.iter_mut().zip(&freedoms) {
-            set(side, 0, dot(freedom.along, slips[freedom.node]));
+        let of_lines = lines.chunks_exact(self.width().max(1));
+        for ((side, freedom), line) in sides.iter_mut().zip(&freedoms).zip(of_lines) {
+            let moved: f64 = line.iter().zip(&by_slot).map(|(c, n)| c * n).sum();
+            let slip_mm = self.slips_mm[freedom.node];
+            set(side, 0, dot(freedom.along, slip_mm) - moved);
         }
         factor.forward(&mut sides);
         factor.backward(&mut sides);
-        let mut loads_n = self.loads_n.clone();
         for (freedom, side) in freedoms.iter().zip(&sides) {
             let (more_n, load_n) = (get(side, 0), &mut loads_n[freedom.node]);
             *load_n = [0, 1].map(|k| load_n[k] + more_n * freedom.along[k]);
         }
         for (place, load_n) in loads_n.into_iter().enumerate() {
             let limit_n = self.limits_n[place];
-            let is_beyond = length(load_n) > limit_n || self.slides(place, slips[place]);
-            let load_n = if is_beyond {
-                load_n.map(|part_n| limit_n / length(load_n) * part_n)
+            let load_n = if slides[place] {
+                to_length(load_n, limit_n)
             } else {
-                load_n
+                within(load_n, limit_n)
             };
             self.load(place, load_n);
         }
+        self.find_slips(compliance);
     }
 
     /// Derivatives of the loads by six motions, from those of reach and limit.
     pub fn by_motion(&self, changes: &[ByMotion], compliance: &NearMatrix) -> Vec<[Eight; 2]> {
-        let slips = self.slips_mm(compliance);
-        let freedoms = self.freedoms(&slips);
-        let factor = self.factor(&freedoms, compliance);
-        // The loads of those that slide grow with their limits.
-        let mut loads: Vec<[Eight; 2]> = (0..changes.len())
-            .map(|place| {
-                let slides = self.slides(place, slips[place]);
-                let part = if slides {
-                    1.0 / self.limits_n[place]
-                } else {
-                    0.0
-                };
-                let limit_n = changes[place].limit_n;
-                self.loads_n[place].map(|load_n| times(&limit_n, part * load_n))
-            })
-            .collect();
+        let freedoms = self.freedoms();
+        let lines = self.lines(&freedoms, compliance);
+        let factor = self.factor(&freedoms, &lines);
+        let mut loads = self.loads_by_limit(changes);
+        let mut by_slot = vec![zero(); self.width()];
+        for (slots, loads) in self.slots.iter().zip(&loads) {
+            for (slot, load) in slots.iter().zip(loads) {
+                by_slot[*slot] = *load;
+            }
+        }
         let mut sides = vec![zero(); factor.rows()];
-        for (side, freedom) in sides.iter_mut().zip(&freedoms) {
+        let of_lines = lines.chunks_exact(self.width().max(1));
+        for ((side, freedom), line) in sides.iter_mut().zip(&freedoms).zip(of_lines) {
             for (reach, along) in changes[freedom.node].reach_mm.iter().zip(freedom.along) {
                 subtract(side, reach, -along);
             }
-        }
-        for motion in 0..MOTIONS {
-            let by_panel = self.with_loads(|place, k| get(&loads[place][k], motion));
-            for (side, freedom) in sides.iter_mut().zip(&freedoms) {
-                let moved = self.rows[freedom.node].map(|row| compliance.moved(row, &by_panel));
-                set(side, motion, get(side, motion) - dot(freedom.along, moved));
+            for (load, moved) in by_slot.iter().zip(line) {
+                subtract(side, load, *moved);
             }
         }
         factor.forward(&mut sides);
@@ -261,41 +319,53 @@ impl StickSlip {
         loads
     }
 
-    fn slips_mm(&self, compliance: &NearMatrix) -> Vec<Pair> {
-        let places = 0..self.rows.len();
-        places
-            .map(|place| self.slip_mm(place, compliance))
-            .collect()
+    /// What the loads of nodes that slide grow by with their limits.
+    fn loads_by_limit(&self, changes: &[ByMotion]) -> Vec<[Eight; 2]> {
+        let of_node = |(place, change): (usize, &ByMotion)| {
+            let slides = self.slides(place);
+            let part = if slides {
+                1.0 / self.limits_n[place]
+            } else {
+                0.0
+            };
+            self.loads_n[place].map(|load_n| times(&change.limit_n, part * load_n))
+        };
+        changes.iter().enumerate().map(of_node).collect()
     }
 
-    /// Other loads on the nodes, by the panels of the compliance.
-    fn with_loads(&self, load: impl Fn(usize, usize) -> f64) -> Vec<(usize, Eight)> {
-        let mut by_panel = self.by_panel.clone();
-        for (place, slots) in self.slots.iter().enumerate() {
-            for (k, slot) in slots.iter().enumerate() {
-                set(&mut by_panel[slot / ROWS].1, slot % ROWS, load(place, k));
-            }
+    /// Numbers of a line: those of the panels.
+    fn width(&self) -> usize {
+        ROWS * self.by_panel.len()
+    }
+
+    /// How far each load of the panels moves the nodes of loads that may change, along these: a line for each.
+    fn lines(&self, freedoms: &[Freedom], compliance: &NearMatrix) -> Vec<f64> {
+        let mut lines = Vec::with_capacity(freedoms.len() * self.width());
+        for freedom in freedoms {
+            let rows = self.rows[freedom.node];
+            compliance.mix(rows, freedom.along, &self.by_panel, &mut lines);
         }
-        by_panel
+        lines
     }
 
-    /// Whether a node is at its limit and slips the way its load points.
-    fn slides(&self, place: usize, slip_mm: Pair) -> bool {
-        !self.sticks(place) && dot(self.loads_n[place], slip_mm) > 0.0
+    /// Whether a node is at its limit, or beyond, and slips the way its load points.
+    fn slides(&self, place: usize) -> bool {
+        !self.sticks(place) && dot(self.loads_n[place], self.slips_mm[place]) > 0.0
     }
 
     /// The loads that may change: of a node that slides along its circle, of others any way.
-    fn freedoms(&self, slips: &[Pair]) -> Vec<Freedom> {
-        let mut freedoms = Vec::with_capacity(2 * slips.len());
-        for (node, &slip) in slips.iter().enumerate() {
-            let (limit_n, [x, y]) = (self.limits_n[node], self.loads_n[node]);
+    fn freedoms(&self) -> Vec<Freedom> {
+        let mut freedoms = Vec::with_capacity(2 * self.rows.len());
+        for (node, &slip_mm) in self.slips_mm.iter().enumerate() {
+            let limit_n = self.limits_n[node];
             if limit_n <= LEAST_LIMIT_N {
                 continue;
             }
             let free = |along, more| Freedom { node, along, more };
-            if self.slides(node, slip) {
-                let more = dot(slip, [x, y]) / (limit_n * limit_n);
-                freedoms.push(free([-y / limit_n, x / limit_n], more));
+            if self.slides(node) {
+                let [x, y] = to_length(self.loads_n[node], 1.0);
+                let more = dot(slip_mm, [x, y]) / limit_n;
+                freedoms.push(free([-y, x], more));
             } else {
                 freedoms.extend([free([1.0, 0.0], 0.0), free([0.0, 1.0], 0.0)]);
             }
@@ -304,17 +374,17 @@ impl StickSlip {
     }
 
     /// The factor of how far loads that may change move each other.
-    fn factor(&self, freedoms: &[Freedom], compliance: &NearMatrix) -> Cholesky {
+    fn factor(&self, freedoms: &[Freedom], lines: &[f64]) -> Cholesky {
+        let width = self.width();
+        let places: Vec<([usize; 2], Pair)> = freedoms
+            .iter()
+            .map(|freedom| (self.slots[freedom.node], freedom.along))
+            .collect();
         let entry = |row: usize, column: usize| {
-            let (one, other) = (&freedoms[row], &freedoms[column]);
-            let [others, ones] = [other, one].map(|freedom| self.rows[freedom.node]);
-            let by = |row: u32| {
-                let [a, b] = others.map(|column| compliance.at(row, column));
-                a * other.along[0] + b * other.along[1]
-            };
-            let moved = one.along[0] * by(ones[0]) + one.along[1] * by(ones[1]);
+            let (line, (slots, along)) = (&lines[row * width..], &places[column]);
+            let moved = line[slots[0]] * along[0] + line[slots[1]] * along[1];
             if row == column {
-                moved + one.more
+                moved + freedoms[row].more
             } else {
                 moved
             }
@@ -340,6 +410,12 @@ fn within(load_n: Pair, limit_n: f64) -> Pair {
     } else {
         load_n
     }
+}
+
+/// A load of the same way and that length.
+fn to_length(load_n: Pair, length_n: f64) -> Pair {
+    let part = length_n / length(load_n).max(f64::MIN_POSITIVE);
+    load_n.map(|part_n| part * part_n)
 }
 
 fn dot(a: Pair, b: Pair) -> f64 {
