@@ -214,7 +214,10 @@ fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments(
     let refused = case.contact_law(&flat()).err().expect("it is refused");
     assert_shows(
         &refused.to_string(),
-        &["friction_model = \"stick-slip\"", "take integrator = \"implicit\""],
+        &[
+            "friction_model = \"stick-slip\"",
+            "take integrator = \"implicit\"",
+        ],
     );
 }
 

@@ -352,7 +352,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
             let moved = FrameChange::to_femur(from).twist(&Twist::between(from, &motion.pose));
             let pressed = self.pressed_nodes(&moved);
             if let Some(friction) = &mut self.friction {
-                friction.accept(&motion.pose, pressed);
+                friction.accept(&motion.pose, &moved.numbers(), pressed);
             }
         }
     }

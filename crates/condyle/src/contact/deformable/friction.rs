@@ -1,6 +1,6 @@
 //! Friction on a surface that gives way along itself.
 
-use std::sync::Arc;
+use std::{cell::RefCell, sync::Arc};
 
 use super::{
     cholesky::{Eight, get, set, zero},
@@ -53,6 +53,8 @@ pub(super) struct ElasticFriction<'a> {
     pressed: Vec<Pressed>,
     rubbed_nodes: Vec<u32>,
     loads: StickSlip,
+    /// The derivatives of those loads by a motion of the femur in its frame, once they were asked for.
+    by_motion: RefCell<Vec<[Eight; 2]>>,
     /// Those of every node of the surface, and whether it sticks.
     loads_n: Vec<Pair>,
     sticks: Vec<bool>,
@@ -77,6 +79,7 @@ impl<'a> ElasticFriction<'a> {
             pressed: Vec::new(),
             rubbed_nodes: Vec::new(),
             loads: StickSlip::default(),
+            by_motion: RefCell::default(),
             loads_n: vec![[0.0; 2]; nodes],
             sticks: vec![false; nodes],
             moved_in_a_cycle_mm: 0.0,
@@ -116,11 +119,8 @@ impl<'a> ElasticFriction<'a> {
         pose: &Pose,
         pressed: Vec<Pressed>,
     ) -> Wrench<body::Insert, body::Femur> {
-        let before = std::mem::replace(&mut self.pressed, pressed);
-        for pressed in before {
-            self.sticks[pressed.node as usize] = false;
-        }
-        self.pose = *pose;
+        self.by_motion.get_mut().clear();
+        self.press(pose, pressed);
         let compliance = Arc::clone(&self.compliance);
         let compliance = compliance.near(self.asked());
         let rubbed = self.rubbed(&compliance);
@@ -128,16 +128,31 @@ impl<'a> ElasticFriction<'a> {
         self.rubbed_nodes.clear();
         self.rubbed_nodes
             .extend(rubbed.iter().map(|rubbed| rubbed.node));
+        self.spread();
         let mut total = Wrench::zero();
-        self.loads_n.fill([0.0; 2]);
-        for (place, rubbed) in rubbed.iter().enumerate() {
-            let (node, load_n) = (rubbed.node as usize, self.loads.loads_n()[place]);
-            self.loads_n[node] = load_n;
-            self.sticks[node] = self.loads.sticks(place);
-            let [one, other] = self.screws(node, &pose.rotation);
-            total = total + Wrench::of_numbers(&(one * load_n[0] + other * load_n[1]));
+        for &node in &self.rubbed_nodes {
+            let screws = self.screws(node as usize, &pose.rotation);
+            let [x, y] = self.loads_n[node as usize];
+            total = total + Wrench::of_numbers(&(screws[0] * x + screws[1] * y));
         }
         total
+    }
+
+    /// Takes a pose and what presses there.
+    fn press(&mut self, pose: &Pose, pressed: Vec<Pressed>) {
+        for before in std::mem::replace(&mut self.pressed, pressed) {
+            self.sticks[before.node as usize] = false;
+        }
+        self.pose = *pose;
+    }
+
+    /// Spreads the loads found to the nodes of the surface.
+    fn spread(&mut self) {
+        self.loads_n.fill([0.0; 2]);
+        for (place, &node) in self.rubbed_nodes.iter().enumerate() {
+            self.loads_n[node as usize] = self.loads.loads_n()[place];
+            self.sticks[node as usize] = self.loads.sticks(place);
+        }
     }
 
     /// The derivative of that wrench by a motion of the femur, both in its frame.
@@ -156,18 +171,35 @@ impl<'a> ElasticFriction<'a> {
         let changes: Vec<ByMotion> = self.pressed.iter().map(change).collect();
         let compliance = self.compliance.near(self.asked());
         let loads = self.loads.by_motion(&changes, &compliance);
-        for (pressed, loads) in self.pressed.iter().zip(loads) {
+        for (pressed, loads) in self.pressed.iter().zip(&loads) {
             let screws = self.screws(pressed.node as usize, &self.pose.rotation);
             for (screw, load) in screws.iter().zip(loads) {
-                tangent += screw * Vec6::from_fn(|motion, _| get(&load, motion)).transpose();
+                tangent += screw * six(load).transpose();
             }
         }
+        self.by_motion.replace(loads);
         tangent
     }
 
-    /// The increment ends with the femur at a pose, and that counts.
-    pub fn accept(&mut self, pose: &Pose, pressed: Vec<Pressed>) {
-        self.respond(pose, pressed);
+    /// The increment ends with the femur at a pose, a short motion from that of the last response, and that counts.
+    ///
+    /// The loads are taken along by their derivatives where these were asked for there, else found anew.
+    pub fn accept(&mut self, pose: &Pose, moved: &Vec6, pressed: Vec<Pressed>) {
+        let by_motion = self.by_motion.take();
+        if by_motion.is_empty() {
+            self.respond(pose, pressed);
+        } else {
+            let changes = by_motion.iter();
+            let changes_n: Vec<Pair> = changes
+                .map(|loads| [0, 1].map(|k| six(&loads[k]).dot(moved)))
+                .collect();
+            self.press(pose, pressed);
+            let compliance = Arc::clone(&self.compliance);
+            let compliance = compliance.near(self.asked());
+            let rubbed = self.rubbed(&compliance);
+            self.loads.take_along(&rubbed, &changes_n, &compliance);
+            self.spread();
+        }
         self.start = Held {
             pose: Some(*pose),
             loads: self.loads_now(),
@@ -304,6 +336,11 @@ fn differences(now: &LoadsAlong, before: &LoadsAlong) -> LoadsAlong {
         *change = [change[0] - x, change[1] - y];
     }
     changes.into_iter().collect()
+}
+
+/// The first six of eight numbers.
+fn six(numbers: &Eight) -> Vec6 {
+    Vec6::from_fn(|motion, _| get(numbers, motion))
 }
 
 /// Six numbers, and two that are nothing.

@@ -5,6 +5,7 @@ use super::{
     near_matrix::NearMatrix,
     unit_loads::along_surface,
 };
+use crate::number::{F64x4, LANES, Number};
 
 /// Numbers along the two directions of a surface.
 pub(super) type Pair = [f64; 2];
@@ -18,10 +19,12 @@ const LEAST_LIMIT_N: f64 = 1e-12;
 /// Where a load is to change by more than this part of its limit a sweep goes before a step of Newton's method, which would
 /// begin with the wrong nodes sticking.
 const FAR: f64 = 0.5;
+/// Where no more than one in so many nodes has changed, only what they change is computed anew.
+const FEW: usize = 8;
 /// A step of Newton's method counts if it leaves at most this part.
 const LEAPS: f64 = 0.5;
 /// Sweeps after a step of Newton's method that did not count.
-const SWEEPS_BETWEEN: u32 = 10;
+const SWEEPS_BETWEEN: u32 = 3;
 /// Steps after which what is left is round-off.
 const MOST_STEPS: u32 = 500;
 
@@ -38,6 +41,9 @@ const MOST_STEPS: u32 = 500;
 /// method, which are quick in the end: the nodes that stick are free in them, the others turn on their circles.
 #[derive(Default)]
 pub(super) struct StickSlip {
+    /// The nodes, in an order that is always the same, and each with its place there, ascending.
+    nodes: Vec<u32>,
+    places: Vec<(u32, usize)>,
     /// Of every node that presses the rows of the compliance, and where among `by_panel` its loads are.
     rows: Vec<[u32; 2]>,
     slots: Vec<[usize; 2]>,
@@ -90,9 +96,7 @@ impl StickSlip {
             if left_n <= FOUND_N {
                 return;
             }
-            if self.is_far() {
-                self.sweep(compliance);
-                self.find_slips(compliance);
+            if self.change_what_is_far(compliance) {
                 left_n = self.left_n();
             }
             let before = (self.loads_n.clone(), self.slips_mm.clone());
@@ -121,56 +125,95 @@ impl StickSlip {
         length(self.loads_n[place]) < AT_LIMIT * self.limits_n[place]
     }
 
+    /// Takes the loads along with a short motion of the femur, by their derivatives, to other limits and reaches.
+    pub fn take_along(&mut self, rubbed: &[Rubbed], changes_n: &[Pair], compliance: &NearMatrix) {
+        for (place, (rubbed, change_n)) in rubbed.iter().zip(changes_n).enumerate() {
+            let slides = self.slides(place);
+            self.reach_mm[place] = rubbed.reach_mm;
+            self.limits_n[place] = rubbed.limit_n;
+            let load_n = [0, 1].map(|k| self.loads_n[place][k] + change_n[k]);
+            let load_n = if slides {
+                to_length(load_n, rubbed.limit_n)
+            } else {
+                within(load_n, rubbed.limit_n)
+            };
+            self.load(place, load_n);
+        }
+        self.find_slips(compliance);
+    }
+
     /// How far the loads move a node along the surface, mm.
     pub fn moved_mm(&self, place: usize) -> Pair {
         [0, 1].map(|k| self.reach_mm[place][k] - self.slips_mm[place][k])
     }
 
-    /// Takes nodes with their loads; where all are those of before, with the loads found then, which may be beyond the new
-    /// limits.
+    /// Takes nodes, with the loads that were found for them before, which may be beyond the new limits.
     fn take(&mut self, rubbed: &[Rubbed], compliance: &NearMatrix) {
-        let rows = |rubbed: &Rubbed| along_surface(rubbed.node).map(|load| compliance.row(load));
-        let rows: Vec<[u32; 2]> = rubbed.iter().map(rows).collect();
-        let is_same = |place: usize| rubbed[place].load_n == self.loads_n[place];
-        let are_same = rows == self.rows && (0..rows.len()).all(is_same);
-        self.rows = rows;
-        self.limits_n.clear();
-        self.limits_n
-            .extend(rubbed.iter().map(|rubbed| rubbed.limit_n));
-        if are_same {
-            for (place, rubbed) in rubbed.iter().enumerate() {
-                let moved_mm = self.moved_mm(place);
-                self.slips_mm[place] = [0, 1].map(|k| rubbed.reach_mm[k] - moved_mm[k]);
-            }
-        }
-        self.reach_mm.clear();
-        self.reach_mm
-            .extend(rubbed.iter().map(|rubbed| rubbed.reach_mm));
-        if are_same {
-            return;
-        }
+        let before = std::mem::take(self);
+        self.nodes = rubbed.iter().map(|rubbed| rubbed.node).collect();
+        self.places = self.nodes.iter().copied().zip(0..).collect();
+        self.places.sort_unstable();
+        let rows = |node: &u32| along_surface(*node).map(|load| compliance.row(load));
+        self.rows = self.nodes.iter().map(rows).collect();
+        self.limits_n = rubbed.iter().map(|rubbed| rubbed.limit_n).collect();
+        self.reach_mm = rubbed.iter().map(|rubbed| rubbed.reach_mm).collect();
         let stiffness = |&[a, b]: &[u32; 2]| {
             let [aa, ab, bb] = [(a, a), (a, b), (b, b)].map(|(i, j)| compliance.at(i, j));
             2.0 / (aa + bb + (aa - bb).hypot(2.0 * ab))
         };
         self.stiffness_n_per_mm = self.rows.iter().map(stiffness).collect();
-        self.find_slots(rubbed, compliance);
-        self.loads_n.clear();
-        self.loads_n.resize(rubbed.len(), [0.0; 2]);
+        self.find_slots(compliance);
+        self.loads_n = vec![[0.0; 2]; rubbed.len()];
         for (place, rubbed) in rubbed.iter().enumerate() {
-            self.load(place, within(rubbed.load_n, rubbed.limit_n));
+            self.load(place, rubbed.load_n);
         }
-        self.find_slips(compliance);
+        self.go_on_from(&before, compliance);
+    }
+
+    /// Finds slips from how far the loads of before moved the nodes.
+    fn go_on_from(&mut self, before: &Self, compliance: &NearMatrix) {
+        let stays = |(place, node): (usize, &u32)| {
+            let was = before.place_of(*node)?;
+            (before.loads_n[was] == self.loads_n[place]).then_some(was)
+        };
+        let stays: Vec<Option<usize>> = self.nodes.iter().enumerate().map(stays).collect();
+        let others = before.nodes.iter().enumerate();
+        let others = others.filter(|(_, node)| {
+            self.place_of(**node)
+                .is_none_or(|place| stays[place].is_none())
+        });
+        let gone: Vec<([u32; 2], Pair)> = others
+            .map(|(was, _)| (before.rows[was], before.loads_n[was]))
+            .collect();
+        let changed = |place: usize| stays[place].is_none() && self.loads_n[place] != [0.0; 2];
+        let has_changed = (0..stays.len()).any(changed);
+        if has_changed || gone.len() > self.nodes.len() / FEW {
+            self.find_slips(compliance);
+            return;
+        }
+        let slip = |(place, was): (usize, &Option<usize>)| {
+            let Some(was) = *was else {
+                return self.slip_mm(place, compliance);
+            };
+            let moved_mm = before.moved_mm(was);
+            let back_mm = moved_by(&gone, self.rows[place], compliance);
+            [0, 1].map(|k| self.reach_mm[place][k] - (moved_mm[k] - back_mm[k]))
+        };
+        self.slips_mm = stays.iter().enumerate().map(slip).collect();
+    }
+
+    fn place_of(&self, node: u32) -> Option<usize> {
+        let found = self.places.binary_search_by_key(&node, |(node, _)| *node);
+        found.ok().map(|found| self.places[found].1)
     }
 
     /// Finds the panels of the nodes, and where in them each is.
-    fn find_slots(&mut self, rubbed: &[Rubbed], compliance: &NearMatrix) {
-        let loads = rubbed.iter().flat_map(|rubbed| along_surface(rubbed.node));
+    fn find_slots(&mut self, compliance: &NearMatrix) {
+        let loads = self.nodes.iter().flat_map(|&node| along_surface(node));
         let mut places: Vec<(u32, usize)> = loads
             .map(|load| (compliance.place(load), compliance.row(load) as usize / ROWS))
             .collect();
         places.sort_unstable();
-        self.by_panel.clear();
         for (_, panel) in places {
             if self.by_panel.last().is_none_or(|(last, _)| *last != panel) {
                 self.by_panel.push((panel, zero()));
@@ -188,9 +231,7 @@ impl StickSlip {
             let found = at.binary_search_by_key(&panel, |(panel, _)| *panel);
             found.map_or(0, |found| ROWS * at[found].1 + side)
         };
-        self.slots.clear();
-        self.slots
-            .extend(self.rows.iter().map(|rows| rows.map(slot)));
+        self.slots = self.rows.iter().map(|rows| rows.map(slot)).collect();
     }
 
     /// Puts a load on a node.
@@ -216,9 +257,13 @@ impl StickSlip {
 
     /// A better load on a node that slips, if the others stay.
     fn better_n(&self, place: usize, slip_mm: Pair) -> Pair {
+        within(self.unlimited_n(place, slip_mm), self.limits_n[place])
+    }
+
+    /// The same without its limit.
+    fn unlimited_n(&self, place: usize, slip_mm: Pair) -> Pair {
         let (load_n, stiffness) = (self.loads_n[place], self.stiffness_n_per_mm[place]);
-        let better = [0, 1].map(|k| load_n[k] + stiffness * slip_mm[k]);
-        within(better, self.limits_n[place])
+        [0, 1].map(|k| load_n[k] + stiffness * slip_mm[k])
     }
 
     /// By how much a load is off a better one, N.
@@ -232,8 +277,30 @@ impl StickSlip {
         places.map(|place| self.off_n(place)).fold(0.0, f64::max)
     }
 
-    fn is_far(&self) -> bool {
-        (0..self.rows.len()).any(|place| self.off_n(place) > FAR * self.limits_n[place])
+    /// Puts better loads on the nodes whose loads are far off, as of those that have just begun to press; whether there are
+    /// such.
+    fn change_what_is_far(&mut self, compliance: &NearMatrix) -> bool {
+        let is_far = |&place: &usize| self.off_n(place) > FAR * self.limits_n[place];
+        let far: Vec<usize> = (0..self.rows.len()).filter(is_far).collect();
+        if far.len() > self.rows.len() / FEW {
+            self.sweep(compliance);
+            self.find_slips(compliance);
+            return true;
+        }
+        let mut changes = Vec::with_capacity(far.len());
+        for &place in &far {
+            let (before, better) = (
+                self.loads_n[place],
+                self.better_n(place, self.slips_mm[place]),
+            );
+            changes.push((self.rows[place], [0, 1].map(|k| better[k] - before[k])));
+            self.load(place, better);
+        }
+        for (slip_mm, rows) in self.slips_mm.iter_mut().zip(&self.rows) {
+            let moved_mm = moved_by(&changes, *rows, compliance);
+            *slip_mm = [0, 1].map(|k| slip_mm[k] - moved_mm[k]);
+        }
+        !far.is_empty()
     }
 
     /// Goes from node to node, each to a better load.
@@ -247,8 +314,6 @@ impl StickSlip {
     /// A step of Newton's method for the loads that may change, those that slide put to their limits first.
     fn leap(&mut self, compliance: &NearMatrix) {
         let freedoms = self.freedoms();
-        let lines = self.lines(&freedoms, compliance);
-        let factor = self.factor(&freedoms, &lines);
         let slides: Vec<bool> = (0..self.rows.len())
             .map(|place| self.slides(place))
             .collect();
@@ -262,13 +327,13 @@ impl StickSlip {
                 }
             }
         }
-        let mut sides = vec![zero(); factor.rows()];
-        let of_lines = lines.chunks_exact(self.width().max(1));
-        for ((side, freedom), line) in sides.iter_mut().zip(&freedoms).zip(of_lines) {
-            let moved: f64 = line.iter().zip(&by_slot).map(|(c, n)| c * n).sum();
-            let slip_mm = self.slips_mm[freedom.node];
-            set(side, 0, dot(freedom.along, slip_mm) - moved);
-        }
+        let mut sides = vec![zero(); freedoms.len()];
+        let factor = self.factor(&freedoms, compliance, |row, line| {
+            let (freedom, moved_mm) = (&freedoms[row], product(line, &by_slot));
+            let slip_mm = dot(freedom.along, self.slips_mm[freedom.node]);
+            set(&mut sides[row], 0, slip_mm - moved_mm);
+        });
+        sides.resize(factor.rows(), zero());
         factor.forward(&mut sides);
         factor.backward(&mut sides);
         for (freedom, side) in freedoms.iter().zip(&sides) {
@@ -290,8 +355,6 @@ impl StickSlip {
     /// Derivatives of the loads by six motions, from those of reach and limit.
     pub fn by_motion(&self, changes: &[ByMotion], compliance: &NearMatrix) -> Vec<[Eight; 2]> {
         let freedoms = self.freedoms();
-        let lines = self.lines(&freedoms, compliance);
-        let factor = self.factor(&freedoms, &lines);
         let mut loads = self.loads_by_limit(changes);
         let mut by_slot = vec![zero(); self.width()];
         for (slots, loads) in self.slots.iter().zip(&loads) {
@@ -299,16 +362,17 @@ impl StickSlip {
                 by_slot[*slot] = *load;
             }
         }
-        let mut sides = vec![zero(); factor.rows()];
-        let of_lines = lines.chunks_exact(self.width().max(1));
-        for ((side, freedom), line) in sides.iter_mut().zip(&freedoms).zip(of_lines) {
+        let mut sides = vec![zero(); freedoms.len()];
+        let factor = self.factor(&freedoms, compliance, |row, line| {
+            let (side, freedom) = (&mut sides[row], &freedoms[row]);
             for (reach, along) in changes[freedom.node].reach_mm.iter().zip(freedom.along) {
                 subtract(side, reach, -along);
             }
             for (load, moved) in by_slot.iter().zip(line) {
                 subtract(side, load, *moved);
             }
-        }
+        });
+        sides.resize(factor.rows(), zero());
         factor.forward(&mut sides);
         factor.backward(&mut sides);
         for (freedom, side) in freedoms.iter().zip(&sides) {
@@ -338,19 +402,10 @@ impl StickSlip {
         ROWS * self.by_panel.len()
     }
 
-    /// How far each load of the panels moves the nodes of loads that may change, along these: a line for each.
-    fn lines(&self, freedoms: &[Freedom], compliance: &NearMatrix) -> Vec<f64> {
-        let mut lines = Vec::with_capacity(freedoms.len() * self.width());
-        for freedom in freedoms {
-            let rows = self.rows[freedom.node];
-            compliance.mix(rows, freedom.along, &self.by_panel, &mut lines);
-        }
-        lines
-    }
-
-    /// Whether a node is at its limit, or beyond, and slips the way its load points.
+    /// Whether a node is taken to slide: a better load for it is one at its limit.
     fn slides(&self, place: usize) -> bool {
-        !self.sticks(place) && dot(self.loads_n[place], self.slips_mm[place]) > 0.0
+        let better = self.unlimited_n(place, self.slips_mm[place]);
+        length(better) > self.limits_n[place]
     }
 
     /// The loads that may change: of a node that slides along its circle, of others any way.
@@ -364,7 +419,7 @@ impl StickSlip {
             let free = |along, more| Freedom { node, along, more };
             if self.slides(node) {
                 let [x, y] = to_length(self.loads_n[node], 1.0);
-                let more = dot(slip_mm, [x, y]) / limit_n;
+                let more = (dot(slip_mm, [x, y]) / limit_n).max(0.0);
                 freedoms.push(free([-y, x], more));
             } else {
                 freedoms.extend([free([1.0, 0.0], 0.0), free([0.0, 1.0], 0.0)]);
@@ -373,26 +428,46 @@ impl StickSlip {
         freedoms
     }
 
-    /// The factor of how far loads that may change move each other.
-    fn factor(&self, freedoms: &[Freedom], lines: &[f64]) -> Cholesky {
-        let width = self.width();
-        let places: Vec<([usize; 2], Pair)> = freedoms
-            .iter()
-            .map(|freedom| (self.slots[freedom.node], freedom.along))
-            .collect();
-        let entry = |row: usize, column: usize| {
-            let (line, (slots, along)) = (&lines[row * width..], &places[column]);
-            let moved = line[slots[0]] * along[0] + line[slots[1]] * along[1];
-            if row == column {
-                moved + freedoms[row].more
-            } else {
-                moved
+    /// The factor of how far loads that may change move each other. `visit` is told of each of them its line: how far every
+    /// load of the panels moves its node along it.
+    fn factor(
+        &self,
+        freedoms: &[Freedom],
+        compliance: &NearMatrix,
+        mut visit: impl FnMut(usize, &[f64]),
+    ) -> Cholesky {
+        let mut line = Vec::with_capacity(self.width());
+        // The rows one after the other, as far as the diagonal.
+        let mut entries: Vec<f64> = Vec::with_capacity((freedoms.len() + 1).pow(2) / 2);
+        for (row, freedom) in freedoms.iter().enumerate() {
+            line.clear();
+            let rows = self.rows[freedom.node];
+            compliance.mix(rows, freedom.along, &self.by_panel, &mut line);
+            visit(row, &line);
+            entries.extend(freedoms[..=row].iter().map(|other| {
+                let [x, y] = self.slots[other.node];
+                line[x] * other.along[0] + line[y] * other.along[1]
+            }));
+            if let Some(diagonal) = entries.last_mut() {
+                *diagonal += freedom.more;
             }
-        };
+        }
         let mut factor = Cholesky::default();
+        let entry = |row: usize, column: usize| entries[row * (row + 1) / 2 + column];
         factor.factor(freedoms.len(), entry);
         factor
     }
+}
+
+/// How far some loads, by their rows, move a node along the surface, mm.
+fn moved_by(loads: &[([u32; 2], Pair)], rows: [u32; 2], compliance: &NearMatrix) -> Pair {
+    let mut moved_mm = [0.0; 2];
+    for (columns, load_n) in loads {
+        for (moved_mm, row) in moved_mm.iter_mut().zip(rows) {
+            *moved_mm += dot(columns.map(|column| compliance.at(row, column)), *load_n);
+        }
+    }
+    moved_mm
 }
 
 /// How reach and limit of a node change with each of six motions; two numbers are nothing.
@@ -424,6 +499,14 @@ fn dot(a: Pair, b: Pair) -> f64 {
 
 fn length(of: Pair) -> f64 {
     dot(of, of).sqrt()
+}
+
+/// The product of two lines of whole panels.
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    let four = |four: &[f64]| F64x4::from_lanes(|lane| four[lane]);
+    let pairs = a.chunks_exact(LANES).zip(b.chunks_exact(LANES));
+    let add = |sum: F64x4, (a, b): (&[f64], &[f64])| four(a).mul_add(four(b), sum);
+    pairs.fold(F64x4::splat(0.0), add).sum()
 }
 
 fn times(numbers: &Eight, factor: f64) -> Eight {
