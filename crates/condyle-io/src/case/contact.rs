@@ -64,7 +64,7 @@ settings! {
 
     /// Friction on a deformable insert.
     Rubbing {
-        /// Regularised: friction goes with the sliding speed by slip_tolerance_mm_per_s. Stick-slip: the surface gives way along itself, and each node sticks or slides by Coulomb's law, without a tolerance; about twice the time, and the implicit integrator alone.
+        /// Regularised: friction goes with the sliding speed by slip_tolerance_mm_per_s. Stick-slip: the surface gives way along itself, and each node sticks or slides by Coulomb's law, without a tolerance; some seven times the time, and the implicit integrator alone.
         friction_model: FrictionModelWord = FrictionModelWord::Regularised;
     }
 

@@ -211,7 +211,7 @@ fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments(
     assert_eq!(again.contact.friction_model, FrictionModelWord::StickSlip);
     let explicit = format!("{sticking}[time]\nintegrator = \"explicit\"\n");
     let case = parsed(&explicit).expect("its keys are good");
-    let refused = case.contact_law(&flat()).err().expect("it is refused");
+    let refused = case.contact_law(&flat()).expect_err("it is refused");
     assert_shows(
         &refused.to_string(),
         &[
