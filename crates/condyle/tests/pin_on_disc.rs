@@ -161,6 +161,7 @@ impl ContactModel for Tip {
             covered_mm2: FACE_MM2,
             force_n: Self::force_n(motion),
             sliding_mm_per_s: [slip.x, slip.z],
+            along_mm: [0.0; 2],
         };
         Landing {
             touched: vec![node],

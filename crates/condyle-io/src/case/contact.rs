@@ -1,6 +1,6 @@
 //! Model of contact, pressure law, friction, and how nodes that touch are found.
 
-use condyle::contact::{Foundation, PressureTable, Search, softening_modulus};
+use condyle::contact::{Foundation, FrictionModel, PressureTable, Search, softening_modulus};
 
 use super::plasticity::PlasticityChoice;
 use super::pressure_table::StrainTable;
@@ -18,12 +18,30 @@ choice! {
         Deformable = "deformable",
     }
 
+    /// How a deformable insert rubs.
+    FrictionModelWord {
+        /// Friction goes with the sliding speed, and does not move the surface.
+        Regularised = "regularised",
+        /// The surface gives way along itself, and each node sticks or slides.
+        StickSlip = "stick-slip",
+    }
+
     /// How the nodes that may touch are found.
     SearchWord {
         /// By bounds that are carried along as the femur moves.
         Coherent = "coherent",
         /// Every node is a candidate, every time.
         BruteForce = "brute-force",
+    }
+}
+
+impl FrictionModelWord {
+    /// The model that it stands for.
+    pub fn model(self) -> FrictionModel {
+        match self {
+            Self::Regularised => FrictionModel::Regularised,
+            Self::StickSlip => FrictionModel::StickSlip,
+        }
     }
 }
 
@@ -42,6 +60,12 @@ settings! {
     ModelOfContact {
         /// What the insert is: an elastic foundation, quick, whose pressure follows a law; or a deformable body, exact for small strains, which has no law.
         model: ContactModelWord = ContactModelWord::Foundation;
+    }
+
+    /// Friction on a deformable insert.
+    Rubbing {
+        /// Regularised: friction goes with the sliding speed by slip_tolerance_mm_per_s. Stick-slip: the surface gives way along itself, and each node sticks or slides by Coulomb's law, without a tolerance; some seven times the time, and the implicit integrator alone.
+        friction_model: FrictionModelWord = FrictionModelWord::Regularised;
     }
 
     /// Contact besides the pressure law.
@@ -119,6 +143,8 @@ pub struct Contact {
     pub law: PressureLawChoice,
     /// Whether and how the insert yields; of the deformable insert alone.
     pub plasticity: PlasticityChoice,
+    /// How it rubs; of the deformable insert alone.
+    pub friction_model: FrictionModelWord,
     /// Friction.
     pub friction: Friction,
     /// How contact is found.
@@ -131,7 +157,7 @@ impl Contact {
         [
             ModelOfContact::keys(),
             vec![PressureLawChoice::choices().by],
-            vec![PlasticityChoice::choices().by],
+            Self::keys_of_deformable(),
             Self::other_keys(),
         ]
         .concat()
@@ -139,23 +165,28 @@ impl Contact {
 
     /// The same but for those of a deformable insert alone.
     pub(super) fn keys_of_page() -> Vec<Key> {
-        let of_deformable = PlasticityChoice::choices().by.name;
+        let of_deformable = Self::keys_of_deformable();
         let mut keys = Self::keys();
-        keys.retain(|key| key.name != of_deformable);
+        keys.retain(|key| of_deformable.iter().all(|other| other.name != key.name));
         keys
     }
 
-    /// The choice of the model, which brings the key of the law, or that and `of_law`, or the key of plasticity, or
-    /// that and `of_plasticity`.
+    /// Those of a deformable insert alone, but for those that a kind of plasticity brings.
+    pub(super) fn keys_of_deformable() -> Vec<Key> {
+        [vec![PlasticityChoice::choices().by], Rubbing::keys()].concat()
+    }
+
+    /// The choice of the model, which brings the key of the law, or that and `of_law`, or the keys of a deformable insert,
+    /// or those and `of_plasticity`.
     pub(super) fn models(of_law: &[Key], of_plasticity: &[Key]) -> Choices {
         let key = &ModelOfContact::keys()[0];
         let law = [&[PressureLawChoice::choices().by], of_law].concat();
-        let plasticity = [&[PlasticityChoice::choices().by], of_plasticity].concat();
+        let deformable = [&Self::keys_of_deformable(), of_plasticity].concat();
         let offered = ContactModelWord::ALL.iter().map(|model| Offered {
             word: model.word(),
             keys: match model {
                 ContactModelWord::Foundation => law.clone(),
-                ContactModelWord::Deformable => plasticity.clone(),
+                ContactModelWord::Deformable => deformable.clone(),
             },
         });
         let default = ContactModelWord::Foundation.word();
@@ -179,16 +210,19 @@ impl Contact {
             log,
         );
         let common = [ModelOfContact::keys(), Self::other_keys()].concat();
-        let (law, plasticity) = match word {
+        let (law, plasticity, rubbing) = match word {
             ContactModelWord::Deformable => {
-                let common = [common, of_law].concat();
+                let common = [common, of_law, Rubbing::keys()].concat();
                 let plasticity = PlasticityChoice::read(section, &common, log);
-                (Some(PressureLawChoice::Linear), plasticity)
+                let rubbing = Rubbing::read(section, log);
+                (Some(PressureLawChoice::Linear), plasticity, rubbing)
             }
             ContactModelWord::Foundation => {
-                let common = [common, of_plasticity].concat();
+                let common = [common, of_plasticity, Rubbing::keys()].concat();
                 let law = PressureLawChoice::read(section, &common, log);
-                (law, Some(PlasticityChoice::None))
+                let friction_model = FrictionModelWord::Regularised;
+                let rubbing = Rubbing { friction_model };
+                (law, Some(PlasticityChoice::None), Some(rubbing))
             }
         };
         let friction = Friction::read(section, log);
@@ -197,6 +231,7 @@ impl Contact {
             model: model?,
             law: law?,
             plasticity: plasticity?,
+            friction_model: rubbing?.friction_model,
             friction: friction?,
             finding: finding?,
         })
@@ -207,7 +242,11 @@ impl Contact {
         ModelOfContact { model }.write(out);
         match model {
             ContactModelWord::Foundation => self.law.write(out),
-            ContactModelWord::Deformable => self.plasticity.write(out),
+            ContactModelWord::Deformable => {
+                self.plasticity.write(out);
+                let friction_model = self.friction_model;
+                Rubbing { friction_model }.write(out);
+            }
         }
         self.friction.write(out);
         self.finding.write(out);

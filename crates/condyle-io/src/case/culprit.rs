@@ -95,6 +95,12 @@ impl Case {
 
     fn culprit_of_build(&self, error: &BuildError) -> Culprit {
         let keys: &[&str] = match error {
+            BuildError::StickSlipExplicit => {
+                return Culprit {
+                    table: "time",
+                    keys: &["integrator"],
+                };
+            }
             BuildError::MeshFile(_)
             | BuildError::StrayPiece { .. }
             | BuildError::Shell { .. }

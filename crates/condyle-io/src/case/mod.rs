@@ -60,7 +60,8 @@ pub use build::{
 };
 pub use channel::CaseChannel;
 pub use contact::{
-    Contact, ContactModelWord, Finding, Friction, PressureLawChoice, SearchWord, SofteningCurve,
+    Contact, ContactModelWord, Finding, Friction, FrictionModelWord, PressureLawChoice, SearchWord,
+    SofteningCurve,
 };
 pub use contents::Case;
 pub use creep::{Creep, LogarithmicCreep};

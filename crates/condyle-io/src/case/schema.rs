@@ -75,8 +75,11 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
         &PressureLawChoice::choices(),
     );
     let plasticity = PlasticityChoice::choices();
-    let by = std::slice::from_ref(&plasticity.by);
-    page.chosen("`[contact]` of a deformable insert", by, &plasticity);
+    page.chosen(
+        "`[contact]` of a deformable insert",
+        &Contact::keys_of_deformable(),
+        &plasticity,
+    );
     machine(&mut page);
     page.section("`[[activity]]`", &ActivityKeys::keys());
     page.push(ACTIVITIES);

@@ -29,7 +29,7 @@ mod under_surface;
 
 pub use broad_phase::Search;
 pub use contact_law::{Bodies, ContactLaw};
-pub use deformable::Deformable;
+pub use deformable::{Deformable, FrictionModel};
 pub use foundation::Foundation;
 pub use history::{CycleHistory, Moment, NodeHistory, Record};
 pub use memory::{ContactCache, ContactMemory, ContactState, StateField};

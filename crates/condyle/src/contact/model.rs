@@ -79,8 +79,12 @@ pub struct TouchedNode {
     /// Force on the insert there, N.
     pub force_n: Vec3,
     /// Velocity of the femur's surface past the insert's in the surface's own directions, anterior
-    /// along the surface, then lateral, mm/s.
+    /// along the surface, then lateral, mm/s; 0 where they stick.
     pub sliding_mm_per_s: [f64; 2],
+    /// How far the insert's surface has gone along itself with the femur since the increment before landed, in the same
+    /// directions, mm: what of the sliding is no slip. 0 where they stick, and in a contact that does not give way along
+    /// its surface.
+    pub along_mm: [f64; 2],
 }
 
 /// Where an increment landed.

@@ -4,6 +4,9 @@
 /// circle it is all rounding.
 const ISOTROPIC: f64 = 1e-6;
 
+/// No slip is shorter than this but that of length 0, mm.
+const LEAST_MM: f64 = 1e-200;
+
 /// Pressure times slip of a node by direction: the sum of $p |\Delta s| \thinspace t t^T$ over the instants of a
 /// cycle, $t$ the direction of the slip, MPa mm.
 ///
@@ -21,8 +24,8 @@ impl SlipWork {
     #[inline(always)]
     pub fn add(&mut self, pressure_mpa: f64, slip_mm: [f64; 2], distance_mm: f64) {
         let [anterior, lateral] = slip_mm;
-        // A slip of length 0 has parts of 0: any divisor will do.
-        let per_mm = pressure_mpa / distance_mm.max(f64::MIN_POSITIVE);
+        // A slip of length 0 has parts of 0: any divisor will do by which the quotient is a number.
+        let per_mm = pressure_mpa / distance_mm.max(LEAST_MM);
         self.anterior += per_mm * anterior * anterior;
         self.mixed += per_mm * anterior * lateral;
         self.lateral += per_mm * lateral * lateral;
@@ -210,5 +213,8 @@ mod tests {
         assert_eq!(of_path(&circle, 0.4).principal_direction(), None);
         let still = of_path(&[[1.0, 2.0], [1.0, 2.0]], 0.0);
         assert_eq!(still, SlipWork::default());
+        let mut stuck = SlipWork::default();
+        stuck.add(1e3, [0.0; 2], 0.0);
+        assert_eq!(stuck, SlipWork::default());
     }
 }

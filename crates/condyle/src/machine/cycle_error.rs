@@ -44,6 +44,17 @@ pub enum CycleError {
         /// The largest plastic strain when the search for a balance was given up.
         plastic_strain: f64,
     },
+    /// A load under which the insert goes on flowing or slipping, however often it is put on again.
+    #[error(
+        "load and insert do not settle at {percent:.2} % of the cycle, even in the smallest steps: each of {turns} turns \
+         moved the surface anew; use more increments, or check the load there"
+    )]
+    Unsettled {
+        /// Place in the cycle, %.
+        percent: f64,
+        /// How often the load was put on.
+        turns: u32,
+    },
     /// Explicit steps of a joint that weighs nothing.
     #[error(
         "the explicit integrator needs inertia on every loaded freedom, and {joint} has none; give it some, or \

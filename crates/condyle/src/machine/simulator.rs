@@ -146,7 +146,9 @@ impl<'a> Simulator<'a> {
             pressed_mm2: touched.covered_mm2 as f32,
             moment: Moment {
                 pressure_mpa: touched.pressure_mpa,
-                slip_mm: touched.sliding_mm_per_s.map(|speed| speed * increment_s),
+                slip_mm: [0, 1].map(|along| {
+                    touched.sliding_mm_per_s[along] * increment_s - touched.along_mm[along]
+                }),
             },
         };
         let moments = landing.touched.iter().map(record);
@@ -301,6 +303,7 @@ impl<'a> Simulator<'a> {
 enum GivenUp {
     NotConverged(NotConverged),
     Flattened { phase: f64, flattened: Flattened },
+    Unsettled { phase: f64 },
 }
 
 impl GivenUp {
@@ -308,6 +311,10 @@ impl GivenUp {
         match self {
             Self::NotConverged(failed) => CycleError::of_implicit(mechanism, &failed),
             Self::Flattened { phase, flattened } => CycleError::flattened(phase, flattened),
+            Self::Unsettled { phase } => CycleError::Unsettled {
+                percent: 100.0 * phase,
+                turns: MOST_TURNS,
+            },
         }
     }
 }
@@ -333,5 +340,7 @@ fn settled(
         }
         next = implicit.step(from, step, Some(&ended.warm_start), watch);
     }
-    next.map_err(GivenUp::NotConverged)
+    next.map_err(GivenUp::NotConverged)?;
+    let phase = from.phase + step;
+    Err(GivenUp::Unsettled { phase })
 }

@@ -8,7 +8,7 @@ use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 use condyle_fem::Elastic;
 
-use super::super::contact::{ContactModelWord, PressureLawChoice};
+use super::super::contact::{ContactModelWord, FrictionModelWord, PressureLawChoice};
 use super::super::contents::Case;
 use super::super::law_change::LeftOutConstant;
 use super::super::march::Update;
@@ -128,6 +128,11 @@ impl Case {
 
     /// The insert of this case as an elastic body.
     fn deformable(&self, insert: &Insert) -> Result<Deformable, BuildError> {
+        if self.contact.friction_model == FrictionModelWord::StickSlip
+            && self.time.integrator == IntegratorWord::Explicit
+        {
+            return Err(BuildError::StickSlipExplicit);
+        }
         let elastic = Elastic {
             youngs_modulus: self.material.youngs_modulus_mpa,
             poissons_ratio: self.material.poissons_ratio,
@@ -142,6 +147,7 @@ impl Case {
         law.search = self.contact.finding.search.search();
         law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
         law.hardening = self.contact.plasticity.hardening();
+        law.friction_model = self.contact.friction_model.model();
         Ok(law)
     }
 

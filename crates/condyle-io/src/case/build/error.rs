@@ -24,6 +24,12 @@ pub enum BuildError {
     /// An insert that is no elastic solid.
     #[error("[contact] model = \"deformable\": {0}")]
     Solid(#[from] SolidError),
+    /// Friction that remembers in steps that are not solved.
+    #[error(
+        "[contact] friction_model = \"stick-slip\" goes from one solved increment to the next, and [time] integrator = \
+         \"explicit\" solves none; take integrator = \"implicit\", or friction_model = \"regularised\""
+    )]
+    StickSlipExplicit,
     /// A body that is too small or too large for a knee.
     #[error(
         "{}: the body is {} mm long, and a knee's is 5 mm to 500 mm; {}",
@@ -207,7 +213,11 @@ impl BuildError {
             | Self::PressedHole { file, .. }
             | Self::ThicknessOfClosed { file }
             | Self::NoSurface { file, .. } => Some(file),
-            Self::InsertTooFine { .. } | Self::Insert(_) | Self::Axes(_) | Self::Solid(_) => None,
+            Self::InsertTooFine { .. }
+            | Self::Insert(_)
+            | Self::Axes(_)
+            | Self::Solid(_)
+            | Self::StickSlipExplicit => None,
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Every problem that stands in the case file itself.
 
+use condyle::geometry::{Insert, Meshing, flat_insert};
+
 use super::{assert_shows, parsed, refusal};
-use crate::case::Case;
+use crate::case::{Case, FrictionModelWord};
 use crate::keyed::{Problem, RenderStyle};
 
 #[test]
@@ -193,6 +195,39 @@ fn a_case_with_plasticity_is_written_and_read_again() {
     let case = parsed(&text).expect("it is a good case");
     let again = parsed(&case.to_toml()).expect("what is written is a good case");
     assert_eq!(again.contact, case.contact);
+}
+
+#[test]
+fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments() {
+    let shown = refusal("[contact]\nfriction_model = \"stick-slip\"\n");
+    assert_shows(
+        &shown,
+        &["`friction_model` belongs to model = \"deformable\""],
+    );
+    let sticking = "[contact]\nmodel = \"deformable\"\nfriction_model = \"stick-slip\"\n";
+    let case = parsed(sticking).expect("it is a good case");
+    let again = parsed(&case.to_toml()).expect("what is written is a good case");
+    assert_eq!(again.contact, case.contact);
+    assert_eq!(again.contact.friction_model, FrictionModelWord::StickSlip);
+    let explicit = format!("{sticking}[time]\nintegrator = \"explicit\"\n");
+    let case = parsed(&explicit).expect("its keys are good");
+    let refused = case.contact_law(&flat()).expect_err("it is refused");
+    assert_shows(
+        &refused.to_string(),
+        &[
+            "friction_model = \"stick-slip\"",
+            "take integrator = \"implicit\"",
+        ],
+    );
+}
+
+/// A flat insert.
+fn flat() -> Insert {
+    let meshing = Meshing {
+        edge_mm: 5.0,
+        layers: 1,
+    };
+    flat_insert((10.0, 10.0), 5.0, meshing).unwrap()
 }
 
 #[test]

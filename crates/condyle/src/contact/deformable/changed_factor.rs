@@ -1,7 +1,7 @@
 //! The factor of the compliance of nodes that press, kept while few of them change.
 
 use super::{
-    cholesky::{Cholesky, Eight, ROWS, subtract, zero},
+    cholesky::{Cholesky, Eight, ROWS, get, set, subtract, zero},
     near_matrix::NearMatrix,
 };
 use crate::number::{F64x4, LANES, Number};
@@ -367,15 +367,4 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     let vector = |four: &[f64]| F64x4::from_lanes(|lane| four[lane]);
     let add = |sum: F64x4, (a, b): (&[f64], &[f64])| vector(a).mul_add(vector(b), sum);
     fours.zip(others).fold(F64x4::splat(0.0), add).sum() + rest
-}
-
-fn get(numbers: &Eight, side: usize) -> f64 {
-    numbers[side / LANES].lane(side % LANES)
-}
-
-fn set(numbers: &mut Eight, side: usize, value: f64) {
-    let half = &mut numbers[side / LANES];
-    let mut lanes = half.to_array();
-    lanes[side % LANES] = value;
-    *half = F64x4::new(lanes);
 }

@@ -42,6 +42,18 @@ pub(super) fn subtract(a: &mut Eight, b: &Eight, f: f64) {
     a[1] = b[1].mul_add(f, a[1]);
 }
 
+/// The number of a row, or of a right-hand side.
+pub(super) fn get(numbers: &Eight, side: usize) -> f64 {
+    numbers[side / LANES].lane(side % LANES)
+}
+
+pub(super) fn set(numbers: &mut Eight, side: usize, value: f64) {
+    let half = &mut numbers[side / LANES];
+    let mut lanes = half.to_array();
+    lanes[side % LANES] = value;
+    *half = F64x4::new(lanes);
+}
+
 impl Cholesky {
     /// Factors a matrix of an order; `entry` gives what is in a row and a column that is not beyond it.
     pub fn factor(&mut self, order: usize, entry: impl Fn(usize, usize) -> f64) {

@@ -176,7 +176,11 @@ impl Pressing {
 }
 
 /// Loads on nodes by the panels of these.
-fn by_panel(nodes: &[u32], loads_n: &[f64], compliance: &NearMatrix) -> Vec<(usize, Eight)> {
+pub(super) fn by_panel(
+    nodes: &[u32],
+    loads_n: &[f64],
+    compliance: &NearMatrix,
+) -> Vec<(usize, Eight)> {
     let rows = nodes.iter().map(|&node| compliance.row(node) as usize);
     let mut loads: Vec<(u32, usize, f64)> = nodes
         .iter()

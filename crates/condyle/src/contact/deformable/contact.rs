@@ -8,6 +8,8 @@ use super::{
     complementarity::Pressing,
     compliance::Compliance,
     covered::{EdgeOfContact, squares, squares_everywhere},
+    friction::{ElasticFriction, Pressed},
+    friction_memory::FRICTION_FIELD,
     peak::PeakSearch,
     plastic::{FOUND_MM, NodeLoad, PLASTIC_FIELD, PlasticInsert},
 };
@@ -25,7 +27,9 @@ use crate::{
         F64x4, LANES, Number,
         vector::{cross, vector_from_lanes},
     },
-    spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist4},
+    spatial::{
+        FrameChange, Pose, Pose4, RelativeMotion, Twist, Twist4, Vec6, WrenchByTwist, body::Femur,
+    },
 };
 
 /// A node may touch where the bodies at rest are nearer than this, mm: beside a contact a thin layer bulges,
@@ -69,6 +73,8 @@ pub(super) struct DeformableContact<'a, B> {
     /// How the insert yields, if it does, and the loads of the last response.
     plastic: Option<PlasticInsert>,
     node_loads: Vec<NodeLoad>,
+    /// Friction where the surface gives way along itself; else it is that of `rubbing`.
+    friction: Option<ElasticFriction<'a>>,
 }
 
 /// Loads of a block of shares, and their derivatives by six motions.
@@ -148,6 +154,7 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             state: memory.state,
             plastic: None,
             node_loads: Vec::new(),
+            friction: None,
             bodies,
             rubbing,
             nearby,
@@ -158,6 +165,36 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
     pub fn yielding(mut self, plastic: Option<PlasticInsert>) -> Self {
         self.plastic = plastic;
         self
+    }
+
+    /// The same of an insert that gives way along its surface; `rubbing` is then to be without friction.
+    pub fn sticking(mut self, friction: Option<ElasticFriction<'a>>) -> Self {
+        self.friction = friction;
+        self
+    }
+
+    /// The nodes that press, their loads taken along with a short motion of the femur since the last response.
+    fn pressed_nodes(&self, moved: &Twist<Femur, Femur>) -> Vec<Pressed> {
+        let mut pressed_nodes = Vec::new();
+        for (near, tractions) in self.pressed.loaded() {
+            let shares = &self.nearby.blocks[near.block as usize];
+            let force_n = tractions.pressure_mpa * tractions.area_mm2;
+            let shift = &tractions.load_by_motion;
+            let turn = cross(&near.cached.place, shift) + tractions.load_by_turn;
+            let by = [turn.x, turn.y, turn.z, shift.x, shift.y, shift.z];
+            for (lane, &node) in shares.nodes.iter().enumerate() {
+                let own_n = force_n.lane(lane);
+                if own_n * shares.area_mm2.lane(lane) > 0.0 {
+                    let by_motion = Vec6::from_fn(|motion, _| by[motion].lane(lane));
+                    pressed_nodes.push(Pressed {
+                        node,
+                        force_n: (own_n + by_motion.dot(&moved.numbers())).max(0.0),
+                        by_motion,
+                    });
+                }
+            }
+        }
+        pressed_nodes
     }
 
     /// Lists the nodes that may touch.
@@ -230,7 +267,13 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
 
 impl<B: BroadPhase> Linearization for DeformableContact<'_, B> {
     fn tangent(&self) -> Tangent {
-        self.pressed.tangent()
+        let mut tangent = self.pressed.tangent();
+        if let Some(friction) = &self.friction {
+            let change = FrameChange::to_femur(&self.pressed.pose);
+            let by_pose = change.derivative_back(&WrenchByTwist::new(friction.tangent()));
+            tangent.by_pose.matrix += by_pose.matrix;
+        }
+        tangent
     }
 }
 
@@ -243,12 +286,18 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         if let Some(plastic) = &mut self.plastic {
             plastic.cycle.begin();
         }
+        if let Some(friction) = &mut self.friction {
+            friction.begin_cycle();
+        }
     }
 
     fn begin_increment(&mut self, increment: usize) {
         self.nearby.begin_increment(increment);
         if let Some(plastic) = &mut self.plastic {
             plastic.cycle.begin_increment(increment);
+        }
+        if let Some(friction) = &mut self.friction {
+            friction.begin_increment(increment);
         }
     }
 
@@ -260,11 +309,18 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         self.find_candidates(&motion.pose, &pose);
         let (loads, friction) = (self.find_loads(), self.rubbing.friction);
         let along = &self.along;
-        let (wrench, mean_slip) = self
-            .pressed
-            .press(&self.nearby.blocks, |place, near, shares| {
-                loads[place].tractions(near, &along[place], shares.area_mm2, &twist, friction)
-            });
+        let (mut wrench, mean_slip) =
+            self.pressed
+                .press(&self.nearby.blocks, |place, near, shares| {
+                    loads[place].tractions(near, &along[place], shares.area_mm2, &twist, friction)
+                });
+        let rubbed = self
+            .friction
+            .is_some()
+            .then(|| self.pressed_nodes(&Twist::zero()));
+        if let Some((friction, pressed)) = self.friction.as_mut().zip(rubbed) {
+            wrench = wrench + friction.respond(&motion.pose, pressed);
+        }
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
@@ -287,9 +343,17 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         })
     }
 
-    fn accept(&mut self, _motion: &RelativeMotion) {
+    fn accept(&mut self, motion: &RelativeMotion) {
         if let Some(plastic) = &mut self.plastic {
             plastic.accept();
+        }
+        if self.friction.is_some() {
+            let from = &self.pressed.pose;
+            let moved = FrameChange::to_femur(from).twist(&Twist::between(from, &motion.pose));
+            let pressed = self.pressed_nodes(&moved);
+            if let Some(friction) = &mut self.friction {
+                friction.accept(&motion.pose, &moved.numbers(), pressed);
+            }
         }
     }
 
@@ -301,7 +365,9 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
 
     fn moved_in_a_cycle_mm(&self) -> f64 {
         let plastic = self.plastic.as_ref();
-        plastic.map_or(0.0, |plastic| plastic.cycle.moved_mm())
+        let set_mm = plastic.map_or(0.0, |plastic| plastic.cycle.moved_mm());
+        let friction = self.friction.as_ref();
+        set_mm.max(friction.map_or(0.0, ElasticFriction::moved_in_a_cycle_mm))
     }
 
     fn land(&mut self, motion: &RelativeMotion) -> Landing {
@@ -309,6 +375,9 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
             plastic.land();
         }
         let mut touched = self.pressed.touched(&self.nearby.blocks, motion);
+        if let Some(friction) = &mut self.friction {
+            friction.land(&mut touched);
+        }
         let (surface, faces) = (self.bodies.surface, self.bodies.insert.faces_around());
         let pressure2 = squares(&touched);
         let edge = EdgeOfContact {
@@ -332,8 +401,8 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
 
     fn into_memory(self: Box<Self>) -> ContactMemory {
         let mut state = self.state;
-        state.fields.retain(|field| field.name != PLASTIC_FIELD);
-        state.fields.retain(|field| field.name != TILES_FIELD);
+        let own = [PLASTIC_FIELD, FRICTION_FIELD, TILES_FIELD];
+        state.fields.retain(|field| !own.contains(&&*field.name));
         let known = self.compliance.known_tiles();
         if !known.is_empty() {
             state.fields.push(StateField {
@@ -345,6 +414,10 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         state
             .fields
             .extend(plastic.and_then(|plastic| plastic.field()));
+        let friction = self.friction.into_iter();
+        state
+            .fields
+            .extend(friction.flat_map(ElasticFriction::into_fields));
         ContactMemory {
             state,
             cache: ContactCache::of(self.nearby.into_cache()),

@@ -3,12 +3,17 @@
 use std::{
     collections::BTreeMap,
     fmt,
-    sync::{Arc, Mutex, OnceLock, PoisonError},
+    sync::{Arc, OnceLock},
 };
 
-use condyle_fem::{Elastic, ElasticSolid, HalfSolved, HexMesh, SolidError, Strain};
+use condyle_fem::{Elastic, ElasticSolid, HexMesh, SolidError, Strain};
 
-use super::{compliance::SurfaceCompliance, plastic::Influence, tiles::tiles};
+use super::{
+    compliance::{Compliance, SurfaceCompliance},
+    plastic::Influence,
+    tiles::tiles,
+    unit_loads::{UnitLoads, along_surface},
+};
 use crate::{Vec3, geometry::Insert};
 
 /// So many nodes at most are solved for together: forces on nodes that are near load the same part of the factor.
@@ -23,14 +28,15 @@ const FELT_PER_ROOT: f64 = 6.0;
 /// The stiffness is factored once; unit loads on a tile of nodes are solved half way when they are first asked for,
 /// and kept.
 pub(super) struct ElasticSurface {
-    solid: ElasticSolid,
+    solid: Arc<ElasticSolid>,
     /// Mesh nodes of the surface.
     nodes: Vec<u32>,
-    /// Inward normals.
-    directions: Vec<Vec3>,
-    /// Surface nodes that lie together, and of every tile its loads.
-    tiles: Vec<Vec<u32>>,
-    loads: Mutex<Vec<Option<Arc<HalfSolved>>>>,
+    /// The surface's own directions at its nodes, anterior and lateral.
+    tangents: Vec<[Vec3; 2]>,
+    /// Unit loads along the inward normals.
+    normal: UnitLoads,
+    /// Those along the surface, of an insert that sticks and slips.
+    tangential: OnceLock<Arc<Compliance<UnitLoads>>>,
     /// What moves inside; of an insert that yields.
     influence: OnceLock<Influence>,
 }
@@ -56,22 +62,42 @@ impl ElasticSurface {
         let surface = insert.surface_at(mesh_nodes);
         let tiles = tiles(&surface.positions, TILE_NODES);
         let held = insert.backside_nodes().iter().copied();
+        let solid = Arc::new(ElasticSolid::new(&mesh, elastic, held)?);
+        let nodes = insert.surface_nodes();
+        let inward = surface.normals.iter().map(|normal| -normal);
+        let forces = nodes.iter().copied().zip(inward).collect();
         Ok(Self {
-            solid: ElasticSolid::new(&mesh, elastic, held)?,
-            nodes: insert.surface_nodes().to_vec(),
-            loads: Mutex::new(vec![None; tiles.len()]),
-            directions: surface.normals.iter().map(|normal| -normal).collect(),
-            tiles,
+            normal: UnitLoads::on(Arc::clone(&solid), forces, tiles),
+            solid,
+            tangents: (0..nodes.len())
+                .map(|node| surface.directions(node))
+                .collect(),
+            nodes: nodes.to_vec(),
+            tangential: OnceLock::new(),
             influence: OnceLock::new(),
         })
     }
 
-    /// Bytes of the factor, and of the loads on so many nodes and the compliance between them.
-    pub fn bytes(&self, nodes: f64) -> f64 {
+    /// The compliance along the surface: load 2 i + k is on node i along its direction k, anterior and lateral.
+    pub fn tangential(&self) -> &Arc<Compliance<UnitLoads>> {
+        self.tangential.get_or_init(|| {
+            let nodes = self.nodes.iter().zip(&self.tangents);
+            let forces = nodes.flat_map(|(&node, along)| along.map(|along| (node, along)));
+            let tiles = self.tiles().iter();
+            let tiles =
+                tiles.map(|tile| tile.iter().flat_map(|&node| along_surface(node)).collect());
+            let loads = UnitLoads::on(Arc::clone(&self.solid), forces.collect(), tiles.collect());
+            Arc::new(Compliance::new(loads))
+        })
+    }
+
+    /// Bytes of the factor, and of so many loads on each of some nodes and the compliance between them.
+    pub fn bytes(&self, nodes: f64, loads_a_node: [f64; 2]) -> f64 {
         let factor = self.solid.factor_len() as f64;
         let felt = FELT_PER_ROOT * (3.0 * self.solid.mesh().nodes.len() as f64).sqrt();
         let nodes = nodes.min(self.nodes.len() as f64);
-        8.0 * (factor + nodes * (nodes + felt))
+        let of_loads = loads_a_node.map(|each| each * nodes * (each * nodes + felt));
+        8.0 * (factor + of_loads[0] + of_loads[1])
     }
 
     /// Whether it is that of an insert with its mesh nodes there.
@@ -94,18 +120,18 @@ impl ElasticSurface {
             let places: Vec<Vec3> = nodes
                 .map(|&node| self.solid.mesh().nodes[node as usize])
                 .collect();
-            Influence::of_nothing(&self.solid, &places, self.tiles.len())
+            Influence::of_nothing(&self.solid, &places, self.tiles().len())
         })
     }
 
     /// Nodes of the surface that lie together.
     pub fn nodes_of_tile(&self, tile: usize) -> &[u32] {
-        &self.tiles[tile]
+        &self.tiles()[tile]
     }
 
     /// What unit loads on a tile move all mesh nodes by, mm/N: a row for every axis of every mesh node.
     pub fn moved_below(&self, tile: usize) -> &[f32] {
-        let loads: Vec<(u32, Vec3)> = self.tiles[tile]
+        let loads: Vec<(u32, Vec3)> = self.tiles()[tile]
             .iter()
             .map(|&node| self.unit(node))
             .collect();
@@ -116,7 +142,7 @@ impl ElasticSurface {
     pub fn by_tile(&self, loads: &[(u32, f64)]) -> BTreeMap<u32, Vec<f64>> {
         let load_of: BTreeMap<u32, f64> = loads.iter().copied().collect();
         let mut by_tile = BTreeMap::new();
-        for (number, tile) in self.tiles.iter().enumerate() {
+        for (number, tile) in self.tiles().iter().enumerate() {
             let of = |node: &u32| load_of.get(node).copied();
             if tile.iter().any(|node| of(node).is_some()) {
                 let loads = tile.iter().map(|node| of(node).unwrap_or(0.0));
@@ -148,34 +174,24 @@ impl ElasticSurface {
 
     /// How far mesh nodes of the surface move along the inward normals, mm.
     pub fn along_normals(&self, moved_mm: &[Vec3]) -> Vec<f64> {
-        let nodes = self.nodes.iter().zip(&self.directions);
-        nodes
-            .map(|(&node, along)| moved_mm[node as usize].dot(along))
+        (0..self.nodes.len() as u32)
+            .map(|node| self.unit(node))
+            .map(|(node, along)| moved_mm[node as usize].dot(&along))
             .collect()
     }
 
     /// The mesh node of a node of the surface, and the inward normal there.
     fn unit(&self, node: u32) -> (u32, Vec3) {
-        (self.nodes[node as usize], self.directions[node as usize])
-    }
-
-    /// Unit loads on a tile of nodes.
-    fn loads(&self, tile: usize) -> Arc<HalfSolved> {
-        let mut loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
-        let solved = loads[tile].get_or_insert_with(|| {
-            let forces = self.tiles[tile].iter().map(|&node| self.unit(node));
-            Arc::new(self.solid.half_solved(&forces.collect::<Vec<_>>()))
-        });
-        Arc::clone(solved)
+        self.normal.force(node)
     }
 }
 
 impl SurfaceCompliance for ElasticSurface {
     fn tiles(&self) -> &[Vec<u32>] {
-        &self.tiles
+        self.normal.tiles()
     }
 
     fn between(&self, one: usize, other: usize) -> Vec<f64> {
-        self.loads(one).moved_along(&self.loads(other))
+        self.normal.between(one, other)
     }
 }

@@ -6,17 +6,20 @@ use super::{
     compliance::Compliance,
     contact::{DeformableContact, Rubbing, TILES_FIELD},
     elastic_surface::ElasticSurface,
+    friction::ElasticFriction,
+    friction_memory::{FRICTION_FIELD, FrictionMemory},
     plastic::{PLASTIC_FIELD, PlasticInsert, Remembered},
-    settings::Deformable,
+    settings::{Deformable, FrictionModel},
     under_surface::under_surface,
 };
 use crate::{
     Vec3,
     contact::{
-        broad_phase::{BruteForce, Coherent, Search},
+        broad_phase::{BroadPhase, BruteForce, Coherent, Search},
         contact_law::{Bodies, ContactLaw},
         memory::{ContactMemory, ContactState, StateField},
         model::ContactModel,
+        pressed::Coulomb,
         under_surface::UnderSurface,
     },
     geometry::Insert,
@@ -45,25 +48,9 @@ impl ContactLaw for Deformable {
         bodies: Bodies<'a>,
         memory: ContactMemory,
     ) -> Box<dyn ContactModel + 'a> {
-        let (compliance, state) = self.compliance(bodies.insert, &memory.state);
-        let plastic = self.plastic(&state, &compliance);
-        compliance.know_tiles(tiles_of(&state));
-        let memory = ContactMemory { state, ..memory };
-        let rubbing = Rubbing {
-            friction: self.coulomb(),
-            sample_reuse_mm: self.sample_reuse_mm,
-        };
         match self.search {
-            Search::Coherent => {
-                let contact =
-                    DeformableContact::<Coherent>::after(memory, bodies, rubbing, compliance);
-                Box::new(contact.yielding(plastic))
-            }
-            Search::BruteForce => {
-                let contact =
-                    DeformableContact::<BruteForce>::after(memory, bodies, rubbing, compliance);
-                Box::new(contact.yielding(plastic))
-            }
+            Search::Coherent => Box::new(self.contact_by::<Coherent>(bodies, memory)),
+            Search::BruteForce => Box::new(self.contact_by::<BruteForce>(bodies, memory)),
         }
     }
 
@@ -77,7 +64,14 @@ impl ContactLaw for Deformable {
 
     fn memory_bytes(&self, insert: &Insert, ever_touched: f64) -> f64 {
         let surface = self.surface(insert, insert.unworn_nodes());
-        surface.map_or(0.0, |surface| surface.source.bytes(ever_touched))
+        let along_surface = match self.friction_model {
+            FrictionModel::Regularised => 0.0,
+            FrictionModel::StickSlip => 2.0,
+        };
+        let loads_a_node = [1.0, along_surface];
+        surface.map_or(0.0, |surface| {
+            surface.source.bytes(ever_touched, loads_a_node)
+        })
     }
 
     fn under_surface(
@@ -120,6 +114,39 @@ impl Deformable {
 }
 
 impl Deformable {
+    /// The contact of bodies, with a broad phase `B`.
+    fn contact_by<'a, B: BroadPhase>(
+        &self,
+        bodies: Bodies<'a>,
+        memory: ContactMemory,
+    ) -> DeformableContact<'a, B> {
+        let (compliance, state) = self.compliance(bodies.insert, &memory.state);
+        let plastic = self.plastic(&state, &compliance);
+        compliance.know_tiles(tiles_of(&state));
+        let (friction, coulomb) = match self.friction_model {
+            FrictionModel::Regularised => (None, self.coulomb()),
+            FrictionModel::StickSlip => {
+                let tangential = Arc::clone(compliance.source.tangential());
+                let memory = FrictionMemory::of(&state);
+                let friction =
+                    ElasticFriction::after(memory, self.friction, bodies.surface, tangential);
+                let without = Coulomb {
+                    coefficient: 0.0,
+                    ..self.coulomb()
+                };
+                (Some(friction), without)
+            }
+        };
+        let rubbing = Rubbing {
+            friction: coulomb,
+            sample_reuse_mm: self.sample_reuse_mm,
+        };
+        let memory = ContactMemory { state, ..memory };
+        DeformableContact::after(memory, bodies, rubbing, compliance)
+            .yielding(plastic)
+            .sticking(friction)
+    }
+
     /// How the insert yields, if it does, after what the state remembers.
     fn plastic(
         &self,
@@ -158,16 +185,17 @@ fn tiles_of(state: &ContactState) -> impl Iterator<Item = u32> {
         .map(|&tile| tile as u32)
 }
 
-/// The state with the nodes whose compliance is used, and the plastic strains that it had.
+/// The state with the nodes whose compliance is used, and the plastic strains and loads along the surface that it had.
 fn state_of(nodes: &[Vec3], before: &ContactState) -> ContactState {
-    let plastic = before.fields.iter();
-    let plastic = plastic.filter(|field| field.name == PLASTIC_FIELD);
+    let stays = [PLASTIC_FIELD, FRICTION_FIELD];
+    let kept = before.fields.iter();
+    let kept = kept.filter(|field| stays.contains(&&*field.name));
     let field = StateField {
         name: NODES_FIELD.to_owned(),
         values: nodes.iter().flatten().copied().collect(),
     };
     ContactState {
-        fields: [field].into_iter().chain(plastic.cloned()).collect(),
+        fields: [field].into_iter().chain(kept.cloned()).collect(),
     }
 }
 

@@ -98,6 +98,24 @@ impl NearMatrix {
         ((a + b) + (c + d)).sum()
     }
 
+    /// Adds to `line` the numbers of some panels of a mixture of two rows.
+    pub fn mix(
+        &self,
+        rows: [u32; 2],
+        parts: [f64; 2],
+        panels: &[(usize, Eight)],
+        line: &mut Vec<f64>,
+    ) {
+        let [one, other] = rows.map(|row| &self.rows[row as usize]);
+        let [of_one, of_other] = parts.map(F64x4::splat);
+        for (panel, _) in panels {
+            for (one, other) in one[*panel].iter().zip(&other[*panel]) {
+                let mixed = one.mul_add(of_one, *other * of_other);
+                line.extend_from_slice(&mixed.to_array());
+            }
+        }
+    }
+
     /// Adds tile number `new` of `tiles`, with what is `between` two of them.
     pub fn add(
         &mut self,

@@ -14,6 +14,17 @@ use crate::{
 /// So many compliances are remembered: those of an insert and of its coarser twin, unworn and worn.
 const MOST_REMEMBERED: usize = 4;
 
+/// Coulomb's friction on a deformable insert.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FrictionModel {
+    /// It goes with the sliding speed, mu N v / sqrt(v^2 + v0^2), and does not move the surface along itself.
+    #[default]
+    Regularised,
+    /// The surface gives way along itself, and each node sticks or slides: what carries less than mu N does not slide. What
+    /// each carries is remembered from increment to increment.
+    StickSlip,
+}
+
 /// The law of an elastic insert, bonded to its tray, under a rigid femur.
 ///
 /// Small displacements: the surface gives way along its inward normals by the normal compliance C of the insert,
@@ -22,17 +33,19 @@ const MOST_REMEMBERED: usize = 4;
 /// $$ N \ge 0, \quad g + C N \ge 0, \quad N \cdot (g + C N) = 0, $$
 ///
 /// with the gaps g of the bodies at rest: nothing is tuned. Every node's share of the surface presses along the
-/// femur's normal and rubs with regularised Coulomb friction. Wear goes into the gap; C is that of the insert
+/// femur's normal and rubs with Coulomb friction, regularised or with stick and slip. Wear goes into the gap; C is that of the insert
 /// unworn, and made anew where an insert has become thinner by more than a twentieth. With a yield stress the insert flows below
 /// its surface (von Mises, small strains), and what that leaves of a dent goes into the gap; the stiffness stays.
-/// Limits: no tangential compliance (half a percent of the pressure), a tray that does not give.
+/// Limits: loads along the surface do not move it along its normal, nor do normal loads along it; a tray that does not give.
 #[derive(Debug)]
 pub struct Deformable {
     /// The elastic material, MPa.
     pub elastic: Elastic,
     /// Coulomb's coefficient of friction, mu.
     pub friction: f64,
-    /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0.
+    /// Whether the surface gives way along itself under friction.
+    pub friction_model: FrictionModel,
+    /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0; of regularised friction.
     pub slip_tolerance_mm_per_s: f64,
     /// How the nodes that may touch are found; no answer depends on it.
     pub search: Search,
@@ -71,6 +84,7 @@ impl Deformable {
         let law = Self {
             elastic,
             friction,
+            friction_model: FrictionModel::default(),
             slip_tolerance_mm_per_s,
             search: Search::default(),
             sample_reuse_mm: Foundation::SAMPLE_REUSE_MM,

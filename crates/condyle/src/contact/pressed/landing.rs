@@ -118,6 +118,7 @@ impl Landed4 {
                     covered_mm2: self.covered_mm2.lane(lane),
                     force_n: Vec3::new(force.x.lane(lane), force.y.lane(lane), force.z.lane(lane)),
                     sliding_mm_per_s: [anterior.lane(lane), lateral.lane(lane)],
+                    along_mm: [0.0; 2],
                 });
             }
         }

@@ -65,6 +65,11 @@ impl PressedBlocks {
         (total.total(), slips.means())
     }
 
+    /// The blocks that press, and what presses them.
+    pub fn loaded(&self) -> impl Iterator<Item = (&NearBlock, &Tractions4)> {
+        self.near.iter().zip(&self.tractions)
+    }
+
     /// How the wrench changes.
     pub fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();

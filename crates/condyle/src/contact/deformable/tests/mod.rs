@@ -1,6 +1,7 @@
 //! The solver alone, on an elastic half-space in closed form: no finite elements.
 
 mod half_space;
+mod stick_slip;
 
 use std::{f64::consts::PI, sync::Arc};
 

@@ -1,0 +1,353 @@
+//! Friction on a surface that gives way along itself.
+
+use std::{cell::RefCell, sync::Arc};
+
+use super::{
+    cholesky::{Eight, get, set, zero},
+    complementarity::by_panel,
+    compliance::Compliance,
+    friction_memory::{FrictionMemory, Held, LoadsAlong},
+    near_matrix::NearMatrix,
+    stick_slip::{ByMotion, Pair, Rubbed, StickSlip},
+    unit_loads::along_surface,
+};
+use crate::{
+    Mat3, Vec3,
+    contact::{memory::StateField, model::TouchedNode},
+    geometry::ArticulatingSurface,
+    spatial::{Mat6, Pose, Vec6, Wrench, body},
+};
+
+/// A node that presses.
+#[derive(Clone, Copy)]
+pub(super) struct Pressed {
+    pub node: u32,
+    /// The force along the femur's normal, N, and its derivatives by a turn and a shift of the femur in its frame.
+    pub force_n: f64,
+    pub by_motion: Vec6,
+}
+
+/// Coulomb's friction on an elastic surface that sticks and slips.
+///
+/// A node that presses with F carries a load T along the surface, |T| <= mu F. While an increment moves the femur's
+/// material past it by D, the surface moves along itself by the change of C T, with the compliance C along it; D less that is
+/// slip. Where there is slip, T has its limit and points the way of it. So T depends on that with which the increment
+/// began: it is tried in an increment, and counts once that is accepted.
+///
+/// Normal and tangential loads are found one after the other: what loads along the surface move along its normal, and the
+/// other way round, is left out.
+pub(super) struct ElasticFriction<'a> {
+    /// Coulomb's coefficient, mu.
+    coefficient: f64,
+    compliance: Arc<Compliance>,
+    surface: &'a ArticulatingSurface,
+    memory: FrictionMemory,
+    /// Where the increment began, and how far the loads then had moved some nodes, mm, by the numbers of the unit loads;
+    /// not a number where nobody asked.
+    start: Held,
+    start_mm: Vec<f64>,
+    /// The loads when the increment before landed.
+    landed: LoadsAlong,
+    /// The last response: the femur's pose, what pressed, and the loads along the surface.
+    pose: Pose,
+    pressed: Vec<Pressed>,
+    rubbed_nodes: Vec<u32>,
+    loads: StickSlip,
+    /// The derivatives of those loads by a motion of the femur in its frame, once they were asked for.
+    by_motion: RefCell<Vec<[Eight; 2]>>,
+    /// Those of every node of the surface, and whether it sticks.
+    loads_n: Vec<Pair>,
+    sticks: Vec<bool>,
+    moved_in_a_cycle_mm: f64,
+}
+
+impl<'a> ElasticFriction<'a> {
+    /// Friction that goes on from what is remembered.
+    pub fn after(
+        memory: FrictionMemory,
+        coefficient: f64,
+        surface: &'a ArticulatingSurface,
+        compliance: Arc<Compliance>,
+    ) -> Self {
+        let nodes = surface.positions.len();
+        let mut friction = Self {
+            coefficient,
+            start: Held::default(),
+            start_mm: vec![f64::NAN; compliance.node_count()],
+            landed: LoadsAlong::new(),
+            pose: Pose::identity(),
+            pressed: Vec::new(),
+            rubbed_nodes: Vec::new(),
+            loads: StickSlip::default(),
+            by_motion: RefCell::default(),
+            loads_n: vec![[0.0; 2]; nodes],
+            sticks: vec![false; nodes],
+            moved_in_a_cycle_mm: 0.0,
+            compliance,
+            surface,
+            memory,
+        };
+        friction.go_on();
+        friction
+    }
+
+    /// The next increments are of the next activity.
+    pub fn begin_cycle(&mut self) {
+        self.memory.begin_cycle(std::mem::take(&mut self.start));
+        self.go_on();
+    }
+
+    pub fn begin_increment(&mut self, increment: usize) {
+        self.memory.begin_increment(increment);
+    }
+
+    /// Goes on from where the activity was left.
+    fn go_on(&mut self) {
+        self.start = self.memory.start();
+        self.landed.clone_from(&self.start.loads);
+        self.start_mm.fill(f64::NAN);
+        self.loads_n.fill([0.0; 2]);
+        for &(node, load_n) in &self.start.loads {
+            self.loads_n[node as usize] = load_n;
+        }
+    }
+
+    /// The wrench on the insert about the femur's origin, in its frame, of loads along the surface under what presses with
+    /// the femur at a pose. Before the femur was anywhere there are none.
+    pub fn respond(
+        &mut self,
+        pose: &Pose,
+        pressed: Vec<Pressed>,
+    ) -> Wrench<body::Insert, body::Femur> {
+        self.by_motion.get_mut().clear();
+        self.press(pose, pressed);
+        let compliance = Arc::clone(&self.compliance);
+        let compliance = compliance.near(self.asked());
+        let rubbed = self.rubbed(&compliance);
+        self.loads.solve(&rubbed, &compliance);
+        self.rubbed_nodes.clear();
+        self.rubbed_nodes
+            .extend(rubbed.iter().map(|rubbed| rubbed.node));
+        self.spread();
+        let mut total = Wrench::zero();
+        for &node in &self.rubbed_nodes {
+            let screws = self.screws(node as usize, &pose.rotation);
+            let [x, y] = self.loads_n[node as usize];
+            total = total + Wrench::of_numbers(&(screws[0] * x + screws[1] * y));
+        }
+        total
+    }
+
+    /// Takes a pose and what presses there.
+    fn press(&mut self, pose: &Pose, pressed: Vec<Pressed>) {
+        for before in std::mem::replace(&mut self.pressed, pressed) {
+            self.sticks[before.node as usize] = false;
+        }
+        self.pose = *pose;
+    }
+
+    /// Spreads the loads found to the nodes of the surface.
+    fn spread(&mut self) {
+        self.loads_n.fill([0.0; 2]);
+        for (place, &node) in self.rubbed_nodes.iter().enumerate() {
+            self.loads_n[node as usize] = self.loads.loads_n()[place];
+            self.sticks[node as usize] = self.loads.sticks(place);
+        }
+    }
+
+    /// The derivative of that wrench by a motion of the femur, both in its frame.
+    pub fn tangent(&self) -> Mat6 {
+        let mut tangent = Mat6::zeros();
+        let Some(start) = self.start.pose.filter(|_| !self.pressed.is_empty()) else {
+            return tangent;
+        };
+        let change = |pressed: &Pressed| {
+            let moved = self.screws(pressed.node as usize, &start.rotation);
+            ByMotion {
+                reach_mm: moved.map(|screw| eight(&screw)),
+                limit_n: eight(&(pressed.by_motion * self.coefficient)),
+            }
+        };
+        let changes: Vec<ByMotion> = self.pressed.iter().map(change).collect();
+        let compliance = self.compliance.near(self.asked());
+        let loads = self.loads.by_motion(&changes, &compliance);
+        for (pressed, loads) in self.pressed.iter().zip(&loads) {
+            let screws = self.screws(pressed.node as usize, &self.pose.rotation);
+            for (screw, load) in screws.iter().zip(loads) {
+                tangent += screw * six(load).transpose();
+            }
+        }
+        self.by_motion.replace(loads);
+        tangent
+    }
+
+    /// The increment ends with the femur at a pose, a short motion from that of the last response, and that counts.
+    ///
+    /// The loads are taken along by their derivatives where these were asked for there, else found anew.
+    pub fn accept(&mut self, pose: &Pose, moved: &Vec6, pressed: Vec<Pressed>) {
+        let by_motion = self.by_motion.take();
+        if by_motion.is_empty() {
+            self.respond(pose, pressed);
+        } else {
+            let changes = by_motion.iter();
+            let changes_n: Vec<Pair> = changes
+                .map(|loads| [0, 1].map(|k| six(&loads[k]).dot(moved)))
+                .collect();
+            self.press(pose, pressed);
+            let compliance = Arc::clone(&self.compliance);
+            let compliance = compliance.near(self.asked());
+            let rubbed = self.rubbed(&compliance);
+            self.loads.take_along(&rubbed, &changes_n, &compliance);
+            self.spread();
+        }
+        self.start = Held {
+            pose: Some(*pose),
+            loads: self.loads_now(),
+        };
+        self.start_mm.fill(f64::NAN);
+        for (place, node) in self.rubbed_nodes.iter().enumerate() {
+            let moved_mm = self.loads.moved_mm(place);
+            for (load, moved_mm) in along_surface(*node).into_iter().zip(moved_mm) {
+                self.start_mm[load as usize] = moved_mm;
+            }
+        }
+    }
+
+    /// Adds to nodes that touch what is along the surface: their loads, and how far they have gone along with the femur
+    /// since the increment before landed. Those that stick do not slide.
+    pub fn land(&mut self, touched: &mut [TouchedNode]) {
+        let now = self.loads_now();
+        let compliance = Arc::clone(&self.compliance);
+        let compliance = compliance.near(self.asked());
+        let changes = differences(&now, &self.landed);
+        let change = panels(&changes, &compliance);
+        for node in touched {
+            let at = node.node as usize;
+            let loads = self
+                .surface
+                .directions(at)
+                .into_iter()
+                .zip(self.loads_n[at]);
+            node.force_n += loads.map(|(along, load_n)| along * load_n).sum::<Vec3>();
+            if self.sticks[at] {
+                node.sliding_mm_per_s = [0.0; 2];
+            } else {
+                let rows = along_surface(node.node).map(|load| compliance.row(load));
+                node.along_mm = rows.map(|row| compliance.moved(row, &change));
+            }
+        }
+        let moved_mm = |&(node, by_n): &(u32, Pair)| {
+            let own = along_surface(node).map(|load| compliance.row(load));
+            let [x, y] = own.map(|row| compliance.at(row, row));
+            (x * by_n[0]).hypot(y * by_n[1])
+        };
+        let before = self.memory.land(now.clone());
+        self.moved_in_a_cycle_mm = before.map_or(f64::INFINITY, |before| {
+            let changes = differences(&now, &before);
+            changes.iter().map(moved_mm).fold(0.0, f64::max)
+        });
+        self.landed = now;
+    }
+
+    /// How far a node has gone along the surface, by its own load, from where it was when the same increment landed a cycle
+    /// before, mm.
+    pub fn moved_in_a_cycle_mm(&self) -> f64 {
+        self.moved_in_a_cycle_mm
+    }
+
+    /// The fields of the state that the next contact goes on from.
+    pub fn into_fields(self) -> impl Iterator<Item = StateField> {
+        self.memory.into_fields(self.start)
+    }
+
+    /// The loads of the last response on nodes that carry one.
+    fn loads_now(&self) -> LoadsAlong {
+        let nodes = self.pressed.iter().map(|pressed| pressed.node);
+        let loads = nodes.map(|node| (node, self.loads_n[node as usize]));
+        let mut loads: LoadsAlong = loads.filter(|(_, load_n)| *load_n != [0.0; 2]).collect();
+        loads.sort_unstable_by_key(|&(node, _)| node);
+        loads
+    }
+
+    /// The unit loads whose compliance is asked for.
+    fn asked(&self) -> impl Iterator<Item = u32> {
+        let pressed = self.pressed.iter().map(|pressed| pressed.node);
+        let held = self.start.loads.iter().chain(&self.landed);
+        let held = held.map(|&(node, _)| node);
+        pressed.chain(held).flat_map(along_surface)
+    }
+
+    /// The nodes that press, with how far the femur has gone past each since it carried nothing; none before the femur was
+    /// anywhere.
+    fn rubbed(&mut self, compliance: &NearMatrix) -> Vec<Rubbed> {
+        let Some(start) = self.start.pose else {
+            return Vec::new();
+        };
+        let mut held = None;
+        let mut start_mm = |load: u32| {
+            let known = &mut self.start_mm[load as usize];
+            if known.is_nan() {
+                let held = held.get_or_insert_with(|| panels(&self.start.loads, compliance));
+                *known = compliance.moved(compliance.row(load), held);
+            }
+            *known
+        };
+        let rubbed = |pressed: &Pressed| {
+            let node = pressed.node as usize;
+            let place = &self.surface.positions[node];
+            let moved = place - start.to_insert(&self.pose.to_femur(place));
+            let along = self.surface.directions(node).map(|along| along.dot(&moved));
+            let before = along_surface(pressed.node).map(&mut start_mm);
+            Rubbed {
+                node: pressed.node,
+                limit_n: self.coefficient * pressed.force_n,
+                reach_mm: [along[0] + before[0], along[1] + before[1]],
+                load_n: self.loads_n[node],
+            }
+        };
+        self.pressed.iter().map(rubbed).collect()
+    }
+
+    /// The screws of the two directions of a node as seen from the femur, the directions turned there by the transpose of
+    /// `rotation`: the wrench of a unit load along each, and how a motion of the femur moves its material there along each.
+    fn screws(&self, node: usize, rotation: &Mat3) -> [Vec6; 2] {
+        let place = self.pose.to_femur(&self.surface.positions[node]);
+        self.surface.directions(node).map(|along| {
+            let along = rotation.tr_mul(&along);
+            let moment = place.cross(&along);
+            Vec6::new(moment.x, moment.y, moment.z, along.x, along.y, along.z)
+        })
+    }
+}
+
+/// Loads along the surface by the panels of the compliance.
+fn panels(loads: &LoadsAlong, compliance: &NearMatrix) -> Vec<(usize, Eight)> {
+    let numbers = loads.iter().flat_map(|&(node, _)| along_surface(node));
+    let loads_n = loads.iter().flat_map(|&(_, load_n)| load_n);
+    let (numbers, loads_n): (Vec<u32>, Vec<f64>) = numbers.zip(loads_n).unzip();
+    by_panel(&numbers, &loads_n, compliance)
+}
+
+/// By how much loads differ from others.
+fn differences(now: &LoadsAlong, before: &LoadsAlong) -> LoadsAlong {
+    let mut changes: std::collections::BTreeMap<u32, Pair> = now.iter().copied().collect();
+    for &(node, [x, y]) in before {
+        let change = changes.entry(node).or_default();
+        *change = [change[0] - x, change[1] - y];
+    }
+    changes.into_iter().collect()
+}
+
+/// The first six of eight numbers.
+fn six(numbers: &Eight) -> Vec6 {
+    Vec6::from_fn(|motion, _| get(numbers, motion))
+}
+
+/// Six numbers, and two that are nothing.
+fn eight(six: &Vec6) -> Eight {
+    let mut numbers = zero();
+    six.iter()
+        .enumerate()
+        .for_each(|(side, number)| set(&mut numbers, side, *number));
+    numbers
+}
