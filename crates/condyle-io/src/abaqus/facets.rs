@@ -9,9 +9,9 @@ use condyle::spatial::Pose;
 use crate::case::in_four;
 
 /// Nodes of the insert as near to the femur as this may touch it, mm.
-const NEAR_MM: f64 = 0.5;
+const NEAR_MM: f64 = 0.1;
 /// Edge of the cells by which triangles are told to be near such nodes, mm.
-const CELL_MM: f64 = 1.5;
+const CELL_MM: f64 = 1.0;
 /// Edges are halved until they are this short, mm: between corners on a radius of 20 mm such a facet lies 0.1
 /// micrometres too deep on average.
 const LONGEST_EDGE_MM: f64 = 0.25;
