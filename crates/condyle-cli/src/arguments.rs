@@ -136,6 +136,9 @@ pub struct Export {
     /// For Abaqus/Explicit rather than Abaqus/Standard.
     #[arg(long)]
     pub explicit: bool,
+    /// The bodies alone of a case with a deformable insert, for CalculiX and Abaqus: the femur pressed to where it is at so many percent of the first cycle.
+    #[arg(long, value_name = "PERCENT", conflicts_with_all = ["deformable", "explicit"], value_parser = percent)]
+    pub pressed_at: Option<f64>,
     /// Threads for the one-time work on a mesh; the file is the same on any number.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,
@@ -373,4 +376,14 @@ fn presets() -> impl TypedValueParser<Value = Preset> {
     let possible = |preset: &Preset| PossibleValue::new(preset.word()).help(preset.about());
     PossibleValuesParser::new(Preset::ALL.iter().map(possible))
         .try_map(|word| Preset::from_word(&word).ok_or("it is none of the presets"))
+}
+
+/// A place in a cycle.
+fn percent(word: &str) -> Result<f64, String> {
+    let percent: f64 = word.parse().map_err(|_| "it must be a number".to_owned())?;
+    if (0.0..=100.0).contains(&percent) {
+        Ok(percent)
+    } else {
+        Err("it must be from 0 to 100".to_owned())
+    }
 }

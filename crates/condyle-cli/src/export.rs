@@ -3,8 +3,8 @@
 use std::{fs::File, io::Write, process::ExitCode};
 
 use condyle_io::{
-    abaqus::{AbaqusOptions, ExportError, write_abaqus},
-    case::Case,
+    abaqus::{AbaqusOptions, ExportError, PressedCase, write_abaqus},
+    case::{BuildWarning, Case},
 };
 use condyle_lab::RunError;
 
@@ -15,12 +15,8 @@ pub fn export(arguments: &Export) -> ExitCode {
         Ok(case) => case,
         Err(error) => return exit::fail_run(&error.into()),
     };
-    let options = AbaqusOptions {
-        deformable: arguments.deformable,
-        explicit: arguments.explicit,
-    };
     let mut text = Vec::new();
-    match write_abaqus(&case, options, usize::from(arguments.threads), &mut text) {
+    match write(arguments, &case, &mut text) {
         Ok(warnings) => {
             warnings
                 .iter()
@@ -29,6 +25,24 @@ pub fn export(arguments: &Export) -> ExitCode {
         }
         Err(error) => fail(&case, error),
     }
+}
+
+fn write(
+    arguments: &Export,
+    case: &Case,
+    text: &mut Vec<u8>,
+) -> Result<Vec<BuildWarning>, ExportError> {
+    let threads = usize::from(arguments.threads);
+    if let Some(percent) = arguments.pressed_at {
+        let pressed = PressedCase::new(case, threads)?;
+        pressed.write(percent, text)?;
+        return Ok(pressed.warnings);
+    }
+    let options = AbaqusOptions {
+        deformable: arguments.deformable,
+        explicit: arguments.explicit,
+    };
+    write_abaqus(case, options, threads, text)
 }
 
 /// Fails as a run of the same case would.
@@ -42,9 +56,15 @@ fn fail(case: &Case, error: ExportError) -> ExitCode {
             shown: case.placement_at_its_key(&source, &[]),
             source,
         },
-        ExportError::Write { .. } | ExportError::Deformable => {
-            return exit::fail(error, exit::BAD_INPUT);
-        }
+        ExportError::Cycle(source) => RunError::March {
+            source: *source,
+            out: None,
+        },
+        ExportError::Write { .. }
+        | ExportError::Deformable
+        | ExportError::Foundation
+        | ExportError::KinematicHardening { .. }
+        | ExportError::Apart { .. } => return exit::fail(error, exit::BAD_INPUT),
     })
 }
 

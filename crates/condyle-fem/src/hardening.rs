@@ -103,6 +103,11 @@ impl Hardening {
         Self::new(vec![(0.0, yield_stress)], 0.0)
     }
 
+    /// Accumulated plastic strains and the yield stress at each.
+    pub fn points(&self) -> &[(f64, f64)] {
+        &self.points
+    }
+
     /// Modulus of kinematic hardening.
     pub fn kinematic_modulus(&self) -> f64 {
         self.kinematic_modulus

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use condyle::Vec3;
 
-use super::model::Model;
+use super::model::{Model, in_mesh};
 use super::names;
 use crate::mesh::{InpWriter, RigidTriangle, element_faces};
 
@@ -38,7 +38,7 @@ fn insert<W: Write>(model: &Model<'_>, inp: &mut InpWriter<W>) -> io::Result<()>
         inp.node_set(names::BACKSIDE, backside)?;
     }
     inp.comment("The articulating surface.")?;
-    let faces = element_faces(mesh, &articulating(model), labels.hexahedron);
+    let faces = element_faces(mesh, &in_mesh(&model.test.insert), labels.hexahedron);
     inp.surface_of_faces(names::ARTICULATING, &faces)?;
     let material = &model.case.material;
     let density = material.density_mg_per_mm3 / MG_PER_TONNE;
@@ -55,13 +55,6 @@ fn body_comment(model: &Model<'_>) -> &'static str {
         "Rigid, as in condyle: the elastic layer is in the pressure law of the contact. Abaqus wants\n\
          elements that could deform under a secondary surface, so these are C3D8R made rigid."
     }
-}
-
-/// Quads of the articulating surface in numbers of mesh nodes.
-fn articulating(model: &Model<'_>) -> Vec<[u32; 4]> {
-    let insert = &model.test.insert;
-    let in_mesh = |face: &[u32; 4]| face.map(|i| insert.surface_nodes()[i as usize]);
-    insert.surface_faces().iter().map(in_mesh).collect()
 }
 
 /// Nodes of the faces that look down, ascending.

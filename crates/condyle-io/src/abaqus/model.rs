@@ -2,7 +2,7 @@
 
 use condyle::Vec3;
 use condyle::evolve::{March, WearTest};
-use condyle::geometry::TriangleMesh;
+use condyle::geometry::{Insert, TriangleMesh};
 use condyle::machine::{JointIndex, knee};
 use condyle_fem::HexMesh;
 
@@ -126,7 +126,13 @@ impl Labels {
 }
 
 /// A round label behind `count` labels from `first`.
-fn after(first: u32, count: usize) -> u32 {
+pub(super) fn after(first: u32, count: usize) -> u32 {
     const ROUND: u32 = 100_000;
     (first + count as u32).div_ceil(ROUND) * ROUND + 1
+}
+
+/// Quads of the articulating surface in numbers of mesh nodes.
+pub(super) fn in_mesh(insert: &Insert) -> Vec<[u32; 4]> {
+    let in_mesh = |face: &[u32; 4]| face.map(|i| insert.surface_nodes()[i as usize]);
+    insert.surface_faces().iter().map(in_mesh).collect()
 }

@@ -16,6 +16,8 @@ pub(super) const FEMUR_NODES: &str = "FEMUR-NODES";
 pub(super) const FEMUR_SURFACE: &str = "FEMUR-SURFACE";
 /// Polyethylene.
 pub(super) const MATERIAL: &str = "UHMWPE";
+/// The femur's, where its elements need one.
+pub(super) const METAL: &str = "METAL";
 
 /// Reference node of the femur, on the flexion axis.
 pub(super) const FEMUR_REF: &str = "FEMUR-REF";

@@ -55,6 +55,7 @@ pub use activity::{Activities, Activity, ActivityKeys};
 pub use activity_reason::ActivityReason;
 pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
+pub(crate) use build::in_four;
 pub use build::{
     Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, SharedBodies, StrayPiece, WrongAxes,
 };

@@ -78,7 +78,7 @@ variants! {
 
 impl PlasticityChoice {
     /// The yield stress, if the insert yields.
-    pub(super) fn hardening(&self) -> Option<Hardening> {
+    pub(crate) fn hardening(&self) -> Option<Hardening> {
         match self {
             Self::None => None,
             Self::J2(j2) => j2.hardening().ok(),

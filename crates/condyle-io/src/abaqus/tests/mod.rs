@@ -2,6 +2,7 @@
 
 mod balance;
 mod motion;
+mod pressed;
 mod reader;
 
 use std::fs;

@@ -13,6 +13,7 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("SURFACE", &["NAME", "TYPE"]),
     ("MATERIAL", &["NAME"]),
     ("ELASTIC", &[]),
+    ("PLASTIC", &[]),
     ("DENSITY", &[]),
     ("SOLID SECTION", &["ELSET", "MATERIAL"]),
     ("RIGID BODY", &["ELSET", "REF NODE", "TIE NSET", "PIN NSET"]),
@@ -33,6 +34,11 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("AMPLITUDE", &["NAME", "DEFINITION", "TIME"]),
     ("STEP", &["NAME", "NLGEOM", "INC"]),
     ("DYNAMIC", &["APPLICATION", "EXPLICIT"]),
+    ("STATIC", &[]),
+    ("CHANGE FRICTION", &["INTERACTION"]),
+    ("NODE PRINT", &["NSET", "TOTALS"]),
+    ("NODE FILE", &[]),
+    ("CONTACT FILE", &[]),
     ("BOUNDARY", &["OP", "AMPLITUDE", "TYPE"]),
     ("CLOAD", &["OP", "AMPLITUDE"]),
     ("CONNECTOR MOTION", &["OP", "AMPLITUDE", "TYPE"]),
@@ -50,6 +56,11 @@ const KNOWN: &[(&str, &[&str])] = &[
 /// Keywords that stand in a step, and only there.
 const IN_A_STEP: &[&str] = &[
     "DYNAMIC",
+    "STATIC",
+    "CHANGE FRICTION",
+    "NODE PRINT",
+    "NODE FILE",
+    "CONTACT FILE",
     "BOUNDARY",
     "CLOAD",
     "CONNECTOR MOTION",
@@ -222,7 +233,8 @@ impl Deck {
     fn check_elements(&self) {
         for (label, (kind, nodes)) in &self.elements {
             let count = match kind.as_str() {
-                "C3D8" | "C3D8R" => 8,
+                "C3D8" | "C3D8R" | "C3D8I" => 8,
+                "C3D6" => 6,
                 "R3D3" => 3,
                 "CONN3D2" => 2,
                 "MASS" | "ROTARYI" => 1,
@@ -309,7 +321,7 @@ impl Deck {
             let of_set = self.element_sets.contains_key(&row[0]) && row[1] == "SPOS";
             let label = row[0].parse().ok();
             let element = label.and_then(|label: u32| self.elements.get(&label));
-            let of_face = element.is_some_and(|(kind, _)| kind.starts_with("C3D8"))
+            let of_face = element.is_some_and(|(kind, _)| kind.starts_with("C3D"))
                 && ["S1", "S2", "S3", "S4", "S5", "S6"].contains(&&*row[1]);
             assert!(of_set || of_face, "{row:?}");
         }

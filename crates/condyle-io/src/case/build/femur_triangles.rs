@@ -73,7 +73,7 @@ fn sphere(radius_mm: f64, about: f64) -> TriangleMesh {
     let halvings = (about / ICOSAHEDRON).log(4.0).round() as usize;
     let mut ball = icosahedron();
     for _ in 0..halvings {
-        ball = in_four(&ball);
+        ball = in_four(&ball, |a, b| (a + b).normalize());
     }
     ball.mapped(|vertex| vertex.normalize() * radius_mm)
 }
@@ -119,13 +119,16 @@ fn is_face([a, b, c]: &[Vec3; 3]) -> bool {
         .all(|(one, other)| ((*one - *other).norm() - 2.0).abs() < 1e-9)
 }
 
-fn in_four(mesh: &TriangleMesh) -> TriangleMesh {
+/// Every triangle cut in four at its middles, which `middle_of` puts between two corners.
+pub(crate) fn in_four(
+    mesh: &TriangleMesh,
+    middle_of: impl Fn(&Vec3, &Vec3) -> Vec3,
+) -> TriangleMesh {
     let mut vertices = mesh.vertices.clone();
     let mut middles = std::collections::HashMap::new();
     let mut middle = |a: u32, b: u32| {
         *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
-            let sum = vertices[a as usize] + vertices[b as usize];
-            vertices.push(sum.normalize());
+            vertices.push(middle_of(&vertices[a as usize], &vertices[b as usize]));
             vertices.len() as u32 - 1
         })
     };

@@ -24,6 +24,7 @@ pub use assemble::Built;
 pub(super) use construct::{cut_at, heights_to_write, rounded_up};
 pub use error::{BuildError, BuildWarning};
 pub use femur_triangles::FEMUR_TRIANGLES;
+pub(crate) use femur_triangles::in_four;
 #[cfg(feature = "file-system")]
 pub(super) use lie::{longest_mm, usual_unit};
 #[cfg(feature = "file-system")]

@@ -25,14 +25,32 @@ impl<W: Write> InpWriter<W> {
         friction: f64,
         elastic_slip_mm: Option<f64>,
     ) -> io::Result<()> {
-        self.keyword(&format!("*SURFACE INTERACTION, NAME={name}"))?;
-        self.keyword("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR")?;
-        for row in law {
-            self.reals(&[row.pressure_mpa, row.overclosure_mm])?;
-        }
+        self.softened(name, law)?;
         let slip = elastic_slip_mm.map(|slip| format!(", ELASTIC SLIP={}", real(slip)));
         self.keyword(&format!("*FRICTION{}", slip.unwrap_or_default()))?;
         self.reals(&[friction])
+    }
+
+    /// `*SURFACE INTERACTION` with a tabulated pressure-overclosure law alone; both columns must rise, and the first
+    /// pressure be 0.
+    pub fn softened(&mut self, name: &str, law: &[PressureOverclosure]) -> io::Result<()> {
+        self.keyword(&format!("*SURFACE INTERACTION, NAME={name}"))?;
+        self.keyword("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR")?;
+        law.iter()
+            .try_for_each(|row| self.reals(&[row.pressure_mpa, row.overclosure_mm]))
+    }
+
+    /// `*CONTACT PAIR`, the nodes of `secondary` against the surface `main`.
+    pub fn nodes_on_surface(
+        &mut self,
+        interaction: &str,
+        secondary: &str,
+        main: &str,
+    ) -> io::Result<()> {
+        self.keyword(&format!(
+            "*CONTACT PAIR, INTERACTION={interaction}, TYPE=NODE TO SURFACE"
+        ))?;
+        writeln!(self.out, "{secondary}, {main}")
     }
 
     /// `*CONTACT PAIR`, surface to surface: the deformable or finer surface is the secondary one.

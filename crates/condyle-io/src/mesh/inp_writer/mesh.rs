@@ -58,6 +58,17 @@ impl<W: Write> InpWriter<W> {
         self.elements(kind, first, triangles, first_node, elset)
     }
 
+    /// `*ELEMENT` of wedges (C3D6), labelled from `first`; vertex 0 has the label `first_node`.
+    pub fn wedges(
+        &mut self,
+        first: u32,
+        wedges: &[[u32; 6]],
+        first_node: u32,
+        elset: &str,
+    ) -> io::Result<()> {
+        self.elements("C3D6", first, wedges, first_node, elset)
+    }
+
     fn elements<const N: usize>(
         &mut self,
         kind: &str,
