@@ -72,7 +72,7 @@ impl Case {
                 .build(placement, side, flexion_rad, preparing, warnings)
         })?;
         let warnings = [self.constants_left_out(), of_insert, of_femur].concat();
-        let test = self.assembled(insert, &femur, activities)?;
+        let test = self.assembled(insert, &femur, activities, bodies)?;
         Ok(Built { test, warnings })
     }
 
@@ -82,9 +82,10 @@ impl Case {
         insert: Arc<Insert>,
         femur: &BuiltFemur,
         activities: Vec<Activity>,
+        bodies: &SharedBodies,
     ) -> Result<WearTest, BuildError> {
         Ok(WearTest {
-            contact: self.contact_law(&insert)?,
+            contact: self.contact_law_sharing(&insert, bodies)?,
             femur: Arc::clone(&femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
@@ -120,14 +121,22 @@ impl Case {
     /// # Errors
     /// An insert that is no elastic solid, where it is to be one.
     pub fn contact_law(&self, insert: &Insert) -> Result<Arc<dyn ContactLaw>, BuildError> {
+        self.contact_law_sharing(insert, &SharedBodies::default())
+    }
+
+    fn contact_law_sharing(
+        &self,
+        insert: &Insert,
+        bodies: &SharedBodies,
+    ) -> Result<Arc<dyn ContactLaw>, BuildError> {
         Ok(match self.contact.model {
             ContactModelWord::Foundation => Arc::new(self.foundation()),
-            ContactModelWord::Deformable => Arc::new(self.deformable(insert)?),
+            ContactModelWord::Deformable => Arc::new(self.deformable(insert, bodies)?),
         })
     }
 
     /// The insert of this case as an elastic body.
-    fn deformable(&self, insert: &Insert) -> Result<Deformable, BuildError> {
+    fn deformable(&self, insert: &Insert, bodies: &SharedBodies) -> Result<Deformable, BuildError> {
         if self.contact.friction_model == FrictionModelWord::StickSlip
             && self.time.integrator == IntegratorWord::Explicit
         {
@@ -138,12 +147,11 @@ impl Case {
             poissons_ratio: self.material.poissons_ratio,
         };
         let friction = &self.contact.friction;
-        let mut law = Deformable::new(
-            elastic,
-            friction.friction,
-            friction.slip_tolerance_mm_per_s,
-            insert,
-        )?;
+        let (coefficient, slip) = (friction.friction, friction.slip_tolerance_mm_per_s);
+        let mut law = bodies.elastic(self, elastic, || {
+            Deformable::new(elastic, coefficient, slip, insert)
+        })?;
+        (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
         law.search = self.contact.finding.search.search();
         law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
         law.hardening = self.contact.plasticity.hardening();

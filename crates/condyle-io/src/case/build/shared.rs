@@ -2,7 +2,8 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use condyle::geometry;
+use condyle::{contact::Deformable, geometry};
+use condyle_fem::Elastic;
 
 use super::super::contents::Case;
 use super::super::femur::Femur;
@@ -15,15 +16,27 @@ use super::femur::BuiltFemur;
 
 /// Bodies of each kind that are kept, the newest: those of a few levels or designs, whatever the number of cases.
 const MOST_KEPT: usize = 8;
+/// Inserts as elastic bodies that are kept, the newest: each has some hundred megabytes.
+const MOST_ELASTIC: usize = 2;
 
 /// Bodies that were built, for other cases that have the same: a case built beside others is that built alone, to
 /// the bit.
 ///
 /// A mesh file must not change meanwhile.
-#[derive(Default)]
 pub struct SharedBodies {
     inserts: Kept<InsertInputs, geometry::Insert>,
     femurs: Kept<FemurInputs, BuiltFemur>,
+    elastic: Kept<(InsertInputs, Elastic), Deformable>,
+}
+
+impl Default for SharedBodies {
+    fn default() -> Self {
+        Self {
+            inserts: Kept::of(MOST_KEPT),
+            femurs: Kept::of(MOST_KEPT),
+            elastic: Kept::of(MOST_ELASTIC),
+        }
+    }
 }
 
 /// A body, with what was put right on the way to it.
@@ -37,19 +50,36 @@ pub(super) struct InsertInputs(Insert, InsertPlacement, Side, Limits);
 #[derive(PartialEq)]
 pub(super) struct FemurInputs(Femur, FemurPlacement, Side, Limits, f64);
 
+impl InsertInputs {
+    fn of(case: &Case) -> Self {
+        Self(
+            case.insert.clone(),
+            case.insert_placement.clone(),
+            case.heading.side,
+            case.limits.clone(),
+        )
+    }
+}
+
 impl SharedBodies {
     pub(super) fn insert<E>(
         &self,
         case: &Case,
         make: impl FnOnce(&mut Vec<BuildWarning>) -> Result<geometry::Insert, E>,
     ) -> Result<WithWarnings<geometry::Insert>, E> {
-        let inputs = InsertInputs(
-            case.insert.clone(),
-            case.insert_placement.clone(),
-            case.heading.side,
-            case.limits.clone(),
-        );
-        self.inserts.found_or_made(inputs, make)
+        self.inserts.found_or_made(InsertInputs::of(case), make)
+    }
+
+    /// The law of a deformable insert, of which what is known of its compliance goes from case to case.
+    pub(super) fn elastic<E>(
+        &self,
+        case: &Case,
+        elastic: Elastic,
+        make: impl FnOnce() -> Result<Deformable, E>,
+    ) -> Result<Deformable, E> {
+        let inputs = (InsertInputs::of(case), elastic);
+        let (law, _) = self.elastic.found_or_made(inputs, |_| make())?;
+        Ok(Deformable::clone(&law))
     }
 
     pub(super) fn femur<E>(
@@ -69,16 +99,18 @@ impl SharedBodies {
     }
 }
 
-/// The newest of what was made, each by what it was made of.
-struct Kept<I, T>(Mutex<Vec<(I, WithWarnings<T>)>>);
-
-impl<I, T> Default for Kept<I, T> {
-    fn default() -> Self {
-        Self(Mutex::new(Vec::new()))
-    }
+/// The newest of what was made, so many at most, each by what it was made of.
+struct Kept<I, T> {
+    most: usize,
+    made: Mutex<Vec<(I, WithWarnings<T>)>>,
 }
 
 impl<I: PartialEq, T> Kept<I, T> {
+    fn of(most: usize) -> Self {
+        let made = Mutex::new(Vec::new());
+        Self { most, made }
+    }
+
     /// What was made of the same inputs, or is made now. Two that come at once may both make it.
     fn found_or_made<E>(
         &self,
@@ -95,14 +127,14 @@ impl<I: PartialEq, T> Kept<I, T> {
     }
 
     fn find(&self, inputs: &I) -> Option<WithWarnings<T>> {
-        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let same = kept.iter().find(|(of, _)| of == inputs);
         same.map(|(_, found)| found.clone())
     }
 
     fn keep(&self, inputs: I, made: WithWarnings<T>) {
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() == MOST_KEPT {
+        let mut kept = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() == self.most {
             kept.remove(0);
         }
         kept.push((inputs, made));
@@ -115,7 +147,7 @@ mod tests {
 
     #[test]
     fn what_was_made_of_the_same_is_shared_and_the_oldest_goes() {
-        let kept: Kept<usize, usize> = Kept::default();
+        let kept: Kept<usize, usize> = Kept::of(MOST_KEPT);
         let made = |inputs: usize| {
             let made = kept.found_or_made(inputs, |_| Ok::<_, ()>(inputs));
             made.expect("nothing goes wrong").0

@@ -71,22 +71,6 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
         self.read()
     }
 
-    /// The tiles of which something was asked, ascending: how large their compliance is bounds what others need not be
-    /// looked at for, and so which way a search goes.
-    pub fn known_tiles(&self) -> Vec<u32> {
-        let near = self.read();
-        let tiles = self.source.tiles().iter().enumerate();
-        let known = tiles.filter(|(_, tile)| tile.first().is_some_and(|&node| near.knows(node)));
-        known.map(|(number, _)| number as u32).collect()
-    }
-
-    /// Asks for tiles at once, if there are such.
-    pub fn know_tiles(&self, tiles: impl Iterator<Item = u32>) {
-        let count = self.source.tiles().len();
-        let tiles: Vec<u32> = tiles.filter(|&tile| (tile as usize) < count).collect();
-        self.add(&tiles);
-    }
-
     fn read(&self) -> RwLockReadGuard<'_, NearMatrix> {
         self.near.read().unwrap_or_else(PoisonError::into_inner)
     }

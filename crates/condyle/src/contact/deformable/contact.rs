@@ -18,7 +18,7 @@ use crate::{
     contact::{
         broad_phase::BroadPhase,
         contact_law::Bodies,
-        memory::{ContactCache, ContactMemory, ContactState, StateField},
+        memory::{ContactCache, ContactMemory, ContactState},
         model::{ContactModel, Flattened, Landing, Linearization, Response, Settled, Tangent},
         pressed::{Coulomb, NearBlock, NearBlocks, PressedBlocks, Sliding, Tractions4},
         share_block::ShareBlock,
@@ -35,10 +35,6 @@ use crate::{
 /// A node may touch where the bodies at rest are nearer than this, mm: beside a contact a thin layer bulges,
 /// by a few hundredths of what it gives way.
 const MOST_BULGE_MM: f64 = 0.1;
-
-/// The field of the contact's state with the tiles of the compliance that were asked for: a search goes the same way
-/// in their company alone, to the last bit.
-pub(super) const TILES_FIELD: &str = "compliance_tiles_asked_for";
 
 /// How a deformable contact is computed beside the compliance.
 #[derive(Clone, Copy)]
@@ -401,15 +397,8 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
 
     fn into_memory(self: Box<Self>) -> ContactMemory {
         let mut state = self.state;
-        let own = [PLASTIC_FIELD, FRICTION_FIELD, TILES_FIELD];
+        let own = [PLASTIC_FIELD, FRICTION_FIELD];
         state.fields.retain(|field| !own.contains(&&*field.name));
-        let known = self.compliance.known_tiles();
-        if !known.is_empty() {
-            state.fields.push(StateField {
-                name: TILES_FIELD.to_owned(),
-                values: known.into_iter().map(f64::from).collect(),
-            });
-        }
         let plastic = self.plastic.map(PlasticInsert::into_memory);
         state
             .fields

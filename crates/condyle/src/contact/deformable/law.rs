@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     compliance::Compliance,
-    contact::{DeformableContact, Rubbing, TILES_FIELD},
+    contact::{DeformableContact, Rubbing},
     elastic_surface::ElasticSurface,
     friction::ElasticFriction,
     friction_memory::{FRICTION_FIELD, FrictionMemory},
@@ -122,7 +122,6 @@ impl Deformable {
     ) -> DeformableContact<'a, B> {
         let (compliance, state) = self.compliance(bodies.insert, &memory.state);
         let plastic = self.plastic(&state, &compliance);
-        compliance.know_tiles(tiles_of(&state));
         let (friction, coulomb) = match self.friction_model {
             FrictionModel::Regularised => (None, self.coulomb()),
             FrictionModel::StickSlip => {
@@ -174,15 +173,6 @@ fn used_nodes(insert: &Insert, state: &ContactState) -> Vec<Vec3> {
             .collect(),
         None => insert.unworn_nodes().to_vec(),
     }
-}
-
-/// The tiles of the compliance that were asked for.
-fn tiles_of(state: &ContactState) -> impl Iterator<Item = u32> {
-    let fields = state.fields.iter();
-    let tiles = fields.filter(|field| field.name == TILES_FIELD);
-    tiles
-        .flat_map(|field| &field.values)
-        .map(|&tile| tile as u32)
 }
 
 /// The state with the nodes whose compliance is used, and the plastic strains and loads along the surface that it had.

@@ -56,7 +56,7 @@ pub struct Deformable {
     remembered: Arc<Remembered>,
 }
 
-/// Compliances of inserts, the newest last; clones of a law share them.
+/// Compliances of inserts, the one that was used last at the end; clones of a law share them.
 #[derive(Debug, Default)]
 struct Remembered(Mutex<Vec<Arc<Compliance<ElasticSurface>>>>);
 
@@ -108,12 +108,14 @@ impl Deformable {
             .unwrap_or_else(PoisonError::into_inner);
         let found = remembered
             .iter()
-            .find(|surface| surface.source.is_of(insert, mesh_nodes));
-        if let Some(surface) = found {
-            return Ok(Arc::clone(surface));
-        }
-        let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic)?;
-        let surface = Arc::new(Compliance::new(surface));
+            .position(|surface| surface.source.is_of(insert, mesh_nodes));
+        let surface = match found {
+            Some(place) => remembered.remove(place),
+            None => {
+                let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic)?;
+                Arc::new(Compliance::new(surface))
+            }
+        };
         if remembered.len() == MOST_REMEMBERED {
             remembered.remove(0);
         }
