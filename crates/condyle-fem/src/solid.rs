@@ -126,9 +126,9 @@ impl ElasticSolid {
         self.elastic
     }
 
-    /// Numbers that the factor holds, of 8 bytes each.
-    pub fn factor_len(&self) -> usize {
-        self.factor.len()
+    /// Bytes of the factor and of the strains of the elements.
+    pub fn bytes(&self) -> usize {
+        size_of::<f64>() * self.factor.len() + size_of_val(&*self.elements)
     }
 
     /// Displacement of all nodes under forces on nodes; a node may come more than once.

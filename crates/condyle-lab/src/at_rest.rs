@@ -33,7 +33,13 @@ pub struct AtRest {
     pub(crate) pose: Pose,
     #[serde(skip)]
     pub(crate) touched: Vec<TouchedNode>,
+    /// Nodes within [`NEAR_MM`] of the femur.
+    #[serde(skip)]
+    pub(crate) nodes_near: usize,
 }
+
+/// Nodes that are as near as this at rest touch under the loads of a cycle, about, mm.
+const NEAR_MM: f64 = 0.25;
 
 impl AtRest {
     /// The bodies of a march that has not begun.
@@ -53,6 +59,8 @@ impl AtRest {
             let is_medial = usize::from(node.region) == MEDIAL;
             if is_medial { -node.force_n.y } else { 0.0 }
         });
+        let femur = march.femur();
+        let is_near = |place: &&Vec3| femur.gap_mm(&motion.pose.to_femur(place)) < NEAR_MM;
         let (x, y) = test.flexion_axis_mm;
         let in_files = |joint: condyle::machine::JointIndex| {
             KNEE.joint(joint).kind().in_files(joint.of(&positions))
@@ -66,6 +74,7 @@ impl AtRest {
             contact_area_mm2: sum(|node| node.covered_mm2),
             peak_pressure_mpa: landing.peak_pressure_mpa,
             pose: motion.pose,
+            nodes_near: surface.positions.iter().filter(is_near).count(),
             touched: landing.touched,
         }
     }

@@ -16,8 +16,8 @@ const PROGRAM_MB: f64 = 6.0;
 const BYTES_A_TOUCH: f64 = 230.0;
 /// The estimate of the error keeps histories of twice the increments beside them.
 const WITH_ESTIMATE: f64 = 2.1;
-/// So many times the nodes that touch at an increment are touched in the life of an insert, about.
-const EVER_TOUCHED: f64 = 4.0;
+/// To so many times the nodes that it is near at rest the femur comes near in the life of an insert, about.
+const EVER_NEAR: f64 = 4.0;
 /// Parts of a cycle at which the load is looked at.
 const LOOKED_AT: usize = 50;
 
@@ -26,15 +26,12 @@ pub(crate) fn memory_mb(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
     // The area of a contact on a foundation goes with the root of its load.
     let larger = (mean_load_n(march) / at_rest.axial_force_n).max(1.0).sqrt();
     let most = march.insert().surface_nodes().len() as f64;
-    memory_mb_touching(
-        case,
-        march,
-        (at_rest.touched.len() as f64 * larger).min(most),
-    )
+    let touched = (at_rest.touched.len() as f64 * larger).min(most);
+    memory_mb_touching(case, march, touched, EVER_NEAR * at_rest.nodes_near as f64)
 }
 
-/// The same if so many nodes touch at an increment.
-fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64) -> f64 {
+/// The same if so many nodes touch at an increment, and the femur ever comes near so many.
+fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64, nodes_near: f64) -> f64 {
     let histories = if case.accuracy.estimate {
         WITH_ESTIMATE
     } else {
@@ -49,12 +46,12 @@ fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64) -> f64 {
     let bytes = Limits::BYTES_OF_INSERT_NODE * march.insert().mesh().nodes.len() as f64
         + BYTES_A_TOUCH * histories * touches
         + Limits::BYTES_OF_FIELD_NODE * field_nodes
-        + law.memory_bytes(march.insert(), EVER_TOUCHED * nodes_touched);
+        + law.memory_bytes(march.insert(), nodes_near);
     PROGRAM_MB + 1e-6 * bytes
 }
 
 /// Mean of the axial force over a cycle, N; none where the femur is not pressed by a waveform.
-fn mean_load_n(march: &March) -> f64 {
+pub(crate) fn mean_load_n(march: &March) -> f64 {
     let Drive::Loaded(load) = &march.test().machine().joint(IS).drive else {
         return 0.0;
     };
@@ -71,7 +68,7 @@ pub(super) fn check_memory(case: &Case, march: &March) -> Result<(), RunError> {
     let allowed_gb = case.limits.memory_gb;
     let whole_surface = march.insert().surface_nodes().len() as f64;
     // Most cases fit even if all of the surface touched, and need no contact solved to know that.
-    if 1e-3 * memory_mb_touching(case, march, whole_surface) <= allowed_gb {
+    if 1e-3 * memory_mb_touching(case, march, whole_surface, whole_surface) <= allowed_gb {
         return Ok(());
     }
     let needed_gb = 1e-3 * memory_mb(case, march, &AtRest::of(march));

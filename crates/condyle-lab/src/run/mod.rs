@@ -18,7 +18,7 @@ pub(crate) use clock::Clock;
 pub use error::RunError;
 pub use event::{Outcome, Reached, RunEvent};
 pub use in_memory::{InMemory, RunKeeper, run_in_memory};
-pub(crate) use memory::memory_mb;
+pub(crate) use memory::{mean_load_n, memory_mb};
 #[cfg(feature = "studies")]
 pub(crate) use one_of_many::{march_watched, marched};
 pub use options::RunOptions;

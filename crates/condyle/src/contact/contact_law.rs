@@ -34,8 +34,8 @@ pub trait ContactLaw: Debug + Send + Sync {
     /// MPa/mm: how fast wear flattens the pressure follows from it.
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64;
 
-    /// Bytes that the law keeps of an insert, beside what a contact takes, if so many nodes ever touch.
-    fn memory_bytes(&self, _insert: &Insert, _ever_touched: f64) -> f64 {
+    /// Bytes that the law keeps of an insert, beside what a contact takes, if the femur comes near so many nodes.
+    fn memory_bytes(&self, _insert: &Insert, _nodes_near: f64) -> f64 {
         0.0
     }
 

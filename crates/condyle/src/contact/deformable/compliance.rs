@@ -51,6 +51,11 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
         self.tile_of.len()
     }
 
+    /// How many nodes something was asked of.
+    pub fn known_count(&self) -> usize {
+        self.read().row_count()
+    }
+
     /// The tile of a node.
     pub fn tile_of(&self, node: u32) -> u32 {
         self.tile_of[node as usize]

@@ -91,13 +91,18 @@ impl ElasticSurface {
         })
     }
 
-    /// Bytes of the factor, and of so many loads on each of some nodes and the compliance between them.
+    /// Bytes of the solid, and of so many loads on each of some nodes and the compliance between them.
     pub fn bytes(&self, nodes: f64, loads_a_node: [f64; 2]) -> f64 {
-        let factor = self.solid.factor_len() as f64;
         let felt = FELT_PER_ROOT * (3.0 * self.solid.mesh().nodes.len() as f64).sqrt();
         let nodes = nodes.min(self.nodes.len() as f64);
         let of_loads = loads_a_node.map(|each| each * nodes * (each * nodes + felt));
-        8.0 * (factor + of_loads[0] + of_loads[1])
+        self.solid.bytes() as f64 + size_of::<f64>() as f64 * (of_loads[0] + of_loads[1])
+    }
+
+    /// Bytes of what loads on some nodes move inside an insert that yields.
+    pub fn bytes_below(&self, nodes: f64) -> f64 {
+        let rows = 3.0 * self.solid.mesh().nodes.len() as f64;
+        size_of::<f32>() as f64 * rows * nodes.min(self.nodes.len() as f64)
     }
 
     /// Whether it is that of an insert with its mesh nodes there.

@@ -9,7 +9,7 @@ use super::{
     friction::ElasticFriction,
     friction_memory::{FRICTION_FIELD, FrictionMemory},
     plastic::{PLASTIC_FIELD, PlasticInsert, Remembered},
-    settings::{Deformable, FrictionModel},
+    settings::{Deformable, FrictionModel, MOST_REMEMBERED_BYTES},
     under_surface::under_surface,
 };
 use crate::{
@@ -40,6 +40,9 @@ const NODES_FIELD: &str = "compliance_nodes_mm";
 /// are stiffer than the body.
 const ALONE: f64 = 1.9;
 
+/// What an insert and its coarser twin take, of what the insert does.
+const WITH_TWIN: f64 = 1.5;
+
 impl ContactLaw for Deformable {
     /// # Panics
     /// An insert, other than that which the law was made of, that is no elastic solid.
@@ -62,15 +65,21 @@ impl ContactLaw for Deformable {
         ALONE * contact_modulus_mpa / insert.unworn_share_mm2(node).sqrt()
     }
 
-    fn memory_bytes(&self, insert: &Insert, ever_touched: f64) -> f64 {
-        let surface = self.surface(insert, insert.unworn_nodes());
+    fn memory_bytes(&self, insert: &Insert, nodes_near: f64) -> f64 {
         let along_surface = match self.friction_model {
             FrictionModel::Regularised => 0.0,
             FrictionModel::StickSlip => 2.0,
         };
-        let loads_a_node = [1.0, along_surface];
+        let surface = self.surface(insert, insert.unworn_nodes());
         surface.map_or(0.0, |surface| {
-            surface.source.bytes(ever_touched, loads_a_node)
+            let bytes = surface.source.bytes(nodes_near, [1.0, along_surface]);
+            // The coarser twin of the insert, and the insert as it has worn, are kept beside.
+            let beside = bytes.min(MOST_REMEMBERED_BYTES);
+            let below = self
+                .hardening
+                .as_ref()
+                .map_or(0.0, |_| WITH_TWIN * surface.source.bytes_below(nodes_near));
+            bytes + beside + below
         })
     }
 

@@ -53,6 +53,11 @@ impl NearMatrix {
         self.row_of[node as usize] != UNKNOWN
     }
 
+    /// How many rows there are.
+    pub fn row_count(&self) -> usize {
+        self.rows.len()
+    }
+
     /// The row, and the column, of a node that is known.
     #[inline(always)]
     pub fn row(&self, node: u32) -> u32 {

@@ -11,8 +11,9 @@ use crate::{
     geometry::Insert,
 };
 
-/// So many compliances are remembered: those of an insert and of its coarser twin, unworn and worn.
-const MOST_REMEMBERED: usize = 4;
+/// So much of the compliances of inserts is remembered, bytes: of a knee that of the insert and of its coarser twin,
+/// unworn and worn.
+pub(super) const MOST_REMEMBERED_BYTES: f64 = 3e8;
 
 /// Coulomb's friction on a deformable insert.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -109,16 +110,14 @@ impl Deformable {
         let found = remembered
             .iter()
             .position(|surface| surface.source.is_of(insert, mesh_nodes));
-        let surface = match found {
-            Some(place) => remembered.remove(place),
-            None => {
-                let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic)?;
-                Arc::new(Compliance::new(surface))
-            }
+        let surface = if let Some(place) = found {
+            remembered.remove(place)
+        } else {
+            // Before, so that what goes and what comes are not there at once.
+            forget_the_oldest(&mut remembered);
+            let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic)?;
+            Arc::new(Compliance::new(surface))
         };
-        if remembered.len() == MOST_REMEMBERED {
-            remembered.remove(0);
-        }
         remembered.push(Arc::clone(&surface));
         Ok(surface)
     }
@@ -128,5 +127,19 @@ impl Deformable {
             coefficient: self.friction,
             slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
         }
+    }
+}
+
+/// Makes room for one as large as the newest.
+fn forget_the_oldest(remembered: &mut Vec<Arc<Compliance<ElasticSurface>>>) {
+    let bytes = |surface: &Arc<Compliance<ElasticSurface>>| {
+        surface
+            .source
+            .bytes(surface.known_count() as f64, [1.0, 0.0])
+    };
+    while let Some(newest) = remembered.last()
+        && remembered.iter().map(bytes).sum::<f64>() + bytes(newest) > MOST_REMEMBERED_BYTES
+    {
+        remembered.remove(0);
     }
 }
