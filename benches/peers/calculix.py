@@ -1,18 +1,19 @@
 """CalculiX beside condyle: a ball pressed on a block and slid, the generic insert under the femur at places of the gait.
 
-python calculix.py FOLDER NAME CONDYLE.csv DECK.inp... [--iterative]
+python calculix.py NAME CONDYLE.csv [DECK.inp...] [--iterative] [--limit=SECONDS]
 
-Runs ccx on every deck, a row of CONDYLE.csv each (the block's deck has a row a step), and prints both sides. With
---iterative CalculiX solves by preconditioned conjugate gradients, which knows no friction but is several times quicker
-here; else by its own default.
+Runs ccx on every deck, a row of CONDYLE.csv for each of its steps, and prints both sides. A step that ccx does not end is
+"not finished", and rows without a deck are "not asked". With --iterative CalculiX solves by preconditioned conjugate
+gradients, which knows no friction but is several times quicker here; else by its own default. After so many SECONDS of
+processor time (an hour, if nothing is said) ccx is stopped.
 """
 
+import argparse
 import csv
 import os
 import re
 import resource
 import subprocess
-import sys
 from pathlib import Path
 
 
@@ -37,43 +38,73 @@ def highest_pressures(frd):
     return highest
 
 
-def calculix(deck, iterative):
-    """Runs ccx; rows of (time, force, highest pressure) at the end of every step, and its processor time, s."""
+def processor_s():
+    """Processor time of all that was run until now, s."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def calculix(deck, iterative, limit_s):
+    """Runs ccx; (force down, highest pressure) or None at the end of every step, and its processor time, s."""
     job = deck.with_suffix("")
     text = deck.read_text(encoding="ascii")
     if iterative:
         job = deck.with_name(deck.stem + "-iterative")
         text = text.replace("*STATIC\n", "*STATIC, SOLVER=ITERATIVE CHOLESKY\n")
         job.with_suffix(".inp").write_text(text, encoding="ascii")
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    before = processor_s()
     environment = dict(os.environ, OMP_NUM_THREADS="1")
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_CPU, (limit_s, limit_s))
+
     with open(job.with_suffix(".log"), "w", encoding="utf-8") as log:
-        subprocess.run(["ccx", job.name], cwd=deck.parent, env=environment, stdout=log, check=True)
-    seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-    forces = total_forces(job.with_suffix(".dat").read_text(encoding="ascii"))
-    with open(job.with_suffix(".frd"), encoding="ascii") as frd:
-        pressures = highest_pressures(frd)
-    ends = [row for row in forces if row[0] == round(row[0])]
-    return [(force[1:], pressures[min(pressures, key=lambda time: abs(time - force[0]))]) for force in ends], seconds
+        subprocess.run(["ccx", job.name], cwd=deck.parent, env=environment, stdout=log, check=False, preexec_fn=limit)
+    seconds = processor_s() - before
+    forces, pressures = [], {}
+    if job.with_suffix(".dat").exists() and job.with_suffix(".frd").exists():
+        forces = total_forces(job.with_suffix(".dat").read_text(encoding="ascii"))
+        with open(job.with_suffix(".frd"), encoding="ascii") as frd:
+            pressures = highest_pressures(frd)
+    forces_n = {time: force_n for time, _, force_n, _ in forces}
+    steps = range(1, 1 + sum(line.startswith("*STEP") for line in text.splitlines()))
+    ended = [time in forces_n and time in pressures for time in steps]
+    return [(forces_n[time], pressures[time]) if end else None for time, end in zip(steps, ended)], seconds
+
+
+def show(name, row, theirs):
+    """A line of the table; `theirs` is what CalculiX has, or the word for why it has nothing."""
+    place = row.get("step") or f"{float(row['percent']):.1f} %"
+    own_n, own_mpa, peak_mpa = -float(row["force_y_n"]), float(row["highest_node_mpa"]), float(row["peak_mpa"])
+    own_s = float(row["time_s"])
+    if isinstance(theirs, str):
+        print(f"{name:8} {place:8} | {own_n:9.2f} {theirs:>18} | {own_mpa:7.3f} {'':16} {peak_mpa:7.3f} | {own_s:8.4f}", flush=True)
+        return
+    (their_n, their_mpa), seconds = theirs
+    print(f"{name:8} {place:8} | {own_n:9.2f} {their_n:9.2f} {100 * (own_n / their_n - 1):+6.2f} % |"
+          f" {own_mpa:7.3f} {their_mpa:7.3f} {100 * (own_mpa / their_mpa - 1):+6.2f} % {peak_mpa:7.3f} |"
+          f" {own_s:8.4f} {seconds:8.1f}", flush=True)
 
 
 def main():
-    words = [word for word in sys.argv[1:] if word != "--iterative"]
-    name, ours, decks = words[0], words[1], words[2:]
-    with open(ours, newline="", encoding="ascii") as file:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("name")
+    parser.add_argument("ours")
+    parser.add_argument("decks", nargs="*", type=Path)
+    parser.add_argument("--iterative", action="store_true")
+    parser.add_argument("--limit", type=int, default=3600)
+    words = parser.parse_args()
+    with open(words.ours, newline="", encoding="ascii") as file:
         rows = list(csv.DictReader(file))
-    number = 0
-    for deck in decks:
-        steps, seconds = calculix(Path(deck), "--iterative" in sys.argv)
-        for force_n, peak_mpa in steps:
-            row = rows[number]
-            number += 1
-            place = row.get("step") or f"{float(row['percent']):.1f} %"
-            own_n, own_mpa = -float(row["force_y_n"]), float(row["highest_node_mpa"])
-            their_n = force_n[1]
-            print(f"{name:8} {place:8} | {own_n:9.2f} {their_n:9.2f} {100 * (own_n / their_n - 1):+6.2f} % |"
-                  f" {own_mpa:7.3f} {peak_mpa:7.3f} {100 * (own_mpa / peak_mpa - 1):+6.2f} % {float(row['peak_mpa']):7.3f} |"
-                  f" {float(row['time_s']):8.4f} {seconds:8.1f}", flush=True)
+    left = iter(rows)
+    for deck in words.decks:
+        steps, seconds = calculix(deck, words.iterative, words.limit)
+        for step in steps:
+            show(words.name, next(left), (step, seconds) if step else f"not finished, {seconds:.0f} s")
+    for row in left:
+        show(words.name, row, "not asked")
+    if "since_start_s" in rows[-1]:
+        print(f"{words.name:8} condyle has all in {float(rows[-1]['since_start_s']):.2f} s, with the case read and its first cycle solved")
 
 
 if __name__ == "__main__":

@@ -45,3 +45,36 @@ fn a_bad_case_leaves_with_two_and_no_file() {
         assert!(!folder.path().join("a.inp").exists());
     }
 }
+
+#[test]
+fn a_deformable_insert_is_written_as_its_bodies_alone() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let case = format!("{COARSE}[contact]\nmodel = \"deformable\"\n");
+    let arguments = ["--out", "a.inp", "--pressed-at", "14"];
+    let (code, said) = export(folder.path(), &case, &arguments);
+    assert_eq!((code, said.as_str()), (0, ""));
+    let written = fs::read_to_string(folder.path().join("a.inp")).expect("it is there");
+    assert!(written.starts_with("*HEADING\n") && written.ends_with("*END STEP\n"));
+    for keyword in ["TYPE=C3D8I", "*STEP, NAME=PRESSED", "*BOUNDARY"] {
+        assert!(written.contains(keyword), "no {keyword}");
+    }
+}
+
+#[test]
+fn a_place_or_a_case_that_cannot_be_pressed_leaves_with_two_and_no_file() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let deformable = format!("{COARSE}[contact]\nmodel = \"deformable\"\n");
+    let kinematic = format!("{deformable}plasticity = \"j2\"\nkinematic_modulus_mpa = 10.0\n");
+    for (case, percent, expected) in [
+        (deformable.as_str(), "101", "it must be from 0 to 100"),
+        (deformable.as_str(), "half", "it must be a number"),
+        (COARSE, "14", "write [contact] model = \"deformable\""),
+        (&kinematic, "14", "kinematic_modulus_mpa = 10; set it to 0"),
+    ] {
+        let arguments = ["--out", "a.inp", "--pressed-at", percent];
+        let (code, said) = export(folder.path(), case, &arguments);
+        assert_eq!(code, 2, "{said}");
+        assert!(said.contains(expected), "{said}");
+        assert!(!folder.path().join("a.inp").exists());
+    }
+}

@@ -1,10 +1,10 @@
 //! A ball of 24 mm pressed 0.25 mm into a bonded block of 20 x 20 x 10 mm and slid 2 mm, as CalculiX is to do.
 //!
-//! `cargo run --release -p condyle-lab --example press_and_slide -- DECK.inp > block.csv`
+//! `cargo run --release -p condyle-lab --example press_and_slide -- PRESSED.inp SLID.inp > block.csv`
 //!
-//! The block has 31 x 24 x 12 = 8,928 hexahedra, the polyethylene of a case and friction of 0.07. The deck is for
-//! CalculiX; what is printed is the answer of condyle after each step and the time until then, which begins before the
-//! stiffness is put together.
+//! The block has 31 x 24 x 12 = 8,928 hexahedra, the polyethylene of a case and friction of 0.07. The files are for
+//! CalculiX, the first without the slide and without friction; what is printed is the answer of condyle after each step
+//! and the time until then, which begins before the stiffness is put together.
 
 use std::{error::Error, fs::File, io::BufWriter, time::Instant};
 
@@ -31,9 +31,10 @@ const SPEED_MM_PER_S: f64 = 20.0;
 const SLIP_TOLERANCE_MM_PER_S: f64 = 0.01;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let deck = std::env::args()
-        .nth(1)
-        .ok_or("say where the deck is to be")?;
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [pressed_path, slid_path] = &words[..] else {
+        return Err("say where the two files are to be".into());
+    };
     let insert = block()?;
     let femur = FemoralSurface::sphere(RADIUS_MM);
     let surface = insert.surface();
@@ -52,19 +53,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     let answer = slide(contact.as_mut());
     println!("slid,{answer},{:.4}", start.elapsed().as_secs_f64());
     let pressed = Pressed {
-        title: "Ball pressed on a block and slid",
-        note: "A ball of 24 mm, 0.25 mm deep in a bonded block, slides 2 mm.",
+        title: "Ball pressed on a block",
+        note: "A ball of 24 mm, 0.25 mm deep in a bonded block; it slides 2 mm if there is a second step.",
         bodies,
         triangles: &cap(),
         elastic,
         hardening: None,
         pose: at(0.0, DEPTH_MM),
+        slide: None,
+    };
+    pressed.write(&mut BufWriter::new(File::create(pressed_path)?))?;
+    let slid = Pressed {
         slide: Some(Slide {
             by_mm: Vec3::new(SLIDE_MM, 0.0, 0.0),
             friction: FRICTION,
         }),
+        ..pressed
     };
-    pressed.write(&mut BufWriter::new(File::create(deck)?))?;
+    slid.write(&mut BufWriter::new(File::create(slid_path)?))?;
     Ok(())
 }
 

@@ -4,8 +4,8 @@
 //! `cargo run --release -p condyle-lab --example pressed_at_poses -- CASE FOLDER PERCENT... > pressed.csv`
 //!
 //! Writes FOLDER/PERCENT.inp, the files of `condyle export --pressed-at`, and prints condyle's answer to them: the femur
-//! comes straight down without sliding, in ten increments. A time is that of pressing alone: what
-//! the compliance of nodes near the femur needs is in it, the factor of the insert is not.
+//! comes straight down without sliding, in ten increments. `time_s` is that of pressing alone, on an insert whose
+//! compliance the cycle solved before has left; `since_start_s` has all in it from reading the case on, the files aside.
 
 use std::{
     error::Error,
@@ -33,15 +33,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [case, folder, percents @ ..] = &words[..] else {
         return Err("say a case, a folder, and places of the cycle in percent".into());
     };
+    let start = Instant::now();
     let case = Case::read(Path::new(case))?;
     let pressed = PressedCase::new(&case, 1)?;
-    println!("percent,force_x_n,force_y_n,force_z_n,peak_mpa,highest_node_mpa,time_s");
+    println!(
+        "percent,force_x_n,force_y_n,force_z_n,peak_mpa,highest_node_mpa,time_s,since_start_s"
+    );
+    for percent in percents {
+        let (row, pose) = pressed.at(percent.parse()?)?;
+        let answer = answer(pressed.unworn(), &pose)?;
+        let since_start_s = start.elapsed().as_secs_f64();
+        println!("{},{answer},{since_start_s:.4}", row.percent);
+    }
     for percent in percents {
         let path = PathBuf::from(folder).join(format!("{percent}.inp"));
-        let percent = percent.parse()?;
-        pressed.write(percent, &mut BufWriter::new(File::create(path)?))?;
-        let (row, pose) = pressed.at(percent)?;
-        println!("{},{}", row.percent, answer(pressed.unworn(), &pose)?);
+        pressed.write(percent.parse()?, &mut BufWriter::new(File::create(path)?))?;
     }
     Ok(())
 }
