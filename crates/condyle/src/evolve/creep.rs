@@ -77,7 +77,9 @@ impl CreepState {
         self.depth_mm.resize(count, 0.0);
         self.put_right(step);
         let strains = self.strains(step.law, step.end_min, count);
-        let nodes = (0..count).map(|node| self.node(step, node, strains[node]));
+        let minutes = step.end_min - self.ends_min.last().copied().unwrap_or(0.0);
+        let per_mpa = step.law.compliance_per_mpa(minutes);
+        let nodes = (0..count).map(|node| self.node(step, node, strains[node], per_mpa));
         // Most of a surface is never touched.
         let nodes: Vec<Node> = nodes.filter(Node::was_pressed).collect();
         let down_mm = implicit(step, &nodes);
@@ -120,14 +122,13 @@ impl CreepState {
         strains
     }
 
-    fn node(&self, step: &CreepStep<'_>, node: usize, strain: f64) -> Node {
+    fn node(&self, step: &CreepStep<'_>, node: usize, strain: f64, per_mpa: f64) -> Node {
         let thickness_mm = step.thickness_mm[node];
-        let minutes = step.end_min - self.ends_min.last().copied().unwrap_or(0.0);
         let stiffness_mpa_per_mm = step.contact.stiffness_mpa_per_mm[node];
         Node {
             number: node,
             by_history_mm: thickness_mm * strain,
-            mm_per_mpa: thickness_mm * step.law.compliance_per_mpa(minutes),
+            mm_per_mpa: thickness_mm * per_mpa,
             deepest_mm: self.deepest_mm[node],
             before_mm: self.depth_mm[node],
             pressure_mpa: step.contact.mean_pressure_mpa[node],
