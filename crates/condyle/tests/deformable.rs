@@ -65,25 +65,36 @@ fn down_n(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> f64 {
     -contact.respond(motion).wrench.force.y
 }
 
-/// The height at which the force is so much, by bisection below `high_mm`, and what lands there.
+/// The height between two others at which the force is so much, with the femur `at` a height, by bisection.
+fn height_mm(
+    contact: &mut dyn ContactModel,
+    [mut low, mut high]: [f64; 2],
+    force_n: f64,
+    at: impl Fn(f64) -> RelativeMotion,
+) -> f64 {
+    for _ in 0..40 {
+        let middle = (low + high) / 2.0;
+        if down_n(contact, &at(middle)) > force_n {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
+
+/// How far below `high_mm` the force is so much, and what lands there.
 fn under(
     contact: &mut dyn ContactModel,
     (x, z): (f64, f64),
     high_mm: f64,
     force_n: f64,
 ) -> (f64, Landing) {
-    let (mut low, mut high) = (high_mm - 1.0, high_mm);
-    for _ in 0..40 {
-        let middle = (low + high) / 2.0;
-        if down_n(contact, &over([x, middle, z])) > force_n {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let motion = over([x, low, z]);
+    let at = |y: f64| over([x, y, z]);
+    let low_mm = height_mm(contact, [high_mm - 1.0, high_mm], force_n, at);
+    let motion = at(low_mm);
     contact.respond(&motion);
-    (high_mm - low, contact.land(&motion))
+    (high_mm - low_mm, contact.land(&motion))
 }
 
 fn covered_mm2(landing: &Landing) -> f64 {
@@ -241,16 +252,26 @@ fn sliding(pair: &Pair, law: &dyn ContactLaw) -> RelativeMotion {
     while nearest_mm(high) > 1e-3 {
         high -= nearest_mm(high);
     }
-    let mut low = high - 1.0;
-    for _ in 0..40 {
-        let middle = (low + high) / 2.0;
-        if down_n(contact.as_mut(), &at(middle)) > 1500.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
+    at(height_mm(contact.as_mut(), [high - 1.0, high], 1500.0, at))
+}
+
+/// Holds the tangent by the pose against central differences of the wrench.
+fn assert_tangent_is_the_derivative(contact: &mut dyn ContactModel, motion: &RelativeMotion) {
+    let tangent = contact.respond(motion).tangent().by_pose.matrix;
+    let mut by_differences = Mat6::zeros();
+    let step = 1e-6;
+    for column in 0..6 {
+        let small = Vec6::ith(column, step);
+        let mut wrench = |small: Vec6| {
+            let pose = moved(&motion.pose, &small);
+            let motion = RelativeMotion { pose, ..*motion };
+            contact.respond(&motion).wrench.numbers()
+        };
+        let change = wrench(small) - wrench(-small);
+        by_differences.set_column(column, &(change / (2.0 * step)));
     }
-    at(low)
+    let error = (tangent - by_differences).amax() / by_differences.amax();
+    assert!(error < 2e-4, "{error}\n{tangent}\n{by_differences}");
 }
 
 #[test]
@@ -259,23 +280,7 @@ fn tangent_on_the_generic_insert_is_the_derivative_of_the_wrench() {
     let law = law(&pair.insert, 0.07);
     let motion = sliding(&pair, &law);
     let mut contact = pair.contact(&law);
-    let tangent = contact.respond(&motion).tangent().by_pose.matrix;
-    let mut by_differences = Mat6::zeros();
-    let step = 1e-6;
-    for column in 0..6 {
-        let small = Vec6::ith(column, step);
-        let mut wrench = |small: Vec6| {
-            let pose = moved(&motion.pose, &small);
-            contact
-                .respond(&RelativeMotion { pose, ..motion })
-                .wrench
-                .numbers()
-        };
-        let change = wrench(small) - wrench(-small);
-        by_differences.set_column(column, &(change / (2.0 * step)));
-    }
-    let error = (tangent - by_differences).amax() / by_differences.amax();
-    assert!(error < 2e-4, "{error}\n{tangent}\n{by_differences}");
+    assert_tangent_is_the_derivative(contact.as_mut(), &motion);
 }
 
 /// Force on a ball that reaches `depth_mm` into a thin bonded layer, over that on a half-space (Dimitriadis 2002).
@@ -439,21 +444,7 @@ fn tangent_with_stick_and_slip_on_the_generic_insert_is_the_derivative_of_the_wr
     let small = Vec6::new(2e-4, 4e-4, -2e-4, 0.008, -0.01, 0.004);
     let pose = moved(&motion.pose, &small);
     let there = RelativeMotion { pose, ..motion };
-    let tangent = contact.respond(&there).tangent().by_pose.matrix;
-    let mut by_differences = Mat6::zeros();
-    let step = 1e-6;
-    for column in 0..6 {
-        let small = Vec6::ith(column, step);
-        let mut wrench = |small: Vec6| {
-            let pose = moved(&there.pose, &small);
-            let motion = RelativeMotion { pose, ..there };
-            contact.respond(&motion).wrench.numbers()
-        };
-        let change = wrench(small) - wrench(-small);
-        by_differences.set_column(column, &(change / (2.0 * step)));
-    }
-    let error = (tangent - by_differences).amax() / by_differences.amax();
-    assert!(error < 2e-4, "{error}\n{tangent}\n{by_differences}");
+    assert_tangent_is_the_derivative(contact.as_mut(), &there);
 }
 
 #[test]
@@ -461,16 +452,8 @@ fn loads_along_the_generic_insert_move_it_a_little_along_its_normal() {
     let pair = generic();
     let law = law(&pair.insert, 0.0);
     let mut contact = pair.contact(&law);
-    let (mut low, mut high) = (20.0, 60.0);
-    for _ in 0..40 {
-        let middle = (low + high) / 2.0;
-        if down_n(contact.as_mut(), &over([0.0, middle, 0.0])) > 1500.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let motion = over([0.0, low, 0.0]);
+    let at = |y: f64| over([0.0, y, 0.0]);
+    let motion = at(height_mm(contact.as_mut(), [20.0, 60.0], 1500.0, at));
     contact.respond(&motion);
     let touched = contact.land(&motion).touched;
     let elastic = Elastic::new(MODULUS_MPA, POISSON).unwrap();

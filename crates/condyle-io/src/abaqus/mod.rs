@@ -11,6 +11,7 @@ mod error;
 mod export;
 mod facets;
 mod heading;
+mod lift;
 mod machine;
 mod model;
 mod names;

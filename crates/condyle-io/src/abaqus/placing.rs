@@ -5,6 +5,8 @@ use condyle::evolve::{March, WearTest};
 use condyle::machine::{Chain, MovedBody, knee};
 use condyle::spatial::Pose;
 
+use super::lift::lift;
+
 /// Smallest gap at the start of an explicit analysis, mm.
 const CLEARANCE_MM: f64 = 0.005;
 
@@ -25,7 +27,11 @@ impl Placing {
         let chain = Chain::new(test.machine(), march.state().zero_mm, test.flexion_axis_mm);
         let mut positions = settled(march);
         if apart && test.machine().joint(knee::IS).is_loaded() {
-            lift(test, &chain, &mut positions);
+            lift(CLEARANCE_MM, |way_mm| {
+                positions[knee::IS.place()] += way_mm;
+                let gaps = gaps_mm(test, &chain.at(&positions).pose);
+                gaps.into_iter().fold(f64::INFINITY, f64::min)
+            });
         }
         let mut of_femur = positions;
         for (position, joint) in of_femur.iter_mut().zip(&test.machine().joints) {
@@ -68,20 +74,4 @@ fn gaps_mm(test: &WearTest, femur: &Pose) -> Vec<f64> {
     let nodes = &test.insert.mesh().nodes;
     let gap = |&node: &u32| test.femur.gap_mm(&femur.to_femur(&nodes[node as usize]));
     test.insert.surface_nodes().iter().map(gap).collect()
-}
-
-/// Raises the femur until no node is nearer than the clearance.
-///
-/// A gap grows no faster than the femur rises, so the steps come from below.
-fn lift(test: &WearTest, chain: &Chain, positions: &mut [f64; 6]) {
-    const MOST_STEPS: usize = 100;
-    const SHORTEST_STEP_MM: f64 = 1e-4;
-    for _ in 0..MOST_STEPS {
-        let gaps = gaps_mm(test, &chain.at(positions).pose);
-        let nearest = gaps.into_iter().fold(f64::INFINITY, f64::min);
-        if nearest >= CLEARANCE_MM {
-            return;
-        }
-        positions[knee::IS.place()] += (CLEARANCE_MM - nearest).max(SHORTEST_STEP_MM);
-    }
 }

@@ -9,6 +9,7 @@ use condyle::spatial::Pose;
 use condyle_fem::{Elastic, Hardening};
 
 use super::facets::{facets, inside};
+use super::lift::lift;
 use super::model::{after, in_mesh};
 use super::names;
 use crate::mesh::{InpWriter, PressureOverclosure, element_faces};
@@ -105,22 +106,15 @@ impl Pressed<'_> {
 
     /// How far above the pose nothing touches.
     fn lift_mm(&self) -> f64 {
-        const MOST_STEPS: usize = 200;
-        let positions = &self.bodies.surface.positions;
+        let Bodies { femur, surface, .. } = self.bodies;
         let mut lift_mm = 0.0;
-        for _ in 0..MOST_STEPS {
-            let gap = |node: &Vec3| {
-                self.bodies
-                    .femur
-                    .gap_mm(&raised(&self.pose, lift_mm).to_femur(node))
-            };
-            let nearest_mm = positions.iter().map(gap).fold(f64::INFINITY, f64::min);
-            if nearest_mm >= CLEARANCE_MM {
-                break;
-            }
-            // A gap grows no faster than the femur rises.
-            lift_mm += CLEARANCE_MM + (CLEARANCE_MM - nearest_mm);
-        }
+        lift(CLEARANCE_MM, |way_mm| {
+            lift_mm += way_mm;
+            let pose = raised(&self.pose, lift_mm);
+            let gaps = surface.positions.iter();
+            let gaps = gaps.map(|node| femur.gap_mm(&pose.to_femur(node)));
+            gaps.fold(f64::INFINITY, f64::min)
+        });
         lift_mm
     }
 

@@ -8,7 +8,7 @@ use condyle::evolve::March;
 use condyle::geometry::TriangleMesh;
 use condyle::machine::CycleRow;
 use condyle::spatial::Pose;
-use condyle_fem::{Elastic, Hardening};
+use condyle_fem::Hardening;
 
 use super::error::ExportError;
 use super::pressed::Pressed;
@@ -87,10 +87,7 @@ impl<'a> PressedCase<'a> {
                 surface: &insert.surface(),
             },
             triangles: &self.triangles,
-            elastic: Elastic {
-                youngs_modulus: case.material.youngs_modulus_mpa,
-                poissons_ratio: case.material.poissons_ratio,
-            },
+            elastic: case.material.elastic(),
             hardening: self.hardening.as_ref(),
             pose,
             slide: None,

@@ -1,5 +1,7 @@
 //! Polyethylene of the insert.
 
+use condyle_fem::Elastic;
+
 use crate::keyed::{settings, within};
 
 settings! {
@@ -11,5 +13,15 @@ settings! {
         poissons_ratio: f64 = 0.46, in within(0.0, 0.499);
         /// Density.
         density_mg_per_mm3: f64 = 0.93, in within(0.01, 30.0);
+    }
+}
+
+impl Material {
+    /// Its elasticity, MPa.
+    pub(crate) fn elastic(&self) -> Elastic {
+        Elastic {
+            youngs_modulus: self.youngs_modulus_mpa,
+            poissons_ratio: self.poissons_ratio,
+        }
     }
 }

@@ -327,9 +327,10 @@ fn settled(
     warm_start: Option<&WarmStart>,
     watch: &mut dyn FnMut(f64),
 ) -> Result<Stepped, GivenUp> {
-    let mut next = implicit.step(from, step, warm_start, watch);
+    let mut last = None;
     for _ in 0..MOST_TURNS {
-        let ended = next.map_err(GivenUp::NotConverged)?;
+        let ended = implicit.step(from, step, last.as_ref().or(warm_start), watch);
+        let ended = ended.map_err(GivenUp::NotConverged)?;
         let settled = implicit.contact.settle(&ended.motion);
         let flattened = |flattened| GivenUp::Flattened {
             phase: ended.state.phase,
@@ -338,9 +339,8 @@ fn settled(
         if settled.map_err(flattened)? == Settled::Yes {
             return Ok(ended);
         }
-        next = implicit.step(from, step, Some(&ended.warm_start), watch);
+        last = Some(ended.warm_start);
     }
-    next.map_err(GivenUp::NotConverged)?;
     let phase = from.phase + step;
     Err(GivenUp::Unsettled { phase })
 }

@@ -6,7 +6,6 @@ use condyle::contact::{ContactLaw, Deformable, Foundation, PressureLaw, confined
 use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
-use condyle_fem::Elastic;
 
 use super::super::contact::{ContactModelWord, FrictionModelWord, PressureLawChoice};
 use super::super::contents::Case;
@@ -142,10 +141,7 @@ impl Case {
         {
             return Err(BuildError::StickSlipExplicit);
         }
-        let elastic = Elastic {
-            youngs_modulus: self.material.youngs_modulus_mpa,
-            poissons_ratio: self.material.poissons_ratio,
-        };
+        let elastic = self.material.elastic();
         let friction = &self.contact.friction;
         let (coefficient, slip) = (friction.friction, friction.slip_tolerance_mm_per_s);
         let mut law = bodies.elastic(self, elastic, || {

@@ -47,10 +47,7 @@ impl<W: Write> InpWriter<W> {
         secondary: &str,
         main: &str,
     ) -> io::Result<()> {
-        self.keyword(&format!(
-            "*CONTACT PAIR, INTERACTION={interaction}, TYPE=NODE TO SURFACE"
-        ))?;
-        writeln!(self.out, "{secondary}, {main}")
+        self.pair(interaction, "TYPE=NODE TO SURFACE", [secondary, main])
     }
 
     /// `*CONTACT PAIR`, surface to surface: the deformable or finer surface is the secondary one.
@@ -60,10 +57,7 @@ impl<W: Write> InpWriter<W> {
         secondary: &str,
         main: &str,
     ) -> io::Result<()> {
-        self.keyword(&format!(
-            "*CONTACT PAIR, INTERACTION={interaction}, TYPE=SURFACE TO SURFACE"
-        ))?;
-        writeln!(self.out, "{secondary}, {main}")
+        self.pair(interaction, "TYPE=SURFACE TO SURFACE", [secondary, main])
     }
 
     /// `*CONTACT PAIR` for Abaqus/Explicit, where it stands within the step.
@@ -73,9 +67,11 @@ impl<W: Write> InpWriter<W> {
         one: &str,
         other: &str,
     ) -> io::Result<()> {
-        self.keyword(&format!(
-            "*CONTACT PAIR, INTERACTION={interaction}, MECHANICAL CONSTRAINT=PENALTY"
-        ))?;
+        self.pair(interaction, "MECHANICAL CONSTRAINT=PENALTY", [one, other])
+    }
+
+    fn pair(&mut self, interaction: &str, how: &str, [one, other]: [&str; 2]) -> io::Result<()> {
+        self.keyword(&format!("*CONTACT PAIR, INTERACTION={interaction}, {how}"))?;
         writeln!(self.out, "{one}, {other}")
     }
 }

@@ -1,10 +1,10 @@
 //! The factor of the compliance of nodes that press, kept while few of them change.
 
 use super::{
-    cholesky::{Cholesky, Eight, ROWS, get, set, subtract, zero},
+    cholesky::{Cholesky, Eight, ROWS, get, product, set, subtract, zero},
     near_matrix::NearMatrix,
 };
-use crate::number::{F64x4, LANES, Number};
+use crate::number::{F64x4, Number};
 
 /// How many changes go side by side.
 const SIDES: usize = ROWS;
@@ -191,7 +191,7 @@ impl ChangedFactor {
             // First of L D, then of L.
             let mut row: Vec<f64> = Vec::with_capacity(i + 1);
             for j in 0..i {
-                let taken = dot(&row, &self.small[j][..j]);
+                let taken = product(&row, &self.small[j][..j]);
                 row.push(self.of_changes(i, j, compliance) - taken);
             }
             let mut pivot = self.of_changes(i, i, compliance);
@@ -357,14 +357,4 @@ impl ChangedFactor {
         }
         x
     }
-}
-
-/// The product of two vectors, four of their numbers side by side.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (fours, others) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-    let rest = fours.remainder().iter().zip(others.remainder());
-    let rest: f64 = rest.map(|(a, b)| a * b).sum();
-    let vector = |four: &[f64]| F64x4::from_lanes(|lane| four[lane]);
-    let add = |sum: F64x4, (a, b): (&[f64], &[f64])| vector(a).mul_add(vector(b), sum);
-    fours.zip(others).fold(F64x4::splat(0.0), add).sum() + rest
 }

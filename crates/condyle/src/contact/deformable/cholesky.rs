@@ -54,6 +54,16 @@ pub(super) fn set(numbers: &mut Eight, side: usize, value: f64) {
     *half = F64x4::new(lanes);
 }
 
+/// The product of two vectors, four of their numbers side by side.
+pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
+    let (fours, others) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest = fours.remainder().iter().zip(others.remainder());
+    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    let vector = |four: &[f64]| F64x4::from_lanes(|lane| four[lane]);
+    let add = |sum: F64x4, (a, b): (&[f64], &[f64])| vector(a).mul_add(vector(b), sum);
+    fours.zip(others).fold(F64x4::splat(0.0), add).sum() + rest
+}
+
 impl Cholesky {
     /// Factors a matrix of an order; `entry` gives what is in a row and a column that is not beyond it.
     pub fn factor(&mut self, order: usize, entry: impl Fn(usize, usize) -> f64) {

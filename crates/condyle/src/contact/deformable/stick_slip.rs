@@ -1,11 +1,10 @@
 //! Where a surface that is rubbed sticks and where it slides, and the loads along it: Coulomb's law on an elastic body.
 
 use super::{
-    cholesky::{Cholesky, Eight, ROWS, get, set, subtract, zero},
+    cholesky::{Cholesky, Eight, ROWS, get, product, set, subtract, zero},
     near_matrix::NearMatrix,
     unit_loads::along_surface,
 };
-use crate::number::{F64x4, LANES, Number};
 
 /// Numbers along the two directions of a surface.
 pub(super) type Pair = [f64; 2];
@@ -499,14 +498,6 @@ fn dot(a: Pair, b: Pair) -> f64 {
 
 fn length(of: Pair) -> f64 {
     dot(of, of).sqrt()
-}
-
-/// The product of two lines of whole panels.
-fn product(a: &[f64], b: &[f64]) -> f64 {
-    let four = |four: &[f64]| F64x4::from_lanes(|lane| four[lane]);
-    let pairs = a.chunks_exact(LANES).zip(b.chunks_exact(LANES));
-    let add = |sum: F64x4, (a, b): (&[f64], &[f64])| four(a).mul_add(four(b), sum);
-    pairs.fold(F64x4::splat(0.0), add).sum()
 }
 
 fn times(numbers: &Eight, factor: f64) -> Eight {

@@ -361,7 +361,7 @@ impl PlasticInsert {
     /// Lets an element flow with its nodes moved by what flows around it; how far that is from the plastic strain tried.
     fn flow_element(&mut self, element: u32, moved_mm: &ByTile) -> f64 {
         let (solid, before) = (self.solid(), self.before(element));
-        let trial = self.trial.get(&element).copied().unwrap_or(before);
+        let trial = self.trial[&element];
         let nodes = self.nodes_of(element, moved_mm);
         let own = self.influence().element(solid, element);
         let flowed = own.flow(solid, &self.material, &nodes, [&trial, &before]);

@@ -162,6 +162,15 @@ fn by_differences(step: f64, mut wrench: impl FnMut(&Vec6) -> Vec6) -> Mat6 {
     matrix
 }
 
+/// By how much the wrench changes with a motion of the femur.
+fn by_pose_differences(step: f64, contact: &mut dyn ContactModel, motion: &RelativeMotion) -> Mat6 {
+    by_differences(step, |small| {
+        let pose = moved(&motion.pose, small);
+        let motion = RelativeMotion { pose, ..*motion };
+        contact.respond(&motion).wrench.numbers()
+    })
+}
+
 fn assert_near(exact: &Mat6, other: &Mat6) {
     let error = (exact - other).amax() / other.amax();
     assert!(error < 1e-4, "{error}\n{exact}\n{other}");
@@ -182,13 +191,7 @@ fn tangent_is_the_derivative_of_the_wrench() {
     let motion = sliding();
     let mut contact = plane.contact(0.07);
     let tangent = contact.respond(&motion).tangent();
-    let by_pose = by_differences(1e-6, |small| {
-        let pose = moved(&motion.pose, small);
-        contact
-            .respond(&RelativeMotion { pose, ..motion })
-            .wrench
-            .numbers()
-    });
+    let by_pose = by_pose_differences(1e-6, &mut contact, &motion);
     assert_near(&tangent.by_pose.matrix, &by_pose);
     let by_twist = by_differences(1e-4, |small| {
         let twist = Twist::of_numbers(&(motion.twist.numbers() + small));

@@ -175,13 +175,7 @@ fn tangent_with_stick_and_slip_is_the_derivative_of_the_wrench() {
             twist: Twist::zero(),
         };
         let tangent = contact.respond(&motion).tangent();
-        let by_pose = by_differences(1e-7, |small| {
-            let pose = moved(&motion.pose, small);
-            contact
-                .respond(&RelativeMotion { pose, ..motion })
-                .wrench
-                .numbers()
-        });
+        let by_pose = by_pose_differences(1e-7, &mut contact, &motion);
         assert_near(&tangent.by_pose.matrix, &by_pose);
         assert_eq!(tangent.by_twist.matrix, Mat6::zeros());
     }
