@@ -490,3 +490,32 @@ fn loads_along_the_generic_insert_move_it_a_little_along_its_normal() {
         assert!(part < 0.08 && part_of_mean < 0.05, "{part} {part_of_mean}");
     }
 }
+
+#[test]
+fn what_another_run_found_is_taken_to_the_bit() {
+    let radius_mm = 121.0;
+    let pair = on_a_layer(radius_mm);
+    let force_n = |law: &Deformable, depth_mm: f64| {
+        let motion = over([0.0, radius_mm - depth_mm, 0.0]);
+        down_n(pair.contact(law).as_mut(), &motion)
+    };
+    let first = law(&pair.insert, 0.07);
+    assert_eq!(first.known_compliance(&pair.insert, 0), None);
+    let [shallow_n, deep_n] =
+        [0.05, 0.4].map(|depth_mm| force_n(&law(&pair.insert, 0.07), depth_mm));
+    assert_eq!(force_n(&first, 0.05), shallow_n);
+    let known = first.known_compliance(&pair.insert, 0).unwrap();
+    assert_eq!(first.known_compliance(&pair.insert, known.pairs()), None);
+    // A law that knows a small contact finds of a larger one what no other run had found.
+    let second = law(&pair.insert, 0.07);
+    second.know(&pair.insert, known.clone()).unwrap();
+    assert_eq!(second.known_compliance(&pair.insert, 0), None);
+    assert_eq!(force_n(&second, 0.4), deep_n);
+    let more = second.known_compliance(&pair.insert, 0).unwrap();
+    assert!(more.pairs() > known.pairs());
+    // A stiffer insert that is told of this one believes it: nothing is computed twice.
+    let elastic = Elastic::new(2.0 * MODULUS_MPA, POISSON).unwrap();
+    let stiff = Deformable::new(elastic, 0.07, 1.0, &pair.insert).unwrap();
+    stiff.know(&pair.insert, more).unwrap();
+    assert_eq!(force_n(&stiff, 0.4), deep_n);
+}

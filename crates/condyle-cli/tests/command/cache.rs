@@ -1,4 +1,4 @@
-//! The preparation of a mesh femur is kept for the next run, and no result depends on it.
+//! The preparation of a mesh femur and the compliance of a deformable insert are kept for the next run, and no result depends on it.
 
 use std::fs;
 
@@ -39,6 +39,49 @@ fn a_kept_femur_gives_the_same_bytes() {
     assert_eq!(kept.count(), 1);
     assert_same_bytes(&bench.path("none"), &bench.path("first"));
     assert_same_bytes(&bench.path("none"), &bench.path("second"));
+}
+
+#[test]
+fn a_kept_compliance_gives_the_same_bytes_and_belongs_to_its_material() {
+    let text = SMALL.to_owned() + "[contact]\nmodel = \"deformable\"\n";
+    let bench = Bench::with_case(&text);
+    let kept = || {
+        let files = fs::read_dir(bench.path("kept")).expect("the cache is there");
+        let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
+        files.sort();
+        files
+    };
+    run(&bench, "none", "off");
+    run(&bench, "first", "kept");
+    let first = kept();
+    let names = first.iter().map(|file| file.to_string_lossy());
+    assert!(first.len() == 1 && names.clone().all(|name| name.contains("compliance-")));
+    let written = fs::metadata(&first[0]).unwrap().modified().unwrap();
+    run(&bench, "second", "kept");
+    let again = fs::metadata(&first[0]).unwrap().modified().unwrap();
+    assert_eq!(
+        written, again,
+        "nothing new was found, and it was written again"
+    );
+    assert_same_bytes(&bench.path("none"), &bench.path("first"));
+    assert_same_bytes(&bench.path("none"), &bench.path("second"));
+    // A softer insert finds nothing of this one.
+    bench.write(
+        "case.toml",
+        &(text + "[material]\nyoungs_modulus_mpa = 400\n"),
+    );
+    run(&bench, "soft_alone", "off");
+    run(&bench, "soft", "kept");
+    assert_eq!(kept().len(), 2);
+    assert_same_bytes(&bench.path("soft_alone"), &bench.path("soft"));
+    // What is damaged is computed anew.
+    for file in kept() {
+        let mut bytes = fs::read(&file).unwrap();
+        bytes.truncate(bytes.len() / 2);
+        fs::write(&file, bytes).unwrap();
+    }
+    run(&bench, "third", "kept");
+    assert_same_bytes(&bench.path("soft_alone"), &bench.path("third"));
 }
 
 #[test]

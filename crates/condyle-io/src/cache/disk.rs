@@ -17,9 +17,10 @@ const FORMAT: &str = "4";
 const HASH_LENGTH: usize = 32;
 /// Ending of the files that are kept; no other is ever removed.
 const ENDING: &str = "kept";
-/// So many are kept, the newest: of a mesh femur each has about 3 MB, and a study over many
-/// femurs must not fill the disk.
+/// So many are kept, the newest, and no more than so many bytes: of a mesh femur a file has about 3 MB, of a deformable
+/// insert 5 to 40, and a study over many of them must not fill the disk.
 const MOST_FILES: usize = 20;
+const MOST_BYTES: u64 = 300_000_000;
 
 /// A folder of results that are kept from run to run.
 ///
@@ -148,14 +149,20 @@ fn remove_old(folder: &Path) -> io::Result<()> {
             .extension()
             .is_some_and(|ending| ending == ENDING)
         {
-            files.push((entry.metadata()?.modified()?, entry.path()));
+            let about = entry.metadata()?;
+            files.push((about.modified()?, entry.path(), about.len()));
         }
     }
     files.sort();
-    let surplus = files.len().saturating_sub(MOST_FILES);
+    let mut bytes = 0;
+    let stay = files.iter().rev().take(MOST_FILES).take_while(|file| {
+        bytes += file.2;
+        bytes <= MOST_BYTES
+    });
+    let surplus = files.len() - stay.count();
     files[..surplus]
         .iter()
-        .try_for_each(|(_, file)| fs::remove_file(file))
+        .try_for_each(|(_, file, _)| fs::remove_file(file))
 }
 
 #[cfg(test)]

@@ -104,7 +104,13 @@ impl<'a> Run<'a> {
         keep: &mut Keep<'_, 'a>,
         on_event: &mut Listener<'_>,
     ) -> Result<Outcome, RunError> {
-        if self.march_on(keep, on_event)?.is_continue()
+        let mut kept_pairs = 0;
+        let mut keep_all = |run: &Run<'a>| {
+            let test = run.march.test();
+            kept_pairs = run.case.keep_compliance(test, run.means.cache, kept_pairs);
+            keep(run)
+        };
+        if self.march_on(&mut keep_all, on_event)?.is_continue()
             && let ControlFlow::Continue(summary) = self.summary(on_event)
         {
             return Ok(Outcome::Done(Box::new(summary)));

@@ -3,6 +3,7 @@
 use std::{fmt::Debug, sync::Arc};
 
 use super::{
+    known_compliance::KnownCompliance,
     memory::{ContactMemory, ContactState},
     model::ContactModel,
     under_surface::UnderSurface,
@@ -47,6 +48,16 @@ pub trait ContactLaw: Debug + Send + Sync {
         _state: &ContactState,
         _loads: &[(u32, f64)],
     ) -> Option<UnderSurface> {
+        None
+    }
+
+    /// What is known of the compliance of an unworn insert, for another run; none where that is about no more than so
+    /// many pairs of tiles, or no more than was known at first.
+    fn known_compliance(
+        &self,
+        _insert: &Insert,
+        _more_than_pairs: usize,
+    ) -> Option<KnownCompliance> {
         None
     }
 

@@ -9,6 +9,7 @@
 //! | `slip_work` | pressure times slip by direction: cross-shear and principal direction |
 //! | `foundation` | the elastic foundation: rigid bodies, and pressure from local overclosure |
 //! | `deformable` | the deformable insert: pressure under which an elastic body just touches the femur |
+//! | `known_compliance` | what was computed of an insert's compliance, for another run |
 //! | `under_surface` | stress below the surface, and what has yielded there |
 //! | `pressed` | what contacts have in common: shares under pressure, and what they add up to |
 //! | `broad_phase` | which blocks of nodes may touch, by brute force or coherently |
@@ -18,6 +19,7 @@ mod contact_law;
 mod deformable;
 mod foundation;
 mod history;
+mod known_compliance;
 mod memory;
 mod model;
 mod pressed;
@@ -32,6 +34,7 @@ pub use contact_law::{Bodies, ContactLaw};
 pub use deformable::{Deformable, FrictionModel};
 pub use foundation::Foundation;
 pub use history::{CycleHistory, Moment, NodeHistory, Record};
+pub use known_compliance::KnownCompliance;
 pub use memory::{ContactCache, ContactMemory, ContactState, StateField};
 pub use model::{
     ContactModel, Flattened, Landing, Linearization, MOST_REGIONS, Response, Settled, Tangent,

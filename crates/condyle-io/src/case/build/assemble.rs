@@ -6,6 +6,7 @@ use condyle::contact::{ContactLaw, Deformable, Foundation, PressureLaw, confined
 use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
+use condyle_fem::SolidError;
 
 use super::super::contact::{ContactModelWord, FrictionModelWord, PressureLawChoice};
 use super::super::contents::Case;
@@ -14,6 +15,7 @@ use super::super::march::Update;
 use super::super::time::IntegratorWord;
 use super::error::{BuildError, BuildWarning};
 use super::femur::{BuiltFemur, Preparing};
+use super::known_compliance;
 use super::machine::start_flexion_rad;
 use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
@@ -37,7 +39,7 @@ impl Case {
     }
 
     /// As [`Case::build`], to the same bytes, with the preparation of a mesh femur kept for the
-    /// next time.
+    /// next time, and the compliance of a deformable insert found that was kept ([`Case::keep_compliance`]).
     ///
     /// # Errors
     /// As [`Case::build`].
@@ -71,7 +73,7 @@ impl Case {
                 .build(placement, side, flexion_rad, preparing, warnings)
         })?;
         let warnings = [self.constants_left_out(), of_insert, of_femur].concat();
-        let test = self.assembled(insert, &femur, activities, bodies)?;
+        let test = self.assembled(insert, &femur, activities, (keep, bodies))?;
         Ok(Built { test, warnings })
     }
 
@@ -81,10 +83,10 @@ impl Case {
         insert: Arc<Insert>,
         femur: &BuiltFemur,
         activities: Vec<Activity>,
-        bodies: &SharedBodies,
+        (keep, bodies): (&dyn Keep, &SharedBodies),
     ) -> Result<WearTest, BuildError> {
         Ok(WearTest {
-            contact: self.contact_law_sharing(&insert, bodies)?,
+            contact: self.contact_law_sharing(&insert, keep, bodies)?,
             femur: Arc::clone(&femur.surface),
             flexion_axis_mm: femur.flexion_axis_mm,
             start_mm: femur.start_mm,
@@ -120,22 +122,28 @@ impl Case {
     /// # Errors
     /// An insert that is no elastic solid, where it is to be one.
     pub fn contact_law(&self, insert: &Insert) -> Result<Arc<dyn ContactLaw>, BuildError> {
-        self.contact_law_sharing(insert, &SharedBodies::default())
+        self.contact_law_sharing(insert, &KeepNothing, &SharedBodies::default())
     }
 
     fn contact_law_sharing(
         &self,
         insert: &Insert,
+        keep: &dyn Keep,
         bodies: &SharedBodies,
     ) -> Result<Arc<dyn ContactLaw>, BuildError> {
         Ok(match self.contact.model {
             ContactModelWord::Foundation => Arc::new(self.foundation()),
-            ContactModelWord::Deformable => Arc::new(self.deformable(insert, bodies)?),
+            ContactModelWord::Deformable => Arc::new(self.deformable(insert, keep, bodies)?),
         })
     }
 
     /// The insert of this case as an elastic body.
-    fn deformable(&self, insert: &Insert, bodies: &SharedBodies) -> Result<Deformable, BuildError> {
+    fn deformable(
+        &self,
+        insert: &Insert,
+        keep: &dyn Keep,
+        bodies: &SharedBodies,
+    ) -> Result<Deformable, BuildError> {
         if self.contact.friction_model == FrictionModelWord::StickSlip
             && self.time.integrator == IntegratorWord::Explicit
         {
@@ -145,7 +153,9 @@ impl Case {
         let friction = &self.contact.friction;
         let (coefficient, slip) = (friction.friction, friction.slip_tolerance_mm_per_s);
         let mut law = bodies.elastic(self, elastic, || {
-            Deformable::new(elastic, coefficient, slip, insert)
+            let law = Deformable::new(elastic, coefficient, slip, insert)?;
+            known_compliance::tell(&law, insert, keep)?;
+            Ok::<_, SolidError>(law)
         })?;
         (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
         law.search = self.contact.finding.search.search();

@@ -8,6 +8,7 @@ mod error;
 mod femur;
 mod femur_triangles;
 mod insert;
+mod known_compliance;
 mod lie;
 mod machine;
 mod meshes;

@@ -6,6 +6,7 @@ use std::{
 };
 
 use super::near_matrix::NearMatrix;
+use crate::contact::known_compliance::KnownCompliance;
 
 /// The normal compliance of a surface: how far its nodes give way to loads on them, both along the inward normals.
 ///
@@ -54,6 +55,27 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
     /// How many nodes something was asked of.
     pub fn known_count(&self) -> usize {
         self.read().row_count()
+    }
+
+    /// What is `known` with what was asked so far; none where that is about no more than so many pairs of tiles.
+    pub fn known_with(
+        &self,
+        known: Option<&KnownCompliance>,
+        more_than_pairs: usize,
+    ) -> Option<KnownCompliance> {
+        let near = self.read();
+        let known_pairs = known.map_or(0, KnownCompliance::pairs);
+        let new = |pair: &[usize; 2]| known.is_none_or(|known| !known.has(*pair));
+        let new: Vec<[usize; 2]> = near.pairs().filter(new).collect();
+        if known_pairs + new.len() <= more_than_pairs {
+            return None;
+        }
+        let mut with = known.cloned().unwrap_or_default();
+        for [one, other] in new {
+            let tiles = [one, other].map(|tile| &self.source.tiles()[tile][..]);
+            with.add(one, other, near.between(tiles));
+        }
+        Some(with)
     }
 
     /// The tile of a node.

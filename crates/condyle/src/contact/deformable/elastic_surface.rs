@@ -14,7 +14,7 @@ use super::{
     tiles::tiles,
     unit_loads::{UnitLoads, along_surface},
 };
-use crate::{Vec3, geometry::Insert};
+use crate::{Vec3, contact::known_compliance::KnownCompliance, geometry::Insert};
 
 /// So many nodes at most are solved for together: forces on nodes that are near load the same part of the factor.
 const TILE_NODES: usize = 48;
@@ -76,6 +76,16 @@ impl ElasticSurface {
             tangential: OnceLock::new(),
             influence: OnceLock::new(),
         })
+    }
+
+    /// Takes what another run has found of its normal compliance, the first time that it is told.
+    pub fn know(&self, known: KnownCompliance) {
+        self.normal.know(known);
+    }
+
+    /// What another run had found of it.
+    pub fn known(&self) -> Option<&KnownCompliance> {
+        self.normal.known()
     }
 
     /// The compliance along the surface: load 2 i + k is on node i along its direction k, anterior and lateral.

@@ -17,6 +17,7 @@ use crate::{
     contact::{
         broad_phase::{BroadPhase, BruteForce, Coherent, Search},
         contact_law::{Bodies, ContactLaw},
+        known_compliance::KnownCompliance,
         memory::{ContactMemory, ContactState, StateField},
         model::ContactModel,
         pressed::Coulomb,
@@ -92,6 +93,13 @@ impl ContactLaw for Deformable {
         let (compliance, state) = self.compliance(insert, state);
         let remembered = self.hardening.as_ref().map(|_| Remembered::of(&state));
         Some(under_surface(&compliance.source, remembered, loads))
+    }
+
+    fn known_compliance(&self, insert: &Insert, more_than_pairs: usize) -> Option<KnownCompliance> {
+        let surface = self.remembered(insert, insert.unworn_nodes())?;
+        let before = surface.source.known();
+        let pairs_before = before.map_or(0, KnownCompliance::pairs);
+        surface.known_with(before, more_than_pairs.max(pairs_before))
     }
 
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {

@@ -5,7 +5,7 @@
 //! touch (`complementarity`, with the factor of `cholesky` and what has changed since in `changed_factor`; `clearance`
 //! tells which gaps need not be looked at), and adds up what these do as in [`pressed`](super::pressed). How the surface
 //! gives way (`compliance`) is computed by finite elements (`elastic_surface`, `unit_loads`), between the nodes that ever
-//! come near (`near_matrix`). Where it gives way along itself too, friction makes it stick and slip (`friction`, with
+//! come near (`near_matrix`), and may be known from another run. Where it gives way along itself too, friction makes it stick and slip (`friction`, with
 //! the loads of `stick_slip` and what is remembered of them in `friction_memory`). Where an increment ends it says how much of every share presses (`covered`), and what the highest
 //! pressure is (`peak`). Below the surface the insert may yield (`plastic`), and has stress there (`under_surface`).
 

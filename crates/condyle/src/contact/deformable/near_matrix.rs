@@ -87,6 +87,25 @@ impl NearMatrix {
         &self.reaches
     }
 
+    /// The pairs of the tiles that were added, the lower number first.
+    pub fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        let all = || self.tiles.iter().map(|&(tile, _)| tile);
+        let pairs = all().flat_map(move |one| all().map(move |other| [one, other]));
+        pairs.filter(|[one, other]| one <= other)
+    }
+
+    /// How far loads on one tile that was added move another, mm/N: row-major.
+    pub fn between(&self, tiles: [&[u32]; 2]) -> Vec<f64> {
+        let [rows, columns] = tiles;
+        let rows = rows.iter().map(|&node| self.row(node));
+        let of_row = |row| {
+            columns
+                .iter()
+                .map(move |&node| self.at(self.row(node), row))
+        };
+        rows.flat_map(of_row).collect()
+    }
+
     /// How far loads move the node of a row; of loads there are panels, each with its number.
     pub fn moved(&self, row: u32, loads: &[(usize, Eight)]) -> f64 {
         // Four sums, so that no addition waits for the one before.

@@ -7,7 +7,10 @@ use condyle_fem::{Elastic, Hardening, SolidError};
 use super::{compliance::Compliance, elastic_surface::ElasticSurface};
 use crate::{
     Vec3,
-    contact::{broad_phase::Search, foundation::Foundation, pressed::Coulomb},
+    contact::{
+        broad_phase::Search, foundation::Foundation, known_compliance::KnownCompliance,
+        pressed::Coulomb,
+    },
     geometry::Insert,
 };
 
@@ -107,10 +110,7 @@ impl Deformable {
             .0
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        let found = remembered
-            .iter()
-            .position(|surface| surface.source.is_of(insert, mesh_nodes));
-        let surface = if let Some(place) = found {
+        let surface = if let Some(place) = place_of(&remembered, insert, mesh_nodes) {
             remembered.remove(place)
         } else {
             // Before, so that what goes and what comes are not there at once.
@@ -122,12 +122,48 @@ impl Deformable {
         Ok(surface)
     }
 
+    /// The surface of an insert with its mesh nodes there, if it is remembered.
+    pub(super) fn remembered(
+        &self,
+        insert: &Insert,
+        mesh_nodes: &[Vec3],
+    ) -> Option<Arc<Compliance<ElasticSurface>>> {
+        let remembered = self
+            .remembered
+            .0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let place = place_of(&remembered, insert, mesh_nodes)?;
+        Some(Arc::clone(&remembered[place]))
+    }
+
+    /// Takes what another run has found of the compliance of an unworn insert with these elastic constants: it need not
+    /// be computed again, and no answer depends on it.
+    ///
+    /// # Errors
+    /// A mesh that is no elastic solid.
+    pub fn know(&self, insert: &Insert, known: KnownCompliance) -> Result<(), SolidError> {
+        let surface = self.surface(insert, insert.unworn_nodes())?;
+        surface.source.know(known);
+        Ok(())
+    }
+
     pub(super) fn coulomb(&self) -> Coulomb {
         Coulomb {
             coefficient: self.friction,
             slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
         }
     }
+}
+
+/// Where the surface of an insert with its mesh nodes there is.
+fn place_of(
+    remembered: &[Arc<Compliance<ElasticSurface>>],
+    insert: &Insert,
+    mesh_nodes: &[Vec3],
+) -> Option<usize> {
+    let mut remembered = remembered.iter();
+    remembered.position(|surface| surface.source.is_of(insert, mesh_nodes))
 }
 
 /// Makes room for one as large as the newest.
