@@ -21,29 +21,35 @@ impl KnownCompliance {
         self.between.len()
     }
 
-    /// Whether something is known of two tiles, the lower number first.
-    pub(in crate::contact) fn has(&self, [one, other]: [usize; 2]) -> bool {
-        self.between.contains_key(&(one as u32, other as u32))
+    /// About how many bytes it takes.
+    pub fn bytes(&self) -> usize {
+        let numbers: usize = self.between.values().map(Vec::len).sum();
+        size_of::<f64>() * (numbers + 2 * self.pairs())
     }
 
-    /// What is known of two tiles of so many nodes: row-major, a row for each node of `one`.
-    pub(in crate::contact) fn find(
-        &self,
+    /// Hands over what is known of two tiles of so many nodes: row-major, a row for each node of `one`.
+    pub(in crate::contact) fn take(
+        &mut self,
         one: usize,
         other: usize,
         nodes: [usize; 2],
     ) -> Option<Vec<f64>> {
         let [rows, columns] = nodes;
         let key = [one.min(other), one.max(other)].map(|tile| tile as u32);
-        let known = self.between.get(&(key[0], key[1]))?;
+        let known = self.between.remove(&(key[0], key[1]))?;
         if known.len() != rows * columns {
             return None;
         }
         if one <= other {
-            return Some(known.clone());
+            return Some(known);
         }
-        let of_row = |row: usize| (0..columns).map(move |column| known[column * rows + row]);
-        Some((0..rows).flat_map(of_row).collect())
+        let of_row = |row: usize| (0..columns).map(move |column| (row, column));
+        let places = (0..rows).flat_map(of_row);
+        Some(
+            places
+                .map(|(row, column)| known[column * rows + row])
+                .collect(),
+        )
     }
 
     /// Adds what loads on one tile move another by, of which the number is not lower.
@@ -57,15 +63,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_known_is_found_the_other_way_round() {
+    fn what_is_known_is_handed_over_either_way_round() {
         let mut known = KnownCompliance::default();
         known.add(1, 4, vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        let there = known.find(1, 4, [2, 3]).unwrap();
+        let there = known.clone().take(1, 4, [2, 3]).unwrap();
         assert_eq!(there, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        let back = known.find(4, 1, [3, 2]).unwrap();
+        let back = known.clone().take(4, 1, [3, 2]).unwrap();
         assert_eq!(back, [1.0, 4.0, 2.0, 5.0, 3.0, 6.0]);
-        assert_eq!(known.find(1, 1, [2, 2]), None);
+        assert_eq!(known.take(1, 1, [2, 2]), None);
         // A file of another surface tells nothing.
-        assert_eq!(known.find(1, 4, [3, 3]), None);
+        assert_eq!(known.take(1, 4, [3, 3]), None);
     }
 }

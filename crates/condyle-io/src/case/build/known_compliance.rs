@@ -39,7 +39,9 @@ impl Case {
         let Some(known) = known else {
             return more_than_pairs;
         };
-        if let Ok(content) = postcard::to_stdvec(&known) {
+        // Room for all at once: it may be tens of megabytes.
+        let room = Vec::with_capacity(known.bytes());
+        if let Ok(content) = postcard::to_extend(&known, room) {
             let inputs = Inputs::of(&test.insert, self.material.elastic());
             keep.keep(WHAT, &inputs.slices(), &content);
         }

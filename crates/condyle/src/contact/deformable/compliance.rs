@@ -57,25 +57,21 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
         self.read().row_count()
     }
 
-    /// What is `known` with what was asked so far; none where that is about no more than so many pairs of tiles.
+    /// Adds what was asked so far to what is `known` of other tiles; none where that is about no more than so many pairs.
     pub fn known_with(
         &self,
-        known: Option<&KnownCompliance>,
+        mut known: KnownCompliance,
         more_than_pairs: usize,
     ) -> Option<KnownCompliance> {
         let near = self.read();
-        let known_pairs = known.map_or(0, KnownCompliance::pairs);
-        let new = |pair: &[usize; 2]| known.is_none_or(|known| !known.has(*pair));
-        let new: Vec<[usize; 2]> = near.pairs().filter(new).collect();
-        if known_pairs + new.len() <= more_than_pairs {
+        if known.pairs() + near.pairs().count() <= more_than_pairs {
             return None;
         }
-        let mut with = known.cloned().unwrap_or_default();
-        for [one, other] in new {
+        for [one, other] in near.pairs() {
             let tiles = [one, other].map(|tile| &self.source.tiles()[tile][..]);
-            with.add(one, other, near.between(tiles));
+            known.add(one, other, near.between(tiles));
         }
-        Some(with)
+        Some(known)
     }
 
     /// The tile of a node.
@@ -105,13 +101,12 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
     fn add(&self, tiles: &[u32]) {
         let mut near = self.near.write().unwrap_or_else(PoisonError::into_inner);
         let all = self.source.tiles();
-        for &tile in tiles {
-            // Another thread may have added it.
-            if !near.knows(all[tile as usize][0]) {
-                near.add(tile as usize, all, |one, other| {
-                    self.source.between(one, other)
-                });
-            }
+        // Another thread may have added some.
+        let new = tiles.iter().map(|&tile| tile as usize);
+        let new: Vec<usize> = new.filter(|&tile| !near.knows(all[tile][0])).collect();
+        near.make_room(new.iter().map(|&tile| all[tile].len()));
+        for tile in new {
+            near.add(tile, all, |one, other| self.source.between(one, other));
         }
     }
 }

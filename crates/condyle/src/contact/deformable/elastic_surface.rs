@@ -3,7 +3,10 @@
 use std::{
     collections::BTreeMap,
     fmt,
-    sync::{Arc, OnceLock},
+    sync::{
+        Arc, MutexGuard, OnceLock,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use condyle_fem::{Elastic, ElasticSolid, HexMesh, SolidError, Strain};
@@ -35,6 +38,7 @@ pub(super) struct ElasticSurface {
     tangents: Vec<[Vec3; 2]>,
     /// Unit loads along the inward normals.
     normal: UnitLoads,
+    known_at_first: AtomicUsize,
     /// Those along the surface, of an insert that sticks and slips.
     tangential: OnceLock<Arc<Compliance<UnitLoads>>>,
     /// What moves inside; of an insert that yields.
@@ -68,6 +72,7 @@ impl ElasticSurface {
         let forces = nodes.iter().copied().zip(inward).collect();
         Ok(Self {
             normal: UnitLoads::on(Arc::clone(&solid), forces, tiles),
+            known_at_first: AtomicUsize::new(0),
             solid,
             tangents: (0..nodes.len())
                 .map(|node| surface.directions(node))
@@ -78,14 +83,20 @@ impl ElasticSurface {
         })
     }
 
-    /// Takes what another run has found of its normal compliance, the first time that it is told.
+    /// Takes what another run has found of its normal compliance.
     pub fn know(&self, known: KnownCompliance) {
-        self.normal.know(known);
+        self.known_at_first.store(known.pairs(), Ordering::Relaxed);
+        *self.normal.known() = known;
     }
 
-    /// What another run had found of it.
-    pub fn known(&self) -> Option<&KnownCompliance> {
+    /// What another run had found of it, and nobody has asked for yet.
+    pub fn known(&self) -> MutexGuard<'_, KnownCompliance> {
         self.normal.known()
+    }
+
+    /// Of how many pairs of tiles another run had found something.
+    pub fn known_at_first(&self) -> usize {
+        self.known_at_first.load(Ordering::Relaxed)
     }
 
     /// The compliance along the surface: load 2 i + k is on node i along its direction k, anterior and lateral.

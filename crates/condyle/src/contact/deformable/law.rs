@@ -97,9 +97,9 @@ impl ContactLaw for Deformable {
 
     fn known_compliance(&self, insert: &Insert, more_than_pairs: usize) -> Option<KnownCompliance> {
         let surface = self.remembered(insert, insert.unworn_nodes())?;
-        let before = surface.source.known();
-        let pairs_before = before.map_or(0, KnownCompliance::pairs);
-        surface.known_with(before, more_than_pairs.max(pairs_before))
+        let at_first = surface.source.known_at_first();
+        let known = surface.source.known().clone();
+        surface.known_with(known, more_than_pairs.max(at_first))
     }
 
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {

@@ -18,6 +18,8 @@ pub(super) struct NearMatrix {
     /// Places of all nodes, tile by tile: the same whichever tile was added first.
     places: Vec<u32>,
     rows: Vec<Vec<Eight>>,
+    /// Panels that a row has room for.
+    room: usize,
     /// Of every node the place of its tile among those that were added, and what loads on one tile move another by at
     /// most.
     slots: Vec<u32>,
@@ -45,6 +47,7 @@ impl NearMatrix {
             slots: vec![UNKNOWN; places.len()],
             places,
             rows: Vec::new(),
+            room: 0,
             reaches: Vec::new(),
         }
     }
@@ -140,6 +143,15 @@ impl NearMatrix {
         }
     }
 
+    /// Makes room for tiles of so many nodes that are about to be added: rows that grow by themselves take twice the room.
+    pub fn make_room(&mut self, nodes: impl Iterator<Item = usize>) {
+        let more: usize = nodes.map(|nodes| nodes.next_multiple_of(ROWS)).sum();
+        self.room = (self.rows.len() + more) / ROWS;
+        for row in &mut self.rows {
+            row.reserve_exact(self.room - row.len());
+        }
+    }
+
     /// Adds tile number `new` of `tiles`, with what is `between` two of them.
     pub fn add(
         &mut self,
@@ -156,7 +168,8 @@ impl NearMatrix {
         self.tiles.push((new, first));
         let reaches = vec![Reach::default(); self.tiles.len()];
         self.reaches.push(reaches);
-        self.rows.resize_with(rows, Vec::new);
+        let room = self.room;
+        self.rows.resize_with(rows, || Vec::with_capacity(room));
         for row in &mut self.rows {
             row.resize(rows / ROWS, zero());
         }

@@ -1,6 +1,6 @@
 //! Unit loads on the surface of an elastic solid, solved half way tile by tile.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use condyle_fem::{ElasticSolid, HalfSolved};
 
@@ -17,8 +17,8 @@ pub(super) struct UnitLoads {
     /// Loads that lie together, and of every tile what they do.
     tiles: Vec<Vec<u32>>,
     solved: Mutex<Vec<Option<Arc<HalfSolved>>>>,
-    /// What another run has found between them.
-    known: OnceLock<KnownCompliance>,
+    /// What another run has found between them, and nobody has asked for yet.
+    known: Mutex<KnownCompliance>,
 }
 
 impl std::fmt::Debug for UnitLoads {
@@ -37,18 +37,13 @@ impl UnitLoads {
             forces,
             solved: Mutex::new(vec![None; tiles.len()]),
             tiles,
-            known: OnceLock::new(),
+            known: Mutex::default(),
         }
     }
 
-    /// Takes what another run has found, the first time that it is told.
-    pub fn know(&self, known: KnownCompliance) {
-        let _ = self.known.set(known);
-    }
-
-    /// What another run had found.
-    pub fn known(&self) -> Option<&KnownCompliance> {
-        self.known.get()
+    /// What another run has found, and nobody has asked for yet.
+    pub fn known(&self) -> MutexGuard<'_, KnownCompliance> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The mesh node of a load, and its direction.
@@ -79,7 +74,7 @@ impl SurfaceCompliance for UnitLoads {
 
     fn between(&self, one: usize, other: usize) -> Vec<f64> {
         let nodes = [one, other].map(|tile| self.tiles[tile].len());
-        let known = self.known().and_then(|known| known.find(one, other, nodes));
+        let known = self.known().take(one, other, nodes);
         known.unwrap_or_else(|| self.solved(one).moved_along(&self.solved(other)))
     }
 }
