@@ -11,6 +11,7 @@ use super::super::contact::{ContactModelWord, FrictionModelWord, PressureLawChoi
 use super::super::contents::Case;
 use super::super::law_change::LeftOutConstant;
 use super::super::march::Update;
+use super::super::plasticity::PlasticityChoice;
 use super::super::time::IntegratorWord;
 use super::error::{BuildError, BuildWarning};
 use super::femur::{BuiltFemur, Preparing};
@@ -141,6 +142,7 @@ impl Case {
         {
             return Err(BuildError::StickSlipExplicit);
         }
+        self.check_backside()?;
         let elastic = self.material.elastic();
         let friction = &self.contact.friction;
         let (coefficient, slip) = (friction.friction, friction.slip_tolerance_mm_per_s);
@@ -152,7 +154,25 @@ impl Case {
         law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
         law.hardening = self.contact.plasticity.hardening();
         law.friction_model = self.contact.friction_model.model();
+        law.backside = self.contact.backside.backside();
         Ok(law)
+    }
+
+    /// Refuses what a backside that rests does not go with.
+    fn check_backside(&self) -> Result<(), BuildError> {
+        let contact = &self.contact;
+        let beside = |beside| Err(BuildError::RestingBeside { beside });
+        if !contact.backside.is_resting() {
+            Ok(())
+        } else if self.time.integrator == IntegratorWord::Explicit {
+            Err(BuildError::RestingExplicit)
+        } else if contact.plasticity != PlasticityChoice::None {
+            beside("plasticity = \"j2\"")
+        } else if contact.friction_model == FrictionModelWord::StickSlip {
+            beside("friction_model = \"stick-slip\"")
+        } else {
+            Ok(())
+        }
     }
 
     /// The elastic foundation of this case.

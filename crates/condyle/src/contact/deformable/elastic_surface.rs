@@ -3,18 +3,24 @@
 use std::{
     collections::BTreeMap,
     fmt,
-    sync::{Arc, OnceLock},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
 use condyle_fem::{Elastic, ElasticSolid, HexMesh, SolidError, Strain};
 
+use nalgebra::DVector;
+
 use super::{
+    backside::Tray,
     compliance::{Compliance, SurfaceCompliance},
     plastic::Influence,
     tiles::tiles,
     unit_loads::{UnitLoads, along_surface},
 };
-use crate::{Vec3, geometry::Insert};
+use crate::{
+    Vec3,
+    geometry::{Insert, bounds},
+};
 
 /// So many nodes at most are solved for together: forces on nodes that are near load the same part of the factor.
 const TILE_NODES: usize = 48;
@@ -39,6 +45,10 @@ pub(super) struct ElasticSurface {
     tangential: OnceLock<Arc<Compliance<UnitLoads>>>,
     /// What moves inside; of an insert that yields.
     influence: OnceLock<Influence>,
+    /// Mesh nodes of the backside.
+    backside: Vec<u32>,
+    /// The tray, of an insert that rests on it, and the spacing of its points, mm.
+    tray: Mutex<Option<(f64, Arc<Tray>)>>,
 }
 
 impl fmt::Debug for ElasticSurface {
@@ -75,7 +85,44 @@ impl ElasticSurface {
             nodes: nodes.to_vec(),
             tangential: OnceLock::new(),
             influence: OnceLock::new(),
+            backside: insert.backside_nodes().to_vec(),
+            tray: Mutex::default(),
         })
+    }
+
+    /// The tray, with points at some spacing: that asked for last, or made anew.
+    pub fn tray(&self, spacing_mm: f64) -> Arc<Tray> {
+        let mut tray = self.tray.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((known_mm, known)) = &*tray
+            && *known_mm == spacing_mm
+        {
+            return Arc::clone(known);
+        }
+        let made = Tray::new(&self.solid, &self.backside, spacing_mm, self.tiles().len());
+        let made = Arc::new(made);
+        *tray = Some((spacing_mm, Arc::clone(&made)));
+        made
+    }
+
+    /// How far the motion of the backside moves the nodes of a tile along their inward normals: a row a node.
+    pub fn by_tray<'a>(&self, tray: &'a Tray, tile: usize) -> &'a [f64] {
+        tray.of_tile(&self.normal, tile)
+    }
+
+    /// What loads along the inward normals of nodes are to the points of the backside, N.
+    pub fn forces_on_tray(&self, tray: &Tray, loads: &[(u32, f64)]) -> DVector<f64> {
+        let mut forces_n = DVector::zeros(tray.freedoms());
+        for (tile, loads) in self.by_tile(loads) {
+            let rows = self
+                .by_tray(tray, tile as usize)
+                .chunks_exact(tray.freedoms());
+            for (row, load_n) in rows.zip(loads).filter(|(_, load_n)| *load_n != 0.0) {
+                for (force_n, by) in forces_n.iter_mut().zip(row) {
+                    *force_n += load_n * by;
+                }
+            }
+        }
+        forces_n
     }
 
     /// The compliance along the surface: load 2 i + k is on node i along its direction k, anterior and lateral.
@@ -97,6 +144,16 @@ impl ElasticSurface {
         let nodes = nodes.min(self.nodes.len() as f64);
         let of_loads = loads_a_node.map(|each| each * nodes * (each * nodes + felt));
         self.solid.bytes() as f64 + size_of::<f64>() as f64 * (of_loads[0] + of_loads[1])
+    }
+
+    /// Bytes of a tray with points at some spacing, and of its influence on some nodes.
+    pub fn bytes_of_tray(&self, spacing_mm: f64, nodes: f64) -> f64 {
+        let mesh = self.solid.mesh();
+        let places: Vec<Vec3> = mesh.positions(&self.backside).collect();
+        let (low, high) = bounds(&places);
+        let points = [0, 2].map(|axis| (high[axis] - low[axis]) / spacing_mm + 1.0);
+        let felt = FELT_PER_ROOT * (3.0 * mesh.nodes.len() as f64).sqrt();
+        Tray::bytes(3.0 * points[0] * points[1], nodes, felt)
     }
 
     /// Bytes of what loads on some nodes move inside an insert that yields.
@@ -175,6 +232,22 @@ impl ElasticSurface {
             forces.extend(nodes.into_iter().zip(own));
         }
         self.solid.displacements(&forces)
+    }
+
+    /// How far loads along the inward normals of nodes, and a motion of the backside, move all mesh nodes, mm.
+    pub fn moved_with_tray(
+        &self,
+        loads: &[(u32, f64)],
+        tray: &Tray,
+        moved_mm: &[f64],
+    ) -> Vec<Vec3> {
+        let forces = loads.iter().map(|&(node, load_n)| {
+            let (node, along) = self.unit(node);
+            (node, along * load_n)
+        });
+        let forces: Vec<(u32, Vec3)> = forces.collect();
+        self.solid
+            .displacements_with_supports(&forces, &tray.moved_nodes(moved_mm))
     }
 
     /// How far mesh nodes of the surface move along the inward normals, mm.

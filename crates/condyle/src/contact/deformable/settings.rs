@@ -26,7 +26,23 @@ pub enum FrictionModel {
     StickSlip,
 }
 
-/// The law of an elastic insert, bonded to its tray, under a rigid femur.
+/// What holds the backside of a deformable insert on its tray.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Backside {
+    /// It is bonded: it neither lifts nor slips.
+    #[default]
+    Bonded,
+    /// It rests: where it presses it sticks or slips with Coulomb's friction, elsewhere it lifts. The rim that locks it
+    /// carries the net force and moment along the tray.
+    Resting {
+        /// Coulomb's coefficient of friction.
+        friction: f64,
+        /// Spacing of the points at which its motion is told, mm.
+        spacing_mm: f64,
+    },
+}
+
+/// The law of an elastic insert under a rigid femur.
 ///
 /// Small displacements: the surface gives way along its inward normals by the normal compliance C of the insert,
 /// computed by finite elements. The loads N at the nodes hold the bodies just in touch where they press,
@@ -38,6 +54,7 @@ pub enum FrictionModel {
 /// unworn, and made anew where an insert has become thinner by more than a twentieth. With a yield stress the insert flows below
 /// its surface (von Mises, small strains), and what that leaves of a dent goes into the gap; the stiffness stays.
 /// Limits: loads along the surface do not move it along its normal, nor do normal loads along it; a tray that does not give.
+/// An insert that rests on its tray neither yields nor sticks and slips on its surface.
 #[derive(Debug)]
 pub struct Deformable {
     /// The elastic material, MPa.
@@ -54,6 +71,8 @@ pub struct Deformable {
     pub sample_reuse_mm: f64,
     /// The yield stress of the insert, MPa, if it yields.
     pub hardening: Option<Hardening>,
+    /// What holds the backside.
+    pub backside: Backside,
     remembered: Arc<Remembered>,
 }
 
@@ -90,6 +109,7 @@ impl Deformable {
             search: Search::default(),
             sample_reuse_mm: Foundation::SAMPLE_REUSE_MM,
             hardening: None,
+            backside: Backside::default(),
             remembered: Arc::default(),
         };
         law.surface(insert, insert.unworn_nodes())?;
