@@ -10,6 +10,7 @@ const TOGETHER: usize = 16;
 /// A point of the backside, for the mesh nodes around it.
 #[derive(Clone, Debug, PartialEq)]
 pub(in super::super) struct TrayPoint {
+    /// Its place on the grid; its height is the mean of the nodes around it.
     pub position: Vec3,
     /// Its own directions: anterior and lateral along the tray, then off the tray, into the insert.
     pub frame: [Vec3; 3],
@@ -29,16 +30,15 @@ pub(in super::super) fn tray_points(
     spacing_mm: f64,
 ) -> Vec<Vec<TrayPoint>> {
     let inward = inward_mm2(mesh, backside);
-    let weights = on_grid(mesh, backside, spacing_mm);
     let mut points: Vec<TrayPoint> = Vec::new();
-    for weights in weights {
+    for ([x, z], weights) in on_grid(mesh, backside, spacing_mm) {
         let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
         let part = |&(at, weight): &(usize, f64)| inward[at] * weight;
         let area: Vec3 = weights.iter().map(part).sum();
-        let middle = |&(at, weight): &(usize, f64)| mesh.nodes[backside[at] as usize] * weight;
-        let position = weights.iter().map(middle).sum::<Vec3>() / sum;
+        let height = |&(at, weight): &(usize, f64)| mesh.nodes[backside[at] as usize].y * weight;
+        let y = weights.iter().map(height).sum::<f64>() / sum;
         points.push(TrayPoint {
-            position,
+            position: Vec3::new(x, y, z),
             frame: frame_of(&area),
             weights: weights
                 .iter()
@@ -58,9 +58,11 @@ pub(in super::super) fn tray_points(
     groups.map(group).collect()
 }
 
-/// Of every point of the grid the nodes around it, by their places in `backside`, with their weights; points without any
-/// are left out.
-fn on_grid(mesh: &HexMesh, backside: &[u32], spacing_mm: f64) -> Vec<Vec<(usize, f64)>> {
+/// Nodes around a point, by their places in `backside`, with their weights.
+type Around = Vec<(usize, f64)>;
+
+/// Every point of the grid, x and z, with the nodes around it; points without any are left out.
+fn on_grid(mesh: &HexMesh, backside: &[u32], spacing_mm: f64) -> Vec<([f64; 2], Around)> {
     let place = |at: usize| mesh.nodes[backside[at] as usize];
     let places: Vec<Vec3> = (0..backside.len()).map(place).collect();
     let (low, high) = bounds(&places);
@@ -81,8 +83,14 @@ fn on_grid(mesh: &HexMesh, backside: &[u32], spacing_mm: f64) -> Vec<Vec<(usize,
             }
         }
     }
-    nodes.retain(|nodes| !nodes.is_empty());
-    nodes
+    let step = [(0, cells[0]), (2, cells[1])].map(|(axis, cells)| (high[axis] - low[axis]) / cells);
+    let place = |at: usize| {
+        let [i, k] = [at % columns, at / columns].map(|i| i as f64);
+        [low.x + i * step[0], low.z + k * step[1]]
+    };
+    let points = nodes.into_iter().enumerate();
+    let points = points.filter(|(_, nodes)| !nodes.is_empty());
+    points.map(|(at, nodes)| (place(at), nodes)).collect()
 }
 
 /// The share of the backside at each of its nodes, mm2, along the normal into the insert.
