@@ -221,6 +221,44 @@ fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments(
     );
 }
 
+#[test]
+fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_increments() {
+    let shown = refusal("[contact]\nbackside = \"resting\"\n");
+    assert_shows(&shown, &["`backside` belongs to model = \"deformable\""]);
+    let deformable = "[contact]\nmodel = \"deformable\"\n";
+    let shown = refusal(&format!("{deformable}backside_friction = 0.1\n"));
+    assert_shows(
+        &shown,
+        &["`backside_friction` belongs to backside = \"resting\""],
+    );
+    let resting = format!("{deformable}backside = \"resting\"\n");
+    let shown = refusal(&format!("{resting}backside_friction = -0.1\n"));
+    assert_shows(&shown, &["`backside_friction`", "from 0 to"]);
+    let shown = refusal(&format!("{deformable}backside = \"glued\"\n"));
+    assert_shows(&shown, &["\"bonded\"", "\"resting\""]);
+    let case = parsed(&format!("{resting}backside_friction = 0.15\n")).expect("it is a good case");
+    let again = parsed(&case.to_toml()).expect("what is written is a good case");
+    assert_eq!(again.contact, case.contact);
+    for (beside, word) in [
+        (
+            "plasticity = \"j2\"",
+            "does not go with plasticity = \"j2\"",
+        ),
+        (
+            "friction_model = \"stick-slip\"",
+            "does not go with friction_model",
+        ),
+        (
+            "[time]\nintegrator = \"explicit\"",
+            "take integrator = \"implicit\"",
+        ),
+    ] {
+        let case = parsed(&format!("{resting}{beside}\n")).expect("its keys are good");
+        let refused = case.contact_law(&flat()).expect_err("it is refused");
+        assert_shows(&refused.to_string(), &["backside = \"resting\"", word]);
+    }
+}
+
 /// A flat insert.
 fn flat() -> Insert {
     let meshing = Meshing {
