@@ -95,7 +95,7 @@ impl Case {
 
     fn culprit_of_build(&self, error: &BuildError) -> Culprit {
         let keys: &[&str] = match error {
-            BuildError::RestingBeside { .. } => {
+            BuildError::RestingBeside { .. } | BuildError::BacksideNotFlat { .. } => {
                 return Culprit {
                     table: "contact",
                     keys: &["backside"],

@@ -19,6 +19,9 @@ use super::machine::start_flexion_rad;
 use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
 
+/// Less of a backside than this lies in a plane: it does not rest on a flat tray.
+const LEAST_FLAT_PART: f64 = 0.5;
+
 /// A wear test ready to run, and what was put right on the way to it.
 pub struct Built {
     /// The test, of a right knee: a left one is mirrored, and its results are to be mirrored back.
@@ -142,7 +145,7 @@ impl Case {
         {
             return Err(BuildError::StickSlipExplicit);
         }
-        self.check_backside()?;
+        self.check_backside(insert)?;
         let elastic = self.material.elastic();
         let friction = &self.contact.friction;
         let (coefficient, slip) = (friction.friction, friction.slip_tolerance_mm_per_s);
@@ -159,7 +162,7 @@ impl Case {
     }
 
     /// Refuses what a backside that rests does not go with.
-    fn check_backside(&self) -> Result<(), BuildError> {
+    fn check_backside(&self, insert: &Insert) -> Result<(), BuildError> {
         let contact = &self.contact;
         let beside = |beside| Err(BuildError::RestingBeside { beside });
         if !contact.backside.is_resting() {
@@ -171,6 +174,11 @@ impl Case {
         } else if contact.friction_model == FrictionModelWord::StickSlip {
             beside("friction_model = \"stick-slip\"")
         } else {
+            let part = Deformable::flat_part_of_backside(insert);
+            if part < LEAST_FLAT_PART {
+                let percent = 100.0 * part;
+                return Err(BuildError::BacksideNotFlat { percent });
+            }
             Ok(())
         }
     }

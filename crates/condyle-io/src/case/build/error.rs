@@ -36,6 +36,15 @@ pub enum BuildError {
          solves none; take integrator = \"implicit\", or backside = \"bonded\""
     )]
     RestingExplicit,
+    /// A backside that is not flat enough to rest.
+    #[error(
+        "[contact] backside = \"resting\" needs a flat backside, and {percent:.0} % of this insert's lies in a plane; take \
+         backside = \"bonded\", or give an insert with a flat backside"
+    )]
+    BacksideNotFlat {
+        /// How much of it is flat, %.
+        percent: f64,
+    },
     /// A backside that rests under an insert that yields or sticks and slips.
     #[error(
         "[contact] backside = \"resting\" does not go with {beside}: what that is computed from belongs to an insert that is \
@@ -234,6 +243,7 @@ impl BuildError {
             | Self::Solid(_)
             | Self::StickSlipExplicit
             | Self::RestingExplicit
+            | Self::BacksideNotFlat { .. }
             | Self::RestingBeside { .. } => None,
         }
     }

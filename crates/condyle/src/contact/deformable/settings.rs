@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use condyle_fem::{Elastic, Hardening, SolidError};
 
-use super::{compliance::Compliance, elastic_surface::ElasticSurface};
+use super::{backside::Floor, compliance::Compliance, elastic_surface::ElasticSurface};
 use crate::{
     Vec3,
     contact::{broad_phase::Search, foundation::Foundation, pressed::Coulomb},
@@ -114,6 +114,13 @@ impl Deformable {
         };
         law.surface(insert, insert.unworn_nodes())?;
         Ok(law)
+    }
+
+    /// How much of an insert's backside is flat, of what a tray below sees: what can rest.
+    ///
+    /// Faces that lean by less than 15 degrees from the mean normal, within a quarter of a millimetre of their middle height.
+    pub fn flat_part_of_backside(insert: &Insert) -> f64 {
+        Floor::of(insert.mesh(), insert.backside_nodes()).part()
     }
 
     /// The surface of an insert with its mesh nodes there: remembered, or made anew.

@@ -6,8 +6,9 @@ use condyle_fem::HexMesh;
 
 use crate::{Vec3, geometry::bounds};
 
-/// A point that has less than this part of a cell around it lies outside: a corner of a rectangle has a quarter.
-const LEAST_PART: f64 = 0.2;
+/// A point that has less than this part of a cell around it lies outside, and rests on nothing if so little of that is
+/// flat: a corner of a rectangle has a quarter.
+pub(super) const LEAST_PART: f64 = 0.2;
 
 /// Nodes that go along with a point, by their places in a list, and how far.
 pub(super) type Around = Vec<(usize, f64)>;
@@ -36,6 +37,11 @@ impl Grid {
 
     fn columns(&self) -> usize {
         self.cells[0] + 1
+    }
+
+    /// Area of a cell, mm2.
+    pub fn cell_mm2(&self) -> f64 {
+        self.step_mm[0] * self.step_mm[1]
     }
 
     /// Where a point is.
@@ -76,13 +82,12 @@ impl Grid {
 
     /// The same without the points outside: nodes around these go along with the nearest cell that has none. Where there is
     /// no such cell all stay.
-    pub fn from_within(&self, around: Vec<Around>, inward_mm2: &[Vec3]) -> Vec<Around> {
-        let whole_mm2 = self.step_mm[0] * self.step_mm[1];
+    pub fn from_within(&self, around: Vec<Around>, share_mm2: &[f64]) -> Vec<Around> {
         let is_within: Vec<bool> = around
             .iter()
             .map(|around| {
-                let parts = around.iter().map(|&(at, weight)| inward_mm2[at] * weight);
-                parts.sum::<Vec3>().norm() >= LEAST_PART * whole_mm2
+                let parts = around.iter().map(|&(at, weight)| share_mm2[at] * weight);
+                parts.sum::<f64>() >= LEAST_PART * self.cell_mm2()
             })
             .collect();
         let columns = self.columns();
@@ -141,7 +146,7 @@ mod tests {
             place.x / 20.0 + place.z / 14.0 < 0.3
         });
         let grid = Grid::over(mesh, &nodes, 3.0);
-        let even = vec![Vec3::y(); nodes.len()];
+        let even = vec![1.0; nodes.len()];
         let around = grid.from_within(grid.around(mesh, &nodes), &even);
         let left_out = around.iter().filter(|around| around.is_empty()).count();
         assert!(left_out > 8, "{left_out}");

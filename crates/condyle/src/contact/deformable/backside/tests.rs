@@ -236,6 +236,7 @@ fn what_pushes_the_backside_is_what_presses_the_surface() {
         let [above, below] = sum(&of);
         assert!((above / below - 1.0).abs() < 1e-5, "{above} {below}");
     }
+    assert!(layer.tray.points.iter().all(|point| point.rests));
     let lifted = loaded
         .rest
         .moved_mm

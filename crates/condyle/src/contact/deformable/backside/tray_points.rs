@@ -2,7 +2,10 @@
 
 use condyle_fem::HexMesh;
 
-use super::grid::Grid;
+use super::{
+    floor::Floor,
+    grid::{Grid, LEAST_PART},
+};
 use crate::{Vec3, contact::deformable::tiles::tiles};
 
 /// So many points at most are solved for together.
@@ -17,35 +20,39 @@ pub(in super::super) struct TrayPoint {
     pub frame: [Vec3; 3],
     /// How far each mesh node of the backside around it goes along with it.
     pub weights: Vec<(u32, f64)>,
-    /// Its share of the backside, mm2.
+    /// Its share of the flat part of the backside, mm2.
     pub area_mm2: f64,
+    /// Whether there is enough of that for the tray to hold it; else it hangs free.
+    pub rests: bool,
 }
 
 /// Points on a grid of some `spacing_mm` over the transverse plane, in groups that lie together.
 ///
 /// The backside moves by bilinear interpolation between them, and beyond its outermost points by extrapolation, so that a
-/// motion as a rigid body is among its motions. A point has the mean normal of the backside around it.
+/// motion as a rigid body is among its motions. All points have the directions of its flat part.
 pub(in super::super) fn tray_points(
     mesh: &HexMesh,
     backside: &[u32],
     spacing_mm: f64,
 ) -> Vec<Vec<TrayPoint>> {
-    let inward = inward_mm2(mesh, backside);
+    let floor = Floor::of(mesh, backside);
     let grid = Grid::over(mesh, backside, spacing_mm);
-    let around = grid.from_within(grid.around(mesh, backside), &inward);
+    let around = grid.from_within(grid.around(mesh, backside), &floor.share_mm2);
+    let frame = frame_of(&floor.normal);
     let mut points: Vec<TrayPoint> = Vec::new();
     for (at, weights) in around.into_iter().enumerate() {
         if weights.is_empty() {
             continue;
         }
-        let part = |&(at, weight): &(usize, f64)| inward[at] * weight;
-        let area: Vec3 = weights.iter().map(part).sum();
+        let part = |&(at, weight): &(usize, f64)| floor.flat_mm2[at] * weight;
+        let area_mm2: f64 = weights.iter().map(part).sum();
         let nodes = weights.into_iter();
         points.push(TrayPoint {
             position: grid.place(at),
-            frame: frame_of(&area),
+            frame,
             weights: nodes.map(|(at, weight)| (backside[at], weight)).collect(),
-            area_mm2: area.norm(),
+            rests: area_mm2 >= LEAST_PART * grid.cell_mm2(),
+            area_mm2,
         });
     }
     let places: Vec<Vec3> = points.iter().map(|point| point.position).collect();
@@ -57,20 +64,6 @@ pub(in super::super) fn tray_points(
             .collect()
     };
     groups.map(group).collect()
-}
-
-/// The share of the backside at each of its nodes, mm2, along the normal into the insert.
-fn inward_mm2(mesh: &HexMesh, backside: &[u32]) -> Vec<Vec3> {
-    let number = |node: &u32| backside.binary_search(node).ok();
-    let mut quads = mesh.boundary_quads();
-    quads.retain(|quad| quad.iter().all(|node| number(node).is_some()));
-    let mut inward = vec![Vec3::zeros(); backside.len()];
-    for (node, share) in mesh.traction_forces(&quads, |_, normal| -normal) {
-        if let Some(at) = number(&node) {
-            inward[at] += share;
-        }
-    }
-    inward
 }
 
 /// The directions of a point with that normal: anterior and lateral along the tray, then the normal.

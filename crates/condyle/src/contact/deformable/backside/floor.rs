@@ -1,0 +1,125 @@
+//! The flat part of a backside, which rests on the tray.
+
+use condyle_fem::HexMesh;
+
+use crate::Vec3;
+
+/// A face of the backside that leans from its normal by more than this cosine tells, 15 degrees, is a wall.
+const LEAST_COSINE: f64 = 0.966;
+/// Flat faces farther than this off the middle height of all are recesses or pegs, mm.
+const MOST_OFF_MM: f64 = 0.25;
+
+/// The flat part of a backside.
+pub(in super::super) struct Floor {
+    /// Its normal, into the insert.
+    pub normal: Vec3,
+    /// Of every node of the backside its share of the backside as the tray sees it, mm2.
+    pub share_mm2: Vec<f64>,
+    /// The same of the flat part alone.
+    pub flat_mm2: Vec<f64>,
+}
+
+/// A face of the backside.
+struct Face {
+    quad: [u32; 4],
+    inward: Vec3,
+    middle: Vec3,
+}
+
+impl Floor {
+    /// That of a backside with those nodes, ascending.
+    pub fn of(mesh: &HexMesh, backside: &[u32]) -> Self {
+        let number = |node: &u32| backside.binary_search(node).ok();
+        let mut quads = mesh.boundary_quads();
+        quads.retain(|quad| quad.iter().all(|node| number(node).is_some()));
+        let faces: Vec<Face> = quads.iter().map(|quad| Face::of(mesh, *quad)).collect();
+        let inward: Vec3 = faces.iter().map(|face| face.inward).sum();
+        let normal = inward.try_normalize(0.0).unwrap_or_else(Vec3::y);
+        let flat = flat_quads(&faces, &normal);
+        let shares = |quads: &[[u32; 4]]| {
+            let mut shares = vec![0.0; backside.len()];
+            for (node, share) in mesh.traction_forces(quads, |_, outward| -outward) {
+                if let Some(at) = number(&node) {
+                    shares[at] += share.dot(&normal);
+                }
+            }
+            shares
+        };
+        Self {
+            share_mm2: shares(&quads),
+            flat_mm2: shares(&flat),
+            normal,
+        }
+    }
+
+    /// How much of the backside is flat, of what the tray sees.
+    pub fn part(&self) -> f64 {
+        self.flat_mm2.iter().sum::<f64>() / self.share_mm2.iter().sum::<f64>()
+    }
+}
+
+impl Face {
+    fn of(mesh: &HexMesh, quad: [u32; 4]) -> Self {
+        let [a, b, c, d] = quad.map(|node| mesh.nodes[node as usize]);
+        Self {
+            quad,
+            inward: -(c - a).cross(&(d - b)) / 2.0,
+            middle: (a + b + c + d) / 4.0,
+        }
+    }
+}
+
+/// The faces that hardly lean, near the height that halves the area of all these.
+fn flat_quads(faces: &[Face], normal: &Vec3) -> Vec<[u32; 4]> {
+    let hardly_leans = |face: &&Face| face.inward.dot(normal) > LEAST_COSINE * face.inward.norm();
+    let mut level: Vec<(f64, &Face)> = faces
+        .iter()
+        .filter(hardly_leans)
+        .map(|face| (face.middle.dot(normal), face))
+        .collect();
+    level.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half_mm2 = level
+        .iter()
+        .map(|(_, face)| face.inward.norm())
+        .sum::<f64>()
+        / 2.0;
+    let mut below_mm2 = 0.0;
+    let middle = level.iter().find(|(_, face)| {
+        below_mm2 += face.inward.norm();
+        below_mm2 >= half_mm2
+    });
+    let middle_mm = middle.map_or(0.0, |(height_mm, _)| *height_mm);
+    let flat = level.iter();
+    let flat = flat.filter(|(height_mm, _)| (height_mm - middle_mm).abs() <= MOST_OFF_MM);
+    flat.map(|(_, face)| face.quad).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Meshing, flat_insert};
+
+    #[test]
+    fn a_recess_and_a_slope_are_no_floor() {
+        let meshing = Meshing {
+            edge_mm: 1.0,
+            layers: 2,
+        };
+        let insert = flat_insert((20.0, 10.0), 5.0, meshing).unwrap();
+        let (mut mesh, backside) = (insert.mesh().clone(), insert.backside_nodes());
+        let whole = Floor::of(&mesh, backside);
+        assert!((whole.normal - Vec3::y()).norm() < 1e-12 && (whole.part() - 1.0).abs() < 1e-12);
+        for &node in backside {
+            let place = &mut mesh.nodes[node as usize];
+            if place.x > 5.5 {
+                place.y += place.x - 5.5;
+            } else if place.x < -4.5 {
+                place.y += 0.5;
+            }
+        }
+        let floor = Floor::of(&mesh, backside);
+        // From -4 mm, a step inside of the recess, to 5 mm.
+        assert!((floor.flat_mm2.iter().sum::<f64>() - 90.0).abs() < 1e-9);
+        assert!((floor.part() - 0.45).abs() < 0.01, "{}", floor.part());
+    }
+}
