@@ -117,3 +117,21 @@ impl CycleError {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Tipped;
+
+    #[test]
+    fn an_insert_that_tips_says_where_and_what_to_do() {
+        let tipped = NotBorne::Tipped(Tipped { moved_mm: 12.0 });
+        let said = CycleError::not_borne(0.25, tipped).to_string();
+        for words in [
+            "tips the insert off its tray at 25.00 %",
+            "backside = \"bonded\"",
+        ] {
+            assert!(said.contains(words), "{said}");
+        }
+    }
+}

@@ -259,6 +259,33 @@ fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_incr
     }
 }
 
+#[test]
+fn a_backside_that_is_not_flat_does_not_rest() {
+    let resting = "[contact]\nmodel = \"deformable\"\nbackside = \"resting\"\n";
+    let case = parsed(resting).expect("it is a good case");
+    let mut mesh = flat().mesh().clone();
+    for node in &mut mesh.nodes {
+        node.y += 0.1 * node.x * node.x;
+    }
+    let quads = mesh.boundary_quads();
+    let facing = |sign: f64| {
+        let is_facing = |quad: &&[u32; 4]| {
+            let [a, b, c, d] = quad.map(|node| mesh.nodes[node as usize]);
+            let normal = (c - a).cross(&(d - b)).normalize();
+            sign * normal.y > 0.6
+        };
+        quads.iter().filter(is_facing).copied().collect::<Vec<_>>()
+    };
+    let bent = Insert::new(mesh.clone(), &facing(1.0), &facing(-1.0)).expect("it is an insert");
+    let refused = case.contact_law(&bent).expect_err("it is refused");
+    let words = [
+        "needs a flat backside",
+        "lies in a plane",
+        "backside = \"bonded\"",
+    ];
+    assert_shows(&refused.to_string(), &words);
+}
+
 /// A flat insert.
 fn flat() -> Insert {
     let meshing = Meshing {
