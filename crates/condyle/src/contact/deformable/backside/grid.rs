@@ -82,7 +82,7 @@ impl Grid {
 
     /// The same without the points outside: nodes around these go along with the nearest cell that has none. Where there is
     /// no such cell all stay.
-    pub fn from_within(&self, around: Vec<Around>, share_mm2: &[f64]) -> Vec<Around> {
+    pub fn led_from_within(&self, around: Vec<Around>, share_mm2: &[f64]) -> Vec<Around> {
         let is_within: Vec<bool> = around
             .iter()
             .map(|around| {
@@ -147,7 +147,7 @@ mod tests {
         });
         let grid = Grid::over(mesh, &nodes, 3.0);
         let even = vec![1.0; nodes.len()];
-        let around = grid.from_within(grid.around(mesh, &nodes), &even);
+        let around = grid.led_from_within(grid.around(mesh, &nodes), &even);
         let left_out = around.iter().filter(|around| around.is_empty()).count();
         assert!(left_out > 8, "{left_out}");
         let linear = |place: &Vec3| 0.3 + 0.1 * place.x - 0.2 * place.z;

@@ -61,7 +61,7 @@ pub(in super::super) fn rest(
                 searched_mm: searched,
             });
         }
-        if !(allowed.amax() < TIPPED_MM) {
+        if !allowed.amax().is_finite() || allowed.amax() > TIPPED_MM {
             break;
         }
         let image = &searched + apart;

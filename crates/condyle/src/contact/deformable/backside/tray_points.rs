@@ -37,7 +37,7 @@ pub(in super::super) fn tray_points(
 ) -> Vec<Vec<TrayPoint>> {
     let floor = Floor::of(mesh, backside);
     let grid = Grid::over(mesh, backside, spacing_mm);
-    let around = grid.from_within(grid.around(mesh, backside), &floor.share_mm2);
+    let around = grid.led_from_within(grid.around(mesh, backside), &floor.share_mm2);
     let frame = frame_of(&floor.normal);
     let mut points: Vec<TrayPoint> = Vec::new();
     for (at, weights) in around.into_iter().enumerate() {
