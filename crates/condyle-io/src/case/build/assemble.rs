@@ -157,8 +157,7 @@ impl Case {
         law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
         law.hardening = self.contact.plasticity.hardening();
         law.friction_model = self.contact.friction_model.model();
-        law.backside = self.contact.backside.backside();
-        Ok(law)
+        Ok(law.with_backside(self.contact.backside.backside(), insert)?)
     }
 
     /// Refuses what a backside that rests does not go with.

@@ -11,7 +11,7 @@ use condyle_fem::{Elastic, ElasticSolid, HexMesh, SolidError, Strain};
 use nalgebra::DVector;
 
 use super::{
-    backside::Tray,
+    backside::{Floor, Tray},
     compliance::{Compliance, SurfaceCompliance},
     plastic::Influence,
     tiles::tiles,
@@ -29,7 +29,16 @@ const TILE_NODES: usize = 48;
 /// layers of nodes.
 const FELT_PER_ROOT: f64 = 6.0;
 
-/// The articulating surface of an elastic insert, bonded to its tray.
+/// Nodes that hold an insert while its loads are half-solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum HeldBy {
+    /// Those of its backside: it is bonded.
+    Backside,
+    /// Those of the flat part of it, which rests; walls and recesses hang free.
+    Floor,
+}
+
+/// The articulating surface of an elastic insert, held by its backside or by the floor of that.
 ///
 /// The stiffness is factored once; unit loads on a tile of nodes are solved half way when they are first asked for,
 /// and kept.
@@ -45,7 +54,10 @@ pub(super) struct ElasticSurface {
     tangential: OnceLock<Arc<Compliance<UnitLoads>>>,
     /// What moves inside; of an insert that yields.
     influence: OnceLock<Influence>,
-    /// Mesh nodes of the backside.
+    /// What holds it.
+    held_by: HeldBy,
+    /// The flat part of the backside, of an insert that rests on it.
+    floor: OnceLock<Floor>,
     backside: Vec<u32>,
     /// The tray, of an insert that rests on it, and the spacing of its points, mm.
     tray: Mutex<Option<(f64, Arc<Tray>)>>,
@@ -64,14 +76,23 @@ impl ElasticSurface {
     ///
     /// # Errors
     /// A material or a mesh that is no elastic solid.
-    pub fn new(insert: &Insert, mesh_nodes: &[Vec3], elastic: Elastic) -> Result<Self, SolidError> {
+    pub fn new(
+        insert: &Insert,
+        mesh_nodes: &[Vec3],
+        elastic: Elastic,
+        held_by: HeldBy,
+    ) -> Result<Self, SolidError> {
         let mesh = HexMesh {
             nodes: mesh_nodes.to_vec(),
             hexes: insert.mesh().hexes.clone(),
         };
         let surface = insert.surface_at(mesh_nodes);
         let tiles = tiles(&surface.positions, TILE_NODES);
-        let held = insert.backside_nodes().iter().copied();
+        let backside = insert.backside_nodes();
+        let held = match held_by {
+            HeldBy::Backside => backside.to_vec(),
+            HeldBy::Floor => Floor::of(&mesh, backside).nodes,
+        };
         let solid = Arc::new(ElasticSolid::new(&mesh, elastic, held)?);
         let nodes = insert.surface_nodes();
         let inward = surface.normals.iter().map(|normal| -normal);
@@ -85,9 +106,16 @@ impl ElasticSurface {
             nodes: nodes.to_vec(),
             tangential: OnceLock::new(),
             influence: OnceLock::new(),
-            backside: insert.backside_nodes().to_vec(),
+            backside: backside.to_vec(),
+            floor: OnceLock::new(),
+            held_by,
             tray: Mutex::default(),
         })
+    }
+
+    fn floor(&self) -> &Floor {
+        let mesh = self.solid.mesh();
+        self.floor.get_or_init(|| Floor::of(mesh, &self.backside))
     }
 
     /// The tray, with points at some spacing: that asked for last, or made anew.
@@ -98,7 +126,7 @@ impl ElasticSurface {
         {
             return Arc::clone(known);
         }
-        let made = Tray::new(&self.solid, &self.backside, spacing_mm, self.tiles().len());
+        let made = Tray::new(&self.solid, self.floor(), spacing_mm, self.tiles().len());
         let made = Arc::new(made);
         *tray = Some((spacing_mm, Arc::clone(&made)));
         made
@@ -149,7 +177,7 @@ impl ElasticSurface {
     /// Bytes of a tray with points at some spacing, and of its influence on some nodes.
     pub fn bytes_of_tray(&self, spacing_mm: f64, nodes: f64) -> f64 {
         let mesh = self.solid.mesh();
-        let places: Vec<Vec3> = mesh.positions(&self.backside).collect();
+        let places: Vec<Vec3> = mesh.positions(&self.floor().nodes).collect();
         let (low, high) = bounds(&places);
         let points = [0, 2].map(|axis| (high[axis] - low[axis]) / spacing_mm + 1.0);
         let felt = FELT_PER_ROOT * (3.0 * mesh.nodes.len() as f64).sqrt();
@@ -163,9 +191,10 @@ impl ElasticSurface {
     }
 
     /// Whether it is that of an insert with its mesh nodes there.
-    pub fn is_of(&self, insert: &Insert, mesh_nodes: &[Vec3]) -> bool {
+    pub fn is_of(&self, insert: &Insert, mesh_nodes: &[Vec3], held_by: HeldBy) -> bool {
         let mesh = self.solid.mesh();
-        mesh.hexes == insert.mesh().hexes
+        self.held_by == held_by
+            && mesh.hexes == insert.mesh().hexes
             && mesh.nodes == mesh_nodes
             && self.nodes == insert.surface_nodes()
     }

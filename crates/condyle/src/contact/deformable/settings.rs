@@ -4,7 +4,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use condyle_fem::{Elastic, Hardening, SolidError};
 
-use super::{backside::Floor, compliance::Compliance, elastic_surface::ElasticSurface};
+use super::{
+    backside::Floor,
+    compliance::Compliance,
+    elastic_surface::{ElasticSurface, HeldBy},
+};
 use crate::{
     Vec3,
     contact::{broad_phase::Search, foundation::Foundation, pressed::Coulomb},
@@ -72,7 +76,7 @@ pub struct Deformable {
     /// The yield stress of the insert, MPa, if it yields.
     pub hardening: Option<Hardening>,
     /// What holds the backside.
-    pub backside: Backside,
+    pub(super) backside: Backside,
     remembered: Arc<Remembered>,
 }
 
@@ -116,11 +120,26 @@ impl Deformable {
         Ok(law)
     }
 
+    /// The same law of an insert whose backside is held so; where it rests on its flat part the stiffness is factored anew if
+    /// there is more than that.
+    ///
+    /// # Errors
+    /// An insert of which a part is not held by that.
+    pub fn with_backside(
+        mut self,
+        backside: Backside,
+        insert: &Insert,
+    ) -> Result<Self, SolidError> {
+        self.backside = backside;
+        self.surface(insert, insert.unworn_nodes())?;
+        Ok(self)
+    }
+
     /// How much of an insert's backside is flat, of what a tray below sees: what can rest.
     ///
     /// Faces that lean by less than 15 degrees from the mean normal, within a quarter of a millimetre of their middle height.
     pub fn flat_part_of_backside(insert: &Insert) -> f64 {
-        Floor::of(insert.mesh(), insert.backside_nodes()).part()
+        Floor::of(insert.mesh(), insert.backside_nodes()).part
     }
 
     /// The surface of an insert with its mesh nodes there: remembered, or made anew.
@@ -129,6 +148,10 @@ impl Deformable {
         insert: &Insert,
         mesh_nodes: &[Vec3],
     ) -> Result<Arc<Compliance<ElasticSurface>>, SolidError> {
+        let held_by = match self.backside {
+            Backside::Bonded => HeldBy::Backside,
+            Backside::Resting { .. } => HeldBy::Floor,
+        };
         let mut remembered = self
             .remembered
             .0
@@ -136,13 +159,13 @@ impl Deformable {
             .unwrap_or_else(PoisonError::into_inner);
         let found = remembered
             .iter()
-            .position(|surface| surface.source.is_of(insert, mesh_nodes));
+            .position(|surface| surface.source.is_of(insert, mesh_nodes, held_by));
         let surface = if let Some(place) = found {
             remembered.remove(place)
         } else {
             // Before, so that what goes and what comes are not there at once.
             forget_the_oldest(&mut remembered);
-            let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic)?;
+            let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic, held_by)?;
             Arc::new(Compliance::new(surface))
         };
         remembered.push(Arc::clone(&surface));

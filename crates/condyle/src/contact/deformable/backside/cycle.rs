@@ -92,13 +92,11 @@ impl CycleOfRest {
         let presses: Vec<bool> = pushes.map(|push| push[2] > 0.0).collect();
         let area = |lifted: bool| -> f64 {
             let points = tray.points.iter().zip(&presses);
-            let counted = points.filter(|(point, presses)| point.rests && !(lifted && **presses));
+            let counted = points.filter(|(_, presses)| !(lifted && **presses));
             counted.map(|(point, _)| point.area_mm2).sum()
         };
-        let resting = points.iter().zip(&tray.points);
-        let resting = resting.filter(|(_, point)| point.rests);
         let most = BacksideCycle {
-            lift_mm: resting.map(|(moved, _)| moved[2]).fold(0.0, f64::max),
+            lift_mm: points.iter().map(|point| point[2]).fold(0.0, f64::max),
             lifted_part: area(true) / area(false),
             slip_mm: 0.0,
             lock: tray.lock_load(&rest.moved_mm.clone().into()),

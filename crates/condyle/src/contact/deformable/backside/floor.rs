@@ -1,5 +1,7 @@
 //! The flat part of a backside, which rests on the tray.
 
+use std::collections::BTreeMap;
+
 use condyle_fem::HexMesh;
 
 use crate::Vec3;
@@ -13,10 +15,12 @@ const MOST_OFF_MM: f64 = 0.25;
 pub(in super::super) struct Floor {
     /// Its normal, into the insert.
     pub normal: Vec3,
-    /// Of every node of the backside its share of the backside as the tray sees it, mm2.
+    /// Its mesh nodes, ascending.
+    pub nodes: Vec<u32>,
+    /// Of each its share of the floor, mm2.
     pub share_mm2: Vec<f64>,
-    /// The same of the flat part alone.
-    pub flat_mm2: Vec<f64>,
+    /// How much of the backside, as the tray sees it, is floor.
+    pub part: f64,
 }
 
 /// A face of the backside.
@@ -29,32 +33,24 @@ struct Face {
 impl Floor {
     /// That of a backside with those nodes, ascending.
     pub fn of(mesh: &HexMesh, backside: &[u32]) -> Self {
-        let number = |node: &u32| backside.binary_search(node).ok();
+        let is_own = |node: &u32| backside.binary_search(node).is_ok();
         let mut quads = mesh.boundary_quads();
-        quads.retain(|quad| quad.iter().all(|node| number(node).is_some()));
+        quads.retain(|quad| quad.iter().all(is_own));
         let faces: Vec<Face> = quads.iter().map(|quad| Face::of(mesh, *quad)).collect();
         let inward: Vec3 = faces.iter().map(|face| face.inward).sum();
         let normal = inward.try_normalize(0.0).unwrap_or_else(Vec3::y);
+        let mut shares = BTreeMap::<u32, f64>::new();
         let flat = flat_quads(&faces, &normal);
-        let shares = |quads: &[[u32; 4]]| {
-            let mut shares = vec![0.0; backside.len()];
-            for (node, share) in mesh.traction_forces(quads, |_, outward| -outward) {
-                if let Some(at) = number(&node) {
-                    shares[at] += share.dot(&normal);
-                }
-            }
-            shares
-        };
+        for (node, share) in mesh.traction_forces(&flat, |_, outward| -outward) {
+            *shares.entry(node).or_default() += share.dot(&normal);
+        }
+        let (nodes, share_mm2): (Vec<u32>, Vec<f64>) = shares.into_iter().unzip();
         Self {
-            share_mm2: shares(&quads),
-            flat_mm2: shares(&flat),
+            part: share_mm2.iter().sum::<f64>() / inward.dot(&normal),
+            nodes,
+            share_mm2,
             normal,
         }
-    }
-
-    /// How much of the backside is flat, of what the tray sees.
-    pub fn part(&self) -> f64 {
-        self.flat_mm2.iter().sum::<f64>() / self.share_mm2.iter().sum::<f64>()
     }
 }
 
@@ -108,7 +104,7 @@ mod tests {
         let insert = flat_insert((20.0, 10.0), 5.0, meshing).unwrap();
         let (mut mesh, backside) = (insert.mesh().clone(), insert.backside_nodes());
         let whole = Floor::of(&mesh, backside);
-        assert!((whole.normal - Vec3::y()).norm() < 1e-12 && (whole.part() - 1.0).abs() < 1e-12);
+        assert!((whole.normal - Vec3::y()).norm() < 1e-12 && (whole.part - 1.0).abs() < 1e-12);
         for &node in backside {
             let place = &mut mesh.nodes[node as usize];
             if place.x > 5.5 {
@@ -119,7 +115,7 @@ mod tests {
         }
         let floor = Floor::of(&mesh, backside);
         // From -4 mm, a step inside of the recess, to 5 mm.
-        assert!((floor.flat_mm2.iter().sum::<f64>() - 90.0).abs() < 1e-9);
-        assert!((floor.part() - 0.45).abs() < 0.01, "{}", floor.part());
+        assert!((floor.share_mm2.iter().sum::<f64>() - 90.0).abs() < 1e-9);
+        assert!((floor.part - 0.45).abs() < 0.01, "{}", floor.part);
     }
 }

@@ -6,9 +6,8 @@ use condyle_fem::HexMesh;
 
 use crate::{Vec3, geometry::bounds};
 
-/// A point that has less than this part of a cell around it lies outside, and rests on nothing if so little of that is
-/// flat: a corner of a rectangle has a quarter.
-pub(super) const LEAST_PART: f64 = 0.2;
+/// A point that has less than this part of a cell around it lies outside: a corner of a rectangle has a quarter.
+const LEAST_PART: f64 = 0.2;
 
 /// Nodes that go along with a point, by their places in a list, and how far.
 pub(super) type Around = Vec<(usize, f64)>;

@@ -26,7 +26,7 @@ pub(in super::super) struct Rest {
 
 /// The rest of a backside under forces b of the surface on its points, N, of which each stuck last where `stuck_mm` says.
 ///
-/// Every point that rests lifts without force or presses, and sticks or slips the way that friction points against:
+/// Every point lifts without force or presses, and sticks or slips the way that friction points against:
 ///
 /// $$ q_n \ge 0, \quad R_n \ge 0, \quad q_n R_n = 0, \qquad |R_t| \le \mu R_n, \quad
 /// R_t = -\mu R_n \frac{q_t - q_t^0}{|q_t - q_t^0|} \; \text{where it slips}, \qquad R = S q - b. $$
@@ -77,14 +77,8 @@ pub(in super::super) fn rest(
 fn allowed(tray: &Tray, friction: f64, stuck_mm: &[f64], pulled_to: &DVector<f64>) -> DVector<f64> {
     let points = pulled_to.as_slice().as_chunks::<3>().0;
     let stuck = stuck_mm.as_chunks::<3>().0;
-    let allowed = points.iter().zip(stuck).zip(&tray.points);
-    let allowed = allowed.flat_map(|((to, stuck), point)| {
-        if point.rests {
-            allowed_alone(friction, *stuck, *to)
-        } else {
-            *to
-        }
-    });
+    let allowed = points.iter().zip(stuck);
+    let allowed = allowed.flat_map(|(to, stuck)| allowed_alone(friction, *stuck, *to));
     DVector::from_iterator(tray.freedoms(), allowed)
 }
 

@@ -5,7 +5,10 @@ use std::sync::{Arc, OnceLock};
 use condyle_fem::{ElasticSolid, HalfSolved};
 use nalgebra::{DMatrix, DVector};
 
-use super::tray_points::{TrayPoint, tray_points};
+use super::{
+    floor::Floor,
+    tray_points::{TrayPoint, tray_points},
+};
 use crate::{Vec3, contact::deformable::unit_loads::UnitLoads};
 
 /// Stiffness of the rim that locks the insert into its tray, against its mean slip, N/mm: a micrometre under a hundred
@@ -44,9 +47,9 @@ pub(in super::super) struct Tray {
 }
 
 impl Tray {
-    /// That of a solid which its backside holds, of whose surface there are so many tiles.
-    pub fn new(solid: &ElasticSolid, backside: &[u32], spacing_mm: f64, tiles: usize) -> Self {
-        let groups = tray_points(solid.mesh(), backside, spacing_mm);
+    /// That of a solid which the floor of its backside holds, of whose surface there are so many tiles.
+    pub fn new(solid: &ElasticSolid, floor: &Floor, spacing_mm: f64, tiles: usize) -> Self {
+        let groups = tray_points(solid.mesh(), floor, spacing_mm);
         let motions = |group: &Vec<TrayPoint>| group.iter().flat_map(motions_of).collect();
         let motions: Vec<Vec<Vec<(u32, Vec3)>>> = groups.iter().map(motions).collect();
         let supports = solid.moved_supports(&motions);

@@ -2,10 +2,7 @@
 
 use condyle_fem::HexMesh;
 
-use super::{
-    floor::Floor,
-    grid::{Grid, LEAST_PART},
-};
+use super::{floor::Floor, grid::Grid};
 use crate::{Vec3, contact::deformable::tiles::tiles};
 
 /// So many points at most are solved for together.
@@ -14,44 +11,42 @@ const TOGETHER: usize = 16;
 /// A point of the backside, for the mesh nodes around it.
 #[derive(Clone, Debug, PartialEq)]
 pub(in super::super) struct TrayPoint {
-    /// Its place on the grid, at the middle height of the backside.
+    /// Its place on the grid, at the middle height of the floor.
     pub position: Vec3,
     /// Its own directions: anterior and lateral along the tray, then off the tray, into the insert.
     pub frame: [Vec3; 3],
-    /// How far each mesh node of the backside around it goes along with it.
+    /// How far each mesh node of the floor around it goes along with it.
     pub weights: Vec<(u32, f64)>,
-    /// Its share of the flat part of the backside, mm2.
+    /// Its share of the floor, mm2.
     pub area_mm2: f64,
-    /// Whether there is enough of that for the tray to hold it; else it hangs free.
-    pub rests: bool,
 }
 
 /// Points on a grid of some `spacing_mm` over the transverse plane, in groups that lie together.
 ///
-/// The backside moves by bilinear interpolation between them, and beyond its outermost points by extrapolation, so that a
-/// motion as a rigid body is among its motions. All points have the directions of its flat part.
+/// The floor moves by bilinear interpolation between them, and beyond its outermost points by extrapolation, so that a
+/// motion as a rigid body is among its motions. All points have its directions.
 pub(in super::super) fn tray_points(
     mesh: &HexMesh,
-    backside: &[u32],
+    floor: &Floor,
     spacing_mm: f64,
 ) -> Vec<Vec<TrayPoint>> {
-    let floor = Floor::of(mesh, backside);
-    let grid = Grid::over(mesh, backside, spacing_mm);
-    let around = grid.led_from_within(grid.around(mesh, backside), &floor.share_mm2);
+    let grid = Grid::over(mesh, &floor.nodes, spacing_mm);
+    let around = grid.led_from_within(grid.around(mesh, &floor.nodes), &floor.share_mm2);
     let frame = frame_of(&floor.normal);
     let mut points: Vec<TrayPoint> = Vec::new();
     for (at, weights) in around.into_iter().enumerate() {
         if weights.is_empty() {
             continue;
         }
-        let part = |&(at, weight): &(usize, f64)| floor.flat_mm2[at] * weight;
-        let area_mm2: f64 = weights.iter().map(part).sum();
+        let part = |&(at, weight): &(usize, f64)| floor.share_mm2[at] * weight;
+        let area_mm2 = weights.iter().map(part).sum();
         let nodes = weights.into_iter();
         points.push(TrayPoint {
             position: grid.place(at),
             frame,
-            weights: nodes.map(|(at, weight)| (backside[at], weight)).collect(),
-            rests: area_mm2 >= LEAST_PART * grid.cell_mm2(),
+            weights: nodes
+                .map(|(at, weight)| (floor.nodes[at], weight))
+                .collect(),
             area_mm2,
         });
     }
