@@ -137,7 +137,7 @@ impl Deformable {
 
     /// How much of an insert's backside is flat, of what a tray below sees: what can rest.
     ///
-    /// Faces that lean by less than 15 degrees from the mean normal, within a quarter of a millimetre of their middle height.
+    /// Faces that lean by less than 15 degrees from straight down, within a quarter of a millimetre of their middle height.
     pub fn flat_part_of_backside(insert: &Insert) -> f64 {
         Floor::of(insert.mesh(), insert.backside_nodes()).part
     }

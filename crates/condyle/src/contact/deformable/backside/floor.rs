@@ -6,7 +6,7 @@ use condyle_fem::HexMesh;
 
 use crate::Vec3;
 
-/// A face of the backside that leans from its normal by more than this cosine tells, 15 degrees, is a wall.
+/// A face of the backside that leans from straight down by more than this cosine tells, 15 degrees, is a wall.
 const LEAST_COSINE: f64 = 0.966;
 /// Flat faces farther than this off the middle height of all are recesses or pegs, mm.
 const MOST_OFF_MM: f64 = 0.25;
@@ -37,16 +37,18 @@ impl Floor {
         let mut quads = mesh.boundary_quads();
         quads.retain(|quad| quad.iter().all(is_own));
         let faces: Vec<Face> = quads.iter().map(|quad| Face::of(mesh, *quad)).collect();
-        let inward: Vec3 = faces.iter().map(|face| face.inward).sum();
+        let level = level_faces(&faces);
+        let inward: Vec3 = level.iter().map(|face| face.inward).sum();
         let normal = inward.try_normalize(0.0).unwrap_or_else(Vec3::y);
+        let flat = at_middle_height(level, &normal);
         let mut shares = BTreeMap::<u32, f64>::new();
-        let flat = flat_quads(&faces, &normal);
         for (node, share) in mesh.traction_forces(&flat, |_, outward| -outward) {
             *shares.entry(node).or_default() += share.dot(&normal);
         }
+        let whole_mm2: f64 = faces.iter().map(|face| face.inward.dot(&normal)).sum();
         let (nodes, share_mm2): (Vec<u32>, Vec<f64>) = shares.into_iter().unzip();
         Self {
-            part: share_mm2.iter().sum::<f64>() / inward.dot(&normal),
+            part: share_mm2.iter().sum::<f64>() / whole_mm2,
             nodes,
             share_mm2,
             normal,
@@ -65,29 +67,26 @@ impl Face {
     }
 }
 
-/// The faces that hardly lean, near the height that halves the area of all these.
-fn flat_quads(faces: &[Face], normal: &Vec3) -> Vec<[u32; 4]> {
-    let hardly_leans = |face: &&Face| face.inward.dot(normal) > LEAST_COSINE * face.inward.norm();
-    let mut level: Vec<(f64, &Face)> = faces
-        .iter()
-        .filter(hardly_leans)
-        .map(|face| (face.middle.dot(normal), face))
-        .collect();
-    level.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let half_mm2 = level
-        .iter()
-        .map(|(_, face)| face.inward.norm())
-        .sum::<f64>()
-        / 2.0;
+/// The faces that hardly lean.
+fn level_faces(faces: &[Face]) -> Vec<&Face> {
+    let is_level = |face: &&Face| face.inward.y > LEAST_COSINE * face.inward.norm();
+    faces.iter().filter(is_level).collect()
+}
+
+/// Those near the height that halves their area.
+fn at_middle_height(mut level: Vec<&Face>, normal: &Vec3) -> Vec<[u32; 4]> {
+    let height_mm = |face: &Face| face.middle.dot(normal);
+    level.sort_by(|a, b| height_mm(a).total_cmp(&height_mm(b)));
+    let half_mm2 = level.iter().map(|face| face.inward.norm()).sum::<f64>() / 2.0;
     let mut below_mm2 = 0.0;
-    let middle = level.iter().find(|(_, face)| {
+    let middle = level.iter().find(|face| {
         below_mm2 += face.inward.norm();
         below_mm2 >= half_mm2
     });
-    let middle_mm = middle.map_or(0.0, |(height_mm, _)| *height_mm);
+    let middle_mm = middle.map_or(0.0, |face| height_mm(face));
     let flat = level.iter();
-    let flat = flat.filter(|(height_mm, _)| (height_mm - middle_mm).abs() <= MOST_OFF_MM);
-    flat.map(|(_, face)| face.quad).collect()
+    let flat = flat.filter(|face| (height_mm(face) - middle_mm).abs() <= MOST_OFF_MM);
+    flat.map(|face| face.quad).collect()
 }
 
 #[cfg(test)]
