@@ -233,7 +233,10 @@ fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_incr
     );
     let resting = format!("{deformable}backside = \"resting\"\n");
     let shown = refusal(&format!("{resting}backside_friction = -0.1\n"));
-    assert_shows(&shown, &["`backside_friction` is -0.1", "it can be 0 to 1000"]);
+    assert_shows(
+        &shown,
+        &["`backside_friction` is -0.1", "it can be 0 to 1000"],
+    );
     let shown = refusal(&format!("{deformable}backside = \"glued\"\n"));
     assert_shows(&shown, &["\"bonded\"", "\"resting\""]);
     let case = parsed(&format!("{resting}backside_friction = 0.15\n")).expect("it is a good case");
