@@ -63,6 +63,7 @@ fn fail(case: &Case, error: ExportError) -> ExitCode {
         ExportError::Write { .. }
         | ExportError::Deformable
         | ExportError::Foundation
+        | ExportError::Resting
         | ExportError::KinematicHardening { .. }
         | ExportError::Apart { .. } => return exit::fail(error, exit::BAD_INPUT),
     })

@@ -12,7 +12,8 @@ use std::{
 
 use condyle_io::cache::Cache;
 use condyle_io::results::{
-    CreepSummary, ErrorEstimate, ErrorParts, PlasticSummary, Summary, UnderSurfaceSummary,
+    BacksideSummary, CreepSummary, ErrorEstimate, ErrorParts, PlasticSummary, Summary,
+    UnderSurfaceSummary,
 };
 use condyle_lab::{Outcome, RunOptions};
 
@@ -281,7 +282,33 @@ fn rows_under_surface(under: &UnderSurfaceSummary) -> Vec<SummaryLine> {
         ("largest von Mises stress", von_mises),
     ];
     rows.extend(under.plastic.iter().flat_map(rows_of_plasticity));
+    rows.extend(under.backside.iter().flat_map(rows_of_backside));
     rows
+}
+
+fn rows_of_backside(backside: &BacksideSummary) -> [SummaryLine; 2] {
+    let BacksideSummary {
+        backside_lift_mm,
+        backside_lifted_percent,
+        backside_slip_mm,
+        backside_lock_force_n,
+        backside_lock_moment_nm,
+    } = backside;
+    [
+        (
+            "backside",
+            format!(
+                "lifts by up to {backside_lift_mm:.4} mm, {backside_lifted_percent:.0} % of it at once; slips \
+                 {backside_slip_mm:.4} mm a cycle"
+            ),
+        ),
+        (
+            "  lock",
+            format!(
+                "carries up to {backside_lock_force_n:.0} N and {backside_lock_moment_nm:.2} N m"
+            ),
+        ),
+    ]
 }
 
 fn rows_of_plasticity(plastic: &PlasticSummary) -> [SummaryLine; 2] {

@@ -65,7 +65,9 @@ fn a_place_or_a_case_that_cannot_be_pressed_leaves_with_two_and_no_file() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let deformable = format!("{COARSE}[contact]\nmodel = \"deformable\"\n");
     let kinematic = format!("{deformable}plasticity = \"j2\"\nkinematic_modulus_mpa = 10.0\n");
+    let resting = format!("{deformable}backside = \"resting\"\n");
     for (case, percent, expected) in [
+        (&*resting, "14", "write [contact] backside = \"bonded\""),
         (deformable.as_str(), "101", "it must be from 0 to 100"),
         (deformable.as_str(), "half", "it must be a number"),
         (COARSE, "14", "write [contact] model = \"deformable\""),

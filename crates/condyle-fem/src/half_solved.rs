@@ -39,8 +39,18 @@ impl ElasticSolid {
     /// # Panics
     /// If there is no such node.
     pub fn half_solved(&self, forces: &[(u32, Vec3)]) -> HalfSolved {
+        let alone: Vec<&[(u32, Vec3)]> = forces.iter().map(std::slice::from_ref).collect();
+        self.half_solved_sums(&alone)
+    }
+
+    /// The same of sums of forces: each of `forces` is one, of forces on some nodes. What a node is held against it does
+    /// not feel.
+    ///
+    /// # Panics
+    /// If there is no such node.
+    pub fn half_solved_sums(&self, forces: &[&[(u32, Vec3)]]) -> HalfSolved {
         let factor = &self.factor;
-        let places = forces.iter();
+        let places = forces.iter().copied().flatten();
         let places = places.filter_map(|&(node, _)| factor.dissection.place(node));
         let felt = factor.paths(places);
         let felt: Vec<usize> = (0..felt.len()).filter(|&group| felt[group]).collect();
@@ -56,12 +66,14 @@ impl ElasticSolid {
         }
     }
 
-    /// Puts forces in zeros.
-    fn load(&self, forces: &[(u32, Vec3)], zeros: &mut Strip) {
-        for (column, &(node, force)) in forces.iter().enumerate() {
-            if let Some(place) = self.factor.dissection.place(node) {
-                for (k, component) in self.felt(node, force).iter().enumerate() {
-                    *zeros.at_mut(3 * place as usize + k, column) = *component;
+    /// Puts sums of forces in zeros.
+    fn load(&self, forces: &[&[(u32, Vec3)]], zeros: &mut Strip) {
+        for (column, forces) in forces.iter().enumerate() {
+            for &(node, force) in *forces {
+                if let Some(place) = self.factor.dissection.place(node) {
+                    for (k, component) in self.felt(node, force).iter().enumerate() {
+                        *zeros.at_mut(3 * place as usize + k, column) += *component;
+                    }
                 }
             }
         }

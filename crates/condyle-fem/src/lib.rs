@@ -72,6 +72,7 @@ mod quality;
 mod solid;
 mod sparse;
 mod stress;
+mod support;
 mod traction;
 mod vector;
 mod yielding_element;
@@ -87,5 +88,6 @@ pub use plastic_solid::{PlasticError, PlasticSolid, PlasticSolution, PlasticStat
 pub use plasticity::{ElasticPlastic, PlasticPoint};
 pub use solid::{ElasticSolid, SolidError};
 pub use stress::Stress;
+pub use support::MovedSupports;
 pub use vector::Vec3;
 pub use yielding_element::{ElementMean, YieldingElement};

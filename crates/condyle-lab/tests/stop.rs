@@ -86,6 +86,13 @@ fn the_frames_of_the_first_and_last_cycle_stopped_at_any_increment() {
     assert_eq!((frames("cycle_first"), frames("cycle_last")), (80, 80));
 }
 
+#[test]
+fn an_insert_that_rests_on_its_tray_stopped_at_any_increment() {
+    let contact =
+        "[contact]\nmodel = \"deformable\"\nbackside = \"resting\"\nbackside_spacing_mm = 9.0\n";
+    assert_same_bytes_however_stopped(&format!("{CASE}{contact}"));
+}
+
 fn assert_same_bytes_however_stopped(case: &str) {
     let (folder, case) = bench(case);
     let whole = folder.path().join("whole");

@@ -130,7 +130,7 @@ fn verify_stress_under_a_ball_against_hertz() {
         let loads = pair.loads(&landing);
         let under = pair
             .law
-            .under_surface(&pair.insert, &ContactState::default(), &loads)
+            .under_surface(&pair.insert, &ContactState::default(), 0, &loads)
             .unwrap();
         let largest = |values: &[f64]| {
             let most = values.iter().enumerate();
@@ -198,7 +198,10 @@ fn verify_first_yield_below_the_surface_and_shakedown_on_the_second_press() {
         press(contact.as_mut(), 0.02 * f64::from(step));
     }
     let state = contact.into_memory().state;
-    let under = pair.law.under_surface(&pair.insert, &state, &[]).unwrap();
+    let under = pair
+        .law
+        .under_surface(&pair.insert, &state, 0, &[])
+        .unwrap();
     let plastic = under.plastic.unwrap();
     let set_mm = plastic.permanent_set_mm.iter().copied().fold(0.0, f64::max);
     println!("set {set_mm:.4} mm under {:.1} N", force_n(&loaded));

@@ -97,6 +97,23 @@ fn pressure_that_polyethylene_cannot_bear_is_told_apart() {
 }
 
 #[test]
+fn an_insert_that_rocks_on_its_tray_is_told() {
+    for (modulus_mpa, rocks) in [(463.0, false), (100.0, true)] {
+        let bench = Bench::with_case(&format!(
+            "[material]\nyoungs_modulus_mpa = {modulus_mpa}\n[contact]\nmodel = \"deformable\"\nbackside = \"resting\"\n\
+             {SMALL}[accuracy]\nestimate = false\n"
+        ));
+        bench.run_into("out");
+        let found = checks(&bench, "out");
+        assert_eq!(
+            found.iter().any(|found| found == "insert_rocks"),
+            rocks,
+            "{modulus_mpa} MPa: {found:?}"
+        );
+    }
+}
+
+#[test]
 fn a_side_that_carries_nothing_is_told() {
     let bench = Bench::with_case(&format!(
         "[machine.freedoms.vv]\ndrive = \"locked\"\nlocked_at_deg = 2.0\n{SMALL}[accuracy]\nestimate = false\n"

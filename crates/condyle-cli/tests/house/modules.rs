@@ -97,6 +97,22 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "condyle_fem::support",
+        &[
+            "condyle_fem::vector",
+            "condyle_fem::half_solved",
+            "condyle_fem::solid",
+        ],
+    ),
+    (
+        "condyle_fem::support",
+        &[
+            "condyle_fem::vector",
+            "condyle_fem::half_solved",
+            "condyle_fem::solid",
+        ],
+    ),
+    (
         "condyle_fem::eigenstrain",
         &[
             "condyle_fem::vector",

@@ -26,6 +26,11 @@ pub enum ExportError {
         "the femur is pressed on a deformable insert, and this case has a foundation; write [contact] model = \"deformable\" for it"
     )]
     Foundation,
+    /// A backside that rests, which the file does not have.
+    #[error(
+        "the file has an insert that is bonded to its tray, and this case has backside = \"resting\"; write [contact] backside = \"bonded\" for it"
+    )]
+    Resting,
     /// Kinematic hardening, which the file does not have.
     #[error(
         "the file has isotropic hardening alone, and this case has kinematic_modulus_mpa = {modulus_mpa}; set it to 0"

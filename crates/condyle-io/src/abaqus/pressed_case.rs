@@ -29,11 +29,14 @@ impl<'a> PressedCase<'a> {
     /// Builds the case and solves its first cycle; `threads` share the work on a mesh.
     ///
     /// # Errors
-    /// A foundation, kinematic hardening, a case that does not build, bodies that do not settle, or a cycle that is
+    /// A foundation, a backside that rests, kinematic hardening, a case that does not build, bodies that do not settle, or a cycle that is
     /// not solved.
     pub fn new(case: &'a Case, threads: usize) -> Result<Self, ExportError> {
         if case.contact.model == ContactModelWord::Foundation {
             return Err(ExportError::Foundation);
+        }
+        if case.contact.backside.is_resting() {
+            return Err(ExportError::Resting);
         }
         let hardening = case.contact.plasticity.hardening();
         let modulus_mpa = hardening.as_ref().map_or(0.0, Hardening::kinematic_modulus);

@@ -2,6 +2,7 @@
 
 use condyle::contact::{Foundation, FrictionModel, PressureTable, Search, softening_modulus};
 
+use super::backside::BacksideChoice;
 use super::plasticity::PlasticityChoice;
 use super::pressure_table::StrainTable;
 use crate::keyed::{
@@ -145,6 +146,8 @@ pub struct Contact {
     pub plasticity: PlasticityChoice,
     /// How it rubs; of the deformable insert alone.
     pub friction_model: FrictionModelWord,
+    /// What holds its backside; of the deformable insert alone.
+    pub backside: BacksideChoice,
     /// Friction.
     pub friction: Friction,
     /// How contact is found.
@@ -171,17 +174,19 @@ impl Contact {
         keys
     }
 
-    /// Those of a deformable insert alone, but for those that a kind of plasticity brings.
+    /// Those of a deformable insert alone, but for those that a kind of plasticity or of backside brings.
     pub(super) fn keys_of_deformable() -> Vec<Key> {
-        [vec![PlasticityChoice::choices().by], Rubbing::keys()].concat()
+        let plasticity = PlasticityChoice::choices().by;
+        let backside = BacksideChoice::choices().by;
+        [vec![plasticity], Rubbing::keys(), vec![backside]].concat()
     }
 
     /// The choice of the model, which brings the key of the law, or that and `of_law`, or the keys of a deformable insert,
-    /// or those and `of_plasticity`.
-    pub(super) fn models(of_law: &[Key], of_plasticity: &[Key]) -> Choices {
+    /// or those and `of_choices`.
+    pub(super) fn models(of_law: &[Key], of_choices: &[Key]) -> Choices {
         let key = &ModelOfContact::keys()[0];
         let law = [&[PressureLawChoice::choices().by], of_law].concat();
-        let deformable = [&Self::keys_of_deformable(), of_plasticity].concat();
+        let deformable = [&Self::keys_of_deformable(), of_choices].concat();
         let offered = ContactModelWord::ALL.iter().map(|model| Offered {
             word: model.word(),
             keys: match model {
@@ -200,29 +205,25 @@ impl Contact {
     pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let model = ModelOfContact::read(section, log).map(|of| of.model);
         let word = model.unwrap_or(ContactModelWord::Foundation);
-        let (of_law, of_plasticity) = (
-            all_keys(&PressureLawChoice::choices()),
-            all_keys(&PlasticityChoice::choices()),
-        );
-        Self::models(&of_law[1..], &of_plasticity[1..]).check_keys_of_others(
-            word.word(),
-            section,
-            log,
-        );
-        let common = [ModelOfContact::keys(), Self::other_keys()].concat();
-        let (law, plasticity, rubbing) = match word {
+        let of_law = all_keys(&PressureLawChoice::choices());
+        let of_plasticity = all_keys(&PlasticityChoice::choices());
+        let of_backside = all_keys(&BacksideChoice::choices());
+        let of_choices = [&of_plasticity[1..], &of_backside[1..]].concat();
+        Self::models(&of_law[1..], &of_choices).check_keys_of_others(word.word(), section, log);
+        let common = [ModelOfContact::keys(), Self::other_keys(), Rubbing::keys()].concat();
+        let (law, (plasticity, rubbing, backside)) = match word {
             ContactModelWord::Deformable => {
-                let common = [common, of_law, Rubbing::keys()].concat();
-                let plasticity = PlasticityChoice::read(section, &common, log);
-                let rubbing = Rubbing::read(section, log);
-                (Some(PressureLawChoice::Linear), plasticity, rubbing)
+                let common = [common, of_law].concat();
+                let law = Some(PressureLawChoice::Linear);
+                (law, Self::read_deformable(section, &common, log))
             }
             ContactModelWord::Foundation => {
-                let common = [common, of_plasticity, Rubbing::keys()].concat();
+                let common = [common, of_plasticity, of_backside].concat();
                 let law = PressureLawChoice::read(section, &common, log);
                 let friction_model = FrictionModelWord::Regularised;
                 let rubbing = Rubbing { friction_model };
-                (law, Some(PlasticityChoice::None), Some(rubbing))
+                let none = (PlasticityChoice::None, rubbing, BacksideChoice::Bonded);
+                (law, (Some(none.0), Some(none.1), Some(none.2)))
             }
         };
         let friction = Friction::read(section, log);
@@ -232,9 +233,30 @@ impl Contact {
             law: law?,
             plasticity: plasticity?,
             friction_model: rubbing?.friction_model,
+            backside: backside?,
             friction: friction?,
             finding: finding?,
         })
+    }
+
+    /// What a deformable insert alone has.
+    fn read_deformable(
+        section: &Section<'_>,
+        common: &[Key],
+        log: &mut Log<'_>,
+    ) -> (
+        Option<PlasticityChoice>,
+        Option<Rubbing>,
+        Option<BacksideChoice>,
+    ) {
+        let with = |choices: Choices| [common, &all_keys(&choices)].concat();
+        let beside_plasticity = with(BacksideChoice::choices());
+        let beside_backside = with(PlasticityChoice::choices());
+        (
+            PlasticityChoice::read(section, &beside_plasticity, log),
+            Rubbing::read(section, log),
+            BacksideChoice::read(section, &beside_backside, log),
+        )
     }
 
     pub(super) fn write(&self, out: &mut Writer) {
@@ -246,6 +268,7 @@ impl Contact {
                 self.plasticity.write(out);
                 let friction_model = self.friction_model;
                 Rubbing { friction_model }.write(out);
+                self.backside.write(out);
             }
         }
         self.friction.write(out);

@@ -95,7 +95,13 @@ impl Case {
 
     fn culprit_of_build(&self, error: &BuildError) -> Culprit {
         let keys: &[&str] = match error {
-            BuildError::StickSlipExplicit => {
+            BuildError::RestingBeside { .. } | BuildError::BacksideNotFlat { .. } => {
+                return Culprit {
+                    table: "contact",
+                    keys: &["backside"],
+                };
+            }
+            BuildError::StickSlipExplicit | BuildError::RestingExplicit => {
                 return Culprit {
                     table: "time",
                     keys: &["integrator"],

@@ -5,6 +5,7 @@ use condyle::wear::WEAR_LAWS;
 
 use super::accuracy::Accuracy;
 use super::activity::{self, ActivityKeys};
+use super::backside::BacksideChoice;
 use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
 use super::contents::Case;
@@ -97,6 +98,7 @@ fn contact() -> TableSchema {
         .with_choices(&Contact::models(&[], &[]))
         .with_choices(&laws)
         .with_choices(&PlasticityChoice::choices())
+        .with_choices(&BacksideChoice::choices())
         .with_one_of_under(&laws, "tabulated", &pressure_table::WAYS)
         .with_one_of_under(&laws, "tabulated-strain", &pressure_table::WAYS_OF_STRAIN)
 }

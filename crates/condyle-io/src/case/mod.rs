@@ -8,6 +8,7 @@ mod activity;
 mod activity_reason;
 mod assignment;
 mod axes;
+mod backside;
 mod build;
 mod channel;
 mod contact;
@@ -55,6 +56,7 @@ pub use activity::{Activities, Activity, ActivityKeys};
 pub use activity_reason::ActivityReason;
 pub use assignment::{Assignment, AssignmentError, ChangeError};
 pub use axes::{Axes, AxesError, AxesReason};
+pub use backside::{BacksideChoice, RestingBackside};
 pub(crate) use build::in_four;
 pub use build::{
     Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, SharedBodies, StrayPiece, WrongAxes,

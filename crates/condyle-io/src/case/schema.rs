@@ -6,6 +6,7 @@ use condyle::wear::WearLawKind;
 
 use super::accuracy::Accuracy;
 use super::activity::ActivityKeys;
+use super::backside::BacksideChoice;
 use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
 use super::creep::Creep;
@@ -80,6 +81,9 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
         &Contact::keys_of_deformable(),
         &plasticity,
     );
+    let backside = BacksideChoice::choices();
+    let by = std::slice::from_ref(&backside.by);
+    page.chosen("`[contact]` of a backside", by, &backside);
     machine(&mut page);
     page.section("`[[activity]]`", &ActivityKeys::keys());
     page.push(ACTIVITIES);

@@ -58,4 +58,4 @@ pub use lock::FolderLock;
 pub use plausibility::PlausibilityWarning;
 pub use summary::{Summary, SummaryInput};
 pub use tables::{kinematics_csv, wear_csv};
-pub use under_surface::{PlasticSummary, UnderSurfaceSummary};
+pub use under_surface::{BacksideSummary, PlasticSummary, UnderSurfaceSummary};

@@ -1,5 +1,6 @@
 //! Stress below the surface of an insert that is a solid, and what has yielded.
 
+use condyle::contact::BacksideAtRest;
 use condyle::evolve::{MarchState, UnderSurfaceRecord, UpdateRecord};
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +28,45 @@ pub struct UnderSurfaceSummary {
     /// What has yielded; not there where the insert is elastic.
     #[serde(flatten)]
     pub plastic: Option<PlasticSummary>,
+    /// What the backside did; not there where it is bonded.
+    #[serde(flatten)]
+    pub backside: Option<BacksideSummary>,
+}
+
+/// What a backside that rests on its tray did at most in the last cycle of any update, that of any activity; units are in
+/// the names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BacksideSummary {
+    /// Farthest that a place of it lifts off the tray, mm.
+    pub backside_lift_mm: f64,
+    /// Largest part of it that lifts at once, %.
+    pub backside_lifted_percent: f64,
+    /// Longest way that a place of it slips along the tray in a cycle while it presses, there and back, mm.
+    pub backside_slip_mm: f64,
+    /// Largest force along the tray that the lock carries, N.
+    pub backside_lock_force_n: f64,
+    /// Largest moment about the vertical axis that the lock carries, N m.
+    pub backside_lock_moment_nm: f64,
+}
+
+impl BacksideSummary {
+    /// The most of some updates; none where there are none.
+    fn most_of(updates: impl Iterator<Item = BacksideAtRest>) -> Option<Self> {
+        let most = updates.reduce(|most, other| BacksideAtRest {
+            lift_mm: most.lift_mm.max(other.lift_mm),
+            lifted_part: most.lifted_part.max(other.lifted_part),
+            slip_mm: most.slip_mm.max(other.slip_mm),
+            lock_force_n: most.lock_force_n.max(other.lock_force_n),
+            lock_moment_nmm: most.lock_moment_nmm.max(other.lock_moment_nmm),
+        })?;
+        Some(Self {
+            backside_lift_mm: most.lift_mm,
+            backside_lifted_percent: 100.0 * most.lifted_part,
+            backside_slip_mm: most.slip_mm,
+            backside_lock_force_n: most.lock_force_n,
+            backside_lock_moment_nm: 1e-3 * most.lock_moment_nmm,
+        })
+    }
 }
 
 /// What of an insert has yielded at the end of a run.
@@ -71,6 +111,7 @@ impl UnderSurfaceSummary {
                 yielded_elements: plastic.yielded_elements,
                 ratcheting_elements: plastic.ratcheting_elements,
             }),
+            backside: BacksideSummary::most_of(records().filter_map(|(_, of)| of.backside)),
         })
     }
 }

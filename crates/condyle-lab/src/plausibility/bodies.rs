@@ -17,6 +17,8 @@ const FIRST_YIELD: f64 = 1.6;
 /// A ball has sunk into material that flows all round it when the mean pressure is 2.8 times the yield stress; the
 /// peak of an elastic contact is 1.5 times its mean [johnson1985].
 const FULL_FLOW: f64 = 1.5 * 2.8;
+/// An insert that lifts more than this off its tray, mm, rocks: twice what the polyethylene itself gives way by under a knee's load.
+const MOST_LIFT_MM: f64 = 0.3;
 /// Under less the stresses in polyethylene rise steeply, mm [bartel1986]; approximate.
 const LEAST_THICKNESS_MM: f64 = 6.0;
 /// Where it is worn deeper than this part of the deepest, there is a scar.
@@ -154,6 +156,25 @@ fn time_above_percent(finished: &Finished<'_>, cycle: &str, limit_mpa: f64) -> f
     let percents =
         solved.map(|solved| solved.percent_of_rows(|row| row.peak_pressure_mpa > limit_mpa));
     percents.fold(0.0, f64::max)
+}
+
+/// An insert that rocks on its tray, which the lock of the model does not hold down.
+pub(super) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let under = finished.summary.under_surface.as_ref()?;
+    let lift_mm = under.backside.as_ref()?.backside_lift_mm;
+    (lift_mm > MOST_LIFT_MM).then(|| PlausibilityWarning {
+        check: "insert_rocks".to_owned(),
+        value: lift_mm,
+        limit: MOST_LIFT_MM,
+        unit: "mm".to_owned(),
+        message: format!(
+            "the insert lifts off its tray by {lift_mm:.2} mm: it rocks, as under a load beside the flat part of its backside, and \
+             nothing in the model holds it down"
+        ),
+        advice: "A tray's lock would: see whether the load bears above the tray, and take [contact] backside = \"bonded\" where \
+                 the insert is held down."
+            .to_owned(),
+    })
 }
 
 /// Little polyethylene left under the scar.

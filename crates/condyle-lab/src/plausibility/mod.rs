@@ -28,8 +28,9 @@ const PLACE: [Check; 4] = [
 ];
 
 /// What the polyethylene bears, and how well the model was solved.
-const REST: [Check; 10] = [
+const REST: [Check; 11] = [
     bodies::pressure_beyond_yield,
+    bodies::insert_rocks,
     bodies::thin_polyethylene,
     numbers::mesh_quality,
     numbers::counts_of_volume,

@@ -243,6 +243,36 @@ const GROUPS: [(&str, &[Known]); 5] = [
                 "",
                 "By more than a strain of 1e-5 in the last cycle; the others have shaken down.",
             ),
+            known(
+                "backside_lift_mm",
+                "Lift of the backside",
+                "mm",
+                "How far a place of it lifts off the tray at most.",
+            ),
+            known(
+                "backside_lifted_percent",
+                "Backside that lifts",
+                "%",
+                "The largest part of it at once.",
+            ),
+            known(
+                "backside_slip_mm",
+                "Slip of the backside",
+                "mm",
+                "Longest way of a place along the tray in a cycle while it presses, there and back.",
+            ),
+            known(
+                "backside_lock_force_n",
+                "Force on the lock",
+                "N",
+                "Along the tray, at most; the femur's friction is not in it.",
+            ),
+            known(
+                "backside_lock_moment_nm",
+                "Moment on the lock",
+                "N m",
+                "About the vertical axis, at most.",
+            ),
         ],
     ),
     (

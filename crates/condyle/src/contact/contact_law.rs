@@ -40,12 +40,13 @@ pub trait ContactLaw: Debug + Send + Sync {
         0.0
     }
 
-    /// What is below the surface of an insert under loads on surface nodes along the inward normals, N, after a
-    /// contact has left `state`; none of an insert that is no solid.
+    /// What is below the surface of an insert under loads on surface nodes along the inward normals, N, of the activity
+    /// of that number, after a contact has left `state`; none of an insert that is no solid.
     fn under_surface(
         &self,
         _insert: &Insert,
         _state: &ContactState,
+        _activity: usize,
         _loads: &[(u32, f64)],
     ) -> Option<UnderSurface> {
         None

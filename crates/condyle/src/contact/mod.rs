@@ -31,16 +31,16 @@ mod under_surface;
 
 pub use broad_phase::Search;
 pub use contact_law::{Bodies, ContactLaw};
-pub use deformable::{Deformable, FrictionModel};
+pub use deformable::{Backside, Deformable, FrictionModel};
 pub use foundation::Foundation;
 pub use history::{CycleHistory, Moment, NodeHistory, Record};
 pub use known_compliance::KnownCompliance;
 pub use memory::{ContactCache, ContactMemory, ContactState, StateField};
 pub use model::{
-    ContactModel, Flattened, Landing, Linearization, MOST_REGIONS, Response, Settled, Tangent,
-    TouchedNode,
+    ContactModel, Flattened, Landing, Linearization, MOST_REGIONS, NotBorne, Response, Settled,
+    Tangent, Tipped, TouchedNode,
 };
 pub use pressure_law::{PressureLaw, confined_modulus, softening_modulus};
 pub use pressure_table::{PressureTable, PressureTableError};
 pub use slip_work::SlipWork;
-pub use under_surface::{PlasticUnderSurface, Regime, UnderSurface};
+pub use under_surface::{BacksideAtRest, PlasticUnderSurface, Regime, UnderSurface};

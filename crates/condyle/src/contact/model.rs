@@ -113,6 +113,34 @@ pub struct Flattened {
     pub plastic_strain: f64,
 }
 
+/// A load under which an insert that rests on its tray finds no rest there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tipped {
+    /// Farthest that a point of the backside had moved when the search was given up, mm.
+    pub moved_mm: f64,
+}
+
+/// A load that the insert does not bear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NotBorne {
+    /// Its material does not carry it.
+    Flattened(Flattened),
+    /// It tips off its tray.
+    Tipped(Tipped),
+}
+
+impl From<Flattened> for NotBorne {
+    fn from(flattened: Flattened) -> Self {
+        Self::Flattened(flattened)
+    }
+}
+
+impl From<Tipped> for NotBorne {
+    fn from(tipped: Tipped) -> Self {
+        Self::Tipped(tipped)
+    }
+}
+
 /// A contact between femur and insert: the machine sees this, never a mesh.
 ///
 /// The machine asks [`respond`](Self::respond) as often as it needs to find an increment's end, says
@@ -141,8 +169,8 @@ pub trait ContactModel {
     /// the step adds to it, in trial, and the responses after that are with it.
     ///
     /// # Errors
-    /// A load that the insert does not carry.
-    fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, Flattened> {
+    /// A load that the insert does not bear.
+    fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, NotBorne> {
         Ok(Settled::Yes)
     }
 

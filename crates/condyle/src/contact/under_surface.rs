@@ -15,6 +15,23 @@ pub struct UnderSurface {
     pub max_shear_mpa: Vec<f64>,
     /// What has yielded, if the insert does.
     pub plastic: Option<PlasticUnderSurface>,
+    /// What the backside did in the last cycles, if it rests on its tray.
+    pub backside: Option<BacksideAtRest>,
+}
+
+/// What a backside that rests on its tray did at most in the last cycle of any activity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BacksideAtRest {
+    /// Farthest that a place of it lifts off the tray, mm.
+    pub lift_mm: f64,
+    /// Largest part of it that lifts at once.
+    pub lifted_part: f64,
+    /// Longest way that a place of it slips along the tray while it presses, there and back, mm.
+    pub slip_mm: f64,
+    /// Largest force along the tray that the lock carries, N.
+    pub lock_force_n: f64,
+    /// Largest moment about the vertical axis that the lock carries, N mm.
+    pub lock_moment_nmm: f64,
 }
 
 /// What of an insert has yielded.

@@ -429,7 +429,7 @@ impl March {
         let touched = cycle.history.instant(&cycle.instants[row]).iter();
         let loads: Vec<(u32, f64)> = touched.map(load).collect();
         let contact = self.test.contact.as_ref();
-        let under = contact.under_surface(&self.insert, &solved.memory.state, &loads)?;
+        let under = contact.under_surface(&self.insert, &solved.memory.state, activity, &loads)?;
         let place = (activity, cycle.rows[row].percent);
         let record = UnderSurfaceRecord::of(&under, &self.insert, surface, place);
         Some((under, record))

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Vec3,
-    contact::{PlasticUnderSurface, Regime, UnderSurface},
+    contact::{BacksideAtRest, PlasticUnderSurface, Regime, UnderSurface},
     geometry::{ArticulatingSurface, Insert},
 };
 
@@ -25,6 +25,8 @@ pub struct UnderSurfaceRecord {
     pub max_shear_depth_mm: f64,
     /// What has yielded, if the insert does.
     pub plastic: Option<PlasticRecord>,
+    /// What the backside did in the last cycles, if it rests on its tray.
+    pub backside: Option<BacksideAtRest>,
 }
 
 /// What of an insert has yielded after an update.
@@ -65,6 +67,7 @@ impl UnderSurfaceRecord {
             max_shear_mpa,
             max_shear_depth_mm,
             plastic: under.plastic.as_ref().map(PlasticRecord::of),
+            backside: under.backside,
         }
     }
 }

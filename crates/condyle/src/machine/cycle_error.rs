@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::{Mechanism, Readings, explicit::NoStep, implicit::NotConverged};
-use crate::contact::Flattened;
+use crate::contact::NotBorne;
 
 /// Why a cycle was not solved.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -44,6 +44,18 @@ pub enum CycleError {
         /// The largest plastic strain when the search for a balance was given up.
         plastic_strain: f64,
     },
+    /// A load under which an insert that rests on its tray finds no rest.
+    #[error(
+        "the load tips the insert off its tray at {percent:.2} % of the cycle: its backside finds no rest, and had moved by \
+         {moved_mm:.2e} mm when the search was given up; check whether the load lies within the tray, or take [contact] \
+         backside = \"bonded\""
+    )]
+    Tipped {
+        /// Place in the cycle, %.
+        percent: f64,
+        /// Farthest that a point of the backside had moved by then, mm.
+        moved_mm: f64,
+    },
     /// A load under which the insert goes on flowing or slipping, however often it is put on again.
     #[error(
         "load and insert do not settle at {percent:.2} % of the cycle, even in the smallest steps: each of {turns} turns \
@@ -77,10 +89,17 @@ impl CycleError {
     }
 
     /// That of a load at a phase of the cycle.
-    pub(super) fn flattened(phase: f64, flattened: Flattened) -> Self {
-        Self::Flattened {
-            percent: 100.0 * phase,
-            plastic_strain: flattened.plastic_strain,
+    pub(super) fn not_borne(phase: f64, why: NotBorne) -> Self {
+        let percent = 100.0 * phase;
+        match why {
+            NotBorne::Flattened(flattened) => Self::Flattened {
+                percent,
+                plastic_strain: flattened.plastic_strain,
+            },
+            NotBorne::Tipped(tipped) => Self::Tipped {
+                percent,
+                moved_mm: tipped.moved_mm,
+            },
         }
     }
 
@@ -90,11 +109,29 @@ impl CycleError {
             NoStep::NoInertia(index) => Self::NoInertia {
                 joint: mechanism.joint(*index).long_name,
             },
-            NoStep::Flattened { phase, flattened } => Self::flattened(*phase, *flattened),
+            NoStep::NotBorne { phase, why } => Self::not_borne(*phase, *why),
             NoStep::Unstable { phase, positions } => Self::Unstable {
                 percent: 100.0 * phase,
                 readings: Readings::new(mechanism, positions),
             },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Tipped;
+
+    #[test]
+    fn an_insert_that_tips_says_where_and_what_to_do() {
+        let tipped = NotBorne::Tipped(Tipped { moved_mm: 12.0 });
+        let said = CycleError::not_borne(0.25, tipped).to_string();
+        for words in [
+            "tips the insert off its tray at 25.00 %",
+            "backside = \"bonded\"",
+        ] {
+            assert!(said.contains(words), "{said}");
         }
     }
 }

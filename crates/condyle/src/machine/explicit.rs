@@ -5,7 +5,7 @@ use super::{
     stable_step::Quickness,
 };
 use crate::{
-    contact::{ContactModel, Flattened},
+    contact::{ContactModel, NotBorne},
     spatial::RelativeMotion,
 };
 
@@ -21,8 +21,8 @@ pub(super) enum NoStep {
     NoInertia(JointIndex),
     /// The motion left all bounds.
     Unstable { phase: f64, positions: [f64; 6] },
-    /// The insert does not carry the load.
-    Flattened { phase: f64, flattened: Flattened },
+    /// The insert does not bear the load.
+    NotBorne { phase: f64, why: NotBorne },
 }
 
 /// Everything that explicit steps need beside the state.
@@ -59,7 +59,7 @@ impl Explicit<'_> {
                 let (next, motion) = self.step(&now, phase, step, stable.inertia_factor)?;
                 let settled = self.contact.settle(&motion);
                 // A step is so short that what the contact finds may count from the next one on.
-                settled.map_err(|flattened| NoStep::Flattened { phase, flattened })?;
+                settled.map_err(|why| NoStep::NotBorne { phase, why })?;
                 self.contact.accept(&motion);
                 now = next;
                 if left == 0 {

@@ -12,7 +12,7 @@ use super::{
     step_error::step_error_mm,
 };
 use crate::{
-    contact::{ContactModel, CycleHistory, Flattened, Moment, Record, Settled, TouchedNode},
+    contact::{ContactModel, CycleHistory, Moment, NotBorne, Record, Settled, TouchedNode},
     spatial::RelativeMotion,
 };
 
@@ -302,7 +302,7 @@ impl<'a> Simulator<'a> {
 /// Why an implicit step was given up.
 enum GivenUp {
     NotConverged(NotConverged),
-    Flattened { phase: f64, flattened: Flattened },
+    NotBorne { phase: f64, why: NotBorne },
     Unsettled { phase: f64 },
 }
 
@@ -310,7 +310,7 @@ impl GivenUp {
     fn error(self, mechanism: &Mechanism) -> CycleError {
         match self {
             Self::NotConverged(failed) => CycleError::of_implicit(mechanism, &failed),
-            Self::Flattened { phase, flattened } => CycleError::flattened(phase, flattened),
+            Self::NotBorne { phase, why } => CycleError::not_borne(phase, why),
             Self::Unsettled { phase } => CycleError::Unsettled {
                 percent: 100.0 * phase,
                 turns: MOST_TURNS,
@@ -332,11 +332,11 @@ fn settled(
         let ended = implicit.step(from, step, last.as_ref().or(warm_start), watch);
         let ended = ended.map_err(GivenUp::NotConverged)?;
         let settled = implicit.contact.settle(&ended.motion);
-        let flattened = |flattened| GivenUp::Flattened {
+        let not_borne = |why| GivenUp::NotBorne {
             phase: ended.state.phase,
-            flattened,
+            why,
         };
-        if settled.map_err(flattened)? == Settled::Yes {
+        if settled.map_err(not_borne)? == Settled::Yes {
             return Ok(ended);
         }
         last = Some(ended.warm_start);

@@ -77,7 +77,10 @@ impl Rolling {
         let mut before = vec![0.0; self.insert.mesh().hexes.len()];
         let mut pass = || {
             state = self.pass(std::mem::take(&mut state));
-            let under = self.law.under_surface(&self.insert, &state, &[]).unwrap();
+            let under = self
+                .law
+                .under_surface(&self.insert, &state, 0, &[])
+                .unwrap();
             let after = under.plastic.unwrap().plastic_strain;
             let flows = after.iter().zip(&before).enumerate();
             let middle = flows.filter(|(element, _)| self.is_in_the_middle(*element));

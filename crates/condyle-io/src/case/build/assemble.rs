@@ -6,19 +6,21 @@ use condyle::contact::{ContactLaw, Deformable, Foundation, PressureLaw, confined
 use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
-use condyle_fem::SolidError;
 
 use super::super::contact::{ContactModelWord, FrictionModelWord, PressureLawChoice};
 use super::super::contents::Case;
 use super::super::law_change::LeftOutConstant;
 use super::super::march::Update;
+use super::super::plasticity::PlasticityChoice;
 use super::super::time::IntegratorWord;
 use super::error::{BuildError, BuildWarning};
 use super::femur::{BuiltFemur, Preparing};
-use super::known_compliance;
 use super::machine::start_flexion_rad;
 use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
+
+/// Less of a backside than this lies in a plane: it does not rest on a flat tray.
+const LEAST_FLAT_PART: f64 = 0.5;
 
 /// A wear test ready to run, and what was put right on the way to it.
 pub struct Built {
@@ -149,20 +151,43 @@ impl Case {
         {
             return Err(BuildError::StickSlipExplicit);
         }
+        self.check_backside(insert)?;
         let elastic = self.material.elastic();
         let friction = &self.contact.friction;
         let (coefficient, slip) = (friction.friction, friction.slip_tolerance_mm_per_s);
         let mut law = bodies.elastic(self, elastic, || {
-            let law = Deformable::new(elastic, coefficient, slip, insert)?;
-            known_compliance::tell(&law, insert, keep)?;
-            Ok::<_, SolidError>(law)
+            Deformable::new(elastic, coefficient, slip, insert)
         })?;
         (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
         law.search = self.contact.finding.search.search();
         law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
         law.hardening = self.contact.plasticity.hardening();
         law.friction_model = self.contact.friction_model.model();
+        let law = law.with_backside(self.contact.backside.backside(), insert)?;
+        self.tell_compliance(&law, insert, keep)?;
         Ok(law)
+    }
+
+    /// Refuses what a backside that rests does not go with.
+    fn check_backside(&self, insert: &Insert) -> Result<(), BuildError> {
+        let contact = &self.contact;
+        let beside = |beside| Err(BuildError::RestingBeside { beside });
+        if !contact.backside.is_resting() {
+            Ok(())
+        } else if self.time.integrator == IntegratorWord::Explicit {
+            Err(BuildError::RestingExplicit)
+        } else if contact.plasticity != PlasticityChoice::None {
+            beside("plasticity = \"j2\"")
+        } else if contact.friction_model == FrictionModelWord::StickSlip {
+            beside("friction_model = \"stick-slip\"")
+        } else {
+            let part = Deformable::flat_part_of_backside(insert);
+            if part < LEAST_FLAT_PART {
+                let percent = 100.0 * part;
+                return Err(BuildError::BacksideNotFlat { percent });
+            }
+            Ok(())
+        }
     }
 
     /// The elastic foundation of this case.

@@ -30,6 +30,30 @@ pub enum BuildError {
          \"explicit\" solves none; take integrator = \"implicit\", or friction_model = \"regularised\""
     )]
     StickSlipExplicit,
+    /// A backside that goes on from increment to increment in steps that are not solved.
+    #[error(
+        "[contact] backside = \"resting\" goes from one solved increment to the next, and [time] integrator = \"explicit\" \
+         solves none; take integrator = \"implicit\", or backside = \"bonded\""
+    )]
+    RestingExplicit,
+    /// A backside that is not flat enough to rest.
+    #[error(
+        "[contact] backside = \"resting\" needs a flat backside, and {percent:.0} % of this insert's lies in a plane; take \
+         backside = \"bonded\", or give an insert with a flat backside"
+    )]
+    BacksideNotFlat {
+        /// How much of it is flat, %.
+        percent: f64,
+    },
+    /// A backside that rests under an insert that yields or sticks and slips.
+    #[error(
+        "[contact] backside = \"resting\" does not go with {beside}: what that is computed from belongs to an insert that is \
+         bonded to its tray; take one of them alone"
+    )]
+    RestingBeside {
+        /// The key and its word.
+        beside: &'static str,
+    },
     /// A body that is too small or too large for a knee.
     #[error(
         "{}: the body is {} mm long, and a knee's is 5 mm to 500 mm; {}",
@@ -217,7 +241,10 @@ impl BuildError {
             | Self::Insert(_)
             | Self::Axes(_)
             | Self::Solid(_)
-            | Self::StickSlipExplicit => None,
+            | Self::StickSlipExplicit
+            | Self::RestingExplicit
+            | Self::BacksideNotFlat { .. }
+            | Self::RestingBeside { .. } => None,
         }
     }
 }

@@ -12,18 +12,26 @@ use crate::cache::Keep;
 /// The name under which it is kept.
 const WHAT: &str = "compliance";
 
-/// Tells a law what was found of an insert's compliance before.
-///
-/// # Errors
-/// An insert that is no elastic solid.
-pub(super) fn tell(law: &Deformable, insert: &Insert, keep: &dyn Keep) -> Result<(), SolidError> {
-    let inputs = Inputs::of(insert, law.elastic);
-    let found = keep.find(WHAT, &inputs.slices());
-    let found = found.and_then(|content| postcard::from_bytes::<KnownCompliance>(&content).ok());
-    found.map_or(Ok(()), |known| law.know(insert, known))
-}
-
 impl Case {
+    /// Tells a law that knows nothing yet what was found of an insert's compliance before.
+    ///
+    /// # Errors
+    /// An insert that is no elastic solid.
+    pub(super) fn tell_compliance(
+        &self,
+        law: &Deformable,
+        insert: &Insert,
+        keep: &dyn Keep,
+    ) -> Result<(), SolidError> {
+        if law.knows(insert) {
+            return Ok(());
+        }
+        let found = keep.find(WHAT, &self.inputs_of_compliance(insert).slices());
+        let found =
+            found.and_then(|content| postcard::from_bytes::<KnownCompliance>(&content).ok());
+        found.map_or(Ok(()), |known| law.know(insert, known))
+    }
+
     /// Keeps what is known of the compliance of a test's insert, if that is about more than so many pairs of tiles of its
     /// surface; about how many anything is kept then. Nothing of a foundation.
     pub fn keep_compliance(
@@ -42,18 +50,26 @@ impl Case {
         // Room for all at once: it may be tens of megabytes.
         let room = Vec::with_capacity(known.bytes());
         if let Ok(content) = postcard::to_extend(&known, room) {
-            let inputs = Inputs::of(&test.insert, self.material.elastic());
+            let inputs = self.inputs_of_compliance(&test.insert);
             keep.keep(WHAT, &inputs.slices(), &content);
         }
         known.pairs()
     }
+
+    fn inputs_of_compliance(&self, insert: &Insert) -> Inputs {
+        Inputs::of(
+            insert,
+            self.material.elastic(),
+            self.contact.backside.is_resting(),
+        )
+    }
 }
 
 /// All that the compliance of an unworn insert follows from, as bytes.
-struct Inputs([Vec<u8>; 5]);
+struct Inputs([Vec<u8>; 6]);
 
 impl Inputs {
-    fn of(insert: &Insert, elastic: Elastic) -> Self {
+    fn of(insert: &Insert, elastic: Elastic, rests: bool) -> Self {
         let numbers = |numbers: &[f64]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
         let places = insert.unworn_nodes().iter().flatten().copied();
         let whole = |numbers: &mut dyn Iterator<Item = u32>| {
@@ -64,6 +80,8 @@ impl Inputs {
             numbers(&places.collect::<Vec<f64>>()),
             whole(&mut insert.mesh().hexes.iter().flatten().copied()),
             whole(&mut insert.surface_faces().iter().flatten().copied()),
+            // What of the backside is held.
+            vec![u8::from(rests)],
             whole(
                 &mut [insert.surface_nodes(), insert.backside_nodes()]
                     .concat()
@@ -72,7 +90,7 @@ impl Inputs {
         ])
     }
 
-    fn slices(&self) -> [&[u8]; 5] {
+    fn slices(&self) -> [&[u8]; 6] {
         self.0.each_ref().map(Vec::as_slice)
     }
 }

@@ -221,6 +221,74 @@ fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments(
     );
 }
 
+#[test]
+fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_increments() {
+    let shown = refusal("[contact]\nbackside = \"resting\"\n");
+    assert_shows(&shown, &["`backside` belongs to model = \"deformable\""]);
+    let deformable = "[contact]\nmodel = \"deformable\"\n";
+    let shown = refusal(&format!("{deformable}backside_friction = 0.1\n"));
+    assert_shows(
+        &shown,
+        &["`backside_friction` belongs to backside = \"resting\""],
+    );
+    let resting = format!("{deformable}backside = \"resting\"\n");
+    let shown = refusal(&format!("{resting}backside_friction = -0.1\n"));
+    assert_shows(
+        &shown,
+        &["`backside_friction` is -0.1", "it can be 0 to 1000"],
+    );
+    let shown = refusal(&format!("{deformable}backside = \"glued\"\n"));
+    assert_shows(&shown, &["\"bonded\"", "\"resting\""]);
+    let case = parsed(&format!("{resting}backside_friction = 0.15\n")).expect("it is a good case");
+    let again = parsed(&case.to_toml()).expect("what is written is a good case");
+    assert_eq!(again.contact, case.contact);
+    for (beside, word) in [
+        (
+            "plasticity = \"j2\"",
+            "does not go with plasticity = \"j2\"",
+        ),
+        (
+            "friction_model = \"stick-slip\"",
+            "does not go with friction_model",
+        ),
+        (
+            "[time]\nintegrator = \"explicit\"",
+            "take integrator = \"implicit\"",
+        ),
+    ] {
+        let case = parsed(&format!("{resting}{beside}\n")).expect("its keys are good");
+        let refused = case.contact_law(&flat()).expect_err("it is refused");
+        assert_shows(&refused.to_string(), &["backside = \"resting\"", word]);
+    }
+}
+
+#[test]
+fn a_backside_that_is_not_flat_does_not_rest() {
+    let resting = "[contact]\nmodel = \"deformable\"\nbackside = \"resting\"\n";
+    let case = parsed(resting).expect("it is a good case");
+    let mut mesh = flat().mesh().clone();
+    for node in &mut mesh.nodes {
+        node.y += 0.1 * node.x * node.x;
+    }
+    let quads = mesh.boundary_quads();
+    let facing = |sign: f64| {
+        let is_facing = |quad: &&[u32; 4]| {
+            let [a, b, c, d] = quad.map(|node| mesh.nodes[node as usize]);
+            let normal = (c - a).cross(&(d - b)).normalize();
+            sign * normal.y > 0.6
+        };
+        quads.iter().filter(is_facing).copied().collect::<Vec<_>>()
+    };
+    let bent = Insert::new(mesh.clone(), &facing(1.0), &facing(-1.0)).expect("it is an insert");
+    let refused = case.contact_law(&bent).expect_err("it is refused");
+    let words = [
+        "needs a flat backside",
+        "lies in a plane",
+        "backside = \"bonded\"",
+    ];
+    assert_shows(&refused.to_string(), &words);
+}
+
 /// A flat insert.
 fn flat() -> Insert {
     let meshing = Meshing {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::{
     along_normal::AlongNormal,
+    backside::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD, RestingInsert},
     candidate::Candidate,
     complementarity::Pressing,
     compliance::Compliance,
@@ -19,7 +20,10 @@ use crate::{
         broad_phase::BroadPhase,
         contact_law::Bodies,
         memory::{ContactCache, ContactMemory, ContactState},
-        model::{ContactModel, Flattened, Landing, Linearization, Response, Settled, Tangent},
+        model::{
+            ContactModel, Flattened, Landing, Linearization, NotBorne, Response, Settled, Tangent,
+            Tipped,
+        },
         pressed::{Coulomb, NearBlock, NearBlocks, PressedBlocks, Sliding, Tractions4},
         share_block::ShareBlock,
     },
@@ -71,6 +75,8 @@ pub(super) struct DeformableContact<'a, B> {
     node_loads: Vec<NodeLoad>,
     /// Friction where the surface gives way along itself; else it is that of `rubbing`.
     friction: Option<ElasticFriction<'a>>,
+    /// How the insert rests on its tray, if it is not bonded to it.
+    resting: Option<RestingInsert>,
 }
 
 /// Loads of a block of shares, and their derivatives by six motions.
@@ -151,6 +157,7 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             plastic: None,
             node_loads: Vec::new(),
             friction: None,
+            resting: None,
             bodies,
             rubbing,
             nearby,
@@ -167,6 +174,34 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
     pub fn sticking(mut self, friction: Option<ElasticFriction<'a>>) -> Self {
         self.friction = friction;
         self
+    }
+
+    /// The same of an insert that rests on its tray.
+    pub fn resting(mut self, resting: Option<RestingInsert>) -> Self {
+        self.resting = resting;
+        self
+    }
+
+    /// How the insert flows under the loads of the last response; how far that moves the surface, mm.
+    fn flow(&mut self) -> Result<f64, Flattened> {
+        let Some(plastic) = &mut self.plastic else {
+            return Ok(0.0);
+        };
+        let shares = &self.bodies.surface.shares;
+        let pressures = self.node_loads.iter();
+        let peak_mpa = pressures
+            .map(|&(node, load_n)| load_n / shares[node as usize].area_mm2)
+            .fold(0.0, f64::max);
+        let near = self.candidates.iter().map(|candidate| candidate.node);
+        let around = self.bodies.insert.faces_around();
+        plastic.flow(&self.node_loads, peak_mpa, near, around)
+    }
+
+    /// How the backside comes to rest under them; how far that moves the surface, mm.
+    fn rest(&mut self) -> Result<f64, Tipped> {
+        let near = self.candidates.iter().map(|candidate| candidate.node);
+        let resting = self.resting.as_mut();
+        resting.map_or(Ok(0.0), |resting| resting.rest(&self.node_loads, near))
     }
 
     /// The nodes that press, their loads taken along with a short motion of the femur since the last response.
@@ -195,7 +230,10 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
 
     /// Lists the nodes that may touch.
     fn find_candidates(&mut self, pose: &Pose, pose4: &Pose4) {
-        let (near, most) = (&mut self.near, F64x4::splat(MOST_BULGE_MM));
+        // Where the backside lifts, the surface comes nearer by as much.
+        let lift_mm = self.resting.as_ref().map_or(0.0, RestingInsert::lift_mm);
+        let most_mm = MOST_BULGE_MM + lift_mm;
+        let (near, most) = (&mut self.near, F64x4::splat(most_mm));
         let prepared_mm2 = self.bodies.femur.prepared_spread_mm2();
         near.clear();
         self.nearby
@@ -214,20 +252,31 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             let overclosures = along.overclosures_mm(near, gap_mm);
             self.along.push(along);
             for (lane, &node) in shares.nodes.iter().enumerate() {
-                let is_near = gap_mm.lane(lane) <= MOST_BULGE_MM;
+                let is_near = gap_mm.lane(lane) <= most_mm;
                 if is_near && shares.area_mm2.lane(lane) > 0.0 {
-                    let mut overclosure_mm = overclosures[lane];
-                    if let Some(plastic) = &self.plastic {
-                        let set_mm = F64x4::new([plastic.set_mm(node), 0.0, 0.0, 0.0]);
-                        overclosure_mm[0] -= set_mm;
-                    }
                     self.candidates.push(Candidate {
                         node,
-                        overclosure_mm,
+                        overclosure_mm: overclosures[lane],
                     });
                     self.lanes.push((number, lane));
                 }
             }
+        }
+        self.take_what_gives_way();
+    }
+
+    /// Takes from the overclosures what the surface gives way by beside what the loads of this response do.
+    fn take_what_gives_way(&mut self) {
+        let mut take = |set_mm: &mut dyn FnMut(u32) -> f64| {
+            for candidate in &mut self.candidates {
+                candidate.overclosure_mm[0] -= F64x4::new([set_mm(candidate.node), 0.0, 0.0, 0.0]);
+            }
+        };
+        if let Some(plastic) = &self.plastic {
+            take(&mut |node| plastic.set_mm(node));
+        }
+        if let Some(resting) = &mut self.resting {
+            take(&mut |node| resting.set_mm(node));
         }
     }
 
@@ -285,6 +334,9 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         if let Some(friction) = &mut self.friction {
             friction.begin_cycle();
         }
+        if let Some(resting) = &mut self.resting {
+            resting.begin_cycle();
+        }
     }
 
     fn begin_increment(&mut self, increment: usize) {
@@ -294,6 +346,9 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         }
         if let Some(friction) = &mut self.friction {
             friction.begin_increment(increment);
+        }
+        if let Some(resting) = &mut self.resting {
+            resting.begin_increment(increment);
         }
     }
 
@@ -320,18 +375,8 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
-    fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, Flattened> {
-        let Some(plastic) = &mut self.plastic else {
-            return Ok(Settled::Yes);
-        };
-        let shares = &self.bodies.surface.shares;
-        let pressures = self.node_loads.iter();
-        let peak_mpa = pressures
-            .map(|&(node, load_n)| load_n / shares[node as usize].area_mm2)
-            .fold(0.0, f64::max);
-        let near = self.candidates.iter().map(|candidate| candidate.node);
-        let around = self.bodies.insert.faces_around();
-        let moved_mm = plastic.flow(&self.node_loads, peak_mpa, near, around)?;
+    fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, NotBorne> {
+        let moved_mm = self.flow()?.max(self.rest()?);
         Ok(if moved_mm <= FOUND_MM {
             Settled::Yes
         } else {
@@ -342,6 +387,9 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
     fn accept(&mut self, motion: &RelativeMotion) {
         if let Some(plastic) = &mut self.plastic {
             plastic.accept();
+        }
+        if let Some(resting) = &mut self.resting {
+            resting.accept();
         }
         if self.friction.is_some() {
             let from = &self.pressed.pose;
@@ -357,18 +405,27 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         if let Some(plastic) = &mut self.plastic {
             plastic.reject();
         }
+        if let Some(resting) = &mut self.resting {
+            resting.reject();
+        }
     }
 
     fn moved_in_a_cycle_mm(&self) -> f64 {
         let plastic = self.plastic.as_ref();
         let set_mm = plastic.map_or(0.0, |plastic| plastic.cycle.moved_mm());
         let friction = self.friction.as_ref();
-        set_mm.max(friction.map_or(0.0, ElasticFriction::moved_in_a_cycle_mm))
+        let friction_mm = friction.map_or(0.0, ElasticFriction::moved_in_a_cycle_mm);
+        let resting = self.resting.as_ref();
+        let backside_mm = resting.map_or(0.0, RestingInsert::moved_in_a_cycle_mm);
+        set_mm.max(friction_mm).max(backside_mm)
     }
 
     fn land(&mut self, motion: &RelativeMotion) -> Landing {
         if let Some(plastic) = &mut self.plastic {
             plastic.land();
+        }
+        if let Some(resting) = &mut self.resting {
+            resting.land();
         }
         let mut touched = self.pressed.touched(&self.nearby.blocks, motion);
         if let Some(friction) = &mut self.friction {
@@ -397,7 +454,12 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
 
     fn into_memory(self: Box<Self>) -> ContactMemory {
         let mut state = self.state;
-        let own = [PLASTIC_FIELD, FRICTION_FIELD];
+        let own = [
+            PLASTIC_FIELD,
+            FRICTION_FIELD,
+            BACKSIDE_FIELD,
+            BACKSIDE_CYCLE_FIELD,
+        ];
         state.fields.retain(|field| !own.contains(&&*field.name));
         let plastic = self.plastic.map(PlasticInsert::into_memory);
         state
@@ -407,6 +469,10 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         state
             .fields
             .extend(friction.flat_map(ElasticFriction::into_fields));
+        let resting = self.resting.into_iter();
+        state
+            .fields
+            .extend(resting.flat_map(RestingInsert::into_fields));
         ContactMemory {
             state,
             cache: ContactCache::of(self.nearby.into_cache()),

@@ -4,20 +4,27 @@ use std::{
     collections::BTreeMap,
     fmt,
     sync::{
-        Arc, MutexGuard, OnceLock,
+        Arc, Mutex, MutexGuard, OnceLock, PoisonError,
         atomic::{AtomicUsize, Ordering},
     },
 };
 
 use condyle_fem::{Elastic, ElasticSolid, HexMesh, SolidError, Strain};
 
+use nalgebra::DVector;
+
 use super::{
+    backside::{Floor, Tray},
     compliance::{Compliance, SurfaceCompliance},
     plastic::Influence,
     tiles::tiles,
     unit_loads::{UnitLoads, along_surface},
 };
-use crate::{Vec3, contact::known_compliance::KnownCompliance, geometry::Insert};
+use crate::{
+    Vec3,
+    contact::known_compliance::KnownCompliance,
+    geometry::{Insert, bounds},
+};
 
 /// So many nodes at most are solved for together: forces on nodes that are near load the same part of the factor.
 const TILE_NODES: usize = 48;
@@ -26,7 +33,16 @@ const TILE_NODES: usize = 48;
 /// layers of nodes.
 const FELT_PER_ROOT: f64 = 6.0;
 
-/// The articulating surface of an elastic insert, bonded to its tray.
+/// Nodes that hold an insert while its loads are half-solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum HeldBy {
+    /// Those of its backside: it is bonded.
+    Backside,
+    /// Those of the flat part of it, which rests; walls and recesses hang free.
+    Floor,
+}
+
+/// The articulating surface of an elastic insert, held by its backside or by the floor of that.
 ///
 /// The stiffness is factored once; unit loads on a tile of nodes are solved half way when they are first asked for,
 /// and kept.
@@ -43,6 +59,13 @@ pub(super) struct ElasticSurface {
     tangential: OnceLock<Arc<Compliance<UnitLoads>>>,
     /// What moves inside; of an insert that yields.
     influence: OnceLock<Influence>,
+    /// What holds it.
+    held_by: HeldBy,
+    /// The flat part of the backside, of an insert that rests on it.
+    floor: OnceLock<Floor>,
+    backside: Vec<u32>,
+    /// The tray, of an insert that rests on it, and the spacing of its points, mm.
+    tray: Mutex<Option<(f64, Arc<Tray>)>>,
 }
 
 impl fmt::Debug for ElasticSurface {
@@ -58,14 +81,23 @@ impl ElasticSurface {
     ///
     /// # Errors
     /// A material or a mesh that is no elastic solid.
-    pub fn new(insert: &Insert, mesh_nodes: &[Vec3], elastic: Elastic) -> Result<Self, SolidError> {
+    pub fn new(
+        insert: &Insert,
+        mesh_nodes: &[Vec3],
+        elastic: Elastic,
+        held_by: HeldBy,
+    ) -> Result<Self, SolidError> {
         let mesh = HexMesh {
             nodes: mesh_nodes.to_vec(),
             hexes: insert.mesh().hexes.clone(),
         };
         let surface = insert.surface_at(mesh_nodes);
         let tiles = tiles(&surface.positions, TILE_NODES);
-        let held = insert.backside_nodes().iter().copied();
+        let backside = insert.backside_nodes();
+        let held = match held_by {
+            HeldBy::Backside => backside.to_vec(),
+            HeldBy::Floor => Floor::of(&mesh, backside).nodes,
+        };
         let solid = Arc::new(ElasticSolid::new(&mesh, elastic, held)?);
         let nodes = insert.surface_nodes();
         let inward = surface.normals.iter().map(|normal| -normal);
@@ -80,6 +112,10 @@ impl ElasticSurface {
             nodes: nodes.to_vec(),
             tangential: OnceLock::new(),
             influence: OnceLock::new(),
+            backside: backside.to_vec(),
+            floor: OnceLock::new(),
+            held_by,
+            tray: Mutex::default(),
         })
     }
 
@@ -97,6 +133,46 @@ impl ElasticSurface {
     /// Of how many pairs of tiles another run had found something.
     pub fn known_at_first(&self) -> usize {
         self.known_at_first.load(Ordering::Relaxed)
+    }
+
+    fn floor(&self) -> &Floor {
+        let mesh = self.solid.mesh();
+        self.floor.get_or_init(|| Floor::of(mesh, &self.backside))
+    }
+
+    /// The tray, with points at some spacing: that asked for last, or made anew.
+    pub fn tray(&self, spacing_mm: f64) -> Arc<Tray> {
+        let mut tray = self.tray.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((known_mm, known)) = &*tray
+            && *known_mm == spacing_mm
+        {
+            return Arc::clone(known);
+        }
+        let made = Tray::new(&self.solid, self.floor(), spacing_mm, self.tiles().len());
+        let made = Arc::new(made);
+        *tray = Some((spacing_mm, Arc::clone(&made)));
+        made
+    }
+
+    /// How far the motion of the backside moves the nodes of a tile along their inward normals: a row a node.
+    pub fn by_tray<'a>(&self, tray: &'a Tray, tile: usize) -> &'a [f64] {
+        tray.of_tile(&self.normal, tile)
+    }
+
+    /// What loads along the inward normals of nodes are to the points of the backside, N.
+    pub fn forces_on_tray(&self, tray: &Tray, loads: &[(u32, f64)]) -> DVector<f64> {
+        let mut forces_n = DVector::zeros(tray.freedoms());
+        for (tile, loads) in self.by_tile(loads) {
+            let rows = self
+                .by_tray(tray, tile as usize)
+                .chunks_exact(tray.freedoms());
+            for (row, load_n) in rows.zip(loads).filter(|(_, load_n)| *load_n != 0.0) {
+                for (force_n, by) in forces_n.iter_mut().zip(row) {
+                    *force_n += load_n * by;
+                }
+            }
+        }
+        forces_n
     }
 
     /// The compliance along the surface: load 2 i + k is on node i along its direction k, anterior and lateral.
@@ -120,6 +196,16 @@ impl ElasticSurface {
         self.solid.bytes() as f64 + size_of::<f64>() as f64 * (of_loads[0] + of_loads[1])
     }
 
+    /// Bytes of a tray with points at some spacing, and of its influence on some nodes.
+    pub fn bytes_of_tray(&self, spacing_mm: f64, nodes: f64) -> f64 {
+        let mesh = self.solid.mesh();
+        let places: Vec<Vec3> = mesh.positions(&self.floor().nodes).collect();
+        let (low, high) = bounds(&places);
+        let points = [0, 2].map(|axis| (high[axis] - low[axis]) / spacing_mm + 1.0);
+        let felt = FELT_PER_ROOT * (3.0 * mesh.nodes.len() as f64).sqrt();
+        Tray::bytes(3.0 * points[0] * points[1], nodes, felt)
+    }
+
     /// Bytes of what loads on some nodes move inside an insert that yields.
     pub fn bytes_below(&self, nodes: f64) -> f64 {
         let rows = 3.0 * self.solid.mesh().nodes.len() as f64;
@@ -127,9 +213,10 @@ impl ElasticSurface {
     }
 
     /// Whether it is that of an insert with its mesh nodes there.
-    pub fn is_of(&self, insert: &Insert, mesh_nodes: &[Vec3]) -> bool {
+    pub fn is_of(&self, insert: &Insert, mesh_nodes: &[Vec3], held_by: HeldBy) -> bool {
         let mesh = self.solid.mesh();
-        mesh.hexes == insert.mesh().hexes
+        self.held_by == held_by
+            && mesh.hexes == insert.mesh().hexes
             && mesh.nodes == mesh_nodes
             && self.nodes == insert.surface_nodes()
     }
@@ -196,6 +283,22 @@ impl ElasticSurface {
             forces.extend(nodes.into_iter().zip(own));
         }
         self.solid.displacements(&forces)
+    }
+
+    /// How far loads along the inward normals of nodes, and a motion of the backside, move all mesh nodes, mm.
+    pub fn moved_with_tray(
+        &self,
+        loads: &[(u32, f64)],
+        tray: &Tray,
+        moved_mm: &[f64],
+    ) -> Vec<Vec3> {
+        let forces = loads.iter().map(|&(node, load_n)| {
+            let (node, along) = self.unit(node);
+            (node, along * load_n)
+        });
+        let forces: Vec<(u32, Vec3)> = forces.collect();
+        self.solid
+            .displacements_with_supports(&forces, &tray.moved_nodes(moved_mm))
     }
 
     /// How far mesh nodes of the surface move along the inward normals, mm.

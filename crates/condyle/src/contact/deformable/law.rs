@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use super::{
+    backside::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD, BacksideMemory, RestingInsert},
     compliance::Compliance,
     contact::{DeformableContact, Rubbing},
     elastic_surface::ElasticSurface,
     friction::ElasticFriction,
     friction_memory::{FRICTION_FIELD, FrictionMemory},
     plastic::{PLASTIC_FIELD, PlasticInsert, Remembered},
-    settings::{Deformable, FrictionModel, MOST_REMEMBERED_BYTES},
-    under_surface::under_surface,
+    settings::{Backside, Deformable, FrictionModel, MOST_REMEMBERED_BYTES},
+    under_surface::{above_tray, under_surface},
 };
 use crate::{
     Vec3,
@@ -80,7 +81,13 @@ impl ContactLaw for Deformable {
                 .hardening
                 .as_ref()
                 .map_or(0.0, |_| WITH_TWIN * surface.source.bytes_below(nodes_near));
-            bytes + beside + below
+            let at_backside = match self.backside {
+                Backside::Bonded => 0.0,
+                Backside::Resting { spacing_mm, .. } => {
+                    WITH_TWIN * surface.source.bytes_of_tray(spacing_mm, nodes_near)
+                }
+            };
+            bytes + beside + below + at_backside
         })
     }
 
@@ -88,11 +95,24 @@ impl ContactLaw for Deformable {
         &self,
         insert: &Insert,
         state: &ContactState,
+        activity: usize,
         loads: &[(u32, f64)],
     ) -> Option<UnderSurface> {
         let (compliance, state) = self.compliance(insert, state);
-        let remembered = self.hardening.as_ref().map(|_| Remembered::of(&state));
-        Some(under_surface(&compliance.source, remembered, loads))
+        let surface = &compliance.source;
+        Some(match self.backside {
+            Backside::Bonded => {
+                let remembered = self.hardening.as_ref().map(|_| Remembered::of(&state));
+                under_surface(surface, remembered, loads)
+            }
+            Backside::Resting {
+                friction,
+                spacing_mm,
+            } => {
+                let (tray, memory) = (surface.tray(spacing_mm), BacksideMemory::of(&state));
+                above_tray(surface, &tray, friction, &memory, (activity, loads))
+            }
+        })
     }
 
     fn known_compliance(&self, insert: &Insert, more_than_pairs: usize) -> Option<KnownCompliance> {
@@ -139,6 +159,7 @@ impl Deformable {
     ) -> DeformableContact<'a, B> {
         let (compliance, state) = self.compliance(bodies.insert, &memory.state);
         let plastic = self.plastic(&state, &compliance);
+        let resting = self.resting(&state, &compliance);
         let (friction, coulomb) = match self.friction_model {
             FrictionModel::Regularised => (None, self.coulomb()),
             FrictionModel::StickSlip => {
@@ -161,6 +182,26 @@ impl Deformable {
         DeformableContact::after(memory, bodies, rubbing, compliance)
             .yielding(plastic)
             .sticking(friction)
+            .resting(resting)
+    }
+
+    /// How the insert rests on its tray, if it does, after what the state remembers.
+    fn resting(
+        &self,
+        state: &ContactState,
+        compliance: &Arc<Compliance<ElasticSurface>>,
+    ) -> Option<RestingInsert> {
+        let Backside::Resting {
+            friction,
+            spacing_mm,
+        } = self.backside
+        else {
+            return None;
+        };
+        let memory = BacksideMemory::of(state);
+        let tray = compliance.source.tray(spacing_mm);
+        let compliance = Arc::clone(compliance);
+        Some(RestingInsert::after(memory, compliance, tray, friction))
     }
 
     /// How the insert yields, if it does, after what the state remembers.
@@ -192,9 +233,14 @@ fn used_nodes(insert: &Insert, state: &ContactState) -> Vec<Vec3> {
     }
 }
 
-/// The state with the nodes whose compliance is used, and the plastic strains and loads along the surface that it had.
+/// The state with the nodes whose compliance is used, and all else that it had.
 fn state_of(nodes: &[Vec3], before: &ContactState) -> ContactState {
-    let stays = [PLASTIC_FIELD, FRICTION_FIELD];
+    let stays = [
+        PLASTIC_FIELD,
+        FRICTION_FIELD,
+        BACKSIDE_FIELD,
+        BACKSIDE_CYCLE_FIELD,
+    ];
     let kept = before.fields.iter();
     let kept = kept.filter(|field| stays.contains(&&*field.name));
     let field = StateField {

@@ -7,9 +7,11 @@
 //! gives way (`compliance`) is computed by finite elements (`elastic_surface`, `unit_loads`), between the nodes that ever
 //! come near (`near_matrix`), and may be known from another run. Where it gives way along itself too, friction makes it stick and slip (`friction`, with
 //! the loads of `stick_slip` and what is remembered of them in `friction_memory`). Where an increment ends it says how much of every share presses (`covered`), and what the highest
-//! pressure is (`peak`). Below the surface the insert may yield (`plastic`), and has stress there (`under_surface`).
+//! pressure is (`peak`). Below the surface the insert may yield (`plastic`), and has stress there (`under_surface`); its backside is bonded, or rests
+//! (`backside`). What loads and insert have to agree on is found in `turns`, led by `mixing`.
 
 mod along_normal;
+mod backside;
 mod candidate;
 mod changed_factor;
 mod cholesky;
@@ -22,6 +24,7 @@ mod elastic_surface;
 mod friction;
 mod friction_memory;
 mod law;
+mod mixing;
 mod near_matrix;
 mod peak;
 mod plastic;
@@ -30,7 +33,8 @@ mod stick_slip;
 #[cfg(test)]
 mod tests;
 mod tiles;
+mod turns;
 mod under_surface;
 mod unit_loads;
 
-pub use settings::{Deformable, FrictionModel};
+pub use settings::{Backside, Deformable, FrictionModel};

@@ -4,7 +4,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use condyle_fem::{Elastic, Hardening, SolidError};
 
-use super::{compliance::Compliance, elastic_surface::ElasticSurface};
+use super::{
+    backside::Floor,
+    compliance::Compliance,
+    elastic_surface::{ElasticSurface, HeldBy},
+};
 use crate::{
     Vec3,
     contact::{
@@ -29,7 +33,23 @@ pub enum FrictionModel {
     StickSlip,
 }
 
-/// The law of an elastic insert, bonded to its tray, under a rigid femur.
+/// What holds the backside of a deformable insert on its tray.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Backside {
+    /// It is bonded: it neither lifts nor slips.
+    #[default]
+    Bonded,
+    /// It rests: where it presses it sticks or slips with Coulomb's friction, elsewhere it lifts. The rim that locks it
+    /// carries the net force and moment along the tray.
+    Resting {
+        /// Coulomb's coefficient of friction.
+        friction: f64,
+        /// Spacing of the points at which its motion is told, mm.
+        spacing_mm: f64,
+    },
+}
+
+/// The law of an elastic insert under a rigid femur.
 ///
 /// Small displacements: the surface gives way along its inward normals by the normal compliance C of the insert,
 /// computed by finite elements. The loads N at the nodes hold the bodies just in touch where they press,
@@ -41,6 +61,7 @@ pub enum FrictionModel {
 /// unworn, and made anew where an insert has become thinner by more than a twentieth. With a yield stress the insert flows below
 /// its surface (von Mises, small strains), and what that leaves of a dent goes into the gap; the stiffness stays.
 /// Limits: loads along the surface do not move it along its normal, nor do normal loads along it; a tray that does not give.
+/// An insert that rests on its tray neither yields nor sticks and slips on its surface.
 #[derive(Debug)]
 pub struct Deformable {
     /// The elastic material, MPa.
@@ -57,6 +78,8 @@ pub struct Deformable {
     pub sample_reuse_mm: f64,
     /// The yield stress of the insert, MPa, if it yields.
     pub hardening: Option<Hardening>,
+    /// What holds the backside.
+    pub(super) backside: Backside,
     remembered: Arc<Remembered>,
 }
 
@@ -93,10 +116,33 @@ impl Deformable {
             search: Search::default(),
             sample_reuse_mm: Foundation::SAMPLE_REUSE_MM,
             hardening: None,
+            backside: Backside::default(),
             remembered: Arc::default(),
         };
         law.surface(insert, insert.unworn_nodes())?;
         Ok(law)
+    }
+
+    /// The same law of an insert whose backside is held so; where it rests on its flat part the stiffness is factored anew if
+    /// there is more than that.
+    ///
+    /// # Errors
+    /// An insert of which a part is not held by that.
+    pub fn with_backside(
+        mut self,
+        backside: Backside,
+        insert: &Insert,
+    ) -> Result<Self, SolidError> {
+        self.backside = backside;
+        self.surface(insert, insert.unworn_nodes())?;
+        Ok(self)
+    }
+
+    /// How much of an insert's backside is flat, of what a tray below sees: what can rest.
+    ///
+    /// Faces that lean by less than 15 degrees from straight down, within a quarter of a millimetre of their middle height.
+    pub fn flat_part_of_backside(insert: &Insert) -> f64 {
+        Floor::of(insert.mesh(), insert.backside_nodes()).part
     }
 
     /// The surface of an insert with its mesh nodes there: remembered, or made anew.
@@ -105,17 +151,19 @@ impl Deformable {
         insert: &Insert,
         mesh_nodes: &[Vec3],
     ) -> Result<Arc<Compliance<ElasticSurface>>, SolidError> {
+        let held_by = self.held_by();
         let mut remembered = self
             .remembered
             .0
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        let surface = if let Some(place) = place_of(&remembered, insert, mesh_nodes) {
+        let place = place_of(&remembered, insert, mesh_nodes, held_by);
+        let surface = if let Some(place) = place {
             remembered.remove(place)
         } else {
             // Before, so that what goes and what comes are not there at once.
             forget_the_oldest(&mut remembered);
-            let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic)?;
+            let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic, held_by)?;
             Arc::new(Compliance::new(surface))
         };
         remembered.push(Arc::clone(&surface));
@@ -133,12 +181,19 @@ impl Deformable {
             .0
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        let place = place_of(&remembered, insert, mesh_nodes)?;
+        let place = place_of(&remembered, insert, mesh_nodes, self.held_by())?;
         Some(Arc::clone(&remembered[place]))
     }
 
-    /// Takes what another run has found of the compliance of an unworn insert with these elastic constants: it need not
-    /// be computed again, and no answer depends on it.
+    /// Whether anything is known of the compliance of an unworn insert.
+    pub fn knows(&self, insert: &Insert) -> bool {
+        let surface = self.remembered(insert, insert.unworn_nodes());
+        surface
+            .is_some_and(|surface| surface.known_count() > 0 || surface.source.known_at_first() > 0)
+    }
+
+    /// Takes what another run has found of the compliance of an unworn insert with these elastic constants and this hold of
+    /// its backside: it need not be computed again, and no answer depends on it.
     ///
     /// # Errors
     /// A mesh that is no elastic solid.
@@ -146,6 +201,13 @@ impl Deformable {
         let surface = self.surface(insert, insert.unworn_nodes())?;
         surface.source.know(known);
         Ok(())
+    }
+
+    fn held_by(&self) -> HeldBy {
+        match self.backside {
+            Backside::Bonded => HeldBy::Backside,
+            Backside::Resting { .. } => HeldBy::Floor,
+        }
     }
 
     pub(super) fn coulomb(&self) -> Coulomb {
@@ -161,9 +223,10 @@ fn place_of(
     remembered: &[Arc<Compliance<ElasticSurface>>],
     insert: &Insert,
     mesh_nodes: &[Vec3],
+    held_by: HeldBy,
 ) -> Option<usize> {
     let mut remembered = remembered.iter();
-    remembered.position(|surface| surface.source.is_of(insert, mesh_nodes))
+    remembered.position(|surface| surface.source.is_of(insert, mesh_nodes, held_by))
 }
 
 /// Makes room for one as large as the newest.

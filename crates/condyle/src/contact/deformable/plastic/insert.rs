@@ -5,12 +5,12 @@ use std::{collections::BTreeMap, sync::Arc};
 use condyle_fem::{ElasticPlastic, ElasticSolid, Hardening, PlasticPoint, Strain};
 
 use super::{
-    super::{compliance::Compliance, elastic_surface::ElasticSurface},
+    super::{
+        compliance::Compliance, elastic_surface::ElasticSurface, mixing::Mixing, turns::Turns,
+    },
     CycleOfFlow, POINTS, Points, Remembered,
     cycle::farthest_mm,
     influence::{ByTile, Influence, product},
-    mixing::Mixing,
-    turns::Turns,
 };
 use crate::{Vec3, contact::model::Flattened, geometry::FacesAround};
 

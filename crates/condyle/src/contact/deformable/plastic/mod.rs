@@ -2,19 +2,17 @@
 //!
 //! Plastic strain is an eigenstrain of the elastic insert: its forces on the nodes move the surface (the permanent
 //! set, which goes into the gap) and leave stress. Stiffness and compliance stay. `influence` keeps what loads and
-//! plastic strains move below the surface, `insert` finds the flow under the loads of an increment (led by `mixing`), `cycle` tells
+//! plastic strains move below the surface, `insert` finds the flow under the loads of an increment (led by Anderson's mixing), `cycle` tells
 //! what flows in a cycle that repeats, and `memory` is what the next contact goes on from.
 
 mod cycle;
 mod influence;
 mod insert;
 mod memory;
-mod mixing;
 #[cfg(test)]
 mod tests;
-mod turns;
 
-pub(super) use cycle::CycleOfFlow;
+pub(super) use cycle::{CycleOfFlow, farthest_mm};
 pub(super) use influence::Influence;
 pub(super) use insert::{FOUND_MM, NodeLoad, PlasticInsert, strains_of};
 pub(super) use memory::{PLASTIC_FIELD, Remembered};

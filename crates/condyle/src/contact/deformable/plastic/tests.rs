@@ -4,7 +4,11 @@ use std::sync::Arc;
 
 use condyle_fem::{Elastic, ElasticSolid, Hardening, PlasticSolid, PlasticState};
 
-use super::{super::compliance::Compliance, super::elastic_surface::ElasticSurface, *};
+use super::{
+    super::compliance::Compliance,
+    super::elastic_surface::{ElasticSurface, HeldBy},
+    *,
+};
 use crate::{
     Vec3,
     geometry::{Insert, Meshing, flat_insert},
@@ -29,7 +33,8 @@ impl Block {
         };
         let insert = flat_insert((14.0, 14.0), 7.0, meshing).unwrap();
         let elastic = Elastic::new(463.0, 0.46).unwrap();
-        let surface = ElasticSurface::new(&insert, insert.unworn_nodes(), elastic).unwrap();
+        let surface =
+            ElasticSurface::new(&insert, insert.unworn_nodes(), elastic, HeldBy::Backside).unwrap();
         let held = insert.backside_nodes().iter().copied();
         let solid = ElasticSolid::new(insert.mesh(), elastic, held).unwrap();
         Self {
