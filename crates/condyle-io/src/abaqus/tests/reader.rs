@@ -37,6 +37,7 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("STATIC", &[]),
     ("CHANGE FRICTION", &["INTERACTION"]),
     ("NODE PRINT", &["NSET", "TOTALS"]),
+    ("EL PRINT", &["ELSET", "FREQUENCY"]),
     ("NODE FILE", &[]),
     ("CONTACT FILE", &[]),
     ("BOUNDARY", &["OP", "AMPLITUDE", "TYPE"]),
