@@ -20,10 +20,10 @@ from typing import NamedTuple
 
 # The contact of the decks as CalculiX finds its balance with: the facet over a node is looked for once an increment, and
 # every node near the femur has its spring from the increment's beginning, so that none comes and goes between iterations.
-# Of a node's edge 0.5 is near; where a spring is open it pulls with 0.001 MPa.
+# Of a node's edge 0.5 is near; where a spring is open it pulls with 1e-6 MPa.
 TABLE = "PRESSURE-OVERCLOSURE=TABULAR\n0.0, 0.0\n1000000.0, 1.0\n"
 CONTACT = {
-    TABLE: "PRESSURE-OVERCLOSURE=LINEAR\n1000000.0, 0.001, 0.5\n",
+    TABLE: "PRESSURE-OVERCLOSURE=LINEAR\n1000000.0, 0.000001, 0.5\n",
     "TYPE=NODE TO SURFACE\n": "TYPE=NODE TO SURFACE, SMALL SLIDING\n",
 }
 SOLVER = {"*STATIC\n": "*STATIC, SOLVER=ITERATIVE CHOLESKY\n"}
