@@ -60,6 +60,7 @@ const IN_A_STEP: &[&str] = &[
     "STATIC",
     "CHANGE FRICTION",
     "NODE PRINT",
+    "EL PRINT",
     "NODE FILE",
     "CONTACT FILE",
     "BOUNDARY",
@@ -72,6 +73,9 @@ const IN_A_STEP: &[&str] = &[
     "CONTACT OUTPUT",
     "END STEP",
 ];
+
+/// Keywords that stand in a step or before it.
+const EITHER: &[&str] = &["CONTACT PAIR", "FRICTION"];
 
 /// A keyword with its data lines, cut at the commas.
 pub(super) struct Block {
@@ -160,7 +164,7 @@ impl Deck {
             if block.is("STEP") {
                 assert!(!in_step, "a step in a step");
                 in_step = true;
-            } else if !block.is("CONTACT PAIR") {
+            } else if !EITHER.contains(&block.name.as_str()) {
                 let belongs = IN_A_STEP.contains(&block.name.as_str());
                 assert_eq!(belongs, in_step, "*{}", block.name);
             }
