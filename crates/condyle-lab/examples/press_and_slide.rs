@@ -3,14 +3,14 @@
 //! `cargo run --release -p condyle-lab --example press_and_slide -- PRESSED.inp SLID.inp > block.csv`
 //!
 //! The block has 31 x 24 x 12 = 8,928 hexahedra, the polyethylene of a case and friction of 0.07. The files are for
-//! CalculiX, the first without the slide and without friction; what is printed is the answer of condyle after each step
-//! and the time until then, which begins before the stiffness is put together.
+//! CalculiX, the first without the slide and without friction; what is printed is the answer of condyle after each step,
+//! the second with either model of friction, and the time until then, which begins before the stiffness is put together.
 
 use std::{error::Error, fs::File, io::BufWriter, time::Instant};
 
 use condyle::{
     Mat3, Vec3,
-    contact::{Bodies, ContactLaw, ContactMemory, ContactModel, Deformable},
+    contact::{Bodies, ContactLaw, ContactMemory, ContactModel, Deformable, FrictionModel},
     geometry::{FemoralSurface, Insert, Meshing, TriangleMesh, flat_insert},
     spatial::{Pose, RelativeMotion, Twist},
 };
@@ -44,14 +44,25 @@ fn main() -> Result<(), Box<dyn Error>> {
         surface: &surface,
     };
     let elastic = Elastic::new(463.0, 0.46)?;
-    let start = Instant::now();
-    let law = Deformable::new(elastic, FRICTION, SLIP_TOLERANCE_MM_PER_S, &insert)?;
-    let mut contact = law.contact(bodies, ContactMemory::default());
-    let answer = press(contact.as_mut());
-    println!("step,force_x_n,force_y_n,peak_mpa,highest_node_mpa,time_s");
-    println!("pressed,{answer},{:.4}", start.elapsed().as_secs_f64());
-    let answer = slide(contact.as_mut());
-    println!("slid,{answer},{:.4}", start.elapsed().as_secs_f64());
+    println!("place,step,force_x_n,force_y_n,peak_mpa,highest_node_mpa,time_s");
+    for (model, place) in [
+        (FrictionModel::Regularised, "slid"),
+        (FrictionModel::StickSlip, "sticks"),
+    ] {
+        let start = Instant::now();
+        let mut law = Deformable::new(elastic, FRICTION, SLIP_TOLERANCE_MM_PER_S, &insert)?;
+        law.friction_model = model;
+        let mut contact = law.contact(bodies, ContactMemory::default());
+        let answer = press(contact.as_mut());
+        if model == FrictionModel::Regularised {
+            println!(
+                "pressed,PRESSED,{answer},{:.4}",
+                start.elapsed().as_secs_f64()
+            );
+        }
+        let answer = slide(contact.as_mut());
+        println!("{place},SLID,{answer},{:.4}", start.elapsed().as_secs_f64());
+    }
     let pressed = Pressed {
         title: "Ball pressed on a block",
         note: "A ball of 24 mm, 0.25 mm deep in a bonded block; it slides 2 mm if there is a second step.",
@@ -127,28 +138,38 @@ fn at(x_mm: f64, depth_mm: f64) -> Pose {
 }
 
 fn press(contact: &mut dyn ContactModel) -> String {
-    for increment in 1..PRESSING {
-        contact.respond(&RelativeMotion::at_rest(at(
-            0.0,
-            DEPTH_MM * f64::from(increment) / f64::from(PRESSING),
-        )));
-    }
-    answer(contact, &RelativeMotion::at_rest(at(0.0, DEPTH_MM)))
+    let motion = |increment: u32| {
+        let part = f64::from(increment) / f64::from(PRESSING);
+        RelativeMotion::at_rest(at(0.0, DEPTH_MM * part))
+    };
+    go(contact, PRESSING, motion)
 }
 
 fn slide(contact: &mut dyn ContactModel) -> String {
     let twist = Twist::new(Vec3::zeros(), Vec3::new(SPEED_MM_PER_S, 0.0, 0.0));
-    let motion = |increment: u32| RelativeMotion {
-        pose: at(
-            SLIDE_MM * f64::from(increment) / f64::from(SLIDING),
-            DEPTH_MM,
-        ),
-        twist,
+    let motion = |increment: u32| {
+        let part = f64::from(increment) / f64::from(SLIDING);
+        RelativeMotion {
+            pose: at(SLIDE_MM * part, DEPTH_MM),
+            twist,
+        }
     };
-    for increment in 1..SLIDING {
+    go(contact, SLIDING, motion)
+}
+
+/// The answer to the last of so many increments.
+fn go(
+    contact: &mut dyn ContactModel,
+    increments: u32,
+    motion: impl Fn(u32) -> RelativeMotion,
+) -> String {
+    for increment in 1..increments {
         contact.respond(&motion(increment));
+        contact.accept(&motion(increment));
     }
-    answer(contact, &motion(SLIDING))
+    let answer = answer(contact, &motion(increments));
+    contact.accept(&motion(increments));
+    answer
 }
 
 /// Force on the insert along x and y, peak, and highest pressure of a node.

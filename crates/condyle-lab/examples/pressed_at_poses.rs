@@ -6,6 +6,8 @@
 //! Writes FOLDER/PERCENT.inp, the files of `condyle export --pressed-at`, and prints condyle's answer to them: the femur
 //! comes straight down without sliding, in ten increments. `time_s` is that of pressing alone, on an insert whose
 //! compliance the cycle solved before has left; `since_start_s` has all in it from reading the case on, the files aside.
+//! Of an insert that yields there is also the largest plastic strain at a Gauss point, and the force and the highest node at
+//! the same pose if it did not yield.
 
 use std::{
     error::Error,
@@ -21,7 +23,10 @@ use condyle::{
     evolve::March,
     spatial::{Pose, RelativeMotion},
 };
-use condyle_io::{abaqus::PressedCase, case::Case};
+use condyle_io::{
+    abaqus::PressedCase,
+    case::{Case, PlasticityChoice},
+};
 
 /// Increments of pressing.
 const INCREMENTS: u32 = 10;
@@ -36,14 +41,29 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let case = Case::read(Path::new(case))?;
     let pressed = PressedCase::new(&case, 1)?;
-    println!(
-        "percent,force_x_n,force_y_n,force_z_n,peak_mpa,highest_node_mpa,time_s,since_start_s"
-    );
+    let mut answers = Vec::new();
     for percent in percents {
         let (row, pose) = pressed.at(percent.parse()?)?;
         let answer = answer(pressed.unworn(), &pose)?;
-        let since_start_s = start.elapsed().as_secs_f64();
-        println!("{},{answer},{since_start_s:.4}", row.percent);
+        answers.push((row.percent, pose, answer, start.elapsed().as_secs_f64()));
+    }
+    println!(
+        "percent,force_x_n,force_y_n,force_z_n,peak_mpa,highest_node_mpa,time_s,since_start_s,\
+         plastic_strain,elastic_force_y_n,elastic_node_mpa"
+    );
+    let unyielding = unyielding(&case);
+    let unyielding = unyielding.as_ref().map(|case| PressedCase::new(case, 1));
+    let unyielding = unyielding.transpose()?;
+    for (percent, pose, found, since_start_s) in answers {
+        print!("{percent},{},{since_start_s:.4},", found.columns());
+        match &unyielding {
+            Some(elastic) => {
+                let elastic = answer(elastic.unworn(), &pose)?;
+                let (force_y_n, node_mpa) = (elastic.force_n.y, elastic.highest_node_mpa);
+                println!("{:.7},{force_y_n:.3},{node_mpa:.4}", found.plastic_strain);
+            }
+            None => println!(",,"),
+        }
     }
     for percent in percents {
         let path = PathBuf::from(folder).join(format!("{percent}.inp"));
@@ -52,8 +72,37 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Force on the insert, peak, highest pressure of a node, and seconds of pressing.
-fn answer(march: &March, pose: &Pose) -> Result<String, Box<dyn Error>> {
+/// The case with an insert that does not yield, if its own does.
+fn unyielding(case: &Case) -> Option<Case> {
+    if case.contact.plasticity == PlasticityChoice::None {
+        return None;
+    }
+    let mut elastic = case.clone();
+    elastic.contact.plasticity = PlasticityChoice::None;
+    Some(elastic)
+}
+
+/// What condyle finds at a pose.
+struct Answer {
+    /// Force on the insert, N.
+    force_n: Vec3,
+    peak_mpa: f64,
+    highest_node_mpa: f64,
+    /// Seconds of pressing.
+    time_s: f64,
+    /// The largest at a Gauss point.
+    plastic_strain: f64,
+}
+
+impl Answer {
+    fn columns(&self) -> String {
+        let (x, y, z) = (self.force_n.x, self.force_n.y, self.force_n.z);
+        let (peak, highest, time_s) = (self.peak_mpa, self.highest_node_mpa, self.time_s);
+        format!("{x:.3},{y:.3},{z:.3},{peak:.4},{highest:.4},{time_s:.4}")
+    }
+}
+
+fn answer(march: &March, pose: &Pose) -> Result<Answer, Box<dyn Error>> {
     let surface = march.insert().surface();
     let law = &march.test().contact;
     let mut contact = law.contact(march.bodies(&surface), ContactMemory::default());
@@ -68,14 +117,20 @@ fn answer(march: &March, pose: &Pose) -> Result<String, Box<dyn Error>> {
     }
     let motion = RelativeMotion::at_rest(*pose);
     let force_n = press(contact.as_mut(), &motion)?;
-    let seconds = start.elapsed().as_secs_f64();
+    let time_s = start.elapsed().as_secs_f64();
     let landing = contact.land(&motion);
     let pressures = landing.touched.iter().map(|node| node.pressure_mpa);
-    let (x, y, z) = (force_n.x, force_n.y, force_n.z);
-    let (peak, highest) = (landing.peak_pressure_mpa, pressures.fold(0.0, f64::max));
-    Ok(format!(
-        "{x:.3},{y:.3},{z:.3},{peak:.4},{highest:.4},{seconds:.4}"
-    ))
+    let left = contact.into_memory();
+    let under = law.under_surface(march.insert(), &left.state, &[]);
+    let plastic = under.and_then(|under| under.plastic);
+    let strains = plastic.map_or_else(Vec::new, |plastic| plastic.plastic_strain);
+    Ok(Answer {
+        force_n,
+        peak_mpa: landing.peak_pressure_mpa,
+        highest_node_mpa: pressures.fold(0.0, f64::max),
+        time_s,
+        plastic_strain: strains.into_iter().fold(0.0, f64::max),
+    })
 }
 
 /// Presses until what flows has flowed, and gives the force on the insert.

@@ -27,8 +27,15 @@ const CLEARANCE_MM: f64 = 1e-3;
 const WEDGE_MM: f64 = 0.5;
 /// Most of a step in an increment: of pressing an elastic insert, one that yields, and of sliding.
 const ELASTIC: f64 = 0.5;
-const YIELDING: f64 = 0.1;
-const SLIDING: f64 = 0.25;
+const YIELDING: f64 = 0.25;
+const SLIDING: f64 = 0.1;
+/// The last way of a slide, mm, and most of that step in an increment. CalculiX may look for the facet over a node once an
+/// increment, before the femur moves in it: what it finds is then as wrong as the femur's normal turns over an increment.
+const LAST_MM: f64 = 0.02;
+const ARRIVING: f64 = 0.5;
+
+/// Most increments of a step.
+const MOST_INCREMENTS: u32 = 1000;
 
 /// How far the pressed femur slides on, and the friction while it slides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,15 +100,49 @@ impl Pressed<'_> {
         };
         let down = Vec3::new(0.0, -lift_mm, 0.0);
         begin_step("PRESSED", inp)?;
-        end_step(press, &down, inp)?;
-        let Some(slide) = &self.slide else {
-            return Ok(());
-        };
-        inp.comment("\nSTEP SLID: and slides on.")?;
-        begin_step("SLID", inp)?;
+        self.end_step(press, &down, inp)?;
+        match &self.slide {
+            Some(slide) => self.slide(slide, &down, inp),
+            None => Ok(()),
+        }
+    }
+
+    /// Steps in which the femur, pressed by `down`, slides on.
+    fn slide<W: Write>(
+        &self,
+        slide: &Slide,
+        down: &Vec3,
+        inp: &mut InpWriter<W>,
+    ) -> io::Result<()> {
+        inp.comment("\nSTEP SLIDING: it slides on,")?;
+        begin_step("SLIDING", inp)?;
         inp.keyword(&format!("*CHANGE FRICTION, INTERACTION={}", names::BEARING))?;
         friction(slide.friction, inp)?;
-        end_step(SLIDING, &(down + slide.by_mm), inp)
+        let way_mm = slide.by_mm.norm();
+        let nearly = (way_mm - LAST_MM).max(0.0) / way_mm;
+        self.end_step(SLIDING, &(down + slide.by_mm * nearly), inp)?;
+        inp.comment("\nSTEP SLID: and arrives, in short increments.")?;
+        begin_step("SLID", inp)?;
+        self.end_step(ARRIVING, &(down + slide.by_mm), inp)
+    }
+
+    /// The rest of a step in which the femur goes to `to_mm` from where the file begins, in increments of `most` of it.
+    fn end_step<W: Write>(
+        &self,
+        most: f64,
+        to_mm: &Vec3,
+        inp: &mut InpWriter<W>,
+    ) -> io::Result<()> {
+        lead(most, to_mm, inp)?;
+        if self.hardening.is_some() {
+            inp.keyword(&format!(
+                "*EL PRINT, ELSET={}, FREQUENCY={}",
+                names::INSERT,
+                MOST_INCREMENTS
+            ))?;
+            inp.line("PEEQ")?;
+        }
+        inp.end_step()
     }
 
     /// How far above the pose nothing touches.
@@ -251,7 +292,7 @@ fn shifted(pose: &Pose, by_mm: Vec3) -> Pose {
 }
 
 fn begin_step<W: Write>(name: &str, inp: &mut InpWriter<W>) -> io::Result<()> {
-    inp.keyword(&format!("*STEP, NAME={name}, INC=1000"))
+    inp.keyword(&format!("*STEP, NAME={name}, INC={MOST_INCREMENTS}"))
 }
 
 /// A coefficient, and how stiffly CalculiX's nodes stick.
@@ -260,8 +301,8 @@ fn friction<W: Write>(coefficient: f64, inp: &mut InpWriter<W>) -> io::Result<()
     inp.reals(&[coefficient, STICK_MPA_PER_MM])
 }
 
-/// The rest of a step in which the femur goes to `to_mm` from where the file begins, in increments of `most` of it.
-fn end_step<W: Write>(most: f64, to_mm: &Vec3, inp: &mut InpWriter<W>) -> io::Result<()> {
+/// The femur goes to `to_mm` from where the file begins, in increments of `most` of the step; and what is to be said.
+fn lead<W: Write>(most: f64, to_mm: &Vec3, inp: &mut InpWriter<W>) -> io::Result<()> {
     const LEAST: f64 = 1e-6;
     inp.keyword("*STATIC")?;
     inp.reals(&[most, 1.0, LEAST, most])?;
@@ -281,6 +322,5 @@ fn end_step<W: Write>(most: f64, to_mm: &Vec3, inp: &mut InpWriter<W>) -> io::Re
     inp.keyword("*NODE FILE")?;
     inp.line("U")?;
     inp.keyword("*CONTACT FILE")?;
-    inp.line("CDISP, CSTRESS")?;
-    inp.end_step()
+    inp.line("CDISP, CSTRESS")
 }

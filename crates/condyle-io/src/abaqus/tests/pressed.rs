@@ -1,8 +1,14 @@
 //! The femur pressed on a deformable insert, read back.
 
-use condyle::Vec3;
+use condyle::{
+    Mat3, Vec3,
+    contact::Bodies,
+    geometry::{FemoralSurface, Meshing, TriangleMesh, flat_insert},
+    spatial::Pose,
+};
+use condyle_fem::Elastic;
 
-use super::super::{ExportError, PressedCase};
+use super::super::{ExportError, Pressed, PressedCase, Slide};
 use super::reader::Deck;
 use super::{COARSE, hexahedra, parsed};
 use crate::case::Case;
@@ -30,12 +36,21 @@ fn refusal(case: &Case) -> ExportError {
     }
 }
 
-/// Where the led nodes go in the only step, mm.
+/// Where the led nodes go in each step, mm.
+fn ways_mm(deck: &Deck) -> impl Iterator<Item = Vec3> {
+    let led = deck.named("BOUNDARY");
+    let led = led.filter(|led| led.rows.iter().all(|row| row[0] == "FEMUR-NODES"));
+    led.map(|led| {
+        let to: Vec<f64> = led.rows.iter().map(|row| row[3].parse().unwrap()).collect();
+        Vec3::from_row_slice(&to)
+    })
+}
+
+/// Where they go in the only step, mm.
 fn way_mm(deck: &Deck) -> Vec3 {
-    let led = deck.named("BOUNDARY").last().unwrap();
-    assert!(led.rows.iter().all(|row| row[0] == "FEMUR-NODES"));
-    let to: Vec<f64> = led.rows.iter().map(|row| row[3].parse().unwrap()).collect();
-    Vec3::from_row_slice(&to)
+    let ways: Vec<Vec3> = ways_mm(deck).collect();
+    assert_eq!(ways.len(), 1);
+    ways[0]
 }
 
 #[test]
@@ -113,6 +128,70 @@ fn the_backside_is_held_and_the_curve_of_yield_is_written() {
     let (_, deck) = pressed(&yielding);
     let curve = deck.named("PLASTIC").next().unwrap().numbers();
     assert_eq!(curve, [[14.0, 0.0], [20.0, 0.1]]);
+    assert_eq!(deck.named("EL PRINT").count(), 1);
+}
+
+#[test]
+fn a_femur_that_slides_on_arrives_where_it_is_to_with_friction_from_when_it_slides() {
+    let by_mm = Vec3::new(2.0, 0.0, -1.0);
+    let deck = slid(by_mm);
+    let steps: Vec<_> = deck
+        .named("STEP")
+        .map(|step| step.get("NAME").unwrap())
+        .collect();
+    assert_eq!(steps, ["PRESSED", "SLIDING", "SLID"]);
+    let ways: Vec<Vec3> = ways_mm(&deck).collect();
+    let [down, nearly, arrived] = ways[..] else {
+        panic!("{ways:?}");
+    };
+    assert!(down.y < -0.2 && down.x == 0.0 && down.z == 0.0, "{down}");
+    assert!((arrived - down - by_mm).norm() < 1e-12, "{arrived}");
+    let left = arrived - nearly;
+    assert!(left.cross(&by_mm).norm() < 1e-12 && (left.norm() - 0.02).abs() < 1e-12);
+    let friction: Vec<f64> = deck
+        .named("FRICTION")
+        .map(|law| law.numbers()[0][0])
+        .collect();
+    assert!(friction[0] < 1e-6, "{friction:?}");
+    assert_eq!(friction[1..], [0.07]);
+}
+
+/// A ball pressed on a block and slid on.
+fn slid(by_mm: Vec3) -> Deck {
+    let meshing = Meshing {
+        edge_mm: 2.0,
+        layers: 2,
+    };
+    let insert = flat_insert((8.0, 8.0), 4.0, meshing).unwrap();
+    let femur = FemoralSurface::sphere(24.0);
+    let surface = insert.surface();
+    let pressed = Pressed {
+        title: "Ball on a block",
+        note: "",
+        bodies: Bodies {
+            femur: &femur,
+            insert: &insert,
+            surface: &surface,
+        },
+        triangles: &TriangleMesh {
+            vertices: vec![
+                Vec3::new(-3.0, -23.8, -3.0),
+                Vec3::new(3.0, -23.8, -3.0),
+                Vec3::new(0.0, -23.8, 3.0),
+            ],
+            triangles: vec![[0, 1, 2]],
+        },
+        elastic: Elastic::new(463.0, 0.46).unwrap(),
+        hardening: None,
+        pose: Pose::new(Mat3::identity(), Vec3::new(0.0, 23.75, 0.0)),
+        slide: Some(Slide {
+            by_mm,
+            friction: 0.07,
+        }),
+    };
+    let mut text = Vec::new();
+    pressed.write(&mut text).unwrap();
+    Deck::read(&String::from_utf8(text).unwrap())
 }
 
 #[test]

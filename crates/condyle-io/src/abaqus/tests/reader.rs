@@ -37,6 +37,7 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("STATIC", &[]),
     ("CHANGE FRICTION", &["INTERACTION"]),
     ("NODE PRINT", &["NSET", "TOTALS"]),
+    ("EL PRINT", &["ELSET", "FREQUENCY"]),
     ("NODE FILE", &[]),
     ("CONTACT FILE", &[]),
     ("BOUNDARY", &["OP", "AMPLITUDE", "TYPE"]),
@@ -59,6 +60,7 @@ const IN_A_STEP: &[&str] = &[
     "STATIC",
     "CHANGE FRICTION",
     "NODE PRINT",
+    "EL PRINT",
     "NODE FILE",
     "CONTACT FILE",
     "BOUNDARY",
@@ -71,6 +73,9 @@ const IN_A_STEP: &[&str] = &[
     "CONTACT OUTPUT",
     "END STEP",
 ];
+
+/// Keywords that stand in a step or before it.
+const EITHER: &[&str] = &["CONTACT PAIR", "FRICTION"];
 
 /// A keyword with its data lines, cut at the commas.
 pub(super) struct Block {
@@ -159,7 +164,7 @@ impl Deck {
             if block.is("STEP") {
                 assert!(!in_step, "a step in a step");
                 in_step = true;
-            } else if !block.is("CONTACT PAIR") {
+            } else if !EITHER.contains(&block.name.as_str()) {
                 let belongs = IN_A_STEP.contains(&block.name.as_str());
                 assert_eq!(belongs, in_step, "*{}", block.name);
             }
