@@ -121,7 +121,7 @@ fn answer(march: &March, pose: &Pose) -> Result<Answer, Box<dyn Error>> {
     let landing = contact.land(&motion);
     let pressures = landing.touched.iter().map(|node| node.pressure_mpa);
     let left = contact.into_memory();
-    let under = law.under_surface(march.insert(), &left.state, &[]);
+    let under = law.under_surface(march.insert(), &left.state, 0, &[]);
     let plastic = under.and_then(|under| under.plastic);
     let strains = plastic.map_or_else(Vec::new, |plastic| plastic.plastic_strain);
     Ok(Answer {
