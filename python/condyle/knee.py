@@ -102,12 +102,16 @@ class Knee:
     def contact(self, rotation: ArrayLike, translation_mm: ArrayLike) -> Contact:
         """How the femur presses, standing still at a pose.
 
+        The insert is as it was before the first cycle: it yields, or comes to rest on its tray, under this load alone. The
+        tangent is that of the plastic strain and the backside as they are then.
+
         Args:
             rotation: R, shape (3, 3).
             translation_mm: t, mm, shape (3,).
 
         Raises:
             BadInput: an R that is no rotation.
+            NotSolved: a load that the insert does not bear.
         """
         import numpy as np
 

@@ -1,6 +1,6 @@
 //! What lies below a run: the bodies of a case, how they press, and one cycle.
 
-use condyle::contact::{ContactMemory, Landing};
+use condyle::contact::{ContactMemory, ContactModel, Landing, NotBorne, Settled};
 use condyle::evolve::{March, SolvedCycle};
 use condyle::spatial::{Pose, RelativeMotion};
 use condyle::{Mat3, Vec3};
@@ -12,6 +12,9 @@ use pyo3::types::PyDict;
 use crate::arrays::array;
 use crate::case::RawCase;
 use crate::errors;
+
+/// How often a contact is asked anew whose own state goes with the load: ten times what was seen.
+const MOST_TURNS: usize = 300;
 
 /// The bodies of a case with the femur settled on the insert, as the solver has them: a right knee.
 #[pyclass(frozen, module = "condyle._condyle")]
@@ -79,6 +82,7 @@ impl RawKnee {
         let memory = ContactMemory::default();
         let law = &self.march.test().contact;
         let mut contact = law.contact(self.march.bodies(&surface), memory);
+        come_to_rest(contact.as_mut(), &motion)?;
         let response = contact.respond(&motion);
         let (wrench, tangent) = (response.wrench, response.tangent().by_pose.matrix);
         let landing = contact.land(&motion);
@@ -104,6 +108,35 @@ impl RawKnee {
         solved.map_err(|error| errors::not_solved(&error))?;
         let cycle = march.last_cycle().expect("an update was made");
         in_arrays(py, &cycle)
+    }
+}
+
+/// Lets an insert flow, or come to rest on its tray, under what presses it at a motion.
+fn come_to_rest(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> PyResult<()> {
+    for _ in 0..MOST_TURNS {
+        contact.respond(motion);
+        let settled = contact.settle(motion);
+        if settled.map_err(|why| errors::not_solved(&said(why)))? == Settled::Yes {
+            return Ok(());
+        }
+    }
+    Err(errors::not_solved(&format!(
+        "load and insert did not settle together in {MOST_TURNS} turns at this pose; lift the femur"
+    )))
+}
+
+fn said(why: NotBorne) -> String {
+    match why {
+        NotBorne::Flattened(flat) => format!(
+            "the femur presses the insert flat at this pose: a plastic strain of {:.2} was reached; lift the femur, or see \
+             yield_stress_mpa and hardening",
+            flat.plastic_strain
+        ),
+        NotBorne::Tipped(tipped) => format!(
+            "the femur tips the insert off its tray at this pose: its backside finds no rest, and had moved by {:.2} mm; lift \
+             the femur, or take [contact] backside = \"bonded\"",
+            tipped.moved_mm
+        ),
     }
 }
 

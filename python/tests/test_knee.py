@@ -70,3 +70,17 @@ def test_what_is_no_pose_is_refused(knee: condyle.Knee) -> None:
         knee.contact(np.eye(3), [0, 0])
     with pytest.raises(condyle.BadInput, match="rows of x, y, z"):
         knee.gap([0.0, 0.0, 0.0])
+
+
+def test_an_insert_that_yields_or_rests_does_so_under_the_load() -> None:
+    def force_n(depth_mm: float, **contact: object) -> float:
+        made = {**SPHERE_ON_FLAT, "contact": {"friction": 0.0, "model": "deformable", **contact}}
+        insert = {"shape": "flat", "edge_mm": 1.5, "layers": 4, "thickness_mm": 10.0}
+        knee = condyle.Knee({**made, "insert": insert})
+        return float(-knee.contact(np.eye(3), [0.0, 24.0 - depth_mm, 0.0]).force_n[1])
+
+    elastic_n = force_n(0.4)
+    assert force_n(0.4, plasticity="j2") < 0.98 * elastic_n
+    assert force_n(0.4, backside="resting") < 0.99 * elastic_n
+    with pytest.raises(condyle.NotSolved, match="presses the insert flat"):
+        force_n(8.0, plasticity="j2", yield_stress_mpa=2.0, hardening=[[0.0, 2.0]])
