@@ -286,7 +286,7 @@ fn tangent_on_the_generic_insert_is_the_derivative_of_the_wrench() {
 /// A ball of 121 mm without friction on bonded layers: thickness and depth, mm, force, N, contact radius, mm, highest
 /// pressure, MPa.
 ///
-/// By Hankel's transform, validation/bonded-layer/transform.py, right to all digits but for the radius: that to one.
+/// By Hankel's transform, validation/ball-on-layer/transform.py, right to all digits but for the radius: that to one.
 const ON_BONDED_LAYERS: [[f64; 5]; 6] = [
     [9.0, 0.2, 1656.16, 6.06, 21.840],
     [9.0, 0.3, 3683.20, 7.68, 30.823],

@@ -236,7 +236,7 @@ fn verify_first_yield_below_the_surface_and_shakedown_on_the_second_press() {
 
 #[test]
 fn verify_a_ball_deep_in_yield_against_axisymmetric_finite_elements() {
-    // By verification/plastic-ball/axisymmetric.py, right to 1 %, for a yield stress of E / (1 - v^2) / 200.
+    // By validation/plastic-ball/axisymmetric.py, right to 1 %, for a yield stress of E / (1 - v^2) / 200.
     let exact_n = [(0.02, 8.46), (0.05, 28.8)];
     let ratio = 0.3;
     let yield_mpa = contact_modulus(ratio) / 200.0;
