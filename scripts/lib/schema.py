@@ -96,7 +96,7 @@ def beyond(condyle: str, case: str, path: str, kind: dict) -> bool:
     chosen = [f"--set={table}." + words[0].replace(" ", "")] if words else []
     if path.startswith(("machine.ap_motion", "machine.ie_motion")):
         chosen.append("--set=machine.preset=stanmore-displacement")
-    if any(word.startswith("--set=contact.plasticity") for word in chosen):
+    if any(word.startswith(("--set=contact.plasticity", "--set=contact.backside")) for word in chosen):
         chosen.append("--set=contact.model=deformable")
     value = int(kind["maximum"]) + 1 if kind["type"] == "integer" else kind["maximum"] * 1.01 + 1e-9
     code, said = checked(condyle, [case, *chosen, f"--set={path}={value}"])

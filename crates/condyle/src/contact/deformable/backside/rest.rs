@@ -29,7 +29,7 @@ pub(in super::super) struct Rest {
 /// Every point lifts without force or presses, and sticks or slips the way that friction points against:
 ///
 /// $$ q_n \ge 0, \quad R_n \ge 0, \quad q_n R_n = 0, \qquad |R_t| \le \mu R_n, \quad
-/// R_t = -\mu R_n \frac{q_t - q_t^0}{|q_t - q_t^0|} \; \text{where it slips}, \qquad R = S q - b. $$
+/// R_t = -\mu R_n \frac{q_t - q_t^0}{|q_t - q_t^0|} \quad \text{where it slips}, \qquad R = S q - b. $$
 ///
 /// Douglas and Rachford's splitting [eckstein-bertsekas1992]: what the conditions allow a point alone that is pulled by a
 /// spring, and what the whole does with the springs of all, in turns, led by Anderson's mixing.
