@@ -155,15 +155,16 @@ impl Case {
         let elastic = self.material.elastic();
         let friction = &self.contact.friction;
         let (coefficient, slip) = (friction.friction, friction.slip_tolerance_mm_per_s);
+        let backside = self.contact.backside.backside();
         let mut law = bodies.elastic(self, elastic, || {
-            Deformable::new(elastic, coefficient, slip, insert)
+            Deformable::held(elastic, coefficient, slip, backside, insert)
         })?;
         (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
         law.search = self.contact.finding.search.search();
         law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
         law.hardening = self.contact.plasticity.hardening();
         law.friction_model = self.contact.friction_model.model();
-        let law = law.with_backside(self.contact.backside.backside(), insert)?;
+        let law = law.with_backside(backside, insert)?;
         self.tell_compliance(&law, insert, keep)?;
         Ok(law)
     }

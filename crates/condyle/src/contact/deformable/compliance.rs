@@ -57,21 +57,19 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
         self.read().row_count()
     }
 
-    /// Adds what was asked so far to what is `known` of other tiles; none where that is about no more than so many pairs.
-    pub fn known_with(
-        &self,
-        mut known: KnownCompliance,
-        more_than_pairs: usize,
-    ) -> Option<KnownCompliance> {
+    /// Of how many pairs of tiles something was asked.
+    pub fn asked_pairs(&self) -> usize {
+        self.read().pairs().count()
+    }
+
+    /// Adds what was asked so far to what is `known` of other tiles.
+    pub fn known_with(&self, mut known: KnownCompliance) -> KnownCompliance {
         let near = self.read();
-        if known.pairs() + near.pairs().count() <= more_than_pairs {
-            return None;
-        }
         for [one, other] in near.pairs() {
             let tiles = [one, other].map(|tile| &self.source.tiles()[tile][..]);
             known.add(one, other, near.between(tiles));
         }
-        Some(known)
+        known
     }
 
     /// The tile of a node.

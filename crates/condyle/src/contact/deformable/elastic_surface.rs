@@ -190,9 +190,8 @@ impl ElasticSurface {
 
     /// Bytes of the solid, and of so many loads on each of some nodes and the compliance between them.
     pub fn bytes(&self, nodes: f64, loads_a_node: [f64; 2]) -> f64 {
-        let felt = FELT_PER_ROOT * (3.0 * self.solid.mesh().nodes.len() as f64).sqrt();
         let nodes = nodes.min(self.nodes.len() as f64);
-        let of_loads = loads_a_node.map(|each| each * nodes * (each * nodes + felt));
+        let of_loads = loads_a_node.map(|each| each * nodes * (each * nodes + self.felt()));
         self.solid.bytes() as f64 + size_of::<f64>() as f64 * (of_loads[0] + of_loads[1])
     }
 
@@ -202,8 +201,12 @@ impl ElasticSurface {
         let places: Vec<Vec3> = mesh.positions(&self.floor().nodes).collect();
         let (low, high) = bounds(&places);
         let points = [0, 2].map(|axis| (high[axis] - low[axis]) / spacing_mm + 1.0);
-        let felt = FELT_PER_ROOT * (3.0 * mesh.nodes.len() as f64).sqrt();
-        Tray::bytes(3.0 * points[0] * points[1], nodes, felt)
+        Tray::bytes(3.0 * points[0] * points[1], nodes, self.felt())
+    }
+
+    /// How many freedoms feel a load, about.
+    fn felt(&self) -> f64 {
+        FELT_PER_ROOT * (3.0 * self.solid.mesh().nodes.len() as f64).sqrt()
     }
 
     /// Bytes of what loads on some nodes move inside an insert that yields.

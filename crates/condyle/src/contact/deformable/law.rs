@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::{
-    backside::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD, BacksideMemory, RestingInsert},
+    backside::{BacksideMemory, RestingInsert},
     compliance::Compliance,
     contact::{DeformableContact, Rubbing},
     elastic_surface::ElasticSurface,
     friction::ElasticFriction,
-    friction_memory::{FRICTION_FIELD, FrictionMemory},
-    plastic::{PLASTIC_FIELD, PlasticInsert, Remembered},
+    friction_memory::FrictionMemory,
+    plastic::{PlasticInsert, Remembered},
     settings::{Backside, Deformable, FrictionModel, MOST_REMEMBERED_BYTES},
     under_surface::{above_tray, under_surface},
 };
@@ -117,9 +117,13 @@ impl ContactLaw for Deformable {
 
     fn known_compliance(&self, insert: &Insert, more_than_pairs: usize) -> Option<KnownCompliance> {
         let surface = self.remembered(insert, insert.unworn_nodes())?;
-        let at_first = surface.source.known_at_first();
-        let known = surface.source.known().clone();
-        surface.known_with(known, more_than_pairs.max(at_first))
+        let left_pairs = surface.source.known().pairs();
+        let more_than_pairs = more_than_pairs.max(surface.source.known_at_first());
+        if left_pairs + surface.asked_pairs() <= more_than_pairs {
+            return None;
+        }
+        let left = surface.source.known().clone();
+        Some(surface.known_with(left))
     }
 
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
@@ -235,14 +239,8 @@ fn used_nodes(insert: &Insert, state: &ContactState) -> Vec<Vec3> {
 
 /// The state with the nodes whose compliance is used, and all else that it had.
 fn state_of(nodes: &[Vec3], before: &ContactState) -> ContactState {
-    let stays = [
-        PLASTIC_FIELD,
-        FRICTION_FIELD,
-        BACKSIDE_FIELD,
-        BACKSIDE_CYCLE_FIELD,
-    ];
     let kept = before.fields.iter();
-    let kept = kept.filter(|field| stays.contains(&&*field.name));
+    let kept = kept.filter(|field| field.name != NODES_FIELD);
     let field = StateField {
         name: NODES_FIELD.to_owned(),
         values: nodes.iter().flatten().copied().collect(),

@@ -98,7 +98,7 @@ impl Clone for Deformable {
 }
 
 impl Deformable {
-    /// The law of an insert, whose stiffness is factored here.
+    /// The law of an insert that is bonded to its tray, whose stiffness is factored here.
     ///
     /// # Errors
     /// A material or a mesh that is no elastic solid: a part of it is not held by the backside, for instance.
@@ -106,6 +106,21 @@ impl Deformable {
         elastic: Elastic,
         friction: f64,
         slip_tolerance_mm_per_s: f64,
+        insert: &Insert,
+    ) -> Result<Self, SolidError> {
+        let backside = Backside::default();
+        Self::held(elastic, friction, slip_tolerance_mm_per_s, backside, insert)
+    }
+
+    /// The law of an insert whose backside is held so.
+    ///
+    /// # Errors
+    /// As [`Deformable::new`].
+    pub fn held(
+        elastic: Elastic,
+        friction: f64,
+        slip_tolerance_mm_per_s: f64,
+        backside: Backside,
         insert: &Insert,
     ) -> Result<Self, SolidError> {
         let law = Self {
@@ -116,7 +131,7 @@ impl Deformable {
             search: Search::default(),
             sample_reuse_mm: Foundation::SAMPLE_REUSE_MM,
             hardening: None,
-            backside: Backside::default(),
+            backside,
             remembered: Arc::default(),
         };
         law.surface(insert, insert.unworn_nodes())?;
