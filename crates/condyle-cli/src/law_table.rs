@@ -4,11 +4,20 @@ use condyle_io::results::LawWear;
 
 use crate::output::Lines;
 
-/// Adds the table; nothing where there is no law beside that of the run.
-pub fn add(laws: &[LawWear], lines: &mut Lines) {
-    if laws.len() < 2 {
-        return;
+/// Adds the table; nothing where there is no law beside that of the run. Then what cross-linked polyethylene wears over
+/// conventional one, if the insert is of it.
+pub fn add(laws: &[LawWear], wear_over_conventional: Option<f64>, lines: &mut Lines) {
+    if laws.len() >= 2 {
+        add_table(laws, lines);
     }
+    if let Some(times) = wear_over_conventional {
+        lines.line(format_args!(
+            "   cross-linked polyethylene: every law, fitted to conventional one, times {times}, whatever pressure and cross-shear"
+        ));
+    }
+}
+
+fn add_table(laws: &[LawWear], lines: &mut Lines) {
     lines.line("   wear by law, same cycles    mg/Mcycles        mg        mm   outside of fit");
     for law in laws {
         lines.line(row(law));
@@ -58,7 +67,11 @@ mod tests {
     #[test]
     fn columns_stand_under_their_heads() {
         let mut lines = Lines::default();
-        add(&[law("archard", true), law("kang", false)], &mut lines);
+        add(
+            &[law("archard", true), law("kang", false)],
+            None,
+            &mut lines,
+        );
         let text = lines.text();
         let rows: Vec<&str> = text.lines().collect();
         assert_eq!(rows.len(), 4);
@@ -75,7 +88,7 @@ mod tests {
     #[test]
     fn a_law_alone_needs_no_table() {
         let mut lines = Lines::default();
-        add(&[law("archard", true)], &mut lines);
+        add(&[law("archard", true)], None, &mut lines);
         assert_eq!(lines.text(), "");
     }
 }

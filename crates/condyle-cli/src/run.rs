@@ -110,7 +110,11 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     }
     let mut lines = Lines::default();
     add_doubts(summary, &mut lines);
-    law_table::add(&summary.wear_laws, &mut lines);
+    law_table::add(
+        &summary.wear_laws,
+        summary.wear_over_conventional,
+        &mut lines,
+    );
     activity_table::add(&summary.activities, &mut lines);
     for (what, value) in rows(summary) {
         lines.line(format_args!("{what:<28}{value}"));

@@ -12,6 +12,7 @@ mod compare_surface;
 mod compare_wear;
 mod contract;
 mod converge;
+mod cross_linked;
 mod determinism;
 mod folders;
 mod interrupt;

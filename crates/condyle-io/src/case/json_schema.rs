@@ -10,6 +10,7 @@ use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
 use super::contents::Case;
 use super::creep::Creep;
+use super::cross_linking::CrossLinking;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
@@ -47,7 +48,7 @@ pub fn json_schema(wear_laws: WearLaws) -> String {
                 .with_choices(&Insert::choices())
                 .with_keys(&InsertPlacement::keys()),
         )
-        .with_table("material", of::<Material>("Polyethylene of the insert."))
+        .with_table("material", material())
         .with_table("contact", contact())
         .with_table("machine", machine())
         .with_list(activity::TABLE, activity_of_list())
@@ -101,6 +102,12 @@ fn contact() -> TableSchema {
         .with_choices(&BacksideChoice::choices())
         .with_one_of_under(&laws, "tabulated", &pressure_table::WAYS)
         .with_one_of_under(&laws, "tabulated-strain", &pressure_table::WAYS_OF_STRAIN)
+}
+
+fn material() -> TableSchema {
+    TableSchema::new("Polyethylene of the insert.")
+        .with_keys(&Material::keys())
+        .with_choices(&CrossLinking::choices())
 }
 
 fn march() -> TableSchema {

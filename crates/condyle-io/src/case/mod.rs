@@ -14,6 +14,7 @@ mod channel;
 mod contact;
 mod contents;
 mod creep;
+mod cross_linking;
 mod culprit;
 #[cfg(feature = "file-system")]
 mod draft;
@@ -68,6 +69,7 @@ pub use contact::{
 };
 pub use contents::Case;
 pub use creep::{Creep, LogarithmicCreep};
+pub use cross_linking::{CrossLinking, HighlyCrossLinked, ModeratelyCrossLinked};
 pub use culprit::Unfit;
 #[cfg(feature = "file-system")]
 pub use draft::{Draft, DraftError, Drafted};

@@ -9,6 +9,7 @@ use super::heading::{Heading, Side};
 use super::insert::Insert;
 use super::machine::Machine;
 use super::march::March;
+use super::material::Material;
 use super::origin::Origin;
 use super::placement::{FemurPlacement, InsertPlacement};
 use super::wear::{Wear, WearLaws};
@@ -47,7 +48,7 @@ pub(super) fn read_case(
     let section = root.table("insert", log);
     let insert = Insert::read_checked(&section, side, log);
     let insert_placement = InsertPlacement::read_checked(&section, insert.as_ref(), log);
-    let material = read_table(root, "material", log);
+    let material = Material::read(&root.table("material", log), log);
     let contact = Contact::read(&root.table("contact", log), log);
     let has_activities = root.value(activity::TABLE).is_some();
     let machine = Machine::read(&root.table("machine", log), has_activities, log);

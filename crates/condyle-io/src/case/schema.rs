@@ -10,6 +10,7 @@ use super::backside::BacksideChoice;
 use super::channel::CaseChannel;
 use super::contact::{Contact, PressureLawChoice};
 use super::creep::Creep;
+use super::cross_linking::CrossLinking;
 use super::femur::Femur;
 use super::heading::Heading;
 use super::insert::Insert;
@@ -69,7 +70,7 @@ pub fn schema_markdown(wear_laws: WearLaws) -> String {
     page.chosen("`[femur]`", &of_femur, &femur);
     let of_insert = with(&insert.by, InsertPlacement::keys());
     page.chosen("`[insert]`", &of_insert, &insert);
-    page.section("`[material]`", &Material::keys());
+    page.chosen("`[material]`", &Material::keys(), &CrossLinking::choices());
     page.chosen(
         "`[contact]`",
         &Contact::keys_of_page(),

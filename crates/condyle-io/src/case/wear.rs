@@ -1,10 +1,9 @@
 //! The wear law: any of a list of kinds, each with the constants that it declares.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use condyle::parameter::{Known, Parameter};
-use condyle::wear::{NamedLaw, WEAR_LAWS, WearLaw, WearLawKind};
+use condyle::wear::{NamedLaw, WEAR_LAWS, WearLawKind};
 use thiserror::Error;
 
 use crate::keyed::{
@@ -121,8 +120,11 @@ impl Wear {
     }
 
     /// The law itself.
-    pub(super) fn law(&self) -> Arc<dyn WearLaw> {
-        self.kind.law(&self.constants)
+    pub(super) fn law(&self) -> NamedLaw {
+        NamedLaw {
+            word: self.kind.word,
+            law: self.kind.law(&self.constants),
+        }
     }
 
     /// Whether the law of that word, with the constants of the case if it is the case's, is remembered rather

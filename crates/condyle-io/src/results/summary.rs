@@ -40,6 +40,8 @@ pub struct SummaryInput<'a> {
     pub neutral_pose: NeutralPose,
     /// What every law of wear says of the run.
     pub wear_laws: Vec<LawWear>,
+    /// What the polyethylene wears over what conventional one would; none of conventional one.
+    pub wear_over_conventional: Option<f64>,
     /// What each of several activities did.
     pub activities: Vec<ActivitySummary>,
     /// By how much peak pressures are off the deformable insert that the pressure law was fitted to, %; none where
@@ -69,6 +71,10 @@ pub struct Summary {
     /// surface.
     #[serde(default)]
     pub wear_laws: Vec<LawWear>,
+    /// What cross-linked polyethylene is taken to wear over what conventional one would, by every law; not there where
+    /// the insert is of conventional one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wear_over_conventional: Option<f64>,
     /// What each of several activities did and wore; motions and ranges below are those of the first. Not there
     /// where the case has one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -179,6 +185,7 @@ impl Summary {
             max_depth_mm: last.max_depth_mm,
             error: input.error,
             wear_laws: input.wear_laws,
+            wear_over_conventional: input.wear_over_conventional,
             activities: input.activities,
             creep: CreepSummary::of(state),
             peak_pressure_mpa: pressure.value,

@@ -68,7 +68,8 @@ impl<'a> Run<'a> {
             let _ = on_event(RunEvent::Warning(warning.to_string()));
         }
         if let Some(named) = means.wear_law {
-            built.test.wear = named.law.clone();
+            let cross_linking = &case.material.cross_linking;
+            built.test.wear = cross_linking.under(named.clone()).law;
         }
         let march = match begun {
             Begun::Before(checkpoint, spent_s) => {
@@ -201,6 +202,7 @@ impl<'a> Run<'a> {
             error: None,
             neutral_pose: NeutralPose::of(&self.march, self.case.heading.side),
             wear_laws: self.wear_laws(),
+            wear_over_conventional: self.case.material.cross_linking.wear_over_conventional(),
             activities: ActivitySummary::of(&self.march),
             pressure_law_peak_error_percent: self.case.contact.law.peak_error_percent(),
         })

@@ -45,6 +45,12 @@ pub(super) fn of_run(results: &Results) -> Option<String> {
     Some(own.law)
 }
 
+/// What cross-linked polyethylene is taken to wear over conventional one, if the insert is of it.
+pub(super) fn wear_over_conventional(results: &Results) -> Option<String> {
+    let times = results.summary.as_ref()?.wear_over_conventional()?;
+    Some(significant(times, 3))
+}
+
 fn percent(of_volume: Option<f64>) -> String {
     of_volume.map_or_else(|| String::from("not known"), |percent| fixed(percent, 0))
 }

@@ -89,6 +89,12 @@ const GROUPS: [(&str, &[Known]); 5] = [
                 "mm",
                 "Depth at the deepest node, along the surface's normal.",
             ),
+            known(
+                "wear_over_conventional",
+                "Cross-linked over conventional",
+                "",
+                "What every law of wear, fitted to conventional polyethylene, was multiplied by.",
+            ),
         ],
     ),
     (

@@ -58,6 +58,12 @@ impl Summary {
         read.unwrap_or_default()
     }
 
+    /// What cross-linked polyethylene is taken to wear over conventional one; none where the insert is of conventional
+    /// one.
+    pub fn wear_over_conventional(&self) -> Option<f64> {
+        self.values.get("wear_over_conventional")?.as_f64()
+    }
+
     /// What each of several activities did; nothing where there is one, or that is not said.
     pub fn activities(&self) -> Vec<ActivitySummary> {
         let listed = self.values.get("activities");

@@ -42,6 +42,8 @@ pub struct NodeHistory<'a> {
     own: &'a [u32],
     /// Highest mean pressure on the node's share in the cycle, MPa.
     pub peak_pressure_mpa: f64,
+    /// Sum of the mean pressure on the node's share over the instants, MPa.
+    pub summed_pressure_mpa: f64,
     /// Distance slid while any of the node's share presses, sum of |ds|, mm.
     pub sliding_distance_mm: f64,
     /// Area that presses times distance slid, sum of A' |ds|, mm3. Over the area of the share it is how
@@ -57,6 +59,7 @@ pub struct NodeHistory<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     peak_pressure_mpa: f64,
+    summed_pressure_mpa: f64,
     sliding_distance_mm: f64,
     pressed_area_slip_mm3: f64,
     pressure_slip_mpa_mm: f64,
@@ -69,6 +72,7 @@ impl Sums {
         let moment = &record.moment;
         let distance_mm = moment.distance_mm();
         self.peak_pressure_mpa = self.peak_pressure_mpa.max(moment.pressure_mpa);
+        self.summed_pressure_mpa += moment.pressure_mpa;
         self.sliding_distance_mm += distance_mm;
         self.pressed_area_slip_mm3 += f64::from(record.pressed_mm2) * distance_mm;
         self.pressure_slip_mpa_mm += moment.pressure_mpa * distance_mm;
@@ -176,6 +180,7 @@ impl CycleHistory {
     pub fn node(&self, node: usize) -> NodeHistory<'_> {
         let Sums {
             peak_pressure_mpa,
+            summed_pressure_mpa,
             sliding_distance_mm,
             pressed_area_slip_mm3,
             pressure_slip_mpa_mm,
@@ -185,6 +190,7 @@ impl CycleHistory {
             records: &self.records,
             own: &self.sorted[self.first[node]..self.first[node + 1]],
             peak_pressure_mpa,
+            summed_pressure_mpa,
             sliding_distance_mm,
             pressed_area_slip_mm3,
             pressure_slip_mpa_mm,
@@ -220,6 +226,7 @@ mod tests {
         assert_eq!(moments(&history, 2), [moment(1.0), moment(3.0)]);
         assert!(moments(&history, 1).is_empty() && !forgotten.is_empty());
         assert_eq!(history.node(2).peak_pressure_mpa, 3.0);
+        assert_eq!(history.node(2).summed_pressure_mpa, 4.0);
         assert_eq!(history.node(2).sliding_distance_mm, 2.0);
         assert_eq!(history.node(2).pressed_area_slip_mm3, 0.5);
 

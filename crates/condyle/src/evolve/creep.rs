@@ -3,11 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::creep_contact::CreepContact;
-use crate::creep::LeePienkowski;
+use crate::{creep::LeePienkowski, number::Mixing};
 
-/// An iteration that changes no node's step by more than this part of the largest one is the last, ...
+/// Where no side of the femur has to sink further, at any instant, by more than this part of the largest step of a
+/// node, the search ends, ...
 const SETTLED: f64 = 1e-3;
-/// ... or the one of this number.
+/// ... or with the turn of this number.
 const MOST_ITERATIONS: usize = 100;
 
 /// What creep remembers of the load.
@@ -15,8 +16,8 @@ const MOST_ITERATIONS: usize = 100;
 pub struct CreepState {
     /// When the intervals done have ended, min.
     ends_min: Vec<f64>,
-    /// Mean pressure of a cycle at every surface node, at the end of each interval, MPa.
-    pressures_mpa: Vec<Vec<f64>>,
+    /// Mean pressure of a cycle at the end of each interval, at every surface node that was pressed, MPa.
+    pressures_mpa: Vec<Vec<(u32, f64)>>,
     /// How deep creep would be at every surface node if all of it recovered, at its deepest so far, by the
     /// pressures that were found, mm.
     deepest_mm: Vec<f64>,
@@ -89,8 +90,7 @@ impl CreepState {
             self.depth_mm[node.number] += down_mm;
         }
         self.ends_min.push(step.end_min);
-        self.pressures_mpa
-            .push(step.contact.mean_pressure_mpa.clone());
+        self.pressures_mpa.push(pressed_nodes(step.contact));
         down_mm
     }
 
@@ -100,7 +100,7 @@ impl CreepState {
         else {
             return;
         };
-        last.clone_from(&step.contact.mean_pressure_mpa);
+        *last = pressed_nodes(step.contact);
         let strains = self.strains(step.law, *end_min, step.thickness_mm.len());
         let nodes = step.thickness_mm.iter().zip(strains);
         for (deepest_mm, (thickness_mm, strain)) in self.deepest_mm.iter_mut().zip(nodes) {
@@ -116,15 +116,16 @@ impl CreepState {
         let mut strains = vec![0.0; count];
         for ((start_min, end_min), pressures_mpa) in intervals {
             let per_mpa = since(*start_min) - since(*end_min);
-            let nodes = strains.iter_mut().zip(pressures_mpa);
-            nodes.for_each(|(strain, pressure)| *strain += per_mpa * pressure);
+            for (node, pressure) in pressures_mpa {
+                strains[*node as usize] += per_mpa * pressure;
+            }
         }
         strains
     }
 
     fn node(&self, step: &CreepStep<'_>, node: usize, strain: f64, per_mpa: f64) -> Node {
         let thickness_mm = step.thickness_mm[node];
-        let stiffness_mpa_per_mm = step.contact.stiffness_mpa_per_mm[node];
+        let stiffness_mpa_per_mm = step.contact.stiffness_mpa_per_mm(node);
         Node {
             number: node,
             by_history_mm: thickness_mm * strain,
@@ -183,29 +184,54 @@ impl Node {
     }
 }
 
+/// Every node that is pressed, with its mean pressure, MPa.
+fn pressed_nodes(contact: &CreepContact) -> Vec<(u32, f64)> {
+    let all = contact.mean_pressure_mpa.iter().enumerate();
+    let pressed = all.filter(|(_, pressure)| **pressure > 0.0);
+    pressed
+        .map(|(node, pressure)| (node as u32, *pressure))
+        .collect()
+}
+
 /// How far every node goes down, mm, found in turn with how far the femur sinks.
 fn implicit(step: &CreepStep<'_>, nodes: &[Node]) -> Vec<f64> {
     let mut down_mm = vec![0.0; step.thickness_mm.len()];
     for node in nodes {
         down_mm[node.number] = node.unrelieved_mm(step.law);
     }
+    let mut lost_n = step.contact.none_lost_n();
+    for node in nodes {
+        step.add_lost_n(node, down_mm[node.number], &mut lost_n);
+    }
+    let mut sunk_mm = step.contact.sunk_mm(&lost_n);
+    let mut mixing = Mixing::default();
     for _ in 0..MOST_ITERATIONS {
-        let lower_mm: Vec<f64> = std::iter::zip(&down_mm, step.worn_mm)
-            .map(|(crept, worn)| crept + worn)
-            .collect();
-        let more_mpa = step.contact.relief_mpa(&lower_mm);
-        let (mut change_mm, mut most_mm) = (0.0_f64, 0.0_f64);
+        lost_n.fill(0.0);
+        let sunk = step.contact.sunk(&sunk_mm);
+        let mut most_mm = 0.0_f64;
         for node in nodes {
-            let next_mm = node.down_mm(step.law, more_mpa[node.number]);
-            let last_mm = std::mem::replace(&mut down_mm[node.number], next_mm);
-            change_mm = change_mm.max((next_mm - last_mm).abs());
-            most_mm = most_mm.max(next_mm.abs());
+            let rise_mpa = step.contact.rise_mpa(node.number, &sunk);
+            let node_mm = node.down_mm(step.law, rise_mpa);
+            most_mm = most_mm.max(node_mm.abs());
+            down_mm[node.number] = node_mm;
+            step.add_lost_n(node, node_mm, &mut lost_n);
         }
-        if change_mm <= SETTLED * most_mm {
+        let image_mm = step.contact.sunk_mm(&lost_n);
+        let left = std::iter::zip(&sunk_mm, &image_mm).map(|(sunk, image)| (image - sunk).abs());
+        if left.fold(0.0, f64::max) <= SETTLED * most_mm {
             break;
         }
+        sunk_mm = mixing.next(&sunk_mm, &image_mm, 1.0);
     }
     down_mm
+}
+
+impl CreepStep<'_> {
+    /// Adds what each side of the femur loses as a node creeps by so much and wears.
+    fn add_lost_n(&self, node: &Node, crept_mm: f64, lost_n: &mut [f64]) {
+        let down_mm = crept_mm + self.worn_mm[node.number];
+        self.contact.add_lost_n(node.number, down_mm, lost_n);
+    }
 }
 
 #[cfg(test)]

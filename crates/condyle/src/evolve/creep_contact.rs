@@ -7,108 +7,199 @@ use crate::{geometry::Insert, machine::Cycle};
 const INSTANTS: usize = 16;
 
 /// The contact of a mean cycle, as creep sees it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct CreepContact {
     /// Pressure at every surface node, the mean over time, MPa.
     pub mean_pressure_mpa: Vec<f64>,
-    /// How that falls as the node alone goes down, MPa/mm.
-    pub stiffness_mpa_per_mm: Vec<f64>,
+    /// Those of node i are `first[i]..first[i + 1]`.
     pressing: Vec<Pressing>,
-    /// Force that a side of the femur gains as it sinks at an instant, N/mm.
-    sides_n_per_mm: Vec<f64>,
+    first: Vec<usize>,
+    nodes: Vec<NodeStiffness>,
+    sides: Vec<Side>,
 }
 
 /// A node that presses at an instant.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Pressing {
-    node: u32,
     /// Which instant and side of the femur.
     side: u32,
-    /// Force that goes as the node goes down, N/mm.
-    n_per_mm: f64,
-    /// Mean pressure that comes as the femur sinks there, MPa/mm.
+    /// Area of its share that presses, mm2.
+    pressed_mm2: f32,
+}
+
+/// How the pressure at a node falls as the node alone goes down.
+#[derive(Clone, Copy, Debug)]
+struct NodeStiffness {
+    /// Of what presses, MPa/mm.
     mpa_per_mm: f64,
+    /// The same by area of the share, MPa/mm3: times the area that presses it is how the mean over the share falls.
+    mpa_per_mm3: f64,
+}
+
+/// A side of the femur at an instant.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    /// Part of the time that the instant stands for.
+    part_of_time: f64,
+    /// Force that it gains as it sinks, N/mm.
+    n_per_mm: f64,
 }
 
 impl CreepContact {
     /// That of one solved cycle of every activity.
     pub fn of(test: &WearTest, insert: &Insert, cycles: &[Cycle]) -> Self {
-        let count = insert.surface_nodes().len();
-        let mut contact = Self {
-            mean_pressure_mpa: vec![0.0; count],
-            stiffness_mpa_per_mm: vec![0.0; count],
-            ..Self::default()
-        };
-        let alone = |node| test.contact.stiffness_mpa_per_mm(insert, node);
-        let alone_mpa_per_mm: Vec<f64> = (0..count).map(alone).collect();
-        for (cycle, part_of_time) in cycles.iter().zip(parts_of_time(test)) {
-            contact.add_pressures(cycle, part_of_time);
-            contact.add_pressing(cycle, part_of_time, insert, &alone_mpa_per_mm);
-        }
-        contact
-    }
-
-    fn add_pressures(&mut self, cycle: &Cycle, part_of_time: f64) {
-        let part = part_of_time / cycle.instants.len() as f64;
-        for instant in &cycle.instants {
-            for record in cycle.history.instant(instant) {
-                self.mean_pressure_mpa[record.node as usize] += part * record.moment.pressure_mpa;
+        let nodes = 0..insert.surface_nodes().len();
+        let parts = parts_of_time(test);
+        let stiffness = |node| {
+            let mpa_per_mm = test.contact.stiffness_mpa_per_mm(insert, node);
+            NodeStiffness {
+                mpa_per_mm,
+                mpa_per_mm3: mpa_per_mm / insert.unworn_share_mm2(node),
             }
+        };
+        let mut by_time = ByTime {
+            nodes: nodes.clone().map(stiffness).collect(),
+            ..ByTime::default()
+        };
+        for (cycle, part) in cycles.iter().zip(&parts) {
+            by_time.add(cycle, *part, insert);
+        }
+        let mean = |node| mean_pressure_mpa(cycles, &parts, node);
+        by_time.by_node(nodes.map(mean).collect())
+    }
+
+    /// How the mean pressure at a node falls as the node alone goes down, MPa/mm.
+    pub fn stiffness_mpa_per_mm(&self, node: usize) -> f64 {
+        let own = self.pressing(node).iter();
+        let areas = own.map(|pressing| {
+            self.sides[pressing.side as usize].part_of_time * f64::from(pressing.pressed_mm2)
+        });
+        self.nodes[node].mpa_per_mm3 * areas.sum::<f64>()
+    }
+
+    /// What a node's mean pressure rises by as each side sinks by so much at each instant, MPa.
+    pub fn rise_mpa(&self, node: usize, sunk: &Sunk) -> f64 {
+        let own = self.pressing(node).iter();
+        let volumes = own.map(|pressing| {
+            sunk.weighed_mm[pressing.side as usize] * f64::from(pressing.pressed_mm2)
+        });
+        self.nodes[node].mpa_per_mm3 * volumes.sum::<f64>()
+    }
+
+    /// Adds what each side loses at each instant as a node goes down, N.
+    pub fn add_lost_n(&self, node: usize, down_mm: f64, lost_n: &mut [f64]) {
+        let lost_mpa = self.nodes[node].mpa_per_mm * down_mm;
+        for pressing in self.pressing(node) {
+            lost_n[pressing.side as usize] += lost_mpa * f64::from(pressing.pressed_mm2);
         }
     }
 
-    fn add_pressing(
-        &mut self,
-        cycle: &Cycle,
-        part_of_time: f64,
-        insert: &Insert,
-        alone_mpa_per_mm: &[f64],
-    ) {
+    /// No force lost yet.
+    pub fn none_lost_n(&self) -> Vec<f64> {
+        vec![0.0; self.sides.len()]
+    }
+
+    /// How far each side sinks at each instant so that it bears as much as before it lost that, mm.
+    pub fn sunk_mm(&self, lost_n: &[f64]) -> Vec<f64> {
+        let sides = lost_n.iter().zip(&self.sides);
+        sides
+            .map(|(lost_n, side)| lost_n / side.n_per_mm.max(f64::MIN_POSITIVE))
+            .collect()
+    }
+
+    /// Sides that have sunk by so much, mm.
+    pub fn sunk(&self, sunk_mm: &[f64]) -> Sunk {
+        let sides = sunk_mm.iter().zip(&self.sides);
+        Sunk {
+            weighed_mm: sides
+                .map(|(sunk_mm, side)| side.part_of_time * sunk_mm)
+                .collect(),
+        }
+    }
+
+    fn pressing(&self, node: usize) -> &[Pressing] {
+        &self.pressing[self.first[node]..self.first[node + 1]]
+    }
+}
+
+/// How far each side of the femur has sunk at each instant.
+pub(super) struct Sunk {
+    /// Times the part of the time that the instant stands for, mm.
+    weighed_mm: Vec<f64>,
+}
+
+/// What presses, as instants give it.
+#[derive(Default)]
+struct ByTime {
+    nodes: Vec<NodeStiffness>,
+    /// With the number of its node.
+    pressing: Vec<(u32, Pressing)>,
+    sides: Vec<Side>,
+}
+
+impl ByTime {
+    /// Adds some instants of a cycle, each with the sides of its own.
+    fn add(&mut self, cycle: &Cycle, part_of_time: f64, insert: &Insert) {
         let regions = insert.regions();
         let stride = cycle.instants.len().div_ceil(INSTANTS);
         let instants = cycle.instants.iter().step_by(stride);
-        let part = part_of_time / instants.len() as f64;
+        let unloaded = Side {
+            part_of_time: part_of_time / instants.len() as f64,
+            n_per_mm: 0.0,
+        };
         for instant in instants {
-            let first = self.sides_n_per_mm.len();
-            self.sides_n_per_mm.resize(first + regions.count(), 0.0);
+            let first = self.sides.len();
+            self.sides.resize(first + regions.count(), unloaded);
             for record in cycle.history.instant(instant) {
-                let node = record.node as usize;
-                let n_per_mm = alone_mpa_per_mm[node] * f64::from(record.pressed_mm2);
                 let pressing = Pressing {
-                    node: record.node,
-                    side: (first + regions.of_node(node)) as u32,
-                    n_per_mm,
-                    mpa_per_mm: part * n_per_mm / insert.unworn_share_mm2(node),
+                    side: (first + regions.of_node(record.node as usize)) as u32,
+                    pressed_mm2: record.pressed_mm2,
                 };
-                self.add(pressing);
+                self.push(record.node, pressing);
             }
         }
     }
 
-    fn add(&mut self, pressing: Pressing) {
-        self.stiffness_mpa_per_mm[pressing.node as usize] += pressing.mpa_per_mm;
-        self.sides_n_per_mm[pressing.side as usize] += pressing.n_per_mm;
-        self.pressing.push(pressing);
+    fn push(&mut self, node: u32, pressing: Pressing) {
+        let mpa_per_mm = self.nodes[node as usize].mpa_per_mm;
+        let n_per_mm = mpa_per_mm * f64::from(pressing.pressed_mm2);
+        self.sides[pressing.side as usize].n_per_mm += n_per_mm;
+        self.pressing.push((node, pressing));
     }
 
-    /// By how much the mean pressure at every node rises since the femur sinks where nodes go down by `down_mm`,
-    /// so that each side bears as much as before at every instant, MPa.
-    pub fn relief_mpa(&self, down_mm: &[f64]) -> Vec<f64> {
-        let mut lost_n = vec![0.0; self.sides_n_per_mm.len()];
-        for pressing in &self.pressing {
-            lost_n[pressing.side as usize] += pressing.n_per_mm * down_mm[pressing.node as usize];
+    /// The same sorted by node, of nodes with such mean pressures.
+    fn by_node(self, mean_pressure_mpa: Vec<f64>) -> CreepContact {
+        let count = mean_pressure_mpa.len();
+        // Counted two places on: filling then moves every node's end on to where the next begins.
+        let mut first = vec![0; count + 2];
+        for (node, _) in &self.pressing {
+            first[*node as usize + 2] += 1;
         }
-        let sides = lost_n.iter().zip(&self.sides_n_per_mm);
-        let sunk_mm: Vec<f64> = sides
-            .map(|(lost_n, n_per_mm)| lost_n / n_per_mm.max(f64::MIN_POSITIVE))
-            .collect();
-        let mut more_mpa = vec![0.0; down_mm.len()];
-        for pressing in &self.pressing {
-            more_mpa[pressing.node as usize] +=
-                pressing.mpa_per_mm * sunk_mm[pressing.side as usize];
+        for i in 0..=count {
+            first[i + 1] += first[i];
         }
-        more_mpa
+        let mut sorted = vec![Pressing::default(); self.pressing.len()];
+        for (node, pressing) in &self.pressing {
+            let place = &mut first[*node as usize + 1];
+            sorted[*place] = *pressing;
+            *place += 1;
+        }
+        CreepContact {
+            mean_pressure_mpa,
+            pressing: sorted,
+            first,
+            nodes: self.nodes,
+            sides: self.sides,
+        }
     }
+}
+
+/// Pressure at a node, the mean over the time of all activities, MPa.
+fn mean_pressure_mpa(cycles: &[Cycle], parts_of_time: &[f64], node: usize) -> f64 {
+    let each = cycles.iter().zip(parts_of_time).map(|(cycle, part)| {
+        part * cycle.history.node(node).summed_pressure_mpa / cycle.instants.len() as f64
+    });
+    each.sum()
 }
 
 /// The part of the time that each activity of a test takes: its share of the cycles over its frequency.
@@ -122,20 +213,26 @@ fn parts_of_time(test: &WearTest) -> Vec<f64> {
 impl CreepContact {
     /// A punch that presses on equal nodes, half of them on either side, all the time.
     pub fn uniform(pressure_mpa: f64, stiffness_mpa_per_mm: f64, nodes: usize) -> Self {
-        let mut contact = Self {
-            mean_pressure_mpa: vec![pressure_mpa; nodes],
-            stiffness_mpa_per_mm: vec![0.0; nodes],
-            pressing: Vec::new(),
-            sides_n_per_mm: vec![0.0; 2],
+        let side = Side {
+            part_of_time: 1.0,
+            n_per_mm: 0.0,
+        };
+        let node = NodeStiffness {
+            mpa_per_mm: stiffness_mpa_per_mm,
+            mpa_per_mm3: stiffness_mpa_per_mm,
+        };
+        let mut by_time = ByTime {
+            nodes: vec![node; nodes],
+            sides: vec![side; 2],
+            ..ByTime::default()
         };
         for node in 0..nodes {
-            contact.add(Pressing {
-                node: node as u32,
+            let pressing = Pressing {
                 side: u32::from(2 * node >= nodes),
-                n_per_mm: stiffness_mpa_per_mm,
-                mpa_per_mm: stiffness_mpa_per_mm,
-            });
+                pressed_mm2: 1.0,
+            };
+            by_time.push(node as u32, pressing);
         }
-        contact
+        by_time.by_node(vec![pressure_mpa; nodes])
     }
 }

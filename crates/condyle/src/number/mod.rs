@@ -1,4 +1,4 @@
-//! One number, or several at a time.
+//! One number, or several at a time, and where a map of them comes back to itself (`mixing`).
 //!
 //! The formulas of the hot loop are written once, for any [`Number`]. With [`F64x4`] they work on
 //! four nodes at a time, which the compiler turns into vector instructions on any machine; every
@@ -6,8 +6,10 @@
 //! depend on how wide the machine's vectors are.
 
 mod lanes;
+mod mixing;
 mod real;
 pub(crate) mod vector;
 
 pub use lanes::{F32x8, F64x4, LANES, LANES_F32};
+pub(crate) use mixing::Mixing;
 pub use real::Number;

@@ -5,12 +5,14 @@
 
 #[cfg(test)]
 mod closed_forms;
+mod cross_linked;
 mod law;
 mod mean_cycle;
 #[cfg(test)]
 mod paths;
 
 pub use archard::Archard;
+pub use cross_linked::CrossLinked;
 pub use law::{NamedLaw, NodeWear, WearLaw, WearLawKind};
 pub use mean_cycle::{MeanCycle, SharedCycle};
 

@@ -87,6 +87,7 @@ impl Case {
         activities: Vec<Activity>,
         (keep, bodies): (&dyn Keep, &SharedBodies),
     ) -> Result<WearTest, BuildError> {
+        let as_linked = |law| self.material.cross_linking.under(law);
         Ok(WearTest {
             contact: self.contact_law_sharing(&insert, keep, bodies)?,
             femur: Arc::clone(&femur.surface),
@@ -94,8 +95,8 @@ impl Case {
             start_mm: femur.start_mm,
             insert,
             activities,
-            wear: self.wear.law(),
-            laws_beside: self.wear.beside(),
+            wear: as_linked(self.wear.law()).law,
+            laws_beside: self.wear.beside().into_iter().map(as_linked).collect(),
             creep: self.creep.law(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),

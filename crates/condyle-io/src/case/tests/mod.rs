@@ -4,6 +4,7 @@ mod activities;
 mod errors;
 mod files;
 mod lie;
+mod material;
 mod memory;
 mod messages;
 mod round_trip;

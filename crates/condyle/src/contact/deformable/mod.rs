@@ -8,7 +8,7 @@
 //! come near (`near_matrix`), and may be known from another run. Where it gives way along itself too, friction makes it stick and slip (`friction`, with
 //! the loads of `stick_slip` and what is remembered of them in `friction_memory`). Where an increment ends it says how much of every share presses (`covered`), and what the highest
 //! pressure is (`peak`). Below the surface the insert may yield (`plastic`), and has stress there (`under_surface`); its backside is bonded, or rests
-//! (`backside`). What loads and insert have to agree on is found in `turns`, led by `mixing`.
+//! (`backside`). What loads and insert have to agree on is found in `turns`, led by mixing.
 
 mod along_normal;
 mod backside;
@@ -24,7 +24,6 @@ mod elastic_surface;
 mod friction;
 mod friction_memory;
 mod law;
-mod mixing;
 mod near_matrix;
 mod peak;
 mod plastic;

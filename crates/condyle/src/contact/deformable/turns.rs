@@ -1,6 +1,6 @@
 //! The permanent set that loads and flow agree on, the one found under the other in turns.
 
-use super::mixing::Mixing;
+use crate::number::Mixing;
 
 /// The search for the set that stays as it is when loads are found with it, and the flow under these.
 ///

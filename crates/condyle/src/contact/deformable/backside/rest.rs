@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::tray::Tray;
-use crate::contact::{deformable::mixing::Mixing, model::Tipped};
+use crate::{contact::model::Tipped, number::Mixing};
 
 /// The backside rests once what it does under what pushes it and what it may do agree within this, mm: a hundredth of
 /// what loads and backside have to agree within.

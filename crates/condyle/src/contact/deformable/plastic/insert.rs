@@ -5,14 +5,12 @@ use std::{collections::BTreeMap, sync::Arc};
 use condyle_fem::{ElasticPlastic, ElasticSolid, Hardening, PlasticPoint, Strain};
 
 use super::{
-    super::{
-        compliance::Compliance, elastic_surface::ElasticSurface, mixing::Mixing, turns::Turns,
-    },
+    super::{compliance::Compliance, elastic_surface::ElasticSurface, turns::Turns},
     CycleOfFlow, POINTS, Points, Remembered,
     cycle::farthest_mm,
     influence::{ByTile, Influence, product},
 };
-use crate::{Vec3, contact::model::Flattened, geometry::FacesAround};
+use crate::{Vec3, contact::model::Flattened, geometry::FacesAround, number::Mixing};
 
 /// Gauss points are looked at in elements whose mean stress uses up this part of the yield stress: within an element
 /// stress varies by a tenth or so, and by more at the edge of contact.

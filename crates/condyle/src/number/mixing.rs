@@ -17,7 +17,7 @@ const BENT: f64 = 3.0;
 /// With what is left, $f = g(x) - x$, the next point is $x + \beta f - \sum_j \gamma_j (\Delta x_j + \beta \Delta f_j)$, of
 /// the $\gamma$ that make $|f - \sum_j \gamma_j \Delta f_j|$ least [walker-ni2011].
 #[derive(Default)]
-pub(super) struct Mixing {
+pub(crate) struct Mixing {
     last: Option<Seen>,
     changes: VecDeque<Seen>,
     least: Option<f64>,
