@@ -13,6 +13,8 @@ ROUND_MM = math.pi * 10.0
 PIN_MPA = 1.1
 LOAD_N = 126.0
 PIN_DIAMETERS_MM = [3.0, 6.0, 9.0, 12.0, 18.0, 24.0, 30.0]
+# Sides of rectangles of one length, the longer over the shorter; none of a line.
+RECTANGLES = [1, 2, 4, 9, None]
 PRESSURES_MPA = [0.05 * 1.15**step for step in range(48)]
 BALL_MM = 28.0
 BALL_WORK_NM = 0.106
@@ -25,6 +27,15 @@ def circle(pressure_mpa, parts=360):
     step = ROUND_MM / parts
     angle = [2.0 * math.pi * part / parts for part in range(parts)]
     return [[pressure_mpa, step * math.cos(a), step * math.sin(a)] for a in angle]
+
+
+def rectangle(pressure_mpa, ratio, parts=100):
+    """Round a rectangle; to and fro on a line where there is no ratio."""
+    half = ROUND_MM / 2.0
+    short = half / (1.0 + ratio) if ratio else 0.0
+    long = half - short
+    sides = [(long, 0.0), (0.0, short), (-long, 0.0), (0.0, -short)]
+    return [[pressure_mpa, x / parts, z / parts] for x, z in sides for _ in range(parts)]
 
 
 def wandering(mean_mpa, seed, parts=40000):
@@ -42,6 +53,7 @@ def wandering(mean_mpa, seed, parts=40000):
 def paths():
     all_paths = {f"at {pressure}": circle(pressure) for pressure in PRESSURES_MPA}
     all_paths |= {f"pin {diameter}": circle(LOAD_N / area(diameter)) for diameter in PIN_DIAMETERS_MM}
+    all_paths |= {f"rectangle {ratio}": rectangle(PIN_MPA, ratio) for ratio in RECTANGLES}
     return all_paths | {"pins": circle(PIN_MPA), "random": wandering(PIN_MPA, 1)}
 
 

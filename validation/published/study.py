@@ -12,7 +12,9 @@ from pathlib import Path
 
 import knees
 import picture
-from closed_forms import LOAD_N, PIN_DIAMETERS_MM, Laws, area
+from closed_forms import Laws
+from findings import findings
+from tables import head, line, number
 
 HERE = Path(__file__).parent
 # Tests with a level of their own, whose source also says how far specimens scatter.
@@ -50,21 +52,9 @@ def is_inside(row, value, deviations=1.0):
     return abs(value / row["value"] - 1.0) <= deviations * row["scatter"]
 
 
-def number(value):
-    return f"{value:.2e}" if value < 1e-3 else f"{value:.3g}"
-
-
 def shown(row, value):
     inside = is_inside(row, value)
     return number(value) + {None: "", True: " **in**", False: " out"}[inside]
-
-
-def line(cells):
-    return f"| {' | '.join(cells)} |\n"
-
-
-def head(cells):
-    return line(cells) + line(["---"] * len(cells))
 
 
 def by_default(rows, said, words):
@@ -81,8 +71,14 @@ def by_default(rows, said, words):
     return text
 
 
+def is_inside_both(row, value, source):
+    """Whether it is within two standard deviations of both, the source that it was calibrated on and what was measured."""
+    scatter = math.hypot(source["scatter"] * value, row["scatter"] * row["value"])
+    return abs(value - row["value"]) <= 2.0 * scatter
+
+
 def calibrated(rows, laws, rates, words):
-    """For each law, knee and source: how many of the other sources are predicted within their scatter."""
+    """For each law, knee and source: which of the other sources are predicted within their scatter."""
     counts = []
     for knee in rates:
         for source in SOURCES:
@@ -90,25 +86,49 @@ def calibrated(rows, laws, rates, words):
                 times = rows[source]["value"] / predict(laws, rates, knee, law)[source]
                 said = predict(laws, rates, knee, law, times)
                 others = [test for test in SOURCES if test != source]
-                inside = [sum(is_inside(rows[test], said[test], deviations) for test in others) for deviations in (1, 2)]
-                counts.append({
-                    "knee": knee, "source": source, "law": law, "times": times, "inside": inside, "others": len(others),
-                    "said": said,
-                })
+                inside = {
+                    test: [
+                        is_inside(rows[test], said[test]),
+                        is_inside(rows[test], said[test], 2),
+                        is_inside_both(rows[test], said[test], rows[source]),
+                    ]
+                    for test in others
+                }
+                counts.append({"knee": knee, "source": source, "law": law, "times": times, "inside": inside, "said": said})
     return counts
+
+
+def total(counts, tests=SOURCES):
+    """How many predictions of these tests are inside, by each of the three rules, and how many there are."""
+    inside = [each for count in counts for test, each in count["inside"].items() if test in tests]
+    return [sum(rule) for rule in zip(*inside)], len(inside)
 
 
 def counted(counts, words):
     text = head(["knee", "calibrated on", *(f"`{word}`" for word in words)])
     for knee in dict.fromkeys(count["knee"] for count in counts):
         for source in SOURCES:
-            cells = {c["law"]: c for c in counts if (c["knee"], c["source"]) == (knee, source)}
-            each = [f"{cells[w]['inside'][0]} / {cells[w]['inside'][1]} of {cells[w]['others']}" for w in words]
+            each = []
+            for word in words:
+                own = [c for c in counts if (c["knee"], c["source"], c["law"]) == (knee, source, word)]
+                (one, two, both), of = total(own)
+                each.append(f"{one} / {two} / {both} of {of}")
             text += line([knee, source, *each])
-    most = sum(2 * count["inside"][0] > count["others"] for count in counts)
-    inside = sum(count["inside"][0] for count in counts)
-    of = sum(count["others"] for count in counts)
-    text += f"\nIn all {inside} of {of} predictions are inside; most of the others in {most} of {len(counts)} calibrations.\n"
+    return text + "\n" + totals(counts, words)
+
+
+def totals(counts, words):
+    """The counts over all knees and sources, by law: of everything, and of knees calibrated on knees."""
+    text = head(["predicted", "rule", *(f"`{word}`" for word in words), "all"])
+    in_knees = [test for test in SOURCES if test != "pins"]
+    on_knees = [count for count in counts if count["source"] in in_knees]
+    for what, own, tests in [("all sources", counts, SOURCES), ("knees calibrated on a knee", on_knees, in_knees)]:
+        for rule, name in enumerate(["one deviation", "two", "two of both"]):
+            cells = []
+            for law in [*words, None]:
+                inside, of = total([c for c in own if law in (c["law"], None)], tests)
+                cells.append(f"{inside[rule]} of {of}")
+            text += line([what, name, *cells])
     return text
 
 
@@ -123,69 +143,15 @@ def calibrated_values(rows, counts, words, source):
     return text
 
 
-def is_linear(values):
-    """Whether wear factors rise with the area, by half or more from end to end, along a line (r2 of 0.95)."""
-    areas = [area(diameter) for diameter in PIN_DIAMETERS_MM]
-    mean = [sum(all_of) / len(all_of) for all_of in (areas, values)]
-    xx = sum((x - mean[0]) ** 2 for x in areas)
-    yy = sum((y - mean[1]) ** 2 for y in values)
-    xy = sum((x - mean[0]) * (y - mean[1]) for x, y in zip(areas, values))
-    return values[-1] > 1.5 * values[0] and xy * xy > 0.95 * xx * yy
-
-
-def yes(truth):
-    return "yes" if truth else "no"
-
-
-def findings(laws, runs, rates, words):
-    """What is known of wear, and what each law says to it."""
-    rows, numbers = [], {}
-    pins = {word: laws.growing_pins(word) for word in words}
-    rise = {word: max(pins[word]) / min(pins[word]) for word in words}
-    rows.append((
-        f"Pins under {LOAD_N:.0f} N: the factor rises linearly with the area from 3 to 30 mm [saikko2017]",
-        "rises by half or more, along a line with r2 above 0.95; in brackets the largest over the least",
-        [f"{yes(is_linear(pins[word]))} ({rise[word]:.3g})" for word in words],
-    ))
-    dishes = [runs.beside("stanmore-displacement", [
-        f"insert.coronal_radius_mm={across}", f"insert.sagittal_radius_mm={along}"]) for across, along in knees.DISHES_MM]
-    falls = {word: [dish[word] for dish in dishes] for word in words}
-    rows.append((
-        "Less conforming inserts wear less under the area and cross-shear laws",
-        "falls from each dish to the next flatter one; in brackets the flattest over the most conforming",
-        [f"{yes(all(a > b for a, b in zip(falls[w], falls[w][1:])))} ({falls[w][-1] / falls[w][0]:.2f})" for w in words],
-    ))
-    usual = runs.beside("stanmore-displacement", [])
-    def largest(all_changes):
-        said = [runs.beside("stanmore-displacement", changes) for changes in all_changes]
-        return {word: max(abs(one[word] / usual[word] - 1.0) for one in said) for word in words}
-    flexion, placement = largest(knees.FLEXION), largest(knees.PLACEMENT)
-    rows.append((
-        "Volume is very sensitive to flexion and hardly to placement [lin2009]",
-        "10 % of flexion changes it by more than 2 degrees of slope or turn, or 1 of tilt; in brackets by how many percent",
-        [f"{yes(flexion[w] > placement[w])} ({100 * flexion[w]:.1f}, {100 * placement[w]:.1f})" for w in words],
-    ))
-    numbers |= {"pins": pins, "dishes": falls, "flexion": flexion, "placement": placement}
-    for knee, own in rates.items():
-        ratio = {word: own["unstable"][word] / own["stable"][word] for word in words}
-        rows.append((
-            f"The {knee} knee wears more without its ligaments [pmc2014]",
-            "measured 1.83 times as much",
-            [f"{yes(ratio[w] > 1.0)} ({ratio[w]:.2f})" for w in words],
-        ))
-    text = head(["known", "the rule", *(f"`{word}`" for word in words)])
-    return text + "".join(line([known, rule, *each]) for known, rule, each in rows), numbers
-
-
 def main():
     program, condyle, folder, out = sys.argv[1:]
     laws, rows, runs = Laws(program), measured(), knees.Runs(condyle, folder)
     words = laws.words
-    known = ["generic"] + (["dm"] if Path("../shared/data/dm-knee").exists() else [])
+    known = ["generic", *(knee for knee in ("dm", "cams") if Path(f"../shared/data/{knee}-knee").exists())]
     rates = knees.rates(runs, words, known)
     said = {knee: {law: predict(laws, rates, knee, law) for law in words} for knee in rates}
     counts = calibrated(rows, laws, rates, words)
-    found, numbers = findings(laws, runs, rates, words)
+    found, told = findings(laws, runs, rates, words)
     text = by_default(rows, said, words)
     text += "\n### Calibrated on one source\n\n" + (HERE / "calibrated.md").read_text() + "\n" + counted(counts, words)
     text += "\n" + calibrated_values(rows, counts, words, "haider") + "\n" + calibrated_values(rows, counts, words, "pins")
@@ -193,7 +159,7 @@ def main():
     out = Path(out)
     (out / "table.md").write_text(text)
     (out / "ratios.svg").write_text(picture.svg(rows, said, words))
-    results = {"said": said, "rates_mg_per_million_cycles": rates, "calibrated": counts, "findings": numbers}
+    results = {"said": said, "rates_mg_per_million_cycles": rates, "calibrated": counts, "findings": told}
     (out / "results.json").write_text(json.dumps(results, indent=1, default=float) + "\n")
     assert all(math.isfinite(value) for knee in said.values() for law in knee.values() for value in law.values())
 
