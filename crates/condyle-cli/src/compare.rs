@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use condyle_io::results::COMPARED;
 use condyle_lab::measured::{
     CompareError, Comparison, Errors, GravimetricComparison, Interval, KinematicsComparison,
     NodeDepths, Rate, SurfaceComparison, SurfaceErrors, compare as study,
@@ -48,7 +49,7 @@ pub fn compare(arguments: &Compare) -> ExitCode {
 
 /// `compare` in the results folder.
 fn default_folder(arguments: &Compare) -> PathBuf {
-    arguments.results.join("compare")
+    arguments.results.join(COMPARED.folder)
 }
 
 /// Prints why no comparison could be made, and gives the exit code.

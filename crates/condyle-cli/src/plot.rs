@@ -6,6 +6,7 @@ use std::{
     process::ExitCode,
 };
 
+use condyle_io::results::PLOTTED;
 use condyle_report::{Picture, Results, pictures};
 
 use crate::{
@@ -33,7 +34,7 @@ pub fn plot(arguments: &Plot) -> ExitCode {
         tell(format_args!("warning: not drawn: {why}"));
     }
     note_unfinished(&arguments.results);
-    let default = || arguments.results.join("pictures");
+    let default = || arguments.results.join(PLOTTED.folder);
     let folder = arguments.out.clone().unwrap_or_else(default);
     let mut lines = Lines::default();
     for (path, bytes) in files(arguments, &pictures(&results)) {

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use condyle_io::results::{KINEMATICS_PICTURE, MAP_PICTURES, SLIP_PATHS_PICTURE, WEAR_PICTURE};
+
 use crate::error::ReportError;
 use crate::figure::{Map, Panel, alone, sheet};
 use crate::file::write_text;
@@ -20,31 +22,25 @@ pub struct Picture {
     pub svg: String,
 }
 
-/// All pictures of a report that a folder has the numbers for: maps, slip paths, wear over cycles, motion and load.
+/// All pictures of a report that a folder has the numbers for: maps, in the order of [`MAPS`], slip paths, wear over cycles,
+/// motion and load.
 pub fn pictures(results: &Results) -> Vec<Picture> {
     let picture = |(name, svg): (&'static str, Option<String>)| Some(Picture { name, svg: svg? });
     let others = [
-        ("slip_paths", slip_map(results, PX_PER_MM, map_with)),
-        ("wear", sheet_of_wear(&wear_panels(results))),
-        ("kinematics", sheet_of_motion(&kinematics_panels(results))),
+        (SLIP_PATHS_PICTURE, slip_map(results, PX_PER_MM, map_with)),
+        (WEAR_PICTURE, sheet_of_wear(&wear_panels(results))),
+        (
+            KINEMATICS_PICTURE,
+            sheet_of_motion(&kinematics_panels(results)),
+        ),
     ];
-    let maps = MAPS.iter().zip(MAP_NAMES).map(|(map, name)| {
+    let maps = MAPS.iter().zip(MAP_PICTURES).map(|(map, name)| {
         let surface = results.surface.as_ref();
         let map = surface.and_then(|surface| map.drawn(surface, results.side, PX_PER_MM));
         (name, map.map(|map| map_with(&map, &map.desc(), "")))
     });
     maps.chain(others).filter_map(picture).collect()
 }
-
-/// Names of the maps' files, in the order of [`MAPS`].
-const MAP_NAMES: [&str; 6] = [
-    "wear_map",
-    "peak_pressure_map",
-    "sliding_distance_map",
-    "cross_shear_map",
-    "creep_map",
-    "permanent_set_map",
-];
 
 fn map_with(map: &Map<'_>, desc: &str, over: &str) -> String {
     alone(map.title, desc, map.size(), &(map.body() + over))

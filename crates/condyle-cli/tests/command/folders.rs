@@ -239,6 +239,7 @@ fn a_run_is_written_over_where_that_is_asked_for() {
     let bench = Bench::with_case(SMALL);
     bench.run_into("out");
     assert_eq!(bench.say(&["report", "out", "--pictures"]).code, Some(0));
+    assert_eq!(bench.say(&["plot", "out"]).code, Some(0));
     bench.write("out/notes.txt", "mine");
     // What was measured was held against the run that was.
     fs::create_dir(bench.path("out/compare")).unwrap();

@@ -214,6 +214,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle::spatial",
             "condyle::wear",
             "condyle_fem",
+            "condyle::number",
         ],
     ),
     ("condyle_report::error", &["condyle_io"]),
@@ -302,6 +303,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "condyle_report::pictures",
         &[
+            "condyle_io::results::added",
             "condyle_report::error",
             "condyle_report::figure",
             "condyle_report::page",

@@ -1,6 +1,7 @@
 //! The results folder: what a run writes, one file a table, all readable without condyle.
 
 mod activities;
+mod added;
 mod checkpoint;
 #[cfg(feature = "file-system")]
 mod checksums;
@@ -36,6 +37,10 @@ pub use condyle::machine::{
 };
 
 pub use activities::{ActivitySummary, kinematics_file};
+pub use added::{
+    AddedFiles, COMPARED, COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR,
+    KINEMATICS_PICTURE, MAP_PICTURES, PLOTTED, SLIP_PATHS_PICTURE, WEAR_PICTURE,
+};
 pub use checkpoint::{Checkpoint, CheckpointError};
 #[cfg(feature = "file-system")]
 pub use checksums::{DamagedFile, check_file};

@@ -216,16 +216,19 @@ impl Summary {
             added_inertia: explicit.map(|counters| counters.added_inertia),
             hexahedra: input.hexahedra,
             articulating_nodes: input.articulating_nodes,
-            worst_quality: updates
-                .iter()
-                .map(|update| update.worst_quality)
-                .fold(f64::INFINITY, f64::min),
+            worst_quality: worst_quality(updates),
             warnings: input.warnings,
             wall_s: input.wall_s,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             inputs_blake3: input.inputs_blake3,
         })
     }
+}
+
+/// The worst quality of an element that any update left.
+fn worst_quality(updates: &[UpdateRecord]) -> f64 {
+    let each = updates.iter().map(|update| update.worst_quality);
+    each.fold(f64::INFINITY, f64::min)
 }
 
 /// The largest value of any cycle solved.

@@ -8,24 +8,17 @@ use std::{
 
 use super::{
     activities::{kinematics_file, listed_in},
+    added::{AddedFiles, COMPARED, PLOTTED},
     cycle_files::{BODIES, KeptCycle},
     folder::{ResultsError, ResultsFolder, SIGNS_OF_A_RUN, TIME_SPENT},
     replace::beside,
 };
 
-/// What `condyle report` adds to a run on request.
+/// What `condyle report` adds to a run on request, beside the run's own files.
 const PICTURES: [&str; 3] = ["wear_map.svg", "wear.svg", "kinematics.svg"];
 
-/// What `condyle compare` adds: held beside another run it would be of the wrong one.
-const COMPARED: [&str; 7] = [
-    "compare/compare.json",
-    "compare/compare_kinematics.csv",
-    "compare/compare_kinematics.svg",
-    "compare/compare_surface.csv",
-    "compare/compare_surface.svg",
-    "compare/compare_wear.csv",
-    "compare/compare_wear.svg",
-];
+/// What is added in folders of its own.
+const ADDED: [AddedFiles; 2] = [COMPARED, PLOTTED];
 
 impl ResultsFolder {
     /// Whether a new run, which reads the files `read`, can be written over what `path` holds;
@@ -72,7 +65,7 @@ impl ResultsFolder {
             }
         }
         let folders = KeptCycle::BOTH.into_iter().map(KeptCycle::name);
-        for folder in folders.chain(["compare"]) {
+        for folder in folders.chain(ADDED.map(|added| added.folder)) {
             // Left where somebody has put files of their own into it.
             let _ = fs::remove_dir(self.path().join(folder));
         }
@@ -85,7 +78,6 @@ impl ResultsFolder {
         let others = SIGNS_OF_A_RUN
             .into_iter()
             .chain(PICTURES)
-            .chain(COMPARED)
             .chain([TIME_SPENT]);
         let named = others
             .filter(|name| *name != "checkpoint")
@@ -99,6 +91,7 @@ impl ResultsFolder {
             .chain(named)
             .chain(inserts)
             .chain(frames)
+            .chain(ADDED.iter().flat_map(AddedFiles::paths))
             .chain(["checkpoint".to_owned()]);
         let files = names.map(|name| self.path().join(name));
         files.flat_map(|file| [beside(&file), file]).collect()

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use condyle_io::results::{COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR};
 use condyle_report::SurfaceFields;
 use condyle_report::measured::{
     ComparedCurve, ComparedWear, compared_kinematics_svg, compared_surface_svg, compared_wear_svg,
@@ -31,28 +32,29 @@ impl Comparison {
         };
         fs::create_dir_all(folder).map_err(failed(folder))?;
         let mut written = Vec::new();
-        for (name, text) in self.files() {
-            let path = folder.join(name);
+        for (name, ending, text) in self.files() {
+            let path = folder.join(format!("{name}.{ending}"));
             fs::write(&path, text).map_err(failed(&path))?;
             written.push(path);
         }
         Ok(written)
     }
 
-    fn files(&self) -> Vec<(&'static str, String)> {
-        let mut files = vec![("compare.json", self.json())];
+    /// Name, ending and text of each file.
+    fn files(&self) -> Vec<(&'static str, &'static str, String)> {
+        let mut files = vec![(COMPARED_NUMBERS, "json", self.json())];
         if let Some(kinematics) = &self.kinematics {
-            files.push(("compare_kinematics.svg", kinematics.svg()));
-            files.push(("compare_kinematics.csv", kinematics.csv()));
+            files.push((COMPARED_KINEMATICS, "svg", kinematics.svg()));
+            files.push((COMPARED_KINEMATICS, "csv", kinematics.csv()));
         }
         if let Some(gravimetric) = &self.gravimetric {
-            files.push(("compare_wear.svg", gravimetric.svg()));
-            files.push(("compare_wear.csv", gravimetric.csv()));
+            files.push((COMPARED_WEAR, "svg", gravimetric.svg()));
+            files.push((COMPARED_WEAR, "csv", gravimetric.csv()));
         }
         if let Some(surface) = &self.surface {
-            files.push(("compare_surface.csv", surface.csv()));
+            files.push((COMPARED_SURFACE, "csv", surface.csv()));
             let map = compared_surface_svg(&surface.fields, self.side);
-            files.extend(map.map(|map| ("compare_surface.svg", map)));
+            files.extend(map.map(|map| (COMPARED_SURFACE, "svg", map)));
         }
         files
     }

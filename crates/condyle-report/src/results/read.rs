@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use condyle_io::{
     mesh::read_vtu_points,
-    results::{ActivitySummary, check_file},
+    results::{ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, check_file},
 };
 
 use super::{
@@ -65,8 +65,8 @@ impl Results {
         let mut of = |name: &str| part(table(&folder.join(name)), on_damage);
         let (wear, kinematics) = (of("wear.csv")?, of("kinematics.csv")?);
         let slip_paths = of("slip_paths.csv")?;
-        let measured_kinematics = of("compare/compare_kinematics.csv")?;
-        let measured_wear = of("compare/compare_wear.csv")?;
+        let measured_kinematics = of(&compared(COMPARED_KINEMATICS))?;
+        let measured_wear = of(&compared(COMPARED_WEAR))?;
         Ok(Self {
             activities: activities(folder, summary.as_ref(), on_damage)?,
             summary,
@@ -167,6 +167,11 @@ fn update_of(path: &Path) -> Option<u32> {
         .strip_suffix(".vtu")?
         .parse()
         .ok()
+}
+
+/// A table of what was measured, by its path in the folder of a run.
+fn compared(name: &str) -> String {
+    format!("{}/{name}.csv", COMPARED.folder)
 }
 
 fn case(path: PathBuf) -> Result<Option<String>, ReportError> {

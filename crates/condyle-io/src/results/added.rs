@@ -1,0 +1,85 @@
+//! What other commands add to the folder of a run: a run that is written over takes it away, or it would stand for the wrong one.
+
+/// Files that a command puts into a folder of its own among the results.
+#[derive(Clone, Copy, Debug)]
+pub struct AddedFiles {
+    /// The folder, in that of the run.
+    pub folder: &'static str,
+    /// Files without their endings.
+    pub names: &'static [&'static str],
+    /// Endings that each may have.
+    pub endings: &'static [&'static str],
+}
+
+/// Names of the maps that `condyle plot` draws, without endings.
+pub const MAP_PICTURES: [&str; 6] = [
+    "wear_map",
+    "peak_pressure_map",
+    "sliding_distance_map",
+    "cross_shear_map",
+    "creep_map",
+    "permanent_set_map",
+];
+/// Name of its picture of slip paths.
+pub const SLIP_PATHS_PICTURE: &str = "slip_paths";
+/// Name of its curves over cycles.
+pub const WEAR_PICTURE: &str = "wear";
+/// Name of its curves over the gait cycle.
+pub const KINEMATICS_PICTURE: &str = "kinematics";
+
+/// What `condyle plot` writes.
+pub const PLOTTED: AddedFiles = AddedFiles {
+    folder: "pictures",
+    names: &{
+        let [wear, pressure, sliding, cross_shear, creep, set] = MAP_PICTURES;
+        [
+            wear,
+            pressure,
+            sliding,
+            cross_shear,
+            creep,
+            set,
+            SLIP_PATHS_PICTURE,
+            WEAR_PICTURE,
+            KINEMATICS_PICTURE,
+        ]
+    },
+    endings: &["svg", "png"],
+};
+
+/// Motion held against what was measured.
+pub const COMPARED_KINEMATICS: &str = "compare_kinematics";
+/// The same of the surface.
+pub const COMPARED_SURFACE: &str = "compare_surface";
+/// The same of the mass.
+pub const COMPARED_WEAR: &str = "compare_wear";
+/// All numbers of a comparison.
+pub const COMPARED_NUMBERS: &str = "compare";
+
+/// What `condyle compare` writes.
+pub const COMPARED: AddedFiles = AddedFiles {
+    folder: "compare",
+    names: &[
+        COMPARED_NUMBERS,
+        COMPARED_KINEMATICS,
+        COMPARED_SURFACE,
+        COMPARED_WEAR,
+    ],
+    endings: &["json", "csv", "svg"],
+};
+
+impl AddedFiles {
+    /// All files that may be there, by their paths in the folder of the run.
+    pub fn paths(&self) -> impl Iterator<Item = String> + use<> {
+        let Self {
+            folder,
+            names,
+            endings,
+        } = *self;
+        let of = move |name: &'static &str| {
+            let endings = endings.iter();
+            endings.map(move |ending| format!("{folder}/{name}.{ending}"))
+        };
+        names.iter().flat_map(of)
+    }
+}
