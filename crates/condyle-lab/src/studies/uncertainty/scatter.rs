@@ -140,6 +140,13 @@ const SCATTERS: &[Scatter] = &[
         otherwise: None,
         source: "saikko2005: 5.4 % from pin to pin of one material on one machine",
     },
+    Scatter {
+        name: "cross-linked over conventional",
+        keys: &["material.wear_over_conventional"],
+        by: Part(0.16),
+        otherwise: None,
+        source: "haider2012: 0.14 to 0.27 in knees of two designs, taken as two deviations to either side",
+    },
 ];
 
 /// All scatters, whether a case has keys for them or not.
@@ -226,6 +233,20 @@ mod tests {
         assert_eq!(set.len(), 2, "{set:?}");
         assert!(set[0].contains("37.18"), "{set:?}");
         assert_eq!(springs.deviation(), "5 %");
+    }
+
+    #[test]
+    fn the_factor_of_cross_linking_scatters_where_the_insert_is_cross_linked() {
+        let factor = scatters().find(|scatter| scatter.name == "cross-linked over conventional");
+        let off = |text: &str| {
+            let case = Case::parse(text, "case", Path::new("")).unwrap();
+            factor.unwrap().off_by(&case, -1.0)
+        };
+        assert!(off("").is_empty());
+        let [set] = &off("[material]\ncross_linking = \"high\"\n")[..] else {
+            panic!("one key");
+        };
+        assert!(set.to_string().contains("0.168"), "{set}");
     }
 
     #[test]
