@@ -15,13 +15,13 @@ const fn limits_of(parameter: &Parameter) -> Limits {
 settings! {
     /// Moderately cross-linked polyethylene.
     ModeratelyCrossLinked {
-        /// What it wears over what conventional polyethylene would wear by the same law; by default the bound of [abdelgaied2013], whose pins wore less.
+        /// What it wears over what conventional polyethylene would wear by the same law; by default the bound of Abdelgaied 2013, whose pins wore less.
         wear_over_conventional: f64 = MODERATE.default, in limits_of(&MODERATE);
     }
 
     /// Highly cross-linked polyethylene.
     HighlyCrossLinked {
-        /// What it wears over what conventional polyethylene would wear by the same law; by default the middle of 0.14 to 0.27, measured on knees [haider2012].
+        /// What it wears over what conventional polyethylene would wear by the same law; by default the middle of 0.14 to 0.27, measured on knees by Haider 2012.
         wear_over_conventional: f64 = HIGH.default, in limits_of(&HIGH);
     }
 }
