@@ -22,8 +22,8 @@ pub struct Picture {
     pub svg: String,
 }
 
-/// All pictures of a report that a folder has the numbers for: maps, in the order of [`MAPS`], slip paths, wear over cycles,
-/// motion and load.
+/// All pictures of a report that a folder has the numbers for: maps, slip paths, wear over cycles, motion
+/// and load.
 pub fn pictures(results: &Results) -> Vec<Picture> {
     let picture = |(name, svg): (&'static str, Option<String>)| Some(Picture { name, svg: svg? });
     let others = [
@@ -34,6 +34,7 @@ pub fn pictures(results: &Results) -> Vec<Picture> {
             sheet_of_motion(&kinematics_panels(results)),
         ),
     ];
+    // Both are in one order.
     let maps = MAPS.iter().zip(MAP_PICTURES).map(|(map, name)| {
         let surface = results.surface.as_ref();
         let map = surface.and_then(|surface| map.drawn(surface, results.side, PX_PER_MM));
