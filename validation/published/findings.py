@@ -80,7 +80,7 @@ def of_ligaments(rates, words):
 
 
 def of_alignment(runs, rates, words):
-    """With each knee that is not at the rim as it is, beside what the same law says of the same motion."""
+    """With the knees whose contact stays off the rim where the insert lies straight; each law on the histories of Archard's."""
     for name, changes, rule, holds in knees.ALIGNMENTS:
         ratios = {word: [] for word in words}
         for knee in [knee for knee in ("generic", "dm") if knee in rates]:

@@ -76,7 +76,8 @@ impl CreepState {
         self.deepest_mm.resize(count, 0.0);
         self.foreseen_mm.resize(count, 0.0);
         self.depth_mm.resize(count, 0.0);
-        self.put_right(step);
+        let pressed = pressed_nodes(step.contact);
+        self.put_right(step, &pressed);
         let strains = self.strains(step.law, step.end_min, count);
         let minutes = step.end_min - self.ends_min.last().copied().unwrap_or(0.0);
         let per_mpa = step.law.compliance_per_mpa(minutes);
@@ -90,17 +91,17 @@ impl CreepState {
             self.depth_mm[node.number] += down_mm;
         }
         self.ends_min.push(step.end_min);
-        self.pressures_mpa.push(pressed_nodes(step.contact));
+        self.pressures_mpa.push(pressed);
         down_mm
     }
 
     /// Puts the pressures found now, those at the end of the interval before, in place of what was foreseen.
-    fn put_right(&mut self, step: &CreepStep<'_>) {
+    fn put_right(&mut self, step: &CreepStep<'_>, pressed: &[(u32, f64)]) {
         let (Some(last), Some(end_min)) = (self.pressures_mpa.last_mut(), self.ends_min.last())
         else {
             return;
         };
-        *last = pressed_nodes(step.contact);
+        *last = pressed.to_vec();
         let strains = self.strains(step.law, *end_min, step.thickness_mm.len());
         let nodes = step.thickness_mm.iter().zip(strains);
         for (deepest_mm, (thickness_mm, strain)) in self.deepest_mm.iter_mut().zip(nodes) {
@@ -196,12 +197,9 @@ fn pressed_nodes(contact: &CreepContact) -> Vec<(u32, f64)> {
 /// How far every node goes down, mm, found in turn with how far the femur sinks.
 fn implicit(step: &CreepStep<'_>, nodes: &[Node]) -> Vec<f64> {
     let mut down_mm = vec![0.0; step.thickness_mm.len()];
-    for node in nodes {
-        down_mm[node.number] = node.unrelieved_mm(step.law);
-    }
     let mut lost_n = step.contact.none_lost_n();
     for node in nodes {
-        step.add_lost_n(node, down_mm[node.number], &mut lost_n);
+        step.add_lost_n(node, node.unrelieved_mm(step.law), &mut lost_n);
     }
     let mut sunk_mm = step.contact.sunk_mm(&lost_n);
     let mut mixing = Mixing::default();

@@ -1,6 +1,9 @@
 //! What a case says of its polyethylene.
 
-use super::{assert_shows, parsed, refusal};
+use condyle::contact::Moment;
+use condyle::wear::{MeanCycle, WearLaw};
+
+use super::{assert_shows, parsed, pressed_once, refusal};
 
 const HIGH: &str = "[insert]\nedge_mm = 6.0\n[material]\ncross_linking = \"high\"\n";
 
@@ -38,21 +41,10 @@ fn a_factor_out_of_range_or_of_conventional_polyethylene_is_refused() {
 
 #[test]
 fn verify_every_law_of_the_test_wears_so_many_times_as_much() {
-    use condyle::contact::{CycleHistory, Moment, Record};
-    use condyle::wear::{MeanCycle, WearLaw};
-
-    let moment = Moment {
+    let history = pressed_once(Moment {
         pressure_mpa: 5.0,
         slip_mm: [3.0, 1.0],
-    };
-    let record = Record {
-        node: 0,
-        pressed_mm2: 1.0,
-        moment,
-    };
-    let mut history = CycleHistory::default();
-    let instant = history.record([record].into_iter());
-    history.sort(1, &[instant]);
+    });
     let depth = |law: &dyn WearLaw| {
         law.wear(&MeanCycle::of(&[(1.0, &history)], 0, 1.0))
             .depth_mm

@@ -12,6 +12,8 @@ mod wear;
 
 use std::path::{Path, PathBuf};
 
+use condyle::contact::{CycleHistory, Moment, Record};
+
 use super::contents::Case;
 use crate::keyed::Problems;
 
@@ -36,6 +38,19 @@ pub(super) fn has_dm_data(test: &str) -> bool {
         eprintln!("skipped: {test}: the data of subject DM are not there");
     }
     there
+}
+
+/// A cycle of one node that is pressed at one instant.
+fn pressed_once(moment: Moment) -> CycleHistory {
+    let record = Record {
+        node: 0,
+        pressed_mm2: 1.0,
+        moment,
+    };
+    let mut history = CycleHistory::default();
+    let instant = history.record([record].into_iter());
+    history.sort(1, &[instant]);
+    history
 }
 
 fn parsed(text: &str) -> Result<Case, Problems> {

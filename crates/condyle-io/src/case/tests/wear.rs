@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use condyle::contact::{CycleHistory, Moment, Record};
+use condyle::contact::Moment;
 use condyle::parameter::{Known, Parameter};
 use condyle::wear::{MeanCycle, NodeWear, WEAR_LAWS, WearLaw, WearLawKind};
 
-use super::assert_shows;
+use super::{assert_shows, pressed_once};
 use crate::case::{Case, CaseReader, ConstantError, Wear, WearLaws, schema_markdown};
 
 /// Wear that begins at a pressure: depth per cycle = a (sum of p |ds| - b), 0 or more.
@@ -136,18 +136,10 @@ fn its_keys_are_on_the_page() {
 #[test]
 fn verify_it_is_the_law_that_the_test_wears_by() {
     let test = read(CASE).unwrap().build(1).unwrap().test;
-    let mut history = CycleHistory::default();
-    let moment = Moment {
+    let history = pressed_once(Moment {
         pressure_mpa: 10.0,
         slip_mm: [10.0, 0.0],
-    };
-    let record = Record {
-        node: 0,
-        pressed_mm2: 1.0,
-        moment,
-    };
-    let instant = history.record([record].into_iter());
-    history.sort(1, &[instant]);
+    });
     let shared = [(1.0, &history)];
     let depth = |law: &dyn WearLaw| law.wear(&MeanCycle::of(&shared, 0, 1.0)).depth_mm;
     let found = depth(test.wear.as_ref());
