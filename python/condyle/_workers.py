@@ -19,7 +19,7 @@ TASKS_AHEAD = 2000
 # A task has no more than this part of what is left.
 LAST_TASKS = 32
 # A task whose worker died is sent so often; what kills every worker is then at fault itself.
-MOST_TRIES = 10
+MAX_TRIES = 10
 
 
 class Source(NamedTuple):
@@ -113,7 +113,7 @@ def _found(future: Future[Any], task: _Task) -> list[tuple[int, list[float] | st
     except (CondyleError, BrokenExecutor):
         raise
     except Exception:
-        if task.tries >= MOST_TRIES:
+        if task.tries >= MAX_TRIES:
             raise
         return None
 

@@ -1,6 +1,6 @@
 //! What lies below a run: the bodies of a case, how they press, and one cycle.
 
-use condyle::contact::{ContactMemory, ContactModel, Landing, NotBorne, Settled};
+use condyle::contact::{ContactMemory, ContactModel, ContactResult, NotBorne, Settled};
 use condyle::evolve::{March, SolvedCycle};
 use condyle::spatial::{Pose, RelativeMotion};
 use condyle::{Mat3, Vec3};
@@ -14,7 +14,7 @@ use crate::case::RawCase;
 use crate::errors;
 
 /// How often a contact is asked anew whose own state goes with the load: ten times what was seen.
-const MOST_TURNS: usize = 300;
+const MAX_TURNS: usize = 300;
 
 /// The bodies of a case with the femur settled on the insert, as the solver has them: a right knee.
 #[pyclass(frozen, module = "condyle._condyle")]
@@ -113,7 +113,7 @@ impl RawKnee {
 
 /// Lets an insert flow, or come to rest on its tray, under what presses it at a motion.
 fn come_to_rest(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> PyResult<()> {
-    for _ in 0..MOST_TURNS {
+    for _ in 0..MAX_TURNS {
         contact.respond(motion);
         let settled = contact.settle(motion);
         if settled.map_err(|why| errors::not_solved(&said(why)))? == Settled::Yes {
@@ -121,7 +121,7 @@ fn come_to_rest(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> PyRe
         }
     }
     Err(errors::not_solved(&format!(
-        "load and insert did not settle together in {MOST_TURNS} turns at this pose; lift the femur"
+        "load and insert did not settle together in {MAX_TURNS} turns at this pose; lift the femur"
     )))
 }
 
@@ -140,7 +140,11 @@ fn said(why: NotBorne) -> String {
     }
 }
 
-fn pressed<'py>(py: Python<'py>, landing: &Landing, nodes: usize) -> PyResult<Bound<'py, PyDict>> {
+fn pressed<'py>(
+    py: Python<'py>,
+    landing: &ContactResult,
+    nodes: usize,
+) -> PyResult<Bound<'py, PyDict>> {
     let mut pressures = vec![0.0; nodes];
     for touched in &landing.touched {
         pressures[touched.node as usize] = touched.pressure_mpa;

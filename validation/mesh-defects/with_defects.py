@@ -16,7 +16,7 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-MOST_PERCENT = 0.5
+MAX_PERCENT = 0.5
 
 
 def read_stl(path):
@@ -211,7 +211,7 @@ def main():
             triangles = tray if clip else getattr(defects, kind)(bodies[body])
             code, mass, said = runs.run(body, triangles, [f"insert.clip_below_mm={clip:.4f}"] if clip else ())
             off = (mass / clean - 1) * 100 if mass else 0.0
-            wrong += abs(off) > MOST_PERCENT
+            wrong += abs(off) > MAX_PERCENT
             shown = " ".join(said.replace(f"{folder}/", "").split())[:400].replace("|", "/")
             numbers = f"{mass:.4f} | {off:+.3f} %" if mass else " | "
             print(f"| {body} | {kind.replace('_', ' ')} | {code} | {numbers} | {shown} |", flush=True)

@@ -20,10 +20,10 @@ FACES = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3,
 
 NEAR_RIM_MM = 1.5
 # The judge's limits stand a little beyond the program's, so that a number on the border is no finding.
-MOST_AT_RIM = 0.012
+MAX_AT_RIM = 0.012
 COUNTS_APART = 0.012
-MOST_AP_MM = 26.0
-MOST_IE_DEG = 36.0
+MAX_AP_MM = 26.0
+MAX_IE_DEG = 36.0
 THINNEST_MM = 5.9
 YIELD_UNDER_A_BALL_MPA = 1.65 * 14.0
 
@@ -131,7 +131,7 @@ def _rim(unworn, worn):
     volume = worn.point_data["wear_depth_mm"] * _node_areas(unworn, faces)
     nodes = np.flatnonzero(volume > 0)
     near = _distance_to_rim(unworn, faces, nodes) < NEAR_RIM_MM
-    if volume[nodes[near]].sum() > MOST_AT_RIM * volume.sum():
+    if volume[nodes[near]].sum() > MAX_AT_RIM * volume.sum():
         yield Finding("wear at the rim", RIM_CHECKS)
     pressed = worn.point_data["peak_pressure_mpa"].argmax()
     if worn.point_data["peak_pressure_mpa"][pressed] > 0:
@@ -169,9 +169,9 @@ def _pressure(summary, motion):
 def _motion(motion):
     for cycle in np.unique(motion["cycles"]):
         rows = motion["cycles"] == cycle
-        if np.ptp(motion["ap_mm"][rows]) > MOST_AP_MM:
+        if np.ptp(motion["ap_mm"][rows]) > MAX_AP_MM:
             yield Finding("AP beyond what knees do", ("ap_range", "femur_beyond_rim", *RIM_CHECKS))
-        if np.ptp(motion["ie_deg"][rows]) > MOST_IE_DEG:
+        if np.ptp(motion["ie_deg"][rows]) > MAX_IE_DEG:
             yield Finding("IE beyond what knees do", ("ie_range",))
 
 

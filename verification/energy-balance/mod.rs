@@ -20,9 +20,9 @@ pub(crate) const CASE: Case = Case {
 };
 
 /// Part of the work of friction that may be left open.
-const MOST_OPEN: f64 = 0.001;
+const MAX_OPEN: f64 = 0.001;
 /// The same with the default 200 increments, which follow the quick motions of heel strike coarsely.
-const MOST_OPEN_BY_DEFAULT: f64 = 0.01;
+const MAX_OPEN_BY_DEFAULT: f64 = 0.01;
 
 /// Where work comes from and goes at one instant, N mm/s, and what is stored, N mm.
 #[derive(Clone, Copy)]
@@ -53,10 +53,10 @@ fn rows() -> Vec<Row> {
     let [coarse, middle, fine] = &implicit;
     let order = order_of_errors([middle, fine].map(Ledger::lost_in_time), 2.0);
     vec![
-        coarse.friction_row("200 increments", MOST_OPEN_BY_DEFAULT),
-        middle.friction_row("400 increments", 2.0 * MOST_OPEN),
-        fine.friction_row("800 increments", MOST_OPEN),
-        explicit.friction_row("explicit, 800 increments", MOST_OPEN),
+        coarse.friction_row("200 increments", MAX_OPEN_BY_DEFAULT),
+        middle.friction_row("400 increments", 2.0 * MAX_OPEN),
+        fine.friction_row("800 increments", MAX_OPEN),
+        explicit.friction_row("explicit, 800 increments", MAX_OPEN),
         fine.open_row("800 increments"),
         explicit.open_row("explicit, 800 increments"),
         coarse.loss_row("200 increments", 0.005),
@@ -105,7 +105,7 @@ impl Ledger {
             "N mm",
             0.0,
             self.most_open,
-            MOST_OPEN * self.friction,
+            MAX_OPEN * self.friction,
         )
     }
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 # Edges whose ends' normals part by more than this stay straight: rims, not bearing surface.
-LEAST_COSINE_OF_A_ROUND_EDGE = 0.9
+MIN_COSINE_OF_A_ROUND_EDGE = 0.9
 
 
 def read_stl(path):
@@ -44,7 +44,7 @@ def rounded(vertices, triangles):
     normal_at_start, normal_at_end = normals[edges[:, 0]], normals[edges[:, 1]]
     along = lambda normal: ((end - start) * normal).sum(1)[:, None] * normal
     bulge = (along(normal_at_end) - along(normal_at_start)) / 8.0
-    is_round = (normal_at_start * normal_at_end).sum(1) > LEAST_COSINE_OF_A_ROUND_EDGE
+    is_round = (normal_at_start * normal_at_end).sum(1) > MIN_COSINE_OF_A_ROUND_EDGE
     middles = (start + end) / 2.0 + np.where(is_round[:, None], bulge, 0.0)
     a, b, c = triangles.T
     quarters = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]

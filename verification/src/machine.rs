@@ -2,7 +2,7 @@
 
 use condyle::{
     Vec3,
-    contact::{ContactModel, Landing, Linearization, MOST_REGIONS, Response, Tangent},
+    contact::{ContactModel, ContactResult, Linearization, MAX_REGIONS, Response, Tangent},
     machine::{
         Chain, Cycle, Drive, JointKind, Machine, MachineState, Simulator, SolverCounters, Spring,
         TimeSettings, knee::KNEE,
@@ -29,11 +29,11 @@ impl ContactModel for Apart {
     }
 
     fn respond(&mut self, _: &RelativeMotion) -> Response<'_> {
-        Response::new(Wrench::zero(), [Vec3::zeros(); MOST_REGIONS], self)
+        Response::new(Wrench::zero(), [Vec3::zeros(); MAX_REGIONS], self)
     }
 
-    fn land(&mut self, _: &RelativeMotion) -> Landing {
-        Landing::default()
+    fn land(&mut self, _: &RelativeMotion) -> ContactResult {
+        ContactResult::default()
     }
 }
 

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use condyle::{
-    contact::{ContactModel, Foundation, Landing, Response, TouchedNode},
+    contact::{ContactModel, ContactResult, Foundation, Response, TouchedNode},
     spatial::RelativeMotion,
 };
 
@@ -52,7 +52,7 @@ impl ContactModel for Recorder<'_> {
         self.inner.accept(motion);
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
         let landing = self.inner.land(motion);
         let sum = landing.touched.iter().map(|node| self.rubs(node)).sum();
         self.rubbed.borrow_mut().push(sum);

@@ -50,7 +50,7 @@ impl Rub {
             wear: Arc::new(Archard {
                 wear_factor_mm3_per_nm: WEAR_FACTOR_MM3_PER_NM,
             }),
-            laws_beside: Vec::new(),
+            comparison_laws: Vec::new(),
             creep: None,
             density_mg_per_mm3: 0.93,
             time,

@@ -3,7 +3,9 @@
 use std::cell::RefCell;
 
 use condyle::{
-    contact::{Bodies, ContactModel, Foundation, Landing, PressureLaw, Response, TouchedNode},
+    contact::{
+        Bodies, ContactModel, ContactResult, Foundation, PressureLaw, Response, TouchedNode,
+    },
     spatial::{RelativeMotion, Twist, Wrench},
 };
 
@@ -84,7 +86,7 @@ impl ContactModel for Witness<'_> {
         self.inner.accept(motion);
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
         let wrench = self.inner.respond(motion).wrench;
         let landing = self.inner.land(motion);
         let touched = || landing.touched.iter();

@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Curves that are listed, at most; the others are smaller.
-const MOST_CURVES: usize = 8;
+const MAX_CURVES: usize = 8;
 
 pub fn diff(arguments: &Diff) -> ExitCode {
     let read = |folder: &Path| {
@@ -91,7 +91,7 @@ fn add_curves(differences: &Differences, lines: &mut Lines) {
         "{:<40}{:>12}{:>12}{:>12}{:>10}",
         "curves, by size over range", "rms", "% of range", "largest", "at %"
     ));
-    for one in differences.curves.iter().take(MOST_CURVES) {
+    for one in differences.curves.iter().take(MAX_CURVES) {
         let name = format!("{}, {} cycle", one.column, one.cycle);
         let of_range = one.rms_percent_of_range;
         let of_range = of_range.map_or_else(|| "-".to_owned(), |percent| format!("{percent:.2}"));
@@ -101,7 +101,7 @@ fn add_curves(differences: &Differences, lines: &mut Lines) {
             one.largest_at_percent
         ));
     }
-    let left = differences.curves.len().saturating_sub(MOST_CURVES);
+    let left = differences.curves.len().saturating_sub(MAX_CURVES);
     if left > 0 {
         lines.line(format_args!("  and {left} more that differ less"));
     }

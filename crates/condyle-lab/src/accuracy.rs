@@ -224,7 +224,7 @@ impl<'a> Again<'a> {
     fn as_run(&self) -> WearTest {
         WearTest {
             schedule: Schedule::fixed(1.0, 1),
-            laws_beside: Vec::new(),
+            comparison_laws: Vec::new(),
             creep: None,
             ..self.march.test().clone()
         }
@@ -317,7 +317,7 @@ impl<'a> Again<'a> {
         let last = last_of_several(state).map_err(Without::Reason)?;
         let test = WearTest {
             schedule: Schedule::fixed(last.cycles, state.updates.len() / 2),
-            laws_beside: Vec::new(),
+            comparison_laws: Vec::new(),
             ..self.march.test().clone()
         };
         let mut march = March::start(test)?.in_motion(&self.first.1);

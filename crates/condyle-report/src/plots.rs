@@ -7,7 +7,7 @@ const SIZE: (f64, f64) = (480.0, 232.0);
 /// Plots beside each other.
 const COLUMNS: usize = 2;
 /// Steps of the horizontal axis, at most.
-const MOST_INTERVALS: usize = 5;
+const MAX_INTERVALS: usize = 5;
 
 /// A plot of one line with a dot at every point, and of another to hold it against.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +77,7 @@ fn horizontal(plot: &Plot) -> Axis {
     let low = points().fold(f64::INFINITY, f64::min);
     let high = points().fold(f64::NEG_INFINITY, f64::max);
     if plot.x_marks.is_empty() {
-        return Axis::covering(low, high, 1e-6, MOST_INTERVALS);
+        return Axis::covering(low, high, 1e-6, MAX_INTERVALS);
     }
     let room = ROOM * (high - low).max(1e-6);
     let (low, high) = (low - room, high + room);

@@ -7,8 +7,8 @@ use std::f64::consts::PI;
 use condyle::{
     Mat3, Vec3,
     contact::{
-        Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Deformable, Foundation,
-        FrictionModel, Landing, PressureLaw, confined_modulus,
+        Bodies, ContactLaw, ContactMemory, ContactModel, ContactResult, ContactState, Deformable,
+        Foundation, FrictionModel, PressureLaw, confined_modulus,
     },
     geometry::{
         ArticulatingSurface, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape,
@@ -89,7 +89,7 @@ fn under(
     (x, z): (f64, f64),
     high_mm: f64,
     force_n: f64,
-) -> (f64, Landing) {
+) -> (f64, ContactResult) {
     let at = |y: f64| over([x, y, z]);
     let low_mm = height_mm(contact, [high_mm - 1.0, high_mm], force_n, at);
     let motion = at(low_mm);
@@ -97,7 +97,7 @@ fn under(
     (high_mm - low_mm, contact.land(&motion))
 }
 
-fn covered_mm2(landing: &Landing) -> f64 {
+fn covered_mm2(landing: &ContactResult) -> f64 {
     landing.touched.iter().map(|node| node.covered_mm2).sum()
 }
 

@@ -4,7 +4,7 @@ use std::{ops::ControlFlow, sync::Arc};
 
 use condyle::{
     contact::{
-        Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Foundation, Landing,
+        Bodies, ContactLaw, ContactMemory, ContactModel, ContactResult, ContactState, Foundation,
         PressureLaw, Response, StateField,
     },
     creep::LeePienkowski,
@@ -69,7 +69,7 @@ impl ContactModel for CountingContact<'_> {
         self.inner.accept(motion);
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
         self.inner.land(motion)
     }
 
@@ -124,7 +124,7 @@ fn test() -> WearTest {
         wear: Arc::new(Archard {
             wear_factor_mm3_per_nm: 2.64e-7,
         }),
-        laws_beside: Vec::new(),
+        comparison_laws: Vec::new(),
         creep: None,
         density_mg_per_mm3: 0.93,
         time: TimeSettings {
@@ -242,11 +242,11 @@ fn every_law() -> Vec<NamedLaw> {
 fn laws_beside_move_no_surface_and_the_same_law_wears_the_same() {
     let alone = marched(test());
     let beside = marched(WearTest {
-        laws_beside: every_law(),
+        comparison_laws: every_law(),
         ..test()
     });
     assert!(alone.mesh_nodes == beside.mesh_nodes && alone.updates == beside.updates);
-    let laws = &beside.laws_beside;
+    let laws = &beside.comparison_laws;
     assert_eq!(laws.len(), WEAR_LAWS.len());
     let volume_mm3 = alone.updates[3].volume_loss_mm3;
     let ratio = laws[0].volume_mm3 / volume_mm3;
@@ -267,7 +267,7 @@ fn laws_beside_move_no_surface_and_the_same_law_wears_the_same() {
 #[test]
 fn laws_beside_go_on_from_a_state_as_if_never_stopped() {
     let test = WearTest {
-        laws_beside: every_law(),
+        comparison_laws: every_law(),
         ..test()
     };
     let mut whole = March::start(test.clone()).unwrap();

@@ -4,7 +4,9 @@ use std::{f64::consts::TAU, ops::ControlFlow};
 
 use condyle::{
     Vec3,
-    contact::{ContactModel, Landing, Linearization, MOST_REGIONS, Response, Tangent, TouchedNode},
+    contact::{
+        ContactModel, ContactResult, Linearization, MAX_REGIONS, Response, Tangent, TouchedNode,
+    },
     machine::{
         Axis, Chain, Channel, ChannelUnit, Cycle, CycleError, CycleQuantity, Drive, Integration,
         Interpolation, JointDescription, JointIndex, JointKind, Knot, Loading, Machine,
@@ -144,14 +146,14 @@ impl ContactModel for Tip {
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
         let force = Self::force_n(motion);
         let wrench = Wrench::new(motion.pose.translation.cross(&force), force);
-        Response::new(wrench, [Vec3::zeros(); MOST_REGIONS], self)
+        Response::new(wrench, [Vec3::zeros(); MAX_REGIONS], self)
     }
 
     fn accept(&mut self, _: &RelativeMotion) {
         self.accepted += 1;
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
         let (load_n, slip) = Self::at(motion);
         let pressure_mpa = load_n / FACE_MM2;
         let node = TouchedNode {
@@ -163,7 +165,7 @@ impl ContactModel for Tip {
             sliding_mm_per_s: [slip.x, slip.z],
             along_mm: [0.0; 2],
         };
-        Landing {
+        ContactResult {
             touched: vec![node],
             peak_pressure_mpa: pressure_mpa,
         }

@@ -8,7 +8,8 @@ use std::f64::consts::PI;
 use condyle::{
     Mat3, Vec3,
     contact::{
-        Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Deformable, Landing, Settled,
+        Bodies, ContactLaw, ContactMemory, ContactModel, ContactResult, ContactState, Deformable,
+        Settled,
     },
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     spatial::{Pose, RelativeMotion},
@@ -56,7 +57,7 @@ impl Pair {
         self.law.contact(bodies, memory)
     }
 
-    fn loads(&self, landing: &Landing) -> Vec<(u32, f64)> {
+    fn loads(&self, landing: &ContactResult) -> Vec<(u32, f64)> {
         let load = |node: &condyle::contact::TouchedNode| {
             let normal = self.surface.normals[node.node as usize];
             (node.node, -normal.dot(&node.force_n))
@@ -73,7 +74,7 @@ fn deep(depth_mm: f64) -> RelativeMotion {
 }
 
 /// Presses the ball to a depth, the flow found, and accepts it.
-fn press(contact: &mut dyn ContactModel, depth_mm: f64) -> Landing {
+fn press(contact: &mut dyn ContactModel, depth_mm: f64) -> ContactResult {
     let motion = deep(depth_mm);
     for _ in 0..60 {
         contact.respond(&motion);
@@ -85,7 +86,7 @@ fn press(contact: &mut dyn ContactModel, depth_mm: f64) -> Landing {
     contact.land(&motion)
 }
 
-fn force_n(landing: &Landing) -> f64 {
+fn force_n(landing: &ContactResult) -> f64 {
     -landing
         .touched
         .iter()

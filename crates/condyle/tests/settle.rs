@@ -61,7 +61,7 @@ fn test(edge_mm: f64) -> WearTest {
         wear: Arc::new(Archard {
             wear_factor_mm3_per_nm: 2.64e-7,
         }),
-        laws_beside: Vec::new(),
+        comparison_laws: Vec::new(),
         creep: None,
         density_mg_per_mm3: 0.93,
         time: TimeSettings::default(),

@@ -6,7 +6,7 @@ import type { Failure, Wrong } from "./program";
 import type { CaseSchema, Offer } from "./schema";
 
 const LINE_PX = 18;
-const MOST_OFFERS = 12;
+const MAX_OFFERS = 12;
 
 export class Editor {
   readonly box = element("div", { class: "editor" });
@@ -95,7 +95,7 @@ export class Editor {
     const [all, begun] = this.atCaret(table, before);
     const isOffered = begun !== undefined && (isAsked || begun.length > 0);
     const fitting = isOffered ? all.filter(({ word }) => word.startsWith(begun) && word !== begun) : [];
-    this.offers = fitting.slice(0, MOST_OFFERS);
+    this.offers = fitting.slice(0, MAX_OFFERS);
     this.chosen = 0;
     this.list.style.top = `${(line + 1) * LINE_PX - this.input.scrollTop + 6}px`;
     this.showOffers();

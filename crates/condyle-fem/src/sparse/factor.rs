@@ -17,7 +17,7 @@ use crate::{
 
 /// A pivot below this part of the stiffness that its freedom began with is none: rounding leaves some
 /// 1e-15 of it where a rigid motion is free, and the most slender solids above 1e-9.
-const LEAST_PIVOT: f64 = 1e-11;
+const MIN_PIVOT: f64 = 1e-11;
 
 /// The factor of a stiffness.
 pub(crate) struct Factor {
@@ -182,7 +182,7 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
     fn least_pivots(&self, group: &Group, layout: &Layout) -> Vec<f64> {
         let freedoms = 3 * group.own.start as usize..3 * group.own.end as usize;
         let own = self.diagonal[freedoms].iter();
-        let mut least: Vec<f64> = own.map(|stiffness| LEAST_PIVOT * stiffness).collect();
+        let mut least: Vec<f64> = own.map(|stiffness| MIN_PIVOT * stiffness).collect();
         least.resize(layout.columns, 0.0);
         least
     }

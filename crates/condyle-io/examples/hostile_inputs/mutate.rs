@@ -3,7 +3,7 @@
 use super::random::Random;
 
 /// Files do not grow beyond this; the limits hold for 1 MB.
-const MOST_BYTES: usize = 60_000;
+const MAX_BYTES: usize = 60_000;
 
 /// Numbers at the ends of what types hold, and what is none.
 const NUMBERS: &[&str] = &[
@@ -98,7 +98,7 @@ pub fn mutated(seed: &[u8], corpus: &[Vec<u8>], random: &mut Random) -> Vec<u8> 
     for _ in 0..=random.below(4) {
         let other = corpus[random.below(corpus.len())].as_slice();
         change(&mut bytes, other, random);
-        bytes.truncate(MOST_BYTES);
+        bytes.truncate(MAX_BYTES);
     }
     bytes
 }
@@ -203,7 +203,7 @@ fn repeat_line(bytes: &mut Vec<u8>, random: &mut Random) {
         let mut once = bytes[line.clone()].to_vec();
         once.push(b'\n');
         let times = *random.of(&[1, 2, 10, 300]);
-        let many = once.repeat(times.min(MOST_BYTES / once.len()));
+        let many = once.repeat(times.min(MAX_BYTES / once.len()));
         bytes.splice(line.start..line.start, many);
     }
 }

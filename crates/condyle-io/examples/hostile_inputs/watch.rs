@@ -11,8 +11,8 @@ use std::{
 };
 
 /// What an input may take.
-const MOST_SECONDS: f64 = 1.0;
-const MOST_BYTES: u64 = 1 << 30;
+const MAX_SECONDS: f64 = 1.0;
+const MAX_BYTES: u64 = 1 << 30;
 /// An input that takes longer than this is not waited for.
 const HANGS: Duration = Duration::from_secs(120);
 /// Where the system does not say what time a thread was at work, other programs may hold up one reading, and not three.
@@ -64,7 +64,7 @@ impl Watch {
             if ended.is_err() {
                 return self.fail(name, bytes, "panics");
             }
-            if least_s <= MOST_SECONDS {
+            if least_s <= MAX_SECONDS {
                 self.slowest_s = self.slowest_s.max(least_s);
                 return;
             }
@@ -127,7 +127,7 @@ fn end_if_out_of_bounds(current: &Mutex<Option<Current>>, failures: &Path) {
         keep(failures, &input.name, &input.bytes, "hangs");
         exit(1);
     }
-    if memory > MOST_BYTES {
+    if memory > MAX_BYTES {
         keep(failures, &input.name, &input.bytes, "takes more than 1 GB");
         exit(1);
     }

@@ -11,7 +11,7 @@ use crate::mesh::{InpWriter, RigidTriangle, element_faces};
 /// Milligrams in a tonne.
 const MG_PER_TONNE: f64 = 1e9;
 /// A face belongs to the backside if it leans from straight down by less than 60 degrees.
-const LEAST_COSINE: f64 = 0.5;
+const MIN_COSINE: f64 = 0.5;
 
 pub(super) fn write<W: Write>(model: &Model<'_>, inp: &mut InpWriter<W>) -> io::Result<()> {
     insert(model, inp)?;
@@ -63,7 +63,7 @@ fn backside(model: &Model<'_>) -> Vec<u32> {
     let looks_down = |quad: &[u32; 4]| {
         let [a, b, c, d]: [Vec3; 4] = quad.map(|node| mesh.nodes[node as usize]);
         let normal = (c - a).cross(&(d - b));
-        -normal.y > LEAST_COSINE * normal.norm()
+        -normal.y > MIN_COSINE * normal.norm()
     };
     let quads = mesh.boundary_quads().into_iter().filter(looks_down);
     let nodes: std::collections::BTreeSet<u32> = quads.flatten().collect();

@@ -16,7 +16,7 @@ const CELL_MM: f64 = 1.0;
 /// micrometres too deep on average.
 const LONGEST_EDGE_MM: f64 = 0.25;
 /// So often at most.
-const MOST_HALVINGS: usize = 3;
+const MAX_HALVINGS: usize = 3;
 
 /// Triangles that are near `nodes` (insert frame) with the femur at any of `poses`, their corners on `femur`;
 /// everything of them is in the femoral frame, anticlockwise seen from outside.
@@ -27,7 +27,7 @@ pub(super) fn facets(
     poses: &[Pose],
 ) -> TriangleMesh {
     let mut facets = near(triangles, &cells(femur, nodes, poses));
-    for _ in 0..MOST_HALVINGS {
+    for _ in 0..MAX_HALVINGS {
         if longest_edge_mm(&facets) <= LONGEST_EDGE_MM {
             break;
         }

@@ -35,7 +35,7 @@ const LAST_MM: f64 = 0.02;
 const ARRIVING: f64 = 0.5;
 
 /// Most increments of a step.
-const MOST_INCREMENTS: u32 = 1000;
+const MAX_INCREMENTS: u32 = 1000;
 
 /// How far the pressed femur slides on, and the friction while it slides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,7 +138,7 @@ impl Pressed<'_> {
             inp.keyword(&format!(
                 "*EL PRINT, ELSET={}, FREQUENCY={}",
                 names::INSERT,
-                MOST_INCREMENTS
+                MAX_INCREMENTS
             ))?;
             inp.line("PEEQ")?;
         }
@@ -292,7 +292,7 @@ fn shifted(pose: &Pose, by_mm: Vec3) -> Pose {
 }
 
 fn begin_step<W: Write>(name: &str, inp: &mut InpWriter<W>) -> io::Result<()> {
-    inp.keyword(&format!("*STEP, NAME={name}, INC={MOST_INCREMENTS}"))
+    inp.keyword(&format!("*STEP, NAME={name}, INC={MAX_INCREMENTS}"))
 }
 
 /// A coefficient, and how stiffly CalculiX's nodes stick.

@@ -9,7 +9,7 @@ use super::{names, output};
 use crate::mesh::{AnalysisStep, Application, InpWriter, Procedure};
 
 /// Smallest increment that Abaqus may cut down to, s.
-const LEAST_S: f64 = 1e-9;
+const MIN_S: f64 = 1e-9;
 
 pub(super) fn write<W: Write>(model: &Model<'_>, inp: &mut InpWriter<W>) -> io::Result<()> {
     inp.comment(output::comment(model))?;
@@ -68,7 +68,7 @@ fn step<W: Write>(
         Procedure::Implicit {
             application,
             first_s: increment_s / 10.0,
-            least_s: LEAST_S,
+            least_s: MIN_S,
             most_s: increment_s,
         }
     };

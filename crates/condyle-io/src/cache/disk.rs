@@ -19,8 +19,8 @@ const HASH_LENGTH: usize = 32;
 const ENDING: &str = "kept";
 /// So many are kept, the newest, and no more than so many bytes: of a mesh femur a file has about 3 MB, of a deformable
 /// insert 5 to 40, and a study over many of them must not fill the disk.
-const MOST_FILES: usize = 20;
-const MOST_BYTES: u64 = 300_000_000;
+const MAX_FILES: usize = 20;
+const MAX_BYTES: u64 = 300_000_000;
 
 /// A folder of results that are kept from run to run.
 ///
@@ -155,9 +155,9 @@ fn remove_old(folder: &Path) -> io::Result<()> {
     }
     files.sort();
     let mut bytes = 0;
-    let stay = files.iter().rev().take(MOST_FILES).take_while(|file| {
+    let stay = files.iter().rev().take(MAX_FILES).take_while(|file| {
         bytes += file.2;
-        bytes <= MOST_BYTES
+        bytes <= MAX_BYTES
     });
     let surplus = files.len() - stay.count();
     files[..surplus]

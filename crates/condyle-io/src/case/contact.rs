@@ -64,7 +64,7 @@ settings! {
     }
 
     /// Friction on a deformable insert.
-    Rubbing {
+    FrictionSettings {
         /// Regularised: friction goes with the sliding speed by slip_tolerance_mm_per_s. Stick-slip: the surface gives way along itself, and each node sticks or slides by Coulomb's law, without a tolerance; some seven times the time, and the implicit integrator alone.
         friction_model: FrictionModelWord = FrictionModelWord::Regularised;
     }
@@ -178,7 +178,7 @@ impl Contact {
     pub(super) fn keys_of_deformable() -> Vec<Key> {
         let plasticity = PlasticityChoice::choices().by;
         let backside = BacksideChoice::choices().by;
-        [vec![plasticity], Rubbing::keys(), vec![backside]].concat()
+        [vec![plasticity], FrictionSettings::keys(), vec![backside]].concat()
     }
 
     /// The choice of the model, which brings the key of the law, or that and `of_law`, or the keys of a deformable insert,
@@ -210,7 +210,12 @@ impl Contact {
         let of_backside = all_keys(&BacksideChoice::choices());
         let of_choices = [&of_plasticity[1..], &of_backside[1..]].concat();
         Self::models(&of_law[1..], &of_choices).check_keys_of_others(word.word(), section, log);
-        let common = [ModelOfContact::keys(), Self::other_keys(), Rubbing::keys()].concat();
+        let common = [
+            ModelOfContact::keys(),
+            Self::other_keys(),
+            FrictionSettings::keys(),
+        ]
+        .concat();
         let (law, (plasticity, rubbing, backside)) = match word {
             ContactModelWord::Deformable => {
                 let common = [common, of_law].concat();
@@ -221,7 +226,7 @@ impl Contact {
                 let common = [common, of_plasticity, of_backside].concat();
                 let law = PressureLawChoice::read(section, &common, log);
                 let friction_model = FrictionModelWord::Regularised;
-                let rubbing = Rubbing { friction_model };
+                let rubbing = FrictionSettings { friction_model };
                 let none = (PlasticityChoice::None, rubbing, BacksideChoice::Bonded);
                 (law, (Some(none.0), Some(none.1), Some(none.2)))
             }
@@ -246,7 +251,7 @@ impl Contact {
         log: &mut Log<'_>,
     ) -> (
         Option<PlasticityChoice>,
-        Option<Rubbing>,
+        Option<FrictionSettings>,
         Option<BacksideChoice>,
     ) {
         let with = |choices: Choices| [common, &all_keys(&choices)].concat();
@@ -254,7 +259,7 @@ impl Contact {
         let beside_backside = with(PlasticityChoice::choices());
         (
             PlasticityChoice::read(section, &beside_plasticity, log),
-            Rubbing::read(section, log),
+            FrictionSettings::read(section, log),
             BacksideChoice::read(section, &beside_backside, log),
         )
     }
@@ -267,7 +272,7 @@ impl Contact {
             ContactModelWord::Deformable => {
                 self.plasticity.write(out);
                 let friction_model = self.friction_model;
-                Rubbing { friction_model }.write(out);
+                FrictionSettings { friction_model }.write(out);
                 self.backside.write(out);
             }
         }

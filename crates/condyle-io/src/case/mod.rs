@@ -15,7 +15,6 @@ mod contact;
 mod contents;
 mod creep;
 mod cross_linking;
-mod culprit;
 #[cfg(feature = "file-system")]
 mod draft;
 mod drive_reason;
@@ -24,6 +23,7 @@ mod fingerprint;
 mod heading;
 mod insert;
 mod json_schema;
+mod key_location;
 mod key_names;
 mod law_change;
 mod limits;
@@ -70,7 +70,6 @@ pub use contact::{
 pub use contents::Case;
 pub use creep::{Creep, LogarithmicCreep};
 pub use cross_linking::{CrossLinking, HighlyCrossLinked, ModeratelyCrossLinked};
-pub use culprit::Unfit;
 #[cfg(feature = "file-system")]
 pub use draft::{Draft, DraftError, Drafted};
 pub use drive_reason::DriveReason;
@@ -78,6 +77,7 @@ pub use femur::{CylinderFemur, Femur, GenericFemur, MeshFemur, SphereFemur};
 pub use heading::{Heading, Side};
 pub use insert::{FlatInsert, GenericInsert, HexahedralInsert, Insert, MeshInsert};
 pub use json_schema::json_schema;
+pub use key_location::CaseConflict;
 pub use key_names::KeyNameError;
 pub use limits::Limits;
 pub use machine::{Freedom, Freedoms, Machine, Waveforms};

@@ -23,7 +23,7 @@ pub enum RenderStyle {
 const PLAIN_WIDTH: usize = 100;
 
 /// Problems shown at most. Each is looked for from the start of its file, and nobody reads on for longer.
-const MOST_SHOWN: usize = 20;
+const MAX_SHOWN: usize = 20;
 
 impl Problems {
     /// The first problems, each with its place, a caret under the spot, and what to do; of more than
@@ -37,7 +37,7 @@ impl Problems {
             .with_width(width)
             .with_links(false);
         let mut text = String::new();
-        for problem in self.problems().iter().take(MOST_SHOWN) {
+        for problem in self.problems().iter().take(MAX_SHOWN) {
             let shown = handler.render_report(&mut text, &Shown::new(problem));
             debug_assert!(shown.is_ok(), "writing to a String does not fail");
         }
@@ -47,7 +47,7 @@ impl Problems {
 
 /// What is said of the problems that are not shown, where there are `all`.
 fn of_the_rest(all: usize) -> String {
-    match all.saturating_sub(MOST_SHOWN) {
+    match all.saturating_sub(MAX_SHOWN) {
         0 => String::new(),
         1 => "and 1 more problem; correct these first\n".to_owned(),
         more => format!("and {more} more problems; correct these first\n"),

@@ -9,7 +9,7 @@ const EXAMPLE: &str = "cycles,specimen_1_mg,soak_1_mg";
 /// What a column's name begins with where the file does not name its soak controls.
 const SOAK: &str = "soak";
 /// A line with an interval needs one weighing more than it has numbers.
-const LEAST_WEIGHINGS: usize = 3;
+const MIN_WEIGHINGS: usize = 3;
 
 /// Measured masses, and how a wear rate is found from them.
 #[derive(Clone, Debug)]
@@ -169,7 +169,7 @@ fn checked(
 ) -> Option<Gravimetric> {
     let counts = |cycles: &&f64| **cycles >= keys.fit_from_cycles;
     let rows = cycles.iter().skip(1).filter(counts).count();
-    if rows < LEAST_WEIGHINGS {
+    if rows < MIN_WEIGHINGS {
         let reason = MeasuredReason::TooFewWeighings { rows };
         log.problem(section.value_span("file"), reason);
         return None;

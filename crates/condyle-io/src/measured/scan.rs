@@ -12,7 +12,7 @@ use crate::mesh::read_surface;
 
 const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
 /// Six numbers of a rigid motion need at least as many points.
-const LEAST_POINTS: usize = 12;
+const MIN_POINTS: usize = 12;
 
 /// A scan in the frame of the results, mm, before it is registered.
 #[derive(Clone, Debug)]
@@ -112,10 +112,10 @@ fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
         )
     };
     match found[0].len() {
-        few if few < LEAST_POINTS => Err(vec![too_few(
+        few if few < MIN_POINTS => Err(vec![too_few(
             COORDINATES[0],
             few,
-            LEAST_POINTS,
+            MIN_POINTS,
             columns.name_span(0),
         )]),
         all => Ok((0..all).map(point).collect()),

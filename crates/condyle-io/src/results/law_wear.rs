@@ -55,7 +55,7 @@ impl LawWear {
                 state.outside_mm3,
             )
         };
-        let beside = state.laws_beside.iter();
+        let beside = state.comparison_laws.iter();
         let beside = beside.map(|beside| {
             let (volume_mm3, depth_mm) = (beside.volume_mm3, beside.max_depth_mm());
             law(&beside.word, volume_mm3, depth_mm, beside.outside_mm3)

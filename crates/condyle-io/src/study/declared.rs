@@ -3,7 +3,7 @@
 use crate::keyed::{DataFile, Levels, Names, settings, variants, within};
 
 /// Tests of a study, at most.
-pub(super) const MOST_TESTS: f64 = 1e9;
+pub(super) const MAX_TESTS: f64 = 1e9;
 
 settings! {
     /// The top of the file.
@@ -69,7 +69,7 @@ settings! {
     /// How many tests, and of which chance.
     SampleKeys {
         /// Tests; of a Saltelli design its base, of which every test is done again with each input changed.
-        size: u64 = 100, in within(2.0, MOST_TESTS);
+        size: u64 = 100, in within(2.0, MAX_TESTS);
         /// Of the chance: the same seed gives the same tests.
         seed: u64 = 1, in within(0.0, 9e15);
     }
@@ -77,7 +77,7 @@ settings! {
     /// Walks through the inputs, one step each.
     MorrisKeys {
         /// Walks; each takes as many tests as there are inputs, and one.
-        walks: u64 = 20, in within(2.0, MOST_TESTS);
+        walks: u64 = 20, in within(2.0, MAX_TESTS);
         /// Values of an input, an even number.
         levels: u64 = 4, in within(2.0, 1000.0);
         /// Of the chance: the same seed gives the same tests.

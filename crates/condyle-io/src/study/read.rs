@@ -19,7 +19,7 @@ use crate::keyed::{Base, Log, Problems, Section, Settings, Variants, read_docume
 
 /// Values that are tried on the case before the first test, at most: a thousand files of rows would take a while, and what the
 /// case does not take is then the row's reason.
-const MOST_TRIED: usize = 512;
+const MAX_TRIED: usize = 512;
 
 const TABLES: &[&str] = &[
     "case",
@@ -85,7 +85,7 @@ fn read_study(
         folder: &folder,
     };
     check_twice(&inputs, log);
-    inputs.iter().fold(MOST_TRIED, |left, input| {
+    inputs.iter().fold(MAX_TRIED, |left, input| {
         trial.check_input(input, &inputs, left, log)
     });
     alternatives

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use condyle::{
-    contact::{ContactCache, ContactMemory, ContactModel, ContactState, Landing, Response},
+    contact::{ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Response},
     evolve::{March, WearTest},
     geometry::ArticulatingSurface,
     machine::{Chain, Drive, Simulator, SolverCounters, Waveform, knee},
@@ -51,7 +51,7 @@ impl ContactModel for Recorder<'_> {
         self.contact.respond(motion)
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
         self.is_first = true;
         self.contact.land(motion)
     }

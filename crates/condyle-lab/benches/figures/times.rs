@@ -74,7 +74,7 @@ pub fn print_laws() {
     let case = cases::read(GENERIC).expect("a shipped case is read");
     let alone = || {
         let mut test = built(&case);
-        test.laws_beside.clear();
+        test.comparison_laws.clear();
         marched(test)
     };
     // By turns, so that both see the same of whatever else the machine does.

@@ -8,7 +8,7 @@ use super::finished::Finished;
 /// does not have there.
 const NEAR_RIM_MM: f64 = 1.5;
 /// Part of the worn volume that may be there, %.
-const MOST_AT_RIM_PERCENT: f64 = 1.0;
+const MAX_AT_RIM_PERCENT: f64 = 1.0;
 /// Yield stress of UHMWPE, MPa (approximate: facts remembered, not read).
 const YIELD_MPA: f64 = 14.0;
 /// Below the middle of a ball's contact the material yields first when the peak pressure is this many times the
@@ -18,9 +18,9 @@ const FIRST_YIELD: f64 = 1.6;
 /// peak of an elastic contact is 1.5 times its mean [johnson1985].
 const FULL_FLOW: f64 = 1.5 * 2.8;
 /// An insert that lifts more than this off its tray, mm, rocks: twice what the polyethylene itself gives way by under a knee's load.
-const MOST_LIFT_MM: f64 = 0.3;
+const MAX_LIFT_MM: f64 = 0.3;
 /// Under less the stresses in polyethylene rise steeply, mm [bartel1986]; approximate.
-const LEAST_THICKNESS_MM: f64 = 6.0;
+const MIN_THICKNESS_MM: f64 = 6.0;
 /// Where it is worn deeper than this part of the deepest, there is a scar.
 const SCAR: f64 = 0.1;
 
@@ -40,14 +40,14 @@ pub(super) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
     } else {
         0.0
     };
-    (percent > MOST_AT_RIM_PERCENT).then(|| PlausibilityWarning {
+    (percent > MAX_AT_RIM_PERCENT).then(|| PlausibilityWarning {
         check: "wear_at_rim".to_owned(),
         value: percent,
-        limit: MOST_AT_RIM_PERCENT,
+        limit: MAX_AT_RIM_PERCENT,
         unit: "%".to_owned(),
         message: format!(
             "{percent:.1} % of the worn volume lies within {NEAR_RIM_MM} mm of the rim of the articulating surface; up to \
-             {MOST_AT_RIM_PERCENT:.0} % would be sound"
+             {MAX_AT_RIM_PERCENT:.0} % would be sound"
         ),
         advice: "The femur rides on an edge, where the pressure of an elastic model is not to be believed: look at the placement \
                  of the bodies, their axes and sides, and at where the outline of the insert was cut."
@@ -162,10 +162,10 @@ fn time_above_percent(finished: &Finished<'_>, cycle: &str, limit_mpa: f64) -> f
 pub(super) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let under = finished.summary.under_surface.as_ref()?;
     let lift_mm = under.backside.as_ref()?.backside_lift_mm;
-    (lift_mm > MOST_LIFT_MM).then(|| PlausibilityWarning {
+    (lift_mm > MAX_LIFT_MM).then(|| PlausibilityWarning {
         check: "insert_rocks".to_owned(),
         value: lift_mm,
-        limit: MOST_LIFT_MM,
+        limit: MAX_LIFT_MM,
         unit: "mm".to_owned(),
         message: format!(
             "the insert lifts off its tray by {lift_mm:.2} mm: it rocks, as under a load beside the flat part of its backside, and \
@@ -185,13 +185,13 @@ pub(super) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
     let under_scar = nodes.filter(|(depth_mm, _)| **depth_mm > in_scar);
     let thinnest = under_scar.map(|(_, thickness_mm)| *thickness_mm);
     let thinnest = thinnest.fold(f64::INFINITY, f64::min);
-    (thinnest < LEAST_THICKNESS_MM).then(|| PlausibilityWarning {
+    (thinnest < MIN_THICKNESS_MM).then(|| PlausibilityWarning {
         check: "thin_polyethylene".to_owned(),
         value: thinnest,
-        limit: LEAST_THICKNESS_MM,
+        limit: MIN_THICKNESS_MM,
         unit: "mm".to_owned(),
         message: format!(
-            "under the scar {thinnest:.2} mm of polyethylene are left at the thinnest; below {LEAST_THICKNESS_MM:.0} mm stresses \
+            "under the scar {thinnest:.2} mm of polyethylene are left at the thinnest; below {MIN_THICKNESS_MM:.0} mm stresses \
              rise steeply"
         ),
         advice: "See that the insert's mesh reaches down to its tray and is in the unit that the case says.".to_owned(),

@@ -18,7 +18,7 @@ const LIFTED: f64 = 0.01;
 /// Below this part of the largest load a lift says little.
 const LITTLE_LOAD: f64 = 0.1;
 /// Part of a cycle that one side may be lifted off, %: a choice of ours.
-const MOST_LIFTED_PERCENT: f64 = 5.0;
+const MAX_LIFTED_PERCENT: f64 = 5.0;
 
 /// The range of a freedom in the first or the last cycle, whichever is larger.
 pub(super) fn ranges(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
@@ -55,15 +55,15 @@ pub(super) fn lift_off(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
         .cycles()
         .map(|cycle| (lifted_percent(&cycle), cycle.name));
     let most = lifted.max_by(|a, b| a.0.total_cmp(&b.0));
-    let beyond = most.filter(|(percent, _)| *percent > MOST_LIFTED_PERCENT);
+    let beyond = most.filter(|(percent, _)| *percent > MAX_LIFTED_PERCENT);
     beyond.map(|(percent, cycle)| PlausibilityWarning {
         check: "lift_off".to_owned(),
         value: percent,
-        limit: MOST_LIFTED_PERCENT,
+        limit: MAX_LIFTED_PERCENT,
         unit: "%".to_owned(),
         message: format!(
             "for {percent:.0} % of the {cycle} cycle one side carries nothing while the joint is loaded; up to \
-             {MOST_LIFTED_PERCENT:.0} % would be sound"
+             {MAX_LIFTED_PERCENT:.0} % would be sound"
         ),
         advice: "See vv_axis_medial_mm, which splits the load between the sides, start_mm, and whether both bodies are of \
                  the same side."

@@ -7,16 +7,16 @@ use super::finished::Finished;
 /// The two counts of the worn volume may differ by this, %.
 const COUNTS_PERCENT: f64 = 1.0;
 /// Scaled Jacobian below which an element is about to fold.
-const LEAST_QUALITY: f64 = 0.1;
+const MIN_QUALITY: f64 = 0.1;
 /// Inertia added, as a multiple of the machine's own: a choice of ours.
-const MOST_ADDED_INERTIA: f64 = 1.0;
+const MAX_ADDED_INERTIA: f64 = 1.0;
 /// Wear in one step, as a multiple of what evens out the pressure at the bottom of the scar: a tenth of the depth is
 /// then of the wrong shape at most. A choice of ours.
-const MOST_RELAXED: f64 = 0.2;
+const MAX_RELAXED: f64 = 0.2;
 /// Part of the depth's error that is due to updates, %: up to there the estimates of random designs held.
-const MOST_OF_UPDATES_PERCENT: f64 = 2.0;
+const MAX_OF_UPDATES_PERCENT: f64 = 2.0;
 /// Discretisation error of mass and depth, %.
-const MOST_ERROR_PERCENT: f64 = 5.0;
+const MAX_ERROR_PERCENT: f64 = 5.0;
 
 /// The volume of depth times area beside that of the mesh.
 pub(super) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
@@ -42,13 +42,13 @@ pub(super) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWa
 /// The worst element of any update.
 pub(super) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let quality = finished.summary.worst_quality;
-    (quality < LEAST_QUALITY).then(|| PlausibilityWarning {
+    (quality < MIN_QUALITY).then(|| PlausibilityWarning {
         check: "mesh_quality".to_owned(),
         value: quality,
-        limit: LEAST_QUALITY,
+        limit: MIN_QUALITY,
         unit: String::new(),
         message: format!(
-            "the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and {LEAST_QUALITY} would be sound"
+            "the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and {MIN_QUALITY} would be sound"
         ),
         advice: "Fewer layers or a larger edge_mm at the outline; where the wear itself folds them, more updates or fewer \
                  cycles."
@@ -73,10 +73,10 @@ pub(super) fn error_of_depth(finished: &Finished<'_>) -> Option<PlausibilityWarn
 }
 
 fn large_error(check: &str, what: &str, percent: f64) -> Option<PlausibilityWarning> {
-    (percent.abs() > MOST_ERROR_PERCENT).then(|| PlausibilityWarning {
+    (percent.abs() > MAX_ERROR_PERCENT).then(|| PlausibilityWarning {
         check: check.to_owned(),
         value: percent.abs(),
-        limit: MOST_ERROR_PERCENT,
+        limit: MAX_ERROR_PERCENT,
         unit: "%".to_owned(),
         message: format!("the {what} has a discretisation error of {:.1} %", percent.abs()),
         advice: "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.".to_owned(),
@@ -88,10 +88,10 @@ pub(super) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
     let state = finished.march.state();
     let step = state.last_step.as_ref()?;
     let relaxed = step.relaxation_per_cycle * step.interval;
-    (state.updates.len() == 1 && relaxed > MOST_RELAXED).then(|| PlausibilityWarning {
+    (state.updates.len() == 1 && relaxed > MAX_RELAXED).then(|| PlausibilityWarning {
         check: "single_update".to_owned(),
         value: relaxed,
-        limit: MOST_RELAXED,
+        limit: MAX_RELAXED,
         unit: String::new(),
         message: format!(
             "one update digs the scar of the first cycle for all cycles, {relaxed:.1} times as deep as would even out the \
@@ -105,10 +105,10 @@ pub(super) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
 pub(super) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let error = finished.summary.error.as_ref()?;
     let percent = error.max_depth_percent.updates?.abs();
-    (percent > MOST_OF_UPDATES_PERCENT).then(|| PlausibilityWarning {
+    (percent > MAX_OF_UPDATES_PERCENT).then(|| PlausibilityWarning {
         check: "updates_too_few".to_owned(),
         value: percent,
-        limit: MOST_OF_UPDATES_PERCENT,
+        limit: MAX_OF_UPDATES_PERCENT,
         unit: "%".to_owned(),
         message: format!(
             "so few updates cost {percent:.1} % of the deepest wear by the estimate; with steps as long as that the error stated \
@@ -121,10 +121,10 @@ pub(super) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWar
 /// Inertia that explicit steps were given.
 pub(super) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let added = finished.summary.added_inertia?;
-    (added > MOST_ADDED_INERTIA).then(|| PlausibilityWarning {
+    (added > MAX_ADDED_INERTIA).then(|| PlausibilityWarning {
         check: "added_inertia".to_owned(),
         value: added,
-        limit: MOST_ADDED_INERTIA,
+        limit: MAX_ADDED_INERTIA,
         unit: String::new(),
         message: format!(
             "the explicit steps asked for are stable only with up to {added:.0} times the machine's inertia added to it, and \

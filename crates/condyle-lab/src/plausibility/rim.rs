@@ -6,7 +6,7 @@ use condyle_io::results::PlausibilityWarning;
 use super::finished::{Finished, SolvedCycle};
 
 /// Part of a cycle that a condyle may be beyond the rim, %: a choice of ours.
-const MOST_BEYOND_PERCENT: f64 = 1.0;
+const MAX_BEYOND_PERCENT: f64 = 1.0;
 /// Nearer than this a condyle is at the surface, mm, pressed or not; how far a mesh's field is sure of gaps.
 const NEAR_MM: f64 = 1.5;
 /// Instants of a cycle that are looked at, at most.
@@ -24,11 +24,11 @@ struct Beyond {
 pub(super) fn femur_beyond_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let beyond = finished.cycles().flat_map(|cycle| beyond(finished, &cycle));
     let most = beyond.max_by(|a, b| a.percent.total_cmp(&b.percent));
-    let too_much = most.filter(|beyond| beyond.percent > MOST_BEYOND_PERCENT);
+    let too_much = most.filter(|beyond| beyond.percent > MAX_BEYOND_PERCENT);
     too_much.map(|Beyond { percent, side, cycle }| PlausibilityWarning {
         check: "femur_beyond_rim".to_owned(),
         value: percent,
-        limit: MOST_BEYOND_PERCENT,
+        limit: MAX_BEYOND_PERCENT,
         unit: "%".to_owned(),
         message: format!(
             "for {percent:.0} % of the {cycle} cycle the {side} condyle is on or beyond the rim of the articulating surface"

@@ -60,7 +60,7 @@ fn of_quads(nodes: &[Vec3], quads: &[[u32; 4]]) -> BodySurface {
 
 /// Faces of the articulating surface of which most corners are pressed.
 fn pressed(march: &March, at_rest: &AtRest) -> BodySurface {
-    const MOST_CORNERS: usize = 3;
+    const MAX_CORNERS: usize = 3;
     let places = march.test().insert.surface().positions;
     let mut is_pressed = vec![false; places.len()];
     for node in &at_rest.touched {
@@ -72,7 +72,7 @@ fn pressed(march: &March, at_rest: &AtRest) -> BodySurface {
             .count()
     };
     let faces = march.test().insert.surface_faces().iter().copied();
-    let faces: Vec<[u32; 4]> = faces.filter(|face| corners(face) >= MOST_CORNERS).collect();
+    let faces: Vec<[u32; 4]> = faces.filter(|face| corners(face) >= MAX_CORNERS).collect();
     of_quads(&places, &faces)
 }
 

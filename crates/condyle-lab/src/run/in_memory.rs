@@ -9,7 +9,7 @@ use condyle_io::{
 use super::{
     error::RunError,
     event::{Listener, Outcome},
-    running::{Begun, Means, Run},
+    running::{Run, RunContext, Start},
 };
 
 /// How a case is run in memory.
@@ -45,14 +45,14 @@ pub fn run_in_memory(
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
-    let means = Means {
+    let means = RunContext {
         threads: how.threads,
         cache: &how.cache,
         bodies: &SharedBodies::default(),
         out: None,
         wear_law: how.wear_law.as_ref(),
     };
-    let mut run = Run::begin(case, means, Begun::Now, inputs_blake3, on_event)?;
+    let mut run = Run::begin(case, means, Start::Now, inputs_blake3, on_event)?;
     keeper.settled(&run.march, &run.femur_triangles(FEMUR_TRIANGLES)?);
     let mut keep = |run: &Run<'_>| {
         keeper.updated(&run.march);

@@ -12,7 +12,7 @@ use condyle_io::{
 use super::{
     error::RunError,
     event::RunEvent,
-    running::{Begun, Means, Run},
+    running::{Run, RunContext, Start},
 };
 
 /// The summary of one of many runs: neither a hash of its inputs nor an estimate of its error, and bodies that it has in
@@ -32,7 +32,7 @@ pub(crate) fn march_watched(
     bodies: &SharedBodies,
     watch: &mut dyn FnMut(&March),
 ) -> Result<(March, Summary), RunError> {
-    let means = Means {
+    let means = RunContext {
         threads: 1,
         cache,
         bodies,
@@ -40,5 +40,5 @@ pub(crate) fn march_watched(
         wear_law: None,
     };
     let nobody = &mut |_: RunEvent<'_>| ControlFlow::Continue(());
-    Run::begin(case, means, Begun::Now, String::new(), nobody)?.marched(watch)
+    Run::begin(case, means, Start::Now, String::new(), nobody)?.marched(watch)
 }

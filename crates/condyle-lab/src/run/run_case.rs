@@ -13,7 +13,7 @@ use super::{
     event::{Listener, Outcome},
     options::RunOptions,
     prepare::changed,
-    running::{Begun, Means, Run},
+    running::{Run, RunContext, Start},
     written::WrittenRun,
 };
 
@@ -70,17 +70,17 @@ fn run_read(
     let lock = ResultsFolder::lock(&options.out)?;
     let begun = match found(case, case_path, options, &inputs_blake3)? {
         Found::Done(summary) => return done_before(summary, options),
-        Found::Checkpoint(checkpoint, spent_s) => Begun::Before(checkpoint, spent_s),
-        Found::Case | Found::Nothing => Begun::Now,
+        Found::Checkpoint(checkpoint, spent_s) => Start::Before(checkpoint, spent_s),
+        Found::Case | Found::Nothing => Start::Now,
     };
-    let means = Means {
+    let means = RunContext {
         threads: options.threads,
         cache: &options.cache,
         bodies: &SharedBodies::default(),
         out: Some(&options.out),
         wear_law: None,
     };
-    let is_new = matches!(begun, Begun::Now);
+    let is_new = matches!(begun, Start::Now);
     let mut run = Run::begin(case, means, begun, inputs_blake3.clone(), on_event)?;
     let written = if is_new {
         WrittenRun::new(options, lock, inputs_blake3, &run)?

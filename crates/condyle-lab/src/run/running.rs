@@ -19,7 +19,7 @@ use super::{
 use crate::{accuracy, plausibility};
 
 /// When a run began.
-pub(super) enum Begun {
+pub(super) enum Start {
     /// It begins now.
     Now,
     /// Before, up to a checkpoint, in so many seconds.
@@ -28,7 +28,7 @@ pub(super) enum Begun {
 
 /// What a run is done with.
 #[derive(Clone, Copy)]
-pub(super) struct Means<'a> {
+pub(super) struct RunContext<'a> {
     pub threads: usize,
     pub cache: &'a Cache,
     /// Bodies that it may have in common with other runs.
@@ -43,7 +43,7 @@ pub(super) struct Means<'a> {
 pub(super) struct Run<'a> {
     pub case: &'a Case,
     pub march: March,
-    means: Means<'a>,
+    means: RunContext<'a>,
     inputs_blake3: String,
     warnings: Vec<BuildWarning>,
     clock: Clock,
@@ -56,8 +56,8 @@ impl<'a> Run<'a> {
     /// Builds the bodies and starts the march, or goes on from a checkpoint.
     pub fn begin(
         case: &'a Case,
-        means: Means<'a>,
-        begun: Begun,
+        means: RunContext<'a>,
+        begun: Start,
         inputs_blake3: String,
         on_event: &mut Listener<'_>,
     ) -> Result<Self, RunError> {
@@ -72,11 +72,11 @@ impl<'a> Run<'a> {
             built.test.wear = cross_linking.under(named.clone()).law;
         }
         let march = match begun {
-            Begun::Before(checkpoint, spent_s) => {
+            Start::Before(checkpoint, spent_s) => {
                 clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
                 clock.time(|| March::resume(built.test, checkpoint.state))
             }
-            Begun::Now => clock.time(|| start(case, built.test, &built.warnings))?,
+            Start::Now => clock.time(|| start(case, built.test, &built.warnings))?,
         };
         Ok(Self {
             case,

@@ -10,7 +10,7 @@ use super::converge_plan::ConvergeError;
 use super::observed_order::Extrapolation;
 
 /// The least that a plot shows, as a share of the finest value: less is the same to a reader.
-const LEAST_SHOWN_SHARE: f64 = 1e-3;
+const MIN_SHOWN_SHARE: f64 = 1e-3;
 
 impl Convergence {
     /// Writes the three files into `folder`.
@@ -114,7 +114,7 @@ impl Convergence {
                 .map(|(place, point)| (*place, mark(point)))
                 .collect(),
             from_zero: false,
-            least_span: LEAST_SHOWN_SHARE * finest.abs().max(f64::MIN_POSITIVE),
+            least_span: MIN_SHOWN_SHARE * finest.abs().max(f64::MIN_POSITIVE),
             reference: match self.extrapolation(quantity) {
                 Extrapolation::Converging { extrapolated, .. } => {
                     across.map(|place| (place, extrapolated)).to_vec()

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// Steps whose ratios differ by less than this share are in constant ratio.
 const SAME_RATIO: f64 = 1e-6;
 /// A lower order than this is noise, and what it extrapolates to means nothing.
-const LEAST_ORDER: f64 = 0.4;
+const MIN_ORDER: f64 = 0.4;
 /// Results that differ by less than this share are the same: round-off.
 const SAME_RESULT: f64 = 1e-12;
 
@@ -85,7 +85,7 @@ fn of_triple([coarse, middle, fine]: [f64; 3], ratio: f64) -> Extrapolation {
     }
     let shrinking = first / last;
     let order = shrinking.ln() / ratio.ln();
-    if order < LEAST_ORDER {
+    if order < MIN_ORDER {
         return Extrapolation::Slow { order };
     }
     let extrapolated = fine + last / (shrinking - 1.0);

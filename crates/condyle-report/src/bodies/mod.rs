@@ -44,9 +44,9 @@ pub struct BodiesPicture<'a> {
 }
 
 /// Widest that the three views are together, px.
-const MOST_WIDTH: f64 = 980.0;
+const MAX_WIDTH: f64 = 980.0;
 /// Largest scale, px per mm.
-const MOST_SCALE: f64 = 4.5;
+const MAX_SCALE: f64 = 4.5;
 /// Space between two views, for their labels, px.
 const BETWEEN: f64 = 46.0;
 /// Space above the views, px.
@@ -58,8 +58,8 @@ const BELOW: f64 = 64.0;
 pub fn bodies_svg(picture: &BodiesPicture<'_>) -> String {
     let bounds = VIEWS.map(|view| view.bounds([picture.femur, picture.insert]));
     let widths_mm: f64 = bounds.iter().map(view::Bounds::width_mm).sum();
-    let room = MOST_WIDTH - BETWEEN * (VIEWS.len() + 1) as f64;
-    let scale = (room / widths_mm).min(MOST_SCALE);
+    let room = MAX_WIDTH - BETWEEN * (VIEWS.len() + 1) as f64;
+    let scale = (room / widths_mm).min(MAX_SCALE);
     let tallest_mm = bounds
         .iter()
         .map(view::Bounds::height_mm)

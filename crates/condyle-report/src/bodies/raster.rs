@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::view::View;
 
 /// Lightness of a face seen edge on; one that faces the viewer has 1.
-const LEAST_LIGHT: f32 = 0.45;
+const MIN_LIGHT: f32 = 0.45;
 
 /// What is seen of one surface, a value a pixel, rows from above.
 pub(super) struct Raster {
@@ -93,5 +93,5 @@ fn light_of([a, b, c]: [[f64; 3]; 3]) -> f32 {
     let towards = if normal.z < 0.0 { -normal } else { normal };
     // Rows of pixels run down, so the lamp is at negative y.
     let lit = towards.dot(&Vec3::new(-0.25, -0.35, 0.9)).max(0.0) as f32;
-    LEAST_LIGHT + (1.0 - LEAST_LIGHT) * lit.min(1.0)
+    MIN_LIGHT + (1.0 - MIN_LIGHT) * lit.min(1.0)
 }

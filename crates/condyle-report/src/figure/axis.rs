@@ -3,7 +3,7 @@
 use crate::number::fixed;
 
 /// More are hard to read.
-const MOST_DECIMALS: usize = 5;
+const MAX_DECIMALS: usize = 5;
 
 /// A range with ticks at multiples of a round step; both ends are ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl Axis {
     /// A tick's text, with as many decimals as the step has; by a power of ten where these would be many.
     pub(crate) fn label(&self, tick: f64) -> String {
         let decimals = decimals(self.step);
-        if decimals <= MOST_DECIMALS {
+        if decimals <= MAX_DECIMALS {
             return fixed(tick, decimals);
         }
         if tick.abs() < self.step / 2.0 {

@@ -14,7 +14,7 @@ use crate::results::{
 };
 
 /// Bands between 0 and the largest value, at most.
-const MOST_BANDS: usize = 12;
+const MAX_BANDS: usize = 12;
 /// Half the width of the text below a marker, px, in the large letters of a narrow screen.
 const HALF_TEXT_WIDTH: f64 = 110.0;
 /// Half the width of the name of a direction, px.
@@ -165,7 +165,7 @@ impl Map<'_> {
             ColourRange::Own | ColourRange::UpTo(_) => (1, 0.0),
             ColourRange::BothWays(_) => (2, -1.0),
         };
-        let step = round_step(largest.max(NOTHING) / (MOST_BANDS / sides) as f64);
+        let step = round_step(largest.max(NOTHING) / (MAX_BANDS / sides) as f64);
         let high = (largest / step - 1e-9).ceil().max(1.0) * step;
         Axis {
             low: low * high,

@@ -12,7 +12,7 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 38.0;
 const BOTTOM: f64 = 30.0;
 const X_TITLE: f64 = 15.0;
-const MOST_INTERVALS: usize = 5;
+const MAX_INTERVALS: usize = 5;
 
 /// Class of what was measured on one of several specimens.
 const SPECIMEN: &str = "specimen";
@@ -90,9 +90,9 @@ impl Panel {
         let low = values().fold(start, f64::min);
         let high = values().fold(if self.from_zero { self.least_span } else { low }, f64::max);
         if !low.is_finite() {
-            return Axis::covering(0.0, 1.0, 0.0, MOST_INTERVALS);
+            return Axis::covering(0.0, 1.0, 0.0, MAX_INTERVALS);
         }
-        Axis::covering(low, high, self.least_span, MOST_INTERVALS)
+        Axis::covering(low, high, self.least_span, MAX_INTERVALS)
     }
 
     fn heading(&self) -> String {

@@ -4,7 +4,7 @@ use crate::number::{fixed, significant};
 use crate::results::{contents::Results, table::Table};
 
 /// A change of the rate below this is none, %.
-const LEAST_CHANGE_PERCENT: f64 = 0.5;
+const MIN_CHANGE_PERCENT: f64 = 0.5;
 const MILLION: f64 = 1e6;
 
 /// Whether and how far wear per cycle grew or fell, in a sentence; none without wear.
@@ -20,8 +20,8 @@ pub(super) fn rate(results: &Results) -> Option<String> {
     let percent = 100.0 * (last / first - 1.0);
     let (from, to) = (significant(first, 3), significant(last, 3));
     let how = match percent {
-        percent if percent >= LEAST_CHANGE_PERCENT => "grew",
-        percent if percent <= -LEAST_CHANGE_PERCENT => "fell",
+        percent if percent >= MIN_CHANGE_PERCENT => "grew",
+        percent if percent <= -MIN_CHANGE_PERCENT => "fell",
         _ => {
             return Some(format!(
                 "Wear per cycle stayed the same, {to} mg in a million cycles"

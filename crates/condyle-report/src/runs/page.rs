@@ -15,7 +15,7 @@ type Table = (String, Vec<Vec<String>>);
 type Sheet = (&'static str, String, String);
 
 /// Curves and maps of a difference that are listed, at most; the others are smaller.
-const MOST_ROWS: usize = 12;
+const MAX_ROWS: usize = 12;
 
 /// Writes the page of several runs, held against the first, and returns its path.
 ///
@@ -194,7 +194,7 @@ fn curves(difference: &Differences) -> Vec<Vec<String>> {
         "Largest",
         "At %",
     ]);
-    let cells = difference.curves.iter().take(MOST_ROWS).map(|one| {
+    let cells = difference.curves.iter().take(MAX_ROWS).map(|one| {
         vec![
             one.title.to_owned(),
             one.cycle.to_owned(),

@@ -11,7 +11,7 @@ const TOP: f64 = 44.0;
 /// From one bar to the next, px.
 const PITCH: f64 = 26.0;
 const THICK: f64 = 14.0;
-const MOST_INTERVALS: usize = 6;
+const MAX_INTERVALS: usize = 6;
 
 /// One bar.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,10 +89,10 @@ fn axis(bars: &Bars) -> Axis {
     let low = all.iter().copied().fold(f64::INFINITY, f64::min);
     let high = all.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if low > high {
-        return Axis::covering(0.0, 1.0, 0.0, MOST_INTERVALS);
+        return Axis::covering(0.0, 1.0, 0.0, MAX_INTERVALS);
     }
     let least = 1e-9 * low.abs().max(high.abs()).max(1e-9);
-    Axis::covering(low, high, least, MOST_INTERVALS)
+    Axis::covering(low, high, least, MAX_INTERVALS)
 }
 
 fn to_x(axis: &Axis, value: f64) -> f64 {

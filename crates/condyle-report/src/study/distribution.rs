@@ -4,9 +4,9 @@ use crate::figure::{Axis, Curve, Panel, sheet};
 
 const SIZE: (f64, f64) = (480.0, 232.0);
 const COLUMNS: usize = 2;
-const MOST_INTERVALS: usize = 6;
+const MAX_INTERVALS: usize = 6;
 /// Slices at most.
-const MOST_SLICES: usize = 60;
+const MAX_SLICES: usize = 60;
 
 /// How an output is distributed.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +66,7 @@ fn panel((index, one): (usize, &Distribution)) -> Panel {
         },
         unit: "% of tests".to_owned(),
         positive: String::new(),
-        x: Axis::covering(low, high, 1e-9 * high.abs().max(1e-9), MOST_INTERVALS),
+        x: Axis::covering(low, high, 1e-9 * high.abs().max(1e-9), MAX_INTERVALS),
         x_marks: Vec::new(),
         x_unit: "",
         x_title: String::new(),
@@ -94,7 +94,7 @@ fn outline(sorted: &[f64]) -> Vec<(f64, f64)> {
     let (Some(low), Some(high)) = (sorted.first(), sorted.last()) else {
         return Vec::new();
     };
-    let slices = ((sorted.len() as f64).sqrt().ceil() as usize).clamp(1, MOST_SLICES);
+    let slices = ((sorted.len() as f64).sqrt().ceil() as usize).clamp(1, MAX_SLICES);
     let width = ((high - low) / slices as f64).max(1e-12 * high.abs().max(1e-300));
     let mut counts = vec![0.0; slices];
     for value in sorted {

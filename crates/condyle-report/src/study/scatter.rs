@@ -2,7 +2,7 @@
 
 use crate::figure::{Axis, Curve, Panel, sheet};
 
-const MOST_INTERVALS: usize = 4;
+const MAX_INTERVALS: usize = 4;
 
 /// Points, and a line through or along them.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,7 +113,7 @@ fn short(across: &str) -> String {
 fn across(cloud: &Cloud, low: f64, high: f64) -> Axis {
     if cloud.marks.is_empty() {
         let span = 1e-9 * low.abs().max(high.abs()).max(1e-9);
-        return Axis::covering(low, high, span, MOST_INTERVALS);
+        return Axis::covering(low, high, span, MAX_INTERVALS);
     }
     let room = 0.15 * (high - low).max(1e-6);
     Axis {

@@ -55,7 +55,7 @@ impl FemurSigns {
             open_above: more_water(&upright, &others),
             two_condyles: at_the_lowest(&below),
             notch_behind: (from_below + from_the_ends) / 2.0,
-            curl_behind: beyond(unbridged, LEAST_UNBRIDGED) / (1.0 - LEAST_UNBRIDGED)
+            curl_behind: beyond(unbridged, MIN_UNBRIDGED) / (1.0 - MIN_UNBRIDGED)
                 * curl_behind(&below),
         }
     }
@@ -76,14 +76,14 @@ impl FemurSigns {
 }
 
 /// A trochlea, however deep its groove, leaves less than this share of the deepest recess.
-const LEAST_UNBRIDGED: f64 = 0.7;
+const MIN_UNBRIDGED: f64 = 0.7;
 /// Least share of the shadow's area that counts as held water.
-const LEAST_WATER: f64 = 0.02;
+const MIN_WATER: f64 = 0.02;
 
 fn more_water(upright: &Picture, others: &[Picture]) -> f64 {
     let water = upright.water();
     let other = others.iter().map(Picture::water).fold(0.0, f64::max);
-    (water - other) / water.max(other).max(LEAST_WATER)
+    (water - other) / water.max(other).max(MIN_WATER)
 }
 
 /// How deep the surface seen from below lies in the middle of a row, below both sides of it.

@@ -3,7 +3,7 @@
 use crate::{Vec3, geometry::TriangleMesh};
 
 /// A flange that stands out by less than this share of the longest extent proves nothing: 1 mm of a knee's.
-const LEAST_LEAD: f64 = 0.013;
+const MIN_LEAD: f64 = 0.013;
 /// The flanges lie in this front part of the length.
 const FRONT: f64 = 0.35;
 
@@ -27,7 +27,7 @@ pub fn flange_lead_mm(femur: &TriangleMesh) -> Option<f64> {
     }
     let [left, right] = reach.map(|[ahead, up]| ahead + up);
     let lead = right - left;
-    (lead.is_finite() && lead.abs() > LEAST_LEAD * (high - low).max()).then_some(lead)
+    (lead.is_finite() && lead.abs() > MIN_LEAD * (high - low).max()).then_some(lead)
 }
 
 /// A line that touches both condyles from below or from behind: a height over z.

@@ -37,8 +37,8 @@ pub use history::{CycleHistory, Moment, NodeHistory, Record};
 pub use known_compliance::KnownCompliance;
 pub use memory::{ContactCache, ContactMemory, ContactState, StateField};
 pub use model::{
-    ContactModel, Flattened, Landing, Linearization, MOST_REGIONS, NotBorne, Response, Settled,
-    Tangent, Tipped, TouchedNode,
+    ContactModel, ContactResult, Flattened, Linearization, MAX_REGIONS, NotBorne, Response,
+    Settled, Tangent, Tipped, TouchedNode,
 };
 pub use pressure_law::{PressureLaw, confined_modulus, softening_modulus};
 pub use pressure_table::{PressureTable, PressureTableError};

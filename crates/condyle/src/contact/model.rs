@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// How many regions of an articulating surface loads and slips are told apart by: the two sides of a knee.
-pub const MOST_REGIONS: usize = 2;
+pub const MAX_REGIONS: usize = 2;
 
 /// How the wrench of the contact changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct Response<'a> {
     pub wrench: Wrench,
     /// Velocity of the femur's surface past the insert's in each region, the mean weighted by load,
     /// mm/s; in the femoral frame.
-    pub mean_slip: [Vec3; MOST_REGIONS],
+    pub mean_slip: [Vec3; MAX_REGIONS],
     linearization: &'a dyn Linearization,
 }
 
@@ -40,7 +40,7 @@ impl<'a> Response<'a> {
     /// A response whose derivatives `linearization` gives when they are asked for.
     pub fn new(
         wrench: Wrench,
-        mean_slip: [Vec3; MOST_REGIONS],
+        mean_slip: [Vec3; MAX_REGIONS],
         linearization: &'a dyn Linearization,
     ) -> Self {
         Self {
@@ -89,7 +89,7 @@ pub struct TouchedNode {
 
 /// Where an increment landed.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Landing {
+pub struct ContactResult {
     /// The nodes in contact, each once and always in the same order.
     pub touched: Vec<TouchedNode>,
     /// Highest pressure anywhere, at nodes and between them, MPa: not below the largest mean over a
@@ -190,7 +190,7 @@ pub trait ContactModel {
 
     /// The nodes in contact and the highest pressure at a motion: that of the last response, or one so
     /// near that loads and speeds may be taken along to first order.
-    fn land(&mut self, motion: &RelativeMotion) -> Landing;
+    fn land(&mut self, motion: &RelativeMotion) -> ContactResult;
 
     /// What the contact after this one is to know, now that this one is no longer needed.
     fn into_memory(self: Box<Self>) -> ContactMemory {

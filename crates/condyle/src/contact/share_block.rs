@@ -1,6 +1,6 @@
 //! The insert's side of the contact: nodes' shares of its surface, a block of four side by side.
 
-use super::model::MOST_REGIONS;
+use super::model::MAX_REGIONS;
 use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, Insert, NodeBlock, Share, SurfaceRegions},
@@ -13,7 +13,7 @@ pub(super) struct ShareBlock {
     /// Which region of the surface each node belongs to.
     pub regions: [u8; LANES],
     /// 1 in the lanes that belong to a region, 0 in the others.
-    pub in_region: [F64x4; MOST_REGIONS],
+    pub in_region: [F64x4; MAX_REGIONS],
     pub centre: Vector<F64x4>,
     pub edge_a: Vector<F64x4>,
     pub edge_b: Vector<F64x4>,
@@ -78,7 +78,7 @@ impl ShareBlock {
 
 /// The region of a node; whatever is beyond the last that loads are told apart by counts to that.
 fn region_of(regions: &SurfaceRegions, node: u32) -> u8 {
-    regions.of_node(node as usize).min(MOST_REGIONS - 1) as u8
+    regions.of_node(node as usize).min(MAX_REGIONS - 1) as u8
 }
 
 /// Half of a share's longer diagonal: how far its corners lie from its centre at most.

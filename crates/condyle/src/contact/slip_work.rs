@@ -5,7 +5,7 @@
 const ISOTROPIC: f64 = 1e-6;
 
 /// No slip is shorter than this but that of length 0, mm.
-const LEAST_MM: f64 = 1e-200;
+const MIN_MM: f64 = 1e-200;
 
 /// Pressure times slip of a node by direction: the sum of $p |\Delta s| \thinspace t t^T$ over the instants of a
 /// cycle, $t$ the direction of the slip, MPa mm.
@@ -25,7 +25,7 @@ impl SlipWork {
     pub fn add(&mut self, pressure_mpa: f64, slip_mm: [f64; 2], distance_mm: f64) {
         let [anterior, lateral] = slip_mm;
         // A slip of length 0 has parts of 0: any divisor will do by which the quotient is a number.
-        let per_mm = pressure_mpa / distance_mm.max(LEAST_MM);
+        let per_mm = pressure_mpa / distance_mm.max(MIN_MM);
         self.anterior += per_mm * anterior * anterior;
         self.mixed += per_mm * anterior * lateral;
         self.lateral += per_mm * lateral * lateral;

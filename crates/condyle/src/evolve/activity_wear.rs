@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{laws_beside::worn, mean_over_wear::volume_mm3, rates::Rates, step_record::WearStep};
+use super::{
+    comparison_laws::worn, mean_over_wear::volume_mm3, rates::Rates, step_record::WearStep,
+};
 use crate::{
     geometry::ArticulatingSurface,
     machine::Cycle,

@@ -9,7 +9,7 @@ use crate::{creep::LeePienkowski, number::Mixing};
 /// node, the search ends, ...
 const SETTLED: f64 = 1e-3;
 /// ... or with the turn of this number.
-const MOST_ITERATIONS: usize = 100;
+const MAX_ITERATIONS: usize = 100;
 
 /// What creep remembers of the load.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -203,7 +203,7 @@ fn implicit(step: &CreepStep<'_>, nodes: &[Node]) -> Vec<f64> {
     }
     let mut sunk_mm = step.contact.sunk_mm(&lost_n);
     let mut mixing = Mixing::default();
-    for _ in 0..MOST_ITERATIONS {
+    for _ in 0..MAX_ITERATIONS {
         lost_n.fill(0.0);
         let sunk = step.contact.sunk(&sunk_mm);
         let mut most_mm = 0.0_f64;

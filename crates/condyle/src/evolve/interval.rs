@@ -12,9 +12,9 @@ const FIRST_TOLERANCE: f64 = 0.05;
 const FIRST_OF_CREEP: f64 = 0.1;
 /// A step is at most this many times as long as the one before, over which its rates were seen to
 /// change, ...
-const MOST_GROWTH: f64 = 1.5;
+const MAX_GROWTH: f64 = 1.5;
 /// ... and at least this many times.
-const LEAST_GROWTH: f64 = 0.25;
+const MIN_GROWTH: f64 = 0.25;
 /// Longest step in units of 1 / relaxation. A node that lies too deep alone comes back ever further
 /// on the other side from 2 on: see [`super::exponential_step`].
 const LONGEST: f64 = 1.8;
@@ -47,8 +47,8 @@ pub(super) fn adaptive_interval(standing: Standing<'_>, all_cycles: f64, toleran
     let expected_mm = deepest(standing, |node| {
         standing.rates.depth_per_cycle_mm[node] * left
     });
-    let shortest = LEAST_GROWTH * last.interval;
-    let mut interval = stable.min(MOST_GROWTH * last.interval);
+    let shortest = MIN_GROWTH * last.interval;
+    let mut interval = stable.min(MAX_GROWTH * last.interval);
     while interval > shortest && predicted_error_mm(standing, interval) > tolerance * expected_mm {
         interval *= SHORTER;
     }

@@ -8,12 +8,12 @@ use super::{
     MarchState, NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord,
     UpdateRecord, Updates, WearTest,
     activity_wear::SharedStep,
+    comparison_laws::{LawBeside, outside_mm3, sum, worn},
     creep::CreepStep,
     creep_contact::CreepContact,
     creep_record::Depths,
     depth::{lost_mm, total_mm},
     interval::{fixed_interval, shared_out},
-    laws_beside::{LawBeside, outside_mm3, sum, worn},
     march_error::WornAndCrept,
     mean_over_wear::volume_mm3,
     placement::place,
@@ -137,7 +137,7 @@ impl March {
     fn from_parts(test: WearTest, femur: FemoralSurface, mut state: MarchState) -> Self {
         if state.updates.is_empty() {
             let beside = |law| LawBeside::new(law, test.insert.surface_nodes().len());
-            state.laws_beside = test.laws_beside.iter().map(beside).collect();
+            state.comparison_laws = test.comparison_laws.iter().map(beside).collect();
         }
         let mut insert = Insert::clone(&test.insert);
         insert.restore(state.mesh_nodes.clone(), &state.depths.total_mm());
@@ -437,8 +437,8 @@ impl March {
 
     /// What the laws beside that of the test would have worn in an interval of these cycles.
     fn wear_by_laws_beside(&mut self, cycles: &[MeanCycle<'_>], area_mm2: &[f64], interval: f64) {
-        let laws = self.test.laws_beside.iter();
-        for (law, beside) in laws.zip(&mut self.state.laws_beside) {
+        let laws = self.test.comparison_laws.iter();
+        for (law, beside) in laws.zip(&mut self.state.comparison_laws) {
             beside.wear(law.law.as_ref(), cycles, area_mm2, interval);
         }
     }

@@ -6,7 +6,7 @@
 //! | `placement` | the femur is lowered onto the insert, and settles |
 //! | `march` | the loop over updates: cycles solved, rates, a step, the new surface |
 //! | `rates` | what a cycle wears, and how soon wear changes that |
-//! | `laws_beside` | what the other laws would have worn by the same cycles |
+//! | `comparison_laws` | what the other laws would have worn by the same cycles |
 //! | `activity_wear` | what each of several activities wears |
 //! | `step`, `interval` | the next step: how long it is, and by which rule it wears |
 //! | `extrapolated_step`, `exponential_step` | the rules |
@@ -17,6 +17,7 @@
 
 mod accumulated_error;
 mod activity_wear;
+mod comparison_laws;
 mod creep;
 mod creep_contact;
 mod creep_record;
@@ -24,7 +25,6 @@ mod depth;
 mod exponential_step;
 mod extrapolated_step;
 mod interval;
-mod laws_beside;
 mod march;
 mod march_error;
 mod mean_over_wear;
@@ -43,10 +43,10 @@ mod wear_test;
 
 pub use accumulated_error::AccumulatedError;
 pub use activity_wear::ActivityWear;
+pub use comparison_laws::LawBeside;
 pub use creep::CreepState;
 pub use creep_record::CreepRecord;
 pub use depth::{DepthField, DepthFields};
-pub use laws_beside::LawBeside;
 pub use march::March;
 pub use march_error::{MarchError, WornAndCrept};
 pub use mean_over_wear::{mean_over_volume, weight_of_depth};

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     CreepState, CycleRecord, DepthField, DepthFields, NodeFields, UpdateRecord,
-    accumulated_error::AccumulatedError, activity_wear::ActivityWear, laws_beside::LawBeside,
+    accumulated_error::AccumulatedError, activity_wear::ActivityWear, comparison_laws::LawBeside,
     step_record::StepRecord,
 };
 use crate::{
@@ -106,7 +106,7 @@ pub struct MarchState {
     /// known.
     pub outside_mm3: Option<f64>,
     /// What the laws beside it would have worn.
-    pub laws_beside: Vec<LawBeside>,
+    pub comparison_laws: Vec<LawBeside>,
     /// The history of the contact.
     pub contact: ContactState,
     /// What is below the surface at the increment of the last update with the highest pressure, if the insert is a
@@ -150,7 +150,7 @@ impl MarchState {
             depths,
             creep: CreepState::default(),
             outside_mm3: Some(0.0),
-            laws_beside: Vec::new(),
+            comparison_laws: Vec::new(),
             contact,
             under_surface: None,
             activities: machines.into_iter().map(ActivityState::before).collect(),

@@ -10,7 +10,7 @@ use super::{
 };
 
 /// A step that was a shorter part of the next than this does not tell how rates go on changing through that.
-const LEAST_TELLING: f64 = 0.25;
+const MIN_TELLING: f64 = 0.25;
 
 /// The next step of a march by `schedule`.
 pub(super) fn next_step(standing: Standing<'_>, schedule: &Schedule) -> WearStep {
@@ -44,7 +44,7 @@ pub(super) fn next_step(standing: Standing<'_>, schedule: &Schedule) -> WearStep
 
 /// What an interval wears, mm, and what it would wear by a second rule, which tells its error.
 fn worn(standing: Standing<'_>, updates: Updates, interval: f64) -> (Vec<f64>, Vec<f64>) {
-    let tells = |last: &&StepRecord| last.interval > LEAST_TELLING * interval;
+    let tells = |last: &&StepRecord| last.interval > MIN_TELLING * interval;
     let (rates, last) = (standing.rates, standing.last.filter(tells));
     let exponential = exponential(rates, last, interval);
     match updates {

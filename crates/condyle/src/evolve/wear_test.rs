@@ -33,7 +33,7 @@ pub struct WearTest {
     /// The law of wear.
     pub wear: Arc<dyn WearLaw>,
     /// Laws whose wear is told beside that of the law of wear; they move no surface.
-    pub laws_beside: Vec<NamedLaw>,
+    pub comparison_laws: Vec<NamedLaw>,
     /// The law of creep, if the insert creeps.
     pub creep: Option<LeePienkowski>,
     /// Density of the insert, mg/mm3.

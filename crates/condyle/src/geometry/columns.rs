@@ -6,7 +6,7 @@ use super::insert::error::InsertError;
 use crate::Vec3;
 
 /// Nodes have numbers of 32 bits, of which the last says that a column has none.
-const MOST_NODES: u32 = u32::MAX - 1;
+const MAX_NODES: u32 = u32::MAX - 1;
 
 /// A rectangular grid over the transverse plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,8 +57,8 @@ impl ColumnGrid {
         let (width, depth) = (high.0 - low.0, high.1 - low.1);
         let (nx, nz) = (cells(width), cells(depth));
         let nodes = (nx + 1.0) * (nz + 1.0) * (layers as f64 + 1.0);
-        if nodes > f64::from(MOST_NODES) {
-            let most = MOST_NODES;
+        if nodes > f64::from(MAX_NODES) {
+            let most = MAX_NODES;
             return Err(InsertError::TooManyNodes { nodes, most });
         }
         Ok(Self {

@@ -13,15 +13,15 @@ const SECTIONS_EVERY_MM: f64 = 0.25;
 /// insert, which its shape does not tell apart.
 const INSERT_MM: f64 = 12.0;
 /// No insert is thicker below its dishes, mm.
-const MOST_MM: f64 = 25.0;
+const MAX_MM: f64 = 25.0;
 /// No insert is thinner below its dishes, mm.
-const LEAST_MM: f64 = 3.0;
+const MIN_MM: f64 = 3.0;
 /// Below a plate, where a stem, a keel or pegs stand, a section has less than this share of its area.
 const STEM_SHARE: f64 = 0.5;
 /// What stands so far below a plate is a stem, a keel or a peg, mm ...
-const LEAST_STEM_MM: f64 = 5.0;
+const MIN_STEM_MM: f64 = 5.0;
 /// ... and one that stands less far may be a peg of the insert itself, where no ledge shows a plate, mm.
-const MOST_PEG_MM: f64 = 10.0;
+const MAX_PEG_MM: f64 = 10.0;
 /// A ledge around the body changes the area of a section by this share at least: a third of a millimetre all
 /// around a knee's insert.
 const LEDGE_SHARE: f64 = 0.02;
@@ -77,8 +77,8 @@ impl Underside {
         let profile = Profile::new(body, dish_mm);
         let plate_mm = profile.plate_mm(low.y);
         let stem_mm = plate_mm - low.y;
-        let is_whole_below = |stem_most_mm| stem_mm < stem_most_mm && reach_mm < MOST_MM;
-        if is_whole_below(LEAST_STEM_MM) {
+        let is_whole_below = |stem_most_mm| stem_mm < stem_most_mm && reach_mm < MAX_MM;
+        if is_whole_below(MIN_STEM_MM) {
             return Self::Whole;
         }
         let ledges = profile.ledges(plate_mm);
@@ -89,7 +89,7 @@ impl Underside {
                 below_dishes_mm: dish_mm - ledge.height_mm,
                 reach_mm,
             },
-            _ if is_whole_below(MOST_PEG_MM) => Self::Whole,
+            _ if is_whole_below(MAX_PEG_MM) => Self::Whole,
             _ => Self::Unclear {
                 reach_mm,
                 plate_mm,
@@ -147,7 +147,7 @@ impl<'a> Profile<'a> {
         let heights: Vec<f64> = self.heights(plate_mm + SECTIONS_EVERY_MM).collect();
         let between = heights.windows(2).map(|pair| (pair[1], pair[0]));
         let mut ledges: Vec<Ledge> = Vec::new();
-        for (below, above) in between.filter(|(below, _)| self.dish_mm - below >= LEAST_MM) {
+        for (below, above) in between.filter(|(below, _)| self.dish_mm - below >= MIN_MM) {
             let ledge = self.ledge(below, above);
             let known = |ledge: &Ledge| {
                 let is_one =

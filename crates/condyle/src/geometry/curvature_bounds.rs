@@ -6,7 +6,7 @@ use crate::number::Number;
 ///
 /// A distance has slope 1. The field of a mesh is a distance only nearly, since a spline runs
 /// between the gaps at its nodes.
-pub const MOST_GAP_SLOPE: f64 = 1.05;
+pub const MAX_GAP_SLOPE: f64 = 1.05;
 
 /// How much sharper than the surface its level surfaces inside are, as deep as contact goes.
 const SHARPER_INSIDE: f64 = 1.2;

@@ -7,10 +7,10 @@ use super::{
 use crate::Vec3;
 
 /// Vertex normals that lean further from their triangle's than 30 degrees mark a sharp edge.
-const LEAST_COSINE: f64 = 0.866;
+const MIN_COSINE: f64 = 0.866;
 
 /// Surfaces steeper than 60 degrees are walls.
-const LEAST_SLOPE_COSINE: f64 = 0.5;
+const MIN_SLOPE_COSINE: f64 = 0.5;
 
 /// A triangle mesh with vertex normals, read as samples of a smooth surface.
 ///
@@ -55,7 +55,7 @@ impl<'a> CurvedMesh<'a> {
                 return self.vertex_normals[vertex as usize];
             }
             let own = self.planes[triangle].0;
-            let same = |other: &&u32| self.planes[**other as usize].0.dot(&own) > LEAST_COSINE;
+            let same = |other: &&u32| self.planes[**other as usize].0.dot(&own) > MIN_COSINE;
             let fan = around[vertex as usize].iter().filter(same);
             let beside = fan.flat_map(|&other| self.mesh.triangles[other as usize]);
             let mirrored = beside
@@ -84,7 +84,7 @@ impl<'a> CurvedMesh<'a> {
         let normal = |triangle: &u32| self.planes[*triangle as usize].0;
         triangles.iter().enumerate().all(|(n, one)| {
             let mut others = triangles[n + 1..].iter();
-            others.all(|other| normal(one).dot(&normal(other)) > LEAST_COSINE)
+            others.all(|other| normal(one).dot(&normal(other)) > MIN_COSINE)
         })
     }
 
@@ -158,12 +158,12 @@ impl<'a> CurvedMesh<'a> {
     ) -> Over {
         let flat = weighted(corners, weights);
         let facet = self.planes[triangle].0;
-        let is_smooth_at = |normal: &Vec3| normal.dot(&facet) > LEAST_COSINE;
+        let is_smooth_at = |normal: &Vec3| normal.dot(&facet) > MIN_COSINE;
         let own = normals.map(|normal| if is_smooth_at(&normal) { normal } else { facet });
         let normal = weighted(&own, weights);
         let upward = normal.y / normal.norm();
         let is_smooth = normals.iter().all(is_smooth_at);
-        let height = if is_smooth && upward.abs() >= LEAST_SLOPE_COSINE {
+        let height = if is_smooth && upward.abs() >= MIN_SLOPE_COSINE {
             flat.y + lift(corners, normals, weights, &flat).dot(&normal) / normal.y
         } else {
             flat.y

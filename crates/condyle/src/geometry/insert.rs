@@ -16,7 +16,7 @@ use super::{
 use crate::Vec3;
 
 /// A wall that leans farther than 60 degrees from the normal at its rim is no way down for it.
-const LEAST_COSINE_OF_WALL: f64 = 0.5;
+const MIN_COSINE_OF_WALL: f64 = 0.5;
 
 /// A tibial insert, unworn or worn.
 ///
@@ -182,7 +182,7 @@ impl Insert {
     /// How far and where a surface node goes if the surface around it rises by a unit.
     fn outwards(&self, node: usize, normal: &Vec3) -> Vec3 {
         let wall = self.unworn.walls[node].filter(|_| self.rim_along_walls);
-        let wall = wall.filter(|wall| wall.dot(normal) > LEAST_COSINE_OF_WALL);
+        let wall = wall.filter(|wall| wall.dot(normal) > MIN_COSINE_OF_WALL);
         wall.map_or(*normal, |wall| wall / wall.dot(normal))
     }
 

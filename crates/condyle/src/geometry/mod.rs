@@ -50,7 +50,7 @@ pub use articulating_surface::ArticulatingSurface;
 pub use bounds::bounds;
 pub use columns::{Column, ColumnGrid, ColumnMesh, Plan};
 pub use construct::Underside;
-pub use curvature_bounds::{CurvatureBounds, MOST_GAP_SLOPE};
+pub use curvature_bounds::{CurvatureBounds, MAX_GAP_SLOPE};
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use cylinder::Cylinder;
 pub use dishes::Dishes;

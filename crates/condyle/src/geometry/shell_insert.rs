@@ -30,7 +30,7 @@ use super::{
 };
 
 /// Pieces of the insert seen from above that are smaller than this many hexahedra are chips, and left out.
-const LEAST_PIECE: f64 = 4.0;
+const MIN_PIECE: f64 = 4.0;
 /// Where a node on the outline is off the shell by what a chord of the outline is, it is moved by one of
 /// these shares of the way to the next node inside.
 const HAIRS: [f64; 9] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.25, 0.5];
@@ -158,7 +158,7 @@ fn fitted_plan(
     let outlines = outline(footprint, edge_mm);
     let outer: Vec<&Loop> = outlines
         .iter()
-        .filter(|outline| outline.area_mm2() > LEAST_PIECE * edge_mm * edge_mm)
+        .filter(|outline| outline.area_mm2() > MIN_PIECE * edge_mm * edge_mm)
         .collect();
     let pieces = matched(grid, &outer, Core::pieces(grid, footprint), edge_mm)?;
     let mut ring = Ring::new(grid, &pieces);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Landing, MOST_REGIONS};
+use crate::contact::{ContactResult, MAX_REGIONS};
 
 /// The machine at the end of an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,13 +18,13 @@ pub struct CycleRow {
     /// Highest pressure anywhere, at a node or between nodes, MPa.
     pub peak_pressure_mpa: f64,
     /// Part of the axial force on every region of the surface, N, in the order of the mechanism's regions.
-    pub region_force_n: [f64; MOST_REGIONS],
+    pub region_force_n: [f64; MAX_REGIONS],
 }
 
 impl CycleRow {
     /// The row at `percent` of the cycle, where the joints are at `positions` and the contact has landed.
-    pub(super) fn new(percent: f64, positions: [f64; 6], landing: &Landing) -> Self {
-        let (mut region_force_n, mut contact_area_mm2) = ([0.0; MOST_REGIONS], 0.0);
+    pub(super) fn new(percent: f64, positions: [f64; 6], landing: &ContactResult) -> Self {
+        let (mut region_force_n, mut contact_area_mm2) = ([0.0; MAX_REGIONS], 0.0);
         for node in &landing.touched {
             region_force_n[usize::from(node.region)] -= node.force_n.y;
             contact_area_mm2 += node.covered_mm2;

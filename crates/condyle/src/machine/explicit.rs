@@ -153,7 +153,7 @@ mod tests {
     use super::*;
     use crate::{
         Vec3,
-        contact::{Landing, Linearization, MOST_REGIONS, Response, Tangent},
+        contact::{ContactResult, Linearization, MAX_REGIONS, Response, Tangent},
         machine::{
             CycleError, Drive, Waveform,
             knee::{IS, KNEE},
@@ -202,15 +202,15 @@ mod tests {
             let (height, speed) = (motion.pose.translation.y, motion.twist.linear.y);
             let force = Vec3::y() * (self.stiffness * height + self.drag * speed);
             let wrench = Wrench::new(Vec3::zeros(), force);
-            Response::new(wrench, [Vec3::zeros(); MOST_REGIONS], self)
+            Response::new(wrench, [Vec3::zeros(); MAX_REGIONS], self)
         }
 
         fn accept(&mut self, _: &RelativeMotion) {
             self.accepted += 1;
         }
 
-        fn land(&mut self, _: &RelativeMotion) -> Landing {
-            Landing::default()
+        fn land(&mut self, _: &RelativeMotion) -> ContactResult {
+            ContactResult::default()
         }
     }
 

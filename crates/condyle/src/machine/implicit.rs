@@ -7,7 +7,7 @@ use super::{
 use crate::{contact::ContactModel, spatial::RelativeMotion};
 
 /// Iterations after which a step is given up, and tried in halves.
-const MOST_ITERATIONS: usize = 12;
+const MAX_ITERATIONS: usize = 12;
 
 /// Why a step was given up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,7 +109,7 @@ impl Implicit<'_> {
         let start = step.predicted(warm_start);
         let mut iteration = NewtonIteration::new(levers, may_leave_n, start, warm_start);
         let loads = self.machine.loads_at(step.phase);
-        for _ in 0..MOST_ITERATIONS {
+        for _ in 0..MAX_ITERATIONS {
             let kinematics = step.kinematics(&iteration);
             let balance = Balance::new(self.machine, self.chain, self.contact, kinematics);
             self.counters.contact_evaluations += 1;

@@ -255,7 +255,7 @@ pub static KNEE: Mechanism = Mechanism {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::MOST_REGIONS;
+    use crate::contact::MAX_REGIONS;
 
     #[test]
     fn columns_are_named_after_joint_and_unit() {
@@ -266,7 +266,7 @@ mod tests {
         for region in KNEE.regions {
             assert_eq!(region.column, format!("{}_force_n", region.name));
         }
-        assert!(KNEE.regions.len() <= MOST_REGIONS);
+        assert!(KNEE.regions.len() <= MAX_REGIONS);
     }
 
     #[test]

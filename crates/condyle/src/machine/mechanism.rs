@@ -46,7 +46,7 @@ pub struct Mechanism {
     /// What the columns of a cycle are, in the order of files.
     pub columns: &'static [CycleQuantity],
     /// The regions of the surface, in the order of their numbers; at most
-    /// [`MOST_REGIONS`](crate::contact::MOST_REGIONS).
+    /// [`MAX_REGIONS`](crate::contact::MAX_REGIONS).
     pub regions: &'static [Region],
 }
 

@@ -4,10 +4,10 @@ use super::{
     WarmStart,
     joint_vectors::{JointForces, JointMotions, JointStiffness, Levers},
 };
-use crate::{Vec3, contact::MOST_REGIONS};
+use crate::{Vec3, contact::MAX_REGIONS};
 
 /// A correction that is backtracked keeps at least this part.
-const LEAST_PART_OF_CORRECTION: f64 = 0.1;
+const MIN_PART_OF_CORRECTION: f64 = 0.1;
 /// A correction backtracked to less than this has found no better place, mm.
 const SHORTEST_CORRECTION_MM: f64 = 1e-9;
 /// What a correction leaves of a residual is predicted to be up to this many times what it left a
@@ -30,7 +30,7 @@ pub(super) struct NewtonIteration {
     /// The part of the last correction that was taken.
     taken: JointMotions,
     /// How the regions slid where the last correction was computed, mm/s.
-    mean_slip: [Vec3; MOST_REGIONS],
+    mean_slip: [Vec3; MAX_REGIONS],
     /// Whether all of it was taken.
     is_whole: bool,
     /// What may be left of a residual, N, by prediction alone; none where every correction is to have a tangent of its
@@ -62,7 +62,7 @@ impl NewtonIteration {
             positions,
             residual_n: f64::INFINITY,
             taken: JointMotions::zero(),
-            mean_slip: [Vec3::zeros(); MOST_REGIONS],
+            mean_slip: [Vec3::zeros(); MAX_REGIONS],
             is_whole: false,
             predicted_n: f64::INFINITY,
             contraction_per_n: warm_start.map_or(f64::INFINITY, |last| last.contraction_per_n),
@@ -99,7 +99,7 @@ impl NewtonIteration {
     pub fn improve(
         &mut self,
         residual: &JointForces,
-        mean_slip: [Vec3; MOST_REGIONS],
+        mean_slip: [Vec3; MAX_REGIONS],
         tangent: impl FnOnce() -> JointStiffness,
     ) -> bool {
         let residual_n = residual.length_n(&self.levers);
@@ -135,14 +135,14 @@ impl NewtonIteration {
     /// Mostly friction has turned round, and then the place to go on from is where the slip stands
     /// still: there friction resists most, and a correction from there does not fly past. Otherwise it
     /// is the minimum of the parabola through both lengths and the slope that Newton's method implies.
-    fn backtrack(&mut self, residual_n: f64, mean_slip: &[Vec3; MOST_REGIONS]) -> bool {
+    fn backtrack(&mut self, residual_n: f64, mean_slip: &[Vec3; MAX_REGIONS]) -> bool {
         if let Some(part) = standstill(&self.mean_slip, mean_slip) {
             self.keep(part);
             self.residual_n = f64::INFINITY;
             return true;
         }
         let (before, after) = (self.residual_n.powi(2), residual_n.powi(2));
-        self.keep((before / (before + after)).max(LEAST_PART_OF_CORRECTION));
+        self.keep((before / (before + after)).max(MIN_PART_OF_CORRECTION));
         self.taken.longest_mm(&self.levers) > SHORTEST_CORRECTION_MM
     }
 
@@ -189,7 +189,7 @@ impl NewtonIteration {
 
 /// The part of a correction after which the first of the regions, slipping as `before` and then as
 /// `after`, stands still; none if none turns round.
-fn standstill(before: &[Vec3; MOST_REGIONS], after: &[Vec3; MOST_REGIONS]) -> Option<f64> {
+fn standstill(before: &[Vec3; MAX_REGIONS], after: &[Vec3; MAX_REGIONS]) -> Option<f64> {
     let regions = before.iter().zip(after);
     let turning = regions.filter(|(before, after)| before.dot(after) < 0.0);
     let part = |(before, after): (&Vec3, &Vec3)| {

@@ -8,7 +8,7 @@ use super::{
 use crate::contact::ContactModel;
 
 /// Iterations after which settling is given up.
-const MOST_ITERATIONS: usize = 2000;
+const MAX_ITERATIONS: usize = 2000;
 /// Farthest that one iteration may move, mm.
 const LONGEST_CORRECTION_MM: f64 = 0.2;
 /// Motion that the first iteration allows for the whole load, mm.
@@ -50,7 +50,7 @@ pub fn settle(
     machine.drive(0.0, &mut positions, &mut [0.0; 6]);
     let mut damping = loads.largest_n(&levers).max(1.0) / FIRST_MOTION_MM;
     let (mut last_residual_n, mut moved_mm) = (f64::INFINITY, f64::INFINITY);
-    for _ in 0..MOST_ITERATIONS {
+    for _ in 0..MAX_ITERATIONS {
         let still = Kinematics::at_rest(positions);
         let balance = Balance::new(&machine, chain, contact, still);
         counters.contact_evaluations += 1;

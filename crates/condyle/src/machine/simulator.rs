@@ -17,10 +17,10 @@ use crate::{
 };
 
 /// How often a step may be halved before it is given up.
-const MOST_HALVINGS: u32 = 8;
+const MAX_HALVINGS: u32 = 8;
 /// How often a step is solved anew for a contact whose own state goes with the load; each time that state is right to
 /// about three times as much.
-const MOST_TURNS: u32 = 20;
+const MAX_TURNS: u32 = 20;
 
 /// Where the machine goes on from.
 struct Accepted {
@@ -241,7 +241,7 @@ impl<'a> Simulator<'a> {
         self.warm_starts.resize(count, None);
         let place = (to * count as f64).round() as usize % count;
         let last = self.warm_starts[place];
-        let end = self.advance(state, to, last.as_ref(), MOST_HALVINGS, counters, watch)?;
+        let end = self.advance(state, to, last.as_ref(), MAX_HALVINGS, counters, watch)?;
         self.warm_starts[place] = end.warm_start;
         Ok(end)
     }
@@ -313,7 +313,7 @@ impl GivenUp {
             Self::NotBorne { phase, why } => CycleError::not_borne(phase, why),
             Self::Unsettled { phase } => CycleError::Unsettled {
                 percent: 100.0 * phase,
-                turns: MOST_TURNS,
+                turns: MAX_TURNS,
             },
         }
     }
@@ -328,7 +328,7 @@ fn settled(
     watch: &mut dyn FnMut(f64),
 ) -> Result<Stepped, GivenUp> {
     let mut last = None;
-    for _ in 0..MOST_TURNS {
+    for _ in 0..MAX_TURNS {
         let ended = implicit.step(from, step, last.as_ref().or(warm_start), watch);
         let ended = ended.map_err(GivenUp::NotConverged)?;
         let settled = implicit.contact.settle(&ended.motion);

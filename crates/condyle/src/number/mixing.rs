@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 const DEPTH: usize = 8;
 /// Part of the mean square of the differences that is added to each, so that those which say the same do not cancel
 /// to rounding.
-const LEAST_PART: f64 = 1e-12;
+const MIN_PART: f64 = 1e-12;
 /// What was seen is forgotten where what is left grows to so many times the least: there the map has bent.
 const BENT: f64 = 3.0;
 
@@ -76,7 +76,7 @@ impl Mixing {
         let mut products = DMatrix::from_fn(count, count, |i, j| of(i).dot(of(j)));
         let mean = products.trace() / count as f64;
         for i in 0..count {
-            products[(i, i)] += LEAST_PART * mean;
+            products[(i, i)] += MIN_PART * mean;
         }
         let wanted = DVector::from_fn(count, |i, _| of(i).dot(left));
         Some(products.cholesky()?.solve(&wanted))

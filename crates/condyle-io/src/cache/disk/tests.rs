@@ -116,13 +116,13 @@ fn the_newest_files_are_kept_and_no_other_is_touched() {
     let (folder, cache) = kept_once();
     let own = folder.path().join("thesis.txt");
     fs::write(&own, "mine").expect("it can be written");
-    for i in 0..MOST_FILES {
+    for i in 0..MAX_FILES {
         assert!(computes(&cache, &[&i.to_le_bytes()]));
     }
     let files = fs::read_dir(folder.path()).expect("the folder is there");
-    assert_eq!(files.count(), MOST_FILES + 1);
+    assert_eq!(files.count(), MAX_FILES + 1);
     assert!(own.is_file());
-    assert!(!computes(&cache, &[&(MOST_FILES - 1).to_le_bytes()]));
+    assert!(!computes(&cache, &[&(MAX_FILES - 1).to_le_bytes()]));
 }
 
 /// The folder of a cache with these variables.

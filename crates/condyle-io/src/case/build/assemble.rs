@@ -20,7 +20,7 @@ use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
 
 /// Less of a backside than this lies in a plane: it does not rest on a flat tray.
-const LEAST_FLAT_PART: f64 = 0.5;
+const MIN_FLAT_PART: f64 = 0.5;
 
 /// A wear test ready to run, and what was put right on the way to it.
 pub struct Built {
@@ -96,7 +96,7 @@ impl Case {
             insert,
             activities,
             wear: as_linked(self.wear.law()).law,
-            laws_beside: self.wear.beside().into_iter().map(as_linked).collect(),
+            comparison_laws: self.wear.beside().into_iter().map(as_linked).collect(),
             creep: self.creep.law(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),
@@ -184,7 +184,7 @@ impl Case {
             beside("friction_model = \"stick-slip\"")
         } else {
             let part = Deformable::flat_part_of_backside(insert);
-            if part < LEAST_FLAT_PART {
+            if part < MIN_FLAT_PART {
                 let percent = 100.0 * part;
                 return Err(BuildError::BacksideNotFlat { percent });
             }

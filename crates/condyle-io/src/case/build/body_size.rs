@@ -10,9 +10,9 @@ use super::error::BuildError;
 use super::pieces::stray_piece;
 
 /// No part of a knee is shorter, mm ...
-const LEAST_MM: f64 = 5.0;
+const MIN_MM: f64 = 5.0;
 /// ... or longer.
-const MOST_MM: f64 = 500.0;
+const MAX_MM: f64 = 500.0;
 /// Another unit is the right one if it makes the body this long, mm: as femoral components and
 /// inserts are, so that no two units do.
 const USUAL_MM: std::ops::RangeInclusive<f64> = 20.0..=200.0;
@@ -58,5 +58,5 @@ pub(super) fn check_points(
 }
 
 fn is_possible(size_mm: f64) -> bool {
-    (LEAST_MM..=MOST_MM).contains(&size_mm)
+    (MIN_MM..=MAX_MM).contains(&size_mm)
 }

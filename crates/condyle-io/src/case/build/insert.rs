@@ -287,14 +287,14 @@ fn named(
 }
 
 /// A face counts as seen from above or below if it leans by less than 60 degrees.
-const LEAST_COSINE: f64 = 0.5;
+const MIN_COSINE: f64 = 0.5;
 
 /// The faces of the boundary that look up (`up` 1) or down (-1).
 fn facing(mesh: &HexMesh, up: f64) -> Vec<[u32; 4]> {
     let upward = |quad: &[u32; 4]| {
         let [a, b, c, d]: [Vec3; 4] = quad.map(|node| mesh.nodes[node as usize]);
         let normal = (c - a).cross(&(d - b));
-        up * normal.y > LEAST_COSINE * normal.norm()
+        up * normal.y > MIN_COSINE * normal.norm()
     };
     mesh.boundary_quads().into_iter().filter(upward).collect()
 }

@@ -31,7 +31,7 @@ pub(super) use lie::{longest_mm, usual_unit};
 #[cfg(feature = "file-system")]
 pub(super) use meshes::checks_of;
 #[cfg(feature = "file-system")]
-pub(super) use off_centre::MOST_ACROSS_MM;
+pub(super) use off_centre::MAX_ACROSS_MM;
 pub use pieces::StrayPiece;
 #[cfg(feature = "file-system")]
 pub(super) use rigid_motion::middle_of_mesh;

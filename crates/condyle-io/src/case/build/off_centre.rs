@@ -10,10 +10,10 @@ use super::rigid_motion::middle_of_points;
 use crate::keyed::DataFile;
 
 /// The dishes may have their middle so far to a side of the origin, mm: each mm moves 2 % of the load to one of them ...
-pub(in crate::case) const MOST_ACROSS_MM: f64 = 2.5;
+pub(in crate::case) const MAX_ACROSS_MM: f64 = 2.5;
 /// ... and so far in front or behind, mm: dishes are lowest behind the middle of an insert, and flat ones at no certain
 /// place.
-const MOST_ALONG_MM: f64 = 10.0;
+const MAX_ALONG_MM: f64 = 10.0;
 
 /// A warning where the dishes lie off the origin of their file, wherever the case's own keys turn them.
 pub(super) fn off_centre(
@@ -29,11 +29,11 @@ pub(super) fn off_centre(
         .collect();
     let middle = rotation * middle_of_points(&unturned);
     let is_of_file = placement.origin == InsertOrigin::File;
-    let is_off = middle.z.abs() > MOST_ACROSS_MM || middle.x.abs() > MOST_ALONG_MM;
+    let is_off = middle.z.abs() > MAX_ACROSS_MM || middle.x.abs() > MAX_ALONG_MM;
     (is_of_file && is_off).then(|| BuildWarning::OffCentre {
         file: PathBuf::from(file.name()),
         anterior_mm: middle.x,
         lateral_mm: middle.z,
-        most_mm: (MOST_ALONG_MM, MOST_ACROSS_MM),
+        most_mm: (MAX_ALONG_MM, MAX_ACROSS_MM),
     })
 }

@@ -15,9 +15,9 @@ use super::error::BuildWarning;
 use super::femur::BuiltFemur;
 
 /// Bodies of each kind that are kept, the newest: those of a few levels or designs, whatever the number of cases.
-const MOST_KEPT: usize = 8;
+const MAX_KEPT: usize = 8;
 /// Inserts as elastic bodies that are kept, the newest: each has some hundred megabytes.
-const MOST_ELASTIC: usize = 2;
+const MAX_ELASTIC: usize = 2;
 
 /// Bodies that were built, for other cases that have the same: a case built beside others is that built alone, to
 /// the bit.
@@ -32,9 +32,9 @@ pub struct SharedBodies {
 impl Default for SharedBodies {
     fn default() -> Self {
         Self {
-            inserts: Kept::of(MOST_KEPT),
-            femurs: Kept::of(MOST_KEPT),
-            elastic: Kept::of(MOST_ELASTIC),
+            inserts: Kept::of(MAX_KEPT),
+            femurs: Kept::of(MAX_KEPT),
+            elastic: Kept::of(MAX_ELASTIC),
         }
     }
 }
@@ -147,14 +147,14 @@ mod tests {
 
     #[test]
     fn what_was_made_of_the_same_is_shared_and_the_oldest_goes() {
-        let kept: Kept<usize, usize> = Kept::of(MOST_KEPT);
+        let kept: Kept<usize, usize> = Kept::of(MAX_KEPT);
         let made = |inputs: usize| {
             let made = kept.found_or_made(inputs, |_| Ok::<_, ()>(inputs));
             made.expect("nothing goes wrong").0
         };
         let first = made(0);
         assert!(Arc::ptr_eq(&first, &made(0)));
-        (1..=MOST_KEPT).for_each(|inputs| drop(made(inputs)));
+        (1..=MAX_KEPT).for_each(|inputs| drop(made(inputs)));
         assert!(!Arc::ptr_eq(&first, &made(0)));
     }
 }

@@ -2,7 +2,7 @@
 
 use condyle::geometry::TriangleMesh;
 
-use crate::case::build::{MOST_ACROSS_MM, middle_of_mesh};
+use crate::case::build::{MAX_ACROSS_MM, middle_of_mesh};
 
 /// An origin so far in front of the dishes' middle, or behind it, is not that of a machine, mm.
 const FAR_ALONG_MM: f64 = 20.0;
@@ -18,7 +18,7 @@ impl ConcludedOrigin {
     pub fn centred(insert: &mut TriangleMesh) -> Self {
         let middle = middle_of_mesh(insert);
         // Flat dishes are lowest at no certain place along: only what is far off is taken for another origin.
-        let is_far = middle.z.abs() > MOST_ACROSS_MM || middle.x.abs() > FAR_ALONG_MM;
+        let is_far = middle.z.abs() > MAX_ACROSS_MM || middle.x.abs() > FAR_ALONG_MM;
         if !is_far {
             return Self {
                 key: "",

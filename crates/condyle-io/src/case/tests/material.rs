@@ -51,7 +51,7 @@ fn verify_every_law_of_the_test_wears_so_many_times_as_much() {
     };
     let depths = |text: &str| -> Vec<f64> {
         let test = parsed(text).unwrap().build(1).unwrap().test;
-        let beside = test.laws_beside.iter().map(|named| named.law.as_ref());
+        let beside = test.comparison_laws.iter().map(|named| named.law.as_ref());
         let laws = std::iter::once(test.wear.as_ref()).chain(beside);
         laws.map(depth).collect()
     };

@@ -150,7 +150,7 @@ fn verify_it_is_the_law_that_the_test_wears_by() {
 fn it_is_told_beside_the_law_of_a_case_that_takes_another() {
     let words = |case: &str| -> Vec<&str> {
         let test = read(case).unwrap().build(1).unwrap().test;
-        test.laws_beside.iter().map(|law| law.word).collect()
+        test.comparison_laws.iter().map(|law| law.word).collect()
     };
     assert_eq!(words("[insert]\nedge_mm = 6.0\n"), ["threshold"]);
     assert_eq!(words(CASE), ["archard"]);

@@ -9,7 +9,7 @@ use super::CalibrateError;
 /// Steps that would change no rate by more than this part of it are not made.
 const SETTLED: f64 = 1e-3;
 /// Steps at most; nearly linear as rates are, two or three are enough.
-const MOST_STEPS: usize = 12;
+const MAX_STEPS: usize = 12;
 /// A step changes no parameter by more than this factor.
 const LONGEST_STEP: f64 = 5.0;
 /// First differences, as a part of the parameter: well above what increments and updates leave in a rate.
@@ -187,7 +187,7 @@ impl<'a> Search<'a> {
     fn settle(&mut self, model: &mut Model<'_>) -> Result<(), CalibrateError> {
         let mut part = 1.0;
         let mut change = f64::INFINITY;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let step = self.step()?;
             change = self.change_of(&step);
             if change <= SETTLED {
@@ -196,7 +196,7 @@ impl<'a> Search<'a> {
             let better = self.go(model, &(part * step))?;
             part = if better { 1.0 } else { 0.5 * part };
         }
-        let (steps, left_percent) = (MOST_STEPS, 100.0 * change);
+        let (steps, left_percent) = (MAX_STEPS, 100.0 * change);
         Err(CalibrateError::NotFound {
             steps,
             left_percent,

@@ -5,15 +5,15 @@ use condyle_report::SurfaceFields;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-use super::register::LEAST_COSINE;
+use super::register::MIN_COSINE;
 use super::sheet::Sheet;
 
 /// Scanned depth at a node is that of points up to this many of their spacings away.
 const SPACINGS: f64 = 1.5;
 /// Places of which the spacing is taken.
-const MOST_FOR_SPACING: usize = 2000;
+const MAX_FOR_SPACING: usize = 2000;
 /// Smaller determinants of a fit, relative to its weight, leave the slope open.
-const LEAST_DETERMINANT: f64 = 1e-3;
+const MIN_DETERMINANT: f64 = 1e-3;
 
 /// Depths at the nodes of the unworn surface, mm, NaN where the scan does not reach.
 pub(super) struct Compared {
@@ -62,7 +62,7 @@ fn soundings(
 ) -> Vec<Sounding> {
     let sounding = |(index, point): (usize, &Vec3)| {
         let foot = sheet.foot(point)?;
-        let faces = normals.is_none_or(|all| all[index].dot(&foot.normal) > LEAST_COSINE);
+        let faces = normals.is_none_or(|all| all[index].dot(&foot.normal) > MIN_COSINE);
         let counts = faces && !foot.on_border && foot.height_mm.abs() <= farthest_mm;
         counts.then(|| Sounding::new(foot.point.into(), -foot.height_mm))
     };
@@ -84,7 +84,7 @@ fn edge_mm(surface: &SurfaceFields) -> f64 {
 /// Median distance from a sounding to the next.
 fn spacing_mm(soundings: &[Sounding]) -> f64 {
     let tree = RTree::bulk_load(soundings.to_vec());
-    let every = soundings.len().div_ceil(MOST_FOR_SPACING).max(1);
+    let every = soundings.len().div_ceil(MAX_FOR_SPACING).max(1);
     let next = |sounding: &Sounding| {
         let [_, next] = two_nearest(&tree, *sounding.geom())?;
         Some((Vec3::from(next) - Vec3::from(*sounding.geom())).norm())
@@ -117,7 +117,7 @@ fn sounded(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<f64> {
     if weight <= 0.0 {
         return None;
     }
-    let is_fixed = matrix.determinant() > LEAST_DETERMINANT * weight.powi(3);
+    let is_fixed = matrix.determinant() > MIN_DETERMINANT * weight.powi(3);
     let plane = matrix.cholesky().filter(|_| is_fixed);
     Some(plane.map_or(right_side.x / weight, |plane| plane.solve(&right_side).x))
 }

@@ -9,27 +9,27 @@ use super::super::CompareError;
 use super::sheet::{Foot, Sheet};
 
 /// Points of the scan that are laid onto the surface; more of them cost time and gain nothing.
-const MOST_POINTS: usize = 8000;
+const MAX_POINTS: usize = 8000;
 /// A scan starts within this distance of its place, mm.
 const REACH_MM: f64 = 15.0;
 /// The reach becomes shorter by this factor at every step, down to `farthest_mm`.
 const REACH_SHRINKS: f64 = 0.8;
 /// Steps at most.
-const MOST_STEPS: usize = 300;
+const MAX_STEPS: usize = 300;
 /// A step shorter than this, at the scan's radius of gyration, is none, mm.
 const REST_MM: f64 = 1e-6;
 /// A last step up to this is small enough where the points keep changing sides, mm.
 const NEARLY_REST_MM: f64 = 1e-3;
 /// Normals may lean from each other by 60 degrees.
-pub(super) const LEAST_COSINE: f64 = 0.5;
+pub(super) const MIN_COSINE: f64 = 0.5;
 /// Residuals beyond this many scales have no weight: 95 % efficient for normal noise.
 const TUKEY: f64 = 4.685;
 /// From the median of absolute residuals to the standard deviation of normal noise.
 const SCALE_OF_MEDIAN: f64 = 1.4826;
 /// Smallest scale of residuals, mm: round-off of a scan without noise.
-const LEAST_SCALE_MM: f64 = 1e-7;
+const MIN_SCALE_MM: f64 = 1e-7;
 /// A motion that the surface resists less than this part of the most resisted one is free.
-const LEAST_RESISTANCE: f64 = 1e-7;
+const MIN_RESISTANCE: f64 = 1e-7;
 
 /// A rigid motion from the scan as given (axes, unit and `start_mm` applied) to the prediction.
 #[derive(Clone, Debug, Serialize)]
@@ -79,7 +79,7 @@ pub(super) fn register(
     let mut motion = Isometry3::identity();
     let mut reach = REACH_MM.max(scan.keys.farthest_mm);
     let mut step_mm = f64::INFINITY;
-    for steps in 1..=MOST_STEPS {
+    for steps in 1..=MAX_STEPS {
         let pairs = places.pairs(&motion, target, reach, |foot| fits(&scan.keys, foot, depth));
         let fit = Fit::of(&pairs).ok_or(CompareError::ScanElsewhere {
             near: pairs.len(),
@@ -89,13 +89,13 @@ pub(super) fn register(
         motion = step * motion;
         step_mm = fit.length_of(&step);
         let is_last = reach <= scan.keys.farthest_mm && step_mm < REST_MM;
-        if is_last || (steps == MOST_STEPS && step_mm < NEARLY_REST_MM) {
+        if is_last || (steps == MAX_STEPS && step_mm < NEARLY_REST_MM) {
             return Ok(fit.registration(motion, steps));
         }
         reach = (reach * REACH_SHRINKS).max(scan.keys.farthest_mm);
     }
     Err(CompareError::ScanRestless {
-        iterations: MOST_STEPS,
+        iterations: MAX_STEPS,
         step_mm,
     })
 }
@@ -129,7 +129,7 @@ struct Pair {
 
 impl Places {
     fn of(scan: &Scan) -> Self {
-        let every = scan.points.len().div_ceil(MOST_POINTS).max(1);
+        let every = scan.points.len().div_ceil(MAX_POINTS).max(1);
         let some = |all: &Vec<Vec3>| all.iter().step_by(every).copied().collect();
         Self {
             points: some(&scan.points),
@@ -150,7 +150,7 @@ impl Places {
             let foot = target.foot(&point)?;
             let normal = self.normals.as_ref().map(|normals| normals[index]);
             let faces = normal.is_none_or(|normal| {
-                motion.transform_vector(&normal).dot(&foot.normal) > LEAST_COSINE
+                motion.transform_vector(&normal).dot(&foot.normal) > MIN_COSINE
             });
             let is_near = (point - foot.point).norm() <= reach;
             (faces && is_near && !foot.on_border && fits(&foot)).then_some(Pair {
@@ -177,8 +177,8 @@ struct Fit {
 impl Fit {
     /// None for fewer pairs than a rigid motion takes.
     fn of(pairs: &[Pair]) -> Option<Self> {
-        const LEAST_PAIRS: usize = 12;
-        if pairs.len() < LEAST_PAIRS {
+        const MIN_PAIRS: usize = 12;
+        if pairs.len() < MIN_PAIRS {
             return None;
         }
         let count = pairs.len() as f64;
@@ -220,7 +220,7 @@ impl Fit {
     /// The motion that takes most of the residuals away; none where the surface leaves one free.
     fn step(&self) -> Option<Isometry3<f64>> {
         let resistances = self.matrix.symmetric_eigenvalues();
-        if resistances.min() <= LEAST_RESISTANCE * resistances.max() {
+        if resistances.min() <= MIN_RESISTANCE * resistances.max() {
             return None;
         }
         let solved = self.matrix.cholesky()?.solve(&self.right_side);
@@ -263,7 +263,7 @@ fn scale(pairs: &[Pair]) -> f64 {
     let mut sizes: Vec<f64> = pairs.iter().map(|pair| pair.height_mm.abs()).collect();
     let middle = sizes.len() / 2;
     let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    (SCALE_OF_MEDIAN * *median).max(LEAST_SCALE_MM)
+    (SCALE_OF_MEDIAN * *median).max(MIN_SCALE_MM)
 }
 
 /// Tukey's weight of a residual in units of the scale.

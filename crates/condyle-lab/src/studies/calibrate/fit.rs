@@ -1,7 +1,7 @@
 //! A pressure table by least squares, so that a foundation presses as a deformable insert does.
 
 use condyle::contact::{
-    Bodies, ContactLaw, ContactMemory, Foundation, MOST_REGIONS, PressureLaw, PressureTable,
+    Bodies, ContactLaw, ContactMemory, Foundation, MAX_REGIONS, PressureLaw, PressureTable,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -10,7 +10,7 @@ use super::target::{Carried, Target};
 /// Pressures of the table's points, as parts of the highest pressure of the deformable insert.
 const PARTS: [f64; 9] = [0.03, 0.08, 0.15, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0];
 /// The table goes up to this pressure at least.
-const LEAST_PEAK_MPA: f64 = 1.0;
+const MIN_PEAK_MPA: f64 = 1.0;
 /// What a bend of the table counts beside a relative error of pressure and area, so that points which no pose feels
 /// lie between the others.
 const BEND: f64 = 0.01;
@@ -19,7 +19,7 @@ const STEP: f64 = 1e-3;
 /// Most rounds of the fit.
 const ROUNDS: usize = 15;
 /// A round that makes the sum of squares less by no more than this part of it is the last.
-const LEAST_GAIN: f64 = 1e-4;
+const MIN_GAIN: f64 = 1e-4;
 /// What is put in for an increment that a table does not carry.
 const NOT_CARRIED: f64 = 10.0;
 
@@ -36,7 +36,7 @@ struct Tried {
     /// Logarithms of the strain from each point to the next.
     logarithms: DVector<f64>,
     residuals: DVector<f64>,
-    lower_mm: Vec<[f64; MOST_REGIONS]>,
+    lower_mm: Vec<[f64; MAX_REGIONS]>,
 }
 
 impl Tried {
@@ -53,7 +53,7 @@ impl Fit<'_> {
         let start = pressures.windows(2);
         let start = start.map(|pair| ((pair[1] - pair[0]) / modulus_mpa).ln());
         let start = DVector::from_iterator(PARTS.len(), start);
-        let mut best = self.tried(start, &vec![[0.0; MOST_REGIONS]; self.targets.len()]);
+        let mut best = self.tried(start, &vec![[0.0; MAX_REGIONS]; self.targets.len()]);
         let mut damping = 1e-2;
         for _ in 0..ROUNDS {
             let Some(next) = self.improved(&best, &mut damping) else {
@@ -61,7 +61,7 @@ impl Fit<'_> {
             };
             let gain = 1.0 - next.squares() / best.squares();
             best = next;
-            if gain < LEAST_GAIN {
+            if gain < MIN_GAIN {
                 break;
             }
         }
@@ -100,7 +100,7 @@ impl Fit<'_> {
         DMatrix::from_columns(&columns)
     }
 
-    fn tried(&self, logarithms: DVector<f64>, near_mm: &[[f64; MOST_REGIONS]]) -> Tried {
+    fn tried(&self, logarithms: DVector<f64>, near_mm: &[[f64; MAX_REGIONS]]) -> Tried {
         let carried = self.carried(&self.table_of(&logarithms), near_mm);
         let mut residuals = Vec::new();
         for (carried, target) in carried.iter().zip(self.targets) {
@@ -127,7 +127,7 @@ impl Fit<'_> {
     pub fn carried(
         &self,
         table: &PressureTable,
-        near_mm: &[[f64; MOST_REGIONS]],
+        near_mm: &[[f64; MAX_REGIONS]],
     ) -> Vec<Option<Carried>> {
         let law = Foundation {
             pressure: PressureLaw::TabulatedStrain(table.clone()),
@@ -166,7 +166,7 @@ impl Fit<'_> {
     /// Pressures of the table's points, from zero.
     fn pressures_mpa(&self) -> Vec<f64> {
         let peaks = self.targets.iter().map(|target| target.peak_mpa);
-        let highest = peaks.fold(LEAST_PEAK_MPA, f64::max);
+        let highest = peaks.fold(MIN_PEAK_MPA, f64::max);
         let above = PARTS.iter().map(|part| part * highest);
         [0.0].into_iter().chain(above).collect()
     }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use condyle::{
     contact::{
-        Bodies, ContactLaw, ContactMemory, ContactModel, Foundation, MOST_REGIONS, PressureLaw,
+        Bodies, ContactLaw, ContactMemory, ContactModel, Foundation, MAX_REGIONS, PressureLaw,
         PressureTable, confined_modulus,
     },
     evolve::March,
@@ -249,7 +249,7 @@ impl Recorded {
         let mut armed: Vec<Target> = armed.collect();
         armed.retain(|target| {
             target
-                .carried(contact.as_mut(), [0.0; MOST_REGIONS])
+                .carried(contact.as_mut(), [0.0; MAX_REGIONS])
                 .is_some()
         });
         armed
@@ -269,7 +269,7 @@ impl Recorded {
 
 /// What a table does in the increments that it was fitted to.
 fn increments(fit: &Fit<'_>, table: &PressureTable) -> Vec<CalibratedIncrement> {
-    let near = vec![[0.0; MOST_REGIONS]; fit.targets.len()];
+    let near = vec![[0.0; MAX_REGIONS]; fit.targets.len()];
     let carried = fit.carried(table, &near);
     let law = Foundation {
         pressure: PressureLaw::TabulatedStrain(table.clone()),

@@ -2,7 +2,7 @@
 
 use condyle::{
     Vec3,
-    contact::{ContactModel, Landing, MOST_REGIONS},
+    contact::{ContactModel, ContactResult, MAX_REGIONS},
     evolve::SolvedCycle,
     spatial::{Pose, RelativeMotion},
 };
@@ -11,7 +11,7 @@ use nalgebra::Rotation3;
 /// Forces on the sides are met to this, N.
 const FORCE_TOLERANCE_N: f64 = 0.05;
 /// A side that carries less is as if it carried nothing, N.
-const LEAST_FORCE_N: f64 = 1.0;
+const MIN_FORCE_N: f64 = 1.0;
 /// Most iterations until they are.
 const ITERATIONS: usize = 30;
 /// By how much the femur is lowered to see how stiff the sides are, mm.
@@ -25,11 +25,11 @@ pub(super) struct Target {
     pub percent: f64,
     pub pose: Pose,
     /// Part of the axial force on every region of the surface, N.
-    pub region_force_n: [f64; MOST_REGIONS],
+    pub region_force_n: [f64; MAX_REGIONS],
     pub area_mm2: f64,
     pub peak_mpa: f64,
     /// Where the force of every region acts, z, mm.
-    pub arms_mm: [f64; MOST_REGIONS],
+    pub arms_mm: [f64; MAX_REGIONS],
 }
 
 /// How a foundation carries the same forces.
@@ -38,7 +38,7 @@ pub(super) struct Carried {
     pub area_mm2: f64,
     pub peak_mpa: f64,
     /// By how much the femur is lower over every region than on the deformable insert, mm.
-    pub lower_mm: [f64; MOST_REGIONS],
+    pub lower_mm: [f64; MAX_REGIONS],
 }
 
 impl Target {
@@ -50,7 +50,7 @@ impl Target {
             region_force_n: row.region_force_n,
             area_mm2: row.contact_area_mm2,
             peak_mpa: row.peak_pressure_mpa,
-            arms_mm: [0.0; MOST_REGIONS],
+            arms_mm: [0.0; MAX_REGIONS],
         };
         cycle.rows.iter().enumerate().map(of_one).collect()
     }
@@ -65,7 +65,7 @@ impl Target {
     }
 
     /// A number of every region, the mean weighted by force.
-    pub fn mean_by_force(&self, of_regions: [f64; MOST_REGIONS]) -> f64 {
+    pub fn mean_by_force(&self, of_regions: [f64; MAX_REGIONS]) -> f64 {
         let pairs = self.region_force_n.iter().zip(of_regions);
         pairs.map(|(force_n, of)| force_n * of).sum::<f64>() / self.force_n()
     }
@@ -74,12 +74,12 @@ impl Target {
     pub fn with_arms(mut self, contact: &mut dyn ContactModel, positions: &[Vec3]) -> Self {
         let landing = land(contact, &self.pose);
         let forces = forces(&landing);
-        let mut moments = [0.0; MOST_REGIONS];
+        let mut moments = [0.0; MAX_REGIONS];
         for node in &landing.touched {
             let z = positions[node.node as usize].z;
             moments[usize::from(node.region)] -= z * node.force_n.y;
         }
-        for region in 0..MOST_REGIONS {
+        for region in 0..MAX_REGIONS {
             if forces[region] > 0.0 {
                 self.arms_mm[region] = moments[region] / forces[region];
             }
@@ -92,7 +92,7 @@ impl Target {
     pub fn carried(
         &self,
         contact: &mut dyn ContactModel,
-        near_mm: [f64; MOST_REGIONS],
+        near_mm: [f64; MAX_REGIONS],
     ) -> Option<Carried> {
         let mut lower_mm = near_mm;
         for _ in 0..ITERATIONS {
@@ -111,7 +111,7 @@ impl Target {
             }
             let probe = lower_mm.map(|lower| lower + PROBE_MM);
             let more = forces(&land(contact, &self.lowered(probe)));
-            for region in 0..MOST_REGIONS {
+            for region in 0..MAX_REGIONS {
                 let stiffness = (more[region] - found[region]) / PROBE_MM;
                 let step = missing[region] / stiffness.max(1.0);
                 lower_mm[region] += step.clamp(-FARTHEST_MM, FARTHEST_MM);
@@ -121,10 +121,10 @@ impl Target {
     }
 
     /// What regions that carry something are short of, N.
-    fn missing_n(&self, found_n: [f64; MOST_REGIONS]) -> [f64; MOST_REGIONS] {
+    fn missing_n(&self, found_n: [f64; MAX_REGIONS]) -> [f64; MAX_REGIONS] {
         std::array::from_fn(|region| {
             let wanted_n = self.region_force_n[region];
-            if wanted_n > LEAST_FORCE_N {
+            if wanted_n > MIN_FORCE_N {
                 wanted_n - found_n[region]
             } else {
                 0.0
@@ -133,10 +133,10 @@ impl Target {
     }
 
     /// The pose with the femur lowered over every region by so much.
-    fn lowered(&self, lower_mm: [f64; MOST_REGIONS]) -> Pose {
+    fn lowered(&self, lower_mm: [f64; MAX_REGIONS]) -> Pose {
         let ([left, right], [left_arm, right_arm]) = (lower_mm, self.arms_mm);
         let mut forces = self.region_force_n.iter();
-        let is_on_both = forces.all(|force| *force > LEAST_FORCE_N);
+        let is_on_both = forces.all(|force| *force > MIN_FORCE_N);
         // A side that carries nothing goes along with the other.
         let (tilt, middle) = if is_on_both && (right_arm - left_arm).abs() > 1.0 {
             let tilt = (right - left) / (right_arm - left_arm);
@@ -154,15 +154,15 @@ impl Target {
     }
 }
 
-fn land(contact: &mut dyn ContactModel, pose: &Pose) -> Landing {
+fn land(contact: &mut dyn ContactModel, pose: &Pose) -> ContactResult {
     let motion = RelativeMotion::at_rest(*pose);
     contact.respond(&motion);
     contact.land(&motion)
 }
 
 /// Part of the axial force on every region of the surface, N.
-fn forces(landing: &Landing) -> [f64; MOST_REGIONS] {
-    let mut forces_n = [0.0; MOST_REGIONS];
+fn forces(landing: &ContactResult) -> [f64; MAX_REGIONS] {
+    let mut forces_n = [0.0; MAX_REGIONS];
     for node in &landing.touched {
         forces_n[usize::from(node.region)] -= node.force_n.y;
     }

@@ -11,9 +11,9 @@ use super::answers::{Answers, Best, Effect, Front, Ranking, Spread, shown};
 use super::error::StudyError;
 
 /// Inputs that pictures show at most, those that matter most.
-const MOST_INPUTS: usize = 12;
+const MAX_INPUTS: usize = 12;
 /// Inputs of a scatter matrix at most.
-const MOST_COLUMNS: usize = 5;
+const MAX_COLUMNS: usize = 5;
 
 /// Writes the pictures and `study.html` into `folder`.
 pub(super) fn write(answers: &Answers, folder: &Path) -> Result<(), StudyError> {
@@ -114,7 +114,7 @@ fn indices(answers: &Answers) -> Option<Picture> {
         title: format!("Total index of Sobol: part of the variance of {output}"),
         unit: String::new(),
         middle: None,
-        bars: own.into_iter().take(MOST_INPUTS).map(bar).collect(),
+        bars: own.into_iter().take(MAX_INPUTS).map(bar).collect(),
     });
     let said = "What part of the variance would remain if all inputs but this one were known, with 95 % intervals.";
     Some(("indices.svg", said.to_owned(), svg))
@@ -132,7 +132,7 @@ fn elementary(answers: &Answers) -> Option<Picture> {
         title: format!("Elementary effects of Morris on {output}: mu*"),
         unit: String::new(),
         middle: None,
-        bars: own.into_iter().take(MOST_INPUTS).map(bar).collect(),
+        bars: own.into_iter().take(MAX_INPUTS).map(bar).collect(),
     });
     let said = "By how much the output moves when an input goes from its low end to its high one, with 95 % intervals.";
     Some(("morris.svg", said.to_owned(), svg))
@@ -141,7 +141,7 @@ fn elementary(answers: &Answers) -> Option<Picture> {
 /// Effects on an output, the largest of them.
 fn effects_on<'a>(answers: &'a Answers, output: &str) -> Vec<&'a Effect> {
     let mut own = answers.effects_on(output);
-    own.truncate(MOST_INPUTS);
+    own.truncate(MAX_INPUTS);
     own
 }
 
@@ -241,7 +241,7 @@ fn scatter(answers: &Answers) -> Option<Picture> {
     let first = answers.spreads.first()?;
     let shown: Vec<String> = effects_on(answers, first.output)
         .iter()
-        .take(MOST_COLUMNS)
+        .take(MAX_COLUMNS)
         .map(|effect| effect.input.clone())
         .collect();
     let mut all = Vec::new();

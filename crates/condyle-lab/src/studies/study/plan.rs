@@ -10,7 +10,7 @@ use condyle_io::{
 
 use super::{
     design::{
-        Correlated, MOST_AXES, Place, Saltelli, factorial_places, latin_places, morris_places,
+        Correlated, MAX_AXES, Place, Saltelli, factorial_places, latin_places, morris_places,
         one_at_a_time_places, sobol_places,
     },
     error::StudyError,
@@ -19,7 +19,7 @@ use super::{
 use crate::RunError;
 
 /// Tests of a study, at most.
-const MOST_TESTS: f64 = 1e9;
+const MAX_TESTS: f64 = 1e9;
 
 /// A study that is ready to be done.
 pub struct Plan {
@@ -57,8 +57,8 @@ impl Plan {
     pub fn of(study: Study) -> Result<Self, StudyError> {
         let inputs_blake3 = study.inputs_blake3().map_err(RunError::Inputs)?;
         let tests = tests(&study);
-        if tests * designs(&study) as f64 > MOST_TESTS {
-            let most = MOST_TESTS;
+        if tests * designs(&study) as f64 > MAX_TESTS {
+            let most = MAX_TESTS;
             return Err(StudyError::TooManyTests { tests, most });
         }
         check_axes(&study)?;
@@ -218,8 +218,8 @@ fn tests(study: &Study) -> f64 {
 fn check_axes(study: &Study) -> Result<(), StudyError> {
     let inputs = study.inputs.len();
     let most = match &study.design {
-        Design::Sobol(_) => MOST_AXES,
-        Design::Saltelli(_) => MOST_AXES / 2,
+        Design::Sobol(_) => MAX_AXES,
+        Design::Saltelli(_) => MAX_AXES / 2,
         _ => usize::MAX,
     };
     if inputs <= most {

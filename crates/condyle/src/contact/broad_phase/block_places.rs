@@ -3,7 +3,7 @@
 use crate::{
     Vec3, Vector,
     contact::share_block::ShareBlock,
-    geometry::MOST_GAP_SLOPE,
+    geometry::MAX_GAP_SLOPE,
     number::vector::dot,
     number::{F32x8, F64x4, LANES, LANES_F32, Number},
 };
@@ -91,7 +91,7 @@ fn middle(block: &ShareBlock) -> Vec3 {
 
 fn lever_mm(block: &ShareBlock) -> f64 {
     let from_middle = block.centre - middle(block).map(F64x4::splat);
-    block.half_mm + MOST_GAP_SLOPE * longest_mm(&from_middle)
+    block.half_mm + MAX_GAP_SLOPE * longest_mm(&from_middle)
 }
 
 /// What wear of a block whose middle moves by `moved` may take from its separation besides, mm.
@@ -102,7 +102,7 @@ fn lever_mm(block: &ShareBlock) -> f64 {
 fn lost_mm(before: &ShareBlock, after: &ShareBlock, moved: &Vec3) -> f64 {
     let astray = after.centre - before.centre - moved.map(F64x4::splat);
     let [by_a, by_b] = [after.edge_a - before.edge_a, after.edge_b - before.edge_b];
-    MOST_GAP_SLOPE * longest_mm(&astray) + 0.6 * (longest_mm(&by_a) + longest_mm(&by_b))
+    MAX_GAP_SLOPE * longest_mm(&astray) + 0.6 * (longest_mm(&by_a) + longest_mm(&by_b))
 }
 
 fn longest_mm(vectors: &Vector<F64x4>) -> f64 {

@@ -3,7 +3,7 @@
 use crate::{
     Vec3,
     contact::share_block::ShareBlock,
-    geometry::{CurvatureBounds, MOST_GAP_SLOPE, SurfaceSample},
+    geometry::{CurvatureBounds, MAX_GAP_SLOPE, SurfaceSample},
     number::vector::dot,
     number::{F64x4, LANES, Number},
 };
@@ -63,7 +63,7 @@ impl SeparationBound {
             let far_mm = gap_mm - F64x4::splat(shares.half_mm);
             let near_mm = -Number::max(-clear_mm, F64x4::splat(-HOLDS_MM));
             let clear_mm = is_known.below_zero(near_mm, far_mm).least();
-            return Self::far(clear_mm - EXTRAPOLATED_MM, MOST_GAP_SLOPE + by_turn);
+            return Self::far(clear_mm - EXTRAPOLATED_MM, MAX_GAP_SLOPE + by_turn);
         }
         let gradient = &sample.gap_gradient;
         let slope = gradient.map(|lanes| lanes.sum() / LANES as f64);

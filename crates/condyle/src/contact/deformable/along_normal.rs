@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Below this part of its size a gap's slope does not count as one along the normal: the femur stands on edge there.
-const LEAST_SLOPE: f64 = 0.3;
+const MIN_SLOPE: f64 = 0.3;
 
 /// How the gaps of a block of nodes change along the insert's normals there.
 ///
@@ -33,11 +33,11 @@ impl AlongNormal {
         // A motion a + w x p of the femur's material moves the node by its opposite, and turns m by -w.
         let bent = sample.curvature.times(inward);
         let turn = cross(&near.cached.place, &bent) + cross(inward, gradient);
-        let is_steep = slope - F64x4::splat(LEAST_SLOPE);
+        let is_steep = slope - F64x4::splat(MIN_SLOPE);
         let counted = |by: F64x4| is_steep.below_zero(F64x4::splat(0.0), -by);
         let by_motion = [turn.x, turn.y, turn.z, bent.x, bent.y, bent.z];
         Self {
-            slope: Number::max(slope, F64x4::splat(LEAST_SLOPE)),
+            slope: Number::max(slope, F64x4::splat(MIN_SLOPE)),
             by_motion: by_motion.map(counted),
         }
     }

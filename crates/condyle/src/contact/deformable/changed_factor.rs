@@ -12,7 +12,7 @@ const SIDES: usize = ROWS;
 /// n^2/2 and more.
 const NODES_A_CHANGE: usize = 4;
 /// Fewest and most changes up to which it is not.
-const MOST_CHANGES: [usize; 2] = [32, 320];
+const MAX_CHANGES: [usize; 2] = [32, 320];
 /// A node that is in no row.
 const NONE: u32 = u32::MAX;
 
@@ -77,7 +77,7 @@ impl ChangedFactor {
         let is_new = |node: &&u32| !self.kept.contains(&Some(**node));
         let new: Vec<u32> = changed.iter().filter(is_new).copied().collect();
         let kept = self.kept.len() + new.len().next_multiple_of(SIDES);
-        let [fewest, most] = MOST_CHANGES;
+        let [fewest, most] = MAX_CHANGES;
         let most = (nodes.len() / NODES_A_CHANGE).clamp(fewest, most);
         if changed.len() > most.min(nodes.len() / 2) || kept > 2 * most {
             self.factor_anew(nodes, compliance);

@@ -12,9 +12,9 @@ use crate::number::{F64x4, LANES, Number};
 /// A load may pull by this much, N.
 const LOAD_TOLERANCE_N: f64 = 1e-9;
 /// How often all that is wrong may be put right at once without there being less of it.
-const MOST_TRIES: u32 = 10;
+const MAX_TRIES: u32 = 10;
 /// Rounds after which what is left is round-off: ten times what was ever seen.
-const MOST_ROUNDS: u32 = 500;
+const MAX_ROUNDS: u32 = 500;
 
 /// Which nodes press, and the factor of their compliance.
 ///
@@ -76,15 +76,15 @@ impl Pressing {
             self.overclosures[candidate.node as usize] = candidate.overclosure_mm;
         }
         self.factor.take_other_overclosures();
-        let (mut least, mut tries) = (usize::MAX, MOST_TRIES);
-        for _ in 0..MOST_ROUNDS {
+        let (mut least, mut tries) = (usize::MAX, MAX_TRIES);
+        for _ in 0..MAX_ROUNDS {
             self.load(candidates, compliance);
             let wrong = self.wrong(candidates, compliance);
             let Some(last) = wrong.last() else {
                 break;
             };
             tries = if wrong.len() < least {
-                MOST_TRIES
+                MAX_TRIES
             } else {
                 tries.saturating_sub(1)
             };

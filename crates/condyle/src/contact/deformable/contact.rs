@@ -21,8 +21,8 @@ use crate::{
         contact_law::Bodies,
         memory::{ContactCache, ContactMemory, ContactState},
         model::{
-            ContactModel, Flattened, Landing, Linearization, NotBorne, Response, Settled, Tangent,
-            Tipped,
+            ContactModel, ContactResult, Flattened, Linearization, NotBorne, Response, Settled,
+            Tangent, Tipped,
         },
         pressed::{Coulomb, NearBlock, NearBlocks, PressedBlocks, Sliding, Tractions4},
         share_block::ShareBlock,
@@ -38,11 +38,11 @@ use crate::{
 
 /// A node may touch where the bodies at rest are nearer than this, mm: beside a contact a thin layer bulges,
 /// by a few hundredths of what it gives way.
-const MOST_BULGE_MM: f64 = 0.1;
+const MAX_BULGE_MM: f64 = 0.1;
 
 /// How a deformable contact is computed beside the compliance.
 #[derive(Clone, Copy)]
-pub(super) struct Rubbing {
+pub(super) struct FrictionSettings {
     pub friction: Coulomb,
     /// Motion up to which a sample of the femur is extrapolated, mm.
     pub sample_reuse_mm: f64,
@@ -55,7 +55,7 @@ pub(super) struct Rubbing {
 /// ceases to press, right to six digits.
 pub(super) struct DeformableContact<'a, B> {
     bodies: Bodies<'a>,
-    rubbing: Rubbing,
+    rubbing: FrictionSettings,
     nearby: NearBlocks<'a, B>,
     pressed: PressedBlocks,
     compliance: Arc<Compliance>,
@@ -132,7 +132,7 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
     pub fn after(
         memory: ContactMemory,
         bodies: Bodies<'a>,
-        rubbing: Rubbing,
+        rubbing: FrictionSettings,
         compliance: Arc<Compliance>,
     ) -> Self {
         let nearby = NearBlocks::after(
@@ -232,7 +232,7 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
     fn find_candidates(&mut self, pose: &Pose, pose4: &Pose4) {
         // Where the backside lifts, the surface comes nearer by as much.
         let lift_mm = self.resting.as_ref().map_or(0.0, RestingInsert::lift_mm);
-        let most_mm = MOST_BULGE_MM + lift_mm;
+        let most_mm = MAX_BULGE_MM + lift_mm;
         let (near, most) = (&mut self.near, F64x4::splat(most_mm));
         let prepared_mm2 = self.bodies.femur.prepared_spread_mm2();
         near.clear();
@@ -420,7 +420,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         set_mm.max(friction_mm).max(backside_mm)
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
         if let Some(plastic) = &mut self.plastic {
             plastic.land();
         }
@@ -446,7 +446,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
             faces,
             pressure2: &pressure2,
         };
-        Landing {
+        ContactResult {
             peak_pressure_mpa: peak.highest_mpa(&touched),
             touched,
         }

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use super::{
     backside::{BacksideMemory, RestingInsert},
     compliance::Compliance,
-    contact::{DeformableContact, Rubbing},
+    contact::{DeformableContact, FrictionSettings},
     elastic_surface::ElasticSurface,
     friction::ElasticFriction,
     friction_memory::FrictionMemory,
     plastic::{PlasticInsert, Remembered},
-    settings::{Backside, Deformable, FrictionModel, MOST_REMEMBERED_BYTES},
+    settings::{Backside, Deformable, FrictionModel, MAX_REMEMBERED_BYTES},
     under_surface::{above_tray, under_surface},
 };
 use crate::{
@@ -32,7 +32,7 @@ use crate::{
 ///
 /// Wear is in the gap; what the compliance of an insert thinner by 4 % differs by changes the peak pressure by
 /// half a percent.
-const MOST_THINNER: f64 = 0.05;
+const MAX_THINNER: f64 = 0.05;
 
 /// The field of the contact's state that holds the mesh nodes whose compliance is used, x, y and z of each.
 const NODES_FIELD: &str = "compliance_nodes_mm";
@@ -76,7 +76,7 @@ impl ContactLaw for Deformable {
         surface.map_or(0.0, |surface| {
             let bytes = surface.source.bytes(nodes_near, [1.0, along_surface]);
             // The coarser twin of the insert, and the insert as it has worn, are kept beside.
-            let beside = bytes.min(MOST_REMEMBERED_BYTES);
+            let beside = bytes.min(MAX_REMEMBERED_BYTES);
             let below = self
                 .hardening
                 .as_ref()
@@ -178,7 +178,7 @@ impl Deformable {
                 (Some(friction), without)
             }
         };
-        let rubbing = Rubbing {
+        let rubbing = FrictionSettings {
             friction: coulomb,
             sample_reuse_mm: self.sample_reuse_mm,
         };
@@ -256,5 +256,5 @@ fn is_much_thinner(insert: &Insert, used: &[Vec3]) -> bool {
         let node = node as usize;
         (insert.mesh().nodes[node] - used[node]).norm() / thickness_mm
     };
-    nodes.map(thinner).fold(0.0, f64::max) > MOST_THINNER
+    nodes.map(thinner).fold(0.0, f64::max) > MAX_THINNER
 }

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use crate::{
     contact::{
         model::TouchedNode,
-        pressed::{LEAST_NODES, Quadratic, highest_mpa},
+        pressed::{MIN_NODES, Quadratic, highest_mpa},
     },
     geometry::{FacesAround, Share},
 };
 
 /// A quadratic that misses the square of the pressure under the top by more than this part does not follow it.
-const MOST_MISSED: f64 = 0.1;
+const MAX_MISSED: f64 = 0.1;
 
 /// Looks for the highest pressure.
 ///
@@ -34,7 +34,7 @@ impl PeakSearch<'_> {
 
     /// Highest pressure within the share of a node, MPa.
     fn highest_around(&self, node: u32) -> f64 {
-        let patch = self.faces.patch(node, LEAST_NODES);
+        let patch = self.faces.patch(node, MIN_NODES);
         let Some(own) = self.pressure2.get(&node) else {
             return 0.0;
         };
@@ -43,7 +43,7 @@ impl PeakSearch<'_> {
         }
         let pressing = |node: &u32| (&self.shares[*node as usize], self.pressure2[node]);
         let fit = Quadratic::fit(&self.shares[node as usize], patch.iter().map(pressing));
-        let follows = |fit: &Quadratic| (fit.mean() - own).abs() <= MOST_MISSED * own;
+        let follows = |fit: &Quadratic| (fit.mean() - own).abs() <= MAX_MISSED * own;
         fit.filter(follows)
             .map_or(0.0, |fit| fit.highest().max(0.0).sqrt())
     }

@@ -20,7 +20,7 @@ use crate::{
 
 /// So much of the compliances of inserts is remembered, bytes: of a knee that of the insert and of its coarser twin,
 /// unworn and worn.
-pub(super) const MOST_REMEMBERED_BYTES: f64 = 3e8;
+pub(super) const MAX_REMEMBERED_BYTES: f64 = 3e8;
 
 /// Coulomb's friction on a deformable insert.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -252,7 +252,7 @@ fn forget_the_oldest(remembered: &mut Vec<Arc<Compliance<ElasticSurface>>>) {
             .bytes(surface.known_count() as f64, [1.0, 0.0])
     };
     while let Some(newest) = remembered.last()
-        && remembered.iter().map(bytes).sum::<f64>() + bytes(newest) > MOST_REMEMBERED_BYTES
+        && remembered.iter().map(bytes).sum::<f64>() + bytes(newest) > MAX_REMEMBERED_BYTES
     {
         remembered.remove(0);
     }

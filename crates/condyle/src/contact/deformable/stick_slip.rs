@@ -14,7 +14,7 @@ const FOUND_N: f64 = 1e-7;
 /// A load is at its limit from this part of it on.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 /// Limits below this are none, N.
-const LEAST_LIMIT_N: f64 = 1e-12;
+const MIN_LIMIT_N: f64 = 1e-12;
 /// Where a load is to change by more than this part of its limit a sweep goes before a step of Newton's method, which would
 /// begin with the wrong nodes sticking.
 const FAR: f64 = 0.5;
@@ -25,7 +25,7 @@ const LEAPS: f64 = 0.5;
 /// Sweeps after a step of Newton's method that did not count.
 const SWEEPS_BETWEEN: u32 = 3;
 /// Steps after which what is left is round-off.
-const MOST_STEPS: u32 = 500;
+const MAX_STEPS: u32 = 500;
 
 /// The loads along a surface under a femur that moves past it.
 ///
@@ -91,7 +91,7 @@ impl StickSlip {
     /// Goes to the loads until what is left is small.
     fn approach(&mut self, compliance: &NearMatrix) {
         let mut left_n = self.left_n();
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if left_n <= FOUND_N {
                 return;
             }
@@ -412,7 +412,7 @@ impl StickSlip {
         let mut freedoms = Vec::with_capacity(2 * self.rows.len());
         for (node, &slip_mm) in self.slips_mm.iter().enumerate() {
             let limit_n = self.limits_n[node];
-            if limit_n <= LEAST_LIMIT_N {
+            if limit_n <= MIN_LIMIT_N {
                 continue;
             }
             let free = |along, more| Freedom { node, along, more };

@@ -6,7 +6,7 @@ use crate::{
         broad_phase::BroadPhase,
         contact_law::Bodies,
         memory::{ContactCache, ContactMemory, ContactState},
-        model::{ContactModel, Landing, Linearization, Response, Tangent},
+        model::{ContactModel, ContactResult, Linearization, Response, Tangent},
         pressed::{NearBlocks, PressedBlocks},
         share_block::ShareBlock,
     },
@@ -122,9 +122,9 @@ impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> Landing {
+    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
         let touched = self.pressed.touched(&self.nearby.blocks, motion);
-        Landing {
+        ContactResult {
             peak_pressure_mpa: self.peak_search(&motion.pose).highest_mpa(&touched),
             touched,
         }

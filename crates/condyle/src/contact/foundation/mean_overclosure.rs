@@ -4,7 +4,7 @@ use crate::number::Number;
 
 /// Below this an edge slope counts as this much, mm: it keeps the
 /// closed form away from 0/0 and widens the edge of contact by a thousandth of a millimetre.
-const LEAST_SLOPE_MM: f64 = 1e-3;
+const MIN_SLOPE_MM: f64 = 1e-3;
 
 /// The edge slopes of a share: how much the overclosure rises along each of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,7 @@ impl<T: Number> EdgeSlopes<T> {
     /// From those along both edges, mm.
     #[inline(always)]
     pub fn new(signed_mm: [T; 2]) -> Self {
-        let least2 = T::splat(LEAST_SLOPE_MM * LEAST_SLOPE_MM);
+        let least2 = T::splat(MIN_SLOPE_MM * MIN_SLOPE_MM);
         let size = |rise: T| rise.mul_add(rise, least2).sqrt();
         let [a, b] = signed_mm;
         Self {

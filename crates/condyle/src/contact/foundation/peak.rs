@@ -3,24 +3,24 @@
 use crate::{
     contact::{
         model::TouchedNode,
-        pressed::{LEAST_NODES, Quadratic, highest_mpa},
+        pressed::{MIN_NODES, Quadratic, highest_mpa},
         pressure_law::PressureLaw,
     },
-    geometry::{FacesAround, FemoralSurface, MOST_GAP_SLOPE, Share},
+    geometry::{FacesAround, FemoralSurface, MAX_GAP_SLOPE, Share},
     number::{F64x4, LANES, Number, vector::vector_from_lanes},
     spatial::Pose4,
 };
 
 /// A quadratic that misses the mean under the top by more than this part of the highest mean follows something
 /// that is none, such as a step of the thickness at the rim; what it says between the nodes is made up.
-const MOST_MISSED: f64 = 0.3;
+const MAX_MISSED: f64 = 0.3;
 
 /// A quadratic that misses a mean around the top by more than this part of its rise there bends otherwise than the
 /// surface does.
 const MISSED_OF_RISE: f64 = 0.1;
 
 /// So many that at an edge, too, those on one side of it determine a quadratic.
-const NODES_ONE_SIDED: usize = 2 * LEAST_NODES;
+const NODES_ONE_SIDED: usize = 2 * MIN_NODES;
 
 /// Looks for the highest pressure.
 ///
@@ -61,7 +61,7 @@ impl PeakSearch<'_> {
     /// Highest pressure within the share of a node, MPa; 0 where nothing tells that it is higher than the mean, or
     /// than `so_far_mpa`.
     fn highest_around(&self, node: u32, so_far_mpa: f64) -> f64 {
-        let patch = self.sampled(&self.faces.patch(node, LEAST_NODES));
+        let patch = self.sampled(&self.faces.patch(node, MIN_NODES));
         let Some(fit) = self.fit(&patch) else {
             return 0.0;
         };
@@ -106,8 +106,7 @@ impl PeakSearch<'_> {
         let means = self.means(patch);
         let highest = means.clone().map(|(_, mean)| mean).fold(top.mean, f64::max);
         let fit = Quadratic::fit(&self.shares[top.node as usize], means);
-        let follows =
-            |fit: &Quadratic| (fit.mean() - top.mean).abs() <= MOST_MISSED * highest.abs();
+        let follows = |fit: &Quadratic| (fit.mean() - top.mean).abs() <= MAX_MISSED * highest.abs();
         fit.filter(follows)
     }
 
@@ -121,7 +120,7 @@ impl PeakSearch<'_> {
         let is_surface = move |at: &&PatchNode| {
             let distance2_mm2 = (share(at).centre - share(top).centre).norm_squared();
             // What changes faster from point to point than a gap can has no surface behind it.
-            let change = (at.gap_mm - top.gap_mm) / MOST_GAP_SLOPE;
+            let change = (at.gap_mm - top.gap_mm) / MAX_GAP_SLOPE;
             change * change <= distance2_mm2
         };
         let on_surface = patch.iter().filter(is_surface);

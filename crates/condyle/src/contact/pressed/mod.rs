@@ -17,7 +17,7 @@ mod traction;
 
 pub(super) use cached_sample::CachedSample;
 pub(super) use near_blocks::{NearBlock, NearBlocks};
-pub(super) use peak::{LEAST_NODES, highest_mpa};
+pub(super) use peak::{MIN_NODES, highest_mpa};
 pub(super) use pressed_blocks::PressedBlocks;
 pub(super) use quadratic::Quadratic;
 pub(super) use traction::{Coulomb, Sliding, Tractions4};

@@ -1,6 +1,6 @@
 //! The highest pressure, which may lie between the nodes.
 
-use crate::contact::model::{MOST_REGIONS, TouchedNode};
+use crate::contact::model::{MAX_REGIONS, TouchedNode};
 
 /// Nodes whose pressures differ by no more than this part press equally: which of them leads is a
 /// matter of round-off, and of which way round the knee is told.
@@ -8,7 +8,7 @@ const EQUAL: f64 = 1e-9;
 
 /// Around any node inside a surface there are as many, and they determine a quadratic; at its rim
 /// there are fewer, and farther ones must help.
-pub(in crate::contact) const LEAST_NODES: usize = 7;
+pub(in crate::contact) const MIN_NODES: usize = 7;
 
 /// Highest pressure at or around the nodes that touch, MPa, any region of which may have it.
 ///
@@ -31,8 +31,8 @@ pub(in crate::contact) fn highest_mpa(
 }
 
 /// Highest mean over a share in every region, MPa.
-fn highest_of_regions(touched: &[TouchedNode]) -> [f64; MOST_REGIONS] {
-    let mut highest = [0.0; MOST_REGIONS];
+fn highest_of_regions(touched: &[TouchedNode]) -> [f64; MAX_REGIONS] {
+    let mut highest = [0.0; MAX_REGIONS];
     for node in touched {
         let highest = &mut highest[usize::from(node.region)];
         // A jump that is seldom taken is faster than a maximum that waits for the one before.

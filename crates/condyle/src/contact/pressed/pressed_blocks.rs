@@ -10,7 +10,7 @@ use super::{
 use crate::{
     Vec3,
     contact::{
-        model::{MOST_REGIONS, Tangent, TouchedNode},
+        model::{MAX_REGIONS, Tangent, TouchedNode},
         share_block::ShareBlock,
     },
     geometry::ArticulatingSurface,
@@ -50,7 +50,7 @@ impl PressedBlocks {
         &mut self,
         blocks: &[ShareBlock],
         mut traction: impl FnMut(usize, &NearBlock, &ShareBlock) -> Tractions4,
-    ) -> (Wrench<body::Insert, body::Femur>, [Vec3; MOST_REGIONS]) {
+    ) -> (Wrench<body::Insert, body::Femur>, [Vec3; MAX_REGIONS]) {
         let mut total = WrenchSum::new();
         let mut slips = RegionSlips::new();
         self.tractions.clear();

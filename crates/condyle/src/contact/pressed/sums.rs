@@ -3,7 +3,7 @@
 use super::traction::Tractions4;
 use crate::{
     Vec3, Vector,
-    contact::model::MOST_REGIONS,
+    contact::model::MAX_REGIONS,
     number::{
         F64x4, Number,
         vector::{cross, scale_add, zero_vector},
@@ -37,16 +37,16 @@ impl WrenchSum {
 }
 
 /// Slip of many shares weighted by their loads, in every region.
-pub(super) struct RegionSlips([(F64x4, Vector<F64x4>); MOST_REGIONS]);
+pub(super) struct RegionSlips([(F64x4, Vector<F64x4>); MAX_REGIONS]);
 
 impl RegionSlips {
     pub fn new() -> Self {
-        Self([(F64x4::splat(0.0), zero_vector()); MOST_REGIONS])
+        Self([(F64x4::splat(0.0), zero_vector()); MAX_REGIONS])
     }
 
     /// Adds shares, of which `in_region` says which belong to each region.
     #[inline(always)]
-    pub fn add(&mut self, in_region: &[F64x4; MOST_REGIONS], pressed: &Tractions4) {
+    pub fn add(&mut self, in_region: &[F64x4; MAX_REGIONS], pressed: &Tractions4) {
         let load = pressed.pressure_mpa * pressed.area_mm2;
         let velocity = &pressed.sliding.velocity_mm_per_s;
         for ((loads, slips), is_in) in self.0.iter_mut().zip(in_region) {
@@ -57,7 +57,7 @@ impl RegionSlips {
     }
 
     /// The mean of each region, mm/s; none where nothing is loaded.
-    pub fn means(&self) -> [Vec3; MOST_REGIONS] {
+    pub fn means(&self) -> [Vec3; MAX_REGIONS] {
         self.0
             .map(|(loads, slips)| slips.map(F64x4::sum) / loads.sum().max(f64::MIN_POSITIVE))
     }

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Square of the least speed of sliding that gives a direction, mm2/s2; below any that occurs.
-const LEAST_SPEED2: f64 = 1e-30;
+const MIN_SPEED2: f64 = 1e-30;
 
 type Six<T> = [T; 6];
 
@@ -107,7 +107,7 @@ impl TangentSum {
         } = facets;
         let one = F32x8::splat(1.0);
         let speed2 = dot(&facets.velocity, &facets.velocity);
-        let speed = Number::max(speed2, F32x8::splat(LEAST_SPEED2)).sqrt();
+        let speed = Number::max(speed2, F32x8::splat(MIN_SPEED2)).sqrt();
         let t1 = facets.velocity * (one / speed);
         let t2 = cross(n, &t1);
         let wrench_n = joined(&cross(p, n), n);

@@ -117,7 +117,7 @@ impl BoxTree {
     /// Pairs and boxes that are looked at, for each triangle and at least: the surface of a scanned implant has
     /// some fifty a triangle, a flat bottom drawn across by the triangles of its 1500 vertices has 15 million, and a
     /// file of 1 MB is looked through within a second.
-    const MOST_LOOKS: (usize, usize) = (400, 20_000_000);
+    const MAX_LOOKS: (usize, usize) = (400, 20_000_000);
 
     /// Calls `visit` with each pair of different triangles whose boxes meet, once, until it breaks.
     ///
@@ -127,7 +127,7 @@ impl BoxTree {
         &self,
         mut visit: impl FnMut(usize, usize) -> ControlFlow<()>,
     ) -> Option<[usize; 2]> {
-        let (each, least) = Self::MOST_LOOKS;
+        let (each, least) = Self::MAX_LOOKS;
         let mut left = least.max(each * self.surface_of);
         let mut open = vec![[0, 0]];
         while let Some([one, other]) = open.pop().filter(|_| !self.nodes.is_empty()) {

@@ -165,13 +165,13 @@ impl Body {
 }
 
 /// Triangles a vertex that are no surface with doubled faces any more: that has two, or some multiple.
-const MOST_TRIANGLES_A_VERTEX: usize = 16;
+const MAX_TRIANGLES_A_VERTEX: usize = 16;
 /// So few triangles take no time, whatever they are.
 const FEW_TRIANGLES: usize = 1000;
 
 /// Refuses triangles so many times as many as vertices, before anything is done with them.
 fn refuse_tangles(mesh: &TriangleMesh) -> Result<(), ShellError> {
-    let most = FEW_TRIANGLES + MOST_TRIANGLES_A_VERTEX * mesh.vertices.len();
+    let most = FEW_TRIANGLES + MAX_TRIANGLES_A_VERTEX * mesh.vertices.len();
     if mesh.triangles.len() <= most {
         return Ok(());
     }

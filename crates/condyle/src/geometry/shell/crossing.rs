@@ -35,7 +35,7 @@ impl Crossings {
     ///
     /// Single-precision coordinates of 100 mm are rounded to 8e-6 mm, which is 2e-4 of an edge of
     /// 0.04 mm, the shortest of the real meshes at hand.
-    pub const LEAST_DEPTH: f64 = 1e-3;
+    pub const MIN_DEPTH: f64 = 1e-3;
 
     /// Depth over the diagonal of the mesh up to which neighbours that cross are a wrinkle.
     ///
@@ -53,7 +53,7 @@ impl Crossings {
 
 /// Finds where a triangle mesh passes through itself.
 ///
-/// Two triangles cross if only a shift of more than [`Crossings::LEAST_DEPTH`] parts them. Those
+/// Two triangles cross if only a shift of more than [`Crossings::MIN_DEPTH`] parts them. Those
 /// that share an edge or overlap in one plane do not; those that share a corner are compared
 /// without what lies next to that corner. A pair is a wrinkle if a corner of one is a corner of
 /// the other or joined to one by an edge, and it is no deeper than [`Crossings::WRINKLE_DEPTH`]:
@@ -127,7 +127,7 @@ fn crossing_depth(mesh: &TriangleMesh, pair: [usize; 2]) -> Option<f64> {
     if are_parted_by_a_plane(&corners[0], &corners[1]) {
         return None;
     }
-    let least = Crossings::LEAST_DEPTH * longest_edge(&corners[0]).min(longest_edge(&corners[1]));
+    let least = Crossings::MIN_DEPTH * longest_edge(&corners[0]).min(longest_edge(&corners[1]));
     let [first, second] = match shared.iter().filter(|&&is_shared| is_shared).count() {
         0 => corners,
         1 => {

@@ -78,13 +78,13 @@ pub struct Defect {
     pub kind: DefectKind,
     /// How many there are.
     pub count: usize,
-    /// Where the first [`Defect::MOST_PLACES`] are, mm in the frame of the mesh.
+    /// Where the first [`Defect::MAX_PLACES`] are, mm in the frame of the mesh.
     pub places_mm: Vec<Vec3>,
 }
 
 impl Defect {
     /// More places help nobody.
-    pub const MOST_PLACES: usize = 20;
+    pub const MAX_PLACES: usize = 20;
 
     /// Kind, count and the first `most` places: "2 holes at (1.00, 2.00, 3.00), ... mm".
     pub fn listed(&self, most: usize) -> String {
@@ -127,7 +127,7 @@ pub(super) fn add(defects: &mut Vec<Defect>, kind: DefectKind, at_mm: Vec3) {
     });
     let defect = &mut defects[index];
     defect.count += 1;
-    if defect.places_mm.len() < Defect::MOST_PLACES {
+    if defect.places_mm.len() < Defect::MAX_PLACES {
         defect.places_mm.push(at_mm);
     }
 }
@@ -149,6 +149,6 @@ mod tests {
             said,
             "31 holes (closed) at (1.00, 0.00, 2.50) mm and 30 more"
         );
-        assert_eq!(defects[0].places_mm.len(), Defect::MOST_PLACES);
+        assert_eq!(defects[0].places_mm.len(), Defect::MAX_PLACES);
     }
 }

@@ -21,7 +21,7 @@ pub enum ShellError {
 
 /// All kinds, with twenty places between them.
 fn listed(defects: &[Defect]) -> String {
-    let mut left = Defect::MOST_PLACES;
+    let mut left = Defect::MAX_PLACES;
     let mut said = Vec::new();
     for (index, defect) in defects.iter().enumerate() {
         let to_come = defects.len() - index - 1;

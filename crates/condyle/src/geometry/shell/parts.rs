@@ -13,10 +13,10 @@ use crate::{
 /// Distance between the lines of sight from above, mm ...
 const LINES_EVERY_MM: f64 = 0.5;
 /// ... and lines along one side of the file, at most.
-const MOST_LINES: f64 = 400.0;
+const MAX_LINES: f64 = 400.0;
 /// Triangles that a line of sight may meet on average: the parts of a knee cover one another a few times. A file in
 /// which it meets more is left whole.
-const MOST_LAYERS: usize = 32;
+const MAX_LAYERS: usize = 32;
 /// A part that is seen from above on less than this share of its own shadow lies below another.
 const HIDDEN_SHARE: f64 = 0.5;
 /// A part below with a smaller share of the body's shadow that reaches into it is a peg of it, and no tray.
@@ -126,12 +126,12 @@ impl LinesOfSight {
     fn over(mesh: &TriangleMesh) -> Self {
         let (low, high) = mesh.bounds();
         let size = high - low;
-        let step_mm = LINES_EVERY_MM.max(size.x.max(size.z) / MOST_LINES);
+        let step_mm = LINES_EVERY_MM.max(size.x.max(size.z) / MAX_LINES);
         let lines = (size.x / step_mm + 1.0) * (size.z / step_mm + 1.0);
         Self {
             step_mm,
             met: BTreeMap::new(),
-            left: MOST_LAYERS * (lines as usize + mesh.triangles.len()),
+            left: MAX_LAYERS * (lines as usize + mesh.triangles.len()),
         }
     }
 

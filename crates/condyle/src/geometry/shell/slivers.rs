@@ -6,7 +6,7 @@ use super::weld::rename;
 use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
 
 /// Vertices with more triangles around than this are left alone: the tip of a fan.
-const MOST_AROUND: usize = 64;
+const MAX_AROUND: usize = 64;
 /// A collapsed edge keeps those beside it from collapsing in the same round; more rounds help nobody.
 const ROUNDS: usize = 8;
 
@@ -35,7 +35,7 @@ fn collapse_some(mesh: &mut TriangleMesh, thinnest: f64) -> Vec<Vec3> {
     let mut is_settled = vec![false; mesh.vertices.len()];
     for [a, b] in short {
         let stars = [a, b].map(|end| &around[end as usize]);
-        if stars.iter().any(|star| star.len() > MOST_AROUND) {
+        if stars.iter().any(|star| star.len() > MAX_AROUND) {
             continue;
         }
         let [one, other] = stars.map(|star| neighbours(mesh, star));

@@ -39,10 +39,10 @@ const CELL_MM: f64 = 0.5;
 /// Depth below what is seen first that still counts as seen, mm: the slope of a dish within a cell.
 const DEPTH_MM: f64 = 1.0;
 /// Lines of sight along one side of a view, at most.
-const MOST_CELLS: f64 = 400.0;
+const MAX_CELLS: f64 = 400.0;
 /// Lines through a triangle's box for each line or triangle of a view, at most: a shell of a body
 /// covers its view a few times.
-const MOST_LAYERS: usize = 32;
+const MAX_LAYERS: usize = 32;
 
 /// The touching part of one mesh.
 pub(super) struct TouchMap {
@@ -88,7 +88,7 @@ impl View {
         let low = [0, 1].map(|axis| seen(axis).fold(f64::INFINITY, f64::min));
         let high = [0, 1].map(|axis| seen(axis).fold(f64::NEG_INFINITY, f64::max));
         let size_mm = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
-        let cell_mm = CELL_MM.max(size_mm[0].max(size_mm[1]) / MOST_CELLS);
+        let cell_mm = CELL_MM.max(size_mm[0].max(size_mm[1]) / MAX_CELLS);
         let cells = size_mm.map(|size| (size / cell_mm) as usize + 1);
         let mut view = Self {
             axes,
@@ -97,7 +97,7 @@ impl View {
             cells,
             reach_mm: vec![f64::NEG_INFINITY; cells[0] * cells[1]],
         };
-        let mut left = MOST_LAYERS * (view.reach_mm.len() + mesh.triangles.len());
+        let mut left = MAX_LAYERS * (view.reach_mm.len() + mesh.triangles.len());
         for triangle in 0..mesh.triangles.len() {
             left = view.draw(&mesh.corners(triangle), left)?;
         }

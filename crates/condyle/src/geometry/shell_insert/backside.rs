@@ -4,7 +4,7 @@ use crate::geometry::columns::{Column, Plan};
 
 /// A corner of the backside is too steep if the scaled Jacobian of a hexahedron there is less: the sine of the
 /// corner seen from above, over how many times longer its sides are than seen from above.
-const LEAST_JACOBIAN: f64 = 0.31;
+const MIN_JACOBIAN: f64 = 0.31;
 /// What is no longer than this, as an area over that seen from above, squared, is flat: a corner that is sharp seen
 /// from above is not eased further.
 const FLAT: f64 = 1.01;
@@ -37,8 +37,7 @@ fn ease(plan: &Plan, columns: &mut [Column], corner: u32, ends: [u32; 2]) -> boo
     let rises = ends.map(|end| columns[end].0 - columns[corner].0);
     let longer = |end: usize, rise: f64| 1.0 + rise * rise / length2(plan, corner, end);
     let area2 = longer(ends[0], rises[0]) * longer(ends[1], rises[1]);
-    let is_steep =
-        area2 > FLAT && sine2(plan, corner, ends) < LEAST_JACOBIAN * LEAST_JACOBIAN * area2;
+    let is_steep = area2 > FLAT && sine2(plan, corner, ends) < MIN_JACOBIAN * MIN_JACOBIAN * area2;
     if is_steep {
         for (end, rise) in ends.into_iter().zip(rises) {
             columns[corner].0 += MOVED * rise;

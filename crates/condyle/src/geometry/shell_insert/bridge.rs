@@ -8,7 +8,7 @@ use crate::geometry::columns::ColumnGrid;
 /// Rounds in which heights settle at the mean of those around, at most.
 const ROUNDS: usize = 1000;
 /// Heights that are settled in all, about: over a hole as large as an insert, rounds are fewer.
-const MOST_SETTLED: usize = 2_000_000;
+const MAX_SETTLED: usize = 2_000_000;
 /// So many times the way to the mean goes a height in a round: fewer rounds do.
 const OVER_RELAXED: f64 = 1.8;
 /// Heights that move less than this have settled, mm.
@@ -40,7 +40,7 @@ impl Bridges {
         }
         let mean = mean(heights.values());
         heights.extend(spanned.iter().map(|&sample| (sample, mean)));
-        for _ in 0..ROUNDS.min(MOST_SETTLED / spanned.len().max(1)) {
+        for _ in 0..ROUNDS.min(MAX_SETTLED / spanned.len().max(1)) {
             if settle(&mut heights, samples, spanned) < SETTLED_MM {
                 break;
             }

@@ -5,7 +5,7 @@ use crate::geometry::columns::ColumnGrid;
 
 /// A cell lies well inside if its corners are this share of an edge away from the outline: as much
 /// as the narrowest quad between them needs.
-const LEAST_RING: f64 = 0.5;
+const MIN_RING: f64 = 0.5;
 
 /// Cells of a grid that hang together by their sides, and the closed lines around them.
 #[derive(Clone)]
@@ -42,7 +42,7 @@ impl Core {
 
 fn is_well_inside(grid: &ColumnGrid, footprint: &Footprint<'_>, number: usize) -> bool {
     let place = grid.place_of_mm(number);
-    let ring = Place::new(grid.step_mm.0, grid.step_mm.1) * LEAST_RING;
+    let ring = Place::new(grid.step_mm.0, grid.step_mm.1) * MIN_RING;
     let around = (0..8).map(|eighth| {
         let (sine, cosine) = (f64::from(eighth) * std::f64::consts::FRAC_PI_4).sin_cos();
         (place.0 + cosine * ring[0], place.1 + sine * ring[1])

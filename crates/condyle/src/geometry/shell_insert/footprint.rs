@@ -12,7 +12,7 @@ use crate::geometry::{columns::ColumnGrid, triangle_mesh::TriangleMesh};
 const THINNEST_SHARE: f64 = 0.15;
 /// A surface that rises by more than 1.5 edges over one, 56 degrees, is the side of the insert, and no
 /// longer articulates.
-const LEAST_UPWARD: f64 = 0.555;
+const MIN_UPWARD: f64 = 0.555;
 /// The shell is looked at this often along an edge of a hexahedron, ...
 const SAMPLES_PER_EDGE: f64 = 4.0;
 /// ... but no closer than this, mm, which no outline needs.
@@ -125,7 +125,7 @@ impl<'a> Footprint<'a> {
     }
 
     fn may_stand(&self, through: Option<Through>) -> bool {
-        let is_wall = |through: &Through| through.upward < LEAST_UPWARD;
+        let is_wall = |through: &Through| through.upward < MIN_UPWARD;
         let is_thin = |through: &Through| through.top - through.bottom < self.thinnest_mm;
         through.is_some_and(|through| !is_wall(&through) && !is_thin(&through))
     }

@@ -47,7 +47,7 @@ pub struct Effect {
 }
 
 /// Points of a scatter at most: more fill a picture, and its file.
-const MOST_POINTS: usize = 400;
+const MAX_POINTS: usize = 400;
 
 pub(super) fn all(
     plan: &Plan,
@@ -97,7 +97,7 @@ impl Effect {
         mut pairs: Vec<(f64, f64)>,
         is_sample: bool,
     ) -> Self {
-        let every = pairs.len().div_ceil(MOST_POINTS).max(1);
+        let every = pairs.len().div_ceil(MAX_POINTS).max(1);
         let points = pairs.iter().copied().step_by(every).collect();
         let correlation = rank_correlation(&pairs);
         pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));

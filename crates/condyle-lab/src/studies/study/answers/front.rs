@@ -22,7 +22,7 @@ pub struct Front {
 }
 
 /// Points of a picture at most.
-const MOST_POINTS: usize = 1000;
+const MAX_POINTS: usize = 1000;
 
 impl Front {
     /// None where the study asks about one output.
@@ -39,7 +39,7 @@ impl Front {
             .filter(|(_, ((one, other), within))| *within && one.is_finite() && other.is_finite())
             .map(|(row, ((one, other), _))| (row, one, other))
             .collect();
-        let every = tests.len().div_ceil(MOST_POINTS).max(1);
+        let every = tests.len().div_ceil(MAX_POINTS).max(1);
         let shown = tests.iter().step_by(every);
         Ok(Some(Self {
             outputs: outputs.map(|output| output.name),

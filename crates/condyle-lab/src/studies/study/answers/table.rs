@@ -6,7 +6,7 @@ use super::best::Best;
 use super::ranking::Ranking;
 
 /// Rows of a table of inputs at most; the page has all.
-const MOST_ROWS: usize = 12;
+const MAX_ROWS: usize = 12;
 
 /// A heading, and rows of which the first is the head.
 type Table = (String, Vec<Vec<String>>);
@@ -148,7 +148,7 @@ fn ranking(ranking: &Ranking) -> Table {
 fn indices(answers: &Answers) -> Option<Table> {
     let output = answers.indices.first()?.output;
     let own = answers.indices_of(output);
-    let rows = own.into_iter().take(MOST_ROWS).map(|index| {
+    let rows = own.into_iter().take(MAX_ROWS).map(|index| {
         vec![
             index.input.clone(),
             format!("{:.3}", index.first),
@@ -168,7 +168,7 @@ fn indices(answers: &Answers) -> Option<Table> {
 fn elementary(answers: &Answers) -> Option<Table> {
     let output = answers.elementary.first()?.output;
     let own = answers.elementary_on(output);
-    let rows = own.into_iter().take(MOST_ROWS).map(|effect| {
+    let rows = own.into_iter().take(MAX_ROWS).map(|effect| {
         vec![
             effect.input.clone(),
             format!(
@@ -195,7 +195,7 @@ fn effects(answers: &Answers) -> Option<Table> {
         return None;
     }
     let own = answers.effects_on(output);
-    let rows = own.into_iter().take(MOST_ROWS).map(|effect| {
+    let rows = own.into_iter().take(MAX_ROWS).map(|effect| {
         let correlation = effect.rank_correlation.map(|one| format!("{one:+.2}"));
         vec![
             effect.name.clone(),

@@ -16,4 +16,4 @@ pub(super) use latin::latin_places;
 pub(super) use morris::{Walk, morris_places};
 pub(super) use place::Place;
 pub(super) use saltelli::Saltelli;
-pub(super) use sobol::{MOST_AXES, sobol_places};
+pub(super) use sobol::{MAX_AXES, sobol_places};

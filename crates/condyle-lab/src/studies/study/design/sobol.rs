@@ -5,7 +5,7 @@ use super::place::Place;
 use super::sobol_directions::DIRECTIONS;
 
 /// Axes that there are directions for, the first among them.
-pub(in super::super) const MOST_AXES: usize = DIRECTIONS.len() + 1;
+pub(in super::super) const MAX_AXES: usize = DIRECTIONS.len() + 1;
 const BITS: usize = 32;
 
 /// Where point `row` lies along each of `axes`: the points of Sobol with the directions of Joe and Kuo (2008), every axis
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn verify_every_axis_has_one_point_in_each_slice_before_and_after_scrambling() {
-        for axis in 0..MOST_AXES {
+        for axis in 0..MAX_AXES {
             for log_count in [1, 4, 9] {
                 let count = 1_u64 << log_count;
                 for seed in [None, Some(1), Some(2)] {

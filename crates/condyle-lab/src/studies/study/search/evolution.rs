@@ -10,7 +10,7 @@ const FIRST_STEP: f64 = 0.3;
 /// Longest step, as a part of the ranges.
 const LONGEST_STEP: f64 = 1.0;
 /// Least of a variance, so that rounding leaves the matrix positive.
-const LEAST_VARIANCE: f64 = 1e-20;
+const MIN_VARIANCE: f64 = 1e-20;
 
 /// A normal distribution that moves to where the better ones of its points are (Hansen 2016, with its notation and
 /// default constants). Points beyond the cube are mirrored into it.
@@ -96,7 +96,7 @@ impl Evolution {
         let eigen = SymmetricEigen::new(self.covariance.clone());
         let roots = eigen
             .eigenvalues
-            .map(|value| value.max(LEAST_VARIANCE).sqrt());
+            .map(|value| value.max(MIN_VARIANCE).sqrt());
         let stretch = &eigen.eigenvectors * DMatrix::from_diagonal(&roots);
         let mut numbers = Numbers::of_one(self.seed, self.generation);
         let mut point = |_| {
@@ -155,7 +155,7 @@ impl Evolution {
         let eigen = SymmetricEigen::new(self.covariance.clone());
         let roots = eigen
             .eigenvalues
-            .map(|value| 1.0 / value.max(LEAST_VARIANCE).sqrt());
+            .map(|value| 1.0 / value.max(MIN_VARIANCE).sqrt());
         let turn = &eigen.eigenvectors;
         turn * DMatrix::from_diagonal(&roots) * turn.transpose() * step
     }

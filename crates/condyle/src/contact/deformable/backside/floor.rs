@@ -7,9 +7,9 @@ use condyle_fem::HexMesh;
 use crate::Vec3;
 
 /// A face of the backside that leans from straight down by more than this cosine tells, 15 degrees, is a wall.
-const LEAST_COSINE: f64 = 0.966;
+const MIN_COSINE: f64 = 0.966;
 /// Flat faces farther than this off the middle height of all are recesses or pegs, mm.
-const MOST_OFF_MM: f64 = 0.25;
+const MAX_OFF_MM: f64 = 0.25;
 
 /// The flat part of a backside.
 pub(in super::super) struct Floor {
@@ -69,7 +69,7 @@ impl Face {
 
 /// The faces that hardly lean.
 fn level_faces(faces: &[Face]) -> Vec<&Face> {
-    let is_level = |face: &&Face| face.inward.y > LEAST_COSINE * face.inward.norm();
+    let is_level = |face: &&Face| face.inward.y > MIN_COSINE * face.inward.norm();
     faces.iter().filter(is_level).collect()
 }
 
@@ -85,7 +85,7 @@ fn at_middle_height(mut level: Vec<&Face>, normal: &Vec3) -> Vec<[u32; 4]> {
     });
     let middle_mm = middle.map_or(0.0, |face| height_mm(face));
     let flat = level.iter();
-    let flat = flat.filter(|face| (height_mm(face) - middle_mm).abs() <= MOST_OFF_MM);
+    let flat = flat.filter(|face| (height_mm(face) - middle_mm).abs() <= MAX_OFF_MM);
     flat.map(|face| face.quad).collect()
 }
 

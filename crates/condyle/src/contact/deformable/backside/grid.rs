@@ -7,7 +7,7 @@ use condyle_fem::HexMesh;
 use crate::{Vec3, geometry::bounds};
 
 /// A point that has less than this part of a cell around it lies outside: a corner of a rectangle has a quarter.
-const LEAST_PART: f64 = 0.2;
+const MIN_PART: f64 = 0.2;
 
 /// Nodes that go along with a point, by their places in a list, and how far.
 pub(super) type Around = Vec<(usize, f64)>;
@@ -86,7 +86,7 @@ impl Grid {
             .iter()
             .map(|around| {
                 let parts = around.iter().map(|&(at, weight)| share_mm2[at] * weight);
-                parts.sum::<f64>() >= LEAST_PART * self.cell_mm2()
+                parts.sum::<f64>() >= MIN_PART * self.cell_mm2()
             })
             .collect();
         let columns = self.columns();

@@ -9,7 +9,7 @@ use crate::{contact::model::Tipped, number::Mixing};
 /// what loads and backside have to agree within.
 const AT_REST_MM: f64 = 1e-7;
 /// Steps after which there is no rest: ten times what was seen where there is.
-const MOST_STEPS: usize = 5000;
+const MAX_STEPS: usize = 5000;
 /// A backside that is this far off its tray has nothing that holds it, mm.
 const TIPPED_MM: f64 = 10.0;
 
@@ -45,7 +45,7 @@ pub(in super::super) fn rest(
 ) -> Result<Rest, Tipped> {
     let mut searched = searched_mm.clone();
     let mut mixing = Mixing::default();
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let allowed = allowed(tray, friction, stuck_mm, &searched);
         let mirrored = &allowed * 2.0 - &searched;
         let apart = tray.pulled(forces_n, &mirrored) - &allowed;

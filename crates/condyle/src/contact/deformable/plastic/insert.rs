@@ -19,13 +19,13 @@ const LOOKED_AT: f64 = 0.5;
 const TAKEN_ALONG: f64 = 0.8;
 /// No pressure causes more than this part of its peak as von Mises stress: 0.577 where a half-space keeps its volume
 /// and the pressure is symmetric about an axis, with what other shapes may add.
-const MOST_OF_PRESSURE: f64 = 0.8;
+const MAX_OF_PRESSURE: f64 = 0.8;
 /// The flow is found once stress lies on the yield surface within this part of the yield stress.
 const ON_SURFACE: f64 = 1e-4;
 /// Sweeps after which there is no balance: ten times what was seen where there is.
-const MOST_SWEEPS: usize = 600;
+const MAX_SWEEPS: usize = 600;
 /// Plastic strain beyond which small strains say nothing any more.
-const MOST_STRAIN: f64 = 0.5;
+const MAX_STRAIN: f64 = 0.5;
 /// A permanent set that changes by less than this is found, mm: some 1e-5 of how far the surface gives way under load.
 pub(in super::super) const FOUND_MM: f64 = 1e-5;
 
@@ -174,7 +174,7 @@ impl PlasticInsert {
 
     /// Whether a pressure can make anything flow: von Mises stresses sum up to no more than their sum.
     fn may_flow(&self, peak_mpa: f64) -> bool {
-        let by_load = MOST_OF_PRESSURE * peak_mpa / self.material.hardening.yield_stress(0.0);
+        let by_load = MAX_OF_PRESSURE * peak_mpa / self.material.hardening.yield_stress(0.0);
         self.residual_use + by_load > 1.0
     }
 
@@ -318,7 +318,7 @@ impl PlasticInsert {
             self.trial.entry(element).or_insert(before);
         }
         let (mut mixing, mut tried) = (Mixing::default(), self.strains(taken));
-        for _ in 0..MOST_SWEEPS {
+        for _ in 0..MAX_SWEEPS {
             let forces = self.forces();
             let moved_mm = self.influence().moved(self.solid(), &forces, &tiles);
             let mut changed: f64 = 0.0;
@@ -328,7 +328,7 @@ impl PlasticInsert {
             if changed <= allowed {
                 return Ok(self.forces());
             }
-            if !changed.is_finite() || self.largest_strain() > MOST_STRAIN {
+            if !changed.is_finite() || self.largest_strain() > MAX_STRAIN {
                 break;
             }
             tried = mixing.next(&tried, &self.strains(taken), 1.0);

@@ -8,7 +8,7 @@ use std::{f64::consts::PI, sync::Arc};
 use self::half_space::HalfSpace;
 use super::{
     compliance::Compliance,
-    contact::{DeformableContact, Rubbing},
+    contact::{DeformableContact, FrictionSettings},
 };
 use crate::{
     Mat3, Vec3,
@@ -78,8 +78,8 @@ impl Plane {
     }
 }
 
-fn rubbing(friction: f64) -> Rubbing {
-    Rubbing {
+fn rubbing(friction: f64) -> FrictionSettings {
+    FrictionSettings {
         friction: Coulomb {
             coefficient: friction,
             slip_tolerance_mm_per_s: 1.0,

@@ -20,30 +20,30 @@ use crate::keyed::{Base, DataFile, Log, Problem, Problems, Reason, Section, Sour
 /// Values that are good one by one and make no wear test together.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{message}")]
-pub struct Unfit {
+pub struct CaseConflict {
     /// Why, and what to do.
     pub message: String,
 }
 
-impl Reason for Unfit {
+impl Reason for CaseConflict {
     fn advice(&self) -> Option<String> {
         None
     }
 }
 
 /// A table of a case and those of its keys that may be at fault, likeliest first.
-struct Culprit {
+struct KeyLocation {
     table: &'static str,
     keys: &'static [&'static str],
 }
 
 /// What places the femur over the insert.
-const START: Culprit = Culprit {
+const START: KeyLocation = KeyLocation {
     table: "femur",
     keys: &["start_mm", "length_unit", "axes", "file", "shape"],
 };
 
-const FINENESS: Culprit = Culprit {
+const FINENESS: KeyLocation = KeyLocation {
     table: "insert",
     keys: &["edge_mm"],
 };
@@ -81,11 +81,11 @@ impl Case {
 
     /// A run of this case that needs more memory than it allows, at the key that allows it or else at the insert's mesh.
     pub fn memory_at_its_key(&self, message: String) -> Problems {
-        let limits = Culprit {
+        let limits = KeyLocation {
             table: "limits",
             keys: &["memory_gb"],
         };
-        let insert = Culprit {
+        let insert = KeyLocation {
             table: "insert",
             keys: &["edge_mm", "layers", "file"],
         };
@@ -93,16 +93,16 @@ impl Case {
         self.errors_at(&[(if is_given { limits } else { insert }, message)])
     }
 
-    fn culprit_of_build(&self, error: &BuildError) -> Culprit {
+    fn culprit_of_build(&self, error: &BuildError) -> KeyLocation {
         let keys: &[&str] = match error {
             BuildError::RestingBeside { .. } | BuildError::BacksideNotFlat { .. } => {
-                return Culprit {
+                return KeyLocation {
                     table: "contact",
                     keys: &["backside"],
                 };
             }
             BuildError::StickSlipExplicit | BuildError::RestingExplicit => {
-                return Culprit {
+                return KeyLocation {
                     table: "time",
                     keys: &["integrator"],
                 };
@@ -143,17 +143,17 @@ impl Case {
         let file = error.file();
         let is_of_femur = file.is_some() && file == self.femur.file().map(DataFile::path);
         let table = if is_of_femur { "femur" } else { "insert" };
-        Culprit { table, keys }
+        KeyLocation { table, keys }
     }
 
-    fn culprit_of_overlap(&self) -> Culprit {
+    fn culprit_of_overlap(&self) -> KeyLocation {
         if self.machine.freedoms.get(knee::IS).drive() == DriveWord::Locked {
-            Culprit {
+            KeyLocation {
                 table: "machine.freedoms.is",
                 keys: &["locked_at_mm", "drive"],
             }
         } else if self.material.youngs_modulus_mpa < SOFT_MPA {
-            Culprit {
+            KeyLocation {
                 table: "material",
                 keys: &["youngs_modulus_mpa"],
             }
@@ -162,28 +162,28 @@ impl Case {
         }
     }
 
-    fn errors_at(&self, errors: &[(Culprit, String)]) -> Problems {
+    fn errors_at(&self, errors: &[(KeyLocation, String)]) -> Problems {
         let source = &self.origin.source;
-        let problem = |(culprit, message): &(Culprit, String)| {
+        let problem = |(culprit, message): &(KeyLocation, String)| {
             let message = message.clone();
-            Problem::at(source, span_of(source, culprit), Unfit { message })
+            Problem::at(source, span_of(source, culprit), CaseConflict { message })
         };
         Problems::new(errors.iter().map(problem).collect(), source)
     }
 }
 
 /// The axes of a body.
-fn axes_of(body: Body) -> Culprit {
+fn axes_of(body: Body) -> KeyLocation {
     let table = match body {
         Body::Femur => "femur",
         Body::Insert => "insert",
     };
     let keys = &["axes", "file"];
-    Culprit { table, keys }
+    KeyLocation { table, keys }
 }
 
 /// Where the first key of `culprit` that is given has its value, or else the name of the table.
-fn span_of(source: &Source, culprit: &Culprit) -> Range<usize> {
+fn span_of(source: &Source, culprit: &KeyLocation) -> Range<usize> {
     let (document, _) = DeTable::parse_recoverable(source.inner());
     let files: Arc<dyn Files> = Arc::new(MemoryFiles::default());
     let base = Base::of(&files, Path::new(""));
