@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use condyle_io::keyed::{Problem, Problems};
+use condyle_io::config::{Problem, Problems};
 use condyle_lab::studies::study::StudyError;
 use condyle_lab::{Reached, RunError};
 use pyo3::prelude::*;

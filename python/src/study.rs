@@ -59,7 +59,7 @@ impl RawStudy {
     /// Word of the design.
     #[getter]
     fn design(&self) -> &'static str {
-        use condyle_io::keyed::Variants;
+        use condyle_io::config::Variants;
         self.plan.study().design.word()
     }
 

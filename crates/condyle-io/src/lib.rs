@@ -19,14 +19,14 @@
 //!
 //! let problems = read("[contact]\nfrictoin = 0.04\n").unwrap_err();
 //! assert!(problems.to_string().contains("friction"), "did you mean?");
-//! # Ok::<(), condyle_io::keyed::Problems>(())
+//! # Ok::<(), condyle_io::config::Problems>(())
 //! ```
 
 pub mod abaqus;
 pub mod cache;
 pub mod case;
+pub mod config;
 pub mod files;
-pub mod keyed;
 pub mod measured;
 pub mod mesh;
 pub mod results;

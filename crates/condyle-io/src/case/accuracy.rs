@@ -1,6 +1,6 @@
 //! What a run tells of its own accuracy.
 
-use crate::keyed::settings;
+use crate::config::settings;
 
 settings! {
     /// What a run tells of its own accuracy.

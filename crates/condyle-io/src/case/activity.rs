@@ -9,7 +9,7 @@ use super::channel::CaseChannel;
 use super::machine::{Freedoms, Machine, Waveforms};
 use super::machine_keys::Sign;
 use super::machine_write::WriteWaveform;
-use crate::keyed::{Log, Section, Settings, Writer, names, settings, within};
+use crate::config::{Log, Section, Settings, Writer, names, settings, within};
 
 /// Shares whose sum is so near to 1 are whole: thirds are written with a few digits.
 const WHOLE: f64 = 1e-3;

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::keyed::Reason;
+use crate::config::Reason;
 
 /// Why an activity cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -8,7 +8,7 @@ use toml_edit::Value;
 use super::contents::Case;
 use super::key_names::{KeyNameError, path_called};
 use super::overriding::with_value;
-use crate::keyed::{Problems, likeliest};
+use crate::config::{Problems, likeliest};
 
 /// A value to be taken in place of the one that the case file gives, or leaves out.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::heading::Side;
-use crate::keyed::{Key, Kind, Log, Reason, Setting, read_word, wrong_type};
+use crate::config::{Key, Kind, Log, Reason, Setting, read_word, wrong_type};
 
 /// Where x, y and z of a file point, in words of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

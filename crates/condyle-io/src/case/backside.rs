@@ -2,7 +2,7 @@
 
 use condyle::contact::Backside;
 
-use crate::keyed::{settings, variants, within};
+use crate::config::{settings, variants, within};
 
 settings! {
     /// How a backside rests on its tray.

@@ -2,7 +2,7 @@
 
 use condyle::machine::{self, ChannelUnit, Interpolation, knee::KNEE};
 
-use crate::keyed::{Limits, within};
+use crate::config::{Limits, within};
 
 /// A waveform of the machine, as a case has it.
 #[derive(Clone, Copy, Debug, PartialEq)]

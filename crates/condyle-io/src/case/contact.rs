@@ -5,7 +5,7 @@ use condyle::contact::{Foundation, FrictionModel, PressureTable, Search, softeni
 use super::backside::BacksideChoice;
 use super::plasticity::PlasticityChoice;
 use super::pressure_table::StrainTable;
-use crate::keyed::{
+use crate::config::{
     Choices, Key, Log, Offered, Section, Settings, Variants, Writer, choice, settings, variants,
     within,
 };

@@ -3,7 +3,7 @@
 use condyle::creep::LeePienkowski;
 use condyle::parameter::Parameter;
 
-use crate::keyed::{Limits, settings, variants, within};
+use crate::config::{Limits, settings, variants, within};
 
 const A: Parameter = LeePienkowski::STRAIN_AT_10000_MIN;
 const B: Parameter = LeePienkowski::STRAIN_PER_DECADE;

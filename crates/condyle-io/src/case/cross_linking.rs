@@ -3,7 +3,7 @@
 use condyle::parameter::Parameter;
 use condyle::wear::{CrossLinked, NamedLaw};
 
-use crate::keyed::{Limits, settings, variants, within};
+use crate::config::{Limits, settings, variants, within};
 
 const MODERATE: Parameter = CrossLinked::MODERATE;
 const HIGH: Parameter = CrossLinked::HIGH;

@@ -17,7 +17,7 @@ pub use error::DraftError;
 
 use self::{alone::Alone, concluded::Concluded, origin::ConcludedOrigin, side::ConcludedSide};
 use super::{axes::Axes, build::Body, contents::Case, heading::Side, machine_keys::Preset};
-use crate::keyed::quoted;
+use crate::config::quoted;
 
 /// What a case is drafted from.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::keyed::Reason;
+use crate::config::Reason;
 
 /// Why a drive or a waveform cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

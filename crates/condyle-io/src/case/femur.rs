@@ -6,7 +6,7 @@ use super::axes::{self, Axes};
 use super::heading::Side;
 use super::mesh_file::LengthUnit;
 use super::placement::FemurPlacement;
-use crate::keyed::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
+use crate::config::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
 
 settings! {
     /// A pair of condyles, each a piece of torus.

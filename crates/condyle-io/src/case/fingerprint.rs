@@ -3,7 +3,7 @@
 use std::io;
 
 use super::contents::Case;
-use crate::keyed::DataFile;
+use crate::config::DataFile;
 
 impl Case {
     /// Hash of the case as run and of the bytes of its meshes, in hexadecimal.

@@ -1,6 +1,6 @@
 //! What stands above the first table of a case.
 
-use crate::keyed::{choice, settings};
+use crate::config::{choice, settings};
 
 choice! {
     /// Which knee.

@@ -6,7 +6,7 @@ use super::axes::{self, Axes};
 use super::heading::Side;
 use super::mesh_file::LengthUnit;
 use super::placement::InsertPlacement;
-use crate::keyed::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
+use crate::config::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
 
 settings! {
     /// Two dishes with an eminence between.

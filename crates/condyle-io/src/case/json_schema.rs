@@ -26,7 +26,7 @@ use super::pressure_table;
 use super::time::Time;
 use super::waveform::{waveform_keys, ways};
 use super::wear::{Wear, WearLaws};
-use crate::keyed::{Settings, TableSchema, Variants};
+use crate::config::{Settings, TableSchema, Variants};
 
 /// A JSON schema, draft 2020-12, of a case file that may choose from `wear_laws`: every key with
 /// its unit, range, default and meaning, from the declarations that a case is read with.

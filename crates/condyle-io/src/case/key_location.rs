@@ -14,8 +14,8 @@ use super::build::{Body, BuildError, BuildWarning};
 use super::contents::Case;
 use super::limits::Limits;
 use super::machine_keys::DriveWord;
+use crate::config::{Base, DataFile, Log, Problem, Problems, Reason, Section, Source};
 use crate::files::{Files, MemoryFiles};
-use crate::keyed::{Base, DataFile, Log, Problem, Problems, Reason, Section, Source};
 
 /// Values that are good one by one and make no wear test together.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::contents::Case;
-use crate::keyed::split_unit;
+use crate::config::split_unit;
 
 /// Why a name is that of no one key.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

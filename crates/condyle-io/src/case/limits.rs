@@ -1,6 +1,6 @@
 //! What a run may take of the computer.
 
-use crate::keyed::{settings, within};
+use crate::config::{settings, within};
 
 settings! {
     /// What a run may take of the computer.

@@ -9,7 +9,7 @@ use super::machine_keys::{
     DriveWord, MachineSettings, Preset, Rotation, Springs, Start, Translation,
 };
 use super::waveform;
-use crate::keyed::{Key, KeyReason, Log, Section, Settings, names, quoted_list, read_table};
+use crate::config::{Key, KeyReason, Log, Section, Settings, names, quoted_list, read_table};
 
 /// The simulator.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use condyle::machine::knee;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::keyed::{Key, Kind, Log, Setting, choice, number, settings, within, wrong_type};
+use crate::config::{Key, Kind, Log, Setting, choice, number, settings, within, wrong_type};
 
 choice! {
     /// A simulator to start from.

@@ -6,7 +6,7 @@ use super::channel::CaseChannel;
 use super::machine::{Freedom, Machine, Waveforms};
 use super::machine_keys::Start;
 use super::waveform::{DEFAULT_WAVEFORM, InterpolationWord};
-use crate::keyed::{Settings, Writer, unit_of};
+use crate::config::{Settings, Writer, unit_of};
 
 /// How the table of a waveform is written.
 pub(super) type WriteWaveform = fn(&mut Writer, &str, CaseChannel, &Waveform);

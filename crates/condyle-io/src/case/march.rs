@@ -1,6 +1,6 @@
 //! The march over the life of the insert.
 
-use crate::keyed::{Key, Log, Section, Settings, Variants, Writer, settings, variants, within};
+use crate::config::{Key, Log, Section, Settings, Variants, Writer, settings, variants, within};
 
 settings! {
     /// The whole test.

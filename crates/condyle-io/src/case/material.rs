@@ -3,7 +3,7 @@
 use condyle_fem::Elastic;
 
 use super::cross_linking::CrossLinking;
-use crate::keyed::{Key, Log, Section, Settings, Variants, Writer, settings, within};
+use crate::config::{Key, Log, Section, Settings, Variants, Writer, settings, within};
 
 settings! {
     /// Elasticity and density.

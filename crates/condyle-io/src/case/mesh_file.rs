@@ -1,6 +1,6 @@
 //! What a mesh file does not say of itself.
 
-use crate::keyed::choice;
+use crate::config::choice;
 
 choice! {
     /// Unit of length of a mesh file.

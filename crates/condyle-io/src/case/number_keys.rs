@@ -3,7 +3,7 @@
 use super::contents::Case;
 use super::key_names::{KeyNameError, path_called};
 use super::overriding::OverrideError;
-use crate::keyed::nearest;
+use crate::config::nearest;
 
 /// A number that a case has.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@ use super::contents::Case;
 use super::machine_write::write_name;
 use super::overriding::Override;
 use super::reader::CaseReader;
+use crate::config::Problems;
 use crate::files::Disk;
-use crate::keyed::Problems;
 
 impl Default for CaseReader {
     fn default() -> Self {

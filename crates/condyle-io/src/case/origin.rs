@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::law_change::LeftOutConstant;
-use crate::keyed::Source;
+use crate::config::Source;
 
 /// The text of a case file, and what of it was left out.
 ///

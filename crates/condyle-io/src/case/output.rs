@@ -1,6 +1,6 @@
 //! What a run writes besides what it always does.
 
-use crate::keyed::settings;
+use crate::config::settings;
 
 settings! {
     /// What a run writes besides what it always does.

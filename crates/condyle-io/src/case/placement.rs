@@ -5,7 +5,7 @@
 
 use super::femur::Femur;
 use super::insert::Insert;
-use crate::keyed::{KeyReason, Log, Section, Settings, choice, names, settings, within};
+use crate::config::{KeyReason, Log, Section, Settings, choice, names, settings, within};
 
 choice! {
     /// What of an insert is put at the origin of the insert frame, where the machine's axes are.

@@ -3,7 +3,7 @@
 use condyle_fem::{Hardening, HardeningError};
 use thiserror::Error;
 
-use crate::keyed::{
+use crate::config::{
     Key, Kind, Log, Reason, Section, Settings, WhereSilent, Writer, pairs, settings, variants,
     within,
 };

@@ -3,7 +3,7 @@
 use condyle::contact::{PressureTable, PressureTableError};
 use thiserror::Error;
 
-use crate::keyed::{
+use crate::config::{
     Cell, ColumnReason, Columns, DataFile, Key, KeyReason, Kind, Log, Placed, Reason, Section,
     Setting, Settings, WhereSilent, Writer, pairs, settings, within,
 };

@@ -13,7 +13,7 @@ use super::material::Material;
 use super::origin::Origin;
 use super::placement::{FemurPlacement, InsertPlacement};
 use super::wear::{Wear, WearLaws};
-use crate::keyed::{Log, Section, Settings, Variants, names, read_table};
+use crate::config::{Log, Section, Settings, Variants, names, read_table};
 
 /// Every table of a case, in the order they are written.
 const TABLES: [&str; 13] = [

@@ -12,8 +12,8 @@ use super::law_change::without_other_laws;
 use super::overriding::Override;
 use super::read::read_case;
 use super::wear::WearLaws;
+use crate::config::{Base, Problems, Source, read_document, read_source};
 use crate::files::Files;
-use crate::keyed::{Base, Problems, Source, read_document, read_source};
 
 /// Reads cases.
 #[derive(Clone, Debug)]

@@ -24,7 +24,7 @@ use super::plasticity::PlasticityChoice;
 use super::time::Time;
 use super::waveform::{WaveformSource, knots_key};
 use super::wear::{Wear, WearLaws};
-use crate::keyed::{Key, Page, Settings, Variants, unit_of};
+use crate::config::{Key, Page, Settings, Variants, unit_of};
 
 const OPENING: &str = "\
 # The case file

@@ -2,7 +2,7 @@
 
 use condyle::machine::{Integration, TimeSettings};
 
-use crate::keyed::{choice, settings, within};
+use crate::config::{choice, settings, within};
 
 choice! {
     /// How time is integrated.

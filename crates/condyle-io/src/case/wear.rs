@@ -6,7 +6,7 @@ use condyle::parameter::{Known, Parameter};
 use condyle::wear::{NamedLaw, WEAR_LAWS, WearLawKind};
 use thiserror::Error;
 
-use crate::keyed::{
+use crate::config::{
     Choices, Key, Limits, Log, Offered, Section, Setting, WhereSilent, Writer, within,
 };
 

@@ -6,8 +6,8 @@ use super::contents::Case;
 use super::machine_keys::Preset;
 use super::machine_write::{WriteWaveform, write_knots, write_name};
 use super::reader::CaseReader;
+use crate::config::{Settings, Variants, Writer};
 use crate::files::MemoryFiles;
-use crate::keyed::{Settings, Variants, Writer};
 
 impl Case {
     /// The case as a file that reads back as an equal case: every default written out, waveforms

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::reason::MeasuredReason;
-use crate::keyed::{Cell, Columns, Placed};
+use crate::config::{Cell, Columns, Placed};
 
 /// Every column whose name stands before it already.
 pub(super) fn repeated(columns: &Columns<'_>) -> Vec<Placed> {

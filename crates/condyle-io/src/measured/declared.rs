@@ -1,7 +1,7 @@
 //! What a file of measured data is made of.
 
 use crate::case::{Axes, LengthUnit};
-use crate::keyed::{DataFile, Names, choice, settings, within};
+use crate::config::{DataFile, Names, choice, settings, within};
 
 choice! {
     /// Which cycle of the run a measured one is held against.

@@ -3,7 +3,7 @@
 use super::checks::{not_growing, repeated};
 use super::declared::GravimetricKeys;
 use super::reason::MeasuredReason;
-use crate::keyed::{Cell, ColumnReason, Columns, Log, Placed, Section, Settings, names, within};
+use crate::config::{Cell, ColumnReason, Columns, Log, Placed, Section, Settings, names, within};
 
 const EXAMPLE: &str = "cycles,specimen_1_mg,soak_1_mg";
 /// What a column's name begins with where the file does not name its soak controls.

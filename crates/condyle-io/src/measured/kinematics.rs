@@ -6,7 +6,7 @@ use super::checks::{not_growing, repeated, too_few};
 use super::declared::KinematicsKeys;
 use super::phases::{self, PHASES, Phase};
 use super::reason::MeasuredReason;
-use crate::keyed::{Cell, Columns, Log, Placed, Section, Settings, names, nearest};
+use crate::config::{Cell, Columns, Log, Placed, Section, Settings, names, nearest};
 
 const EXAMPLE: &str = "percent,ap_mm,ie_deg";
 

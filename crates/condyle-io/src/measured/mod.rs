@@ -14,7 +14,7 @@ mod read;
 mod reason;
 mod scan;
 
-pub use crate::keyed::Names;
+pub use crate::config::Names;
 pub use declared::{
     AlignWord, CycleWord, FitWord, GravimetricKeys, IntervalWord, KinematicsKeys, ScanKeys,
 };

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::read::Measured;
 use crate::case::Side;
+use crate::config::Problems;
 use crate::files::{Disk, Files};
-use crate::keyed::Problems;
 
 impl Measured {
     /// Reads the file at `path` for a `side` knee; paths in it count from its folder.

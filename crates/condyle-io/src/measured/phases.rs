@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::reason::MeasuredReason;
-use crate::keyed::{Log, Section, number};
+use crate::config::{Log, Section, number};
 
 /// Name of the table of phases.
 pub(super) const PHASES: &str = "phases_percent";

@@ -8,8 +8,8 @@ use super::kinematics::{self, Kinematics};
 use super::reason::MeasuredReason;
 use super::scan::{self, Scan};
 use crate::case::Side;
+use crate::config::{Base, Log, Problems, Section, read_document, read_source};
 use crate::files::Files;
-use crate::keyed::{Base, Log, Problems, Section, read_document, read_source};
 
 /// What a laboratory measured; a part that the file does not name is `None`.
 #[derive(Clone, Debug)]

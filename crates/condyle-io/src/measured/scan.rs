@@ -7,7 +7,9 @@ use super::checks::too_few;
 use super::declared::{FitWord, ScanKeys};
 use super::reason::MeasuredReason;
 use crate::case::{Side, check_axes};
-use crate::keyed::{Cell, ColumnReason, Columns, KeyReason, Log, Placed, Section, Settings, names};
+use crate::config::{
+    Cell, ColumnReason, Columns, KeyReason, Log, Placed, Section, Settings, names,
+};
 use crate::mesh::read_surface;
 
 const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];

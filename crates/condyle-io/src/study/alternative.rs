@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::declared::AlternativeKeys;
 use super::reason::StudyReason;
 use crate::case::Assignment;
-use crate::keyed::{Log, Section, Settings, names};
+use crate::config::{Log, Section, Settings, names};
 
 /// One of several designs, each tried under the same disturbances.
 #[derive(Clone, Debug)]

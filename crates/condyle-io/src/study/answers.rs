@@ -3,7 +3,7 @@
 use super::declared::{AnswersKeys, BoundKeys};
 use super::output::{OUTPUTS, Output};
 use super::reason::StudyReason;
-use crate::keyed::{Log, Section, Settings, likeliest, names, read_table};
+use crate::config::{Log, Section, Settings, likeliest, names, read_table};
 
 /// What is asked of a study.
 #[derive(Clone, Debug)]

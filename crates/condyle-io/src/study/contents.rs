@@ -9,7 +9,7 @@ use super::declared::{Design, Variation};
 use super::input::Input;
 use super::tried::assignment;
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
-use crate::keyed::Level;
+use crate::config::Level;
 
 /// A study as its file describes it, checked, with every default filled in.
 #[derive(Clone, Debug)]

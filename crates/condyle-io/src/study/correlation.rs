@@ -3,7 +3,7 @@
 use super::declared::CorrelationKeys;
 use super::input::Input;
 use super::reason::StudyReason;
-use crate::keyed::{Log, Section, Settings, names};
+use crate::config::{Log, Section, Settings, names};
 
 /// Two inputs that go together.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::reason::StudyReason;
-use crate::keyed::Log;
+use crate::config::Log;
 
 /// Inputs of a study at most, and designs that it compares.
 const MOST: usize = 256;

@@ -1,6 +1,6 @@
 //! What a study file is made of.
 
-use crate::keyed::{DataFile, Levels, Names, settings, variants, within};
+use crate::config::{DataFile, Levels, Names, settings, variants, within};
 
 /// Tests of a study, at most.
 pub(super) const MAX_TESTS: f64 = 1e9;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::declared::{InputKeys, Variation};
 use super::reason::StudyReason;
 use crate::case::Case;
-use crate::keyed::{Level, Log, Section, Settings, Variants};
+use crate::config::{Level, Log, Section, Settings, Variants};
 
 /// So many standard deviations from its mean, a normal input must still be allowed: of a million values 63 lie beyond.
 const NORMAL_REACH: f64 = 4.0;
@@ -59,7 +59,7 @@ impl Input {
         case: &Case,
     ) -> Self {
         use super::declared::LevelKeys;
-        use crate::keyed::Levels;
+        use crate::config::Levels;
         let levels = Levels(telling(column));
         Self {
             key: key.to_owned(),

@@ -14,8 +14,8 @@ use super::reason::StudyReason;
 use super::rows::{Rows, read_rows};
 use super::tried::Trial;
 use crate::case::{Case, CaseReader};
+use crate::config::{Base, Log, Problems, Section, Settings, Variants, read_document, read_source};
 use crate::files::{Disk, Files};
-use crate::keyed::{Base, Log, Problems, Section, Settings, Variants, read_document, read_source};
 
 /// Values that are tried on the case before the first test, at most: a thousand files of rows would take a while, and what the
 /// case does not take is then the row's reason.

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::keyed::{Level, Reason};
+use crate::config::{Level, Reason};
 
 /// Why a study cannot be done.
 #[derive(Clone, Debug, PartialEq, Error)]

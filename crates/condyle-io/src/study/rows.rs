@@ -6,7 +6,7 @@ use super::count::check_count;
 use super::input::Input;
 use super::reason::StudyReason;
 use crate::case::Case;
-use crate::keyed::{DataFile, Level, Log, Placed, Section};
+use crate::config::{DataFile, Level, Log, Placed, Section};
 
 /// Inputs, and the values of each test; no rows where a design chooses them.
 pub(super) struct Rows {

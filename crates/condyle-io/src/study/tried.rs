@@ -6,7 +6,7 @@ use super::alternative::Alternative;
 use super::input::Input;
 use super::reason::StudyReason;
 use crate::case::{Assignment, CaseReader, ChangeError};
-use crate::keyed::{Level, Log};
+use crate::config::{Level, Log};
 
 /// What sets `key` of a case; files are counted from `folder`, the study's.
 pub(super) fn assignment(folder: &Path, key: &str, level: &Level) -> Assignment {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use condyle_io::keyed::Problems;
+use condyle_io::config::Problems;
 use condyle_io::{mesh::MeshFileError, results::DamagedFile};
 use condyle_report::ReportError;
 use thiserror::Error;

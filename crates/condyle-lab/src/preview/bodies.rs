@@ -7,7 +7,7 @@ use condyle::{
 };
 use condyle_io::{
     case::Case,
-    keyed::{DataFile, Variants},
+    config::{DataFile, Variants},
 };
 use serde::Serialize;
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use condyle::evolve::March;
 use condyle_io::{
     case::{BuildError, BuildWarning, Case},
-    keyed::DataFile,
+    config::DataFile,
 };
 
 use super::error::RunError;

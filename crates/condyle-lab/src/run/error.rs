@@ -8,7 +8,7 @@ use std::{
 use condyle::evolve::{MarchError, PlacementError};
 use condyle_io::{
     case::{AssignmentError, BuildError, Case, ChangeError},
-    keyed::Problems,
+    config::Problems,
     results::ResultsError,
 };
 use thiserror::Error;

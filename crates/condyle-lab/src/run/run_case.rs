@@ -4,7 +4,7 @@ use std::path::Path;
 
 use condyle_io::{
     case::{Assignment, Case, SharedBodies},
-    keyed::DataFile,
+    config::DataFile,
     results::{Found, ResultsError, ResultsFolder, Summary},
 };
 

@@ -6,7 +6,7 @@ use std::{
 };
 
 use condyle_io::case::{Case, Override, OverrideError};
-use condyle_io::keyed::Problems;
+use condyle_io::config::Problems;
 use thiserror::Error;
 
 use crate::RunError;

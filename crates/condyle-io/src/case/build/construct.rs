@@ -6,7 +6,7 @@ use condyle::geometry::{CheckedShell, ShellError, Underside};
 
 use super::error::{BuildError, BuildWarning};
 use super::meshes::checks_of_insert;
-use crate::keyed::DataFile;
+use crate::config::DataFile;
 
 /// Digits of a height that is told, so that the one that is written is the one that was cut at.
 const PER_MM: f64 = 100.0;

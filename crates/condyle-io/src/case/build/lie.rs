@@ -12,7 +12,7 @@ use super::super::mesh_file::LengthUnit;
 use super::error::{BuildError, BuildWarning};
 use super::meshes::Placing;
 use super::wrong_axes::{Body, WrongAxes};
-use crate::keyed::DataFile;
+use crate::config::DataFile;
 
 /// Longest extent of a femoral component or an insert of a whole knee, mm: from the smallest sizes on
 /// the market, rounded down, to the largest, rounded up.

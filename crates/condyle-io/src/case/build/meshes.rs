@@ -13,7 +13,7 @@ use super::error::{BuildError, BuildWarning};
 use super::pieces::stray_piece;
 #[cfg(feature = "file-system")]
 use super::wrong_axes::Body;
-use crate::keyed::DataFile;
+use crate::config::DataFile;
 use crate::mesh::{parse_surface, surface_bytes};
 
 /// From the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.

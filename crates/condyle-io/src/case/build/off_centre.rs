@@ -7,7 +7,7 @@ use condyle::{Vec3, geometry};
 use super::super::placement::{InsertOrigin, InsertPlacement};
 use super::error::BuildWarning;
 use super::rigid_motion::middle_of_points;
-use crate::keyed::DataFile;
+use crate::config::DataFile;
 
 /// The dishes may have their middle so far to a side of the origin, mm: each mm moves 2 % of the load to one of them ...
 pub(in crate::case) const MAX_ACROSS_MM: f64 = 2.5;

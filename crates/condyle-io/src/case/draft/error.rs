@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use condyle::geometry::ShellError;
 use thiserror::Error;
 
-use crate::{case::build::Body, keyed::Problems, mesh::MeshFileError};
+use crate::{case::build::Body, config::Problems, mesh::MeshFileError};
 
 /// Why no case can be drafted from two files.
 #[derive(Debug, Error)]

@@ -4,7 +4,7 @@ use condyle::geometry::{Insert, Meshing, flat_insert};
 
 use super::{assert_shows, parsed, refusal};
 use crate::case::{Case, FrictionModelWord};
-use crate::keyed::{Problem, RenderStyle};
+use crate::config::{Problem, RenderStyle};
 
 #[test]
 fn syntax_errors_are_all_shown() {

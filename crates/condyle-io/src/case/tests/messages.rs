@@ -2,7 +2,7 @@
 
 use super::{assert_shows, parsed, refusal};
 use crate::case::schema_markdown;
-use crate::keyed::{RenderStyle, SYNONYMS};
+use crate::config::{RenderStyle, SYNONYMS};
 
 #[test]
 fn of_many_problems_the_first_are_shown_and_the_rest_counted() {

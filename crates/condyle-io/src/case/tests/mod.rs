@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use condyle::contact::{CycleHistory, Moment, Record};
 
 use super::contents::Case;
-use crate::keyed::Problems;
+use crate::config::Problems;
 
 /// The folder of the cases that come with condyle.
 pub(super) fn cases() -> PathBuf {

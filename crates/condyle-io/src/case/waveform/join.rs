@@ -6,7 +6,7 @@ use super::super::channel::CaseChannel;
 use super::keys::{InterpolationWord, WaveformSource};
 use super::points::Points;
 use super::reason::WaveformReason;
-use crate::keyed::{KeyReason, Log, Placed, Section, plain, unit_of};
+use crate::config::{KeyReason, Log, Placed, Section, plain, unit_of};
 
 /// Scales, levels, smooths and joins points.
 pub(super) fn finish(

@@ -3,7 +3,7 @@
 use condyle::machine::Interpolation;
 
 use super::super::channel::CaseChannel;
-use crate::keyed::{DataFile, Key, Kind, Settings, WhereSilent, choice, settings, within};
+use crate::config::{DataFile, Key, Kind, Settings, WhereSilent, choice, settings, within};
 
 choice! {
     /// How a waveform goes from point to point.

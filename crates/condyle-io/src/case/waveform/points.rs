@@ -11,7 +11,7 @@ use toml::de::DeValue;
 use super::super::channel::{CaseChannel, NamedWaveform};
 use super::keys::{DEFAULT_WAVEFORM, WaveformSource, ways};
 use super::samples::{Choice, Samples, choose_column, column_points, csv_points};
-use crate::keyed::{
+use crate::config::{
     DataFile, KeyReason, Log, Placed, Section, Source, nearest, pairs, quoted_list,
 };
 

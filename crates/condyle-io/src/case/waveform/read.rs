@@ -6,7 +6,7 @@ use super::super::channel::CaseChannel;
 use super::join::finish;
 use super::keys::WaveformSource;
 use super::points::points;
-use crate::keyed::{Log, Section, Settings, names};
+use crate::config::{Log, Section, Settings, names};
 
 /// Reads the waveform of `channel` from its table in `machine`.
 pub(crate) fn read(

@@ -3,7 +3,7 @@
 use condyle::machine::WaveformError;
 use thiserror::Error;
 
-use crate::keyed::Reason;
+use crate::config::Reason;
 
 /// Points that make no waveform.
 #[derive(Clone, Debug, PartialEq, Error)]

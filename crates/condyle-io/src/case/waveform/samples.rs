@@ -5,7 +5,7 @@ use std::ops::Range;
 use condyle::machine::Knot;
 
 use super::super::channel::CaseChannel;
-use crate::keyed::{Cell, ColumnReason, Columns, Placed, unit_of};
+use crate::config::{Cell, ColumnReason, Columns, Placed, unit_of};
 
 /// Samples, and where each stands in its text.
 #[derive(Default)]

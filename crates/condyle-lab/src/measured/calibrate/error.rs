@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use condyle::evolve::MarchError;
-use condyle_io::{case::ConstantError, keyed::Problems};
+use condyle_io::{case::ConstantError, config::Problems};
 use thiserror::Error;
 
 use super::super::CompareError;

@@ -282,8 +282,8 @@ mod tests {
 
     use condyle::geometry::TriangleMesh;
     use condyle_io::case::{Axes, LengthUnit};
+    use condyle_io::config::DataFile;
     use condyle_io::files::{Disk, Files};
-    use condyle_io::keyed::DataFile;
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! What a case assumes, and what could be assumed instead.
 
 use condyle_io::case::{Assignment, Case};
-use condyle_io::keyed::unit_of;
+use condyle_io::config::unit_of;
 
 /// Something that a case assumes, and what is tried in its place.
 struct Assumption {

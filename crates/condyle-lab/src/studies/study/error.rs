@@ -2,7 +2,7 @@
 
 use std::{io, path::PathBuf};
 
-use condyle_io::{keyed::Problems, results::ResultsError};
+use condyle_io::{config::Problems, results::ResultsError};
 use condyle_report::ReportError;
 use thiserror::Error;
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use condyle_io::{
     case::{Assignment, Case},
-    keyed::{Level, Variants},
+    config::{Level, Variants},
     study::{Design, Input, OUTPUTS, Study, Variation},
 };
 

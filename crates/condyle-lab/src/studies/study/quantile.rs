@@ -1,7 +1,7 @@
 //! Values of an input by where they lie in its distribution.
 
 use condyle_io::{
-    keyed::Level,
+    config::Level,
     study::{Input, TriangularKeys, TruncatedKeys, Variation},
 };
 use statrs::distribution::{ContinuousCDF, Normal};

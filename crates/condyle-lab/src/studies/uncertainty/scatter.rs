@@ -2,7 +2,7 @@
 
 use condyle_io::{
     case::{Assignment, Case},
-    keyed::unit_of,
+    config::unit_of,
 };
 use statrs::distribution::{ContinuousCDF, Normal};
 

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use condyle_io::{keyed::Variants, study::Output};
+use condyle_io::{config::Variants, study::Output};
 
 use super::super::{error::StudyError, plan::Plan, store::Store};
 use super::{

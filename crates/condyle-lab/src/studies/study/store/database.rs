@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use condyle_io::keyed::Level;
+use condyle_io::config::Level;
 use rusqlite::{Connection, params_from_iter, types::Value};
 
 use super::super::{

@@ -37,17 +37,17 @@ macro_rules! choice {
             }
         }
 
-        impl $crate::keyed::setting::Setting for $name {
-            fn kind() -> $crate::keyed::kind::Kind {
-                $crate::keyed::kind::Kind::Word(Self::WORDS.to_vec())
+        impl $crate::config::setting::Setting for $name {
+            fn kind() -> $crate::config::kind::Kind {
+                $crate::config::kind::Kind::Word(Self::WORDS.to_vec())
             }
 
             fn read(
                 value: &toml::Spanned<toml::de::DeValue<'_>>,
-                key: &$crate::keyed::key::Key,
-                log: &mut $crate::keyed::log::Log<'_>,
+                key: &$crate::config::key::Key,
+                log: &mut $crate::config::log::Log<'_>,
             ) -> Option<Self> {
-                let word = $crate::keyed::words::read_word(value, key, Self::WORDS, log)?;
+                let word = $crate::config::words::read_word(value, key, Self::WORDS, log)?;
                 Self::from_word(word)
             }
 

@@ -51,35 +51,35 @@ macro_rules! settings {
             $( $(#[doc = $doc])+ pub $field: $ty, )*
         }
 
-        impl $crate::keyed::settings::Settings for $name {
-            fn keys() -> Vec<$crate::keyed::key::Key> {
+        impl $crate::config::settings::Settings for $name {
+            fn keys() -> Vec<$crate::config::key::Key> {
                 vec![$(
-                    $crate::keyed::key::Key {
+                    $crate::config::key::Key {
                         name: stringify!($field),
                         doc: concat!($($doc),+).trim().into(),
-                        kind: <$ty as $crate::keyed::setting::Setting>::kind(),
-                        silent: $crate::keyed::settings::where_silent!($ty $(, $default)?),
-                        limits: $crate::keyed::settings::given!($($limits)?),
+                        kind: <$ty as $crate::config::setting::Setting>::kind(),
+                        silent: $crate::config::settings::where_silent!($ty $(, $default)?),
+                        limits: $crate::config::settings::given!($($limits)?),
                     },
                 )*]
             }
 
             fn read(
-                section: &$crate::keyed::section::Section<'_>,
-                log: &mut $crate::keyed::log::Log<'_>,
+                section: &$crate::config::section::Section<'_>,
+                log: &mut $crate::config::log::Log<'_>,
             ) -> Option<Self> {
                 let mut keys = Self::keys().into_iter();
                 $(
                     let $field: Option<$ty> = section.setting(
                         &keys.next()?,
-                        $crate::keyed::settings::given!($($default)?),
+                        $crate::config::settings::given!($($default)?),
                         log,
                     );
                 )*
                 Some(Self { $( $field: $field?, )* })
             }
 
-            fn write(&self, out: &mut $crate::keyed::writer::Writer) {
+            fn write(&self, out: &mut $crate::config::writer::Writer) {
                 let mut keys = Self::keys().into_iter();
                 $(
                     if let Some(key) = keys.next() {
@@ -94,12 +94,12 @@ macro_rules! settings {
 /// What is taken where the file is silent.
 macro_rules! where_silent {
     ($ty:ty) => {
-        $crate::keyed::key::WhereSilent::MustBeGiven
+        $crate::config::key::WhereSilent::MustBeGiven
     };
     ($ty:ty, $default:expr) => {
-        match <$ty as $crate::keyed::setting::Setting>::text(&$default) {
-            Some(text) => $crate::keyed::key::WhereSilent::Takes(text),
-            None => $crate::keyed::key::WhereSilent::LeftOut,
+        match <$ty as $crate::config::setting::Setting>::text(&$default) {
+            Some(text) => $crate::config::key::WhereSilent::Takes(text),
+            None => $crate::config::key::WhereSilent::LeftOut,
         }
     };
 }

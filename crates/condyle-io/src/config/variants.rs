@@ -53,16 +53,16 @@ macro_rules! variants {
             $( $(#[doc = $doc])+ $variant $(($keys))?, )+
         }
 
-        impl $crate::keyed::variants::Variants for $name {
-            fn choices() -> $crate::keyed::choices::Choices {
-                $crate::keyed::choices::Choices::new(
+        impl $crate::config::variants::Variants for $name {
+            fn choices() -> $crate::config::choices::Choices {
+                $crate::config::choices::Choices::new(
                     stringify!($key),
                     concat!($($key_doc),+).trim(),
                     $default,
                     vec![$(
-                        $crate::keyed::choices::Offered {
+                        $crate::config::choices::Offered {
                             word: $word,
-                            keys: $crate::keyed::variants::keys_of!($($keys)?),
+                            keys: $crate::config::variants::keys_of!($($keys)?),
                         },
                     )+],
                 )
@@ -74,20 +74,20 @@ macro_rules! variants {
 
             fn read_as(
                 word: &str,
-                section: &$crate::keyed::section::Section<'_>,
-                log: &mut $crate::keyed::log::Log<'_>,
+                section: &$crate::config::section::Section<'_>,
+                log: &mut $crate::config::log::Log<'_>,
             ) -> Option<Self> {
                 Some(match word {
                     $( $word => Self::$variant
-                        $((<$keys as $crate::keyed::settings::Settings>::read(section, log)?))?, )+
+                        $((<$keys as $crate::config::settings::Settings>::read(section, log)?))?, )+
                     _ => return None,
                 })
             }
 
-            fn write_keys(&self, out: &mut $crate::keyed::writer::Writer) {
+            fn write_keys(&self, out: &mut $crate::config::writer::Writer) {
                 match self {
-                    $( Self::$variant $(($crate::keyed::variants::bound!(keys, $keys)))? => {
-                        $( <$keys as $crate::keyed::settings::Settings>::write(keys, out); )?
+                    $( Self::$variant $(($crate::config::variants::bound!(keys, $keys)))? => {
+                        $( <$keys as $crate::config::settings::Settings>::write(keys, out); )?
                     } )+
                 }
             }
@@ -101,7 +101,7 @@ macro_rules! keys_of {
         Vec::new()
     };
     ($keys:ty) => {
-        <$keys as $crate::keyed::settings::Settings>::keys()
+        <$keys as $crate::config::settings::Settings>::keys()
     };
 }
 
