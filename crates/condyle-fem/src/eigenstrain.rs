@@ -3,12 +3,17 @@
 //! Its forces on the nodes move the solid as any others do, with the same stiffness, and the stress is
 //! that of the strain without it (Eshelby; Mura 1987).
 
+use std::collections::BTreeMap;
+
+use nalgebra::Matrix3;
+
 use crate::{
-    elastic::Strain,
-    element::POINTS,
+    Vec3,
+    elastic::{Elastic, Strain},
+    element::{Element, Modes, POINTS, Stiffness},
+    material::Stress,
+    plastic::{ElasticPlastic, PlasticPoint},
     solid::{ElasticSolid, moved},
-    stress::Stress,
-    vector::Vec3,
 };
 
 impl ElasticSolid {
@@ -65,6 +70,176 @@ impl ElasticSolid {
     }
 }
 
+// ---- Mean stress of elements.
+
+impl ElasticSolid {
+    /// Mean stress of every element under displacements of the nodes: that of its centre, where stress is
+    /// most exact.
+    ///
+    /// # Panics
+    /// If there are fewer displacements than nodes.
+    pub fn stresses(&self, displacements: &[Vec3]) -> Vec<Stress> {
+        self.stresses_with(displacements, &BTreeMap::new())
+    }
+
+    /// The same where some elements have eigenstrains at their Gauss points, and the displacements are those
+    /// under them too.
+    ///
+    /// # Panics
+    /// If there are fewer displacements than nodes.
+    pub fn stresses_with(
+        &self,
+        displacements: &[Vec3],
+        eigenstrains: &BTreeMap<usize, [Strain; POINTS]>,
+    ) -> Vec<Stress> {
+        let hexes = self.mesh().hexes.iter().zip(self.elements()).enumerate();
+        let stress = |(number, (hex, element)): (usize, (&[u32; 8], &Element))| {
+            let strain = mean_strain(&element.mean_gradients(), &moved(hex, displacements));
+            let own = eigenstrains.get(&number);
+            let own = own.map_or_else(Strain::default, |own| mean_over(element, own));
+            self.elastic().stress(&strain.less(&own))
+        };
+        hexes.map(stress).collect()
+    }
+}
+
+/// Mean strain of an element, to which its incompatible modes add nothing.
+pub(crate) fn mean_strain(gradients: &[Vec3; 8], nodes: &[Vec3; 8]) -> Strain {
+    let mut gradient = Matrix3::zeros();
+    for (node, by) in nodes.iter().zip(gradients) {
+        gradient += node * by.transpose();
+    }
+    Strain::of_gradient(&gradient)
+}
+
+/// Mean over the volume of strains at the Gauss points.
+pub(crate) fn mean_over(element: &Element, strains: &[Strain; POINTS]) -> Strain {
+    let volumes = element.volumes();
+    let volume: f64 = volumes.iter().sum();
+    let mut mean = Strain::default();
+    for (part, strain) in volumes.iter().zip(strains) {
+        mean = mean.plus(part / volume, &Stress(strain.0));
+    }
+    mean
+}
+
+// ---- An element whose material may yield, by itself: its flow under displacements of its nodes.
+
+/// What makes the mean stress of an element of displacements of its nodes.
+#[derive(Clone, Debug)]
+pub struct ElementMean {
+    gradients: [Vec3; 8],
+    elastic: Elastic,
+}
+
+/// An element whose material may yield, with the stiffness of its modes.
+pub struct YieldingElement {
+    number: usize,
+    stiffness: Stiffness,
+}
+
+impl ElementMean {
+    /// Mean stress under displacements of the nodes, and a mean eigenstrain.
+    pub fn stress(&self, nodes: &[Vec3; 8], eigenstrain: &Strain) -> Stress {
+        let strain = mean_strain(&self.gradients, nodes);
+        self.elastic.stress(&strain.less(eigenstrain))
+    }
+}
+
+impl ElasticSolid {
+    /// What makes the mean stress of an element.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    pub fn element_mean(&self, element: usize) -> ElementMean {
+        ElementMean {
+            gradients: self.elements()[element].mean_gradients(),
+            elastic: self.elastic(),
+        }
+    }
+
+    /// An element by itself.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    pub fn yielding_element(&self, element: usize) -> YieldingElement {
+        YieldingElement {
+            number: element,
+            stiffness: self.elements()[element].stiffness(&self.elastic()),
+        }
+    }
+}
+
+impl YieldingElement {
+    /// What the Gauss points remember after a flow from `before` under displacements of the nodes, if the modes of
+    /// the element are in balance with the plastic strains of `trial`.
+    ///
+    /// Where that is what comes out, it is the flow of the element.
+    pub fn flow(
+        &self,
+        solid: &ElasticSolid,
+        material: &ElasticPlastic,
+        nodes: &[Vec3; 8],
+        [trial, before]: [&[PlasticPoint; POINTS]; 2],
+    ) -> [PlasticPoint; POINTS] {
+        let element = &solid.elements()[self.number];
+        let pull = self.pull(solid, &trial.map(|point| point.strain));
+        let strains = element.strains(nodes, &self.stiffness.modes(nodes, &pull));
+        std::array::from_fn(|p| material.respond(&strains[p], &before[p]).point)
+    }
+
+    /// The largest part of the yield stress that is used up at a Gauss point, more than 1 where it will flow: under
+    /// displacements of the nodes, with the plastic strains remembered.
+    pub fn use_of_yield(
+        &self,
+        solid: &ElasticSolid,
+        material: &ElasticPlastic,
+        nodes: &[Vec3; 8],
+        before: &[PlasticPoint; POINTS],
+    ) -> f64 {
+        let element = &solid.elements()[self.number];
+        let pull = self.pull(solid, &before.map(|point| point.strain));
+        let strains = element.strains(nodes, &self.stiffness.modes(nodes, &pull));
+        let used = strains.iter().zip(before);
+        used.map(|(strain, before)| material.use_of_yield(strain, before))
+            .fold(0.0, f64::max)
+    }
+
+    /// Forces on the nodes by eigenstrains, as [`ElasticSolid::eigenstrain_forces`].
+    pub fn forces(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> [Vec3; 8] {
+        let element = &solid.elements()[self.number];
+        let elastic = solid.elastic();
+        let (nodes, modes) = element.forces(&eigenstrains.map(|strain| elastic.stress(&strain)));
+        let passed_on = self.stiffness.passed_on(&modes);
+        std::array::from_fn(|node| nodes[node] - passed_on[node])
+    }
+
+    /// Mean of eigenstrains over the element.
+    pub fn mean(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> Strain {
+        mean_over(&solid.elements()[self.number], eigenstrains)
+    }
+
+    fn pull(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> Modes {
+        let elastic = solid.elastic();
+        let stresses = eigenstrains.map(|strain| elastic.stress(&strain));
+        solid.elements()[self.number].forces(&stresses).1
+    }
+}
+
+impl Strain {
+    /// The difference to another strain.
+    pub fn since(&self, before: &Self) -> Self {
+        self.less(before)
+    }
+
+    /// Equivalent strain, $\sqrt{2/3\thinspace e : e}$, of a strain without change of volume.
+    pub fn equivalent(&self) -> f64 {
+        let [x, y, z, shears @ ..] = self.0;
+        let shears = shears.iter().map(|shear| shear * shear).sum::<f64>();
+        (2.0 / 3.0 * (x * x + y * y + z * z + 2.0 * shears)).sqrt()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,5 +293,32 @@ mod tests {
         let works = (0..POINTS).map(|p| volumes[p] * stresses[p].dot(&Stress(eigenstrains[p].0)));
         let work = force.dot(&displacements[node as usize]);
         assert!((works.sum::<f64>() - work).abs() < 1e-15, "{work}");
+    }
+
+    #[test]
+    fn the_mean_of_an_element_is_that_of_its_gauss_points() {
+        let mesh = distorted([4, 3, 3]);
+        let held = (0..20).filter(|&n| mesh.nodes[n as usize].z == 0.0);
+        let elastic = Elastic::new(463.0, 0.46).unwrap();
+        let solid = ElasticSolid::new(&mesh, elastic, held).unwrap();
+        let displacements = solid.displacements(&[(75, Vec3::new(3.0, -8.0, 4.0))]);
+        let eigenstrain = |p: usize| Strain(std::array::from_fn(|i| ((i + 5 * p) as f64).sin()));
+        let eigenstrains: [Strain; POINTS] = std::array::from_fn(eigenstrain);
+        let means = solid.stresses_with(&displacements, &BTreeMap::from([(7, eigenstrains)]));
+        for (number, hex) in mesh.hexes.iter().enumerate() {
+            let own = if number == 7 {
+                eigenstrains
+            } else {
+                Default::default()
+            };
+            let stresses = solid.element_stresses(number, &moved(hex, &displacements), &own);
+            let volumes = solid.elements()[number].volumes();
+            let volume: f64 = volumes.iter().sum();
+            for i in 0..6 {
+                let sum = (0..POINTS).map(|p| volumes[p] / volume * stresses[p].0[i]);
+                let apart = sum.sum::<f64>() - means[number].0[i];
+                assert!(apart.abs() < 1e-9, "{number} {i} {apart}");
+            }
+        }
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::stress::Stress;
+use crate::material::Stress;
 
 /// The two constants of an isotropic, linearly elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]

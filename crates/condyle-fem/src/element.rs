@@ -13,10 +13,10 @@ use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, Vector4};
 use wide::f64x4;
 
 use crate::{
+    Vec3,
     elastic::{Elastic, Strain},
-    plasticity::Softening,
-    stress::Stress,
-    vector::Vec3,
+    material::Stress,
+    plastic::Softening,
 };
 
 /// Gauss points of an element.
@@ -354,8 +354,9 @@ fn jacobian(corners: &[Vec3; 8], at: [f64; 3]) -> Matrix3<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plasticity::{PlasticPoint, tests::material};
     use nalgebra::SymmetricEigen;
+
+    use crate::plastic::{PlasticPoint, tests::material};
 
     fn bent() -> [Vec3; 8] {
         let mut corners = SIGNS.map(|s| Vec3::from_row_slice(&s));

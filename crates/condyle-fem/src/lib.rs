@@ -60,34 +60,29 @@ mod eigenstrain;
 mod elastic;
 mod element;
 mod follow;
-mod half_solved;
-mod hardening;
-mod hex;
-mod mean_stress;
+mod material;
 mod mesh;
-mod neighbours;
+mod plastic;
 mod plastic_solid;
-mod plasticity;
-mod quality;
 mod solid;
 mod sparse;
-mod stress;
 mod support;
-mod traction;
-mod vector;
-mod yielding_element;
 
 pub use compliance::Compliance;
+pub use compliance::HalfSolved;
+pub use eigenstrain::{ElementMean, YieldingElement};
 pub use elastic::{Elastic, ElasticError, Strain};
 pub use follow::InteriorFollower;
-pub use half_solved::HalfSolved;
-pub use hardening::{Hardening, HardeningError};
-pub use hex::{HEX_FACES, trilinear_volume, volume_below};
+pub use material::Stress;
 pub use mesh::HexMesh;
+pub use mesh::{HEX_FACES, trilinear_volume, volume_below};
+pub use plastic::{ElasticPlastic, PlasticPoint};
+pub use plastic::{Hardening, HardeningError};
 pub use plastic_solid::{PlasticError, PlasticSolid, PlasticSolution, PlasticState};
-pub use plasticity::{ElasticPlastic, PlasticPoint};
 pub use solid::{ElasticSolid, SolidError};
-pub use stress::Stress;
 pub use support::MovedSupports;
-pub use vector::Vec3;
-pub use yielding_element::{ElementMean, YieldingElement};
+
+// ---- Points and vectors.
+
+/// A point or a vector in space.
+pub type Vec3 = nalgebra::Vector3<f64>;

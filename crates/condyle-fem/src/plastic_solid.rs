@@ -10,13 +10,12 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::{
+    Vec3,
     elastic::Elastic,
     element::{Modes, NodalStiffness, POINTS, Stiffness},
-    hardening::Hardening,
-    plasticity::{ElasticPlastic, PlasticPoint, Response},
+    material::Stress,
+    plastic::{ElasticPlastic, Hardening, PlasticPoint, Response},
     solid::{ElasticSolid, moved},
-    stress::Stress,
-    vector::Vec3,
 };
 
 /// Force left over, as part of the forces of loads, elements and plastic strains on nodes, at which there is balance.
@@ -390,7 +389,7 @@ fn turn(direction: &mut [Vec3], keep: f64, other: &[Vec3]) {
 mod tests {
     use super::*;
     use crate::{
-        plasticity::tests::material,
+        plastic::tests::material,
         solid::tests::{between_planes, distorted, traction},
     };
 

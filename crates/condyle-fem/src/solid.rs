@@ -3,12 +3,12 @@
 use thiserror::Error;
 
 use crate::{
+    Vec3,
     elastic::{Elastic, ElasticError, Strain},
     element::{Element, POINTS},
+    material::Stress,
     mesh::HexMesh,
     sparse::{Dissection, Factor, Loose, Rhs},
-    stress::Stress,
-    vector::Vec3,
 };
 
 const NO_EIGENSTRAIN: [Strain; POINTS] = [Strain([0.0; 6]); POINTS];

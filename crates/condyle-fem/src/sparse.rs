@@ -1,12 +1,427 @@
 //! Sparse Cholesky factorisation of stiffness, by nested dissection of the mesh.
 
 mod dissection;
-mod factor;
-mod front;
-mod rhs;
-mod solve;
 mod tiles;
 
 pub(crate) use dissection::Dissection;
-pub(crate) use factor::{Factor, Loose};
-pub(crate) use rhs::Rhs;
+
+use std::ops::Range;
+
+use wide::f64x4;
+
+use crate::element::NodalStiffness;
+use dissection::Group;
+use tiles::{Front, Layout, TILE, Triangle};
+
+// ---- Multifrontal Cholesky factorisation.  Every group of nodes has a dense front: the stiffness of its elements and what its children left is summed there, its own freedoms are eliminated, and the rest goes to the group above (Duff and Reid 1983; Liu 1992). One thread, one order: the same numbers on every run.
+
+/// A pivot below this part of the stiffness that its freedom began with is none: rounding leaves some
+/// 1e-15 of it where a rigid motion is free, and the most slender solids above 1e-9.
+const MIN_PIVOT: f64 = 1e-11;
+
+/// The factor of a stiffness.
+pub(crate) struct Factor {
+    pub(crate) dissection: Dissection,
+    pub(crate) fronts: Vec<Front>,
+}
+
+/// A node that can move without force.
+pub(crate) struct Loose {
+    pub(crate) node: u32,
+}
+
+/// What a group leaves to the one above.
+struct Remainder {
+    triangle: Triangle,
+    /// Rows before those of the boundary.
+    columns: usize,
+}
+
+/// What is needed on the way.
+struct Assembly<'a, S> {
+    hexes: &'a [[u32; 8]],
+    held: &'a [[bool; 3]],
+    stiffness: S,
+    dissection: &'a Dissection,
+    /// First row in the front of the group that is being assembled, by place.
+    rows: Vec<usize>,
+    /// Stiffness of every freedom as it was assembled.
+    diagonal: Vec<f64>,
+    /// Memory of fronts that are done with.
+    spare: Vec<Vec<f64x4>>,
+}
+
+impl Factor {
+    /// Of the sum of the stiffnesses of all elements.
+    ///
+    /// `held`: directions in which each node cannot move; where it is not held in all, they become freedoms
+    /// that nothing touches.
+    pub(crate) fn new(
+        hexes: &[[u32; 8]],
+        held: &[[bool; 3]],
+        dissection: Dissection,
+        stiffness: impl FnMut(usize) -> NodalStiffness,
+    ) -> Result<Self, Loose> {
+        let free = dissection.order.len();
+        let mut assembly = Assembly {
+            hexes,
+            held,
+            stiffness,
+            dissection: &dissection,
+            rows: vec![0; free],
+            diagonal: vec![0.0; 3 * free],
+            spare: Vec::new(),
+        };
+        let mut left: Vec<Option<Remainder>> = Vec::new();
+        let mut fronts = Vec::new();
+        for group in &dissection.groups {
+            let layout = Layout::new(group.own.len(), group.boundary.len());
+            let mut triangle = assembly.front(group, &layout, &mut left);
+            let least = assembly.least_pivots(group, &layout);
+            if let Err(bad) = triangle.eliminate(layout.columns, &least) {
+                let place = group.own.start as usize + bad.column / 3;
+                let node = dissection.order[place];
+                return Err(Loose { node });
+            }
+            fronts.push(Front::of(&triangle, layout.columns, layout.rows));
+            left.push(Some(Remainder {
+                triangle,
+                columns: layout.columns,
+            }));
+        }
+        Ok(Self { dissection, fronts })
+    }
+
+    /// How many freedoms there are.
+    pub(crate) fn freedoms(&self) -> usize {
+        3 * self.dissection.order.len()
+    }
+
+    /// How many numbers the factor holds.
+    pub(crate) fn len(&self) -> usize {
+        self.fronts.iter().map(Front::len).sum()
+    }
+}
+
+impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
+    /// The front of a group before its elimination.
+    fn front(
+        &mut self,
+        group: &Group,
+        layout: &Layout,
+        left: &mut [Option<Remainder>],
+    ) -> Triangle {
+        let memory = self.spare.pop().unwrap_or_default();
+        let mut triangle = Triangle::zeros(layout.rows, memory);
+        for (i, place) in group.own.clone().enumerate() {
+            self.rows[place as usize] = 3 * i;
+        }
+        for (i, &place) in group.boundary.iter().enumerate() {
+            self.rows[place as usize] = layout.columns + 3 * i;
+        }
+        for row in self.untouched(group, layout) {
+            *triangle.at_mut(row, row) = 1.0;
+        }
+        for &element in &group.elements {
+            self.add_element(element as usize, &mut triangle);
+        }
+        for &child in &group.children {
+            if let Some(remainder) = left[child].take() {
+                let boundary = &self.dissection.groups[child].boundary;
+                self.add_remainder(&remainder, boundary, &mut triangle);
+                self.spare.push(remainder.triangle.into_memory());
+            }
+        }
+        triangle
+    }
+
+    /// Rows of own freedoms that nothing touches: held ones, and those that fill a tile up.
+    fn untouched(&self, group: &Group, layout: &Layout) -> Vec<usize> {
+        let nodes = group.own.clone().map(|p| self.dissection.order[p as usize]);
+        let held = nodes.flat_map(|node| self.held[node as usize]).enumerate();
+        let held = held.filter(|(_, is_held)| *is_held).map(|(row, _)| row);
+        held.chain(3 * group.own.len()..layout.columns).collect()
+    }
+
+    fn add_element(&mut self, element: usize, triangle: &mut Triangle) {
+        let stiffness = (self.stiffness)(element);
+        // Of every freedom of the element its row in the front, and where its own stiffness is counted.
+        let mut freedoms = Vec::with_capacity(24);
+        for (corner, &node) in self.hexes[element].iter().enumerate() {
+            let Some(place) = self.dissection.place(node) else {
+                continue;
+            };
+            let place = place as usize;
+            for i in (0..3).filter(|&i| !self.held[node as usize][i]) {
+                freedoms.push((self.rows[place] + i, 3 * corner + i));
+                self.diagonal[3 * place + i] += stiffness[(3 * corner + i, 3 * corner + i)];
+            }
+        }
+        for &(row, i) in &freedoms {
+            for &(column, j) in freedoms.iter().filter(|(column, _)| *column <= row) {
+                *triangle.at_mut(row, column) += stiffness[(i, j)];
+            }
+        }
+    }
+
+    /// Adds what a child left on its boundary.
+    fn add_remainder(&self, remainder: &Remainder, boundary: &[u32], triangle: &mut Triangle) {
+        let freedoms = boundary.iter().flat_map(|&place| {
+            let row = self.rows[place as usize];
+            [row, row + 1, row + 2]
+        });
+        let rows: Vec<usize> = freedoms.collect();
+        for (i, &row) in rows.iter().enumerate() {
+            let from = remainder.columns + i;
+            for (j, &column) in rows[..=i].iter().enumerate() {
+                *triangle.at_mut(row, column) += remainder.triangle.at(from, remainder.columns + j);
+            }
+        }
+    }
+
+    fn least_pivots(&self, group: &Group, layout: &Layout) -> Vec<f64> {
+        let freedoms = 3 * group.own.start as usize..3 * group.own.end as usize;
+        let own = self.diagonal[freedoms].iter();
+        let mut least: Vec<f64> = own.map(|stiffness| MIN_PIVOT * stiffness).collect();
+        least.resize(layout.columns, 0.0);
+        least
+    }
+}
+
+// ---- Some columns of numbers, side by side.
+
+/// `4 W` columns of forces or displacements, a row for every freedom in the order of elimination.
+pub(crate) struct Rhs<const W: usize> {
+    pub(crate) rows: Vec<[f64x4; W]>,
+}
+
+impl<const W: usize> Rhs<W> {
+    /// How many columns go side by side.
+    pub(crate) const COLUMNS: usize = 4 * W;
+
+    /// Of zeros.
+    pub(crate) fn new(freedoms: usize) -> Self {
+        Self {
+            rows: vec![[f64x4::ZERO; W]; freedoms],
+        }
+    }
+
+    /// The number at a row and a column.
+    pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
+        self.rows[row][column / 4].as_array()[column % 4]
+    }
+
+    /// The number at a row and a column.
+    pub(crate) fn at_mut(&mut self, row: usize, column: usize) -> &mut f64 {
+        &mut self.rows[row][column / 4].as_mut_array()[column % 4]
+    }
+}
+
+// ---- Forward and backward substitution, several right-hand sides side by side.
+
+/// Four rows of right-hand sides.
+type Rows<const W: usize> = [[f64x4; W]; TILE];
+
+impl Factor {
+    /// Displacements in place of forces.
+    pub(crate) fn solve<const W: usize>(&self, x: &mut Rhs<W>) {
+        let mut front = Vec::new();
+        for group in 0..self.fronts.len() {
+            self.forward(group, x, &mut front);
+        }
+        for group in (0..self.fronts.len()).rev() {
+            self.backward(group, x, &mut front);
+        }
+    }
+
+    /// Displacements in place of forces, for some right-hand sides, where they are asked for.
+    ///
+    /// `loaded`: of every right-hand side the groups with forces, and all groups above those.
+    /// `wanted`: groups whose displacements are asked for, and all groups above those; other rows are undefined.
+    pub(crate) fn solve_some<const W: usize>(
+        &self,
+        xs: &mut [Rhs<W>],
+        loaded: &[Vec<bool>],
+        wanted: &[bool],
+    ) {
+        // All right-hand sides go through a front while it is in the cache.
+        let mut front = Vec::new();
+        for group in 0..self.fronts.len() {
+            let loaded = loaded.iter().map(|loaded| loaded[group]);
+            for (x, _) in xs
+                .iter_mut()
+                .zip(loaded)
+                .filter(|(_, is_loaded)| *is_loaded)
+            {
+                self.forward(group, x, &mut front);
+            }
+        }
+        for group in (0..self.fronts.len()).rev().filter(|&group| wanted[group]) {
+            for x in xs.iter_mut() {
+                self.backward(group, x, &mut front);
+            }
+        }
+    }
+
+    /// Solves half way for right-hand sides that only these groups feel, with all groups above those, ascending:
+    /// the rows of these, one after the other. Leaves zeros behind.
+    pub(crate) fn solve_half<const W: usize>(
+        &self,
+        groups: &[usize],
+        x: &mut Rhs<W>,
+    ) -> Vec<[f64x4; W]> {
+        let (mut front, mut half) = (Vec::new(), Vec::new());
+        for &group in groups {
+            self.forward(group, x, &mut front);
+            let own = &mut x.rows[self.own_freedoms(group)];
+            half.extend_from_slice(own);
+            own.fill([f64x4::ZERO; W]);
+        }
+        half
+    }
+
+    /// Freedoms that a group eliminates.
+    pub(crate) fn own_freedoms(&self, group: usize) -> Range<usize> {
+        let own = &self.dissection.groups[group].own;
+        3 * own.start as usize..3 * own.end as usize
+    }
+
+    /// The groups of some places, and all groups above them.
+    pub(crate) fn paths(&self, places: impl Iterator<Item = u32>) -> Vec<bool> {
+        let mut on_path = vec![false; self.fronts.len()];
+        for place in places {
+            let mut next = Some(self.dissection.group_of(place));
+            while let Some(group) = next.filter(|&group| !on_path[group]) {
+                on_path[group] = true;
+                next = self.dissection.parents[group];
+            }
+        }
+        on_path
+    }
+
+    fn forward<const W: usize>(&self, group: usize, x: &mut Rhs<W>, front: &mut Vec<[f64x4; W]>) {
+        let own = self.own_freedoms(group);
+        let (group, factor) = (&self.dissection.groups[group], &self.fronts[group]);
+        front.clear();
+        front.extend_from_slice(&x.rows[own.clone()]);
+        front.resize(factor.columns, [f64x4::ZERO; W]);
+        for t in 0..factor.columns / TILE {
+            let row = factor.row(t);
+            let (before, here) = front.split_at_mut(TILE * t);
+            subtract(here, &down(&row[..TILE * t], before));
+            solve_tile(&row[TILE * t..], here);
+        }
+        x.rows[own.clone()].copy_from_slice(&front[..own.len()]);
+        let mut freedoms = freedoms(&group.boundary);
+        for t in factor.columns / TILE..factor.rows() {
+            let sums = down(factor.row(t), front);
+            for (sum, freedom) in sums.iter().zip(&mut freedoms) {
+                for (x, sum) in x.rows[freedom].iter_mut().zip(sum) {
+                    *x -= *sum;
+                }
+            }
+        }
+    }
+
+    fn backward<const W: usize>(&self, group: usize, x: &mut Rhs<W>, front: &mut Vec<[f64x4; W]>) {
+        let own = self.own_freedoms(group);
+        let (group, factor) = (&self.dissection.groups[group], &self.fronts[group]);
+        front.clear();
+        front.extend_from_slice(&x.rows[own.clone()]);
+        front.resize(factor.columns, [f64x4::ZERO; W]);
+        let mut freedoms = freedoms(&group.boundary);
+        for t in factor.columns / TILE..factor.rows() {
+            let x = std::array::from_fn(|_| {
+                let freedom = freedoms.next();
+                freedom.map_or([f64x4::ZERO; W], |freedom| x.rows[freedom])
+            });
+            subtract_up(front, factor.row(t), &x);
+        }
+        for t in (0..factor.columns / TILE).rev() {
+            let row = factor.row(t);
+            let (before, here) = front.split_at_mut(TILE * t);
+            solve_tile_transposed(&row[TILE * t..], here);
+            subtract_up(before, &row[..TILE * t], &std::array::from_fn(|r| here[r]));
+        }
+        x.rows[own.clone()].copy_from_slice(&front[..own.len()]);
+    }
+}
+
+/// Freedoms of places, in their order.
+fn freedoms(places: &[u32]) -> impl Iterator<Item = usize> {
+    places
+        .iter()
+        .flat_map(|&place| (0..3).map(move |i| 3 * place as usize + i))
+}
+
+/// Product of a row of tiles with the rows of right-hand sides.
+#[inline(always)]
+fn down<const W: usize>(row: &[f64x4], x: &[[f64x4; W]]) -> Rows<W> {
+    let mut sums = [[f64x4::ZERO; W]; TILE];
+    for (column, x) in row.iter().zip(x) {
+        for (sum, &number) in sums.iter_mut().zip(column.as_array()) {
+            let number = f64x4::splat(number);
+            for (sum, x) in sum.iter_mut().zip(x) {
+                *sum = x.mul_add(number, *sum);
+            }
+        }
+    }
+    sums
+}
+
+/// Subtracts from rows of right-hand sides the product of a transposed row of tiles with four others.
+#[inline(always)]
+fn subtract_up<const W: usize>(from: &mut [[f64x4; W]], row: &[f64x4], x: &Rows<W>) {
+    for (from, column) in from.iter_mut().zip(row) {
+        let mut left = *from;
+        for (x, &number) in x.iter().zip(column.as_array()) {
+            let number = f64x4::splat(number);
+            for (left, x) in left.iter_mut().zip(x) {
+                *left = number.mul_neg_add(*x, *left);
+            }
+        }
+        *from = left;
+    }
+}
+
+#[inline(always)]
+fn subtract<const W: usize>(from: &mut [[f64x4; W]], sums: &Rows<W>) {
+    for (row, sum) in from.iter_mut().zip(sums) {
+        for (x, sum) in row.iter_mut().zip(sum) {
+            *x -= *sum;
+        }
+    }
+}
+
+/// Solves with a tile on the diagonal, which holds the inverses of its pivots.
+#[inline(always)]
+fn solve_tile<const W: usize>(tile: &[f64x4], x: &mut [[f64x4; W]]) {
+    for j in 0..TILE {
+        let column = tile[j].as_array();
+        let solved = x[j].map(|x| x * f64x4::splat(column[j]));
+        x[j] = solved;
+        for i in j + 1..TILE {
+            subtract_product(&mut x[i], column[i], &solved);
+        }
+    }
+}
+
+/// The same with the transposed tile.
+#[inline(always)]
+fn solve_tile_transposed<const W: usize>(tile: &[f64x4], x: &mut [[f64x4; W]]) {
+    for j in (0..TILE).rev() {
+        let column = tile[j].as_array();
+        for i in j + 1..TILE {
+            let solved = x[i];
+            subtract_product(&mut x[j], column[i], &solved);
+        }
+        x[j] = x[j].map(|x| x * f64x4::splat(column[j]));
+    }
+}
+
+#[inline(always)]
+fn subtract_product<const W: usize>(from: &mut [f64x4; W], number: f64, x: &[f64x4; W]) {
+    for (from, x) in from.iter_mut().zip(x) {
+        *from -= f64x4::splat(number) * *x;
+    }
+}

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::SVector;
 
-use crate::{half_solved::HalfSolved, solid::ElasticSolid, vector::Vec3};
+use crate::{Vec3, compliance::HalfSolved, solid::ElasticSolid};
 
 /// Displacements of some held nodes.
 type Motion = [(u32, Vec3)];

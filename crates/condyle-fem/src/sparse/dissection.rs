@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::{mesh::HexMesh, vector::Vec3};
+use crate::{Vec3, mesh::HexMesh};
 
 /// A set of so few nodes is not cut again.
 const SMALL: usize = 8;

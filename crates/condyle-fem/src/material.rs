@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 
-use crate::vector::Vec3;
+use crate::Vec3;
 
 /// A symmetric stress: xx, yy, zz, xy, yz, zx; tension is positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,4 +1,0 @@
-//! Points and vectors.
-
-/// A point or a vector in space.
-pub type Vec3 = nalgebra::Vector3<f64>;
