@@ -132,8 +132,6 @@ impl Compliance {
     }
 }
 
-// ---- What forces do to a solid, solved half way: enough for what one force moves along another.
-
 /// Four forces by all that go side by side: twelve sums stay in registers.
 type Sums = [[f64x4; VECTORS]; 4];
 

@@ -70,8 +70,6 @@ impl ElasticSolid {
     }
 }
 
-// ---- Mean stress of elements.
-
 impl ElasticSolid {
     /// Mean stress of every element under displacements of the nodes: that of its centre, where stress is
     /// most exact.
@@ -122,8 +120,6 @@ pub(crate) fn mean_over(element: &Element, strains: &[Strain; POINTS]) -> Strain
     }
     mean
 }
-
-// ---- An element whose material may yield, by itself: its flow under displacements of its nodes.
 
 /// What makes the mean stress of an element of displacements of its nodes.
 #[derive(Clone, Debug)]

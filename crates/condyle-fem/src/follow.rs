@@ -143,8 +143,6 @@ impl InteriorFollower {
     }
 }
 
-// ---- Which nodes an edge joins to which.
-
 /// The neighbours along the edges of some nodes.
 pub(crate) struct Neighbours {
     /// Those of row k are `nodes[first[k]..first[k + 1]]`, ascending.

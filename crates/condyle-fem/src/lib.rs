@@ -82,7 +82,5 @@ pub use plastic_solid::{PlasticError, PlasticSolid, PlasticSolution, PlasticStat
 pub use solid::{ElasticSolid, SolidError};
 pub use support::MovedSupports;
 
-// ---- Points and vectors.
-
 /// A point or a vector in space.
 pub type Vec3 = nalgebra::Vector3<f64>;

@@ -92,8 +92,6 @@ fn sorted(mut quad: [u32; 4]) -> [u32; 4] {
     quad
 }
 
-// ---- One trilinear hexahedron: its edges, its faces and its volume.
-
 /// Edges of a hexahedron in VTK's numbering.
 pub(crate) const HEX_EDGES: [[usize; 2]; 12] = [
     [0, 1],
@@ -150,8 +148,6 @@ pub fn volume_below([a, b, c, d]: &[Vec3; 4]) -> f64 {
     let triple = |p: &Vec3, q: &Vec3, r: &Vec3| p.dot(&q.cross(r));
     (triple(a, b, c) + triple(a, c, d) + triple(a, b, d) + triple(b, c, d)) / 12.0
 }
-
-// ---- How good the shape of hexahedra is, four of them at a time.
 
 /// How many go side by side.
 const LANES: usize = 4;
@@ -237,8 +233,6 @@ fn cross(a: &Vec3x4, b: &Vec3x4) -> Vec3x4 {
         a.x * b.y - a.y * b.x,
     )
 }
-
-// ---- Forces on nodes by traction on a surface.
 
 /// Signs of the natural coordinates of the corners of a quad.
 const SIGNS: [[f64; 2]; 4] = [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]];

@@ -105,8 +105,6 @@ impl ElasticPlastic {
     }
 }
 
-// ---- How the yield stress rises with plastic strain.
-
 /// Isotropic hardening by a table, and linear kinematic hardening beside it.
 ///
 /// The yield stress is linear between the points of the table and constant after the last.

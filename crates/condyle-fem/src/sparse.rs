@@ -13,13 +13,15 @@ use crate::element::NodalStiffness;
 use dissection::Group;
 use tiles::{Front, Layout, TILE, Triangle};
 
-// ---- Multifrontal Cholesky factorisation.  Every group of nodes has a dense front: the stiffness of its elements and what its children left is summed there, its own freedoms are eliminated, and the rest goes to the group above (Duff and Reid 1983; Liu 1992). One thread, one order: the same numbers on every run.
-
 /// A pivot below this part of the stiffness that its freedom began with is none: rounding leaves some
 /// 1e-15 of it where a rigid motion is free, and the most slender solids above 1e-9.
 const MIN_PIVOT: f64 = 1e-11;
 
-/// The factor of a stiffness.
+/// The multifrontal Cholesky factor of a stiffness.
+///
+/// Every group of nodes has a dense front: the stiffness of its elements and the remainders of its children are
+/// summed there, its own freedoms are eliminated, and the remainder goes to the group above (Duff and Reid 1983; Liu
+/// 1992). One thread and one order give the same numbers on every run.
 pub(crate) struct Factor {
     pub(crate) dissection: Dissection,
     pub(crate) fronts: Vec<Front>,
@@ -188,8 +190,6 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
     }
 }
 
-// ---- Some columns of numbers, side by side.
-
 /// `4 W` columns of forces or displacements, a row for every freedom in the order of elimination.
 pub(crate) struct Rhs<const W: usize> {
     pub(crate) rows: Vec<[f64x4; W]>,
@@ -216,8 +216,6 @@ impl<const W: usize> Rhs<W> {
         &mut self.rows[row][column / 4].as_mut_array()[column % 4]
     }
 }
-
-// ---- Forward and backward substitution, several right-hand sides side by side.
 
 /// Four rows of right-hand sides.
 type Rows<const W: usize> = [[f64x4; W]; TILE];

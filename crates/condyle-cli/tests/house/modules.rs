@@ -9,151 +9,62 @@ use crate::source::{Edge, Sources, made_up};
 /// items. The row of the longest path speaks for a module; a crate that has a row here needs one for
 /// each of its outermost modules.
 const MAY_USE: &[(&str, &[&str])] = &[
-    ("condyle_fem::vector", &[]),
-    ("condyle_fem::hex", &[]),
-    ("condyle_fem::mesh", &["condyle_fem::hex"]),
+    ("condyle_fem::mesh", &[]),
+    ("condyle_fem::follow", &["condyle_fem::mesh"]),
+    ("condyle_fem::material", &[]),
+    ("condyle_fem::elastic", &["condyle_fem::material"]),
     (
-        "condyle_fem::neighbours",
-        &["condyle_fem::hex", "condyle_fem::mesh"],
-    ),
-    (
-        "condyle_fem::follow",
-        &[
-            "condyle_fem::hex",
-            "condyle_fem::mesh",
-            "condyle_fem::neighbours",
-        ],
-    ),
-    (
-        "condyle_fem::quality",
-        &["condyle_fem::hex", "condyle_fem::mesh"],
-    ),
-    ("condyle_fem::stress", &["condyle_fem::vector"]),
-    (
-        "condyle_fem::elastic",
-        &["condyle_fem::vector", "condyle_fem::stress"],
-    ),
-    ("condyle_fem::hardening", &["condyle_fem::vector"]),
-    (
-        "condyle_fem::traction",
-        &[
-            "condyle_fem::vector",
-            "condyle_fem::hex",
-            "condyle_fem::mesh",
-        ],
-    ),
-    (
-        "condyle_fem::plasticity",
-        &[
-            "condyle_fem::vector",
-            "condyle_fem::elastic",
-            "condyle_fem::hardening",
-            "condyle_fem::stress",
-        ],
+        "condyle_fem::plastic",
+        &["condyle_fem::elastic", "condyle_fem::material"],
     ),
     (
         "condyle_fem::element",
         &[
-            "condyle_fem::vector",
             "condyle_fem::elastic",
-            "condyle_fem::hex",
-            "condyle_fem::plasticity",
-            "condyle_fem::stress",
+            "condyle_fem::material",
+            "condyle_fem::plastic",
         ],
     ),
     (
         "condyle_fem::sparse",
-        &[
-            "condyle_fem::vector",
-            "condyle_fem::element",
-            "condyle_fem::mesh",
-        ],
+        &["condyle_fem::element", "condyle_fem::mesh"],
     ),
     (
         "condyle_fem::solid",
         &[
-            "condyle_fem::vector",
             "condyle_fem::elastic",
             "condyle_fem::element",
+            "condyle_fem::material",
             "condyle_fem::mesh",
             "condyle_fem::sparse",
-            "condyle_fem::stress",
         ],
     ),
     (
         "condyle_fem::compliance",
-        &[
-            "condyle_fem::vector",
-            "condyle_fem::solid",
-            "condyle_fem::sparse",
-        ],
-    ),
-    (
-        "condyle_fem::half_solved",
-        &[
-            "condyle_fem::vector",
-            "condyle_fem::solid",
-            "condyle_fem::sparse",
-        ],
+        &["condyle_fem::solid", "condyle_fem::sparse"],
     ),
     (
         "condyle_fem::support",
-        &[
-            "condyle_fem::vector",
-            "condyle_fem::half_solved",
-            "condyle_fem::solid",
-        ],
-    ),
-    (
-        "condyle_fem::support",
-        &[
-            "condyle_fem::vector",
-            "condyle_fem::half_solved",
-            "condyle_fem::solid",
-        ],
+        &["condyle_fem::compliance", "condyle_fem::solid"],
     ),
     (
         "condyle_fem::eigenstrain",
         &[
-            "condyle_fem::vector",
             "condyle_fem::elastic",
             "condyle_fem::element",
+            "condyle_fem::material",
+            "condyle_fem::plastic",
             "condyle_fem::solid",
-            "condyle_fem::stress",
         ],
     ),
     (
         "condyle_fem::plastic_solid",
         &[
-            "condyle_fem::vector",
             "condyle_fem::elastic",
             "condyle_fem::element",
-            "condyle_fem::hardening",
-            "condyle_fem::plasticity",
+            "condyle_fem::material",
+            "condyle_fem::plastic",
             "condyle_fem::solid",
-            "condyle_fem::stress",
-        ],
-    ),
-    (
-        "condyle_fem::mean_stress",
-        &[
-            "condyle_fem::vector",
-            "condyle_fem::elastic",
-            "condyle_fem::element",
-            "condyle_fem::solid",
-            "condyle_fem::stress",
-        ],
-    ),
-    (
-        "condyle_fem::yielding_element",
-        &[
-            "condyle_fem::vector",
-            "condyle_fem::elastic",
-            "condyle_fem::element",
-            "condyle_fem::mean_stress",
-            "condyle_fem::plasticity",
-            "condyle_fem::solid",
-            "condyle_fem::stress",
         ],
     ),
     ("condyle::number", &[]),
@@ -193,22 +104,16 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle::creep", &["condyle::parameter"]),
     (
         "condyle::wear",
-        &[
-            "condyle::contact::history",
-            "condyle::contact::slip_work",
-            "condyle::parameter",
-        ],
+        &["condyle::contact::history", "condyle::parameter"],
     ),
     // Contact by its law alone.
     (
         "condyle::evolve",
         &[
             "condyle::geometry",
-            "condyle::contact::contact_law",
             "condyle::contact::history",
-            "condyle::contact::memory",
+            "condyle::contact::law",
             "condyle::contact::model",
-            "condyle::contact::under_surface",
             "condyle::creep",
             "condyle::machine",
             "condyle::number",
@@ -357,7 +262,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
 
 /// What everyone may name.
 const KNOWN_TO_ALL: &[&str] = &[
-    "condyle_fem::vector",
+    "condyle_fem::Vec3",
     "condyle::Vec3",
     "condyle::Vector",
     "condyle::Mat3",

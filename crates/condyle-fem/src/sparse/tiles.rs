@@ -201,8 +201,6 @@ fn products<const N: usize>(strips: [&[f64x4]; N], other: &[f64x4]) -> [[f64x4; 
     sums
 }
 
-// ---- The part of the factor that one group of nodes owns.
-
 /// Columns of the factor that a group eliminates, in rows of tiles as in a [`Triangle`].
 ///
 /// The rows are the freedoms of the group's own nodes, filled up to whole tiles by freedoms that nothing

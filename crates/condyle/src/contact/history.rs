@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use super::SlipWork;
-
 /// One instant of contact at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
@@ -199,9 +197,91 @@ impl CycleHistory {
     }
 }
 
+/// Less difference than this between along and across, as a part of the whole, has no direction: on a
+/// circle it is all rounding.
+const ISOTROPIC: f64 = 1e-6;
+
+/// No slip is shorter than this but that of length 0, mm.
+const MIN_MM: f64 = 1e-200;
+
+/// Pressure times slip of a node by direction: the sum of $p |\Delta s| \thinspace t t^T$ over the instants of a
+/// cycle, $t$ the direction of the slip, MPa mm.
+///
+/// What slides along a direction $d$ is $d^T T d$, the sum of $p |\Delta s| \cos^2$ of the angle between. The
+/// principal direction is the $d$ of the largest: there the molecules of the surface come to lie.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlipWork {
+    anterior: f64,
+    mixed: f64,
+    lateral: f64,
+}
+
+impl SlipWork {
+    /// Adds a slip under a pressure; `distance_mm` is its length.
+    #[inline(always)]
+    pub fn add(&mut self, pressure_mpa: f64, slip_mm: [f64; 2], distance_mm: f64) {
+        let [anterior, lateral] = slip_mm;
+        // A slip of length 0 has parts of 0: any divisor will do by which the quotient is a number.
+        let per_mm = pressure_mpa / distance_mm.max(MIN_MM);
+        self.anterior += per_mm * anterior * anterior;
+        self.mixed += per_mm * anterior * lateral;
+        self.lateral += per_mm * lateral * lateral;
+    }
+
+    /// Adds a part of another's.
+    pub fn add_part(&mut self, part: f64, other: &Self) {
+        self.anterior += part * other.anterior;
+        self.mixed += part * other.mixed;
+        self.lateral += part * other.lateral;
+    }
+
+    /// All of it, sum of p |ds|, MPa mm.
+    pub fn total_mpa_mm(&self) -> f64 {
+        self.anterior + self.lateral
+    }
+
+    /// Along the principal direction, MPa mm.
+    pub fn along_mpa_mm(&self) -> f64 {
+        self.total_mpa_mm() - self.across_mpa_mm()
+    }
+
+    /// Across the principal direction, MPa mm.
+    pub fn across_mpa_mm(&self) -> f64 {
+        (0.5 * self.total_mpa_mm() - self.half_difference()).max(0.0)
+    }
+
+    /// Cross-shear ratio: across over all, 0 for a straight path to 0.5 for a circle; 0 where nothing slid.
+    pub fn cross_shear(&self) -> f64 {
+        let total = self.total_mpa_mm();
+        if total > 0.0 {
+            self.across_mpa_mm() / total
+        } else {
+            0.0
+        }
+    }
+
+    /// The principal direction, a unit vector: anterior along the surface, then lateral, the first not
+    /// negative. None where nothing slid, or as much in every direction.
+    pub fn principal_direction(&self) -> Option<[f64; 2]> {
+        if self.half_difference() <= 0.5 * ISOTROPIC * self.total_mpa_mm() {
+            return None;
+        }
+        let angle = 0.5 * (2.0 * self.mixed).atan2(self.anterior - self.lateral);
+        let (sine, cosine) = angle.sin_cos();
+        Some([cosine, sine])
+    }
+
+    /// Half of what is more along than across: half the difference of the eigenvalues.
+    fn half_difference(&self) -> f64 {
+        let skew = 0.5 * (self.anterior - self.lateral);
+        (skew * skew + self.mixed * self.mixed).sqrt()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::{PI, TAU};
 
     #[test]
     fn records_are_sorted_by_node_and_keep_their_order_in_time() {
@@ -236,5 +316,136 @@ mod tests {
         assert_eq!(history.node_count(), 2);
         assert!(moments(&history, 0).is_empty());
         assert_eq!(moments(&history, 1), [moment(2.0)]);
+    }
+
+    /// Of a path under 2 MPa, given by its corners, turned by `turn` rad.
+    fn of_path(corners: &[[f64; 2]], turn: f64) -> SlipWork {
+        let (sine, cosine) = turn.sin_cos();
+        let mut work = SlipWork::default();
+        for pair in corners.windows(2) {
+            let (x, z) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+            let slip_mm = [cosine * x - sine * z, sine * x + cosine * z];
+            work.add(2.0, slip_mm, slip_mm[0].hypot(slip_mm[1]));
+        }
+        work
+    }
+
+    fn curve(place: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
+        const PARTS: usize = 20_000;
+        let at = |part| place(TAU * part as f64 / PARTS as f64);
+        (0..=PARTS).map(at).collect()
+    }
+
+    fn rectangle(width: f64, depth: f64) -> [[f64; 2]; 5] {
+        [
+            [0.0; 2],
+            [width, 0.0],
+            [width, depth],
+            [0.0, depth],
+            [0.0; 2],
+        ]
+    }
+
+    fn near(found: f64, exact: f64, within: f64) {
+        assert!((found - exact).abs() <= within, "{found} for {exact}");
+    }
+
+    #[test]
+    fn verify_cross_shear_of_paths_with_closed_forms_however_they_lie() {
+        let straight = [[-3.0, -1.0], [3.0, 1.0], [-3.0, -1.0]];
+        let circle = curve(|t| [5.0 * t.cos(), 5.0 * t.sin()]);
+        for turn in [0.0, 0.3, 1.2, 2.9, -0.7] {
+            near(of_path(&straight, turn).cross_shear(), 0.0, 1e-14);
+            near(of_path(&circle, turn).cross_shear(), 0.5, 1e-9);
+            near(
+                of_path(&rectangle(4.0, 4.0), turn).cross_shear(),
+                0.5,
+                1e-14,
+            );
+            near(
+                of_path(&rectangle(9.0, 1.0), turn).cross_shear(),
+                0.1,
+                1e-14,
+            );
+            near(
+                of_path(&rectangle(1.0, 3.0), turn).cross_shear(),
+                0.25,
+                1e-14,
+            );
+        }
+    }
+
+    #[test]
+    fn verify_cross_shear_of_an_even_spread_of_directions() {
+        // Steps of one length to all angles within a: (1 - sin 2a / 2a) / 2 is across the middle.
+        for spread in [0.1, 0.5, 1.0, PI / 2.0] {
+            const PARTS: usize = 4000;
+            let mut work = SlipWork::default();
+            for part in 0..PARTS {
+                let angle = spread * ((2 * part + 1) as f64 / PARTS as f64 - 1.0);
+                work.add(1.0, [angle.cos(), angle.sin()], 1.0);
+            }
+            let exact = 0.5 * (1.0 - (2.0 * spread).sin() / (2.0 * spread));
+            near(work.cross_shear(), exact, 1e-6);
+        }
+    }
+
+    #[test]
+    fn verify_cross_shear_of_a_figure_of_eight() {
+        // Gerono's: x = sin t, z = sin t cos t. Its own sums, by Simpson's rule on the derivative.
+        let eight = curve(|t| [3.0 * t.sin(), 3.0 * t.sin() * t.cos()]);
+        const PARTS: usize = 2000;
+        let (mut along, mut across) = (0.0, 0.0);
+        for part in 0..=PARTS {
+            let t = TAU * part as f64 / PARTS as f64;
+            let weight = [1.0, 4.0, 2.0][if part % PARTS == 0 { 0 } else { 2 - part % 2 }];
+            let (x, z) = (t.cos(), (2.0 * t).cos());
+            along += weight * x * x / x.hypot(z).max(1e-300);
+            across += weight * z * z / x.hypot(z).max(1e-300);
+        }
+        let exact = along.min(across) / (along + across);
+        for turn in [0.0, 0.8, 2.0] {
+            near(of_path(&eight, turn).cross_shear(), exact, 1e-6);
+        }
+    }
+
+    #[test]
+    fn verify_the_principal_direction_to_a_hundredth_of_a_degree() {
+        for degrees in [-89.0f64, -45.0, -0.02, 0.0, 12.34, 45.0, 77.7, 90.0] {
+            let work = of_path(&rectangle(6.0, 4.0), degrees.to_radians());
+            let [anterior, lateral] = work.principal_direction().unwrap();
+            let off = lateral.atan2(anterior).to_degrees() - degrees;
+            near((off + 90.0).rem_euclid(180.0), 90.0, 1e-9);
+            near(anterior.hypot(lateral), 1.0, 1e-15);
+            assert!(anterior >= 0.0);
+        }
+    }
+
+    #[test]
+    fn the_principal_direction_has_the_most_work_of_all() {
+        let bent = [[0.0, 0.0], [5.0, 1.0], [6.0, 4.0], [2.0, 3.0], [0.0, 0.0]];
+        let work = of_path(&bent, 0.0);
+        let along = |[x, z]: [f64; 2]| {
+            x * x * work.anterior + 2.0 * x * z * work.mixed + z * z * work.lateral
+        };
+        let most = along(work.principal_direction().unwrap());
+        near(most, work.along_mpa_mm(), 1e-12);
+        for degree in 0..180 {
+            let (sine, cosine) = f64::from(degree).to_radians().sin_cos();
+            assert!(along([cosine, sine]) <= most + 1e-12);
+        }
+    }
+
+    #[test]
+    fn nothing_and_a_circle_have_no_direction() {
+        assert_eq!(SlipWork::default().principal_direction(), None);
+        assert_eq!(SlipWork::default().cross_shear(), 0.0);
+        let circle = curve(|t| [t.cos(), t.sin()]);
+        assert_eq!(of_path(&circle, 0.4).principal_direction(), None);
+        let still = of_path(&[[1.0, 2.0], [1.0, 2.0]], 0.0);
+        assert_eq!(still, SlipWork::default());
+        let mut stuck = SlipWork::default();
+        stuck.add(1e3, [0.0; 2], 0.0);
+        assert_eq!(stuck, SlipWork::default());
     }
 }

@@ -15,32 +15,27 @@
 //! | `broad_phase` | which blocks of nodes may touch, by brute force or coherently |
 
 mod broad_phase;
-mod contact_law;
+mod contact_patch;
 mod deformable;
 mod foundation;
 mod history;
-mod known_compliance;
-mod memory;
+mod law;
 mod model;
-mod pressed;
 mod pressure_law;
-mod pressure_table;
 mod share_block;
-mod slip_work;
-mod under_surface;
 
 pub use broad_phase::Search;
-pub use contact_law::{Bodies, ContactLaw};
 pub use deformable::{Backside, Deformable, FrictionModel};
 pub use foundation::Foundation;
-pub use history::{CycleHistory, Moment, NodeHistory, Record};
-pub use known_compliance::KnownCompliance;
-pub use memory::{ContactCache, ContactMemory, ContactState, StateField};
-pub use model::{
-    ContactModel, ContactResult, Flattened, Linearization, MAX_REGIONS, NotBorne, Response,
-    Settled, Tangent, Tipped, TouchedNode,
+pub use history::{CycleHistory, Moment, NodeHistory, Record, SlipWork};
+pub use law::{
+    BacksideAtRest, Bodies, ContactLaw, KnownCompliance, PlasticUnderSurface, Regime, UnderSurface,
 };
-pub use pressure_law::{PressureLaw, confined_modulus, softening_modulus};
-pub use pressure_table::{PressureTable, PressureTableError};
-pub use slip_work::SlipWork;
-pub use under_surface::{BacksideAtRest, PlasticUnderSurface, Regime, UnderSurface};
+pub use model::{
+    ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Flattened,
+    Linearization, MAX_REGIONS, NotBorne, Response, Settled, StateField, Tangent, Tipped,
+    TouchedNode,
+};
+pub use pressure_law::{
+    PressureLaw, PressureTable, PressureTableError, confined_modulus, softening_modulus,
+};

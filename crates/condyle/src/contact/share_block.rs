@@ -4,11 +4,11 @@ use super::model::MAX_REGIONS;
 use crate::{
     Vec3, Vector,
     geometry::{ArticulatingSurface, Insert, NodeBlock, Share, SurfaceRegions},
-    number::{F64x4, LANES, Number, vector::vector_from_lanes},
+    number::{F64x4, LANES, Number, vector_from_lanes},
 };
 
 /// The shares of a block of four nodes; a lane too many repeats the last node without area.
-pub(super) struct ShareBlock {
+pub(crate) struct ShareBlock {
     pub nodes: [u32; LANES],
     /// Which region of the surface each node belongs to.
     pub regions: [u8; LANES],

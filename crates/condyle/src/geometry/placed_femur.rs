@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     Mat3, Vec3, Vector,
-    number::{Number, vector::dot},
+    number::{Number, dot},
 };
 
 /// A generic femoral component at a place of its own: its point p is at R p + t in the femoral frame.
@@ -102,9 +102,9 @@ impl PlacedFemur {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use nalgebra::Rotation3;
 
-    use super::*;
     use crate::geometry::{GenericFemurShape, surface_sample::tests::check_derivatives};
 
     fn placed() -> PlacedFemur {

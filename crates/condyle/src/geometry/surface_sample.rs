@@ -2,10 +2,7 @@
 
 use crate::{
     Vector,
-    number::{
-        Number,
-        vector::{dot, scale_add, tangential_part},
-    },
+    number::{Number, dot, scale_add, tangential_part},
 };
 
 /// A symmetric 3 by 3 matrix, 1/mm.

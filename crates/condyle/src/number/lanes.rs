@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 use num_traits::{One, Zero};
 use wide::{f32x8, f64x4};
 
-use super::real::Number;
+use super::Number;
 
 /// How many nodes go side by side.
 pub const LANES: usize = 4;

@@ -1,13 +1,10 @@
 //! How far every block is from touching, carried along as the femur moves.
 
-use super::{
-    block_places::{BlockPlaces, LastWear},
-    separation_bound::SeparationBound,
-};
 use crate::{
     Mat3, Vec3, Vector,
-    number::vector::dot,
-    number::{F32x8, LANES_F32, Number},
+    contact::share_block::ShareBlock,
+    geometry::{CurvatureBounds, MAX_GAP_SLOPE, SurfaceSample},
+    number::{F32x8, F64x4, LANES, LANES_F32, Number, dot},
     spatial::Pose,
 };
 
@@ -23,7 +20,7 @@ type Numbers = [f32; LANES_F32];
 
 /// How far every block is from touching where the femur is.
 #[derive(Clone)]
-pub(super) struct Separations {
+pub(crate) struct Separations {
     at: Option<Pose>,
     eights: Vec<Eight>,
     count: usize,
@@ -234,5 +231,187 @@ impl Separations {
     fn place_of(&mut self, block: u32) -> (&mut Eight, usize) {
         let block = block as usize;
         (&mut self.eights[block / LANES_F32], block % LANES_F32)
+    }
+}
+
+/// Eight blocks: where they are, as far as a separation from the femur changes with its motion.
+pub(crate) struct BlockPlaces {
+    /// The means of each block's four centres, mm.
+    pub middles: Vector<F32x8>,
+    /// How much nearer a turn of the femur brings a block besides, mm/rad: the distance of a centre
+    /// from the middle, and the half edges.
+    pub levers_mm: F32x8,
+}
+
+/// How eight blocks have worn.
+pub(crate) struct BlockWear {
+    /// Motion of their middles, mm.
+    pub moved: Vector<F32x8>,
+    /// Loss of separation besides, mm.
+    pub lost_mm: F32x8,
+}
+
+/// How all blocks have worn last.
+#[derive(Default)]
+pub(crate) struct LastWear {
+    /// How often they have worn.
+    pub number: u32,
+    /// The last time, eight blocks at a time.
+    pub eights: Vec<BlockWear>,
+}
+
+impl BlockPlaces {
+    /// All blocks of a surface.
+    pub fn of(blocks: &[ShareBlock]) -> Vec<Self> {
+        blocks.chunks(LANES_F32).map(Self::new).collect()
+    }
+
+    fn new(blocks: &[ShareBlock]) -> Self {
+        let at = |i: usize| &blocks[i.min(blocks.len() - 1)];
+        let axis = |axis: usize| F32x8::from_lanes(|i| middle(at(i))[axis]);
+        Self {
+            middles: Vector::new(axis(0), axis(1), axis(2)),
+            levers_mm: F32x8::from_lanes(|i| lever_mm(at(i))),
+        }
+    }
+}
+
+impl BlockWear {
+    /// The motion along three axes.
+    #[inline(always)]
+    pub fn seen_along(&self, [x, y, z]: &[Vector<F32x8>; 3]) -> Vector<F32x8> {
+        let moved = &self.moved;
+        Vector::new(dot(x, moved), dot(y, moved), dot(z, moved))
+    }
+
+    /// All blocks of a surface, from those before.
+    pub fn between(before: &[ShareBlock], after: &[ShareBlock]) -> Vec<Self> {
+        let eights = before.chunks(LANES_F32).zip(after.chunks(LANES_F32));
+        eights
+            .map(|(before, after)| Self::new(before, after))
+            .collect()
+    }
+
+    fn new(before: &[ShareBlock], after: &[ShareBlock]) -> Self {
+        let last = before.len() - 1;
+        let at = |i: usize| (&before[i.min(last)], &after[i.min(last)]);
+        let moved = |i: usize| {
+            let (before, after) = at(i);
+            middle(after) - middle(before)
+        };
+        let lost_mm = |i: usize| {
+            let (before, after) = at(i);
+            lost_mm(before, after, &moved(i))
+        };
+        let axis = |axis: usize| F32x8::from_lanes(|i| moved(i)[axis]);
+        Self {
+            moved: Vector::new(axis(0), axis(1), axis(2)),
+            lost_mm: F32x8::from_lanes(lost_mm),
+        }
+    }
+}
+
+fn middle(block: &ShareBlock) -> Vec3 {
+    block.centre.map(|lanes| lanes.sum() / LANES as f64)
+}
+
+fn lever_mm(block: &ShareBlock) -> f64 {
+    let from_middle = block.centre - middle(block).map(F64x4::splat);
+    block.half_mm + MAX_GAP_SLOPE * longest_mm(&from_middle)
+}
+
+/// What wear of a block whose middle moves by `moved` may take from its separation besides, mm.
+///
+/// Each centre may move otherwise than the middle. The reach of a share changes by no more than half
+/// of what its edges do. A fifth of that again is more than the mean over the share changes, and than
+/// longer edges gain through a turn of the normal.
+fn lost_mm(before: &ShareBlock, after: &ShareBlock, moved: &Vec3) -> f64 {
+    let astray = after.centre - before.centre - moved.map(F64x4::splat);
+    let [by_a, by_b] = [after.edge_a - before.edge_a, after.edge_b - before.edge_b];
+    MAX_GAP_SLOPE * longest_mm(&astray) + 0.6 * (longest_mm(&by_a) + longest_mm(&by_b))
+}
+
+fn longest_mm(vectors: &Vector<F64x4>) -> f64 {
+    dot(vectors, vectors).greatest().sqrt()
+}
+
+/// Where a gap is smaller the curvature of the femur is known, mm; see [`CurvatureBounds`].
+const KNOWN_MM: f64 = 1.5;
+
+/// Those bounds hold at least this far around, mm.
+const HOLDS_MM: f64 = 1.0;
+
+/// More than an extrapolated sample errs in gap and reach, mm.
+const EXTRAPOLATED_MM: f64 = 1e-4;
+
+/// A bound on how far a block of shares is from touching, as a function of how the femur moves on.
+///
+/// A gap g with gradient G and no second derivative below -h is, a motion d on, at least
+/// g + G . d - h d^2/2. The reach of a share, the overclosure that its highest corner has above its
+/// middle, grows by its half edges times the turn of the normal: K d on the femur, and the femur's own
+/// turn. What the shares of the block have in common is taken for all: the mean of their gradients, for
+/// the motion of their middle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeparationBound {
+    /// Gap less reach, and less how much the mean over a share may jump between two arcs, mm.
+    pub clear_mm: f64,
+    /// Gradient of the gap by the middle's place in the femoral frame.
+    pub slope: Vec3,
+    /// What may be lost besides with each millimetre of motion.
+    pub loss: f64,
+    /// The motion that all this holds for, mm.
+    pub radius_mm: f64,
+}
+
+impl SeparationBound {
+    /// That of shares with a reach of `reach_mm` under a femur sampled as `sample`, whose gaps are
+    /// larger than the reach.
+    #[inline(always)]
+    pub fn new(
+        sample: &SurfaceSample<F64x4>,
+        reach_mm: F64x4,
+        shares: &ShareBlock,
+        curvature: CurvatureBounds,
+    ) -> Self {
+        let CurvatureBounds {
+            radius_mm,
+            max_curvature_per_mm,
+            concavity_per_mm,
+            curvature_jump_per_mm,
+        } = curvature;
+        let gap_mm = sample.gap_mm;
+        let clear_mm = gap_mm - reach_mm - shares.spread_mm2 * F64x4::splat(curvature_jump_per_mm);
+        let by_turn = shares.half_mm * max_curvature_per_mm;
+        if gap_mm.least() - shares.half_mm > radius_mm {
+            // Where the curvature of one lane is not known, what all may lose is bounded by slopes
+            // alone. A lane whose gap is small is known itself, and its own reach counts.
+            let known_mm = if radius_mm < 0.0 { KNOWN_MM } else { 0.0 };
+            let is_known = gap_mm - F64x4::splat(known_mm);
+            let far_mm = gap_mm - F64x4::splat(shares.half_mm);
+            let near_mm = -Number::max(-clear_mm, F64x4::splat(-HOLDS_MM));
+            let clear_mm = is_known.below_zero(near_mm, far_mm).least();
+            return Self::far(clear_mm - EXTRAPOLATED_MM, MAX_GAP_SLOPE + by_turn);
+        }
+        let gradient = &sample.gap_gradient;
+        let slope = gradient.map(|lanes| lanes.sum() / LANES as f64);
+        let lean = gradient - slope.map(F64x4::splat);
+        let leaning = dot(&lean, &lean).greatest().sqrt();
+        Self {
+            clear_mm: clear_mm.least() - EXTRAPOLATED_MM,
+            slope,
+            loss: leaning + by_turn + 0.5 * concavity_per_mm * radius_mm,
+            radius_mm,
+        }
+    }
+
+    /// Far off, or where little is known: no gap changes faster than its point moves, and where
+    /// nothing is known no reach is longer than half of both edges.
+    fn far(clear_mm: f64, loss: f64) -> Self {
+        Self {
+            clear_mm,
+            slope: Vec3::zeros(),
+            loss,
+            radius_mm: f64::INFINITY,
+        }
     }
 }

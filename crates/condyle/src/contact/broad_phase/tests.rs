@@ -1,19 +1,15 @@
 //! What is no candidate is apart: held against a search over all blocks, and the gaps at all corners
 //! of their shares.
 
-use super::{
-    block_places::{BlockPlaces, BlockWear, LastWear},
-    separation_bound::SeparationBound,
-    separations::Separations,
-};
+use super::separations::{BlockPlaces, BlockWear, LastWear, SeparationBound, Separations};
 use crate::{
     Mat3, Vec3, Vector,
-    contact::{foundation::EdgeSlopes, pressed::CachedSample, share_block::ShareBlock},
+    contact::{contact_patch::CachedSample, foundation::EdgeSlopes, share_block::ShareBlock},
     geometry::{
         FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
         SmoothField, TriangleMesh, flat_insert,
     },
-    number::{F64x4, LANES, Number, vector::dot},
+    number::{F64x4, LANES, Number, dot},
     spatial::{Pose, Pose4},
 };
 

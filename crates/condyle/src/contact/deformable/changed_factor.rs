@@ -2,7 +2,7 @@
 
 use super::{
     cholesky::{Cholesky, Eight, ROWS, get, product, set, subtract, zero},
-    near_matrix::NearMatrix,
+    compliance::NearMatrix,
 };
 use crate::number::{F64x4, Number};
 
@@ -25,7 +25,7 @@ const NONE: u32 = u32::MAX;
 ///    \begin{bmatrix} d_E \cr 0 \end{bmatrix} - Z^T y, \qquad y = L^{-1} d_B, \qquad N_B = L^{-T} (y - Z x). $$
 ///
 /// The small matrix is quasi-definite: L D L' of it exists in any order.
-pub(super) struct ChangedFactor {
+pub(crate) struct ChangedFactor {
     /// B, and the row of every surface node in it.
     nodes: Vec<u32>,
     row_of: Vec<u32>,

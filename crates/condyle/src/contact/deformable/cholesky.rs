@@ -3,13 +3,13 @@
 use crate::number::{F64x4, LANES, Number};
 
 /// How many rows go side by side.
-pub(super) const ROWS: usize = 2 * LANES;
+pub(crate) const ROWS: usize = 2 * LANES;
 
 /// Panels that go together past those before, which come from memory once for all of them.
 const TOGETHER: usize = 4;
 
 /// One number for each of the rows that go side by side, or for each right-hand side.
-pub(super) type Eight = [F64x4; 2];
+pub(crate) type Eight = [F64x4; 2];
 
 /// The factor L of a symmetric positive definite matrix A = L L'.
 ///
@@ -17,7 +17,7 @@ pub(super) type Eight = [F64x4; 2];
 /// products of vectors. A matrix whose order is no multiple of eight is filled up with the identity. The
 /// same matrix gives the same bytes on any machine with fused products.
 #[derive(Default)]
-pub(super) struct Cholesky {
+pub(crate) struct Cholesky {
     order: usize,
     /// Columns of the panels, one panel after the other.
     columns: Vec<Eight>,
@@ -30,24 +30,24 @@ fn start(panel: usize) -> usize {
 }
 
 /// Eight zeros.
-pub(super) fn zero() -> Eight {
+pub(crate) fn zero() -> Eight {
     [F64x4::splat(0.0); 2]
 }
 
 /// a - b f
 #[inline(always)]
-pub(super) fn subtract(a: &mut Eight, b: &Eight, f: f64) {
+pub(crate) fn subtract(a: &mut Eight, b: &Eight, f: f64) {
     let f = F64x4::splat(-f);
     a[0] = b[0].mul_add(f, a[0]);
     a[1] = b[1].mul_add(f, a[1]);
 }
 
 /// The number of a row, or of a right-hand side.
-pub(super) fn get(numbers: &Eight, side: usize) -> f64 {
+pub(crate) fn get(numbers: &Eight, side: usize) -> f64 {
     numbers[side / LANES].lane(side % LANES)
 }
 
-pub(super) fn set(numbers: &mut Eight, side: usize, value: f64) {
+pub(crate) fn set(numbers: &mut Eight, side: usize, value: f64) {
     let half = &mut numbers[side / LANES];
     let mut lanes = half.to_array();
     lanes[side % LANES] = value;
@@ -55,7 +55,7 @@ pub(super) fn set(numbers: &mut Eight, side: usize, value: f64) {
 }
 
 /// The product of two vectors, four of their numbers side by side.
-pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn product(a: &[f64], b: &[f64]) -> f64 {
     let (fours, others) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
     let rest = fours.remainder().iter().zip(others.remainder());
     let rest: f64 = rest.map(|(a, b)| a * b).sum();

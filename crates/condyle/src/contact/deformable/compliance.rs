@@ -1,18 +1,25 @@
 //! How a surface gives way under loads on its nodes.
 
 use std::{
-    fmt::Debug,
-    sync::{PoisonError, RwLock, RwLockReadGuard},
+    fmt::{self, Debug},
+    sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard},
 };
 
-use super::near_matrix::NearMatrix;
-use crate::contact::known_compliance::KnownCompliance;
+use condyle_fem::{ElasticSolid, HalfSolved};
+
+use super::cholesky::{Eight, ROWS, zero};
+use crate::{
+    Vec3,
+    contact::law::KnownCompliance,
+    geometry::bounds,
+    number::{F64x4, LANES, Number},
+};
 
 /// The normal compliance of a surface: how far its nodes give way to loads on them, both along the inward normals.
 ///
 /// It is symmetric and positive definite, and given for two tiles of nodes at a time, as they are asked for: of most
 /// nodes nobody ever asks. What it says depends on nothing that was asked before.
-pub(super) trait SurfaceCompliance: Debug + Send + Sync {
+pub(crate) trait SurfaceCompliance: Debug + Send + Sync {
     /// All nodes of the surface, in tiles that lie together.
     fn tiles(&self) -> &[Vec<u32>];
 
@@ -22,7 +29,7 @@ pub(super) trait SurfaceCompliance: Debug + Send + Sync {
 
 /// The compliance of a surface, and of the nodes that any contact has come near what was asked so far.
 #[derive(Debug)]
-pub(super) struct Compliance<S: ?Sized = dyn SurfaceCompliance> {
+pub(crate) struct Compliance<S: ?Sized = dyn SurfaceCompliance> {
     tile_of: Vec<u32>,
     near: RwLock<NearMatrix>,
     pub source: S,
@@ -107,4 +114,301 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
             near.add(tile, all, |one, other| self.source.between(one, other));
         }
     }
+}
+
+/// A node of which nothing is known.
+const UNKNOWN: u32 = u32::MAX;
+
+/// The compliance between the nodes of some tiles of a surface.
+///
+/// A row says how far loads on all nodes move its node, those of eight nodes, a panel, side by side. A tile is filled up
+/// to whole panels by nodes that nothing moves.
+#[derive(Debug)]
+pub(crate) struct NearMatrix {
+    /// Tiles in the order in which they were added, and the first row of each.
+    tiles: Vec<(usize, usize)>,
+    row_of: Vec<u32>,
+    /// Places of all nodes, tile by tile: the same whichever tile was added first.
+    places: Vec<u32>,
+    rows: Vec<Vec<Eight>>,
+    /// Panels that a row has room for.
+    room: usize,
+    /// Of every node the place of its tile among those that were added, and what loads on one tile move another by at
+    /// most.
+    slots: Vec<u32>,
+    reaches: Vec<Vec<Reach>>,
+}
+
+/// How far a newton on a node of one tile moves another node, of the same or another tile, at most, mm/N.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Reach {
+    pub outwards: f64,
+    pub inwards: f64,
+}
+
+impl NearMatrix {
+    /// Nothing is known of a surface of these tiles.
+    pub fn of_nothing(tiles: &[Vec<u32>]) -> Self {
+        let nodes = || tiles.iter().flatten();
+        let mut places = vec![0; nodes().count()];
+        for (place, &node) in nodes().enumerate() {
+            places[node as usize] = place as u32;
+        }
+        Self {
+            tiles: Vec::new(),
+            row_of: vec![UNKNOWN; places.len()],
+            slots: vec![UNKNOWN; places.len()],
+            places,
+            rows: Vec::new(),
+            room: 0,
+            reaches: Vec::new(),
+        }
+    }
+
+    pub fn knows(&self, node: u32) -> bool {
+        self.row_of[node as usize] != UNKNOWN
+    }
+
+    /// How many rows there are.
+    pub fn row_count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The row, and the column, of a node that is known.
+    #[inline(always)]
+    pub fn row(&self, node: u32) -> u32 {
+        self.row_of[node as usize]
+    }
+
+    /// A number by its row and its column, or the other way round.
+    #[inline(always)]
+    pub fn at(&self, row: u32, column: u32) -> f64 {
+        let numbers = &self.rows[column as usize][row as usize / ROWS];
+        let row = row as usize % ROWS;
+        numbers[row / LANES].lane(row % LANES)
+    }
+
+    /// Where a node stands if all do so tile by tile: those with rows in one panel stand together.
+    pub fn place(&self, node: u32) -> u32 {
+        self.places[node as usize]
+    }
+
+    /// The place of a node's tile among those that were added.
+    pub fn slot(&self, node: u32) -> usize {
+        self.slots[node as usize] as usize
+    }
+
+    /// Of every tile that was added how far a newton on each of all tiles moves its nodes at most, mm/N.
+    pub fn reaches(&self) -> &[Vec<Reach>] {
+        &self.reaches
+    }
+
+    /// The pairs of the tiles that were added, the lower number first.
+    pub fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        let all = || self.tiles.iter().map(|&(tile, _)| tile);
+        let pairs = all().flat_map(move |one| all().map(move |other| [one, other]));
+        pairs.filter(|[one, other]| one <= other)
+    }
+
+    /// How far loads on one tile that was added move another, mm/N: row-major.
+    pub fn between(&self, tiles: [&[u32]; 2]) -> Vec<f64> {
+        let [rows, columns] = tiles;
+        let rows = rows.iter().map(|&node| self.row(node));
+        let of_row = |row| {
+            columns
+                .iter()
+                .map(move |&node| self.at(self.row(node), row))
+        };
+        rows.flat_map(of_row).collect()
+    }
+
+    /// How far loads move the node of a row; of loads there are panels, each with its number.
+    pub fn moved(&self, row: u32, loads: &[(usize, Eight)]) -> f64 {
+        // Four sums, so that no addition waits for the one before.
+        let mut sums = [F64x4::splat(0.0); 4];
+        let row = &self.rows[row as usize];
+        for two in loads.chunks(2) {
+            for ((panel, loads), sums) in two.iter().zip(sums.chunks_exact_mut(2)) {
+                let numbers = &row[*panel];
+                sums[0] = numbers[0].mul_add(loads[0], sums[0]);
+                sums[1] = numbers[1].mul_add(loads[1], sums[1]);
+            }
+        }
+        let [a, b, c, d] = sums;
+        ((a + b) + (c + d)).sum()
+    }
+
+    /// Adds to `line` the numbers of some panels of a mixture of two rows.
+    pub fn mix(
+        &self,
+        rows: [u32; 2],
+        parts: [f64; 2],
+        panels: &[(usize, Eight)],
+        line: &mut Vec<f64>,
+    ) {
+        let [one, other] = rows.map(|row| &self.rows[row as usize]);
+        let [of_one, of_other] = parts.map(F64x4::splat);
+        for (panel, _) in panels {
+            for (one, other) in one[*panel].iter().zip(&other[*panel]) {
+                let mixed = one.mul_add(of_one, *other * of_other);
+                line.extend_from_slice(&mixed.to_array());
+            }
+        }
+    }
+
+    /// Makes room for tiles of so many nodes that are about to be added: rows that grow by themselves take twice the room.
+    pub fn make_room(&mut self, nodes: impl Iterator<Item = usize>) {
+        let more: usize = nodes.map(|nodes| nodes.next_multiple_of(ROWS)).sum();
+        self.room = (self.rows.len() + more) / ROWS;
+        for row in &mut self.rows {
+            row.reserve_exact(self.room - row.len());
+        }
+    }
+
+    /// Adds tile number `new` of `tiles`, with what is `between` two of them.
+    pub fn add(
+        &mut self,
+        new: usize,
+        tiles: &[Vec<u32>],
+        mut between: impl FnMut(usize, usize) -> Vec<f64>,
+    ) {
+        let first = self.rows.len();
+        let rows = first + tiles[new].len().next_multiple_of(ROWS);
+        for (row, &node) in (first..).zip(&tiles[new]) {
+            self.row_of[node as usize] = row as u32;
+            self.slots[node as usize] = self.tiles.len() as u32;
+        }
+        self.tiles.push((new, first));
+        let reaches = vec![Reach::default(); self.tiles.len()];
+        self.reaches.push(reaches);
+        let room = self.room;
+        self.rows.resize_with(rows, || Vec::with_capacity(room));
+        for row in &mut self.rows {
+            row.resize(rows / ROWS, zero());
+        }
+        for place in 0..self.tiles.len() {
+            let (other, other_first) = self.tiles[place];
+            let numbers = between(new, other);
+            let columns = tiles[other].len();
+            let mut reach = Reach::default();
+            for (i, row) in numbers.chunks_exact(columns).enumerate() {
+                for (j, &number) in row.iter().enumerate() {
+                    self.set(first + i, other_first + j, number);
+                    self.set(other_first + j, first + i, number);
+                    reach.outwards = reach.outwards.max(-number);
+                    if (new, i) != (other, j) {
+                        reach.inwards = reach.inwards.max(number);
+                    }
+                }
+            }
+            self.reach(place, reach);
+        }
+    }
+
+    /// What the tile that was added last and another do to each other.
+    fn reach(&mut self, other: usize, reach: Reach) {
+        let last = self.reaches.len() - 1;
+        self.reaches[last][other] = reach;
+        if other < last {
+            self.reaches[other].push(reach);
+        }
+    }
+
+    fn set(&mut self, row: usize, column: usize, number: f64) {
+        let half = &mut self.rows[row][column / ROWS][column % ROWS / LANES];
+        let mut lanes = half.to_array();
+        lanes[column % LANES] = number;
+        *half = F64x4::new(lanes);
+    }
+}
+
+/// Unit loads on places of a solid, each along a direction of its own: the compliance between them.
+///
+/// Those of a tile are solved half way when they are first asked for, and kept.
+pub(crate) struct UnitLoads {
+    solid: Arc<ElasticSolid>,
+    /// The mesh node of every load, and its direction.
+    forces: Vec<(u32, Vec3)>,
+    /// Loads that lie together, and of every tile what they do.
+    tiles: Vec<Vec<u32>>,
+    solved: Mutex<Vec<Option<Arc<HalfSolved>>>>,
+    /// What another run has found between them, and nobody has asked for yet.
+    known: Mutex<KnownCompliance>,
+}
+
+impl Debug for UnitLoads {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("UnitLoads")
+            .field("loads", &self.forces.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl UnitLoads {
+    /// Loads on a solid, of which the numbers of those that lie together are in `tiles`.
+    pub fn on(solid: Arc<ElasticSolid>, forces: Vec<(u32, Vec3)>, tiles: Vec<Vec<u32>>) -> Self {
+        Self {
+            solid,
+            forces,
+            solved: Mutex::new(vec![None; tiles.len()]),
+            tiles,
+            known: Mutex::default(),
+        }
+    }
+
+    /// What another run has found, and nobody has asked for yet.
+    pub fn known(&self) -> MutexGuard<'_, KnownCompliance> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The mesh node of a load, and its direction.
+    pub fn force(&self, load: u32) -> (u32, Vec3) {
+        self.forces[load as usize]
+    }
+
+    /// Unit loads of a tile, solved half way.
+    pub fn solved(&self, tile: usize) -> Arc<HalfSolved> {
+        let mut solved = self.solved.lock().unwrap_or_else(PoisonError::into_inner);
+        let own = solved[tile].get_or_insert_with(|| {
+            let forces = self.tiles[tile].iter().map(|&load| self.force(load));
+            Arc::new(self.solid.half_solved(&forces.collect::<Vec<_>>()))
+        });
+        Arc::clone(own)
+    }
+}
+
+/// The numbers of a node's loads along the surface: along its own directions there, anterior and lateral.
+pub(crate) fn along_surface(node: u32) -> [u32; 2] {
+    [2 * node, 2 * node + 1]
+}
+
+impl SurfaceCompliance for UnitLoads {
+    fn tiles(&self) -> &[Vec<u32>] {
+        &self.tiles
+    }
+
+    fn between(&self, one: usize, other: usize) -> Vec<f64> {
+        let nodes = [one, other].map(|tile| self.tiles[tile].len());
+        let known = self.known().take(one, other, nodes);
+        known.unwrap_or_else(|| self.solved(one).moved_along(&self.solved(other)))
+    }
+}
+
+/// Nodes shared out into tiles of so many at most: the larger extent halved until few are left.
+pub(crate) fn tiles(positions: &[Vec3], most: usize) -> Vec<Vec<u32>> {
+    let mut open = vec![(0..positions.len() as u32).collect::<Vec<u32>>()];
+    let mut tiles = Vec::new();
+    while let Some(mut nodes) = open.pop() {
+        if nodes.len() <= most {
+            tiles.push(nodes);
+        } else {
+            let at = |node: &u32| positions[*node as usize];
+            let (low, high) = bounds(nodes.iter().map(|node| &positions[*node as usize]));
+            let axis = (high - low).imax();
+            nodes.sort_by(|a, b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b)));
+            let second = nodes.split_off(nodes.len() / 2);
+            open.extend([second, nodes]);
+        }
+    }
+    tiles
 }

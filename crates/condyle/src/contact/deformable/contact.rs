@@ -3,34 +3,27 @@
 use std::sync::Arc;
 
 use super::{
-    along_normal::AlongNormal,
     backside::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD, RestingInsert},
-    candidate::Candidate,
-    complementarity::Pressing,
+    cholesky::Eight,
+    complementarity::{Candidate, Pressing},
     compliance::Compliance,
-    covered::{EdgeOfContact, squares, squares_everywhere},
-    friction::{ElasticFriction, Pressed},
-    friction_memory::FRICTION_FIELD,
-    peak::PeakSearch,
+    edge_and_peak::{EdgeOfContact, PeakSearch, squares, squares_everywhere},
+    friction::{ElasticFriction, FRICTION_FIELD, Pressed},
     plastic::{FOUND_MM, NodeLoad, PLASTIC_FIELD, PlasticInsert},
 };
 use crate::{
     Vector,
     contact::{
         broad_phase::BroadPhase,
-        contact_law::Bodies,
-        memory::{ContactCache, ContactMemory, ContactState},
+        contact_patch::{Coulomb, NearBlock, NearBlocks, PressedBlocks, Sliding, Tractions4},
+        law::Bodies,
         model::{
-            ContactModel, ContactResult, Flattened, Linearization, NotBorne, Response, Settled,
-            Tangent, Tipped,
+            ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Flattened,
+            Linearization, NotBorne, Response, Settled, Tangent, Tipped,
         },
-        pressed::{Coulomb, NearBlock, NearBlocks, PressedBlocks, Sliding, Tractions4},
         share_block::ShareBlock,
     },
-    number::{
-        F64x4, LANES, Number,
-        vector::{cross, vector_from_lanes},
-    },
+    number::{F64x4, LANES, Number, cross, dot, vector_from_lanes},
     spatial::{
         FrameChange, Pose, Pose4, RelativeMotion, Twist, Twist4, Vec6, WrenchByTwist, body::Femur,
     },
@@ -42,7 +35,7 @@ const MAX_BULGE_MM: f64 = 0.1;
 
 /// How a deformable contact is computed beside the compliance.
 #[derive(Clone, Copy)]
-pub(super) struct FrictionSettings {
+pub(crate) struct FrictionSettings {
     pub friction: Coulomb,
     /// Motion up to which a sample of the femur is extrapolated, mm.
     pub sample_reuse_mm: f64,
@@ -53,7 +46,7 @@ pub(super) struct FrictionSettings {
 /// What holds: a response depends on the motion alone, but for samples that are extrapolated and for what
 /// the complementarity is satisfied to. The tangent is the derivative of the response where no node begins or
 /// ceases to press, right to six digits.
-pub(super) struct DeformableContact<'a, B> {
+pub(crate) struct DeformableContact<'a, B> {
     bodies: Bodies<'a>,
     rubbing: FrictionSettings,
     nearby: NearBlocks<'a, B>,
@@ -477,5 +470,70 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
             state,
             cache: ContactCache::of(self.nearby.into_cache()),
         }
+    }
+}
+
+/// Below this part of its size a gap's slope does not count as one along the normal: the femur stands on edge there.
+const MIN_SLOPE: f64 = 0.3;
+
+/// How the gaps of a block of nodes change along the insert's normals there.
+///
+/// A node that gives way by w along its inward normal m opens the gap g of the bodies at rest to g + s w, with
+/// s = G . m and G the gradient of the gap. So the bodies touch where the overclosure -g/s is given way by, and a load
+/// N along m is the part there of a force N/s along the femur's normal: both do the same work.
+pub(crate) struct AlongNormal {
+    slope: F64x4,
+    /// Derivatives of the slope by a turn and a shift of the femur.
+    by_motion: [F64x4; 6],
+}
+
+impl AlongNormal {
+    /// With the inward normals of the nodes, in the femoral frame.
+    pub fn new(near: &NearBlock, inward: &Vector<F64x4>) -> Self {
+        let sample = &near.cached.sample;
+        let gradient = &sample.gap_gradient;
+        let slope = dot(gradient, inward);
+        // A motion a + w x p of the femur's material moves the node by its opposite, and turns m by -w.
+        let bent = sample.curvature.times(inward);
+        let turn = cross(&near.cached.place, &bent) + cross(inward, gradient);
+        let is_steep = slope - F64x4::splat(MIN_SLOPE);
+        let counted = |by: F64x4| is_steep.below_zero(F64x4::splat(0.0), -by);
+        let by_motion = [turn.x, turn.y, turn.z, bent.x, bent.y, bent.z];
+        Self {
+            slope: Number::max(slope, F64x4::splat(MIN_SLOPE)),
+            by_motion: by_motion.map(counted),
+        }
+    }
+
+    /// Overclosure of every node, and its derivatives by a turn and a shift of the femur: a motion a + w x p of its
+    /// material changes the gap by -G . (a + w x p).
+    pub fn overclosures_mm(&self, near: &NearBlock, gap_mm: F64x4) -> [Eight; LANES] {
+        let gradient = &near.cached.sample.gap_gradient;
+        let turn = cross(&near.cached.place, gradient);
+        let per_slope = F64x4::splat(1.0) / self.slope;
+        let overclosure_mm = -gap_mm * per_slope;
+        let [ax, ay, az, x, y, z] = self.by_motion.map(|by| by * overclosure_mm);
+        let by = |closing: F64x4, steeper: F64x4| (closing - steeper) * per_slope;
+        let first = F64x4::transposed([
+            overclosure_mm,
+            by(turn.x, ax),
+            by(turn.y, ay),
+            by(turn.z, az),
+        ]);
+        let second = F64x4::transposed([
+            by(gradient.x, x),
+            by(gradient.y, y),
+            by(gradient.z, z),
+            F64x4::splat(0.0),
+        ]);
+        std::array::from_fn(|lane| [first[lane], second[lane]])
+    }
+
+    /// Force along the femur's normal that loads along the insert's are part of, and its derivatives by motion.
+    pub fn forces_n(&self, load_n: F64x4, by_motion: &[F64x4; 6]) -> (F64x4, [F64x4; 6]) {
+        let per_slope = F64x4::splat(1.0) / self.slope;
+        let force_n = load_n * per_slope;
+        let by = |motion: usize| (by_motion[motion] - force_n * self.by_motion[motion]) * per_slope;
+        (force_n, std::array::from_fn(by))
     }
 }

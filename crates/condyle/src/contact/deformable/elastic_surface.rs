@@ -10,19 +10,16 @@ use std::{
 };
 
 use condyle_fem::{Elastic, ElasticSolid, HexMesh, SolidError, Strain};
-
 use nalgebra::DVector;
 
 use super::{
     backside::{Floor, Tray},
-    compliance::{Compliance, SurfaceCompliance},
+    compliance::{Compliance, SurfaceCompliance, UnitLoads, along_surface, tiles},
     plastic::Influence,
-    tiles::tiles,
-    unit_loads::{UnitLoads, along_surface},
 };
 use crate::{
     Vec3,
-    contact::known_compliance::KnownCompliance,
+    contact::law::KnownCompliance,
     geometry::{Insert, bounds},
 };
 
@@ -35,7 +32,7 @@ const FELT_PER_ROOT: f64 = 6.0;
 
 /// Nodes that hold an insert while its loads are half-solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum HeldBy {
+pub(crate) enum HeldBy {
     /// Those of its backside: it is bonded.
     Backside,
     /// Those of the flat part of it, which rests; walls and recesses hang free.
@@ -46,7 +43,7 @@ pub(super) enum HeldBy {
 ///
 /// The stiffness is factored once; unit loads on a tile of nodes are solved half way when they are first asked for,
 /// and kept.
-pub(super) struct ElasticSurface {
+pub(crate) struct ElasticSurface {
     solid: Arc<ElasticSolid>,
     /// Mesh nodes of the surface.
     nodes: Vec<u32>,

@@ -2,12 +2,11 @@
 
 use super::{
     cholesky::{Cholesky, Eight, ROWS, get, product, set, subtract, zero},
-    near_matrix::NearMatrix,
-    unit_loads::along_surface,
+    compliance::{NearMatrix, along_surface},
 };
 
 /// Numbers along the two directions of a surface.
-pub(super) type Pair = [f64; 2];
+pub(crate) type Pair = [f64; 2];
 
 /// Loads are found once a sweep changes none by more than this, N.
 const FOUND_N: f64 = 1e-7;
@@ -39,7 +38,7 @@ const MAX_STEPS: u32 = 500;
 /// sweeps from node to node, each to its own least, which lead there from everywhere; and by steps of Newton's
 /// method, which are quick in the end: the nodes that stick are free in them, the others turn on their circles.
 #[derive(Default)]
-pub(super) struct StickSlip {
+pub(crate) struct StickSlip {
     /// The nodes, in an order that is always the same, and each with its place there, ascending.
     nodes: Vec<u32>,
     places: Vec<(u32, usize)>,
@@ -59,7 +58,7 @@ pub(super) struct StickSlip {
 
 /// A node that may carry a load along the surface.
 #[derive(Clone, Copy)]
-pub(super) struct Rubbed {
+pub(crate) struct Rubbed {
     pub node: u32,
     /// Its limit g, N.
     pub limit_n: f64,
@@ -471,7 +470,7 @@ fn moved_by(loads: &[([u32; 2], Pair)], rows: [u32; 2], compliance: &NearMatrix)
 
 /// How reach and limit of a node change with each of six motions; two numbers are nothing.
 #[derive(Clone, Copy)]
-pub(super) struct ByMotion {
+pub(crate) struct ByMotion {
     pub reach_mm: [Eight; 2],
     pub limit_n: Eight,
 }

@@ -8,7 +8,7 @@ const MIN_SLOPE_MM: f64 = 1e-3;
 
 /// The edge slopes of a share: how much the overclosure rises along each of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::contact) struct EdgeSlopes<T> {
+pub(crate) struct EdgeSlopes<T> {
     signed_mm: [T; 2],
     /// Without sign, and never quite zero.
     size_mm: [T; 2],
@@ -36,7 +36,7 @@ impl<T: Number> EdgeSlopes<T> {
 
 /// Mean of the positive part of the overclosure over a share, and its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MeanOverclosure<T> {
+pub(crate) struct MeanOverclosure<T> {
     /// The mean, mm; 0 where nothing presses.
     pub mm: T,
     /// Derivative by the overclosure of the share's middle: the part of the share that presses.
@@ -52,7 +52,7 @@ pub(super) struct MeanOverclosure<T> {
 /// It is twice continuously differentiable, so force and tangent are smooth as nodes come into
 /// contact; where all corners press it is d.
 #[inline(always)]
-pub(super) fn mean_overclosure<T: Number>(
+pub(crate) fn mean_overclosure<T: Number>(
     middle_mm: T,
     slopes: &EdgeSlopes<T>,
 ) -> MeanOverclosure<T> {

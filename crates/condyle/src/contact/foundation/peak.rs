@@ -2,12 +2,12 @@
 
 use crate::{
     contact::{
+        contact_patch::{MIN_NODES, Quadratic, highest_mpa},
         model::TouchedNode,
-        pressed::{MIN_NODES, Quadratic, highest_mpa},
         pressure_law::PressureLaw,
     },
     geometry::{FacesAround, FemoralSurface, MAX_GAP_SLOPE, Share},
-    number::{F64x4, LANES, Number, vector::vector_from_lanes},
+    number::{F64x4, LANES, Number, vector_from_lanes},
     spatial::Pose4,
 };
 
@@ -33,7 +33,7 @@ const NODES_ONE_SIDED: usize = 2 * MIN_NODES;
 ///
 /// Its error falls with the third power of the edge, under a body that is smooth and symmetric about the
 /// peak with the fourth.
-pub(super) struct PeakSearch<'a> {
+pub(crate) struct PeakSearch<'a> {
     pub law: &'a PressureLaw,
     pub femur: &'a FemoralSurface,
     pub shares: &'a [Share],

@@ -8,10 +8,7 @@ use super::{
 use crate::{
     Vec3, Vector,
     geometry::faces_around::FacesAround,
-    number::{
-        F64x4, LANES, Number,
-        vector::{dot, scale_add, zero_vector},
-    },
+    number::{F64x4, LANES, Number, dot, scale_add, zero_vector},
 };
 
 /// Makes shares of the faces around nodes, four nodes at a time.

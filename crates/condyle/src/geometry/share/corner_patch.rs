@@ -2,10 +2,7 @@
 
 use crate::{
     Vector,
-    number::{
-        F64x4, Number,
-        vector::{cross, dot, scale_add},
-    },
+    number::{F64x4, Number, cross, dot, scale_add},
 };
 
 /// A face at each of four nodes, and the quarter of it next to the node; as seen from the node.

@@ -3,10 +3,7 @@
 use super::corner_patch::{CornerPatch, unit};
 use crate::{
     Vector,
-    number::{
-        F64x4, Number,
-        vector::{cross, dot, scale_add, tangential_part, zero_vector},
-    },
+    number::{F64x4, Number, cross, dot, scale_add, tangential_part, zero_vector},
 };
 
 /// The plane of a share, and where its centroid lies from the node.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use condyle_fem::HexMesh;
 
-use crate::Vec3;
+use crate::{Vec3, geometry::bounds};
 
 /// A face of the backside that leans from straight down by more than this cosine tells, 15 degrees, is a wall.
 const MIN_COSINE: f64 = 0.966;
@@ -12,7 +12,7 @@ const MIN_COSINE: f64 = 0.966;
 const MAX_OFF_MM: f64 = 0.25;
 
 /// The flat part of a backside.
-pub(in super::super) struct Floor {
+pub(crate) struct Floor {
     /// Its normal, into the insert.
     pub normal: Vec3,
     /// Its mesh nodes, ascending.
@@ -89,6 +89,125 @@ fn at_middle_height(mut level: Vec<&Face>, normal: &Vec3) -> Vec<[u32; 4]> {
     flat.map(|face| face.quad).collect()
 }
 
+/// A point that has less than this part of a cell around it lies outside: a corner of a rectangle has a quarter.
+const MIN_PART: f64 = 0.2;
+
+/// Nodes that go along with a point, by their places in a list, and how far.
+pub(crate) type Around = Vec<(usize, f64)>;
+
+/// A grid of points, anterior fastest.
+pub(crate) struct Grid {
+    low: Vec3,
+    step_mm: [f64; 2],
+    /// Cells along x and z.
+    cells: [usize; 2],
+}
+
+impl Grid {
+    /// Over some nodes, its cells no wider than `spacing_mm`.
+    pub fn over(mesh: &HexMesh, nodes: &[u32], spacing_mm: f64) -> Self {
+        let places: Vec<Vec3> = mesh.positions(nodes).collect();
+        let (low, high) = bounds(&places);
+        let size_mm = [high.x - low.x, high.z - low.z];
+        let cells = size_mm.map(|size_mm| (size_mm / spacing_mm).ceil().max(1.0));
+        Self {
+            low: Vec3::new(low.x, (low.y + high.y) / 2.0, low.z),
+            step_mm: [size_mm[0] / cells[0], size_mm[1] / cells[1]],
+            cells: cells.map(|cells| cells as usize),
+        }
+    }
+
+    fn columns(&self) -> usize {
+        self.cells[0] + 1
+    }
+
+    /// Area of a cell, mm2.
+    pub fn cell_mm2(&self) -> f64 {
+        self.step_mm[0] * self.step_mm[1]
+    }
+
+    /// Where a point is.
+    pub fn place(&self, at: usize) -> Vec3 {
+        let [i, k] = [at % self.columns(), at / self.columns()].map(|i| i as f64);
+        self.low + Vec3::new(i * self.step_mm[0], 0.0, k * self.step_mm[1])
+    }
+
+    /// The corners of a cell, and the bilinear weights there of a place in it or beside it.
+    fn weights(&self, [i, k]: [usize; 2], place: &Vec3) -> [(usize, f64); 4] {
+        let first = i + self.columns() * k;
+        let from = place - self.place(first);
+        let [x, z] = [from.x / self.step_mm[0], from.z / self.step_mm[1]];
+        let above = first + self.columns();
+        [
+            (first, (1.0 - x) * (1.0 - z)),
+            (first + 1, x * (1.0 - z)),
+            (above, (1.0 - x) * z),
+            (above + 1, x * z),
+        ]
+    }
+
+    /// Of every point the nodes whose cells it is a corner of.
+    pub fn around(&self, mesh: &HexMesh, nodes: &[u32]) -> Vec<Around> {
+        let mut around = vec![Around::new(); self.columns() * (self.cells[1] + 1)];
+        for (at, place) in mesh.positions(nodes).enumerate() {
+            let from = place - self.low;
+            let [x, z] = [from.x / self.step_mm[0], from.z / self.step_mm[1]];
+            let cell = [x, z].map(|along| along as usize);
+            let cell = [0, 1].map(|axis| cell[axis].min(self.cells[axis] - 1));
+            let weights = self.weights(cell, &place).into_iter();
+            for (point, weight) in weights.filter(|(_, weight)| *weight > 0.0) {
+                around[point].push((at, weight));
+            }
+        }
+        around
+    }
+
+    /// The same without the points outside: nodes around these go along with the nearest cell that has none. Where there is
+    /// no such cell all stay.
+    pub fn led_from_within(&self, around: Vec<Around>, share_mm2: &[f64]) -> Vec<Around> {
+        let is_within: Vec<bool> = around
+            .iter()
+            .map(|around| {
+                let parts = around.iter().map(|&(at, weight)| share_mm2[at] * weight);
+                parts.sum::<f64>() >= MIN_PART * self.cell_mm2()
+            })
+            .collect();
+        let columns = self.columns();
+        let cells = (0..self.cells[1]).flat_map(|k| (0..self.cells[0]).map(move |i| [i, k]));
+        let is_whole = |[i, k]: &[usize; 2]| {
+            let first = i + columns * k;
+            let corners = [first, first + 1, first + columns, first + columns + 1];
+            corners.iter().all(|corner| is_within[*corner])
+        };
+        let whole: Vec<[usize; 2]> = cells.filter(is_whole).collect();
+        let mut sums = vec![BTreeMap::<usize, f64>::new(); around.len()];
+        for (point, around) in around.into_iter().enumerate() {
+            let along = match self.nearest(&whole, point) {
+                Some(cell) if !is_within[point] => self.weights(cell, &self.place(point)).to_vec(),
+                Some(_) | None => vec![(point, 1.0)],
+            };
+            for (at, weight) in around {
+                for &(point, part) in &along {
+                    *sums[point].entry(at).or_default() += part * weight;
+                }
+            }
+        }
+        let sums = sums.into_iter();
+        sums.map(|sums| sums.into_iter().collect()).collect()
+    }
+
+    /// The cell whose middle is nearest to a point.
+    fn nearest(&self, cells: &[[usize; 2]], point: usize) -> Option<[usize; 2]> {
+        let middle = Vec3::new(self.step_mm[0], 0.0, self.step_mm[1]) / 2.0;
+        let place = self.place(point);
+        let apart = |[i, k]: &[usize; 2]| {
+            (self.place(i + self.columns() * k) + middle - place).norm_squared()
+        };
+        let nearest = cells.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        nearest.copied()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,5 +235,36 @@ mod tests {
         // From -4 mm, a step inside of the recess, to 5 mm.
         assert!((floor.share_mm2.iter().sum::<f64>() - 90.0).abs() < 1e-9);
         assert!((floor.part - 0.45).abs() < 0.01, "{}", floor.part);
+    }
+
+    #[test]
+    fn a_linear_motion_of_the_points_is_one_of_the_nodes_though_a_corner_is_missing() {
+        let meshing = Meshing {
+            edge_mm: 1.0,
+            layers: 1,
+        };
+        let insert = flat_insert((20.0, 14.0), 5.0, meshing).unwrap();
+        let mesh = insert.mesh();
+        // A triangle of the backside.
+        let mut nodes = insert.backside_nodes().to_vec();
+        nodes.retain(|&node| {
+            let place = mesh.nodes[node as usize];
+            place.x / 20.0 + place.z / 14.0 < 0.3
+        });
+        let grid = Grid::over(mesh, &nodes, 3.0);
+        let even = vec![1.0; nodes.len()];
+        let around = grid.led_from_within(grid.around(mesh, &nodes), &even);
+        let left_out = around.iter().filter(|around| around.is_empty()).count();
+        assert!(left_out > 8, "{left_out}");
+        let linear = |place: &Vec3| 0.3 + 0.1 * place.x - 0.2 * place.z;
+        let mut moved = vec![0.0; nodes.len()];
+        for (point, around) in around.iter().enumerate() {
+            for &(at, weight) in around {
+                moved[at] += weight * linear(&grid.place(point));
+            }
+        }
+        for (moved, place) in moved.iter().zip(mesh.positions(&nodes)) {
+            assert!((moved - linear(&place)).abs() < 1e-12, "{moved} {place}");
+        }
     }
 }

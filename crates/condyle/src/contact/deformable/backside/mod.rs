@@ -5,19 +5,204 @@
 //! (`rest`). How it gets there from increment to increment is `insert`; what stays is `memory`, and what a cycle came to
 //! `cycle`.
 
-mod cycle;
 mod floor;
-mod grid;
-mod insert;
-mod memory;
 mod rest;
 #[cfg(test)]
 mod tests;
 mod tray;
-mod tray_points;
 
-pub(super) use floor::Floor;
-pub(super) use insert::RestingInsert;
-pub(super) use memory::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD, BacksideMemory};
-pub(super) use rest::rest;
-pub(super) use tray::Tray;
+pub(crate) use floor::Floor;
+pub(crate) use rest::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD, BacksideMemory, rest};
+pub(crate) use tray::Tray;
+
+use std::sync::Arc;
+
+use nalgebra::DVector;
+
+use super::{
+    compliance::Compliance,
+    elastic_surface::ElasticSurface,
+    plastic::{FOUND_MM, NodeLoad},
+};
+use crate::{
+    contact::model::{StateField, Tipped},
+    number::Turns,
+};
+use rest::{CycleOfRest, Rest};
+
+/// An elastic insert whose backside rests on its tray with friction.
+///
+/// The loads of an increment and the rest of the backside under them depend on each other: the loads are those with the
+/// backside as it was tried last, the rest is that under the loads found last, in turns until the surface stays. The
+/// first try goes on from the two increments before.
+pub(crate) struct RestingInsert {
+    surface: Arc<Compliance<ElasticSurface>>,
+    tray: Arc<Tray>,
+    friction: f64,
+    /// Where the backside is after the last increment that counts, and how it went there.
+    left_mm: Vec<f64>,
+    went_mm: Option<Vec<f64>>,
+    /// Where it is tried to be, and how far that moves each node of the surface, as far as was asked.
+    tried_mm: Vec<f64>,
+    set_mm: Vec<Option<f64>>,
+    /// Where it is at rest under the loads found last, if any were.
+    found: Option<Rest>,
+    searched_mm: DVector<f64>,
+    turns: Turns,
+    cycle: CycleOfRest,
+    memory: BacksideMemory,
+    /// The number of the activity, once a cycle has begun.
+    activity: Option<usize>,
+}
+
+impl RestingInsert {
+    /// An insert that goes on from what is remembered.
+    pub fn after(
+        memory: BacksideMemory,
+        surface: Arc<Compliance<ElasticSurface>>,
+        tray: Arc<Tray>,
+        friction: f64,
+    ) -> Self {
+        let left_mm = memory.start(0, tray.freedoms());
+        Self {
+            set_mm: vec![None; surface.node_count()],
+            searched_mm: left_mm.clone().into(),
+            tried_mm: left_mm.clone(),
+            left_mm,
+            went_mm: None,
+            found: None,
+            turns: Turns::default(),
+            cycle: CycleOfRest::default(),
+            activity: None,
+            memory,
+            surface,
+            tray,
+            friction,
+        }
+    }
+
+    /// How far the backside lets a node of the surface give way, mm.
+    pub fn set_mm(&mut self, node: u32) -> f64 {
+        if let Some(set_mm) = self.set_mm[node as usize] {
+            return set_mm;
+        }
+        let tile = self.surface.tile_of(node);
+        let rows = self.surface.source.by_tray(&self.tray, tile as usize);
+        let nodes = self.surface.source.nodes_of_tile(tile as usize);
+        let rows = rows.chunks_exact(self.tried_mm.len());
+        for (&node, row) in nodes.iter().zip(rows) {
+            self.set_mm[node as usize] = Some(product(row, &self.tried_mm));
+        }
+        self.set_mm[node as usize].unwrap_or_default()
+    }
+
+    /// How far the tried backside is off its tray at most, mm.
+    pub fn lift_mm(&self) -> f64 {
+        let points = self.tried_mm.as_chunks::<3>().0.iter();
+        points.map(|point| point[2]).fold(0.0, f64::max)
+    }
+
+    /// Finds the rest under loads; how far that moves nodes of the surface from where they were tried to be, mm.
+    ///
+    /// # Errors
+    /// Loads under which the insert tips off its tray.
+    pub fn rest(
+        &mut self,
+        loads: &[NodeLoad],
+        near: impl Iterator<Item = u32>,
+    ) -> Result<f64, Tipped> {
+        let forces_n = self.surface.source.forces_on_tray(&self.tray, loads);
+        let stuck_mm = &self.left_mm;
+        let found = rest(
+            &self.tray,
+            self.friction,
+            stuck_mm,
+            &forces_n,
+            &self.searched_mm,
+        )?;
+        let tried: Vec<(u32, f64)> = near.map(|node| (node, self.set_mm(node))).collect();
+        let tried_mm = std::mem::replace(&mut self.tried_mm, found.moved_mm.clone());
+        self.set_mm.fill(None);
+        let moved = tried
+            .into_iter()
+            .map(|(node, tried_mm)| (self.set_mm(node) - tried_mm).abs());
+        let moved_mm = moved.fold(0.0, f64::max);
+        if moved_mm > FOUND_MM {
+            self.tried_mm = self.turns.next(&tried_mm, &found.moved_mm);
+            self.set_mm.fill(None);
+        }
+        self.searched_mm.clone_from(&found.searched_mm);
+        self.found = Some(found);
+        Ok(moved_mm)
+    }
+
+    /// What was found counts.
+    pub fn accept(&mut self) {
+        if let Some(found) = &self.found {
+            let way = found.moved_mm.iter().zip(&self.left_mm);
+            let way: Vec<f64> = way.map(|(to, from)| to - from).collect();
+            self.left_mm.clone_from(&found.moved_mm);
+            // A first way has nothing to go on from: it may begin anywhere.
+            let goes_on = self.went_mm.is_some();
+            self.try_anew(goes_on.then_some(way.as_slice()));
+            self.went_mm = Some(way);
+        }
+    }
+
+    /// Drops what was tried.
+    pub fn reject(&mut self) {
+        self.found = None;
+        self.went_mm = None;
+        self.try_anew(None);
+    }
+
+    /// Tries the backside where it was left, or as much farther as it went.
+    fn try_anew(&mut self, way_mm: Option<&[f64]>) {
+        self.tried_mm.clone_from(&self.left_mm);
+        for (tried, way) in self.tried_mm.iter_mut().zip(way_mm.unwrap_or_default()) {
+            *tried += way;
+        }
+        self.set_mm.fill(None);
+        self.turns = Turns::default();
+    }
+
+    /// The next increments are of the next activity.
+    pub fn begin_cycle(&mut self) {
+        let next = self.activity.map_or(0, |activity| {
+            self.memory.keep(activity, self.left_mm.clone());
+            activity + 1
+        });
+        self.activity = Some(next);
+        self.cycle.begin();
+        self.left_mm = self.memory.start(next, self.tray.freedoms());
+        self.searched_mm = self.left_mm.clone().into();
+        self.reject();
+    }
+
+    pub fn begin_increment(&mut self, increment: usize) {
+        self.cycle.begin_increment(increment);
+    }
+
+    /// The increment has landed.
+    pub fn land(&mut self) {
+        if let Some(found) = &self.found {
+            self.cycle.land(&self.tray, found);
+        }
+    }
+
+    /// How far the backside lies from where it lay when the same increment landed a cycle before, mm.
+    pub fn moved_in_a_cycle_mm(&self) -> f64 {
+        self.cycle.moved_mm
+    }
+
+    /// The fields of the state that the next contact goes on from.
+    pub fn into_fields(mut self) -> impl Iterator<Item = StateField> {
+        self.memory.keep(self.activity.unwrap_or(0), self.left_mm);
+        self.memory.last_cycles = self.cycle.most();
+        self.memory.into_fields()
+    }
+}
+
+fn product(row: &[f64], numbers: &[f64]) -> f64 {
+    row.iter().zip(numbers).map(|(a, b)| a * b).sum()
+}

@@ -7,15 +7,14 @@ use std::{
 
 use condyle_fem::{ElasticSolid, ElementMean, HalfSolved, YieldingElement};
 
-use super::super::tiles::tiles;
-use crate::Vec3;
+use crate::{Vec3, contact::deformable::compliance::tiles};
 
 /// So many mesh nodes at most are solved for together.
 const TILE_NODES: usize = 8;
 
 /// What loads on the surface and plastic strains below it move inside an insert: computed when it is first asked
 /// for, and kept. It depends on nothing that was asked before.
-pub(in super::super) struct Influence {
+pub(crate) struct Influence {
     /// Of every tile of the surface what unit loads on its nodes move all mesh nodes by, mm/N: a row for every axis of
     /// every mesh node. Seven digits are enough where yield is looked for.
     by_surface: Vec<OnceLock<Box<[f32]>>>,
@@ -35,7 +34,7 @@ pub(in super::super) struct Influence {
 type Blocks = BTreeMap<(u32, u32), Arc<[f64]>>;
 
 /// Forces on mesh nodes, or displacements of these, by the tiles of the nodes.
-pub(super) type ByTile = BTreeMap<u32, Vec<f64>>;
+pub(crate) type ByTile = BTreeMap<u32, Vec<f64>>;
 
 impl Influence {
     /// Nothing is known of a solid whose surface has nodes there, in so many tiles.
@@ -145,7 +144,7 @@ impl Influence {
 }
 
 /// Product of a row with loads: four sums, so that no addition waits for the one before.
-pub(super) fn product<T: Copy + Into<f64>>(row: &[T], loads: &[f64]) -> f64 {
+pub(crate) fn product<T: Copy + Into<f64>>(row: &[T], loads: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (fours, four_loads) = (row.chunks_exact(4), loads.chunks_exact(4));
     let (rest, rest_of_loads) = (fours.remainder(), four_loads.remainder());

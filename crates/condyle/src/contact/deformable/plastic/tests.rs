@@ -44,7 +44,7 @@ impl Block {
         }
     }
 
-    fn plastic(&self, remembered: Remembered) -> PlasticInsert {
+    fn plastic(&self, remembered: PlasticMemory) -> PlasticInsert {
         PlasticInsert::after(remembered, Arc::clone(&self.surface), hardening())
     }
 
@@ -73,7 +73,7 @@ impl Block {
 #[test]
 fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
     let block = Block::new();
-    let mut insert = block.plastic(Remembered::default());
+    let mut insert = block.plastic(PlasticMemory::default());
     let elements = block.insert.mesh().hexes.len();
     let mut state = PlasticState::unloaded(elements);
     // Pressed, let go, and pressed beside.
@@ -119,7 +119,7 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
 #[test]
 fn what_is_remembered_goes_through_the_state_to_the_same_bytes() {
     let block = Block::new();
-    let mut insert = block.plastic(Remembered::default());
+    let mut insert = block.plastic(PlasticMemory::default());
     let loads = block.loads(38.0, 0.0);
     let around = block.insert.faces_around();
     insert.cycle.begin_increment(0);
@@ -130,7 +130,7 @@ fn what_is_remembered_goes_through_the_state_to_the_same_bytes() {
     let state = crate::contact::ContactState {
         fields: remembered.field().into_iter().collect(),
     };
-    assert_eq!(Remembered::of(&state), remembered);
+    assert_eq!(PlasticMemory::of(&state), remembered);
     // The same load again is elastic: it is what is already there.
     let mut insert = block.plastic(remembered.clone());
     insert.flow(&loads, f64::INFINITY, 0..1, around).unwrap();
@@ -144,8 +144,11 @@ fn what_is_remembered_goes_through_the_state_to_the_same_bytes() {
 fn a_load_that_presses_the_insert_flat_is_an_error() {
     let block = Block::new();
     let hardening = Hardening::perfectly_plastic(14.0).unwrap();
-    let mut insert =
-        PlasticInsert::after(Remembered::default(), Arc::clone(&block.surface), hardening);
+    let mut insert = PlasticInsert::after(
+        PlasticMemory::default(),
+        Arc::clone(&block.surface),
+        hardening,
+    );
     let around = block.insert.faces_around();
     let loads = block.loads(200.0, 0.0);
     assert!(insert.flow(&loads, f64::INFINITY, 0..1, around).is_err());

@@ -10,7 +10,7 @@ use crate::{
 
 /// An elastic half-space whose surface is cut into rectangles.
 #[derive(Debug)]
-pub(super) struct HalfSpace {
+pub(crate) struct HalfSpace {
     shares: Vec<Share>,
     tiles: Vec<Vec<u32>>,
     contact_modulus_mpa: f64,
@@ -39,7 +39,7 @@ impl HalfSpace {
 
 /// The compliance along the surface of the same half-space: load 2 i + k is on share i along its direction k.
 #[derive(Debug)]
-pub(super) struct AlongHalfSpace {
+pub(crate) struct AlongHalfSpace {
     shares: Vec<Share>,
     directions: Vec<[Vec3; 2]>,
     tiles: Vec<Vec<u32>>,

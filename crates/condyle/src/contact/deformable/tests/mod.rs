@@ -5,7 +5,6 @@ mod stick_slip;
 
 use std::{f64::consts::PI, sync::Arc};
 
-use self::half_space::HalfSpace;
 use super::{
     compliance::Compliance,
     contact::{DeformableContact, FrictionSettings},
@@ -14,14 +13,14 @@ use crate::{
     Mat3, Vec3,
     contact::{
         broad_phase::{BroadPhase, BruteForce, Coherent},
-        contact_law::Bodies,
-        memory::ContactMemory,
-        model::{ContactModel, TouchedNode},
-        pressed::Coulomb,
+        contact_patch::Coulomb,
+        law::Bodies,
+        model::{ContactMemory, ContactModel, TouchedNode},
     },
     geometry::{ArticulatingSurface, FemoralSurface, Insert, Meshing, flat_insert},
     spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6},
 };
+use half_space::HalfSpace;
 
 const RADIUS_MM: f64 = 24.0;
 const MODULUS_MPA: f64 = 463.0;

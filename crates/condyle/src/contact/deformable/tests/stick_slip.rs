@@ -1,12 +1,9 @@
 //! Stick and slip of a ball on an elastic half-space, against Cattaneo and Mindlin.
 
-use super::*;
+use super::{half_space::AlongHalfSpace, *};
 use crate::contact::{
-    deformable::{
-        friction::ElasticFriction, friction_memory::FrictionMemory,
-        tests::half_space::AlongHalfSpace,
-    },
-    memory::ContactState,
+    deformable::friction::{ElasticFriction, FrictionMemory},
+    model::ContactState,
 };
 
 const MU: f64 = 0.07;

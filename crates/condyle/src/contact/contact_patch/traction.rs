@@ -1,13 +1,158 @@
-//! The tangent of many shares under pressure, as a sum of rank-one terms.
+//! Forces of a block of shares under pressure.
 
-use super::{cached_sample::CachedSample, traction::Tractions4};
+use super::near_blocks::CachedSample;
 use crate::{
-    Vector,
+    Vec3, Vector,
+    contact::model::MAX_REGIONS,
     geometry::Curvature,
-    number::vector::{cross, dot},
-    number::{F32x8, F64x4, Number},
-    spatial::Mat6,
+    number::{F32x8, F64x4, Number, cross, dot, scale_add, zero_vector},
+    spatial::{Mat6, Twist4, Wrench, body},
 };
+
+/// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
+const STANDSTILL_MM_PER_S: f64 = 1e-9;
+
+/// Coulomb's law of friction, regularised.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Coulomb {
+    /// Coefficient of friction, mu.
+    pub coefficient: f64,
+    /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0.
+    pub slip_tolerance_mm_per_s: f64,
+}
+
+/// Four shares of nodes under pressure and rubbed; all vectors in the femoral frame.
+///
+/// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
+/// of sliding, s = v_t/w and w = sqrt(v_t^2 + v0^2).
+pub(crate) struct Tractions4 {
+    pub pressure_mpa: F64x4,
+    /// Areas of the shares, mm2; their product with the pressure is the load L, N.
+    pub area_mm2: F64x4,
+    /// Areas of the parts of the shares that press, mm2.
+    pub covered_mm2: F64x4,
+    /// Derivatives of the loads by the motion of the femur's material there, N/mm.
+    pub load_by_motion: Vector<F64x4>,
+    /// Derivatives of the loads by a turn of the femur about the share, N/rad.
+    pub load_by_turn: Vector<F64x4>,
+    pub sliding: Sliding,
+}
+
+/// How the femur's material moves past a share.
+pub(crate) struct Sliding {
+    /// Velocity along the surface, mm/s; where nothing slides, a lean so slight that it only gives
+    /// a direction.
+    pub velocity_mm_per_s: Vector<F64x4>,
+    /// Velocity of the femur's material out of the femur, c = n . v, mm/s.
+    pub closing_mm_per_s: F64x4,
+    /// One over the speed with the tolerance, 1/w, s/mm.
+    pub per_regular: F64x4,
+}
+
+impl Sliding {
+    /// Takes a velocity apart along a surface with normal `normal`.
+    #[inline(always)]
+    pub fn new(velocity: &Vector<F64x4>, normal: &Vector<F64x4>, tolerance_mm_per_s: f64) -> Self {
+        let closing = dot(normal, velocity);
+        let lean = F64x4::splat(STANDSTILL_MM_PER_S);
+        let leaning = Vector::new(-(normal.y * lean), normal.x * lean, F64x4::splat(0.0));
+        let tangential = scale_add(normal, -closing, &(velocity + leaning));
+        let speed2 = dot(&tangential, &tangential);
+        let regular2 = speed2 + F64x4::splat(tolerance_mm_per_s * tolerance_mm_per_s);
+        Self {
+            velocity_mm_per_s: tangential,
+            closing_mm_per_s: closing,
+            per_regular: F64x4::splat(1.0) / regular2.sqrt(),
+        }
+    }
+}
+
+impl Tractions4 {
+    /// Shares that nothing presses.
+    pub fn none() -> Self {
+        let zero = F64x4::splat(0.0);
+        Self {
+            pressure_mpa: zero,
+            area_mm2: zero,
+            covered_mm2: zero,
+            load_by_motion: zero_vector(),
+            load_by_turn: zero_vector(),
+            sliding: Sliding {
+                velocity_mm_per_s: zero_vector(),
+                closing_mm_per_s: zero,
+                per_regular: zero,
+            },
+        }
+    }
+
+    /// How the loads of shares at `place` grow by a short motion of the femur, turn and shift in
+    /// its frame, N.
+    #[inline(always)]
+    pub fn load_change_n(&self, place: &Vector<F64x4>, motion: &Twist4) -> F64x4 {
+        dot(&self.load_by_motion, &motion.velocity(place))
+            + dot(&self.load_by_turn, motion.angular())
+    }
+
+    /// Forces on the insert under a femur with `normal`, N.
+    #[inline(always)]
+    pub fn force_n(&self, normal: &Vector<F64x4>, friction: f64) -> Vector<F64x4> {
+        let rub = F64x4::splat(friction) * self.sliding.per_regular;
+        let traction = scale_add(&self.sliding.velocity_mm_per_s, rub, normal);
+        traction * (self.pressure_mpa * self.area_mm2)
+    }
+}
+
+/// The wrench of many forces.
+pub(crate) struct WrenchSum([F64x4; 6]);
+
+impl WrenchSum {
+    pub fn new() -> Self {
+        Self([F64x4::splat(0.0); 6])
+    }
+
+    /// Adds forces at places, about the origin.
+    #[inline(always)]
+    pub fn add(&mut self, place: &Vector<F64x4>, force: &Vector<F64x4>) {
+        let moment = cross(place, force);
+        let wrench = [moment.x, moment.y, moment.z, force.x, force.y, force.z];
+        for (sum, part) in self.0.iter_mut().zip(&wrench) {
+            *sum += *part;
+        }
+    }
+
+    /// The sum.
+    pub fn total(&self) -> Wrench<body::Insert, body::Femur> {
+        let [mx, my, mz, fx, fy, fz] = self.0.map(F64x4::sum);
+        Wrench::new(Vec3::new(mx, my, mz), Vec3::new(fx, fy, fz))
+    }
+}
+
+/// Slip of many shares weighted by their loads, in every region.
+pub(crate) struct RegionSlips([(F64x4, Vector<F64x4>); MAX_REGIONS]);
+
+impl RegionSlips {
+    pub fn new() -> Self {
+        Self([(F64x4::splat(0.0), zero_vector()); MAX_REGIONS])
+    }
+
+    /// Adds shares, of which `in_region` says which belong to each region.
+    #[inline(always)]
+    pub fn add(&mut self, in_region: &[F64x4; MAX_REGIONS], pressed: &Tractions4) {
+        let load = pressed.pressure_mpa * pressed.area_mm2;
+        let velocity = &pressed.sliding.velocity_mm_per_s;
+        for ((loads, slips), is_in) in self.0.iter_mut().zip(in_region) {
+            let own = load * *is_in;
+            *loads += own;
+            *slips = scale_add(velocity, own, slips);
+        }
+    }
+
+    /// The mean of each region, mm/s; none where nothing is loaded.
+    pub fn means(&self) -> [Vec3; MAX_REGIONS] {
+        self.0
+            .map(|(loads, slips)| slips.map(F64x4::sum) / loads.sum().max(f64::MIN_POSITIVE))
+    }
+}
 
 /// Square of the least speed of sliding that gives a direction, mm2/s2; below any that occurs.
 const MIN_SPEED2: f64 = 1e-30;
@@ -18,7 +163,7 @@ type Six<T> = [T; 6];
 ///
 /// In single precision, eight shares at a time: a correction of Newton's method that is right to
 /// six digits leaves a millionth of the residual, and halves what is the dearest part of the sum.
-pub(super) struct TangentSum {
+pub(crate) struct TangentSum {
     by_pose: [Six<F32x8>; 6],
     by_twist: [Six<F32x8>; 6],
 }

@@ -1,8 +1,53 @@
-//! A quadratic through means over shares.
+//! The highest pressure, which may lie between the nodes.
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::{Vec3, geometry::Share};
+use crate::{
+    Vec3,
+    contact::model::{MAX_REGIONS, TouchedNode},
+    geometry::Share,
+};
+
+/// Nodes whose pressures differ by no more than this part press equally: which of them leads is a
+/// matter of round-off, and of which way round the knee is told.
+const EQUAL: f64 = 1e-9;
+
+/// Around any node inside a surface there are as many, and they determine a quadratic; at its rim
+/// there are fewer, and farther ones must help.
+pub(crate) const MIN_NODES: usize = 7;
+
+/// Highest pressure at or around the nodes that touch, MPa, any region of which may have it.
+///
+/// `highest_around` tells it for a node's share and what lies around; it is asked of those that lead their region,
+/// and told the highest so far: what cannot be above that need not be told exactly.
+/// It is not below the highest mean over a share.
+pub(crate) fn highest_mpa(
+    touched: &[TouchedNode],
+    highest_around: impl Fn(u32, f64) -> f64,
+) -> f64 {
+    let highest = highest_of_regions(touched);
+    let leads = highest.map(|highest| highest * (1.0 - EQUAL));
+    let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.region)];
+    let mut tops = touched.iter().filter(leads).collect::<Vec<_>>();
+    tops.sort_by(|a, b| b.pressure_mpa.total_cmp(&a.pressure_mpa));
+    let of_means = highest.into_iter().fold(0.0, f64::max);
+    tops.iter().fold(of_means, |so_far, top| {
+        highest_around(top.node, so_far).max(so_far)
+    })
+}
+
+/// Highest mean over a share in every region, MPa.
+fn highest_of_regions(touched: &[TouchedNode]) -> [f64; MAX_REGIONS] {
+    let mut highest = [0.0; MAX_REGIONS];
+    for node in touched {
+        let highest = &mut highest[usize::from(node.region)];
+        // A jump that is seldom taken is faster than a maximum that waits for the one before.
+        if node.pressure_mpa > *highest {
+            *highest = node.pressure_mpa;
+        }
+    }
+    highest
+}
 
 /// What is added to the least squares for every coefficient but the constant, where a length is a
 /// share's edge: a patch that does not tell a coefficient then takes it to be small, and one that
@@ -12,7 +57,7 @@ const LEAST_SQUARES_FLOOR: f64 = 1e-10;
 /// q(u) = constant + slope . u + u . bend u / 2 along the plane of a share, u from its centre in
 /// units of `length_mm`.
 #[derive(Clone, Debug)]
-pub(in crate::contact) struct Quadratic {
+pub(crate) struct Quadratic {
     constant: f64,
     slope: [f64; 2],
     /// xx, xy, yy.

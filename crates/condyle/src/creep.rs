@@ -1,4 +1,4 @@
-//! Creep by the logarithm of time.
+//! How polyethylene under load grows thinner with time, without losing mass.
 
 use crate::parameter::{Known, Parameter};
 

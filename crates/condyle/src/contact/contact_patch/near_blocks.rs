@@ -1,26 +1,25 @@
 //! The blocks of shares that the femur comes near, each with its sample of it.
 
-use super::cached_sample::CachedSample;
 use crate::{
     Vector,
     contact::{
         broad_phase::{BroadPhase, SeparationBound},
         share_block::ShareBlock,
     },
-    geometry::FemoralSurface,
-    number::{F64x4, Number},
+    geometry::{FemoralSurface, SurfaceSample},
+    number::{F64x4, Number, dot},
     spatial::{Pose, Pose4},
 };
 
 /// A block of shares that the femur comes near.
-pub(in crate::contact) struct NearBlock {
+pub(crate) struct NearBlock {
     /// Number of the block.
     pub block: u32,
     pub cached: CachedSample,
 }
 
 /// What one contact knew of which blocks come near, and when; it makes the contact after it quicker.
-pub(in crate::contact) struct NearCache<B> {
+pub(crate) struct NearCache<B> {
     blocks: Vec<ShareBlock>,
     search: B,
 }
@@ -28,7 +27,7 @@ pub(in crate::contact) struct NearCache<B> {
 /// Finds the blocks of shares within reach of the femur, by a broad phase `B`.
 ///
 /// What holds: what is found depends on the pose alone, but for samples that are extrapolated.
-pub(in crate::contact) struct NearBlocks<'a, B> {
+pub(crate) struct NearBlocks<'a, B> {
     femur: &'a FemoralSurface,
     pub blocks: Vec<ShareBlock>,
     search: B,
@@ -140,5 +139,44 @@ impl<'a, B: BroadPhase> NearBlocks<'a, B> {
                 found(NearBlock { block, cached }, known);
             }
         }
+    }
+}
+
+/// A sample of the femur under a block of shares, and the places in its frame where it was taken.
+#[derive(Clone, Copy)]
+pub(crate) struct CachedSample {
+    /// Places of the shares' centres, p, mm.
+    pub place: Vector<F64x4>,
+    pub sample: SurfaceSample<F64x4>,
+}
+
+impl CachedSample {
+    /// Nothing yet: farther away than any motion.
+    pub fn nothing() -> Self {
+        Self {
+            place: Vector::repeat(F64x4::splat(f64::INFINITY)),
+            sample: SurfaceSample::far(),
+        }
+    }
+
+    /// A sample taken anew at `place`.
+    #[inline(always)]
+    pub fn at(femur: &FemoralSurface, place: Vector<F64x4>, spread_mm2: F64x4) -> Self {
+        let sample = femur.sample(&place, spread_mm2);
+        Self { place, sample }
+    }
+
+    /// Whether `place` is so near that the sample may be extrapolated there.
+    #[inline(always)]
+    pub fn reaches(&self, place: &Vector<F64x4>, reuse_mm: f64) -> bool {
+        let motion = place - self.place;
+        dot(&motion, &motion).greatest() <= reuse_mm * reuse_mm
+    }
+
+    /// The sample extrapolated to `place`, to second order.
+    #[inline(always)]
+    pub fn extrapolated(&self, place: Vector<F64x4>) -> Self {
+        let sample = self.sample.moved(&(place - self.place));
+        Self { place, sample }
     }
 }

@@ -4,8 +4,11 @@ use std::collections::BTreeMap;
 
 use crate::{
     Vec3,
-    contact::model::TouchedNode,
-    geometry::{ArticulatingSurface, FacesAround},
+    contact::{
+        contact_patch::{MIN_NODES, Quadratic, highest_mpa},
+        model::TouchedNode,
+    },
+    geometry::{ArticulatingSurface, FacesAround, Share},
 };
 
 /// How far beyond a node the contact reaches, in steps between nodes, by the ratio of its pressure to that of the
@@ -15,7 +18,7 @@ const STEPS_BY_RATIO: f64 = 2.3;
 const STEPS_LESS: f64 = 0.77;
 
 /// The nodes that press, and the surface around them.
-pub(super) struct EdgeOfContact<'a> {
+pub(crate) struct EdgeOfContact<'a> {
     pub surface: &'a ArticulatingSurface,
     pub faces: &'a FacesAround,
     /// Square of the pressure at every node, MPa2; 0 where it does not press.
@@ -23,13 +26,13 @@ pub(super) struct EdgeOfContact<'a> {
 }
 
 /// Squares of the pressures at nodes, MPa2.
-pub(super) fn squares(touched: &[TouchedNode]) -> BTreeMap<u32, f64> {
+pub(crate) fn squares(touched: &[TouchedNode]) -> BTreeMap<u32, f64> {
     let square = |node: &TouchedNode| (node.node, node.pressure_mpa * node.pressure_mpa);
     touched.iter().map(square).collect()
 }
 
 /// The same at every node of a surface, 0 where it does not press.
-pub(super) fn squares_everywhere(node_count: usize, touched: &[TouchedNode]) -> Vec<f64> {
+pub(crate) fn squares_everywhere(node_count: usize, touched: &[TouchedNode]) -> Vec<f64> {
     let mut pressure2 = vec![0.0; node_count];
     for node in touched {
         pressure2[node.node as usize] = node.pressure_mpa * node.pressure_mpa;
@@ -87,5 +90,44 @@ impl EdgeOfContact<'_> {
         }
         let slope = matrix.cholesky()?.solve(&right);
         Some(along[0] * slope.x + along[1] * slope.y)
+    }
+}
+
+/// A quadratic that misses the square of the pressure under the top by more than this part does not follow it.
+const MAX_MISSED: f64 = 0.1;
+
+/// Looks for the highest pressure.
+///
+/// Under smooth bodies the square of the pressure is smooth up to the edge of contact (in Hertz's contact a
+/// quadratic), so it is this that is fitted, over the node that presses most and those around it, if all of them
+/// press; at the edge of a worn scar, where they do not, there is nothing smooth to fit. The peak is not below the
+/// highest mean over a share, and is that where the fit does not follow.
+pub(crate) struct PeakSearch<'a> {
+    pub shares: &'a [Share],
+    pub faces: &'a FacesAround,
+    /// Square of the pressure at every node that presses, MPa2.
+    pub pressure2: &'a BTreeMap<u32, f64>,
+}
+
+impl PeakSearch<'_> {
+    /// Highest pressure at or around the nodes that touch, MPa; any region may have it.
+    pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
+        highest_mpa(touched, |node, _| self.highest_around(node))
+    }
+
+    /// Highest pressure within the share of a node, MPa.
+    fn highest_around(&self, node: u32) -> f64 {
+        let patch = self.faces.patch(node, MIN_NODES);
+        let Some(own) = self.pressure2.get(&node) else {
+            return 0.0;
+        };
+        if !patch.iter().all(|node| self.pressure2.contains_key(node)) {
+            return 0.0;
+        }
+        let pressing = |node: &u32| (&self.shares[*node as usize], self.pressure2[node]);
+        let fit = Quadratic::fit(&self.shares[node as usize], patch.iter().map(pressing));
+        let follows = |fit: &Quadratic| (fit.mean() - own).abs() <= MAX_MISSED * own;
+        fit.filter(follows)
+            .map_or(0.0, |fit| fit.highest().max(0.0).sqrt())
     }
 }

@@ -1,0 +1,202 @@
+//! What a test says of contact.
+
+use std::{collections::BTreeMap, fmt::Debug, sync::Arc};
+
+use serde::{Deserialize, Serialize};
+
+use super::model::{ContactMemory, ContactModel, ContactState};
+use crate::geometry::{ArticulatingSurface, FemoralSurface, Insert};
+
+/// The bodies of a contact as they are now.
+#[derive(Clone, Copy)]
+pub struct Bodies<'a> {
+    /// The femoral surface, made ready for the insert's shares.
+    pub femur: &'a FemoralSurface,
+    /// The insert, worn or not.
+    pub insert: &'a Insert,
+    /// The insert's articulating surface.
+    pub surface: &'a ArticulatingSurface,
+}
+
+/// A law of contact: it belongs to a test, and makes the contact of its bodies.
+pub trait ContactLaw: Debug + Send + Sync {
+    /// The contact of bodies that goes on from what the contact before left; from nothing, with the
+    /// default memory.
+    fn contact<'a>(
+        &'a self,
+        bodies: Bodies<'a>,
+        memory: ContactMemory,
+    ) -> Box<dyn ContactModel + 'a>;
+
+    /// By how much the pressure at a surface node falls as the node alone is worn by a millimetre,
+    /// MPa/mm: how fast wear flattens the pressure follows from it.
+    fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64;
+
+    /// Bytes that the law keeps of an insert, beside what a contact takes, if the femur comes near so many nodes.
+    fn memory_bytes(&self, _insert: &Insert, _nodes_near: f64) -> f64 {
+        0.0
+    }
+
+    /// What is below the surface of an insert under loads on surface nodes along the inward normals, N, of the activity
+    /// of that number, after a contact has left `state`; none of an insert that is no solid.
+    fn under_surface(
+        &self,
+        _insert: &Insert,
+        _state: &ContactState,
+        _activity: usize,
+        _loads: &[(u32, f64)],
+    ) -> Option<UnderSurface> {
+        None
+    }
+
+    /// What is known of the compliance of an unworn insert, for another run; none where that is about no more than so
+    /// many pairs of tiles, or no more than was known at first.
+    fn known_compliance(
+        &self,
+        _insert: &Insert,
+        _more_than_pairs: usize,
+    ) -> Option<KnownCompliance> {
+        None
+    }
+
+    /// The same law with `factor` times the slip tolerance, for the estimate of what that costs in accuracy.
+    fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw>;
+}
+
+/// What is known of the normal compliance of an insert's surface, mm/N: how far unit loads on the nodes of one tile move
+/// those of another, for the pairs of tiles that were asked for.
+///
+/// It follows from the mesh, its backside, its articulating surface and the elastic constants, and from nothing else; and
+/// it is known to the bit, so that a run that begins with it has the bytes of one that does not.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct KnownCompliance {
+    /// By the numbers of two tiles, the lower first; row-major, a row for each node of the first.
+    between: BTreeMap<(u32, u32), Vec<f64>>,
+}
+
+impl KnownCompliance {
+    /// Of how many pairs of tiles something is known.
+    pub fn pairs(&self) -> usize {
+        self.between.len()
+    }
+
+    /// About how many bytes it takes.
+    pub fn bytes(&self) -> usize {
+        let numbers: usize = self.between.values().map(Vec::len).sum();
+        size_of::<f64>() * (numbers + 2 * self.pairs())
+    }
+
+    /// Hands over what is known of two tiles of so many nodes: row-major, a row for each node of `one`.
+    pub(crate) fn take(&mut self, one: usize, other: usize, nodes: [usize; 2]) -> Option<Vec<f64>> {
+        let [rows, columns] = nodes;
+        let key = [one.min(other), one.max(other)].map(|tile| tile as u32);
+        let known = self.between.remove(&(key[0], key[1]))?;
+        if known.len() != rows * columns {
+            return None;
+        }
+        if one <= other {
+            return Some(known);
+        }
+        let of_row = |row: usize| (0..columns).map(move |column| (row, column));
+        let places = (0..rows).flat_map(of_row);
+        Some(
+            places
+                .map(|(row, column)| known[column * rows + row])
+                .collect(),
+        )
+    }
+
+    /// Adds what loads on one tile move another by, of which the number is not lower.
+    pub(crate) fn add(&mut self, one: usize, other: usize, moved: Vec<f64>) {
+        self.between.insert((one as u32, other as u32), moved);
+    }
+}
+
+/// Plastic strain that accumulates at a place in a cycle below which the place counts as shaken down: the flow of an
+/// increment is found to some 3e-6.
+const SHAKEN_DOWN: f64 = 1e-5;
+
+/// What is below the surface of an insert that is a solid.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct UnderSurface {
+    /// Of every element its equivalent stress of von Mises, the mean of the stress over the element, MPa.
+    pub von_mises_mpa: Vec<f64>,
+    /// Of every element the largest shear stress of the same mean, MPa.
+    pub max_shear_mpa: Vec<f64>,
+    /// What has yielded, if the insert does.
+    pub plastic: Option<PlasticUnderSurface>,
+    /// What the backside did in the last cycles, if it rests on its tray.
+    pub backside: Option<BacksideAtRest>,
+}
+
+/// What a backside that rests on its tray did at most in the last cycle of any activity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BacksideAtRest {
+    /// Farthest that a place of it lifts off the tray, mm.
+    pub lift_mm: f64,
+    /// Largest part of it that lifts at once.
+    pub lifted_part: f64,
+    /// Longest way that a place of it slips along the tray while it presses, there and back, mm.
+    pub slip_mm: f64,
+    /// Largest force along the tray that the lock carries, N.
+    pub lock_force_n: f64,
+    /// Largest moment about the vertical axis that the lock carries, N mm.
+    pub lock_moment_nmm: f64,
+}
+
+/// What of an insert has yielded.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PlasticUnderSurface {
+    /// Of every node of the surface how far it has given way for good along the inward normal, mm.
+    pub permanent_set_mm: Vec<f64>,
+    /// Of every element the largest accumulated plastic strain at its Gauss points.
+    pub plastic_strain: Vec<f64>,
+    /// What every element does in a cycle that repeats itself.
+    pub regime: Vec<Regime>,
+}
+
+/// What a place of an insert does in a cycle that repeats itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Regime {
+    /// It has never yielded.
+    #[default]
+    Elastic,
+    /// It has, and does so no more.
+    ShakenDown,
+    /// It yields in every cycle: its strain grows, or goes to and fro.
+    Ratcheting,
+}
+
+impl Regime {
+    /// That of a place that has yielded, by what accumulates in a cycle.
+    pub fn of_flow(plastic_strain: f64) -> Self {
+        if plastic_strain > SHAKEN_DOWN {
+            Self::Ratcheting
+        } else {
+            Self::ShakenDown
+        }
+    }
+
+    /// The number of it in files: 0 elastic, 1 shaken down, 2 ratcheting.
+    pub fn number(self) -> u8 {
+        self as u8
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_is_handed_over_either_way_round() {
+        let mut known = KnownCompliance::default();
+        known.add(1, 4, vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        let there = known.clone().take(1, 4, [2, 3]).unwrap();
+        assert_eq!(there, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        let back = known.clone().take(4, 1, [3, 2]).unwrap();
+        assert_eq!(back, [1.0, 4.0, 2.0, 5.0, 3.0, 6.0]);
+        assert_eq!(known.take(1, 1, [2, 2]), None);
+        // A file of another surface tells nothing.
+        assert_eq!(known.take(1, 4, [3, 3]), None);
+    }
+}

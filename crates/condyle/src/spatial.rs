@@ -1,0 +1,479 @@
+//! Poses, twists and wrenches that say of what they are and in which frame.
+//!
+//! There are two bodies: the [insert](body::Insert) and the [femur](body::Femur). Each carries a frame, and
+//! so a body's name stands for its frame too. A quantity's type says what it is of and where its
+//! numbers are read: [`Twist<Femur, Insert>`](Twist) is the femur's motion past the insert in the insert frame,
+//! [`Wrench<Insert, Femur>`](Wrench) acts on the insert and is written in the femoral frame. Only a wrench on a body
+//! does work on a twist of that same body, so a forgotten sign or frame does not compile:
+//!
+//! ```compile_fail
+//! use condyle::spatial::{Twist, Wrench, body::{Femur, Insert}};
+//! let (on_insert, of_femur) = (Wrench::<Insert, Insert>::zero(), Twist::<Femur, Insert>::zero());
+//! on_insert.power(&of_femur);
+//! ```
+//!
+//! ```
+//! use condyle::{Vec3, spatial::{Twist, Wrench, body::{Femur, Insert}}};
+//! let on_insert = Wrench::<Insert, Insert>::new(Vec3::zeros(), Vec3::new(0.0, -100.0, 0.0));
+//! let sinking = Twist::<Femur, Insert>::new(Vec3::zeros(), Vec3::new(0.0, -2.0, 0.0));
+//! // What presses the insert down by 100 N pushes the femur up: it takes 200 N mm/s from it.
+//! assert_eq!(on_insert.reaction().power(&sinking), -200.0);
+//! ```
+
+pub mod body;
+
+use std::{
+    iter::Sum,
+    marker::PhantomData,
+    ops::{Add, AddAssign, Mul},
+};
+
+use crate::{
+    Mat3, Vec3, Vector,
+    number::{F64x4, Number, dot, scale_add},
+};
+use body::{Body, Femur, Insert};
+
+/// Six numbers: three of turning or of a moment, then three of shifting or of a force.
+pub type Vec6 = nalgebra::Vector6<f64>;
+/// A derivative of six numbers by six others.
+pub type Mat6 = nalgebra::Matrix6<f64>;
+
+/// Where the body `Of` is in the frame of the body `In`: a point p of its frame is at R p + t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose<In: Body = Insert, Of: Body = Femur> {
+    /// R, from the directions of `Of` to those of `In`.
+    pub rotation: Mat3,
+    /// t, the origin of `Of` in the frame of `In`, mm.
+    pub translation: Vec3,
+    bodies: PhantomData<(In, Of)>,
+}
+
+impl<In: Body, Of: Body> Pose<In, Of> {
+    /// A pose from R, a rotation, and t, mm.
+    pub fn new(rotation: Mat3, translation: Vec3) -> Self {
+        Self {
+            rotation,
+            translation,
+            bodies: PhantomData,
+        }
+    }
+
+    /// One frame on the other.
+    pub fn identity() -> Self {
+        Self::new(Mat3::identity(), Vec3::zeros())
+    }
+
+    /// A point of the frame of `In` as seen from `Of`, mm.
+    #[inline]
+    pub fn inverse_point(&self, point: &Vec3) -> Vec3 {
+        self.rotation.tr_mul(&(point - self.translation))
+    }
+
+    /// A point of the frame of `Of` as seen from `In`, mm.
+    pub fn point(&self, point: &Vec3) -> Vec3 {
+        self.rotation * point + self.translation
+    }
+
+    /// The pose after a motion of `Of` in its own frame: this one, then `inner`.
+    pub fn then(&self, inner: &Pose<Of, Of>) -> Self {
+        Self::new(
+            self.rotation * inner.rotation,
+            self.point(&inner.translation),
+        )
+    }
+}
+
+impl Pose<Insert, Femur> {
+    /// A point of the insert frame seen from the femoral frame, mm.
+    #[inline]
+    pub fn to_femur(&self, point: &Vec3) -> Vec3 {
+        self.inverse_point(point)
+    }
+
+    /// A point of the femoral frame seen from the insert frame, mm.
+    pub fn to_insert(&self, point: &Vec3) -> Vec3 {
+        self.point(point)
+    }
+}
+
+/// Pose and velocity of the femur relative to the insert, in the insert frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelativeMotion {
+    /// Where the femur is.
+    pub pose: Pose,
+    /// How fast it moves, rad/s and mm/s.
+    pub twist: Twist,
+}
+
+impl RelativeMotion {
+    /// A femur that stands still at a pose.
+    pub fn at_rest(pose: Pose) -> Self {
+        let twist = Twist::zero();
+        Self { pose, twist }
+    }
+}
+
+/// The motion of the body `Of` past the other one, in the frame of `In`.
+///
+/// It is a rate (rad/s, mm/s), a short motion (rad, mm), or the screw of a joint: the motion for each
+/// unit of its position. The velocity of the material at p is v + w x p.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twist<Of: Body = Femur, In: Body = Insert> {
+    /// Angular part w, rad/s or rad.
+    pub angular: Vec3,
+    /// Linear part v, that of the material of `Of` at the origin of `In`, mm/s or mm.
+    pub linear: Vec3,
+    bodies: PhantomData<(Of, In)>,
+}
+
+impl<Of: Body, In: Body> Twist<Of, In> {
+    /// A twist from its angular and its linear part.
+    pub fn new(angular: Vec3, linear: Vec3) -> Self {
+        Self {
+            angular,
+            linear,
+            bodies: PhantomData,
+        }
+    }
+
+    /// No motion.
+    pub fn zero() -> Self {
+        Self::new(Vec3::zeros(), Vec3::zeros())
+    }
+
+    /// The screw of a turn about an axis with a unit `direction` through `centre`, mm.
+    pub fn about(direction: Vec3, centre: Vec3) -> Self {
+        Self::new(direction, centre.cross(&direction))
+    }
+
+    /// The screw of a shift along a unit `direction`.
+    pub fn along(direction: Vec3) -> Self {
+        Self::new(Vec3::zeros(), direction)
+    }
+
+    /// The Lie bracket: how this screw turns `other`, which it carries, for each unit of position.
+    pub fn bracket(&self, other: &Self) -> Self {
+        Self::new(
+            self.angular.cross(&other.angular),
+            self.angular.cross(&other.linear) - other.angular.cross(&self.linear),
+        )
+    }
+
+    /// The finite motion along a screw by `position`, rad or mm: its exponential.
+    pub fn exponential(&self, position: f64) -> Pose<Of, Of> {
+        if self.angular == Vec3::zeros() {
+            return Pose::new(Mat3::identity(), self.linear * position);
+        }
+        let rotation = nalgebra::Rotation3::new(self.angular * position).into_inner();
+        let centre = self.angular.cross(&self.linear);
+        Pose::new(rotation, centre - rotation * centre)
+    }
+
+    /// The screw as it stands once `pose` has carried it along.
+    pub fn carried(&self, pose: &Pose<In, Of>) -> Self {
+        let turned = pose.rotation * self.angular;
+        Self::new(
+            turned,
+            pose.rotation * self.linear + pose.translation.cross(&turned),
+        )
+    }
+
+    /// The six numbers side by side.
+    pub fn numbers(&self) -> Vec6 {
+        let (w, v) = (&self.angular, &self.linear);
+        Vec6::new(w.x, w.y, w.z, v.x, v.y, v.z)
+    }
+
+    /// From six numbers side by side.
+    pub fn of_numbers(numbers: &Vec6) -> Self {
+        Self::new(
+            numbers.fixed_rows::<3>(0).into(),
+            numbers.fixed_rows::<3>(3).into(),
+        )
+    }
+}
+
+impl Twist<Femur, Insert> {
+    /// The short motion from one pose to another.
+    pub fn between(from: &Pose, to: &Pose) -> Self {
+        let turned = to.rotation * from.rotation.transpose();
+        let turn = Vec3::new(
+            turned[(2, 1)] - turned[(1, 2)],
+            turned[(0, 2)] - turned[(2, 0)],
+            turned[(1, 0)] - turned[(0, 1)],
+        ) / 2.0;
+        let shift = to.translation - from.translation - turn.cross(&from.translation);
+        Self::new(turn, shift)
+    }
+}
+
+impl<Of: Body, In: Body> Add for Twist<Of, In> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::new(self.angular + other.angular, self.linear + other.linear)
+    }
+}
+
+impl<Of: Body, In: Body> AddAssign for Twist<Of, In> {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<Of: Body, In: Body> Mul<f64> for Twist<Of, In> {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        Self::new(self.angular * factor, self.linear * factor)
+    }
+}
+
+impl<Of: Body, In: Body> Sum for Twist<Of, In> {
+    fn sum<I: Iterator<Item = Self>>(twists: I) -> Self {
+        twists.fold(Self::zero(), Add::add)
+    }
+}
+
+/// Moment about the origin of `In` and force on the body `On` by the other one, in the frame of `In`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench<On: Body = Insert, In: Body = Insert> {
+    /// Moment, N mm.
+    pub moment: Vec3,
+    /// Force, N.
+    pub force: Vec3,
+    bodies: PhantomData<(On, In)>,
+}
+
+impl<On: Body, In: Body> Wrench<On, In> {
+    /// A wrench from its moment, N mm, and its force, N.
+    pub fn new(moment: Vec3, force: Vec3) -> Self {
+        Self {
+            moment,
+            force,
+            bodies: PhantomData,
+        }
+    }
+
+    /// No load.
+    pub fn zero() -> Self {
+        Self::new(Vec3::zeros(), Vec3::zeros())
+    }
+
+    /// What acts on the other body: action equals reaction.
+    pub fn reaction(&self) -> Wrench<On::Other, In> {
+        Wrench::new(-self.moment, -self.force)
+    }
+
+    /// What the wrench does on a motion of the body that it acts on, N mm/s; for a screw, the load on
+    /// its joint, N or N mm.
+    pub fn power(&self, twist: &Twist<On, In>) -> f64 {
+        twist.numbers().dot(&self.numbers())
+    }
+
+    /// The wrench whose power on any screw is this one's on the bracket of `carrying` with that screw: how the load
+    /// on a joint changes as another turns it.
+    ///
+    /// W . \[a, b\] = (m x a_w + f x a_v) . b_w + (f x a_w) . b_v.
+    pub fn on_bracket_with(&self, carrying: &Twist<On, In>) -> Self {
+        let (m, f) = (&self.moment, &self.force);
+        let (turn, shift) = (&carrying.angular, &carrying.linear);
+        Self::new(m.cross(turn) + f.cross(shift), f.cross(turn))
+    }
+
+    /// The six numbers side by side.
+    pub fn numbers(&self) -> Vec6 {
+        let (m, f) = (&self.moment, &self.force);
+        Vec6::new(m.x, m.y, m.z, f.x, f.y, f.z)
+    }
+
+    /// From six numbers side by side.
+    pub fn of_numbers(numbers: &Vec6) -> Self {
+        Self::new(
+            numbers.fixed_rows::<3>(0).into(),
+            numbers.fixed_rows::<3>(3).into(),
+        )
+    }
+}
+
+impl<On: Body, In: Body> Add for Wrench<On, In> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::new(self.moment + other.moment, self.force + other.force)
+    }
+}
+
+/// Derivative of a wrench on the insert by a twist of the femur, both in the frame of `In`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WrenchByTwist<In: Body = Insert> {
+    /// Rows: moment, then force. Columns: angular, then linear.
+    pub matrix: Mat6,
+    frame: PhantomData<In>,
+}
+
+impl<In: Body> WrenchByTwist<In> {
+    /// A derivative from its matrix.
+    pub fn new(matrix: Mat6) -> Self {
+        Self {
+            matrix,
+            frame: PhantomData,
+        }
+    }
+
+    /// A wrench that does not change.
+    pub fn zero() -> Self {
+        Self::new(Mat6::zeros())
+    }
+}
+
+impl<In: Body> Mul<&Twist<Femur, In>> for &WrenchByTwist<In> {
+    type Output = Wrench<Insert, In>;
+
+    fn mul(self, twist: &Twist<Femur, In>) -> Wrench<Insert, In> {
+        Wrench::of_numbers(&(self.matrix * twist.numbers()))
+    }
+}
+
+/// Takes twists from the insert frame to the femoral frame, and wrenches back.
+///
+/// It is the 6 by 6 matrix A that turns a twist taken at the insert's origin into one taken at the
+/// femur's. Power is the same in both frames, so A' takes wrenches back, and A' D A a derivative D of
+/// one by the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameChange {
+    matrix: Mat6,
+}
+
+impl FrameChange {
+    /// The change at a pose of the femur.
+    pub fn to_femur(pose: &Pose) -> Self {
+        let turn = pose.rotation.transpose();
+        let mut matrix = Mat6::zeros();
+        matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
+        matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&turn);
+        let lever = -turn * cross_matrix(&pose.translation);
+        matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&lever);
+        Self { matrix }
+    }
+
+    /// A twist of the femur in its own frame.
+    pub fn twist(&self, twist: &Twist<Femur, Insert>) -> Twist<Femur, Femur> {
+        Twist::of_numbers(&(self.matrix * twist.numbers()))
+    }
+
+    /// A wrench on the insert back in the insert frame.
+    pub fn wrench_back(&self, wrench: &Wrench<Insert, Femur>) -> Wrench<Insert, Insert> {
+        Wrench::of_numbers(&self.matrix.tr_mul(&wrench.numbers()))
+    }
+
+    /// A derivative of the one by the other back in the insert frame.
+    pub fn derivative_back(&self, by: &WrenchByTwist<Femur>) -> WrenchByTwist<Insert> {
+        WrenchByTwist::new(self.matrix.tr_mul(&by.matrix) * self.matrix)
+    }
+}
+
+/// The matrix \[v\] with \[v\] w = v x w.
+#[inline]
+fn cross_matrix(v: &Vec3) -> Mat3 {
+    Mat3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
+}
+
+/// A pose of the femur in the insert for four points at a time.
+pub struct Pose4 {
+    /// Columns of R.
+    columns: [Vector<F64x4>; 3],
+    translation: Vector<F64x4>,
+}
+
+impl Pose4 {
+    /// The same pose for every point.
+    pub fn new(pose: &Pose) -> Self {
+        let column = |axis: usize| Vec3::from(pose.rotation.column(axis)).map(F64x4::splat);
+        Self {
+            columns: [column(0), column(1), column(2)],
+            translation: pose.translation.map(F64x4::splat),
+        }
+    }
+
+    /// Points of the insert frame seen from the femoral frame.
+    #[inline(always)]
+    pub fn to_femur(&self, point: &Vector<F64x4>) -> Vector<F64x4> {
+        self.turn_to_femur(&(point - self.translation))
+    }
+
+    /// Vectors of the insert frame seen from the femoral frame.
+    #[inline(always)]
+    pub fn turn_to_femur(&self, vector: &Vector<F64x4>) -> Vector<F64x4> {
+        let [x, y, z] = &self.columns;
+        Vector::new(dot(x, vector), dot(y, vector), dot(z, vector))
+    }
+
+    /// Vectors of the femoral frame seen from the insert frame.
+    #[inline(always)]
+    pub fn turn_to_insert(&self, vector: &Vector<F64x4>) -> Vector<F64x4> {
+        let [x, y, z] = &self.columns;
+        scale_add(x, vector.x, &scale_add(y, vector.y, &(z * vector.z)))
+    }
+}
+
+/// A twist of the femur in its own frame, for four points at a time.
+pub struct Twist4 {
+    angular: Vector<F64x4>,
+    linear: Vector<F64x4>,
+}
+
+impl Twist4 {
+    /// The same twist for every point.
+    pub fn new(twist: &Twist<Femur, Femur>) -> Self {
+        Self {
+            angular: twist.angular.map(F64x4::splat),
+            linear: twist.linear.map(F64x4::splat),
+        }
+    }
+
+    /// The angular part.
+    pub fn angular(&self) -> &Vector<F64x4> {
+        &self.angular
+    }
+
+    /// Velocities of the material at points, v + w x p.
+    #[inline(always)]
+    pub fn velocity(&self, place: &Vector<F64x4>) -> Vector<F64x4> {
+        let (w, p, v) = (&self.angular, place, &self.linear);
+        Vector::new(
+            w.y.mul_add(p.z, v.x - w.z * p.y),
+            w.z.mul_add(p.x, v.y - w.x * p.z),
+            w.x.mul_add(p.y, v.z - w.y * p.x),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn power_is_the_same_in_both_frames() {
+        let rotation = nalgebra::Rotation3::new(Vec3::new(0.3, -0.8, 0.2)).into_inner();
+        let pose = Pose::new(rotation, Vec3::new(4.0, -20.0, 3.0));
+        let change = FrameChange::to_femur(&pose);
+        let twist = Twist::new(Vec3::new(1.0, 0.3, -2.0), Vec3::new(10.0, 3.0, 40.0));
+        let wrench = Wrench::new(Vec3::new(5.0, 7.0, -1.0), Vec3::new(0.4, -3.0, 2.0));
+        let power = change.wrench_back(&wrench).reaction().power(&twist);
+        assert!((wrench.reaction().power(&change.twist(&twist)) - power).abs() < 1e-12);
+    }
+
+    #[test]
+    fn verify_a_twist_in_the_femoral_frame_moves_the_same_material() {
+        let rotation = nalgebra::Rotation3::new(Vec3::new(-0.2, 0.5, 0.9)).into_inner();
+        let pose = Pose::new(rotation, Vec3::new(4.0, -20.0, 3.0));
+        let twist: Twist = Twist::new(Vec3::new(1.0, 0.3, -2.0), Vec3::new(10.0, 3.0, 40.0));
+        let own = FrameChange::to_femur(&pose).twist(&twist);
+        let place = Vec3::new(7.0, -25.0, 12.0);
+        let velocity = twist.linear + twist.angular.cross(&place);
+        let seen = own.linear + own.angular.cross(&pose.to_femur(&place));
+        assert!((pose.rotation * seen - velocity).norm() < 1e-12);
+    }
+}
