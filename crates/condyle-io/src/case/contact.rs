@@ -2,8 +2,8 @@
 
 use condyle::contact::{Foundation, FrictionModel, PressureTable, Search, softening_modulus};
 
-use super::backside::BacksideChoice;
-use super::plasticity::PlasticityChoice;
+use super::deformable::BacksideChoice;
+use super::deformable::PlasticityChoice;
 use super::pressure_table::StrainTable;
 use crate::config::{
     Choices, Key, Log, Offered, Section, Settings, Variants, Writer, choice, settings, variants,

@@ -1,20 +1,20 @@
 //! All that a case says.
 
-use super::accuracy::Accuracy;
 use super::activity::Activities;
 use super::contact::Contact;
-use super::creep::Creep;
 use super::femur::Femur;
-use super::heading::Heading;
+use super::frame::Heading;
 use super::insert::Insert;
-use super::limits::Limits;
 use super::machine::Machine;
-use super::march::March;
+use super::material::Creep;
 use super::material::Material;
 use super::origin::Origin;
-use super::output::Output;
 use super::placement::{FemurPlacement, InsertPlacement};
-use super::time::Time;
+use super::run_options::Accuracy;
+use super::run_options::Limits;
+use super::run_options::Output;
+use super::schedule::March;
+use super::schedule::Time;
 use super::wear::Wear;
 
 /// A wear test as its file describes it, checked, with every default filled in.

@@ -2,9 +2,9 @@
 
 use condyle::geometry::GenericFemurShape;
 
-use super::axes::{self, Axes};
-use super::heading::Side;
-use super::mesh_file::LengthUnit;
+use super::frame::LengthUnit;
+use super::frame::Side;
+use super::frame::{Axes, check as check_axes};
 use super::placement::FemurPlacement;
 use crate::config::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
 
@@ -81,7 +81,7 @@ impl Femur {
     ) -> Option<Self> {
         let femur = Self::read(section, &FemurPlacement::keys(), log)?;
         if let Self::Mesh(mesh) = &femur {
-            axes::check(&mesh.axes, side, section.value_span("axes"), log);
+            check_axes(&mesh.axes, side, section.value_span("axes"), log);
         }
         Some(femur)
     }

@@ -2,9 +2,9 @@
 
 use condyle::geometry::{GenericInsertShape, Meshing};
 
-use super::axes::{self, Axes};
-use super::heading::Side;
-use super::mesh_file::LengthUnit;
+use super::frame::LengthUnit;
+use super::frame::Side;
+use super::frame::{Axes, check as check_axes};
 use super::placement::InsertPlacement;
 use crate::config::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
 
@@ -93,7 +93,7 @@ impl Insert {
     ) -> Option<Self> {
         let insert = Self::read(section, &InsertPlacement::keys(), log)?;
         if let Some(axes) = insert.axes() {
-            axes::check(axes, side, section.value_span("axes"), log);
+            check_axes(axes, side, section.value_span("axes"), log);
         }
         Some(insert)
     }

@@ -12,8 +12,8 @@ use toml::de::DeTable;
 
 use super::build::{Body, BuildError, BuildWarning};
 use super::contents::Case;
-use super::limits::Limits;
-use super::machine_keys::DriveWord;
+use super::machine::DriveWord;
+use super::run_options::Limits;
 use crate::config::{Base, DataFile, Log, Problem, Problems, Reason, Section, Source};
 use crate::files::{Files, MemoryFiles};
 

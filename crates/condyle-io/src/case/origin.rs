@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::law_change::LeftOutConstant;
+use super::assignment::LeftOutConstant;
 use crate::config::Source;
 
 /// The text of a case file, and what of it was left out.

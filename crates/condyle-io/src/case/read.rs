@@ -3,15 +3,15 @@
 use super::activity::{self, Activities};
 use super::contact::Contact;
 use super::contents::Case;
-use super::creep::Creep;
 use super::femur::Femur;
-use super::heading::{Heading, Side};
+use super::frame::{Heading, Side};
 use super::insert::Insert;
 use super::machine::Machine;
-use super::march::March;
+use super::material::Creep;
 use super::material::Material;
 use super::origin::Origin;
 use super::placement::{FemurPlacement, InsertPlacement};
+use super::schedule::March;
 use super::wear::{Wear, WearLaws};
 use crate::config::{Log, Section, Settings, Variants, names, read_table};
 

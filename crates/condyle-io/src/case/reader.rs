@@ -1,19 +1,19 @@
-//! What cases are read with.
+//! Reading of cases from files, and the hash of what goes into a run.
 
 use std::path::Path;
 use std::sync::Arc;
+use std::{fs, io};
 
 use condyle::wear::WEAR_LAWS;
 use miette::NamedSource;
 
-use super::assignment::{Assignment, ChangeError};
+use super::assignment::{Assignment, ChangeError, Override, without_other_laws};
 use super::contents::Case;
-use super::law_change::without_other_laws;
-use super::overriding::Override;
+use super::machine::write_name;
 use super::read::read_case;
 use super::wear::WearLaws;
-use crate::config::{Base, Problems, Source, read_document, read_source};
-use crate::files::Files;
+use crate::config::{Base, DataFile, Problems, Source, read_document, read_source};
+use crate::files::{Disk, Files};
 
 /// Reads cases.
 #[derive(Clone, Debug)]
@@ -127,4 +127,100 @@ impl CaseReader {
             read_case(root, self.wear_laws, log)
         })
     }
+}
+
+impl Default for CaseReader {
+    fn default() -> Self {
+        Self::new(Disk)
+    }
+}
+
+impl Case {
+    /// Reads the case file at `path` on the disk; paths in it count from its folder.
+    ///
+    /// # Errors
+    /// As [`CaseReader::read`].
+    pub fn read(path: &Path) -> Result<Self, Problems> {
+        CaseReader::default().read(path)
+    }
+
+    /// Reads the case file at `path` with one number changed.
+    ///
+    /// # Errors
+    /// As [`CaseReader::read_with`].
+    pub fn read_with(path: &Path, number: &Override) -> Result<Self, Problems> {
+        CaseReader::default().read_with(path, number)
+    }
+
+    /// Reads the case file at `path` with some of its values changed.
+    ///
+    /// # Errors
+    /// As [`CaseReader::read_changed`].
+    pub fn read_changed(path: &Path, changes: &[Assignment]) -> Result<Self, ChangeError> {
+        CaseReader::default().read_changed(path, changes)
+    }
+
+    /// Reads a case from `text`, called `name` in messages; paths count from `folder`.
+    ///
+    /// # Errors
+    /// As [`CaseReader::parse`].
+    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, Problems> {
+        CaseReader::default().parse(text, name, folder)
+    }
+
+    /// The case as [`Self::to_toml`] has it, to be kept in `folder`, which is there: its files by
+    /// their paths counted from that folder, so that nothing in it names a place of one machine.
+    pub fn to_toml_in(&self, folder: &Path) -> String {
+        self.named_from(folder).to_toml()
+    }
+
+    /// The same, with waveforms by their names, as a case to go on from.
+    pub(super) fn as_draft_in(&self, folder: &Path) -> String {
+        self.named_from(folder).written(write_name)
+    }
+
+    /// The case with its files named from `folder`.
+    fn named_from(&self, folder: &Path) -> Self {
+        let mut case = self.clone();
+        if let Ok(folder) = fs::canonicalize(folder) {
+            let files = [case.femur.file_mut(), case.insert.file_mut()];
+            for file in files.into_iter().flatten() {
+                *file = file.named_from(&folder);
+            }
+        }
+        case
+    }
+}
+
+impl Case {
+    /// Hash of the case as run and of the bytes of its meshes, in hexadecimal.
+    ///
+    /// Where the meshes lie does not count, what is in them does.
+    ///
+    /// # Errors
+    /// A mesh that can no longer be read.
+    pub fn inputs_blake3(&self) -> io::Result<String> {
+        let mut text = self.to_toml();
+        let mut hasher = blake3::Hasher::new();
+        for file in [self.femur.file(), self.insert.file()]
+            .into_iter()
+            .flatten()
+        {
+            text = without_path(&text, file);
+            hasher.update(blake3::hash(&file.files().read(file.path())?).as_bytes());
+        }
+        hasher.update(text.as_bytes());
+        Ok(hasher.finalize().to_hex().to_string())
+    }
+}
+
+/// A case as written, without the path of a file and without the blanks that fill its line up to
+/// the comment, which are as many as the path is short.
+fn without_path(text: &str, file: &DataFile) -> String {
+    let path = toml::Value::String(file.path().to_string_lossy().into_owned()).to_string();
+    let mut parts = text.split(&path);
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |before, after| {
+        before + " " + after.trim_start_matches(' ')
+    })
 }

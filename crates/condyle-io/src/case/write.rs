@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::contents::Case;
-use super::machine_keys::Preset;
-use super::machine_write::{WriteWaveform, write_knots, write_name};
+use super::machine::Preset;
+use super::machine::{WriteWaveform, write_knots, write_name};
 use super::reader::CaseReader;
 use crate::config::{Settings, Variants, Writer};
 use crate::files::MemoryFiles;

@@ -6,15 +6,15 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::file_reason::FileReason;
 use super::key::Key;
-use super::kind::Kind;
+use super::key::Kind;
+use super::key::quoted;
 use super::log::Log;
+use super::problem::{Source, read_source};
+use super::reason::FileReason;
 use super::section::Section;
 use super::setting::Setting;
-use super::source::{Source, read_source};
-use super::value::quoted;
-use super::words::wrong_type;
+use super::setting::wrong_type;
 use crate::files::Files;
 #[cfg(feature = "file-system")]
 use crate::files::path_from;

@@ -7,11 +7,11 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use super::choices::Choices;
+use super::key::Kind;
+use super::key::Limits;
+use super::key::unit_of;
 use super::key::{Key, WhereSilent};
-use super::kind::Kind;
-use super::limits::Limits;
-use super::unit::unit_of;
+use super::variants::Choices;
 
 /// The schema of a table, being made.
 pub(crate) struct TableSchema {

@@ -1,9 +1,9 @@
-//! What is known of a key before any file is read.
+//! Keys: what is known of one before any file is read, and values of TOML in words.
 
 use std::borrow::Cow;
+use std::fmt;
 
-use super::kind::Kind;
-use super::limits::Limits;
+use toml::de::DeValue;
 
 /// What is known of a key before any file is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,4 +42,184 @@ pub enum WhereSilent {
 /// Names of keys.
 pub(crate) fn names(keys: &[Key]) -> impl Iterator<Item = &'static str> + '_ {
     keys.iter().map(|key| key.name)
+}
+
+/// What may be written behind a key; its `Display` says it in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A number.
+    Number,
+    /// A number without a fraction.
+    WholeNumber,
+    /// 1 or -1.
+    Sign,
+    /// True or false.
+    Truth,
+    /// Any text.
+    Text,
+    /// Where a file is.
+    Path,
+    /// One of a few words.
+    Word(Vec<&'static str>),
+    /// Three words, each one of a few.
+    ThreeWords(&'static [&'static str]),
+    /// Any names.
+    Names,
+    /// Numbers or words, one or more.
+    Levels,
+    /// Two numbers.
+    TwoNumbers,
+    /// Three numbers.
+    ThreeNumbers,
+    /// Any number of pairs of numbers.
+    Pairs,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number => f.write_str("a number"),
+            Self::WholeNumber => f.write_str("a whole number"),
+            Self::Sign => f.write_str("1 or -1"),
+            Self::Truth => f.write_str("true or false"),
+            Self::Text => f.write_str("text in quotes"),
+            Self::Path => f.write_str("a path in quotes"),
+            Self::Word(words) => f.write_str(&quoted_list(words)),
+            Self::ThreeWords(words) => write!(f, "three words of {}", quoted_list(words)),
+            Self::Names => f.write_str("a list of names in quotes"),
+            Self::Levels => f.write_str("a list of numbers or of words in quotes"),
+            Self::TwoNumbers => f.write_str("a list of two numbers"),
+            Self::ThreeNumbers => f.write_str("a list of three numbers"),
+            Self::Pairs => f.write_str("a list of pairs of numbers"),
+        }
+    }
+}
+
+/// The least and the most that a number may be, both allowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Least.
+    pub least: f64,
+    /// Most.
+    pub most: f64,
+}
+
+/// Limits from `least` to `most`, both allowed.
+pub(crate) const fn within(least: f64, most: f64) -> Limits {
+    Limits { least, most }
+}
+
+impl Limits {
+    /// Whether `value` lies inside; NaN does not.
+    pub fn allow(&self, value: f64) -> bool {
+        (self.least..=self.most).contains(&value)
+    }
+}
+
+impl fmt::Display for Limits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} to {}", plain(self.least), plain(self.most))
+    }
+}
+
+/// A number as a person would write it.
+pub(crate) fn plain(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e9).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// Words in quotes with commas between: `"a", "b" or "c"`.
+pub(crate) fn quoted_list(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+    match quoted.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => quoted.concat(),
+    }
+}
+
+/// What a value is, in words.
+pub(crate) fn type_name(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "text in quotes",
+        DeValue::Integer(_) => "an integer",
+        DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// A float or an integer as a number; none for anything else.
+pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().replace('_', "").parse().ok(),
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+            .ok()
+            .map(|whole| whole as f64),
+        _ => None,
+    }
+}
+
+/// A basic string of TOML.
+pub(crate) fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// Every unit that ends a name, with how a person writes it.
+const UNITS: &[(&str, &str)] = &[
+    ("_mg_per_mm3", "mg/mm3"),
+    ("_mm3_per_nm", "mm3/(N m)"),
+    ("_nm_s_per_rad", "N m s/rad"),
+    ("_n_s_per_mm", "N s/mm"),
+    ("_mm_per_s", "mm/s"),
+    ("_n_per_mm", "N/mm"),
+    ("_kg_m2", "kg m2"),
+    ("_per_mpa", "1/MPa"),
+    ("_mpa", "MPa"),
+    ("_deg", "degrees"),
+    ("_kg", "kg"),
+    ("_gb", "GB"),
+    ("_hz", "Hz"),
+    ("_nm", "N m"),
+    ("_mm", "mm"),
+    ("_n", "N"),
+    ("_s", "s"),
+];
+
+/// A key's name without its unit, and the unit in words.
+pub(crate) fn split_unit(name: &str) -> (&str, Option<&'static str>) {
+    UNITS
+        .iter()
+        .find_map(|&(suffix, unit)| Some((name.strip_suffix(suffix)?, Some(unit))))
+        .unwrap_or((name, None))
+}
+
+/// The unit that `name` ends in, in words.
+pub fn unit_of(name: &str) -> Option<&'static str> {
+    split_unit(name).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_allow_their_ends_and_no_nan() {
+        let limits = within(0.0, 0.499);
+        assert!(limits.allow(0.0) && limits.allow(0.499));
+        assert!(!limits.allow(0.5) && !limits.allow(f64::NAN));
+        assert_eq!(limits.to_string(), "0 to 0.499");
+    }
+
+    #[test]
+    fn longest_unit_wins() {
+        assert_eq!(unit_of("slip_tolerance_mm_per_s"), Some("mm/s"));
+        assert_eq!(unit_of("posterior_n_per_mm"), Some("N/mm"));
+        assert_eq!(split_unit("edge_mm"), ("edge", Some("mm")));
+        assert_eq!(split_unit("layers"), ("layers", None));
+    }
 }

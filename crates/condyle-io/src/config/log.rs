@@ -1,14 +1,31 @@
-//! What has been found wrong so far.
+//! Problems found while a file is read.
 
 use std::ops::Range;
+use std::path::Path;
 use std::sync::Arc;
 
-use super::base::Base;
-use super::problem::{Placed, Problem};
 #[cfg(feature = "file-system")]
-use super::problems::Problems;
+use super::problem::Problems;
+use super::problem::{Placed, Problem, Source};
 use super::reason::Reason;
-use super::source::Source;
+use crate::files::Files;
+
+/// Where the files that a file names are looked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Base<'a> {
+    /// What has them.
+    pub(crate) files: &'a Arc<dyn Files>,
+    /// The folder that their paths count from.
+    pub(crate) folder: &'a Path,
+}
+
+impl<'a> Base<'a> {
+    /// The folder of the file at `path`.
+    pub(crate) fn of(files: &'a Arc<dyn Files>, path: &'a Path) -> Self {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self { files, folder }
+    }
+}
 
 /// Problems found so far, in one file and the files it names.
 pub struct Log<'a> {

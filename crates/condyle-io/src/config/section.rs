@@ -5,12 +5,12 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::key::Key;
-use super::key_reason::KeyReason;
-use super::log::Log;
+use super::key::{Key, type_name};
+use super::log::{Base, Log};
+use super::problem::{Problems, Source};
+use super::reason::KeyReason;
 use super::setting::Setting;
-use super::unknown::explain;
-use super::value::type_name;
+use super::suggest::explain;
 
 /// A key and its value, each with its place.
 type Entry<'a> = (&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>);
@@ -172,5 +172,32 @@ impl<'a> Section<'a> {
     /// The likeliest reason why the table has no key `name` among those `known`.
     pub(super) fn unknown(&self, name: &str, value: &DeValue<'_>, known: &[&str]) -> KeyReason {
         explain(name, value, &self.name(), known)
+    }
+}
+
+/// What `read` makes of the file `source`; those it names are looked for from `base`.
+///
+/// # Errors
+/// Everything that is wrong, what is no TOML before all else.
+pub(crate) fn read_document<T>(
+    source: &Source,
+    base: Base<'_>,
+    read: impl FnOnce(&Section<'_>, &mut Log<'_>) -> Option<T>,
+) -> Result<T, Problems> {
+    let (document, errors) = DeTable::parse_recoverable(source.inner());
+    let mut log = Log::new(source, base);
+    for error in &errors {
+        let message = error.message().to_owned();
+        log.problem(error.span().unwrap_or(0..0), KeyReason::Syntax { message });
+    }
+    let found = if errors.is_empty() {
+        read(&Section::root(document.get_ref()), &mut log)
+    } else {
+        None
+    };
+    let problems = log.into_problems();
+    match found {
+        Some(found) if problems.is_empty() => Ok(found),
+        Some(_) | None => Err(Problems::new(problems, source)),
     }
 }

@@ -1,8 +1,8 @@
 //! Measured masses: a CSV file of specimens and soak controls, as ISO 14243-2 weighs them.
 
-use super::checks::{not_growing, repeated};
-use super::declared::GravimetricKeys;
+use super::file::GravimetricKeys;
 use super::reason::MeasuredReason;
+use super::reason::{not_growing, repeated};
 use crate::config::{Cell, ColumnReason, Columns, Log, Placed, Section, Settings, names, within};
 
 const EXAMPLE: &str = "cycles,specimen_1_mg,soak_1_mg";

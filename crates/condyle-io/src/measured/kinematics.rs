@@ -1,12 +1,12 @@
-//! Measured motions and loads: a CSV file by percent of the cycle.
+//! Measured motions and loads: a CSV file by percent of the cycle, and phases of the gait cycle.
 
 use condyle::machine::knee::KNEE;
+use toml::Spanned;
+use toml::de::DeValue;
 
-use super::checks::{not_growing, repeated, too_few};
-use super::declared::KinematicsKeys;
-use super::phases::{self, PHASES, Phase};
-use super::reason::MeasuredReason;
-use crate::config::{Cell, Columns, Log, Placed, Section, Settings, names, nearest};
+use super::file::KinematicsKeys;
+use super::reason::{MeasuredReason, not_growing, repeated, too_few};
+use crate::config::{Cell, Columns, Log, Placed, Section, Settings, names, nearest, number};
 
 const EXAMPLE: &str = "percent,ap_mm,ie_deg";
 
@@ -47,7 +47,7 @@ pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Kinematics> 
     let section = root.table("kinematics", log);
     let known: Vec<&str> = names(&KinematicsKeys::keys()).chain([PHASES]).collect();
     section.check_keys(&known, log);
-    let phases = phases::read(&section, log);
+    let phases = read_phases(&section, log);
     let keys = KinematicsKeys::read(&section, log)?;
     let source = keys.file.source(&section, "file", log)?;
     let curves = log.noted(&source, curves(source.inner(), &keys.file.name()))?;
@@ -154,4 +154,80 @@ fn curve(
     }
     let samples = cells.iter().map(sample).collect();
     Ok(MeasuredCurve { column, samples })
+}
+
+/// Name of the table of phases.
+pub(super) const PHASES: &str = "phases_percent";
+
+/// A named part of the gait cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// What it is called.
+    pub name: String,
+    /// Where it starts, percent of the cycle; this instant belongs to it.
+    pub start_percent: f64,
+    /// Where it ends; this instant belongs to the next.
+    pub end_percent: f64,
+}
+
+impl Phase {
+    /// The phases of walking, where a file names none.
+    pub fn of_walking() -> Vec<Self> {
+        let phase = |(name, start_percent, end_percent): (&str, f64, f64)| Self {
+            name: name.to_owned(),
+            start_percent,
+            end_percent,
+        };
+        [
+            ("loading response", 0.0, 10.0),
+            ("mid stance", 10.0, 30.0),
+            ("terminal stance", 30.0, 50.0),
+            ("pre-swing", 50.0, 60.0),
+            ("swing", 60.0, 100.0),
+        ]
+        .map(phase)
+        .into()
+    }
+
+    /// Whether an instant belongs to it.
+    pub fn holds(&self, percent: f64) -> bool {
+        (self.start_percent..self.end_percent).contains(&percent)
+    }
+}
+
+/// The phases of `[kinematics.phases_percent]`, or those of walking.
+fn read_phases(kinematics: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Phase>> {
+    let Some(table) = kinematics.value(PHASES) else {
+        return Some(Phase::of_walking());
+    };
+    let section = kinematics.table(PHASES, log);
+    let mut phases = Vec::new();
+    for (name, value) in table.get_ref().as_table()? {
+        match phase(name.get_ref(), value) {
+            Ok(phase) => phases.push(phase),
+            Err(reason) => log.problem(section.value_span(name.get_ref()), reason),
+        }
+    }
+    Some(phases)
+}
+
+fn phase(name: &str, value: &Spanned<DeValue<'_>>) -> Result<Phase, MeasuredReason> {
+    let list: Vec<_> = value.get_ref().as_array().into_iter().flatten().collect();
+    let numbers: Vec<f64> = list
+        .iter()
+        .filter_map(|value| number(value.get_ref()))
+        .collect();
+    match numbers[..] {
+        [start, end] if 0.0 <= start && start < end && end <= 100.0 && list.len() == 2 => {
+            Ok(Phase {
+                name: name.to_owned(),
+                start_percent: start,
+                end_percent: end,
+            })
+        }
+        _ => Err(MeasuredReason::Phase {
+            name: name.to_owned(),
+            found: format!("{numbers:?}"),
+        }),
+    }
 }

@@ -3,9 +3,9 @@
 use condyle::geometry::TriangleMesh;
 use condyle::{Mat3, Vec3};
 
-use super::checks::too_few;
-use super::declared::{FitWord, ScanKeys};
+use super::file::{FitWord, ScanKeys};
 use super::reason::MeasuredReason;
+use super::reason::too_few;
 use crate::case::{Side, check_axes};
 use crate::config::{
     Cell, ColumnReason, Columns, KeyReason, Log, Placed, Section, Settings, names,

@@ -7,12 +7,12 @@ use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 
+use super::super::assignment::LeftOutConstant;
 use super::super::contact::{ContactModelWord, FrictionModelWord, PressureLawChoice};
 use super::super::contents::Case;
-use super::super::law_change::LeftOutConstant;
-use super::super::march::Update;
-use super::super::plasticity::PlasticityChoice;
-use super::super::time::IntegratorWord;
+use super::super::deformable::PlasticityChoice;
+use super::super::schedule::IntegratorWord;
+use super::super::schedule::Update;
 use super::error::{BuildError, BuildWarning};
 use super::femur::{BuiltFemur, Preparing};
 use super::machine::start_flexion_rad;

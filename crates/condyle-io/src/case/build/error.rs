@@ -8,11 +8,11 @@ use condyle::geometry::{
 use condyle_fem::SolidError;
 use thiserror::Error;
 
-use super::super::axes::AxesError;
-use super::super::heading::Side;
-use super::super::mesh_file::LengthUnit;
-use super::pieces::StrayPiece;
-use super::wrong_axes::{Body, WrongAxes};
+use super::super::frame::AxesError;
+use super::super::frame::LengthUnit;
+use super::super::frame::Side;
+use super::orientation_check::{Body, WrongAxes};
+use super::size::StrayPiece;
 use crate::mesh::MeshFileError;
 
 /// Why a good case makes no wear test.

@@ -10,18 +10,18 @@ use condyle::geometry::{
 use condyle_fem::HexMesh;
 
 use super::super::contents::Case;
-use super::super::heading::Side;
+use super::super::frame::Side;
 use super::super::insert::{FlatInsert, GenericInsert, HexahedralInsert, Insert, MeshInsert};
-use super::super::limits::Limits;
 use super::super::placement::InsertPlacement;
-use super::body_size::check_points;
-use super::construct::without_tray;
+use super::super::run_options::Limits;
 use super::error::{BuildError, BuildWarning};
-use super::lie::{check_lie, check_lie_of_hexahedra};
 use super::meshes::{Placing, ShellOf, shell};
-use super::off_centre::off_centre;
+use super::orientation_check::Body;
+use super::orientation_check::off_centre;
+use super::orientation_check::{check_lie, check_lie_of_hexahedra};
 use super::rigid_motion::{middle_of_mesh, middle_of_points};
-use super::wrong_axes::Body;
+use super::size::check_points;
+use super::tray::without_tray;
 use crate::mesh::{HexFile, parse_surface, read_hexahedra, surface_bytes};
 
 /// Length and width of the flat block, mm, about those of the generic insert.

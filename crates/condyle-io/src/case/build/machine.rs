@@ -1,16 +1,14 @@
-//! The simulator in mm, N, s, tonne and rad.
+//! The machine of each activity, in mm, N, s and rad.
 
 use condyle::Vec3;
-use condyle::machine::{
-    Drive, JointDescription, JointIndex, Machine, Spring, Waveform,
-    knee::{self, KNEE},
-};
+use condyle::evolve::Activity;
+use condyle::machine::knee::{self, KNEE};
+use condyle::machine::{Drive, JointDescription, JointIndex, Machine, Spring, Waveform};
 
-use super::super::channel::CaseChannel;
-#[cfg(feature = "file-system")]
 use super::super::contents::Case;
-use super::super::machine::{self as case, Freedom};
-use super::super::machine_keys::{DriveWord, Springs, StiffnessOf};
+use super::super::machine::{DriveWord, Freedom, Springs, StiffnessOf};
+use super::super::waveform::CaseChannel;
+use super::super::{activity, machine as case};
 
 /// A kilogram in tonnes.
 const TONNE_PER_KG: f64 = 1e-3;
@@ -129,12 +127,51 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
     }
 }
 
+/// What the only activity is called where the case names none.
+const ONLY: &str = "gait";
+
+impl Case {
+    /// Every activity, of a machine around an insert whose dishes are lowest at `low_point_mm`.
+    pub(super) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
+        if self.activities.is_empty() {
+            return vec![Activity::only(ONLY, self.machine.build(low_point_mm))];
+        }
+        let activities = self.activities.iter().zip(self.activities.shares());
+        let built = activities.map(|(activity, share)| Activity {
+            name: activity.keys.name.clone(),
+            machine: self.machine.doing(activity).build(low_point_mm),
+            share,
+        });
+        built.collect()
+    }
+
+    /// The machine of the first activity.
+    #[cfg(feature = "file-system")]
+    pub(super) fn first_machine(&self) -> case::Machine {
+        let first = self.activities.iter().next();
+        first.map_or_else(|| self.machine.clone(), |first| self.machine.doing(first))
+    }
+}
+
+impl case::Machine {
+    /// The same machine with the inputs of an activity.
+    fn doing(&self, activity: &activity::Activity) -> Self {
+        let (mut machine, keys) = (self.clone(), &activity.keys);
+        machine.waveforms = activity.waveforms.clone();
+        let own = &mut machine.settings;
+        own.frequency_hz = keys.frequency_hz.unwrap_or(own.frequency_hz);
+        own.flexion_offset_deg = keys.flexion_offset_deg.unwrap_or(own.flexion_offset_deg);
+        own.ap_force_sign = keys.ap_force_sign.unwrap_or(own.ap_force_sign);
+        own.ie_torque_sign = keys.ie_torque_sign.unwrap_or(own.ie_torque_sign);
+        machine
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::case::Case;
 
     fn machine(text: &str) -> Machine {
         let case = Case::parse(text, "case.toml", Path::new("")).unwrap();

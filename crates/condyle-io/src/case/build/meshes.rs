@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use condyle::geometry::{CheckedShell, Parts, ShellChecks, Touching, TriangleMesh};
 use condyle::{Mat3, Vec3};
 
-use super::super::axes::Axes;
-use super::super::heading::Side;
-use super::super::mesh_file::LengthUnit;
-use super::body_size::check_triangles;
+use super::super::frame::Axes;
+use super::super::frame::LengthUnit;
+use super::super::frame::Side;
 use super::error::{BuildError, BuildWarning};
-use super::pieces::stray_piece;
 #[cfg(feature = "file-system")]
-use super::wrong_axes::Body;
+use super::orientation_check::Body;
+use super::size::check_triangles;
+use super::size::stray_piece;
 use crate::config::DataFile;
 use crate::mesh::{parse_surface, surface_bytes};
 

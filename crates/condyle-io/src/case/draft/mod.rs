@@ -1,23 +1,20 @@
 //! A case drafted from two mesh files: unit, axes and start are concluded from the shapes.
 
-mod alone;
-mod concluded;
-mod error;
-mod origin;
-mod side;
+mod body;
+mod knee;
 
-use std::path::Path;
+pub use knee::DraftError;
 
-use condyle::{
-    anatomy::{Orientation, start_over_the_dishes_mm},
-    geometry::{CheckedShell, GenericInsertShape, TriangleMesh},
-};
-
-pub use error::DraftError;
-
-use self::{alone::Alone, concluded::Concluded, origin::ConcludedOrigin, side::ConcludedSide};
-use super::{axes::Axes, build::Body, contents::Case, heading::Side, machine_keys::Preset};
+use self::body::{Alone, Concluded};
+use self::knee::{ConcludedOrigin, ConcludedSide};
+use super::build::Body;
+use super::contents::Case;
+use super::frame::{Axes, Side};
+use super::machine::Preset;
 use crate::config::quoted;
+use condyle::anatomy::{Orientation, start_over_the_dishes_mm};
+use condyle::geometry::{CheckedShell, GenericInsertShape, TriangleMesh};
+use std::path::Path;
 
 /// What a case is drafted from.
 #[derive(Clone, Copy, Debug)]

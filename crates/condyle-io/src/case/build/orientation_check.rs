@@ -1,18 +1,80 @@
-//! Whether a body lies as its `axes` say, and is as large as its `length_unit` makes it: told from its shape.
+//! Checks of orientation, unit, side and origin of a body by its shape.
 
+use std::fmt;
 use std::path::PathBuf;
 
-use condyle::anatomy::{Orientation, Sureness, flange_lead_mm};
-use condyle::geometry::TriangleMesh;
+use condyle::anatomy::{Orientation, Recognition, Sureness, flange_lead_mm};
+use condyle::geometry::{self, TriangleMesh};
 use condyle::{Mat3, Vec3};
 use condyle_fem::HexMesh;
 
-use super::super::heading::Side;
-use super::super::mesh_file::LengthUnit;
+use super::super::frame::{Axes, LengthUnit, Side};
+use super::super::placement::{InsertOrigin, InsertPlacement};
 use super::error::{BuildError, BuildWarning};
 use super::meshes::Placing;
-use super::wrong_axes::{Body, WrongAxes};
+use super::rigid_motion::middle_of_points;
 use crate::config::DataFile;
+
+/// One of the two bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// The femoral component.
+    Femur,
+    /// The tibial insert.
+    Insert,
+}
+
+impl fmt::Display for Body {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Femur => "femur",
+            Self::Insert => "insert",
+        })
+    }
+}
+
+impl Body {
+    /// What the body lies like, from triangles in any frame and unit.
+    pub(crate) fn recognise(self, mesh: &TriangleMesh) -> Option<Recognition> {
+        match self {
+            Self::Femur => Recognition::of_femur(mesh),
+            Self::Insert => Recognition::of_insert(mesh),
+        }
+    }
+
+    fn signs(self) -> &'static str {
+        match self {
+            Self::Femur => {
+                "the box open above, the trochlea in front and the notch between the condyles behind"
+            }
+            Self::Insert => {
+                "two dishes above, the flat backside below, the notch or the lower lip behind"
+            }
+        }
+    }
+}
+
+/// A body that lies otherwise than its axes say.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrongAxes {
+    /// Which.
+    pub body: Body,
+    /// How it lies in the case's frame, such as "upside down".
+    pub how: &'static str,
+    /// The axes that its shape shows.
+    pub better: Axes,
+}
+
+impl fmt::Display for WrongAxes {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.better.words();
+        write!(
+            out,
+            "write axes = [\"{x}\", \"{y}\", \"{z}\"], which its shape shows ({})",
+            self.body.signs()
+        )
+    }
+}
 
 /// Longest extent of a femoral component or an insert of a whole knee, mm: from the smallest sizes on
 /// the market, rounded down, to the largest, rounded up.
@@ -135,6 +197,35 @@ fn lies(turn: &Mat3) -> &'static str {
     } else {
         "turned by a quarter about the vertical"
     }
+}
+
+/// The dishes may have their middle so far to a side of the origin, mm: each mm moves 2 % of the load to one of them ...
+pub(in crate::case) const MAX_ACROSS_MM: f64 = 2.5;
+/// ... and so far in front or behind, mm: dishes are lowest behind the middle of an insert, and flat ones at no certain
+/// place.
+const MAX_ALONG_MM: f64 = 10.0;
+
+/// A warning where the dishes lie off the origin of their file, wherever the case's own keys turn them.
+pub(super) fn off_centre(
+    file: &DataFile,
+    placement: &InsertPlacement,
+    insert: &geometry::Insert,
+) -> Option<BuildWarning> {
+    let rotation = placement.rotation();
+    let nodes = insert.surface().positions;
+    let unturned: Vec<Vec3> = nodes
+        .iter()
+        .map(|node| rotation.transpose() * node)
+        .collect();
+    let middle = rotation * middle_of_points(&unturned);
+    let is_of_file = placement.origin == InsertOrigin::File;
+    let is_off = middle.z.abs() > MAX_ACROSS_MM || middle.x.abs() > MAX_ALONG_MM;
+    (is_of_file && is_off).then(|| BuildWarning::OffCentre {
+        file: PathBuf::from(file.name()),
+        anterior_mm: middle.x,
+        lateral_mm: middle.z,
+        most_mm: (MAX_ALONG_MM, MAX_ACROSS_MM),
+    })
 }
 
 #[cfg(test)]

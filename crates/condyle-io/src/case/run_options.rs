@@ -1,6 +1,14 @@
-//! What a run may take of the computer.
+//! Options of a run: accuracy, limits of the computer, additional output.
 
 use crate::config::{settings, within};
+
+settings! {
+    /// What a run tells of its own accuracy.
+    Accuracy {
+        /// Whether discretisation errors are estimated after the run, by solving the unworn cycle more coarsely.
+        estimate: bool = true;
+    }
+}
 
 settings! {
     /// What a run may take of the computer.
@@ -24,5 +32,13 @@ impl Limits {
     /// How many things of so many bytes each the memory has room for.
     pub(super) fn most(&self, bytes_each: f64) -> usize {
         (self.memory_gb * 1e9 / bytes_each) as usize
+    }
+}
+
+settings! {
+    /// What a run writes besides what it always does.
+    Output {
+        /// Whether the first and the last cycle are written for ParaView, increment by increment: the pressure on the insert, and the femur where it is. About 100 kB an increment and body.
+        cycle_frames: bool = false;
     }
 }

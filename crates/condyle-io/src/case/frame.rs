@@ -1,12 +1,41 @@
-//! Where the axes of a file point.
+//! The heading of a case, and the frames and units of the files that it names.
 
 use condyle::{Mat3, Vec3};
 use thiserror::Error;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::heading::Side;
-use crate::config::{Key, Kind, Log, Reason, Setting, read_word, wrong_type};
+use crate::config::{Key, Kind, Log, Reason, Setting, choice, read_word, settings, wrong_type};
+
+choice! {
+    /// Which knee.
+    Side {
+        /// A right knee.
+        Right = "right",
+        /// A left knee, mirrored on the way in and out.
+        Left = "left",
+    }
+}
+
+impl Side {
+    /// The other knee.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Right => Self::Left,
+            Self::Left => Self::Right,
+        }
+    }
+}
+
+settings! {
+    /// What stands above the first table of a case.
+    Heading {
+        /// One line that says what the case is.
+        title: String = "Untitled".to_owned();
+        /// Which knee; a left one is mirrored on the way in and out.
+        side: Side = Side::Right;
+    }
+}
 
 /// Where x, y and z of a file point, in words of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,6 +183,32 @@ fn three<'a, 'i>(array: &'a toml::de::DeArray<'i>) -> Option<[&'a Spanned<DeValu
 pub(crate) fn check(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
     if let Err(error) = axes.rotation(side) {
         log.problem(span, AxesReason { key: "axes", error });
+    }
+}
+
+choice! {
+    /// Unit of length of a mesh file.
+    LengthUnit {
+        /// Millimetre.
+        Millimetre = "mm",
+        /// Centimetre.
+        Centimetre = "cm",
+        /// Metre.
+        Metre = "m",
+        /// Inch.
+        Inch = "in",
+    }
+}
+
+impl LengthUnit {
+    /// How many mm it has.
+    pub fn in_mm(self) -> f64 {
+        match self {
+            Self::Millimetre => 1.0,
+            Self::Centimetre => 10.0,
+            Self::Metre => 1000.0,
+            Self::Inch => 25.4,
+        }
     }
 }
 
