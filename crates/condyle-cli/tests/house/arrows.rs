@@ -42,6 +42,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "condyle-verification",
         &["condyle", "condyle-fem", "condyle-io", "condyle-lab"],
     ),
+    // One paper's table: nobody uses it.
+    (
+        "condyle-knight-2007",
+        &["condyle-io", "condyle-lab", "condyle-report"],
+    ),
 ];
 
 /// Crates that reach a terminal, which only the command may.

@@ -5,7 +5,7 @@ mod chance;
 mod converge;
 mod converge_files;
 mod converge_plan;
-pub mod knight_2007;
+
 mod many_runs;
 mod observed_order;
 pub mod sensitivity;

@@ -1,19 +1,11 @@
 //! The table of Knight et al. 2007 (`knight2007`), run on a case of one's own.
 //!
 //! A case in force control runs over 1, 2, 5, 10, 20 and 40 updates; its first cycle becomes the
-//! waveforms of a case in displacement control; and what the paper found is set beside what comes out.
+//! waveforms of a case in displacement control; and the table sets the results next to the figures of the paper.
 
-mod error;
 mod findings;
-mod intervals;
-mod motions;
-mod pictures;
-mod ran;
-mod rows;
-mod scar;
-mod series;
-mod stamp;
-mod verdict;
+mod runs;
+mod table;
 
 use std::{
     fs,
@@ -23,21 +15,19 @@ use std::{
 use condyle_io::cache::Cache;
 use serde::Serialize;
 
-use super::{ConvergeOptions, ConvergePlan, Converged, Listener, converge};
-use ran::{Ran, read_back, reference};
+use condyle_lab::studies::{ConvergeOptions, ConvergePlan, Converged, Listener, converge};
 
-pub use error::StudyError;
-pub use findings::Findings;
-pub use intervals::{Excess, Intervals, OverUpdates};
-pub use rows::PaperFigure;
-pub use scar::Scar;
-pub use stamp::Stamp;
-pub use verdict::Verdict;
+use findings::Findings;
+use runs::{Ran, read_back, reference};
+use table::PaperFigure;
+
+pub use runs::StudyError;
+pub use table::Stamp;
 
 /// The updates of the runs: the paper's 1 x 5M to 40 x 125k, and two between.
 const UPDATES: &str = "updates=1,2,5,10,20,40";
 
-/// What a study is made from, and where it goes.
+/// The inputs and outputs of the study.
 #[derive(Clone, Debug)]
 pub struct StudyFiles {
     /// The case in force control.
@@ -51,7 +41,7 @@ pub struct StudyFiles {
     pub out: PathBuf,
 }
 
-/// What `results.json` holds.
+/// The contents of `results.json`.
 #[derive(Serialize)]
 struct File<'a> {
     version: &'static str,
@@ -63,7 +53,7 @@ struct File<'a> {
 
 /// Runs everything, writes the tables and the pictures, and gives the Markdown of the table.
 ///
-/// `listener` hears of every run, and may stop the study by breaking.
+/// `listener` is called on every event of every run, and stops the study by breaking.
 ///
 /// # Errors
 /// A bad case, physics that cannot be solved, or files that cannot be written.
@@ -75,14 +65,14 @@ pub fn study(
     let out = files.runs.join("force");
     let force = run(&files.force_case, UPDATES, &out, listener)?;
     let folder = files.displacement_case.parent().unwrap_or(Path::new(""));
-    for (name, text) in motions::of_first_cycle(reference(&force))? {
+    for (name, text) in runs::first_cycle(reference(&force))? {
         write(&folder.join(name), &text)?;
     }
     let out = files.runs.join("displacement");
     let displacement = run(&files.displacement_case, UPDATES, &out, listener)?;
     let findings = Findings::of(&force, &displacement)?;
-    let rows = rows::rows(&findings);
-    let text = rows::markdown(&rows, stamp);
+    let rows = table::rows(&findings);
+    let text = table::markdown(&rows, stamp);
     write(&files.out.join("results.md"), &text)?;
     write(
         &files.out.join("results.json"),
@@ -90,7 +80,7 @@ pub fn study(
     )?;
     let map = condyle_report::wear_map_svg(&reference(&force).folder)?;
     write(&files.out.join("wear-map.svg"), &map)?;
-    let depth = pictures::depth_svg(&force, &displacement)?;
+    let depth = runs::depth_svg(&force, &displacement)?;
     write(&files.out.join("wear-over-cycles.svg"), &depth)?;
     Ok(text)
 }

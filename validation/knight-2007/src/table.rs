@@ -1,25 +1,23 @@
-//! The paper's figures beside ours, as a table.
+//! The paper's figures next to ours, as a table.
+
+use std::fmt;
 
 use serde::Serialize;
 
-use super::findings::Findings;
-use super::intervals::{Intervals, OverUpdates};
-use super::scar::Scar;
-use super::stamp::Stamp;
-use super::verdict::Verdict;
+use crate::findings::{Findings, Intervals, OverUpdates, Scar};
 
 /// A line of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PaperFigure {
-    /// What is compared.
+    /// The quantity.
     pub what: &'static str,
-    /// What the paper gives.
+    /// The figure in the paper.
     pub paper: &'static str,
-    /// What ours gives.
+    /// Our figure.
     pub ours: String,
-    /// Whether ours lies where the paper's does.
+    /// The agreement of ours with the paper's.
     pub verdict: Verdict,
-    /// Where ours differs and why, as far as we know.
+    /// The difference and its reason, as far as known.
     pub why: &'static str,
 }
 
@@ -35,7 +33,7 @@ const POSTERIOR_SHIFT_MM: [f64; 2] = [2.3, 0.48];
 const AT_THE_EDGE_MM: f64 = 1.5;
 
 /// Every row, in the order of the paper's figures.
-pub(super) fn rows(found: &Findings) -> Vec<PaperFigure> {
+pub(crate) fn rows(found: &Findings) -> Vec<PaperFigure> {
     vec![
         volume(found),
         pressure_and_area(found),
@@ -87,7 +85,7 @@ fn pressure_and_area(found: &Findings) -> PaperFigure {
             found.force_intervals.area_5_against_40_percent,
         ),
         verdict: Verdict::of(pressure.abs() <= 0.5 && area.abs() <= 3.0),
-        why: "Held against each other in the last cycle that 5 x 1M solves; the highest pressure of the whole \
+        why: "Compared in the last cycle that 5 x 1M solves; the highest pressure of the whole \
               test is that of the first cycle, the same in all. Peak pressure hangs on the shape at one \
               place, and the steps of a scar dug a million cycles at a time are such places.",
     }
@@ -127,7 +125,7 @@ fn oscillation(found: &Findings) -> PaperFigure {
     }
 }
 
-/// Whether five updates lie below and above the finest run by more than what the mesh blurs.
+/// True if five updates lie below and above the finest run by more than what the mesh blurs.
 fn oscillates(intervals: &Intervals) -> bool {
     let mut coarse = intervals.depth_excess.iter();
     let five = coarse.find(|excess| excess.updates == 5);
@@ -192,7 +190,7 @@ fn posterior_shift(found: &Findings) -> PaperFigure {
         paper: "the insert's AP shifts by some 2.3 mm posteriorly in the experiment; the paper's model does not show it",
         ours: format!("mean AP of the cycle shifts by {shift:+.2} mm, + posterior"),
         verdict: Verdict::of((shift - measured).abs() <= error),
-        why: "Held against the experiment, within the paper's mean error of AP. The paper puts it down to what \
+        why: "Compared with the experiment, within the paper's mean error of AP. The paper puts it down to what \
               neither model has: creep, plasticity, and friction that changes.",
     }
 }
@@ -301,7 +299,7 @@ fn cost(found: &Findings) -> PaperFigure {
         ),
         verdict: Verdict::CannotBeJudged,
         why: "A newer machine, and no finite elements: bodies are rigid on a foundation, steps are implicit, and \
-              contact is not searched anew. Not a benchmark: other work may run beside it.",
+              contact is not searched again. Not a benchmark: other work may run at the same time.",
     }
 }
 
@@ -335,7 +333,7 @@ fn scar(scar: &Scar) -> String {
 }
 
 /// The table in Markdown.
-pub(super) fn markdown(rows: &[PaperFigure], stamp: &Stamp) -> String {
+pub(crate) fn markdown(rows: &[PaperFigure], stamp: &Stamp) -> String {
     let mut text = format!(
         "Made on {} from commit {}, condyle {}.\n\n\
          | | the paper | ours | agrees | where ours differs, and why |\n\
@@ -357,10 +355,48 @@ pub(super) fn markdown(rows: &[PaperFigure], stamp: &Stamp) -> String {
     text
 }
 
+/// The agreement of ours with the paper's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Within the rule.
+    Agrees,
+    /// Outside of the rule.
+    Differs,
+    /// The two are not comparable, or one is missing.
+    CannotBeJudged,
+}
+
+impl Verdict {
+    /// The verdict of a rule.
+    pub(crate) fn of(agrees: bool) -> Self {
+        if agrees { Self::Agrees } else { Self::Differs }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Agrees => "yes",
+            Self::Differs => "no",
+            Self::CannotBeJudged => "cannot be judged",
+        })
+    }
+}
+
+/// The commit and the date of the results.
+#[derive(Clone, Debug, Serialize)]
+pub struct Stamp {
+    /// Commit of the source.
+    pub commit: String,
+    /// Date of the run.
+    pub date: String,
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::intervals::Excess;
     use super::*;
+    use crate::findings::Excess;
 
     #[test]
     fn a_row_is_a_line_of_the_table() {

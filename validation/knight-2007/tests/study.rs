@@ -2,7 +2,7 @@
 
 use std::{fs, ops::ControlFlow, path::Path};
 
-use condyle_lab::studies::knight_2007::{Stamp, StudyError, StudyFiles, study};
+use condyle_knight_2007::{Stamp, StudyError, StudyFiles, study};
 
 const FORCE: &str = "\
 [insert]
