@@ -3,8 +3,8 @@
 use std::fmt::Display;
 
 use condyle_io::config::{Problem, Problems};
-use condyle_lab::studies::study::StudyError;
 use condyle_lab::{Reached, RunError};
+use condyle_study::StudyError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 

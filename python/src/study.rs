@@ -7,7 +7,7 @@ use std::sync::Mutex;
 
 use condyle_io::case::Assignment;
 use condyle_io::study::{OUTPUTS, Study};
-use condyle_lab::studies::study::{
+use condyle_study::{
     HeldFolder, Plan, Shard, Store, StudyEnd, StudyError, StudyOptions, Test, TestBench,
     TestResult, merge, run_study, write_answers,
 };

@@ -2,7 +2,7 @@
 
 use std::{fs, io, path::Path, process::ExitCode};
 
-use condyle_lab::studies::calibrate::{CalibrateRequest, CalibratedLaw, calibrate as fit};
+use condyle_lab::pressure_law::{CalibrateRequest, CalibratedLaw, calibrate as fit};
 
 use crate::{
     arguments::Calibrate,

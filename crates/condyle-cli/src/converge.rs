@@ -10,12 +10,10 @@ use std::{
 };
 
 use condyle_io::cache::Cache;
-use condyle_lab::{
-    RunEvent,
-    studies::{
-        ConvergeError, ConvergeHappening, ConvergeOptions, ConvergePlan, Converged, Convergence,
-        Extrapolation, QUANTITIES, Quantity, converge as study,
-    },
+use condyle_lab::RunEvent;
+use condyle_study::{
+    ConvergeError, ConvergeHappening, ConvergeOptions, ConvergePlan, Converged, Convergence,
+    Extrapolation, QUANTITIES, Quantity, converge as study,
 };
 
 use crate::{arguments::Converge, exit, output, run::stop_on_interrupt, standard_error::tell};

@@ -5,7 +5,7 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
-use condyle_lab::studies::sensitivity::{Change, sensitivity as study};
+use condyle_study::sensitivity::{Change, sensitivity as study};
 
 use crate::{arguments::Sensitivity, converge::threads, exit, output, standard_error::tell};
 

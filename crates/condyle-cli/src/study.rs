@@ -9,12 +9,10 @@ use std::{
     time::Instant,
 };
 
-use condyle_lab::{
-    Outcome,
-    studies::study::{
-        Plan, Progress, Shard, Store, StudyEnd, StudyError, StudyOptions, merge, run_study,
-        write_answers,
-    },
+use condyle_lab::Outcome;
+use condyle_study::{
+    Plan, Progress, Shard, Store, StudyEnd, StudyError, StudyOptions, merge, run_study,
+    write_answers,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 

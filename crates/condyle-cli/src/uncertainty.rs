@@ -5,7 +5,7 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
-use condyle_lab::studies::uncertainty::{UncertaintyOptions, uncertainty as study};
+use condyle_study::uncertainty::{UncertaintyOptions, uncertainty as study};
 
 use crate::{arguments::Uncertainty, converge::threads, exit, output, standard_error::tell};
 

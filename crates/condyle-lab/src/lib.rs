@@ -2,16 +2,22 @@
 
 mod accuracy;
 mod at_rest;
+mod markdown;
 pub mod measured;
 mod plausibility;
+pub mod pressure_law;
 mod preview;
 mod run;
-#[cfg(feature = "studies")]
-pub mod studies;
 
-pub use at_rest::AtRest;
-pub use preview::{Expected, FemurFacts, InsertFacts, Preview};
-pub use run::{
-    InMemory, Outcome, Reached, RunError, RunEvent, RunKeeper, RunOptions, check, check_changed,
-    run, run_case, run_changed, run_in_memory, settled,
+pub use crate::{
+    at_rest::AtRest,
+    markdown::aligned,
+    preview::{Expected, FemurFacts, InsertFacts, Preview},
+    run::{
+        Outcome, Reached, RunEvent, RunOptions,
+        error::RunError,
+        folder::{run, run_case, run_changed},
+        prepare::{check, check_changed, settled},
+        running::{InMemory, RunKeeper, batch_run, run_in_memory},
+    },
 };

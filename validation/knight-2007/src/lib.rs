@@ -15,7 +15,7 @@ use std::{
 use condyle_io::cache::Cache;
 use serde::Serialize;
 
-use condyle_lab::studies::{ConvergeOptions, ConvergePlan, Converged, Listener, converge};
+use condyle_study::{ConvergeOptions, ConvergePlan, Converged, Listener, converge};
 
 use findings::Findings;
 use runs::{Ran, read_back, reference};

@@ -3,7 +3,7 @@
 use std::{env, ops::ControlFlow, path::PathBuf, process::ExitCode};
 
 use condyle_knight_2007::{Stamp, StudyFiles, study};
-use condyle_lab::studies::ConvergeHappening;
+use condyle_study::ConvergeHappening;
 
 const USAGE: &str =
     "usage: knight_2007 FORCE.toml DISPLACEMENT.toml EMPTY_FOLDER_FOR_RUNS OUT_FOLDER COMMIT DATE";

@@ -7,8 +7,8 @@ use std::{
 };
 
 use condyle_io::results::Summary;
-use condyle_lab::studies::{ConvergeError, Convergence};
 use condyle_report::{Plot, ReportError, Results, plots_svg};
+use condyle_study::{ConvergeError, Convergence};
 use thiserror::Error;
 
 /// The reasons why the study fails.

@@ -18,6 +18,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &["condyle", "condyle-fem", "condyle-io", "condyle-report"],
     ),
     (
+        "condyle-study",
+        &["condyle", "condyle-io", "condyle-lab", "condyle-report"],
+    ),
+    (
         "condyle-cli",
         &[
             "condyle",
@@ -25,12 +29,19 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle-io",
             "condyle-lab",
             "condyle-report",
+            "condyle-study",
         ],
     ),
     // What Python calls: the same calls, arrays in and out.
     (
         "condyle-python",
-        &["condyle", "condyle-fem", "condyle-io", "condyle-lab"],
+        &[
+            "condyle",
+            "condyle-fem",
+            "condyle-io",
+            "condyle-lab",
+            "condyle-study",
+        ],
     ),
     // What the web page calls: runs in memory, their scenes, and the results folder.
     (
@@ -45,7 +56,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // One paper's table: nobody uses it.
     (
         "condyle-knight-2007",
-        &["condyle-io", "condyle-lab", "condyle-report"],
+        &["condyle-io", "condyle-report", "condyle-study"],
     ),
 ];
 

@@ -240,13 +240,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_lab::run",
         ],
     ),
+    ("condyle_lab::markdown", &[]),
     (
-        "condyle_lab::studies",
+        "condyle_lab::pressure_law",
         &[
+            "condyle_lab::markdown",
             "condyle_lab::run",
             "condyle",
             "condyle_io",
-            "condyle_report",
         ],
     ),
     (

@@ -1,17 +1,23 @@
 //! A comparison as files: numbers as JSON and CSV, pictures as SVG.
 
-use std::fmt::Write;
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use condyle_io::results::{COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR};
-use condyle_report::SurfaceFields;
-use condyle_report::measured::{
-    ComparedCurve, ComparedWear, compared_kinematics_svg, compared_surface_svg, compared_wear_svg,
+use std::{
+    fmt::Write,
+    fs,
+    path::{Path, PathBuf},
 };
 
-use super::{
-    CompareError, Comparison, GravimetricComparison, KinematicsComparison, SurfaceComparison,
+use condyle_io::results::{COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR};
+use condyle_report::{
+    SurfaceFields,
+    measured::{
+        ComparedCurve, ComparedWear, compared_kinematics_svg, compared_surface_svg,
+        compared_wear_svg,
+    },
+};
+
+use crate::measured::{
+    CompareError, Comparison, gravimetric::GravimetricComparison, kinematics::KinematicsComparison,
+    surface::SurfaceComparison,
 };
 
 impl Comparison {
@@ -62,7 +68,7 @@ impl Comparison {
 
 impl KinematicsComparison {
     fn svg(&self) -> String {
-        let curve = |column: &super::ColumnComparison| ComparedCurve {
+        let curve = |column: &crate::measured::kinematics::ColumnComparison| ComparedCurve {
             column: column.column,
             points: column.points.clone(),
         };
@@ -116,7 +122,9 @@ impl GravimetricComparison {
 
     fn svg(&self) -> String {
         let specimen = |index: usize| {
-            let point = |weighing: &super::Weighing| (weighing.cycles, weighing.loss_mg[index]);
+            let point = |weighing: &crate::measured::gravimetric::Weighing| {
+                (weighing.cycles, weighing.loss_mg[index])
+            };
             self.weighings.iter().map(point).collect()
         };
         let predicted = self
@@ -133,7 +141,7 @@ impl GravimetricComparison {
     /// The line through all weighings, from the first that counts to the last.
     fn ends_of_line(&self) -> [(f64, f64); 2] {
         let counted = || self.weighings.iter().filter(|weighing| weighing.in_line);
-        let at = |weighing: Option<&super::Weighing>| {
+        let at = |weighing: Option<&crate::measured::gravimetric::Weighing>| {
             let cycles = weighing.map_or(0.0, |weighing| weighing.cycles);
             let start = self.all.intercept_mg.unwrap_or_default();
             (

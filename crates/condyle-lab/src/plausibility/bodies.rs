@@ -1,8 +1,12 @@
 //! Checks of where an insert wears and what it bears.
 
+use condyle::{
+    machine::{Chain, knee::KNEE},
+    spatial::Pose,
+};
 use condyle_io::results::PlausibilityWarning;
 
-use super::finished::Finished;
+use crate::plausibility::{Finished, SolvedCycle};
 
 /// Nearer than this to the rim a foundation over-estimates pressure, and that of an elastic body has no limit, mm: about the reach of its neighbours that it
 /// does not have there.
@@ -25,7 +29,7 @@ const MIN_THICKNESS_MM: f64 = 6.0;
 const SCAR: f64 = 0.1;
 
 /// Wear within 1.5 mm of the rim.
-pub(super) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let depth_mm = &finished.march.fields().wear_depth_mm;
     let (mut whole, mut at_rim) = (0.0, 0.0);
     for (node, share) in finished.surface.shares.iter().enumerate() {
@@ -56,7 +60,7 @@ pub(super) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning
 }
 
 /// The node that is pressed hardest, in the first or the last cycle, lies within 1.5 mm of the rim.
-pub(super) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+pub(crate) fn pressure_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let at_rim = pressures(finished)
         .into_iter()
         .filter_map(|(cycle, pressures)| {
@@ -94,7 +98,7 @@ fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
 }
 
 /// Pressure that polyethylene cannot bear, since it flows under less.
-pub(super) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FULL_FLOW * YIELD_MPA;
     let peak = finished.summary.peak_pressure_mpa;
     (peak > limit).then(|| PlausibilityWarning {
@@ -114,7 +118,7 @@ pub(super) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
 }
 
 /// Pressure beyond what polyethylene bears without yielding below the surface, of an insert that does not yield.
-pub(super) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FIRST_YIELD * YIELD_MPA;
     let peak = finished.summary.peak_pressure_mpa;
     let extents = || {
@@ -159,7 +163,7 @@ fn time_above_percent(finished: &Finished<'_>, cycle: &str, limit_mpa: f64) -> f
 }
 
 /// An insert that rocks on its tray, which the lock of the model does not hold down.
-pub(super) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let under = finished.summary.under_surface.as_ref()?;
     let lift_mm = under.backside.as_ref()?.backside_lift_mm;
     (lift_mm > MAX_LIFT_MM).then(|| PlausibilityWarning {
@@ -178,7 +182,7 @@ pub(super) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarnin
 }
 
 /// Little polyethylene left under the scar.
-pub(super) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let fields = finished.march.fields();
     let in_scar = finished.summary.max_depth_mm * SCAR;
     let nodes = fields.wear_depth_mm.iter().zip(&fields.thickness_mm);
@@ -196,4 +200,79 @@ pub(super) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityW
         ),
         advice: "See that the insert's mesh reaches down to its tray and is in the unit that the case says.".to_owned(),
     })
+}
+
+/// Part of a cycle that a condyle may be beyond the rim, %: a choice of ours.
+const MAX_BEYOND_PERCENT: f64 = 1.0;
+/// Nearer than this a condyle is at the surface, mm, pressed or not; how far a mesh's field is sure of gaps.
+const NEAR_MM: f64 = 1.5;
+/// Instants of a cycle that are looked at, at most.
+const INSTANTS: usize = 50;
+
+/// Where a condyle is beyond the rim.
+struct Beyond {
+    percent: f64,
+    side: &'static str,
+    cycle: &'static str,
+}
+
+/// A condyle that comes nearest to the insert at the rim of the articulating surface, pressed there or not: its
+/// middle is on the rim or beyond.
+pub(crate) fn femur_beyond_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let beyond = finished.cycles().flat_map(|cycle| beyond(finished, &cycle));
+    let most = beyond.max_by(|a, b| a.percent.total_cmp(&b.percent));
+    let too_much = most.filter(|beyond| beyond.percent > MAX_BEYOND_PERCENT);
+    too_much.map(|Beyond { percent, side, cycle }| PlausibilityWarning {
+        check: "femur_beyond_rim".to_owned(),
+        value: percent,
+        limit: MAX_BEYOND_PERCENT,
+        unit: "%".to_owned(),
+        message: format!(
+            "for {percent:.0} % of the {cycle} cycle the {side} condyle is on or beyond the rim of the articulating surface"
+        ),
+        advice: "The femur rides off the insert: look at the placement of the bodies (start_mm, axes, sides), the sizes of \
+                 both, loads and springs, and at where the outline of the insert was cut."
+            .to_owned(),
+    })
+}
+
+/// Of every side, in which part of a cycle its condyle is nearest to the rim.
+fn beyond(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Beyond> {
+    let test = finished.march.test();
+    let machine = finished.machine(cycle);
+    let chain = Chain::new(
+        machine,
+        finished.march.state().zero_mm,
+        test.flexion_axis_mm,
+    );
+    let every = cycle.rows.len().div_ceil(INSTANTS).max(1);
+    let looked_at: Vec<Pose> = cycle
+        .rows
+        .iter()
+        .step_by(every)
+        .map(|row| chain.at(&row.positions).pose)
+        .collect();
+    let sides = KNEE.regions.iter().enumerate();
+    let of_side = |(side, region): (usize, &condyle::machine::Region)| {
+        let at_rim = looked_at
+            .iter()
+            .filter(|pose| is_at_rim(finished, pose, side));
+        Beyond {
+            percent: 100.0 * at_rim.count() as f64 / looked_at.len().max(1) as f64,
+            side: region.name,
+            cycle: cycle.name,
+        }
+    };
+    sides.map(of_side).collect()
+}
+
+/// Whether the node of a side that the femur is nearest to is one of the rim.
+fn is_at_rim(finished: &Finished<'_>, pose: &Pose, side: usize) -> bool {
+    let regions = finished.march.insert().regions();
+    let nodes = finished.surface.positions.iter().enumerate();
+    let of_side = nodes.filter(|(node, _)| regions.of_node(*node) == side);
+    let gaps =
+        of_side.map(|(node, place)| (finished.march.femur().gap_mm(&pose.to_femur(place)), node));
+    let nearest = gaps.min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.is_some_and(|(gap_mm, node)| gap_mm < NEAR_MM && finished.is_on_rim(node))
 }

@@ -4,17 +4,18 @@
 //! for what makes a sane-looking number wrong: wear at the rim, polyethylene pressed beyond yield, a mesh about to
 //! fold, two counts of one volume that differ.
 
-mod bodies;
-mod finished;
-mod loads;
-mod motions;
-mod numbers;
-mod rim;
+pub(crate) mod bodies;
+pub(crate) mod loads;
 
-use condyle::evolve::March;
+use std::collections::{BTreeMap, BTreeSet};
+
+use condyle::{
+    Vec3,
+    evolve::{CycleRecord, March},
+    geometry::{ArticulatingSurface, Insert},
+    machine::{CycleRow, Machine},
+};
 use condyle_io::results::{PlausibilityWarning, Summary};
-
-use finished::Finished;
 
 /// A check of one number: none where the run is as it should be.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
@@ -22,7 +23,7 @@ type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 /// Where the femur is on the insert, and pressure that there cannot be.
 const PLACE: [Check; 4] = [
     bodies::wear_at_rim,
-    rim::femur_beyond_rim,
+    bodies::femur_beyond_rim,
     bodies::pressure_at_rim,
     bodies::pressure_beyond_flow,
 ];
@@ -32,14 +33,14 @@ const REST: [Check; 11] = [
     bodies::pressure_beyond_yield,
     bodies::insert_rocks,
     bodies::thin_polyethylene,
-    numbers::mesh_quality,
-    numbers::counts_of_volume,
-    numbers::single_update,
-    numbers::updates_too_few,
-    numbers::error_of_mass,
-    numbers::error_of_depth,
-    numbers::added_inertia,
-    numbers::cycles_not_repeating,
+    mesh_quality,
+    counts_of_volume,
+    single_update,
+    updates_too_few,
+    error_of_mass,
+    error_of_depth,
+    added_inertia,
+    cycles_not_repeating,
 ];
 
 /// What makes a finished march doubtful, the worst first.
@@ -50,8 +51,254 @@ pub(crate) fn warnings(march: &March, summary: &Summary) -> Vec<PlausibilityWarn
     warnings.extend(PLACE.iter().filter_map(one));
     warnings.extend(loads::not_reached(&finished));
     warnings.extend(loads::springs_far(&finished));
-    warnings.extend(motions::ranges(&finished));
-    warnings.extend(motions::lift_off(&finished));
+    warnings.extend(loads::ranges(&finished));
+    warnings.extend(loads::lift_off(&finished));
     warnings.extend(REST.iter().filter_map(one));
     warnings
+}
+
+/// A march that is done, its surface, and what it came to.
+pub(crate) struct Finished<'a> {
+    pub march: &'a March,
+    pub summary: &'a Summary,
+    pub surface: ArticulatingSurface,
+    /// Ends of the edges at which the articulating surface ends.
+    rim: Vec<[u32; 2]>,
+    rim_nodes: BTreeSet<u32>,
+}
+
+/// The first or the last cycle that was solved of an activity.
+#[derive(Clone, Copy)]
+pub(crate) struct SolvedCycle<'a> {
+    /// Which of both, as a sentence calls it.
+    pub name: &'static str,
+    /// Which activity.
+    pub activity: usize,
+    /// Its increments.
+    pub rows: &'a [CycleRow],
+}
+
+impl SolvedCycle<'_> {
+    /// Part of the cycle in which this is so, %.
+    pub fn percent_of_rows(&self, is_so: impl Fn(&CycleRow) -> bool) -> f64 {
+        let count = self.rows.iter().filter(|row| is_so(row)).count();
+        100.0 * count as f64 / self.rows.len().max(1) as f64
+    }
+}
+
+impl<'a> Finished<'a> {
+    pub fn new(march: &'a March, summary: &'a Summary) -> Self {
+        let surface = march.insert().surface();
+        let rim = rim_of(march.insert());
+        Self {
+            rim_nodes: rim.iter().flatten().copied().collect(),
+            rim,
+            march,
+            summary,
+            surface,
+        }
+    }
+
+    /// Distance of a surface node from the rim, mm.
+    pub fn distance_to_rim_mm(&self, node: usize) -> f64 {
+        let place = self.surface.positions[node];
+        let edges = self.rim.iter();
+        let edges = edges.map(|edge| edge.map(|node| self.surface.positions[node as usize]));
+        let distances = edges.map(|edge| distance_mm(&place, &edge));
+        distances.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a surface node is one of the rim.
+    pub fn is_on_rim(&self, node: usize) -> bool {
+        self.rim_nodes.contains(&(node as u32))
+    }
+
+    /// The first and the last cycle of every activity, once where they are the same.
+    pub fn cycles(&self) -> impl Iterator<Item = SolvedCycle<'a>> {
+        let activities = self.march.state().activities.iter().enumerate();
+        activities.flat_map(|(activity, state)| {
+            let solved = |name, cycle: &'a CycleRecord| SolvedCycle {
+                name,
+                activity,
+                rows: &cycle.rows,
+            };
+            let kept = state.first_and_last.as_ref();
+            let first = kept.map(|(first, _)| solved("first", first));
+            let last = kept.filter(|(first, last)| first.cycles < last.cycles);
+            let last = last.map(|(_, last)| solved("last", last));
+            first.into_iter().chain(last)
+        })
+    }
+
+    /// The machine of a cycle.
+    pub fn machine(&self, cycle: &SolvedCycle<'_>) -> &'a Machine {
+        &self.march.test().activities[cycle.activity].machine
+    }
+}
+
+/// Edges that one face alone has.
+fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
+    let mut faces_at = BTreeMap::<[u32; 2], usize>::new();
+    for face in insert.surface_faces() {
+        for side in 0..4 {
+            let (a, b) = (face[side], face[(side + 1) % 4]);
+            *faces_at.entry([a.min(b), a.max(b)]).or_default() += 1;
+        }
+    }
+    let at_end = faces_at.into_iter().filter(|(_, faces)| *faces == 1);
+    at_end.map(|(edge, _)| edge).collect()
+}
+
+/// Distance of a place from a straight line between two others, mm.
+fn distance_mm(place: &Vec3, [from, to]: &[Vec3; 2]) -> f64 {
+    let along = to - from;
+    let part = (place - from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+    (place - (from + along * part.clamp(0.0, 1.0))).norm()
+}
+
+/// The two counts of the worn volume may differ by this, %.
+const COUNTS_PERCENT: f64 = 1.0;
+/// Scaled Jacobian below which an element is about to fold.
+const MIN_QUALITY: f64 = 0.1;
+/// Inertia added, as a multiple of the machine's own: a choice of ours.
+const MAX_ADDED_INERTIA: f64 = 1.0;
+/// Wear in one step, as a multiple of what evens out the pressure at the bottom of the scar: a tenth of the depth is
+/// then of the wrong shape at most. A choice of ours.
+const MAX_RELAXED: f64 = 0.2;
+/// Part of the depth's error that is due to updates, %: up to there the estimates of random designs held.
+const MAX_OF_UPDATES_PERCENT: f64 = 2.0;
+/// Discretisation error of mass and depth, %.
+const MAX_ERROR_PERCENT: f64 = 5.0;
+
+/// The volume of depth times area beside that of the mesh.
+pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let Summary {
+        volume_loss_mm3: depth,
+        volume_loss_mesh_mm3: mesh,
+        ..
+    } = *finished.summary;
+    let percent = 100.0 * (depth - mesh).abs() / depth.max(mesh).max(f64::MIN_POSITIVE);
+    (percent > COUNTS_PERCENT).then(|| PlausibilityWarning {
+        check: "counts_of_volume".to_owned(),
+        value: percent,
+        limit: COUNTS_PERCENT,
+        unit: "%".to_owned(),
+        message: format!(
+            "the worn volume is {depth:.2} mm3 by depth times area and {mesh:.2} mm3 by the change of the mesh, {percent:.1} % \
+             apart"
+        ),
+        advice: "The mesh is too coarse for the scar, or worn at a crease: take a smaller edge_mm.".to_owned(),
+    })
+}
+
+/// The worst element of any update.
+pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let quality = finished.summary.worst_quality;
+    (quality < MIN_QUALITY).then(|| PlausibilityWarning {
+        check: "mesh_quality".to_owned(),
+        value: quality,
+        limit: MIN_QUALITY,
+        unit: String::new(),
+        message: format!(
+            "the worst element is nearly flat: its scaled Jacobian is {quality:.3}, and {MIN_QUALITY} would be sound"
+        ),
+        advice: "Fewer layers or a larger edge_mm at the outline; where the wear itself folds them, more updates or fewer \
+                 cycles."
+            .to_owned(),
+    })
+}
+
+/// The discretisation error of the mass.
+pub(crate) fn error_of_mass(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let error = finished.summary.error.as_ref()?;
+    large_error("error_of_mass", "mass loss", error.mass_loss_percent.total)
+}
+
+/// The discretisation error of the depth.
+pub(crate) fn error_of_depth(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let error = finished.summary.error.as_ref()?;
+    large_error(
+        "error_of_depth",
+        "deepest wear",
+        error.max_depth_percent.total,
+    )
+}
+
+fn large_error(check: &str, what: &str, percent: f64) -> Option<PlausibilityWarning> {
+    (percent.abs() > MAX_ERROR_PERCENT).then(|| PlausibilityWarning {
+        check: check.to_owned(),
+        value: percent.abs(),
+        limit: MAX_ERROR_PERCENT,
+        unit: "%".to_owned(),
+        message: format!("the {what} has a discretisation error of {:.1} %", percent.abs()),
+        advice: "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.".to_owned(),
+    })
+}
+
+/// One update that digs the scar of the first cycle for all of them, so deep that its pressure would have changed.
+pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let state = finished.march.state();
+    let step = state.last_step.as_ref()?;
+    let relaxed = step.relaxation_per_cycle * step.interval;
+    (state.updates.len() == 1 && relaxed > MAX_RELAXED).then(|| PlausibilityWarning {
+        check: "single_update".to_owned(),
+        value: relaxed,
+        limit: MAX_RELAXED,
+        unit: String::new(),
+        message: format!(
+            "one update digs the scar of the first cycle for all cycles, {relaxed:.1} times as deep as would even out the \
+             pressure at its bottom; what that costs is not known, and not in the error stated"
+        ),
+        advice: "Take more updates, or update = \"auto\".".to_owned(),
+    })
+}
+
+/// Steps of the march so long that the estimate of what they cost is too small itself.
+pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let error = finished.summary.error.as_ref()?;
+    let percent = error.max_depth_percent.updates?.abs();
+    (percent > MAX_OF_UPDATES_PERCENT).then(|| PlausibilityWarning {
+        check: "updates_too_few".to_owned(),
+        value: percent,
+        limit: MAX_OF_UPDATES_PERCENT,
+        unit: "%".to_owned(),
+        message: format!(
+            "so few updates cost {percent:.1} % of the deepest wear by the estimate; with steps as long as that the error stated \
+             of mass and depth may be several times too small"
+        ),
+        advice: "Take more updates, or update = \"auto\".".to_owned(),
+    })
+}
+
+/// Inertia that explicit steps were given.
+pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let added = finished.summary.added_inertia?;
+    (added > MAX_ADDED_INERTIA).then(|| PlausibilityWarning {
+        check: "added_inertia".to_owned(),
+        value: added,
+        limit: MAX_ADDED_INERTIA,
+        unit: String::new(),
+        message: format!(
+            "the explicit steps asked for are stable only with up to {added:.0} times the machine's inertia added to it, and \
+             that moves otherwise than the machine"
+        ),
+        advice: "Set a shorter explicit_step_s (0 takes the longest stable step), a larger slip_tolerance_mm_per_s, or \
+                 integrator = \"implicit\"."
+            .to_owned(),
+    })
+}
+
+/// Updates whose cycle did not repeat itself.
+pub(crate) fn cycles_not_repeating(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
+    let count = finished.summary.cycles_not_repeating;
+    (count > 0).then(|| PlausibilityWarning {
+        check: "cycles_not_repeating".to_owned(),
+        value: count as f64,
+        limit: 0.0,
+        unit: String::new(),
+        message: format!("in {count} updates no cycle repeated itself within the tolerance"),
+        advice: "The motion goes on changing from cycle to cycle: more cycles an update, or a machine with more \
+                 damping or stiffer springs."
+            .to_owned(),
+    })
 }

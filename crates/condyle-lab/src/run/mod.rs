@@ -1,27 +1,96 @@
 //! A case run into a results folder, from the start or from where it was stopped; or into memory.
 
-mod bridged;
-mod clock;
-mod error;
-mod event;
-mod in_memory;
-mod memory;
-#[cfg(feature = "studies")]
-mod one_of_many;
-mod options;
-mod prepare;
-mod run_case;
-mod running;
-mod written;
+pub(crate) mod error;
+pub(crate) mod folder;
+pub(crate) mod prepare;
+pub(crate) mod running;
 
-pub(crate) use clock::Clock;
-pub use error::RunError;
-pub use event::{Outcome, Reached, RunEvent};
-pub use in_memory::{InMemory, RunKeeper, run_in_memory};
-pub(crate) use memory::{mean_load_n, memory_mb};
-#[cfg(feature = "studies")]
-pub(crate) use one_of_many::{march_watched, marched};
-pub use options::RunOptions;
-pub(crate) use prepare::{build, changed, start};
-pub use prepare::{check, check_changed, settled};
-pub use run_case::{run, run_case, run_changed};
+use std::{
+    ops::ControlFlow,
+    path::PathBuf,
+    time::{Duration, Instant},
+};
+
+use condyle::evolve::{March, Progress, UpdateRecord};
+use condyle_io::{cache::Cache, results::Summary};
+
+/// Hears of everything that happens, and may stop the run by breaking.
+pub(crate) type Listener<'a> = dyn FnMut(RunEvent<'_>) -> ControlFlow<()> + 'a;
+
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// Updates done.
+    pub updates: usize,
+    /// Gait cycles done.
+    pub cycles: f64,
+    /// Gait cycles in all.
+    pub of_cycles: f64,
+}
+
+impl Reached {
+    pub(crate) fn by(march: &March) -> Self {
+        Self {
+            updates: march.state().updates.len(),
+            cycles: march.cycles(),
+            of_cycles: march.test().schedule.cycles,
+        }
+    }
+}
+
+/// What happens while a case runs.
+#[derive(Clone, Debug)]
+pub enum RunEvent<'a> {
+    /// Something was put right or looks doubtful.
+    Warning(String),
+    /// The bodies are placed, or the checkpoint is read.
+    Started(Reached),
+    /// An increment is solved.
+    Solved(Progress),
+    /// All updates are done, and an increment is solved to estimate how accurate they are.
+    Estimating,
+    /// An update is done and kept.
+    Updated(&'a UpdateRecord),
+}
+
+/// How a run ended.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// All cycles are done.
+    Done(Box<Summary>),
+    /// The folder holds the whole run already; nothing was computed.
+    DoneBefore(Box<Summary>),
+    /// Somebody asked to stop; what was computed is kept, and can be gone on with.
+    Interrupted(Reached),
+}
+
+/// How a case is run.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Go on with the run that is in the folder.
+    pub resume: bool,
+    /// Write over the run that is in the folder.
+    pub force: bool,
+    /// Threads for the one-time work on a mesh; results do not depend on it.
+    pub threads: usize,
+    /// Where the one-time work on a mesh is kept for the next run; results do not depend on it.
+    pub cache: Cache,
+}
+
+/// Time spent on the solver alone.
+#[derive(Default)]
+pub(crate) struct Clock {
+    pub spent: Duration,
+}
+
+impl Clock {
+    /// The result of some work, whose time counts.
+    pub fn time<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = work();
+        self.spent += start.elapsed();
+        result
+    }
+}

@@ -2,13 +2,18 @@
 
 use std::path::Path;
 
-use condyle::evolve::{March, WearTest};
+use condyle::{
+    evolve::{March, WearTest},
+    geometry::FemoralSurface,
+    machine::{Drive, knee::IS},
+};
 use condyle_io::{
     cache::Cache,
-    case::{Assignment, BuildWarning, Built, Case, SharedBodies},
+    case::{Assignment, BuildError, BuildWarning, Built, Case, Limits, SharedBodies},
+    config::DataFile,
 };
 
-use super::{bridged::check_at_rest, error::RunError, memory::check_memory};
+use crate::{at_rest::AtRest, run::error::RunError};
 
 /// Checks the case at `case_path` as far as a run would go before its first cycle: the file, the
 /// meshes, and that the femur settles on the insert. Gives the case and what was put right.
@@ -75,4 +80,137 @@ pub(crate) fn start(
     check_memory(case, &march)?;
     check_at_rest(case, &march, warnings)?;
     Ok(march)
+}
+
+/// Refuses a march whose settled femur presses at a hole.
+///
+/// # Errors
+/// [`BuildError::PressedHole`].
+pub(crate) fn check_at_rest(
+    case: &Case,
+    march: &March,
+    warnings: &[BuildWarning],
+) -> Result<(), RunError> {
+    if !warnings.iter().any(is_bridge) {
+        return Ok(());
+    }
+    let at_rest = AtRest::of(march);
+    let touched = at_rest.touched.iter().map(|touched| touched.node as usize);
+    check_holes(case, march, warnings, touched, "as it settles")
+}
+
+/// Refuses a march in which the femur has pressed at a hole so far.
+///
+/// # Errors
+/// [`BuildError::PressedHole`].
+pub(crate) fn check_so_far(
+    case: &Case,
+    march: &March,
+    warnings: &[BuildWarning],
+) -> Result<(), RunError> {
+    if !warnings.iter().any(is_bridge) {
+        return Ok(());
+    }
+    let pressures = &march.state().first_pressure_mpa;
+    let depths = &march.fields().wear_depth_mm;
+    let pressed = pressures.iter().zip(depths).enumerate();
+    let pressed = pressed.filter(|(_, (pressure, depth))| **pressure > 0.0 || **depth > 0.0);
+    let pressed = pressed.map(|(node, _)| node);
+    check_holes(case, march, warnings, pressed, "on its way")
+}
+
+fn is_bridge(warning: &BuildWarning) -> bool {
+    matches!(warning, BuildWarning::Bridged { .. })
+}
+
+fn check_holes(
+    case: &Case,
+    march: &March,
+    warnings: &[BuildWarning],
+    mut pressed: impl Iterator<Item = usize>,
+    when: &'static str,
+) -> Result<(), RunError> {
+    let places = march.insert().surface().positions;
+    let hole_at = |node: usize| {
+        let place = [places[node].x, places[node].z];
+        warnings.iter().find_map(|warning| warning.hole_at(place))
+    };
+    let Some(hole) = pressed.find_map(hole_at) else {
+        return Ok(());
+    };
+    let file = case.insert.file().map(DataFile::path);
+    let source = BuildError::PressedHole {
+        file: file.map(Path::to_path_buf).unwrap_or_default(),
+        hole: hole.clone(),
+        when,
+    };
+    Err(RunError::of_build(case, source))
+}
+
+/// What the program takes whatever the case, MB.
+const PROGRAM_MB: f64 = 6.0;
+/// Bytes of a touched node at an increment: the histories of a cycle and of the one before.
+const BYTES_A_TOUCH: f64 = 230.0;
+/// The estimate of the error keeps histories of twice the increments beside them.
+const WITH_ESTIMATE: f64 = 2.1;
+/// To so many times the nodes that it is near at rest the femur comes near in the life of an insert, about.
+const EVER_NEAR: f64 = 4.0;
+/// Parts of a cycle at which the load is looked at.
+const LOOKED_AT: usize = 50;
+
+/// Memory that a march of `case` needs at its highest, about, MB.
+pub(crate) fn memory_mb(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
+    // The area of a contact on a foundation goes with the root of its load.
+    let larger = (mean_load_n(march) / at_rest.axial_force_n).max(1.0).sqrt();
+    let most = march.insert().surface_nodes().len() as f64;
+    let touched = (at_rest.touched.len() as f64 * larger).min(most);
+    memory_mb_touching(case, march, touched, EVER_NEAR * at_rest.nodes_near as f64)
+}
+
+/// The same if so many nodes touch at an increment, and the femur ever comes near so many.
+fn memory_mb_touching(case: &Case, march: &March, nodes_touched: f64, nodes_near: f64) -> f64 {
+    let histories = if case.accuracy.estimate {
+        WITH_ESTIMATE
+    } else {
+        1.0
+    };
+    let touches = nodes_touched * march.test().time.increments as f64;
+    let field_nodes = match march.femur() {
+        FemoralSurface::Mesh(field) => field.nodes() as f64,
+        _ => 0.0,
+    };
+    let law = &march.test().contact;
+    let bytes = Limits::BYTES_OF_INSERT_NODE * march.insert().mesh().nodes.len() as f64
+        + BYTES_A_TOUCH * histories * touches
+        + Limits::BYTES_OF_FIELD_NODE * field_nodes
+        + law.memory_bytes(march.insert(), nodes_near);
+    PROGRAM_MB + 1e-6 * bytes
+}
+
+/// Mean of the axial force over a cycle, N; none where the femur is not pressed by a waveform.
+pub(crate) fn mean_load_n(march: &March) -> f64 {
+    let Drive::Loaded(load) = &march.test().machine().joint(IS).drive else {
+        return 0.0;
+    };
+    let looked_at = (0..LOOKED_AT).map(|part| part as f64 / LOOKED_AT as f64);
+    let sum: f64 = looked_at.map(|phase| load.at(phase).0.abs()).sum();
+    sum / LOOKED_AT as f64
+}
+
+/// Refuses a march that would need more memory than its case allows.
+///
+/// # Errors
+/// [`RunError::Memory`].
+pub(crate) fn check_memory(case: &Case, march: &March) -> Result<(), RunError> {
+    let allowed_gb = case.limits.memory_gb;
+    let whole_surface = march.insert().surface_nodes().len() as f64;
+    // Most cases fit even if all of the surface touched, and need no contact solved to know that.
+    if 1e-3 * memory_mb_touching(case, march, whole_surface, whole_surface) <= allowed_gb {
+        return Ok(());
+    }
+    let needed_gb = 1e-3 * memory_mb(case, march, &AtRest::of(march));
+    if needed_gb <= allowed_gb {
+        return Ok(());
+    }
+    Err(RunError::memory(case, needed_gb))
 }

@@ -1,25 +1,22 @@
-//! A run on its way, wherever it is kept.
+//! A run in progress: into a folder, in memory, or as one of a batch.
 
 use std::{ops::ControlFlow, path::Path, time::Duration};
 
 use condyle::{evolve::March, geometry::TriangleMesh, wear::NamedLaw};
 use condyle_io::{
     cache::Cache,
-    case::{BuildWarning, Case, SharedBodies},
+    case::{BuildWarning, Case, FEMUR_TRIANGLES, SharedBodies},
     results::{ActivitySummary, Checkpoint, LawWear, NeutralPose, Summary, SummaryInput},
 };
 
-use super::{
-    bridged::check_so_far,
-    clock::Clock,
+use crate::run::{
+    Clock, Listener, Outcome, Reached, RunEvent,
     error::RunError,
-    event::{Listener, Outcome, Reached, RunEvent},
-    prepare::{build_sharing, start},
+    prepare::{build_sharing, check_so_far, start},
 };
-use crate::{accuracy, plausibility};
 
 /// When a run began.
-pub(super) enum Start {
+pub(crate) enum Start {
     /// It begins now.
     Now,
     /// Before, up to a checkpoint, in so many seconds.
@@ -28,7 +25,7 @@ pub(super) enum Start {
 
 /// What a run is done with.
 #[derive(Clone, Copy)]
-pub(super) struct RunContext<'a> {
+pub(crate) struct RunContext<'a> {
     pub threads: usize,
     pub cache: &'a Cache,
     /// Bodies that it may have in common with other runs.
@@ -40,7 +37,7 @@ pub(super) struct RunContext<'a> {
 }
 
 /// A run on its way.
-pub(super) struct Run<'a> {
+pub(crate) struct Run<'a> {
     pub case: &'a Case,
     pub march: March,
     means: RunContext<'a>,
@@ -121,7 +118,7 @@ impl<'a> Run<'a> {
 
     /// Updates until all cycles are done, then the march and what it found, of which no error is estimated and nothing
     /// doubted; `watch` sees the march before the first update and after each.
-    #[cfg(feature = "studies")]
+
     pub fn marched(mut self, watch: &mut dyn FnMut(&March)) -> Result<(March, Summary), RunError> {
         watch(&self.march);
         let mut keep = |run: &Run<'_>| {
@@ -179,14 +176,14 @@ impl<'a> Run<'a> {
         if self.case.accuracy.estimate {
             let mut watch = || on_event(RunEvent::Estimating);
             let mut clock = Clock::default();
-            let error =
-                clock.time(|| accuracy::estimate(self.case, &self.march, &summary, &mut watch))?;
+            let error = clock
+                .time(|| crate::accuracy::estimate(self.case, &self.march, &summary, &mut watch))?;
             summary.error = error.map(|mut error| {
                 error.wall_s = clock.spent.as_secs_f64();
                 error
             });
         }
-        summary.plausibility = plausibility::warnings(&self.march, &summary);
+        summary.plausibility = crate::plausibility::warnings(&self.march, &summary);
         ControlFlow::Continue(summary)
     }
 
@@ -218,4 +215,77 @@ impl<'a> Run<'a> {
         }
         laws
     }
+}
+
+/// The summary of one of many runs: neither a hash of its inputs nor an estimate of its error, and bodies that it has in
+/// common with the others.
+pub fn batch_run(case: &Case, cache: &Cache, bodies: &SharedBodies) -> Result<Summary, RunError> {
+    march_watched(case, cache, bodies, &mut |_| ()).map(|(_, summary)| summary)
+}
+
+/// The march of such a run, which is done, and its summary; `watch` sees it before the first update and after each.
+pub(crate) fn march_watched(
+    case: &Case,
+    cache: &Cache,
+    bodies: &SharedBodies,
+    watch: &mut dyn FnMut(&March),
+) -> Result<(March, Summary), RunError> {
+    let means = RunContext {
+        threads: 1,
+        cache,
+        bodies,
+        out: None,
+        wear_law: None,
+    };
+    let nobody = &mut |_: RunEvent<'_>| ControlFlow::Continue(());
+    Run::begin(case, means, Start::Now, String::new(), nobody)?.marched(watch)
+}
+
+/// How a case is run in memory.
+#[derive(Clone, Debug)]
+pub struct InMemory {
+    /// Threads for the one-time work on a mesh; results do not depend on it.
+    pub threads: usize,
+    /// Where the one-time work on a mesh is kept for the next run; results do not depend on it.
+    pub cache: Cache,
+    /// A law of wear that takes the place of the case's; the hash of the inputs does not know it.
+    pub wear_law: Option<NamedLaw>,
+}
+
+/// Hears of a run as it is kept.
+pub trait RunKeeper {
+    /// The femur has settled, and nothing is worn; `femur` is its triangles in the femoral frame, those of its
+    /// mesh, or about [`FEMUR_TRIANGLES`].
+    fn settled(&mut self, march: &March, femur: &TriangleMesh);
+
+    /// An update is done.
+    fn updated(&mut self, march: &March);
+}
+
+/// Runs a case, and writes no file: `keeper` takes what is wanted of it. The numbers are those of
+/// [`run_case`](crate::run::folder).
+///
+/// # Errors
+/// A bad case, or physics that cannot be solved.
+pub fn run_in_memory(
+    case: &Case,
+    how: &InMemory,
+    keeper: &mut dyn RunKeeper,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
+    let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
+    let means = RunContext {
+        threads: how.threads,
+        cache: &how.cache,
+        bodies: &SharedBodies::default(),
+        out: None,
+        wear_law: how.wear_law.as_ref(),
+    };
+    let mut run = Run::begin(case, means, Start::Now, inputs_blake3, on_event)?;
+    keeper.settled(&run.march, &run.femur_triangles(FEMUR_TRIANGLES)?);
+    let mut keep = |run: &Run<'_>| {
+        keeper.updated(&run.march);
+        Ok(())
+    };
+    run.complete(&mut keep, on_event)
 }

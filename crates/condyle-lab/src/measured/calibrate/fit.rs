@@ -1,10 +1,12 @@
 //! Least squares of a model that takes seconds to ask, and how sure what it finds is.
 
+use condyle_io::case::{ConstantError, Wear};
 use nalgebra::{DMatrix, DVector};
 
-use super::super::line::student;
-use super::super::observation::Observation;
-use super::CalibrateError;
+use crate::measured::{
+    calibrate::CalibrateError,
+    gravimetric::{Observation, student},
+};
 
 /// Steps that would change no rate by more than this part of it are not made.
 const SETTLED: f64 = 1e-3;
@@ -18,44 +20,44 @@ const DIFFERENCE: f64 = 0.05;
 const SINGULAR: f64 = 1e-6;
 
 /// Where a search begins.
-pub(super) struct Start {
+pub(crate) struct Start {
     /// The parameters.
-    pub(super) at: Vec<f64>,
+    pub(crate) at: Vec<f64>,
     /// What each can be.
-    pub(super) limits: Vec<[f64; 2]>,
+    pub(crate) limits: Vec<[f64; 2]>,
     /// Whether rates go nearly in proportion to the only parameter, so that the first slope needs no run.
-    pub(super) in_proportion: bool,
+    pub(crate) in_proportion: bool,
 }
 
 /// What least squares find.
 #[derive(Clone, Debug)]
-pub(super) struct Fit {
+pub(crate) struct Fit {
     /// The parameters.
-    pub(super) at: Vec<f64>,
+    pub(crate) at: Vec<f64>,
     /// The rates that they give.
-    pub(super) rates: Vec<f64>,
+    pub(crate) rates: Vec<f64>,
     /// How sure they are; none where nothing is left over to tell.
-    pub(super) spread: Option<Spread>,
+    pub(crate) spread: Option<Spread>,
 }
 
 /// How sure parameters are.
 #[derive(Clone, Debug)]
-pub(super) struct Spread {
+pub(crate) struct Spread {
     /// Scatter of one observation of weight 1, as a part of its rate.
-    pub(super) scatter: f64,
+    pub(crate) scatter: f64,
     /// Observations less parameters.
-    pub(super) freedom: usize,
+    pub(crate) freedom: usize,
     /// How many standard errors an interval reaches to either side.
-    pub(super) quantile: f64,
+    pub(crate) quantile: f64,
     /// Of the parameters.
-    pub(super) covariance: DMatrix<f64>,
+    pub(crate) covariance: DMatrix<f64>,
     /// By how much each parameter is changed to either side for a slope.
-    pub(super) half: Vec<f64>,
+    pub(crate) half: Vec<f64>,
 }
 
 impl Spread {
     /// Half the interval of something with these slopes in the parameters.
-    pub(super) fn half_interval(&self, slopes: &[f64]) -> f64 {
+    pub(crate) fn half_interval(&self, slopes: &[f64]) -> f64 {
         let slopes = DVector::from_column_slice(slopes);
         self.quantile
             * (slopes.transpose() * &self.covariance * &slopes)[0]
@@ -65,7 +67,7 @@ impl Spread {
 }
 
 /// Rates of the tests by the parameters.
-pub(super) type Model<'a> = dyn FnMut(&[f64]) -> Result<Vec<f64>, CalibrateError> + 'a;
+pub(crate) type Model<'a> = dyn FnMut(&[f64]) -> Result<Vec<f64>, CalibrateError> + 'a;
 
 /// The parameters with the least sum of weight (predicted / measured - 1)^2, by Gauss and Newton's iteration with
 /// Broyden's slopes.
@@ -73,7 +75,7 @@ pub(super) type Model<'a> = dyn FnMut(&[f64]) -> Result<Vec<f64>, CalibrateError
 /// Scatter counts in proportion to the rate, and is the same part of it in all tests. It is told by what the specimens
 /// or weighings of each test scatter, and by what the tests differ from the model together: a law that does not fit
 /// gets a wider interval.
-pub(super) fn fit(
+pub(crate) fn fit(
     model: &mut Model<'_>,
     start: Start,
     observations: &[Observation],
@@ -313,11 +315,153 @@ fn size(parameter: f64) -> f64 {
     }
 }
 
+/// A law, and what of it may change.
+pub(crate) struct Free {
+    /// With the constants that the search begins from.
+    pub(crate) law: Wear,
+    what: What,
+}
+
+enum What {
+    /// How much it wears, whatever the cycle.
+    Level,
+    /// These constants, by their places among all.
+    Constants(Vec<usize>),
+}
+
+impl Free {
+    /// The constants of these names, or how much the law wears if there are none.
+    pub(crate) fn new(law: Wear, names: &[String]) -> Result<Self, CalibrateError> {
+        if names.is_empty() {
+            let what = What::Level;
+            return Ok(Self { law, what });
+        }
+        let places: Result<Vec<_>, _> = names.iter().map(|name| place(&law, name)).collect();
+        let what = What::Constants(places?);
+        Ok(Self { law, what })
+    }
+
+    /// Where the search begins: a parameter is a constant over what it is at first, or just how many times as much the
+    /// law wears.
+    pub(crate) fn start(&self) -> Start {
+        let What::Constants(places) = &self.what else {
+            return Start {
+                at: vec![1.0],
+                limits: vec![[0.0, f64::INFINITY]],
+                in_proportion: true,
+            };
+        };
+        let parameters = self.law.kind().parameters;
+        let limits = |&place: &usize| {
+            [parameters[place].least, parameters[place].most].map(|end| end / self.unit(place))
+        };
+        Start {
+            at: places
+                .iter()
+                .map(|&place| self.law.constants()[place] / self.unit(place))
+                .collect(),
+            limits: places.iter().map(limits).collect(),
+            in_proportion: false,
+        }
+    }
+
+    /// The law with these parameters.
+    pub(crate) fn law(&self, at: &[f64]) -> Result<Wear, ConstantError> {
+        match &self.what {
+            What::Level => self.law.scaled(at[0]),
+            What::Constants(places) => {
+                let names = places
+                    .iter()
+                    .map(|&place| self.law.kind().parameters[place].name);
+                let values = places
+                    .iter()
+                    .zip(at)
+                    .map(|(&place, value)| value * self.unit(place));
+                let mut named = names.zip(values);
+                named.try_fold(self.law.clone(), |law, (name, value)| {
+                    law.with_constant(name, value)
+                })
+            }
+        }
+    }
+
+    /// The constants at parameters that may lie beyond what the law can have, each where it ends at the latest.
+    pub(crate) fn constants_near(&self, at: &[f64]) -> Vec<f64> {
+        let constants = match &self.what {
+            What::Level => (self.law.kind().scaled)(self.law.constants(), at[0].max(0.0)),
+            What::Constants(places) => {
+                let mut constants = self.law.constants().to_vec();
+                for (&place, value) in places.iter().zip(at) {
+                    constants[place] = value * self.unit(place);
+                }
+                constants
+            }
+        };
+        let limits = constants.iter().zip(self.law.kind().parameters);
+        let inside = limits.map(|(value, parameter)| value.clamp(parameter.least, parameter.most));
+        inside.collect()
+    }
+
+    /// Whether the constant of that place changes.
+    pub(crate) fn changes(&self, place: usize) -> bool {
+        match &self.what {
+            What::Level => {
+                (self.law.kind().scaled)(self.law.constants(), 2.0)[place]
+                    != self.law.constants()[place]
+            }
+            What::Constants(places) => places.contains(&place),
+        }
+    }
+
+    /// The parameter that a constant goes by.
+    pub(crate) fn parameter_of(&self, place: usize) -> usize {
+        match &self.what {
+            What::Level => 0,
+            What::Constants(places) => places.iter().position(|&own| own == place).unwrap_or(0),
+        }
+    }
+
+    /// Whether it is how much the law wears that changes.
+    pub(crate) fn is_level(&self) -> bool {
+        matches!(self.what, What::Level)
+    }
+
+    /// What a parameter of 1 is.
+    fn unit(&self, place: usize) -> f64 {
+        let size = self.law.constants()[place].abs();
+        if size > 0.0 { size } else { 1.0 }
+    }
+}
+
+fn place(law: &Wear, name: &str) -> Result<usize, CalibrateError> {
+    let parameters = law.kind().parameters;
+    let found = parameters
+        .iter()
+        .position(|parameter| parameter.name == name);
+    found.ok_or_else(|| CalibrateError::UnknownConstant {
+        law: law.kind().word,
+        name: name.to_owned(),
+        known: parameters
+            .iter()
+            .map(|parameter| format!("`{}`", parameter.name))
+            .collect::<Vec<_>>()
+            .join(", "),
+    })
+}
+
+/// Constants of a law as a case gives them.
+pub(crate) fn in_words(law: &Wear) -> String {
+    let parameters = law.kind().parameters.iter().zip(law.constants());
+    let words: Vec<String> = parameters
+        .map(|(parameter, value)| format!("{} = {value:.4e}", parameter.name))
+        .collect();
+    words.join(", ")
+}
+
 #[cfg(test)]
 mod tests {
-    use statrs::distribution::{ContinuousCDF, Normal};
-
     use super::*;
+    use statrs::distribution::{ContinuousCDF, Normal};
 
     /// Even numbers between 0 and 1 that repeat with the seed.
     fn uniform(seed: &mut u64) -> f64 {
@@ -440,7 +584,7 @@ mod tests {
             freedom: 2,
         };
         let found = level(|level| vec![4.0 * level], &[of]).unwrap();
-        let interval = super::super::super::line::mean_interval(&rates, 0.95).unwrap();
+        let interval = crate::measured::gravimetric::mean_interval(&rates, 0.95).unwrap();
         let half = found.spread.unwrap().half_interval(&[1.0]);
         assert!((half - (interval.high - 8.0) / 4.0).abs() < 1e-9, "{half}");
     }

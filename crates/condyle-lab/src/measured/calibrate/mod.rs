@@ -1,23 +1,36 @@
 //! The constants of a wear law with which predictions wear as fast as specimens did, and how sure they are.
 
-mod error;
-mod fit;
-mod free;
-mod runs;
+pub(crate) mod fit;
 
-use std::path::{Path, PathBuf};
+use std::{
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+};
 
-use condyle::wear::Archard;
-use condyle_io::case::{Case, Wear};
+use condyle::{
+    evolve::{MarchError, Progress},
+    wear::Archard,
+};
+use condyle_io::{
+    cache::Cache,
+    case::{Case, ConstantError, Wear},
+    config::Problems,
+};
 use serde::Serialize;
+use thiserror::Error;
 
-use super::Interval;
-use fit::{Fit, fit};
-use free::Free;
-use runs::{Test, losses};
-
-pub use error::CalibrateError;
-pub use runs::Trial;
+use crate::{
+    measured::{
+        CompareError,
+        calibrate::fit::{Fit, Free, fit, in_words},
+        compare,
+        gravimetric::{GravimetricComparison, Interval},
+    },
+    run::{
+        error::RunError,
+        prepare::{build, start},
+    },
+};
 
 /// What is calibrated by what.
 #[derive(Clone, Debug, Default)]
@@ -375,4 +388,222 @@ fn wear_factor(constants: &[CalibratedConstant]) -> Option<WearFactor> {
         wear_factor_mm3_per_nm: factor.found.value,
         wear_factor_interval_mm3_per_nm: factor.found.interval,
     })
+}
+
+/// A run, and the weighings that it is to meet.
+pub(crate) struct Test {
+    /// The results folder.
+    pub(crate) results: PathBuf,
+    /// The measured data.
+    pub(crate) measured: PathBuf,
+    /// The case that was run.
+    pub(crate) case: Case,
+    /// Both held against each other.
+    pub(crate) weighed: GravimetricComparison,
+}
+
+/// Constants, and the rates of the tests with them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Trial {
+    /// The constants of the law, in its order.
+    pub constants: Vec<f64>,
+    /// Predicted rate of each test, by the same regression as the measured one.
+    pub mg_per_million_cycles: Vec<f64>,
+}
+
+impl Test {
+    /// Reads a results folder and measured data.
+    pub(crate) fn read(results: &Path, measured: &Path) -> Result<Self, CalibrateError> {
+        let comparison = compare(results, measured)?;
+        Ok(Self {
+            weighed: comparison.gravimetric.ok_or(CalibrateError::NotWeighed)?,
+            case: Case::read(&results.join("case.toml"))?,
+            results: results.to_owned(),
+            measured: measured.to_owned(),
+        })
+    }
+
+    /// An error where there is nothing to make a prediction of, or by.
+    pub(crate) fn check(&self) -> Result<(), CalibrateError> {
+        let mg_per_million_cycles = self.weighed.aim().mg_per_million_cycles;
+        if mg_per_million_cycles <= 0.0 || !mg_per_million_cycles.is_finite() {
+            return Err(CalibrateError::NoWear {
+                mg_per_million_cycles,
+            });
+        }
+        if self.weighed.predicted.mg_per_million_cycles <= 0.0 {
+            return Err(CalibrateError::RunWithoutWear {
+                results: self.results.clone(),
+                constants: in_words(&self.case.wear),
+            });
+        }
+        Ok(())
+    }
+
+    /// Its rate with another law, in memory; that of the folder where the law is the same.
+    pub(crate) fn rate(&self, law: &Wear) -> Result<f64, CalibrateError> {
+        if *law == self.case.wear {
+            return Ok(self.weighed.predicted.mg_per_million_cycles);
+        }
+        let rate = self.weighed.rate_of(&losses(&self.case, law)?);
+        Ok(rate.ok_or(CompareError::RunTooShort { weighings: 0 })?)
+    }
+}
+
+/// Mass lost after each update of a case with another law, as (cycles, mg), from nothing at the start.
+pub(crate) fn losses(case: &Case, law: &Wear) -> Result<Vec<(f64, f64)>, CalibrateError> {
+    let mut case = case.clone();
+    case.wear = law.clone();
+    let failed = |source| CalibrateError::Run {
+        constants: in_words(law),
+        source: Box::new(source),
+    };
+    let built = build(&case, 1, &Cache::off()).map_err(failed)?;
+    let mut march = start(&case, built.test, &built.warnings).map_err(failed)?;
+    let mut go_on = |_: Progress| ControlFlow::Continue(());
+    while !march.is_done() {
+        let update = march.update(&mut go_on);
+        let update = update.map_err(|source| CalibrateError::March {
+            constants: in_words(law),
+            source,
+        })?;
+        if update.is_break() {
+            break;
+        }
+    }
+    let updates = march.state().updates.iter();
+    let losses = updates.map(|update| (update.cycles, update.mass_loss_mg));
+    Ok(std::iter::once((0.0, 0.0)).chain(losses).collect())
+}
+
+/// Why no constants of a wear law could be found.
+#[derive(Debug, Error)]
+pub enum CalibrateError {
+    /// The comparison with the weighings.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// The case of a results folder, or one to predict.
+    #[error(transparent)]
+    Case(#[from] Problems),
+    /// A constant that the law has not, or a value that it cannot have.
+    #[error("no constants can be found: {0}")]
+    Constant(#[from] ConstantError),
+    /// A name that is no constant of the law.
+    #[error("the wear law \"{law}\" has no constant `{name}`; it has {known}")]
+    UnknownConstant {
+        /// Word of the law.
+        law: &'static str,
+        /// The name asked for.
+        name: String,
+        /// The names that it has.
+        known: String,
+    },
+    /// A results folder without measured data.
+    #[error(
+        "give a results folder and a file of measured data for each test: {given} paths are no pairs"
+    )]
+    NoPairs {
+        /// Paths given.
+        given: usize,
+    },
+    /// Tests that ran with other laws.
+    #[error(
+        "{}: this run has the wear law \"{law}\", and the first one has \"{first}\"; run all with one law \
+         (--set wear.law={first})", results.display()
+    )]
+    OtherLaw {
+        /// The folder.
+        results: PathBuf,
+        /// Its law.
+        law: &'static str,
+        /// That of the first test.
+        first: &'static str,
+    },
+    /// Intervals of two kinds.
+    #[error(
+        "{}: [gravimetric] interval and confidence_percent are not those of the first test; tests that are fitted \
+         together need one kind of interval", measured.display()
+    )]
+    OtherInterval {
+        /// The measured data.
+        measured: PathBuf,
+    },
+    /// More constants than tests.
+    #[error(
+        "{tests} measured rate{} cannot tell {constants} constants; give as many tests as constants, or fewer --constant",
+        if *tests == 1 { "" } else { "s" }
+    )]
+    TooFewTests {
+        /// Tests given.
+        tests: usize,
+        /// Constants asked for.
+        constants: usize,
+    },
+    /// Constants that change all rates alike, or none.
+    #[error(
+        "these tests do not tell the constants apart: some change of them leaves every rate as it is; give tests that \
+         differ more in what the law goes by, or fewer --constant"
+    )]
+    NotTold,
+    /// A run with other constants.
+    #[error("with {constants}: {source}")]
+    Run {
+        /// The constants.
+        constants: String,
+        /// Why.
+        source: Box<RunError>,
+    },
+    /// The physics with other constants.
+    #[error("with {constants}: {source}")]
+    March {
+        /// The constants.
+        constants: String,
+        /// Why.
+        source: MarchError,
+    },
+    /// Measured data without weighings.
+    #[error("the measured data have no [gravimetric] table, which a wear law is calibrated by")]
+    NotWeighed,
+    /// Specimens that lost nothing.
+    #[error(
+        "the measured wear rate is {mg_per_million_cycles:.3} mg per million cycles: there are no \
+         constants that make a prediction of it; check the masses and the soak controls"
+    )]
+    NoWear {
+        /// The rate.
+        mg_per_million_cycles: f64,
+    },
+    /// A run that wears nothing.
+    #[error(
+        "{}: the run wears nothing with {constants}, so its wear cannot be scaled; if that is a wear factor \
+         of 0, give it one above 0, and run it again", results.display()
+    )]
+    RunWithoutWear {
+        /// The folder.
+        results: PathBuf,
+        /// The constants.
+        constants: String,
+    },
+    /// A search that does not end.
+    #[error(
+        "after {steps} steps the rates would still change by {left_percent:.2} %; use more updates or increments in \
+         the cases, or start from other constants"
+    )]
+    NotFound {
+        /// Steps made.
+        steps: usize,
+        /// By how much the last step would change a rate.
+        left_percent: f64,
+    },
+}
+
+impl CalibrateError {
+    /// Whether the physics could not be solved, rather than the input being wrong.
+    pub fn is_physics(&self) -> bool {
+        match self {
+            Self::March { .. } => true,
+            Self::Run { source, .. } => source.is_physics(),
+            _ => false,
+        }
+    }
 }

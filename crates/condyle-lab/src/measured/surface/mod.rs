@@ -1,30 +1,31 @@
 //! Predicted against scanned wear.
 
-mod comparison;
-mod depth;
-mod register;
-mod sheet;
+pub(crate) mod register;
 
 use std::path::Path;
 
-use condyle::Vec3;
-use condyle_io::measured::Scan;
-use condyle_io::mesh::read_vtu_points;
-use condyle_io::results::{check_file, insert_file_name};
+use condyle::{Mat3, Vec3};
+use condyle_io::{
+    measured::Scan,
+    mesh::read_vtu_points,
+    results::{check_file, insert_file_name},
+};
 use condyle_report::SurfaceFields;
+use rstar::{RTree, primitives::GeomWithData};
+use serde::Serialize;
 
-use super::CompareError;
-pub use comparison::{NodeDepths, SurfaceComparison, SurfaceErrors};
-use depth::compared;
-pub use register::Registration;
-use register::register;
-use sheet::{Sheet, triangulated};
+use crate::measured::{
+    CompareError,
+    surface::register::{MIN_COSINE, Sheet, register, triangulated},
+};
+
+pub use crate::measured::surface::register::Registration;
 
 /// Name of the field of wear in the meshes of a run.
 const DEPTH: &str = "wear_depth_mm";
 
 /// Registers a scan onto the worn insert of a results folder, and compares depths.
-pub(super) fn compare(scan: &Scan, folder: &Path) -> Result<SurfaceComparison, CompareError> {
+pub(crate) fn compare(scan: &Scan, folder: &Path) -> Result<SurfaceComparison, CompareError> {
     let (unworn, worn) = first_and_last(folder)?;
     let (unworn_mesh, worn_mesh) = (triangulated(&unworn), triangulated(&worn));
     let (unworn_sheet, worn_sheet) = (Sheet::new(&unworn_mesh), Sheet::new(&worn_mesh));
@@ -44,7 +45,7 @@ pub(super) fn compare(scan: &Scan, folder: &Path) -> Result<SurfaceComparison, C
         (&registered, normals.as_deref()),
         scan.keys.farthest_mm,
     );
-    comparison::summarised(&unworn, &compared, registration, scan)
+    summarised(&unworn, &compared, registration, scan)
 }
 
 /// The unworn surface and that of the last update, of one numbering.
@@ -74,4 +75,328 @@ fn surface(folder: &Path, update: usize) -> Result<SurfaceFields, CompareError> 
     check_file(&path)?;
     let file = read_vtu_points(&path)?;
     Ok(SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path)?)
+}
+
+/// What a scan of an unloaded insert shows beside wear.
+const CREEP: &str = "a scan of an unloaded insert shows wear and about half of the creep; the \
+    prediction is wear alone, so scanned depths are expected to be larger where pressure was high";
+/// Depth above which a place counts as part of a scar, as a share of the deepest predicted.
+const SCAR_SHARE: f64 = 0.05;
+/// A motion fixed less well than this is worth a word, mm.
+const WEAK_MM: f64 = 0.02;
+/// A scan that covers less than this share of the surface is worth a word.
+const LITTLE: f64 = 0.9;
+
+/// How far a scanned surface is from the predicted one. Depths are measured from the unworn
+/// surface along its normal; differences are scanned minus predicted.
+#[derive(Clone, Debug, Serialize)]
+pub struct SurfaceComparison {
+    /// How the scan was laid onto the prediction.
+    pub registration: Registration,
+    /// Points of the scan.
+    pub scan_points: usize,
+    /// Part of the articulating surface that the scan covers, by area, 0 to 1.
+    pub covered_area_share: f64,
+    /// Nodes compared.
+    pub nodes: usize,
+    /// Over all nodes compared, weighted by area.
+    pub everywhere: SurfaceErrors,
+    /// Where either depth is above 5 % of the deepest predicted; none without such a place.
+    pub in_scars: Option<SurfaceErrors>,
+    /// The node where the two differ most.
+    pub worst: NodeDepths,
+    /// The node of the deepest predicted wear.
+    pub deepest_predicted: NodeDepths,
+    /// The node of the deepest scanned wear.
+    pub deepest_scanned: NodeDepths,
+    /// Predicted volume over the area compared.
+    pub predicted_volume_mm3: f64,
+    /// Scanned volume over the same area.
+    pub scanned_volume_mm3: f64,
+    /// What to keep in mind.
+    pub notes: Vec<String>,
+    /// The unworn surface with the three fields `predicted_mm`, `scanned_mm`, `difference_mm`, NaN
+    /// where the scan does not reach.
+    #[serde(skip)]
+    pub fields: SurfaceFields,
+}
+
+/// How far two surfaces are apart, weighted by area; scanned minus predicted.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SurfaceErrors {
+    /// Mean difference.
+    pub mean_mm: f64,
+    /// Mean of the absolute differences.
+    pub mean_absolute_mm: f64,
+    /// Root of the mean square.
+    pub rms_mm: f64,
+    /// Area that these are taken over.
+    pub area_mm2: f64,
+}
+
+/// A node and its depths.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NodeDepths {
+    /// Position on the unworn surface, x.
+    pub x_mm: f64,
+    /// Position on the unworn surface, y.
+    pub y_mm: f64,
+    /// Position on the unworn surface, z.
+    pub z_mm: f64,
+    /// Predicted depth.
+    pub predicted_mm: f64,
+    /// Scanned depth.
+    pub scanned_mm: f64,
+    /// Scanned minus predicted.
+    pub difference_mm: f64,
+}
+
+/// The comparison of a registered scan.
+pub(crate) fn summarised(
+    unworn: &SurfaceFields,
+    compared: &Compared,
+    registration: Registration,
+    scan: &Scan,
+) -> Result<SurfaceComparison, CompareError> {
+    let nodes = covered(compared);
+    let place = |node: &usize| place(unworn, compared, *node);
+    let all: Vec<NodeDepths> = nodes.iter().map(place).collect();
+    let largest = |of: fn(&NodeDepths) -> f64| {
+        let found = all.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
+        let farthest_mm = scan.keys.farthest_mm;
+        found
+            .copied()
+            .ok_or(CompareError::NothingScanned { farthest_mm })
+    };
+    let deepest_predicted = largest(|place| place.predicted_mm)?;
+    let scar = SCAR_SHARE * deepest_predicted.predicted_mm;
+    let worn = |&&node: &&usize| {
+        scar > 0.0 && compared.predicted_mm[node].max(compared.scanned_mm[node]) > scar
+    };
+    let scars: Vec<usize> = nodes.iter().filter(worn).copied().collect();
+    let area: f64 = compared.areas_mm2.iter().sum();
+    let volume = |depth: &[f64]| {
+        nodes
+            .iter()
+            .map(|&i| depth[i] * compared.areas_mm2[i])
+            .sum()
+    };
+    let everywhere = errors(compared, &nodes);
+    let covered_area_share = everywhere.area_mm2 / area;
+    Ok(SurfaceComparison {
+        notes: notes(&registration, covered_area_share),
+        registration,
+        scan_points: scan.points.len(),
+        covered_area_share,
+        nodes: nodes.len(),
+        everywhere,
+        in_scars: (!scars.is_empty()).then(|| errors(compared, &scars)),
+        worst: largest(|place| place.difference_mm.abs())?,
+        deepest_predicted,
+        deepest_scanned: largest(|place| place.scanned_mm)?,
+        predicted_volume_mm3: volume(&compared.predicted_mm),
+        scanned_volume_mm3: volume(&compared.scanned_mm),
+        fields: fields(unworn, compared),
+    })
+}
+
+fn covered(compared: &Compared) -> Vec<usize> {
+    let both = |node: &usize| {
+        compared.scanned_mm[*node].is_finite() && compared.predicted_mm[*node].is_finite()
+    };
+    (0..compared.scanned_mm.len()).filter(both).collect()
+}
+
+fn place(unworn: &SurfaceFields, compared: &Compared, node: usize) -> NodeDepths {
+    let position = unworn.nodes[node];
+    let (predicted_mm, scanned_mm) = (compared.predicted_mm[node], compared.scanned_mm[node]);
+    NodeDepths {
+        x_mm: position.x,
+        y_mm: position.y,
+        z_mm: position.z,
+        predicted_mm,
+        scanned_mm,
+        difference_mm: scanned_mm - predicted_mm,
+    }
+}
+
+fn errors(compared: &Compared, nodes: &[usize]) -> SurfaceErrors {
+    let area_mm2: f64 = nodes.iter().map(|&node| compared.areas_mm2[node]).sum();
+    let mean = |of: fn(f64) -> f64| {
+        let part = |&node: &usize| {
+            let difference = compared.scanned_mm[node] - compared.predicted_mm[node];
+            compared.areas_mm2[node] * of(difference)
+        };
+        nodes.iter().map(part).sum::<f64>() / area_mm2
+    };
+    SurfaceErrors {
+        mean_mm: mean(|difference| difference),
+        mean_absolute_mm: mean(f64::abs),
+        rms_mm: mean(|difference| difference * difference).sqrt(),
+        area_mm2,
+    }
+}
+
+fn fields(unworn: &SurfaceFields, compared: &Compared) -> SurfaceFields {
+    let pairs = || compared.scanned_mm.iter().zip(&compared.predicted_mm);
+    let predicted = pairs().map(|(scanned, predicted)| predicted + 0.0 * scanned);
+    let difference = pairs().map(|(scanned, predicted)| scanned - predicted);
+    SurfaceFields {
+        nodes: unworn.nodes.clone(),
+        quads: unworn.quads.clone(),
+        fields: vec![
+            ("predicted_mm".to_owned(), predicted.collect()),
+            ("scanned_mm".to_owned(), compared.scanned_mm.clone()),
+            ("difference_mm".to_owned(), difference.collect()),
+        ],
+    }
+}
+
+fn notes(registration: &Registration, covered: f64) -> Vec<String> {
+    let mut notes = vec![CREEP.to_owned()];
+    if registration.weakest_standard_error_mm > WEAK_MM {
+        notes.push(format!(
+            "the fitted surface leaves one motion of the scan uncertain by {:.3} mm (standard error)",
+            registration.weakest_standard_error_mm
+        ));
+    }
+    if covered < LITTLE {
+        notes.push(format!(
+            "the scan covers {:.0} % of the articulating surface",
+            100.0 * covered
+        ));
+    }
+    notes
+}
+
+/// Scanned depth at a node is that of points up to this many of their spacings away.
+const SPACINGS: f64 = 1.5;
+/// Places of which the spacing is taken.
+const MAX_FOR_SPACING: usize = 2000;
+/// Smaller determinants of a fit, relative to its weight, leave the slope open.
+const MIN_DETERMINANT: f64 = 1e-3;
+
+/// Depths at the nodes of the unworn surface, mm, NaN where the scan does not reach.
+pub(crate) struct Compared {
+    pub predicted_mm: Vec<f64>,
+    pub scanned_mm: Vec<f64>,
+    /// Area that a node stands for, mm2.
+    pub areas_mm2: Vec<f64>,
+}
+
+/// A place of the unworn surface, and the scanned depth there.
+type Sounding = GeomWithData<[f64; 3], f64>;
+
+/// Both depths at every node.
+///
+/// Predicted is the depth of the worn node below the unworn surface; scanned is what the depths of
+/// the points around say, so that both are measured alike.
+pub(crate) fn compared(
+    unworn: &SurfaceFields,
+    sheet: &Sheet<'_>,
+    worn_nodes: &[Vec3],
+    scan: (&[Vec3], Option<&[Vec3]>),
+    farthest_mm: f64,
+) -> Compared {
+    let soundings = soundings(sheet, scan, farthest_mm);
+    let radius = edge_mm(unworn).max(SPACINGS * spacing_mm(&soundings));
+    let tree = RTree::bulk_load(soundings);
+    let depth_of = |point: &Vec3| sheet.foot(point).map_or(f64::NAN, |foot| -foot.height_mm);
+    let scanned = |node: usize| {
+        if sheet.is_border(node) {
+            return f64::NAN;
+        }
+        sounded(&tree, &unworn.nodes[node], radius).unwrap_or(f64::NAN)
+    };
+    Compared {
+        predicted_mm: worn_nodes.iter().map(depth_of).collect(),
+        scanned_mm: (0..unworn.nodes.len()).map(scanned).collect(),
+        areas_mm2: areas(unworn),
+    }
+}
+
+/// The depth of every point of the scan that lies over the surface.
+fn soundings(
+    sheet: &Sheet<'_>,
+    (points, normals): (&[Vec3], Option<&[Vec3]>),
+    farthest_mm: f64,
+) -> Vec<Sounding> {
+    let sounding = |(index, point): (usize, &Vec3)| {
+        let foot = sheet.foot(point)?;
+        let faces = normals.is_none_or(|all| all[index].dot(&foot.normal) > MIN_COSINE);
+        let counts = faces && !foot.on_border && foot.height_mm.abs() <= farthest_mm;
+        counts.then(|| Sounding::new(foot.point.into(), -foot.height_mm))
+    };
+    points.iter().enumerate().filter_map(sounding).collect()
+}
+
+/// Mean length of the edges of the quads.
+fn edge_mm(surface: &SurfaceFields) -> f64 {
+    let around = |quad: &[u32; 4]| {
+        let corners = surface.corners(*quad);
+        (0..4)
+            .map(|i| (corners[(i + 1) % 4] - corners[i]).norm())
+            .sum::<f64>()
+            / 4.0
+    };
+    surface.quads.iter().map(around).sum::<f64>() / surface.quads.len().max(1) as f64
+}
+
+/// Median distance from a sounding to the next.
+fn spacing_mm(soundings: &[Sounding]) -> f64 {
+    let tree = RTree::bulk_load(soundings.to_vec());
+    let every = soundings.len().div_ceil(MAX_FOR_SPACING).max(1);
+    let next = |sounding: &Sounding| {
+        let [_, next] = two_nearest(&tree, *sounding.geom())?;
+        Some((Vec3::from(next) - Vec3::from(*sounding.geom())).norm())
+    };
+    let mut distances: Vec<f64> = soundings.iter().step_by(every).filter_map(next).collect();
+    distances.sort_by(f64::total_cmp);
+    distances.get(distances.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn two_nearest(tree: &RTree<Sounding>, place: [f64; 3]) -> Option<[[f64; 3]; 2]> {
+    let mut nearest = tree.nearest_neighbor_iter(place).map(|found| *found.geom());
+    Some([nearest.next()?, nearest.next()?])
+}
+
+/// The depth at a node: the plane of weighted least squares through the soundings around, or
+/// their weighted mean where they leave its slope open; none where there are none.
+fn sounded(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<f64> {
+    let place = [node.x, node.y, node.z];
+    let mut matrix = Mat3::zeros();
+    let mut right_side = Vec3::zeros();
+    for sounding in tree.locate_within_distance(place, radius * radius) {
+        let away = (Vec3::from(*sounding.geom()) - node) / radius;
+        let weight = fading(away.norm());
+        // Steep surfaces are rare on an insert, so x and z stand for directions along it.
+        let row = Vec3::new(1.0, away.x, away.z);
+        matrix += row * row.transpose() * weight;
+        right_side += row * (weight * sounding.data);
+    }
+    let weight = matrix[(0, 0)];
+    if weight <= 0.0 {
+        return None;
+    }
+    let is_fixed = matrix.determinant() > MIN_DETERMINANT * weight.powi(3);
+    let plane = matrix.cholesky().filter(|_| is_fixed);
+    Some(plane.map_or(right_side.x / weight, |plane| plane.solve(&right_side).x))
+}
+
+/// Wendland's function: 1 at the node, smoothly 0 at the radius.
+fn fading(part: f64) -> f64 {
+    (1.0 - part).max(0.0).powi(4) * (4.0 * part + 1.0)
+}
+
+/// A quarter of each face for each of its nodes.
+fn areas(surface: &SurfaceFields) -> Vec<f64> {
+    let mut areas = vec![0.0; surface.nodes.len()];
+    for quad in &surface.quads {
+        let [a, b, c, d] = surface.corners(*quad);
+        let area = (c - a).cross(&(d - b)).norm() / 2.0;
+        for &node in quad {
+            areas[node as usize] += area / 4.0;
+        }
+    }
+    areas
 }

@@ -1,0 +1,392 @@
+//! What a case comes to before it runs: its bodies, where the femur settles, and what a run will need.
+
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use condyle::{
+    Vec3,
+    contact::{ContactMemory, ContactModel},
+    evolve::March,
+    geometry::{Dishes, TriangleMesh, bounds},
+    machine::knee::{IE, VV},
+    spatial::{Pose, RelativeMotion},
+};
+use condyle_io::{
+    cache::Cache,
+    case::{Assignment, Case, FEMUR_TRIANGLES, Side, Update},
+    config::{DataFile, Variants},
+};
+use condyle_report::{
+    Side as ReportSide,
+    bodies::{BodiesPicture, BodySurface, MachineAxes, bodies_svg},
+};
+use serde::Serialize;
+
+use crate::{
+    at_rest::AtRest,
+    run::{
+        Clock,
+        error::RunError,
+        prepare::{build, changed, mean_load_n, memory_mb, start},
+    },
+};
+
+/// What a case comes to before it runs; units are in the names.
+#[derive(Serialize)]
+pub struct Preview {
+    /// Title of the case.
+    pub title: String,
+    /// Which knee it is.
+    pub side: &'static str,
+    /// What was put right or looks doubtful.
+    pub warnings: Vec<String>,
+    /// The femoral component.
+    pub femur: FemurFacts,
+    /// The insert.
+    pub insert: InsertFacts,
+    /// The settled femur on the insert.
+    pub at_rest: AtRest,
+    /// What a run will need.
+    pub expected: Expected,
+    /// The case, checked.
+    #[serde(skip)]
+    pub case: Case,
+    #[serde(skip)]
+    march: March,
+    #[serde(skip)]
+    femur_triangles: TriangleMesh,
+}
+
+impl Preview {
+    /// Goes with the case at `case_path`, some of its values changed, as far as a run goes before its first cycle:
+    /// the file, the meshes, and that the femur settles on the insert.
+    ///
+    /// # Errors
+    /// Those of a run that cannot start.
+    pub fn of(case_path: &Path, changes: &[Assignment], threads: usize) -> Result<Self, RunError> {
+        Self::of_case(changed(case_path, changes)?, threads)
+    }
+
+    /// The same of a case that is read already.
+    ///
+    /// # Errors
+    /// As [`Preview::of`].
+    pub fn of_case(case: Case, threads: usize) -> Result<Self, RunError> {
+        let mut clock = Clock::default();
+        let built = clock.time(|| build(&case, threads, &Cache::off()))?;
+        let warnings: Vec<String> = built.warnings.iter().map(ToString::to_string).collect();
+        let march = clock.time(|| start(&case, built.test, &built.warnings))?;
+        let triangles = case.femur_triangles(march.test(), FEMUR_TRIANGLES);
+        let triangles = triangles.map_err(|source| RunError::of_build(&case, source))?;
+        let at_rest = AtRest::of(&march);
+        let (femur, insert) = (
+            FemurFacts::of(&case, &triangles, &warnings),
+            InsertFacts::of(&case, &march, &warnings),
+        );
+        Ok(Self {
+            title: case.heading.title.clone(),
+            side: case.heading.side.word(),
+            expected: Expected::of(&case, &march, &at_rest, clock.spent),
+            warnings,
+            femur,
+            insert,
+            at_rest,
+            case,
+            march,
+            femur_triangles: triangles,
+        })
+    }
+
+    /// Both bodies from three sides, as the text of an SVG file.
+    pub fn picture_svg(&self) -> String {
+        svg(
+            &self.case,
+            &self.march,
+            &self.femur_triangles,
+            &self.at_rest,
+        )
+    }
+}
+
+/// So far around the lowest place of a dish it is thinnest under the femur, mm.
+const AROUND_DISH_MM: f64 = 10.0;
+
+/// The femoral component.
+#[derive(Debug, Serialize)]
+pub struct FemurFacts {
+    /// What it is made from.
+    pub shape: &'static str,
+    /// Its file without the folder, if it has one.
+    pub file: Option<String>,
+    /// Size antero-posterior, supero-inferior and medio-lateral, mm.
+    pub size_mm: [f64; 3],
+    /// Triangles of its mesh; none of a shape by measures.
+    pub triangles: Option<usize>,
+    /// What was found wrong in its file.
+    pub defects: Vec<String>,
+}
+
+impl FemurFacts {
+    pub(crate) fn of(case: &Case, mesh: &TriangleMesh, warnings: &[String]) -> Self {
+        let file = case.femur.file().map(DataFile::name);
+        let (low, high) = mesh.bounds();
+        Self {
+            shape: case.femur.word(),
+            size_mm: (high - low).into(),
+            triangles: file.as_ref().map(|_| mesh.triangles.len()),
+            defects: defects(file.as_deref(), warnings),
+            file,
+        }
+    }
+}
+
+/// The insert as it is meshed.
+#[derive(Debug, Serialize)]
+pub struct InsertFacts {
+    /// What it is made from.
+    pub shape: &'static str,
+    /// Its file without the folder, if it has one.
+    pub file: Option<String>,
+    /// Size antero-posterior, supero-inferior and medio-lateral, mm.
+    pub size_mm: [f64; 3],
+    /// Triangles of its file; none of hexahedra and of a shape by measures.
+    pub triangles: Option<usize>,
+    /// What was found wrong in its file.
+    pub defects: Vec<String>,
+    /// Hexahedra.
+    pub hexahedra: usize,
+    /// Nodes of the articulating surface.
+    pub surface_nodes: usize,
+    /// Smallest scaled Jacobian of a hexahedron.
+    pub worst_quality: f64,
+    /// Least thickness within 10 mm of the lowest place of the medial and of the lateral dish, mm.
+    pub dish_thickness_mm: Option<[f64; 2]>,
+    /// Middle between the dishes: anterior, superior and lateral of the origin, where the machine's axes are, mm.
+    pub dishes_middle_mm: Option<[f64; 3]>,
+}
+
+impl InsertFacts {
+    pub(crate) fn of(case: &Case, march: &March, warnings: &[String]) -> Self {
+        let insert = march.test().insert.as_ref();
+        let file = case.insert.file().map(DataFile::name);
+        let (mesh, places) = (insert.mesh(), insert.surface().positions);
+        let dishes = Dishes::of(&places);
+        let thickness = |dish: Vec3| least_around(&dish, &places, insert.thickness_mm());
+        Self {
+            shape: case.insert.word(),
+            size_mm: size_of(&mesh.nodes),
+            triangles: case.insert_triangle_count(),
+            defects: defects(file.as_deref(), warnings),
+            hexahedra: mesh.hexes.len(),
+            surface_nodes: places.len(),
+            worst_quality: mesh.worst_quality(),
+            dish_thickness_mm: dishes.map(|d| [d.medial_mm, d.lateral_mm].map(thickness)),
+            dishes_middle_mm: dishes.map(|dishes| dishes.middle_mm().into()),
+            file,
+        }
+    }
+}
+
+fn defects(file: Option<&str>, warnings: &[String]) -> Vec<String> {
+    file.map_or(Vec::new(), |file| found_in(file, warnings))
+}
+
+fn size_of(points: &[Vec3]) -> [f64; 3] {
+    let (low, high) = bounds(points);
+    (high - low).into()
+}
+
+/// Least value at the nodes around a dish.
+fn least_around(dish: &Vec3, places: &[Vec3], values: &[f64]) -> f64 {
+    let is_near = |place: &Vec3| (place - dish).norm() < AROUND_DISH_MM;
+    let near = places
+        .iter()
+        .zip(values)
+        .filter(|(place, _)| is_near(place));
+    near.map(|(_, value)| *value).fold(f64::INFINITY, f64::min)
+}
+
+/// What a file's name begins a warning of it with is left out: what was found in that file.
+fn found_in(file: &str, warnings: &[String]) -> Vec<String> {
+    let start = format!("{file}: ");
+    let of_file = warnings.iter().filter_map(|said| said.strip_prefix(&start));
+    of_file.map(str::to_owned).collect()
+}
+
+/// Cycles solved for an update: some are solved again until they repeat themselves.
+const CYCLES_AN_UPDATE: f64 = 1.15;
+/// Contact evaluations for an increment.
+const EVALUATIONS_AN_INCREMENT: f64 = 2.3;
+/// Updates that a march takes which finds them itself, about.
+const OWN_UPDATES: f64 = 8.0;
+/// Evaluations that are timed, on a path of so many steps, each so long, mm: as in a cycle other nodes press at each.
+const TIMED: usize = 8;
+const STEP_MM: f64 = 0.1;
+/// Lowerings of the femur until it carries the mean load of the cycle.
+const LOWERINGS: usize = 8;
+
+/// What a run will need, about.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Expected {
+    /// Memory at its highest, MB.
+    pub memory_mb: f64,
+    /// Memory that the case allows, MB.
+    pub memory_allowed_mb: f64,
+    /// Time on this computer, s.
+    pub time_s: f64,
+}
+
+impl Expected {
+    /// Of a march that was built in `built_in`.
+    pub(crate) fn of(case: &Case, march: &March, at_rest: &AtRest, built_in: Duration) -> Self {
+        Self {
+            memory_mb: memory_mb(case, march, at_rest),
+            memory_allowed_mb: 1e3 * case.limits.memory_gb,
+            time_s: built_in.as_secs_f64() + solving_s(case, march, at_rest),
+        }
+    }
+}
+
+/// How long the cycles take, by how long the contact under the mean load takes to answer.
+fn solving_s(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
+    let updates = match &case.march.update {
+        Update::Fixed(fixed) => fixed.updates as f64,
+        Update::Auto(_) => OWN_UPDATES,
+    };
+    let increments = march.test().time.increments as f64;
+    let evaluations = updates * CYCLES_AN_UPDATE * increments * EVALUATIONS_AN_INCREMENT;
+    let again = if case.accuracy.estimate { 1.6 } else { 1.0 };
+    again * evaluations * evaluation_s(march, at_rest)
+}
+
+/// Seconds in which the contact under the mean load answers, with its derivatives: the shorter of two times on a path.
+fn evaluation_s(march: &March, at_rest: &AtRest) -> f64 {
+    let surface = march.insert().surface();
+    let memory = ContactMemory::default();
+    let mut contact = march.test().contact.contact(march.bodies(&surface), memory);
+    let pose = lowered(contact.as_mut(), at_rest, mean_load_n(march));
+    let mut once = || {
+        let began = Instant::now();
+        contact.begin_cycle();
+        for step in 0..TIMED {
+            let along = Vec3::new(STEP_MM * step as f64, 0.0, 0.0);
+            let motion =
+                RelativeMotion::at_rest(Pose::new(pose.rotation, pose.translation + along));
+            contact.begin_increment(step);
+            std::hint::black_box(contact.respond(&motion).tangent());
+            // An insert that flows takes its time to settle. A load that it does not carry is told by the run.
+            let settled = contact.settle(&motion);
+            std::hint::black_box(settled.is_ok());
+            contact.accept(&motion);
+        }
+        began.elapsed().as_secs_f64() / TIMED as f64
+    };
+    // What a contact computes once is no part of the second time.
+    once().min(once())
+}
+
+/// The pose at rest with the femur lowered until it carries a load, about.
+fn lowered(contact: &mut dyn ContactModel, at_rest: &AtRest, load_n: f64) -> Pose {
+    let mut pose = at_rest.pose;
+    for _ in 0..LOWERINGS {
+        let response = contact.respond(&RelativeMotion::at_rest(pose));
+        let missing_n = load_n + response.wrench.force.y;
+        let stiffness_n_per_mm = response.tangent().by_pose.matrix[(4, 4)].abs();
+        if missing_n.abs() < 0.05 * load_n || stiffness_n_per_mm < 1.0 {
+            break;
+        }
+        pose.translation.y -= (missing_n / stiffness_n_per_mm).clamp(-0.1, 0.1);
+    }
+    pose
+}
+
+/// The picture as the text of an SVG file.
+pub(crate) fn svg(case: &Case, march: &March, femur: &TriangleMesh, at_rest: &AtRest) -> String {
+    let side = case.heading.side;
+    let insert = march.test().insert.mesh();
+    let on_insert = |vertex: &Vec3| at_rest.pose.to_insert(vertex);
+    let femur = of_triangles(femur.clone().mapped(on_insert));
+    let insert = of_quads(&insert.nodes, &insert.boundary_quads());
+    let [femur, insert, contact] =
+        [femur, insert, pressed(march, at_rest)].map(|body| mirrored(body, side));
+    bodies_svg(&BodiesPicture {
+        title: &case.heading.title,
+        side: match side {
+            Side::Right => ReportSide::Right,
+            Side::Left => ReportSide::Left,
+        },
+        femur: &femur,
+        insert: &insert,
+        contact: &contact,
+        axes: Some(axes(march, at_rest, side)),
+        caption: &caption(at_rest),
+    })
+}
+
+fn caption(at_rest: &AtRest) -> String {
+    format!(
+        "Red: in contact at rest under {:.0} N, {:.0} mm2, up to {:.1} MPa.",
+        at_rest.axial_force_n, at_rest.contact_area_mm2, at_rest.peak_pressure_mpa
+    )
+}
+
+fn of_triangles(mesh: TriangleMesh) -> BodySurface {
+    BodySurface {
+        vertices: mesh.vertices,
+        triangles: mesh.triangles,
+    }
+}
+
+fn of_quads(nodes: &[Vec3], quads: &[[u32; 4]]) -> BodySurface {
+    of_triangles(TriangleMesh::of_quads(
+        nodes.to_vec(),
+        quads.iter().copied(),
+    ))
+}
+
+/// Faces of the articulating surface of which most corners are pressed.
+fn pressed(march: &March, at_rest: &AtRest) -> BodySurface {
+    const MAX_CORNERS: usize = 3;
+    let places = march.test().insert.surface().positions;
+    let mut is_pressed = vec![false; places.len()];
+    for node in &at_rest.touched {
+        is_pressed[node.node as usize] = true;
+    }
+    let corners = |face: &[u32; 4]| {
+        face.iter()
+            .filter(|&&node| is_pressed[node as usize])
+            .count()
+    };
+    let faces = march.test().insert.surface_faces().iter().copied();
+    let faces: Vec<[u32; 4]> = faces.filter(|face| corners(face) >= MAX_CORNERS).collect();
+    of_quads(&places, &faces)
+}
+
+/// As the files have it: a left knee is computed as a right one.
+fn mirrored(mut body: BodySurface, side: Side) -> BodySurface {
+    body.vertices
+        .iter_mut()
+        .for_each(|vertex| vertex.z *= sign(side));
+    body
+}
+
+fn sign(side: Side) -> f64 {
+    match side {
+        Side::Right => 1.0,
+        Side::Left => -1.0,
+    }
+}
+
+fn axes(march: &March, at_rest: &AtRest, side: Side) -> MachineAxes {
+    let machine = march.test().machine();
+    let (vv, ie) = (machine.joint(VV), machine.joint(IE));
+    let [x, y, _] = at_rest.flexion_axis_mm;
+    MachineAxes {
+        flexion_mm: (x, y),
+        vv_mm: (vv.axis_point_mm.y, sign(side) * vv.axis_point_mm.z),
+        ie_mm: (ie.axis_point_mm.x, sign(side) * ie.axis_point_mm.z),
+        ap_zero_mm: x,
+    }
+}

@@ -1,0 +1,222 @@
+//! A run into a folder: found, built, marched, estimated, written.
+
+use std::path::Path;
+
+use condyle::geometry::TriangleMesh;
+use condyle_io::{
+    case::{Assignment, Case, FEMUR_TRIANGLES, SharedBodies},
+    config::DataFile,
+    results::{
+        FRAME_TRIANGLES, FolderLock, Found, ResultsError, ResultsFolder, Summary, femur_of_frames,
+    },
+};
+
+use crate::run::{
+    Listener, Outcome, RunOptions,
+    error::RunError,
+    prepare::changed,
+    running::{Run, RunContext, Start},
+};
+
+/// Runs the case at `case_path`.
+///
+/// `on_event` hears of everything and may stop the run by breaking; the updates done are then on
+/// the disk, and a run with `resume` goes on to the same bytes as one never stopped. A run that
+/// cannot start makes no folder, and one that is done is left as it is.
+///
+/// # Errors
+/// A bad case, a folder that cannot be used, or physics that cannot be solved.
+pub fn run(
+    case_path: &Path,
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
+    run_changed(case_path, &[], options, on_event)
+}
+
+/// Runs the case at `case_path` with some of its values changed, as [`run`] does.
+///
+/// # Errors
+/// As [`run`], and a change that cannot be made.
+pub fn run_changed(
+    case_path: &Path,
+    changes: &[Assignment],
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
+    let case = changed(case_path, changes)?;
+    run_read(&case, Some(case_path), options, on_event)
+}
+
+/// Runs a case that is read already, as [`run`] does.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_case(
+    case: &Case,
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
+    run_read(case, None, options, on_event)
+}
+
+/// Runs a case that was read from `case_path`, if from a file.
+fn run_read(
+    case: &Case,
+    case_path: Option<&Path>,
+    options: &RunOptions,
+    on_event: &mut Listener<'_>,
+) -> Result<Outcome, RunError> {
+    let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
+    let lock = ResultsFolder::lock(&options.out)?;
+    let begun = match found(case, case_path, options, &inputs_blake3)? {
+        Found::Done(summary) => return done_before(summary, options),
+        Found::Checkpoint(checkpoint, spent_s) => Start::Before(checkpoint, spent_s),
+        Found::Case | Found::Nothing => Start::Now,
+    };
+    let means = RunContext {
+        threads: options.threads,
+        cache: &options.cache,
+        bodies: &SharedBodies::default(),
+        out: Some(&options.out),
+        wear_law: None,
+    };
+    let is_new = matches!(begun, Start::Now);
+    let mut run = Run::begin(case, means, begun, inputs_blake3.clone(), on_event)?;
+    let written = if is_new {
+        WrittenRun::new(options, lock, inputs_blake3, &run)?
+    } else {
+        WrittenRun::going_on(options, lock, inputs_blake3, &run)?
+    };
+    let outcome = run.complete(&mut |run| written.write_update(run), on_event)?;
+    if let Outcome::Done(summary) = &outcome {
+        written.write_end(summary)?;
+    }
+    Ok(outcome)
+}
+
+/// What the folder holds; an error if a new run cannot be written to it, or with `resume` if there is
+/// no run in it.
+fn found(
+    case: &Case,
+    case_path: Option<&Path>,
+    options: &RunOptions,
+    inputs_blake3: &str,
+) -> Result<Found, ResultsError> {
+    let out = &options.out;
+    if options.resume {
+        let cycles = case.march.cycles as f64;
+        ResultsFolder::reopen(out, &case.to_toml_in(out), inputs_blake3, cycles)
+    } else if options.force {
+        let meshes = [case.femur.file(), case.insert.file()];
+        let meshes = meshes.into_iter().flatten().map(DataFile::path);
+        let read: Vec<&Path> = case_path.into_iter().chain(meshes).collect();
+        ResultsFolder::may_be_written_over(out, &read).map(|()| Found::Nothing)
+    } else {
+        ResultsFolder::free(out).map(|()| Found::Nothing)
+    }
+}
+
+/// A run that is done already. It may have been stopped before it wrote the page; the same folder gives
+/// the same one.
+fn done_before(summary: Box<Summary>, options: &RunOptions) -> Result<Outcome, RunError> {
+    condyle_report::write_report(&options.out)?;
+    ResultsFolder::existing(&options.out).finish()?;
+    Ok(Outcome::DoneBefore(summary))
+}
+
+/// A run as it is written into its folder.
+pub(crate) struct WrittenRun {
+    folder: ResultsFolder,
+    /// Held until the run has ended.
+    _lock: Option<FolderLock>,
+    inputs_blake3: String,
+    /// The femur that the frames of the first and last cycle show, where the case asks for them.
+    in_frames: Option<TriangleMesh>,
+}
+
+impl WrittenRun {
+    /// A new run, in a folder that is made if it is not there.
+    pub fn new(
+        options: &RunOptions,
+        lock: Option<FolderLock>,
+        inputs_blake3: String,
+        run: &Run<'_>,
+    ) -> Result<Self, RunError> {
+        let in_frames = in_frames(run)?;
+        let alone = run.femur_triangles(FEMUR_TRIANGLES)?;
+        let (folder, lock) = new_folder(run.case, options, lock)?;
+        folder.write_femur(&run.march, &alone, run.case.heading.side)?;
+        let written = Self {
+            folder,
+            _lock: lock,
+            inputs_blake3,
+            in_frames,
+        };
+        written.write_update(run)?;
+        Ok(written)
+    }
+
+    /// A run that goes on in its folder.
+    pub fn going_on(
+        options: &RunOptions,
+        lock: Option<FolderLock>,
+        inputs_blake3: String,
+        run: &Run<'_>,
+    ) -> Result<Self, RunError> {
+        Ok(Self {
+            folder: ResultsFolder::existing(&options.out),
+            _lock: lock,
+            inputs_blake3,
+            in_frames: in_frames(run)?,
+        })
+    }
+
+    /// Writes what the run has found so far.
+    pub fn write_update(&self, run: &Run<'_>) -> Result<(), RunError> {
+        let side = run.case.heading.side;
+        if let Some(femur) = &self.in_frames {
+            self.folder.write_cycles(&run.march, femur, side)?;
+        }
+        self.folder.write_pressures(&run.march)?;
+        self.folder
+            .write_update(&run.march, side, &self.inputs_blake3)?;
+        let spent_s = run.spent().as_secs_f64();
+        Ok(self.folder.write_time_spent(spent_s)?)
+    }
+
+    /// Writes what a run that is done has found.
+    pub fn write_end(&self, summary: &Summary) -> Result<(), RunError> {
+        self.folder.write_summary(summary)?;
+        condyle_report::write_report(self.folder.path())?;
+        Ok(self.folder.finish()?)
+    }
+}
+
+fn in_frames(run: &Run<'_>) -> Result<Option<TriangleMesh>, RunError> {
+    if !run.case.output.cycle_frames {
+        return Ok(None);
+    }
+    let femur = run.femur_triangles(FRAME_TRIANGLES)?;
+    Ok(Some(femur_of_frames(femur)))
+}
+
+/// A folder for a new run, with the case in it, and its lock.
+fn new_folder(
+    case: &Case,
+    options: &RunOptions,
+    lock: Option<FolderLock>,
+) -> Result<(ResultsFolder, Option<FolderLock>), ResultsError> {
+    let folder = ResultsFolder::create(&options.out)?;
+    let was_there = lock.is_some();
+    let lock = lock.map_or_else(|| ResultsFolder::lock(folder.path()), |lock| Ok(Some(lock)))?;
+    // Another run may have come first since the folder was found not to be there.
+    if !was_there {
+        ResultsFolder::free(folder.path())?;
+    }
+    if options.force {
+        folder.clear()?;
+    }
+    folder.write_case(&case.to_toml_in(folder.path()))?;
+    Ok((folder, lock))
+}

@@ -1,0 +1,197 @@
+//! Sobol's indices.
+
+use condyle_io::study::{Design, Output};
+use serde::Serialize;
+
+use crate::{
+    answers::{
+        Named,
+        spread::{mean, middle},
+    },
+    chance::Numbers,
+    plan::Plan,
+};
+
+/// Samples of the bases by which intervals are found.
+const RESAMPLES: u64 = 500;
+/// Of their chance: intervals are the same whenever they are found.
+const SEED: u64 = 20_080_101;
+
+/// What part of the variance of an output is due to an input.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Indices {
+    /// The output.
+    pub output: &'static str,
+    /// The key of the input.
+    pub input: String,
+    /// By the input alone.
+    pub first: f64,
+    /// The 95 % interval of that, by bootstrap.
+    pub first_interval: [f64; 2],
+    /// By the input alone and together with others.
+    pub total: f64,
+    /// The 95 % interval of that, by bootstrap.
+    pub total_interval: [f64; 2],
+    /// Bases all of whose tests are done.
+    pub bases: usize,
+}
+
+pub(crate) fn all(plan: &Plan, outputs: &[Named<'_, Output>]) -> Vec<Indices> {
+    let study = plan.study();
+    if !matches!(study.design, Design::Saltelli(_)) {
+        return Vec::new();
+    }
+    let keys: Vec<&str> = study
+        .inputs
+        .iter()
+        .map(|input| input.key.as_str())
+        .collect();
+    let of = |output: &Named<'_, Output>| of_output(output.of.name, &keys, &output.column.values);
+    outputs.iter().flat_map(of).collect()
+}
+
+fn of_output(output: &'static str, inputs: &[&str], values: &[f64]) -> Vec<Indices> {
+    let bases = Bases::of(inputs.len(), values);
+    let all: Vec<usize> = (0..bases.0.len()).collect();
+    let resamples: Vec<Vec<usize>> = (0..RESAMPLES)
+        .map(|number| bases.resample(number))
+        .collect();
+    let index = |(place, input): (usize, &&str)| {
+        let (first, total) = bases.indices(place, &all);
+        let (firsts, totals) = resamples
+            .iter()
+            .map(|resample| bases.indices(place, resample))
+            .unzip();
+        Indices {
+            output,
+            input: (*input).to_owned(),
+            first,
+            first_interval: middle(firsts),
+            total,
+            total_interval: middle(totals),
+            bases: bases.0.len(),
+        }
+    };
+    inputs.iter().enumerate().map(index).collect()
+}
+
+/// What the tests of every base found, less the mean of all: a, each changed one, b.
+struct Bases(Vec<Vec<f64>>);
+
+impl Bases {
+    /// Those whose tests are all done. The mean is taken out since the estimate by the first bases would scatter with it.
+    fn of(inputs: usize, values: &[f64]) -> Self {
+        let whole = values.chunks_exact(inputs + 2);
+        let mut whole: Vec<Vec<f64>> = whole
+            .filter(|base| base.iter().all(|value| value.is_finite()))
+            .map(<[f64]>::to_vec)
+            .collect();
+        let both: Vec<f64> = whole
+            .iter()
+            .flat_map(|base| [base[0], base[inputs + 1]])
+            .collect();
+        let mean = mean(&both);
+        whole.iter_mut().flatten().for_each(|value| *value -= mean);
+        Self(whole)
+    }
+
+    /// As many bases, drawn with return.
+    fn resample(&self, number: u64) -> Vec<usize> {
+        let mut numbers = Numbers::of_one(SEED, number);
+        let count = self.0.len();
+        (0..count).map(|_| numbers.place(count)).collect()
+    }
+
+    /// First and total index of an input by some bases:
+    /// S = mean(b (c - a)) / V (Saltelli et al. 2010), T = mean((a - c)^2) / 2 V (Jansen 1999).
+    fn indices(&self, input: usize, bases: &[usize]) -> (f64, f64) {
+        let count = bases.len() as f64;
+        let [mut sum, mut squares, mut first, mut total] = [0.0; 4];
+        for &base in bases {
+            let base = &self.0[base];
+            let (a, c, b) = (base[0], base[input + 1], base[base.len() - 1]);
+            sum += a + b;
+            squares += a * a + b * b;
+            first += b * (c - a);
+            total += (a - c).powi(2);
+        }
+        let variance = squares / (2.0 * count) - (sum / (2.0 * count)).powi(2);
+        if variance <= 0.0 || count == 0.0 {
+            return (0.0, 0.0);
+        }
+        (first / count / variance, total / (2.0 * count) / variance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    use crate::design::{Place, Saltelli};
+
+    fn indices(inputs: usize, bases: u64, of: impl Fn(&[f64]) -> f64) -> Vec<Indices> {
+        let value = |row| {
+            let places = Saltelli::places(row, inputs, 1);
+            let shares = places.into_iter().map(|place| match place {
+                Place::Share(share) => share,
+                _ => f64::NAN,
+            });
+            of(&shares.collect::<Vec<f64>>())
+        };
+        let values: Vec<f64> = (0..bases * (inputs as u64 + 2)).map(value).collect();
+        of_output("y", &vec!["x"; inputs], &values)
+    }
+
+    #[test]
+    fn verify_indices_of_ishigami() {
+        let (a, b) = (7.0, 0.1);
+        let found = indices(3, 16_384, |shares| {
+            let x: Vec<f64> = shares
+                .iter()
+                .map(|share| PI * (2.0 * share - 1.0))
+                .collect();
+            x[0].sin() + a * x[1].sin().powi(2) + b * x[2].powi(4) * x[0].sin()
+        });
+        let pi4 = PI.powi(4);
+        let first = [(1.0 + b * pi4 / 5.0).powi(2) / 2.0, a * a / 8.0, 0.0];
+        let both = b * b * pi4 * pi4 * (1.0 / 18.0 - 1.0 / 50.0);
+        let variance = first.iter().sum::<f64>() + both;
+        let total = [first[0] + both, first[1], both];
+        for (input, found) in found.iter().enumerate() {
+            let (first, total) = (first[input] / variance, total[input] / variance);
+            assert!((found.first - first).abs() < 0.01, "{found:?} {first}");
+            assert!((found.total - total).abs() < 0.01, "{found:?} {total}");
+            let [low, high] = found.total_interval;
+            assert!(
+                low <= total + 0.005 && total - 0.005 <= high,
+                "{found:?} {total}"
+            );
+        }
+    }
+
+    #[test]
+    fn verify_indices_of_the_g_function() {
+        let weights: [f64; 6] = [0.0, 0.5, 3.0, 9.0, 99.0, 99.0];
+        let found = indices(6, 4096, |shares| {
+            let factor = |(x, a): (&f64, &f64)| ((4.0 * x - 2.0).abs() + a) / (1.0 + a);
+            shares.iter().zip(&weights).map(factor).product()
+        });
+        let own = weights.map(|a| 1.0 / (3.0 * (1.0 + a).powi(2)));
+        let variance = own.iter().map(|own| 1.0 + own).product::<f64>() - 1.0;
+        for (input, found) in found.iter().enumerate() {
+            let others: f64 = own.iter().map(|own| 1.0 + own).product::<f64>() / (1.0 + own[input]);
+            let (first, total) = (own[input] / variance, own[input] * others / variance);
+            assert!((found.first - first).abs() < 0.01, "{found:?} {first}");
+            assert!((found.total - total).abs() < 0.01, "{found:?} {total}");
+        }
+    }
+
+    #[test]
+    fn bases_with_a_test_that_failed_are_left_out() {
+        let mut values = vec![1.0, 2.0, 3.0, 4.0, 2.0, 5.0, 1.0, 3.0, 0.0];
+        assert_eq!(of_output("y", &["x"], &values)[0].bases, 3);
+        values[4] = f64::NAN;
+        assert_eq!(of_output("y", &["x"], &values)[0].bases, 2);
+    }
+}

@@ -1,0 +1,378 @@
+//! Which tests are done: every test by its number alone, whatever was done before.
+
+pub(crate) mod sobol;
+
+use condyle_io::study::Correlation;
+use nalgebra::DMatrix;
+
+use crate::{
+    chance::{Numbers, mixed},
+    design::sobol::sobol_places,
+    distribution::{deviations, share_below},
+};
+
+/// Where a test has an input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Place {
+    /// As the case has it.
+    AsItIs,
+    /// Where this share of its distribution lies below.
+    Share(f64),
+    /// This part of the way from its low end to its high one.
+    Along(f64),
+}
+
+/// Where test `row` has its inputs, of which input `i` has `counts[i]` values: the last input changes fastest.
+pub(crate) fn factorial_places(row: u64, counts: &[u64]) -> Vec<Place> {
+    let mut rest = row;
+    let mut places: Vec<Place> = Vec::with_capacity(counts.len());
+    for &count in counts.iter().rev() {
+        places.push(along(rest % count, count));
+        rest /= count;
+    }
+    places.reverse();
+    places
+}
+
+/// Where test `row` has its inputs: first all as they are, then each in turn at its values.
+pub(crate) fn one_at_a_time_places(row: u64, counts: &[u64]) -> Vec<Place> {
+    let mut places = vec![Place::AsItIs; counts.len()];
+    let Some(mut rest) = row.checked_sub(1) else {
+        return places;
+    };
+    for (place, &count) in places.iter_mut().zip(counts) {
+        if rest < count {
+            *place = along(rest, count);
+            break;
+        }
+        rest -= count;
+    }
+    places
+}
+
+/// Value `number` of `count`, from end to end.
+fn along(number: u64, count: u64) -> Place {
+    Place::Along(number as f64 / (count - 1).max(1) as f64)
+}
+
+/// Where test `row` of `tests` has its inputs: along each, one test lies in each of as many equal slices (McKay, Beckman
+/// and Conover 1979).
+pub(crate) fn latin_places(row: u64, tests: u64, inputs: usize, seed: u64) -> Vec<Place> {
+    let place = |input: usize| {
+        let mut numbers = Numbers::of_one(seed, input as u64);
+        let slice = Permutation::new(tests, &mut numbers).at(row);
+        let within = Numbers::of_one(numbers.next(), row).share();
+        Place::Share((slice as f64 + within) / tests as f64)
+    };
+    (0..inputs).map(place).collect()
+}
+
+/// Rounds of the network; four make a good cipher of one whose rounds are good (Luby and Rackoff 1988).
+const ROUNDS: usize = 6;
+
+/// All numbers below a count in an order of chance; each is found without the others.
+///
+/// A Feistel network permutes the numbers of an even count of bits whatever its rounds are; what it puts beyond the count
+/// goes through it again until it lies below.
+pub(crate) struct Permutation {
+    count: u64,
+    half_bits: u32,
+    keys: [u64; ROUNDS],
+}
+
+impl Permutation {
+    pub fn new(count: u64, numbers: &mut Numbers) -> Self {
+        let bits = u64::BITS - (count.max(2) - 1).leading_zeros();
+        Self {
+            count,
+            half_bits: bits.div_ceil(2),
+            keys: std::array::from_fn(|_| numbers.next()),
+        }
+    }
+
+    /// The number at `place`, which lies below the count.
+    pub fn at(&self, place: u64) -> u64 {
+        let mut found = self.through(place);
+        while found >= self.count {
+            found = self.through(found);
+        }
+        found
+    }
+
+    fn through(&self, value: u64) -> u64 {
+        let mask = (1 << self.half_bits) - 1;
+        let halves = (value >> self.half_bits, value & mask);
+        let (left, right) = self.keys.iter().fold(halves, |(left, right), key| {
+            (right, left ^ (mixed(right ^ key) & mask))
+        });
+        (left << self.half_bits) | right
+    }
+}
+
+/// Makes inputs that know nothing of each other go together: of their normal scores z it takes L z, where L L^T is the
+/// matrix of correlations.
+pub(crate) struct Correlated(DMatrix<f64>);
+
+impl Correlated {
+    /// None where the correlations contradict each other.
+    pub fn new(inputs: usize, correlations: &[Correlation]) -> Option<Self> {
+        let mut matrix = DMatrix::identity(inputs, inputs);
+        for correlation in correlations {
+            let [one, other] = correlation.inputs;
+            matrix[(one, other)] = correlation.coefficient;
+            matrix[(other, one)] = correlation.coefficient;
+        }
+        Some(Self(matrix.cholesky()?.unpack()))
+    }
+
+    /// The same places, correlated. An input that goes with no other stays where it is, to the bit.
+    pub fn apply(&self, places: &mut [Place]) {
+        let score = |place: &Place| match place {
+            Place::Share(share) => deviations(*share),
+            Place::AsItIs | Place::Along(_) => 0.0,
+        };
+        let scores: Vec<f64> = places.iter().map(score).collect();
+        for (row, place) in places.iter_mut().enumerate() {
+            let before = self.0.row(row);
+            if before.iter().take(row).all(|factor| *factor == 0.0) {
+                continue;
+            }
+            let sum = before
+                .iter()
+                .zip(&scores)
+                .map(|(factor, score)| factor * score);
+            *place = Place::Share(share_below(sum.sum()));
+        }
+    }
+}
+
+/// One walk: from a point on a grid, every input steps once, in an order of chance (Morris 1991).
+pub(crate) struct Walk {
+    start: Vec<f64>,
+    steps: Vec<f64>,
+    order: Vec<usize>,
+}
+
+impl Walk {
+    /// Walk `number` over `levels` of each input, an even number; a step is levels / (2 (levels - 1)) of the way.
+    pub fn new(number: u64, inputs: usize, levels: u64, seed: u64) -> Self {
+        let mut numbers = Numbers::of_one(seed, number);
+        let (half, last) = (levels / 2, (levels - 1) as f64);
+        let mut start = Vec::with_capacity(inputs);
+        let mut steps = Vec::with_capacity(inputs);
+        for _ in 0..inputs {
+            let low = numbers.place(half as usize) as f64;
+            let is_up = numbers.share() < 0.5;
+            let step = half as f64 / last;
+            start.push(if is_up { low / last } else { low / last + step });
+            steps.push(if is_up { step } else { -step });
+        }
+        let mut order: Vec<usize> = (0..inputs).collect();
+        numbers.shuffle(&mut order);
+        Self {
+            start,
+            steps,
+            order,
+        }
+    }
+
+    /// The input that steps from test `step` of the walk to the next, and how far.
+    pub fn step(&self, step: usize) -> (usize, f64) {
+        let input = self.order[step];
+        (input, self.steps[input])
+    }
+
+    fn at(&self, step: usize) -> Vec<Place> {
+        let mut parts = self.start.clone();
+        for &input in &self.order[..step] {
+            parts[input] += self.steps[input];
+        }
+        parts
+            .into_iter()
+            .map(|part| Place::Along(part.clamp(0.0, 1.0)))
+            .collect()
+    }
+}
+
+/// Where test `row` has its inputs.
+pub(crate) fn morris_places(row: u64, inputs: usize, levels: u64, seed: u64) -> Vec<Place> {
+    let tests = inputs as u64 + 1;
+    Walk::new(row / tests, inputs, levels, seed).at((row % tests) as usize)
+}
+
+/// A base test of a Saltelli design, and what is changed of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Saltelli {
+    /// The base itself.
+    A,
+    /// The base with one input from the other one.
+    Changed(usize),
+    /// The other one.
+    B,
+}
+
+impl Saltelli {
+    /// The number of the base of a row, and which of its tests it is.
+    pub fn of(row: u64, inputs: usize) -> (u64, Self) {
+        let tests = inputs as u64 + 2;
+        let which = match (row % tests) as usize {
+            0 => Self::A,
+            place if place <= inputs => Self::Changed(place - 1),
+            _ => Self::B,
+        };
+        (row / tests, which)
+    }
+
+    /// Where that test has the inputs (Saltelli et al. 2010): of two points of Sobol side by side.
+    pub fn places(row: u64, inputs: usize, seed: u64) -> Vec<Place> {
+        let (base, which) = Self::of(row, inputs);
+        let both = sobol_places(base, 2 * inputs, seed);
+        let (a, b) = both.split_at(inputs);
+        match which {
+            Self::A => a.to_vec(),
+            Self::B => b.to_vec(),
+            Self::Changed(input) => {
+                let mut changed = a.to_vec();
+                changed[input] = b[input];
+                changed
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Place::{Along, AsItIs};
+
+    #[test]
+    fn every_value_meets_every_other() {
+        let all: Vec<Vec<Place>> = (0..6).map(|row| factorial_places(row, &[2, 3])).collect();
+        assert_eq!(all[0], [Along(0.0), Along(0.0)]);
+        assert_eq!(all[1], [Along(0.0), Along(0.5)]);
+        assert_eq!(all[5], [Along(1.0), Along(1.0)]);
+    }
+
+    #[test]
+    fn one_moves_and_the_others_stay() {
+        let all: Vec<Vec<Place>> = (0..6)
+            .map(|row| one_at_a_time_places(row, &[2, 3]))
+            .collect();
+        assert_eq!(all[0], [AsItIs, AsItIs]);
+        assert_eq!(all[2], [Along(1.0), AsItIs]);
+        assert_eq!(all[4], [AsItIs, Along(0.5)]);
+    }
+
+    fn shares(tests: u64, inputs: usize, seed: u64) -> Vec<Vec<f64>> {
+        let share = |place: Place| match place {
+            Place::Share(share) => share,
+            _ => panic!("a Latin hypercube has shares"),
+        };
+        let row = |row| {
+            latin_places(row, tests, inputs, seed)
+                .into_iter()
+                .map(share)
+                .collect()
+        };
+        (0..tests).map(row).collect()
+    }
+
+    #[test]
+    fn verify_every_slice_of_every_input_has_one_test() {
+        for (tests, inputs, seed) in [(1, 3, 7), (10, 1, 0), (200, 12, 1)] {
+            let all = shares(tests, inputs, seed);
+            for input in 0..inputs {
+                let slice = |row: &Vec<f64>| (row[input] * tests as f64) as u64;
+                let mut slices: Vec<u64> = all.iter().map(slice).collect();
+                slices.sort_unstable();
+                assert_eq!(slices, (0..tests).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn inputs_and_seeds_know_nothing_of_each_other() {
+        let correlation = |one: &[f64], other: &[f64]| {
+            let products = one.iter().zip(other).map(|(a, b)| (a - 0.5) * (b - 0.5));
+            12.0 * products.sum::<f64>() / one.len() as f64
+        };
+        let column = |seed, input: usize| -> Vec<f64> {
+            shares(2000, 3, seed).iter().map(|row| row[input]).collect()
+        };
+        let (a, b, c) = (column(1, 0), column(1, 1), column(2, 0));
+        // Three standard deviations of a correlation of 2000 points.
+        let most = 3.0 / 2000_f64.sqrt();
+        assert!(correlation(&a, &b).abs() < most && correlation(&a, &c).abs() < most);
+        let (even, odd): (Vec<f64>, Vec<f64>) = a.chunks(2).map(|pair| (pair[0], pair[1])).unzip();
+        assert!(correlation(&even, &odd).abs() < 3.0 / 1000_f64.sqrt());
+    }
+
+    #[test]
+    fn verify_every_number_comes_once() {
+        for count in [1, 2, 3, 10, 100, 4097] {
+            let order = Permutation::new(count, &mut Numbers::of(count));
+            let mut all: Vec<u64> = (0..count).map(|place| order.at(place)).collect();
+            all.sort_unstable();
+            assert_eq!(all, (0..count).collect::<Vec<_>>());
+        }
+    }
+
+    fn of(coefficient: f64) -> Correlation {
+        Correlation {
+            inputs: [0, 2],
+            coefficient,
+        }
+    }
+
+    #[test]
+    fn verify_scores_have_the_correlation_and_others_stay() {
+        let correlated = Correlated::new(3, &[of(0.8)]).unwrap();
+        let mut sum = 0.0;
+        let count = 4096;
+        for row in 0..count {
+            let mut places = sobol_places(row, 3, 1);
+            let before = places.clone();
+            correlated.apply(&mut places);
+            assert_eq!(before[..2], places[..2]);
+            let score = |place: Place| match place {
+                Place::Share(share) => deviations(share),
+                _ => f64::NAN,
+            };
+            sum += score(places[0]) * score(places[2]);
+        }
+        let found = sum / count as f64;
+        assert!((found - 0.8).abs() < 0.01, "{found}");
+    }
+
+    #[test]
+    fn contradictions_are_found() {
+        let pair = |inputs, coefficient| Correlation {
+            inputs,
+            coefficient,
+        };
+        let all = [pair([0, 1], 0.9), pair([1, 2], 0.9), pair([0, 2], -0.9)];
+        assert!(Correlated::new(3, &all).is_none());
+    }
+
+    #[test]
+    fn verify_one_input_steps_at_a_time_and_stays_on_the_grid() {
+        let (inputs, levels) = (5, 4);
+        for walk in 0..20 {
+            let rows: Vec<Vec<Place>> = (0..6)
+                .map(|step| morris_places(walk * 6 + step, inputs, levels, 3))
+                .collect();
+            for (step, pair) in rows.windows(2).enumerate() {
+                let moved: Vec<usize> =
+                    (0..inputs).filter(|i| pair[0][*i] != pair[1][*i]).collect();
+                let known = Walk::new(walk, inputs, levels, 3).step(step);
+                assert_eq!(moved, [known.0]);
+                assert!((known.1.abs() - 2.0 / 3.0).abs() < 1e-12);
+            }
+            let on_grid = |place: &Place| match place {
+                Along(part) => (part * 3.0 - (part * 3.0).round()).abs() < 1e-12,
+                _ => false,
+            };
+            assert!(rows.iter().flatten().all(on_grid));
+        }
+    }
+}
