@@ -401,8 +401,8 @@ mod tests {
 
     use condyle_io::{
         case::{Axes, LengthUnit},
-        files::{Disk, Files},
         config::DataFile,
+        files::{Disk, Files},
     };
 
     fn pairs(normal: impl Fn(f64, f64) -> Vec3) -> Vec<Pair> {
