@@ -16,12 +16,12 @@ pub const WITHOUT_DATA: &str = "**fails**: its data are not there.";
 pub(crate) const TOP: &str = "\
 # Verification
 
-Whether the equations are solved right: cases whose answer is known, each computed by condyle and held against
-the exact value. Errors are parts of the exact value, in %, unless they have a unit. Where theory says how fast an
-error falls with the mesh or the increment, the order found is held too. Each case has a folder in `verification/`.
+Cases with a known solution, each computed by condyle and compared with the exact value. Errors are relative to the exact
+value, in %, unless they have a unit. Where theory predicts the order at which an error falls with the mesh or the
+increment, the observed order is checked too. Each case has a folder in `verification/`.
 
-This page is written by `cargo run --release -p condyle-verification -- --page`, which fails if a row does not
-hold; `cargo test --release -p condyle-verification` holds all rows, and a name such as `archard` after it picks
+This page is written by `cargo run --release -p condyle-verification -- --page`, which fails if a row exceeds its
+tolerance; `cargo test --release -p condyle-verification` checks all rows, and an argument such as `archard` selects
 cases.
 ";
 
