@@ -2,6 +2,7 @@
 
 mod activities;
 mod added;
+pub mod catalogue;
 mod checkpoint;
 #[cfg(feature = "file-system")]
 mod checksums;

@@ -1,0 +1,116 @@
+//! The catalogue of results: every number of `summary.json`, declared once.
+//!
+//! A [`Scalar`] has a key, a name, a unit (the end of its key), decimals, a description and a definition (its doc
+//! comment), the way its error is found, the joints that have it, and the function that computes it from a
+//! [`FinishedRun`]. One file has one [`Section`]; [`SECTIONS`] lists them all. A new number is one such file and one
+//! line below, or one entry in an existing file. The summary, the terminal, the report, studies and the types of
+//! Python and TypeScript follow from the catalogue.
+//!
+//! A caller picks numbers by what they are for and reads them from a [`Summary`](super::Summary):
+//!
+//! - [`scalars`]: all of them; [`scalar`]: the one with a key;
+//! - [`headlines`]: those in large type;
+//! - [`estimated`]: those with an estimated discretisation error, which studies compare;
+//! - [`outputs`]: the columns of a study's tables;
+//! - `summary.get(&scalar)`, `summary.error_parts(&scalar)`, `law_wear.get(&scalar)`: values.
+//!
+//! ```
+//! use condyle_io::results::catalogue;
+//!
+//! let mass = catalogue::scalar("mass_loss_mg").expect("is in the catalogue");
+//! assert_eq!((mass.label, mass.unit()), ("mass loss", "mg"));
+//! assert_eq!(mass.text(10.909), "10.91");
+//! assert!(catalogue::outputs().any(|output| output.key == mass.key));
+//! ```
+
+mod scalar;
+
+pub use scalar::{ErrorMethod, FinishedRun, Joint, Prominence, Scalar, Section};
+
+scalar::sections! {
+    wear,
+    contact,
+    below_surface,
+    motion,
+    computation,
+}
+
+/// Heading of the section on the computation, whose numbers are no results of the test.
+pub const COMPUTATION: &str = computation::SECTION.heading;
+
+/// All numbers, in the order of `summary.json`.
+pub fn scalars() -> impl Iterator<Item = &'static Scalar> {
+    let all = SECTIONS.iter().flat_map(|section| section.scalars);
+    all.copied()
+}
+
+/// Numbers of the test, without those of the computation.
+pub fn results() -> impl Iterator<Item = &'static Scalar> {
+    let of_test = SECTIONS
+        .iter()
+        .filter(|section| section.heading != COMPUTATION);
+    of_test.flat_map(|section| section.scalars).copied()
+}
+
+/// The number with this key.
+pub fn scalar(key: &str) -> Option<&'static Scalar> {
+    scalars().find(|scalar| scalar.key == key)
+}
+
+/// Numbers in large type.
+pub fn headlines() -> impl Iterator<Item = &'static Scalar> {
+    results().filter(|scalar| scalar.prominence == Prominence::Headline)
+}
+
+/// Numbers with an estimated discretisation error.
+pub fn estimated() -> impl Iterator<Item = &'static Scalar> {
+    results().filter(|scalar| scalar.error == ErrorMethod::Estimated)
+}
+
+/// Numbers that studies keep of every test: those shown on the terminal that every run has.
+pub fn outputs() -> impl Iterator<Item = &'static Scalar> {
+    results().filter(|scalar| scalar.prominence > Prominence::Listed && scalar.is_always_there)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn keys_differ_and_end_in_units_that_are_known() {
+        let keys: BTreeSet<_> = scalars().map(|scalar| scalar.key).collect();
+        assert_eq!(keys.len(), scalars().count());
+        for (key, unit) in [
+            ("mass_loss_mg", "mg"),
+            ("volume_loss_mm3", "mm3"),
+            ("peak_contact_area_mm2", "mm2"),
+            ("backside_lifted_percent", "%"),
+            ("medial_load_share", ""),
+            ("wall_s", "s"),
+        ] {
+            assert_eq!(scalar(key).map(Scalar::unit), Some(unit));
+        }
+    }
+
+    #[test]
+    fn every_number_is_described_and_names_a_cycle_that_there_is() {
+        for each in scalars() {
+            assert!(
+                each.description().ends_with('.'),
+                "{}: {}",
+                each.key,
+                each.description()
+            );
+            assert!(
+                each.cycle_key.is_none_or(|key| scalar(key).is_some()),
+                "{}",
+                each.key
+            );
+        }
+        let mass = &wear::MASS_LOSS_MG;
+        assert_eq!(mass.description(), "Mass worn.");
+        assert!(mass.definition().starts_with("Volume loss, from depth"));
+    }
+}
