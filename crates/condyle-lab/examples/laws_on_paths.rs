@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn on(path: &[Step]) -> OnPath {
     let history = history(path);
     let shared = [(1.0, &history)];
-    let cycle = MeanCycle::of(&shared, 0, 1.0);
+    let cycle = MeanCycle::new(&shared, 0, 1.0);
     let laws = WEAR_LAWS.iter().map(|law| {
         let worn = law.with_defaults().law.wear(&cycle);
         Worn {

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    exponential_step::{counted, left},
-    mean_over_wear::{mean_over_volume, volume_mm3, weight_of_depth},
-    step_record::{Standing, StepRecord, WearStep},
+    rates::{mean_over_volume, volume_mm3, weight_of_depth},
+    step::{StepRecord, StepStart, WearStep},
+    step_rules::{counted, left},
 };
 
 /// Estimated error of a march from the length of its steps alone.
@@ -18,13 +18,13 @@ pub struct AccumulatedError {
 }
 
 impl AccumulatedError {
-    /// With the step that led to `standing` added, now that what a cycle wears at its end is known:
+    /// With the step that led to `start` added, now that what a cycle wears at its end is known:
     /// the trapezoidal rule against what the step took.
-    pub(super) fn after(self, standing: Standing<'_>) -> Self {
-        let Some(last) = standing.last else {
+    pub(super) fn after(self, start: StepStart<'_>) -> Self {
+        let Some(last) = start.last else {
             return self;
         };
-        let rates = standing.rates;
+        let rates = start.rates;
         let mean = (rates.volume_per_cycle_mm3() + last.volume_per_cycle_mm3()) / 2.0;
         let error_mm3 = mean * last.interval - last.volume_mm3();
         Self {
@@ -34,15 +34,15 @@ impl AccumulatedError {
     }
 
     /// With the last step added: what is predicted against what it takes.
-    pub(super) fn with_last(self, standing: Standing<'_>, step: &WearStep) -> Self {
-        let area_mm2 = &standing.rates.area_mm2;
+    pub(super) fn with_last(self, start: StepStart<'_>, step: &WearStep) -> Self {
+        let area_mm2 = &start.rates.area_mm2;
         let predicted_mm3 = volume_mm3(area_mm2, &step.predicted_mm);
-        let error_mm = error_after(standing, step);
+        let error_mm = error_after(start, step);
         Self {
             volume_mm3: self.volume_mm3 + predicted_mm3 - volume_mm3(area_mm2, &step.depth_mm),
             max_depth_mm: mean_over_volume(
                 area_mm2,
-                &deep(standing.worn_mm, &step.depth_mm),
+                &deep(start.worn_mm, &step.depth_mm),
                 &error_mm,
             ),
         }
@@ -50,9 +50,9 @@ impl AccumulatedError {
 }
 
 /// How much deeper the exact march would be at every node after `step`, mm.
-fn error_after(standing: Standing<'_>, step: &WearStep) -> Vec<f64> {
+fn error_after(start: StepStart<'_>, step: &WearStep) -> Vec<f64> {
     let after = |node: usize| {
-        let relaxed = counted(standing.rates, node) * step.interval;
+        let relaxed = counted(start.rates, node) * step.interval;
         step.error_mm[node] * (-relaxed).exp() + step.predicted_mm[node] - step.depth_mm[node]
     };
     (0..step.depth_mm.len()).map(after).collect()
@@ -67,16 +67,16 @@ fn deep(worn_mm: &[f64], more_mm: &[f64]) -> Vec<f64> {
 /// How much deeper the exact march would be at every node by now, mm.
 ///
 /// What the last step should have worn follows from where the femur turned out to sink, by the
-/// equation of [`super::exponential_step`]. By the same equation an error made earlier has faded.
-pub(super) fn accumulated_error_mm(standing: Standing<'_>) -> Vec<f64> {
-    let at = |node: usize| match standing.last {
+/// equation of [`super::step_rules::exponential`]. By the same equation an error made earlier has faded.
+pub(super) fn accumulated_error_mm(start: StepStart<'_>) -> Vec<f64> {
+    let at = |node: usize| match start.last {
         None => 0.0,
         Some(last) => {
-            let rate = standing.rates.depth_per_cycle_mm[node];
-            error_at(last, node, rate, counted(standing.rates, node))
+            let rate = start.rates.depth_per_cycle_mm[node];
+            error_at(last, node, rate, counted(start.rates, node))
         }
     };
-    (0..standing.worn_mm.len()).map(at).collect()
+    (0..start.worn_mm.len()).map(at).collect()
 }
 
 /// The same at a node that relaxes by `counted` a cycle and now wears by `rate`.
@@ -121,8 +121,8 @@ mod tests {
         step.record(rates(3.0, 0.0))
     }
 
-    fn standing<'a>(now: &'a Rates, last: &'a StepRecord) -> Standing<'a> {
-        Standing {
+    fn start<'a>(now: &'a Rates, last: &'a StepRecord) -> StepStart<'a> {
+        StepStart {
             creeps: false,
             rates: now,
             last: Some(last),
@@ -140,9 +140,9 @@ mod tests {
             ..AccumulatedError::default()
         };
         // 2 cycles of (3 + 5)/2 mm, less 6 mm: 2 mm, of 2 mm2; of depth 1.5 mm were lacking before.
-        let standing = standing(&now, &last);
-        assert_eq!(earlier.after(standing).volume_mm3, 1.0 + 2.0 * 2.0);
-        assert_eq!(accumulated_error_mm(standing), [1.5 + 2.0]);
+        let start = start(&now, &last);
+        assert_eq!(earlier.after(start).volume_mm3, 1.0 + 2.0 * 2.0);
+        assert_eq!(accumulated_error_mm(start), [1.5 + 2.0]);
     }
 
     #[test]
@@ -153,7 +153,7 @@ mod tests {
         let last = last(6.0, 0.0);
         let now = rates(3.0 - 6.0 * counted, 2.0 * counted);
         let exact = 3.0 * (1.0 - (-2.0 * counted).exp()) / counted;
-        assert!((accumulated_error_mm(standing(&now, &last))[0] - (exact - 6.0)).abs() < 1e-12);
+        assert!((accumulated_error_mm(start(&now, &last))[0] - (exact - 6.0)).abs() < 1e-12);
     }
 
     #[test]
@@ -161,7 +161,7 @@ mod tests {
         // This step errs by nothing: the rate stays, and so the femur sinks as it wears.
         let relaxation = 0.7;
         let (now, last) = (rates(3.0, relaxation), last(6.0, 1.0));
-        let error_mm = accumulated_error_mm(standing(&now, &last))[0];
+        let error_mm = accumulated_error_mm(start(&now, &last))[0];
         assert!((error_mm - (-2.0 * counted(&now, 0)).exp()).abs() < 1e-12);
     }
 }

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::mean_over_wear::volume_mm3;
+use super::rates::{volume_mm3, worn};
 use crate::wear::{MeanCycle, NamedLaw, NodeWear, WearLaw};
 
 /// What a law would have worn so far, had its wear not moved the surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LawBeside {
+pub struct ComparisonLaw {
     /// The word for the law.
     pub word: String,
     /// Depth at every surface node, mm.
@@ -31,7 +31,7 @@ struct CycleByLaw {
     outside_mm3: Option<f64>,
 }
 
-impl LawBeside {
+impl ComparisonLaw {
     /// A law that has worn nothing yet.
     pub(super) fn new(law: &NamedLaw, node_count: usize) -> Self {
         Self {
@@ -52,7 +52,7 @@ impl LawBeside {
     ///
     /// That is Adams and Bashforth's rule, of second order. It is stable here, since what this law wears
     /// changes no pressure.
-    pub(super) fn wear(
+    pub(super) fn add(
         &mut self,
         law: &dyn WearLaw,
         cycles: &[MeanCycle<'_>],
@@ -93,18 +93,6 @@ impl CycleByLaw {
             depth_mm,
         }
     }
-}
-
-/// What a cycle wears by a law at every node.
-pub(super) fn worn(law: &dyn WearLaw, cycles: &[MeanCycle<'_>]) -> Vec<NodeWear> {
-    let worn = |cycle: &MeanCycle<'_>| {
-        // Most of a surface is never touched.
-        if cycle.sliding_distance_mm == 0.0 {
-            return NodeWear::of_depth(0.0);
-        }
-        law.wear(cycle)
-    };
-    cycles.iter().map(worn).collect()
 }
 
 /// What of these depths is outside of what their law was fitted to, mm3; none where that is not known.
@@ -153,12 +141,12 @@ mod tests {
     fn verify_rates_that_change_evenly_are_summed_exactly() {
         // Archard's rate is r = 2.64e-10 x 10 (6 - n / 1000), n the cycles, from the second interval on.
         let law = WEAR_LAWS[0].with_defaults();
-        let mut beside = LawBeside::new(&law, 1);
-        let add = |beside: &mut LawBeside, pressure_mpa, interval| {
+        let mut beside = ComparisonLaw::new(&law, 1);
+        let add = |beside: &mut ComparisonLaw, pressure_mpa, interval| {
             let history = history(pressure_mpa);
             let shared = [(1.0, &history)];
-            let cycles = [MeanCycle::of(&shared, 0, 2.0)];
-            beside.wear(law.law.as_ref(), &cycles, &[2.0], interval);
+            let cycles = [MeanCycle::new(&shared, 0, 2.0)];
+            beside.add(law.law.as_ref(), &cycles, &[2.0], interval);
         };
         add(&mut beside, 6.0, 1000.0);
         let first = 2.64e-9 * 6.0 * 1000.0;
@@ -174,11 +162,11 @@ mod tests {
     fn volume_outside_is_told_where_a_law_says_what_it_was_fitted_to() {
         let kind = WEAR_LAWS.iter().find(|kind| kind.word == "directional");
         let law = kind.expect("is there").with_defaults();
-        let mut beside = LawBeside::new(&law, 1);
+        let mut beside = ComparisonLaw::new(&law, 1);
         let history = history(6.0);
         let shared = [(1.0, &history)];
-        let cycles = [MeanCycle::of(&shared, 0, 2.0)];
-        beside.wear(law.law.as_ref(), &cycles, &[2.0], 1e6);
+        let cycles = [MeanCycle::new(&shared, 0, 2.0)];
+        beside.add(law.law.as_ref(), &cycles, &[2.0], 1e6);
         assert!(beside.volume_mm3 > 0.0);
         assert_eq!(beside.outside_mm3, Some(beside.volume_mm3));
     }

@@ -46,8 +46,8 @@ struct Side {
 }
 
 impl CreepContact {
-    /// That of one solved cycle of every activity.
-    pub fn of(test: &WearTest, insert: &Insert, cycles: &[Cycle]) -> Self {
+    /// The contact of one solved cycle of every activity.
+    pub fn new(test: &WearTest, insert: &Insert, cycles: &[Cycle]) -> Self {
         let nodes = 0..insert.surface_nodes().len();
         let parts = parts_of_time(test);
         let stiffness = |node| {

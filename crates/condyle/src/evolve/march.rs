@@ -1,80 +1,74 @@
-//! The march over millions of cycles: one solved cycle of every activity, its wear, the new surface, and
-//! again.
+//! The march over millions of cycles: solve one cycle of every activity, wear the insert by an interval of
+//! such cycles, repeat on the new surface.
 
 use std::ops::{ControlFlow, Range};
 
 use super::{
-    Activity, CreepRecord, CreepState, CycleRecord, DepthField, DepthFields, MarchError,
-    MarchState, NodeFields, PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord,
-    UpdateRecord, Updates, WearTest,
-    activity_wear::SharedStep,
-    comparison_laws::{LawBeside, outside_mm3, sum, worn},
+    Activity, CreepRecord, CreepState, DepthField, DepthFields, MarchError, MarchState, NodeFields,
+    PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord, UpdateRecord, Updates,
+    WearTest,
+    activity_wear::wear_of_each,
+    comparison_laws::{ComparisonLaw, outside_mm3, sum},
     creep::CreepStep,
     creep_contact::CreepContact,
-    creep_record::Depths,
     depth::{lost_mm, total_mm},
-    interval::{fixed_interval, shared_out},
-    march_error::WornAndCrept,
-    mean_over_wear::volume_mm3,
+    error::WornAndCrept,
+    next_step::{fixed_interval, next_step, shared_out},
     placement::place,
-    rates::{Rates, Wearing},
-    step::next_step,
-    step_record::{Standing, WearStep},
+    rates::{Rates, mean_cycles, volume_mm3, worn},
+    solved_cycles::SolvedCycles,
+    step::{SolvedStep, StepStart, WearStep},
 };
 use crate::{
     Vec3,
     contact::{
-        Bodies, ContactCache, ContactMemory, ContactModel, ContactState, CycleHistory, Record,
-        UnderSurface,
+        Bodies, ContactCache, ContactMemory, ContactModel, ContactState, CycleHistory, UnderSurface,
     },
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
-    machine::{Chain, Cycle, CycleRow, MachineState, Simulator, SolverCounters, TimeSettings},
+    machine::{Chain, Cycle, MachineState, Simulator, SolverCounters, TimeSettings},
     spatial::Pose,
-    wear::{MeanCycle, NodeWear, SharedCycle},
 };
 
-/// The first and the last cycle, whose motions are kept, repeat themselves within this part of the
-/// tolerances. Of the others only the wear counts, and it errs a hundred times less than motions.
+/// The first and the last cycle, whose motions are kept, repeat within this part of the tolerances. The
+/// others count by their wear alone, which errs a hundred times less than the motions.
 const KEPT: f64 = 0.1;
-/// An update that is to reach this part of the cycles is the last: intervals do not sum up exactly.
+/// An update that will reach this part of the cycles is the last: intervals do not add up exactly.
 const LAST: f64 = 1.0 - 1e-9;
 
-/// A wear test on its way.
+/// A wear test in progress.
 ///
-/// The test stays as it is; what wears is the march's own insert.
+/// The [`WearTest`] is never changed: the march wears an insert of its own.
 pub struct March {
     test: WearTest,
-    /// The femur made ready for the shares of the insert.
+    /// The femur prepared for the shares of the insert.
     femur: FemoralSurface,
     /// The insert as worn so far.
     insert: Insert,
-    /// One an activity.
+    /// One per activity.
     chains: Vec<Chain>,
     state: MarchState,
-    /// Those of the insert before the first update.
+    /// Fields of the insert before the first update.
     unworn_fields: NodeFields,
-    /// The histories of the last cycles, for their memory.
+    /// Histories of the last cycles; the next ones reuse their memory.
     spent: Vec<CycleHistory>,
-    /// What those cycles pressed on; none before the first, or after an update that was stopped.
+    /// The surface of the last cycles; none before the first, or after an update that was stopped.
     pressed: Option<Pressed>,
-    /// What makes the contact of the next update quicker.
+    /// Speeds up the contact of the next update.
     cache: ContactCache,
 }
 
-/// What the last cycles pressed on.
+/// The surface that the last cycles pressed on.
 struct Pressed {
     surface: ArticulatingSurface,
-    /// Where the moments of each increment are recorded, of every activity.
+    /// The recorded moments of each increment, for every activity.
     instants: Vec<Vec<Range<usize>>>,
 }
 
-/// One solved cycle of every activity, and the surface that it pressed on.
-struct Solved {
-    surface: ArticulatingSurface,
-    cycles: Vec<Cycle>,
-    counters: SolverCounters,
-    /// What the contact knew after them.
-    memory: ContactMemory,
+/// The insert before a step, and the worst element after it.
+struct Lowered {
+    mesh_nodes: Vec<Vec3>,
+    depths: DepthFields,
+    worst_quality: f64,
 }
 
 impl March {
@@ -106,14 +100,14 @@ impl March {
         Ok(Self::from_parts(test, femur, state))
     }
 
-    /// Goes on from a state of the same test.
+    /// Continues from a state of the same test.
     pub fn resume(test: WearTest, state: MarchState) -> Self {
         let femur = prepared(&test);
         Self::from_parts(test, femur, state)
     }
 
-    /// A test of the same bodies and as many activities as that of a march, from a step on that march's way
-    /// as if it were the first.
+    /// Starts a test at a step of another march, with the same bodies and number of activities, as if that step
+    /// were the first.
     pub fn from_snapshot(test: WearTest, snapshot: &Snapshot, zero_mm: Vec3) -> Self {
         let state = MarchState::before(
             snapshot.mesh_nodes.clone(),
@@ -125,8 +119,9 @@ impl March {
         Self::resume(test, state)
     }
 
-    /// The same march with its machines in the middle of a motion, such as that of another march;
-    /// the next cycles repeat themselves sooner, the nearer that is to their own.
+    /// Replaces the machine states by those of a motion in progress, such as that of another march.
+    ///
+    /// The nearer it is to this march's own motion, the sooner the next cycles repeat.
     pub fn in_motion(mut self, machines: &[MachineState]) -> Self {
         for (activity, machine) in self.state.activities.iter_mut().zip(machines) {
             activity.machine = *machine;
@@ -136,8 +131,9 @@ impl March {
 
     fn from_parts(test: WearTest, femur: FemoralSurface, mut state: MarchState) -> Self {
         if state.updates.is_empty() {
-            let beside = |law| LawBeside::new(law, test.insert.surface_nodes().len());
-            state.comparison_laws = test.comparison_laws.iter().map(beside).collect();
+            let nodes = test.insert.surface_nodes().len();
+            let laws = test.comparison_laws.iter();
+            state.comparison_laws = laws.map(|law| ComparisonLaw::new(law, nodes)).collect();
         }
         let mut insert = Insert::clone(&test.insert);
         insert.restore(state.mesh_nodes.clone(), &state.depths.total_mm());
@@ -157,22 +153,23 @@ impl March {
         }
     }
 
-    /// The test, its insert unworn.
+    /// Returns the test, its insert unworn.
     pub fn test(&self) -> &WearTest {
         &self.test
     }
 
-    /// The insert as worn so far.
+    /// Returns the insert as worn so far.
     pub fn insert(&self) -> &Insert {
         &self.insert
     }
 
-    /// The femoral surface made ready for the shares of the insert.
+    /// Returns the femoral surface prepared for the shares of the insert.
     pub fn femur(&self) -> &FemoralSurface {
         &self.femur
     }
 
-    /// The bodies as they are now, for a contact of one's own; `surface` is that of [`March::insert`].
+    /// Returns the bodies as they are now, for a contact outside the march; `surface` is that of
+    /// [`March::insert`].
     pub fn bodies<'a>(&'a self, surface: &'a ArticulatingSurface) -> Bodies<'a> {
         Bodies {
             femur: &self.femur,
@@ -181,17 +178,17 @@ impl March {
         }
     }
 
-    /// All that is needed to go on.
+    /// Returns everything that [`March::resume`] needs.
     pub fn state(&self) -> &MarchState {
         &self.state
     }
 
-    /// Results of the last update at every surface node; before the first, of the unworn insert.
+    /// Returns the results of the last update at every surface node; before the first, of the unworn insert.
     pub fn fields(&self) -> &NodeFields {
         self.state.fields.as_ref().unwrap_or(&self.unworn_fields)
     }
 
-    /// The cycle of the first activity that was solved last; none before the first update of this march.
+    /// Returns the last solved cycle of the first activity; `None` before the first update of this march.
     pub fn last_cycle(&self) -> Option<SolvedCycle<'_>> {
         let pressed = self.pressed.as_ref()?;
         let (_, last) = self.state.activities[0].first_and_last.as_ref()?;
@@ -204,63 +201,119 @@ impl March {
         })
     }
 
-    /// Where the femur is in the insert frame with the joints of the first activity at `positions`,
+    /// Returns the pose of the femur in the insert frame with the joints of the first activity at `positions`,
     /// mm and rad.
     pub fn pose_at(&self, positions: &[f64; 6]) -> Pose {
         self.chains[0].at(positions).pose
     }
 
-    /// Where the femur settled in the insert frame: there AP, ML and IS read zero.
+    /// Returns the settled pose of the femur in the insert frame, at which AP, ML and IS read zero.
     pub fn neutral_pose(&self) -> Pose {
         self.pose_at(&self.state.settled)
     }
 
-    /// Cycles done so far.
+    /// Returns the number of cycles done so far.
     pub fn cycles(&self) -> f64 {
         self.state.updates.last().map_or(0.0, |last| last.cycles)
     }
 
-    /// Whether all cycles are done.
+    /// Returns whether all cycles are done.
     pub fn is_done(&self) -> bool {
         self.cycles() >= self.test.schedule.cycles
     }
 
-    /// Solves the next cycle of every activity that repeats itself, and wears the insert by an interval of
-    /// them.
-    ///
-    /// `watch` is told of every increment, and may stop the march; then the answer is a break, the update
-    /// begun is lost, and those before are kept.
+    /// Runs the test to its end.
     ///
     /// # Errors
-    /// A cycle that cannot be solved, an insert worn through, or elements turned inside out.
+    /// See [`March::update`].
+    pub fn run(&mut self) -> Result<(), MarchError> {
+        while !self.is_done() {
+            let _ = self.update(&mut |_| ControlFlow::Continue(()))?;
+        }
+        Ok(())
+    }
+
+    /// Solves a repeating cycle of every activity, and wears the insert by an interval of such cycles.
+    ///
+    /// `watch` is called after every increment and may stop the march; the result is then a break, the
+    /// update in progress is lost, and those before are kept.
+    ///
+    /// # Errors
+    /// A cycle that cannot be solved, an insert worn through, or inverted elements.
     pub fn update(
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), &UpdateRecord>, MarchError> {
-        let spent = std::mem::take(&mut self.spent);
-        self.pressed = None;
-        let cache = std::mem::take(&mut self.cache);
-        match self.solve(spent, cache, watch)? {
-            ControlFlow::Break(()) => Ok(ControlFlow::Break(())),
-            ControlFlow::Continue(solved) => self.wear(solved).map(ControlFlow::Continue),
+        let ControlFlow::Continue(solved) = self.solve(watch)? else {
+            return Ok(ControlFlow::Break(()));
+        };
+        self.check_contact(&solved)?;
+
+        // The wear of one cycle, and the interval over which it can be extrapolated.
+        let shared = solved.with_shares(&self.test.activities);
+        let mean = mean_cycles(&shared, &solved.surface);
+        let worn = worn(self.test.wear.as_ref(), &mean);
+        let contact = self.test.contact.as_ref();
+        let rates = Rates::new(contact, &self.insert, &solved.surface, &mean, &worn);
+        let start = self.step_start(&rates);
+        let step = next_step(start, &self.test.schedule);
+        let settled_error = self.state.settled_error.after(start);
+        let step_error = settled_error.with_last(start, &step);
+
+        // The new surface. Creep is computed on a copy: an update that fails leaves the state as it was.
+        let (creep, crept) = self.creep(&solved, &step).unzip();
+        let mut taken = vec![DepthField::wear(step.depth_mm.clone())];
+        taken.extend(crept);
+        let (under_surface, under_record) = self.under_surface(&solved).unzip();
+        let before = self.lower(&solved.surface, &taken)?;
+
+        // The results.
+        if let Some(creep) = creep {
+            self.state.creep = creep;
         }
+        (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
+        let record = UpdateRecord {
+            under_surface: under_record,
+            ..self.record(
+                &solved,
+                &step,
+                &taken,
+                &rates.area_mm2,
+                before.worst_quality,
+            )
+        };
+        self.state.updates.push(record);
+        self.state.under_surface = under_surface;
+        let interval = SolvedStep {
+            surface: &solved.surface,
+            shared: &shared,
+            mean: &mean,
+            worn: &worn,
+            rates: &rates,
+            step: &step,
+        };
+        self.add_interval(&interval, &solved.cycles);
+        self.remember(solved, step, rates, before);
+        let last = self.state.updates.len() - 1;
+        Ok(ControlFlow::Continue(&self.state.updates[last]))
     }
 
-    /// One cycle of every activity that repeats itself, the geometry held still.
+    /// Solves one repeating cycle of every activity with the geometry held still.
     fn solve(
-        &self,
-        mut spent: Vec<CycleHistory>,
-        cache: ContactCache,
+        &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<ControlFlow<(), Solved>, MarchError> {
+    ) -> Result<ControlFlow<(), SolvedCycles>, MarchError> {
+        let mut spent = std::mem::take(&mut self.spent);
+        // A march that was stopped has given its histories away.
+        spent.resize_with(self.test.activities.len(), CycleHistory::default);
+        self.pressed = None;
+        let cache = std::mem::take(&mut self.cache);
         let surface = self.insert.surface();
         let state = self.state.contact.clone();
         let memory = ContactMemory { state, cache };
         let mut contact = self.test.contact.contact(self.bodies(&surface), memory);
         let mut counters = self.state.counters;
         let mut cycles = Vec::with_capacity(self.test.activities.len());
-        // A march that was stopped has given its histories away.
-        spent.resize_with(self.test.activities.len(), CycleHistory::default);
         for (number, spent) in spent.into_iter().enumerate() {
             let solved =
                 self.solve_activity(number, contact.as_mut(), spent, &mut counters, watch)?;
@@ -270,7 +323,7 @@ impl March {
             cycles.push(cycle);
         }
         let memory = contact.into_memory();
-        Ok(ControlFlow::Continue(Solved {
+        Ok(ControlFlow::Continue(SolvedCycles {
             surface,
             cycles,
             counters,
@@ -278,7 +331,7 @@ impl March {
         }))
     }
 
-    /// A cycle of one activity that repeats itself, on a contact that the others share.
+    /// Solves a repeating cycle of one activity on the contact that all activities share.
     fn solve_activity(
         &self,
         number: usize,
@@ -289,7 +342,7 @@ impl March {
     ) -> Result<ControlFlow<(), Cycle>, MarchError> {
         let update = self.state.updates.len() + 1;
         let (cycles, time) = (self.cycles(), self.time());
-        let machine = &self.test.activities[number].machine;
+        let Activity { name, machine, .. } = &self.test.activities[number];
         let own = &self.state.activities[number];
         let mut simulator = Simulator::new(machine, &self.chains[number], contact, &time);
         simulator.warm_starts.clone_from(&own.warm_starts);
@@ -306,7 +359,6 @@ impl March {
             })
         };
         let solved = simulator.cycle(&own.machine, counters, &mut watch_cycle);
-        let name = &self.test.activities[number].name;
         solved.map_err(|source| MarchError::Cycle {
             update,
             cycles,
@@ -315,281 +367,7 @@ impl March {
         })
     }
 
-    /// Wears the insert by an interval of solved cycles.
-    fn wear(&mut self, solved: Solved) -> Result<&UpdateRecord, MarchError> {
-        self.check_contact(&solved)?;
-        let cycles_before = self.cycles();
-        let shared = with_shares(&self.test, &solved.cycles);
-        let cycles = mean_cycles(&shared, &solved.surface);
-        let worn = worn(self.test.wear.as_ref(), &cycles);
-        let rates = self.rates(&solved.surface, &cycles, &worn);
-        let standing = self.standing(&rates);
-        let step = next_step(standing, &self.test.schedule);
-        let settled_error = self.state.settled_error.after(standing);
-        let step_error = settled_error.with_last(standing, &step);
-        let mut taken = vec![DepthField::wear(step.depth_mm.clone())];
-        let mut creep = self.state.creep.clone();
-        taken.extend(self.crept(&mut creep, &solved, &step));
-        let (under, under_record) = self.under_surface(&solved).unzip();
-        let before = self.lower(&solved.surface, &taken)?;
-        self.state.creep = creep;
-        (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
-        let lost_mm3 = volume_mm3(&rates.area_mm2, &lost_mm(&taken, rates.area_mm2.len()));
-        let record = self.record(
-            &solved.cycles,
-            step.cycles_after,
-            lost_mm3,
-            self.creep_record(&taken, &rates.area_mm2),
-            before.worst_quality,
-        );
-        let record = UpdateRecord {
-            under_surface: under_record,
-            ..record
-        };
-        self.state.under_surface = under;
-        self.state.updates.push(record);
-        self.state.counters = solved.counters;
-        let outside_mm3 = outside_mm3(&worn, &rates.area_mm2, &step.depth_mm);
-        self.state.outside_mm3 = sum(self.state.outside_mm3, outside_mm3);
-        self.wear_by_laws_beside(&cycles, &rates.area_mm2, step.interval);
-        self.add_wear_of_activities(&solved, &shared, &cycles, &rates, &step);
-        let fields = NodeFields::of(
-            &cycles,
-            &solved.surface,
-            &rates,
-            &self.insert,
-            &self.state.depths,
-        );
-        self.keep_fields(fields);
-        let snapshot = Snapshot {
-            update: self.state.updates.len() - 1,
-            step: step.record(rates),
-            mesh_nodes: before.mesh_nodes,
-            depths: before.depths,
-            contact: std::mem::replace(&mut self.state.contact, solved.memory.state),
-            machines: solved.cycles.iter().map(|cycle| cycle.end).collect(),
-        };
-        let part = cycles_before / self.test.schedule.cycles;
-        self.state.pass(part, snapshot);
-        self.cache = solved.memory.cache;
-        self.keep(solved.cycles, solved.surface, cycles_before);
-        let last = self.state.updates.len() - 1;
-        Ok(&self.state.updates[last])
-    }
-
-    /// Where the march stands before a step, and what a cycle wears there.
-    fn standing<'a>(&'a self, rates: &'a Rates) -> Standing<'a> {
-        Standing {
-            rates,
-            last: self.state.last_step.as_ref(),
-            worn_mm: self.state.depths.wear_mm(),
-            cycles: self.cycles(),
-            updates: self.state.updates.len(),
-            creeps: self.test.creep.is_some(),
-        }
-    }
-
-    /// An error where no activity brings the bodies together.
-    fn check_contact(&self, solved: &Solved) -> Result<(), MarchError> {
-        let rows = || solved.cycles.iter().flat_map(|cycle| &cycle.rows);
-        if rows().any(|row| row.axial_force_n != 0.0) {
-            return Ok(());
-        }
-        Err(MarchError::lost_contact(
-            self.state.updates.len() + 1,
-            &self.test,
-            &solved.cycles[0].end,
-            solved.counters.added_inertia,
-        ))
-    }
-
-    fn rates(
-        &self,
-        surface: &ArticulatingSurface,
-        cycles: &[MeanCycle<'_>],
-        worn: &[NodeWear],
-    ) -> Rates {
-        let wearing = Wearing {
-            contact: self.test.contact.as_ref(),
-            insert: &self.insert,
-            surface,
-        };
-        Rates::of(&wearing, cycles, worn)
-    }
-
-    /// What is below the surface at the increment with the highest pressure, if the insert is a solid.
-    fn under_surface(&self, solved: &Solved) -> Option<(UnderSurface, UnderSurfaceRecord)> {
-        let (activity, row) = highest(&solved.cycles)?;
-        let cycle = &solved.cycles[activity];
-        let surface = &solved.surface;
-        let load = |record: &Record| {
-            let area_mm2 = surface.shares[record.node as usize].area_mm2;
-            (record.node, record.moment.pressure_mpa * area_mm2)
-        };
-        let touched = cycle.history.instant(&cycle.instants[row]).iter();
-        let loads: Vec<(u32, f64)> = touched.map(load).collect();
-        let contact = self.test.contact.as_ref();
-        let under = contact.under_surface(&self.insert, &solved.memory.state, activity, &loads)?;
-        let place = (activity, cycle.rows[row].percent);
-        let record = UnderSurfaceRecord::of(&under, &self.insert, surface, place);
-        Some((under, record))
-    }
-
-    /// What the laws beside that of the test would have worn in an interval of these cycles.
-    fn wear_by_laws_beside(&mut self, cycles: &[MeanCycle<'_>], area_mm2: &[f64], interval: f64) {
-        let laws = self.test.comparison_laws.iter();
-        for (law, beside) in laws.zip(&mut self.state.comparison_laws) {
-            beside.wear(law.law.as_ref(), cycles, area_mm2, interval);
-        }
-    }
-
-    /// Adds what each of several activities wore in a step.
-    fn add_wear_of_activities(
-        &mut self,
-        solved: &Solved,
-        shared: &[SharedCycle<'_>],
-        mean: &[MeanCycle<'_>],
-        rates: &Rates,
-        step: &WearStep,
-    ) {
-        let step = SharedStep {
-            law: self.test.wear.as_ref(),
-            surface: &solved.surface,
-            mean,
-            rates,
-            step,
-        };
-        let worn = step.of_each(shared, &solved.cycles);
-        for (activity, worn) in self.state.activities.iter_mut().zip(worn) {
-            activity.wear = activity.wear.and(worn);
-        }
-    }
-
-    fn keep_fields(&mut self, fields: NodeFields) {
-        if self.state.fields.is_none() {
-            let pressures_mpa = &fields.peak_pressure_mpa;
-            self.state.first_pressure_mpa.clone_from(pressures_mpa);
-        }
-        self.state.fields = Some(fields);
-    }
-
-    /// What creep takes by the end of a step, if the insert creeps.
-    fn crept(
-        &self,
-        creep: &mut CreepState,
-        solved: &Solved,
-        wear: &WearStep,
-    ) -> Option<DepthField> {
-        const SECONDS_PER_MINUTE: f64 = 60.0;
-        let law = self.test.creep.as_ref()?;
-        let step = CreepStep {
-            law,
-            thickness_mm: self.test.insert.thickness_mm(),
-            worn_mm: &wear.depth_mm,
-            contact: &CreepContact::of(&self.test, &self.insert, &solved.cycles),
-            end_min: wear.cycles_after * self.test.cycle_seconds() / SECONDS_PER_MINUTE,
-        };
-        Some(DepthField::creep(creep.step(&step)))
-    }
-
-    /// What creep has come to after a step that took this.
-    fn creep_record(&self, taken: &[DepthField], area_mm2: &[f64]) -> Option<CreepRecord> {
-        let law = self.test.creep.as_ref()?;
-        let crept = taken.iter().find(|field| field.name == DepthField::CREEP)?;
-        let last = self.state.updates.last().and_then(|last| last.creep);
-        let before_mm3 = last.map_or(0.0, |last| last.volume_mm3);
-        let depths = Depths {
-            wear_mm: self.state.depths.wear_mm(),
-            creep_mm: self.state.depths.creep_mm()?,
-            left_mm: &self.state.creep.left_mm(law),
-        };
-        Some(depths.record(before_mm3 + volume_mm3(area_mm2, &crept.depth_mm)))
-    }
-
-    /// Takes the surface down by what a step takes; how it was before.
-    fn lower(
-        &mut self,
-        surface: &ArticulatingSurface,
-        taken: &[DepthField],
-    ) -> Result<Before, MarchError> {
-        let down_mm = total_mm(taken, surface.positions.len());
-        let mut nodes = down_mm.iter().zip(self.insert.thickness_mm());
-        if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
-            let place = surface.positions[node];
-            return Err(MarchError::WornThrough {
-                update: self.state.updates.len() + 1,
-                x: place.x,
-                z: place.z,
-                by: self.through_at(node, taken),
-            });
-        }
-        self.insert.wear_down(surface, &down_mm);
-        let worst_quality = self.insert.mesh().worst_quality();
-        if worst_quality <= 0.0 {
-            let update = self.state.updates.len() + 1;
-            return Err(MarchError::inverted_elements(update, self.insert.mesh()));
-        }
-        let depths = self.state.depths.clone();
-        self.state.depths.add(taken);
-        let nodes = self.insert.mesh().nodes.clone();
-        Ok(Before {
-            mesh_nodes: std::mem::replace(&mut self.state.mesh_nodes, nodes),
-            depths,
-            worst_quality,
-        })
-    }
-
-    /// What has worn and crept through at a node, if the insert creeps.
-    fn through_at(&self, node: usize, taken: &[DepthField]) -> Option<WornAndCrept> {
-        let crept = taken.iter().find(|field| field.name == DepthField::CREEP)?;
-        let before_mm = self
-            .state
-            .depths
-            .creep_mm()
-            .map_or(0.0, |creep| creep[node]);
-        Some(WornAndCrept {
-            wear_mm: self.state.depths.wear_mm()[node] + taken[0].depth_mm[node],
-            creep_mm: before_mm + crept.depth_mm[node],
-        })
-    }
-
-    /// What the update that has just taken `lost_mm3` off the insert found.
-    fn record(
-        &self,
-        cycles: &[Cycle],
-        cycles_after: f64,
-        lost_mm3: f64,
-        creep: Option<CreepRecord>,
-        worst_quality: f64,
-    ) -> UpdateRecord {
-        let last = self.state.updates.last();
-        let volume_loss_mm3 = lost_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
-        let most = |value| {
-            cycles
-                .iter()
-                .map(|cycle| cycle.most(value))
-                .fold(0.0, f64::max)
-        };
-        let solved: usize = cycles.iter().map(|cycle| cycle.increments_solved).sum();
-        UpdateRecord {
-            cycles: cycles_after,
-            volume_loss_mm3,
-            volume_loss_mesh_mm3: self.test.insert.volume_mm3()
-                - self.insert.volume_mm3()
-                - creep.map_or(0.0, |creep| creep.volume_mm3),
-            mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
-            max_depth_mm: largest(self.state.depths.wear_mm()),
-            peak_pressure_mpa: most(|row| row.peak_pressure_mpa),
-            peak_contact_area_mm2: most(|row| row.contact_area_mm2),
-            cycles_solved: solved as f64 / self.test.time.increments as f64,
-            repeats: cycles.iter().all(|cycle| cycle.repeats),
-            worst_quality,
-            creep,
-            under_surface: None,
-        }
-    }
-
-    /// How nearly the next cycle repeats itself.
+    /// How nearly the next cycle must repeat.
     fn time(&self) -> TimeSettings {
         let time = self.test.time;
         let is_last = self.cycles() + self.likely_interval() >= LAST * self.test.schedule.cycles;
@@ -599,7 +377,7 @@ impl March {
         time
     }
 
-    /// Cycles that the next step will likely take.
+    /// The cycles that the next step will likely take.
     fn likely_interval(&self) -> f64 {
         let schedule = &self.test.schedule;
         let last = self.state.last_step.as_ref().map(|last| last.interval);
@@ -613,74 +391,208 @@ impl March {
         }
     }
 
-    fn keep(&mut self, solved: Vec<Cycle>, surface: ArticulatingSurface, cycles: f64) {
-        let activities = self.state.activities.iter_mut();
-        let kept = activities.zip(solved).map(|(activity, cycle)| {
-            activity.machine = cycle.end;
-            activity.warm_starts = cycle.warm_starts;
-            remember(&mut activity.first_and_last, cycles, cycle.rows);
-            (cycle.history, cycle.instants)
+    /// Fails where no activity brings the bodies together.
+    fn check_contact(&self, solved: &SolvedCycles) -> Result<(), MarchError> {
+        if solved.touch() {
+            return Ok(());
+        }
+        Err(MarchError::lost_contact(
+            self.state.updates.len() + 1,
+            &self.test,
+            &solved.cycles[0].end,
+            solved.counters.added_inertia,
+        ))
+    }
+
+    fn step_start<'a>(&'a self, rates: &'a Rates) -> StepStart<'a> {
+        StepStart {
+            rates,
+            last: self.state.last_step.as_ref(),
+            worn_mm: self.state.depths.wear_mm(),
+            cycles: self.cycles(),
+            updates: self.state.updates.len(),
+            creeps: self.test.creep.is_some(),
+        }
+    }
+
+    /// The creep by the end of a step, and its memory then, if the insert creeps.
+    fn creep(&self, solved: &SolvedCycles, wear: &WearStep) -> Option<(CreepState, DepthField)> {
+        const SECONDS_PER_MINUTE: f64 = 60.0;
+        let law = self.test.creep.as_ref()?;
+        let mut creep = self.state.creep.clone();
+        let crept_mm = creep.step(&CreepStep {
+            law,
+            thickness_mm: self.test.insert.thickness_mm(),
+            worn_mm: &wear.depth_mm,
+            contact: &CreepContact::new(&self.test, &self.insert, &solved.cycles),
+            end_min: wear.cycles_after * self.test.cycle_seconds() / SECONDS_PER_MINUTE,
         });
+        Some((creep, DepthField::creep(crept_mm)))
+    }
+
+    /// The stress below the surface at the increment with the highest pressure, if the insert is a solid.
+    fn under_surface(&self, solved: &SolvedCycles) -> Option<(UnderSurface, UnderSurfaceRecord)> {
+        let (activity, row) = solved.highest_pressure()?;
+        let loads_n = solved.loads_n(activity, row);
+        let (contact, state) = (self.test.contact.as_ref(), &solved.memory.state);
+        let under = contact.under_surface(&self.insert, state, activity, &loads_n)?;
+        let place = (activity, solved.cycles[activity].rows[row].percent);
+        let record = UnderSurfaceRecord::new(&under, &self.insert, &solved.surface, place);
+        Some((under, record))
+    }
+
+    /// Lowers the surface by the depths of a step.
+    fn lower(
+        &mut self,
+        surface: &ArticulatingSurface,
+        taken: &[DepthField],
+    ) -> Result<Lowered, MarchError> {
+        let update = self.state.updates.len() + 1;
+        let down_mm = total_mm(taken, surface.positions.len());
+        let mut nodes = down_mm.iter().zip(self.insert.thickness_mm());
+        if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
+            let place = surface.positions[node];
+            return Err(MarchError::WornThrough {
+                update,
+                x: place.x,
+                z: place.z,
+                by: self.through_at(node, taken),
+            });
+        }
+        self.insert.wear_down(surface, &down_mm);
+        let worst_quality = self.insert.mesh().worst_quality();
+        if worst_quality <= 0.0 {
+            return Err(MarchError::inverted_elements(update, self.insert.mesh()));
+        }
+        let depths = self.state.depths.clone();
+        self.state.depths.add(taken);
+        let nodes = self.insert.mesh().nodes.clone();
+        Ok(Lowered {
+            mesh_nodes: std::mem::replace(&mut self.state.mesh_nodes, nodes),
+            depths,
+            worst_quality,
+        })
+    }
+
+    /// Wear and creep at a node that is worn through, if the insert creeps.
+    fn through_at(&self, node: usize, taken: &[DepthField]) -> Option<WornAndCrept> {
+        let crept = taken.iter().find(|field| field.name == DepthField::CREEP)?;
+        let before = self.state.depths.creep_mm();
+        Some(WornAndCrept {
+            wear_mm: self.state.depths.wear_mm()[node] + taken[0].depth_mm[node],
+            creep_mm: before.map_or(0.0, |creep_mm| creep_mm[node]) + crept.depth_mm[node],
+        })
+    }
+
+    /// The results of an update, after the insert has been lowered by `taken`.
+    fn record(
+        &self,
+        solved: &SolvedCycles,
+        step: &WearStep,
+        taken: &[DepthField],
+        area_mm2: &[f64],
+        worst_quality: f64,
+    ) -> UpdateRecord {
+        let last = self.state.updates.last();
+        let lost_mm3 = volume_mm3(area_mm2, &lost_mm(taken, area_mm2.len()));
+        let volume_loss_mm3 = lost_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
+        let creep = self.creep_record(taken, area_mm2);
+        let cycles = solved.cycles.iter();
+        let increments: usize = cycles.clone().map(|cycle| cycle.increments_solved).sum();
+        UpdateRecord {
+            cycles: step.cycles_after,
+            volume_loss_mm3,
+            volume_loss_mesh_mm3: self.test.insert.volume_mm3()
+                - self.insert.volume_mm3()
+                - creep.map_or(0.0, |creep| creep.volume_mm3),
+            mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
+            max_depth_mm: self
+                .state
+                .depths
+                .wear_mm()
+                .iter()
+                .copied()
+                .fold(0.0, f64::max),
+            peak_pressure_mpa: solved.max(|row| row.peak_pressure_mpa),
+            peak_contact_area_mm2: solved.max(|row| row.contact_area_mm2),
+            cycles_solved: increments as f64 / self.test.time.increments as f64,
+            repeats: cycles.clone().all(|cycle| cycle.repeats),
+            worst_quality,
+            creep,
+            under_surface: None,
+        }
+    }
+
+    /// Creep after a step that took these depths.
+    fn creep_record(&self, taken: &[DepthField], area_mm2: &[f64]) -> Option<CreepRecord> {
+        let law = self.test.creep.as_ref()?;
+        let crept = taken.iter().find(|field| field.name == DepthField::CREEP)?;
+        let last = self.state.updates.last().and_then(|last| last.creep);
+        let before_mm3 = last.map_or(0.0, |last| last.volume_mm3);
+        Some(CreepRecord::new(
+            before_mm3 + volume_mm3(area_mm2, &crept.depth_mm),
+            self.state.depths.wear_mm(),
+            self.state.depths.creep_mm()?,
+            &self.state.creep.left_mm(law),
+        ))
+    }
+
+    /// Adds an interval to the sums over the test, and keeps its fields.
+    fn add_interval(&mut self, interval: &SolvedStep<'_>, cycles: &[Cycle]) {
+        let (law, state) = (self.test.wear.as_ref(), &mut self.state);
+        let area_mm2 = &interval.rates.area_mm2;
+        let outside_mm3 = outside_mm3(interval.worn, area_mm2, &interval.step.depth_mm);
+        state.outside_mm3 = sum(state.outside_mm3, outside_mm3);
+        let others = self.test.comparison_laws.iter();
+        for (law, worn) in others.zip(&mut state.comparison_laws) {
+            worn.add(
+                law.law.as_ref(),
+                interval.mean,
+                area_mm2,
+                interval.step.interval,
+            );
+        }
+        let worn = wear_of_each(law, interval, cycles);
+        for (activity, worn) in state.activities.iter_mut().zip(worn) {
+            activity.wear = activity.wear.and(worn);
+        }
+        let fields = NodeFields::new(interval, &self.insert, &state.depths);
+        if state.fields.is_none() {
+            let pressures_mpa = &fields.peak_pressure_mpa;
+            state.first_pressure_mpa.clone_from(pressures_mpa);
+        }
+        state.fields = Some(fields);
+    }
+
+    /// Keeps what the next update and a resumed march need of this one.
+    fn remember(&mut self, solved: SolvedCycles, step: WearStep, rates: Rates, before: Lowered) {
+        let update = self.state.updates.len() - 1;
+        let cycles_before = self.state.cycles_before(update);
+        self.state.counters = solved.counters;
+        let snapshot = Snapshot {
+            update,
+            step: step.record(rates),
+            mesh_nodes: before.mesh_nodes,
+            depths: before.depths,
+            contact: std::mem::replace(&mut self.state.contact, solved.memory.state),
+            machines: solved.cycles.iter().map(|cycle| cycle.end).collect(),
+        };
+        self.state
+            .pass(cycles_before / self.test.schedule.cycles, snapshot);
+        self.cache = solved.memory.cache;
+        let activities = self.state.activities.iter_mut().zip(solved.cycles);
+        let kept = activities.map(|(activity, cycle)| activity.keep(cycles_before, cycle));
         let (spent, instants) = kept.unzip();
         self.spent = spent;
-        self.pressed = Some(Pressed { surface, instants });
+        self.pressed = Some(Pressed {
+            surface: solved.surface,
+            instants,
+        });
     }
 }
 
-/// What a step began with, and the worst element that it left.
-struct Before {
-    mesh_nodes: Vec<Vec3>,
-    depths: DepthFields,
-    worst_quality: f64,
-}
-
-/// Remembers the motions of a cycle as the last ones, and as the first ones too if they are.
-fn remember(
-    first_and_last: &mut Option<(CycleRecord, CycleRecord)>,
-    cycles: f64,
-    rows: Vec<CycleRow>,
-) {
-    let last = CycleRecord { cycles, rows };
-    let first = first_and_last.take().map(|(first, _)| first);
-    *first_and_last = Some((first.unwrap_or_else(|| last.clone()), last));
-}
-
-/// The activity and the row of the highest pressure of all cycles, the first of them.
-fn highest(cycles: &[Cycle]) -> Option<(usize, usize)> {
-    let rows = cycles.iter().enumerate().flat_map(|(activity, cycle)| {
-        let rows = cycle.rows.iter().enumerate();
-        rows.map(move |(row, own)| ((activity, row), own.peak_pressure_mpa))
-    });
-    let higher = |most: ((usize, usize), f64), next: ((usize, usize), f64)| {
-        if next.1 > most.1 { next } else { most }
-    };
-    rows.reduce(higher).map(|(place, _)| place)
-}
-
-/// The history of one cycle of every activity, with the activity's share.
-fn with_shares<'a>(test: &WearTest, cycles: &'a [Cycle]) -> Vec<SharedCycle<'a>> {
-    let histories = cycles.iter().map(|cycle| &cycle.history);
-    let shares = test.activities.iter().map(|activity| activity.share);
-    shares.zip(histories).collect()
-}
-
-/// What every node of the surface went through.
-fn mean_cycles<'a>(
-    cycles: &'a [SharedCycle<'a>],
-    surface: &ArticulatingSurface,
-) -> Vec<MeanCycle<'a>> {
-    let shares = surface.shares.iter().enumerate();
-    shares
-        .map(|(node, share)| MeanCycle::of(cycles, node, share.area_mm2))
-        .collect()
-}
-
-/// The femur of a test made ready for the shares of its insert.
+/// The femur of a test prepared for the shares of its insert.
 fn prepared(test: &WearTest) -> FemoralSurface {
     let spread_mm2 = test.insert.surface().mean_spread_mm2();
     test.femur.prepared_for(spread_mm2)
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().copied().fold(0.0, f64::max)
 }

@@ -1,61 +1,49 @@
 //! From depth to new shape: the march over millions of cycles.
 //!
-//! | file | what |
+//! | file | content |
 //! | --- | --- |
 //! | `wear_test` | a whole test: bodies, laws, activities, schedule |
-//! | `placement` | the femur is lowered onto the insert, and settles |
+//! | `placement` | lowers the femur onto the insert and lets it settle |
 //! | `march` | the loop over updates: cycles solved, rates, a step, the new surface |
-//! | `rates` | what a cycle wears, and how soon wear changes that |
-//! | `comparison_laws` | what the other laws would have worn by the same cycles |
-//! | `activity_wear` | what each of several activities wears |
-//! | `step`, `interval` | the next step: how long it is, and by which rule it wears |
-//! | `extrapolated_step`, `exponential_step` | the rules |
-//! | `accumulated_error` | what the length of the steps costs in accuracy |
-//! | `depth` | how deep the surface has gone down, by what, and what of it is mass lost |
-//! | `creep`, `creep_contact`, `creep_record` | how far creep takes the surface down, by what load, and what is told of it |
-//! | `records`, `node_fields`, `state`, `solved_cycle` | what is told, and what is remembered |
+//! | `solved_cycles` | the solved cycles of an update |
+//! | `rates` | the wear of a cycle, and how soon wear changes it |
+//! | `step`, `next_step`, `step_rules` | the interval of a step, and the wear over it |
+//! | `accumulated_error` | the error that the length of the steps causes |
+//! | `comparison_laws`, `activity_wear` | the wear by other laws, and by each activity |
+//! | `depth` | the depth of the surface by cause, and which of it loses mass |
+//! | `creep`, `creep_contact` | the depth by creep, and the load that causes it |
+//! | `records`, `state` | the results of an update, and all that a march needs to resume |
 
 mod accumulated_error;
 mod activity_wear;
 mod comparison_laws;
 mod creep;
 mod creep_contact;
-mod creep_record;
 mod depth;
-mod exponential_step;
-mod extrapolated_step;
-mod interval;
+mod error;
 mod march;
-mod march_error;
-mod mean_over_wear;
-mod node_fields;
+mod next_step;
 mod placement;
-mod placement_error;
 mod rates;
 mod records;
-mod schedule;
-mod solved_cycle;
+mod solved_cycles;
 mod state;
 mod step;
-mod step_record;
-mod under_surface_record;
+mod step_rules;
 mod wear_test;
 
 pub use accumulated_error::AccumulatedError;
 pub use activity_wear::ActivityWear;
-pub use comparison_laws::LawBeside;
+pub use comparison_laws::ComparisonLaw;
 pub use creep::CreepState;
-pub use creep_record::CreepRecord;
 pub use depth::{DepthField, DepthFields};
+pub use error::{MarchError, PlacementError, WornAndCrept};
 pub use march::March;
-pub use march_error::{MarchError, WornAndCrept};
-pub use mean_over_wear::{mean_over_volume, weight_of_depth};
-pub use node_fields::NodeFields;
-pub use placement_error::PlacementError;
-pub use records::{CycleRecord, Progress, UpdateRecord};
-pub use schedule::{Schedule, Updates};
-pub use solved_cycle::SolvedCycle;
+pub use rates::{mean_over_volume, weight_of_depth};
+pub use records::{
+    CreepRecord, CycleRecord, NodeFields, PlasticRecord, Progress, UnderSurfaceRecord, UpdateRecord,
+};
+pub use solved_cycles::SolvedCycle;
 pub use state::{ActivityState, MarchState, SNAPSHOT_PARTS, Snapshot};
-pub use step_record::StepRecord;
-pub use under_surface_record::{PlasticRecord, UnderSurfaceRecord};
-pub use wear_test::{Activity, WearTest};
+pub use step::StepRecord;
+pub use wear_test::{Activity, Schedule, Updates, WearTest};

@@ -1,10 +1,9 @@
 //! What a cycle wears, and how soon wear changes that.
 
-use super::mean_over_wear::{mean_over_volume, volume_mm3};
 use crate::{
     contact::ContactLaw,
     geometry::{ArticulatingSurface, Insert},
-    wear::{MeanCycle, NodeWear},
+    wear::{MeanCycle, NodeWear, SharedCycle, WearLaw},
 };
 
 /// What a cycle wears on the present geometry, the mean over all activities by their shares.
@@ -20,21 +19,20 @@ pub(super) struct Rates {
     pub relaxation_per_cycle: f64,
 }
 
-/// The law of contact and the bodies that cycles wear.
-pub(super) struct Wearing<'a> {
-    pub contact: &'a dyn ContactLaw,
-    pub insert: &'a Insert,
-    pub surface: &'a ArticulatingSurface,
-}
-
 impl Rates {
-    /// Those of nodes that go through these cycles, which wear them so.
-    pub fn of(wearing: &Wearing<'_>, cycles: &[MeanCycle<'_>], worn: &[NodeWear]) -> Self {
+    /// The rates of nodes that go through `cycles`, each of which wears them by `worn`.
+    pub fn new(
+        contact: &dyn ContactLaw,
+        insert: &Insert,
+        surface: &ArticulatingSurface,
+        cycles: &[MeanCycle<'_>],
+        worn: &[NodeWear],
+    ) -> Self {
         let depth_per_cycle_mm: Vec<f64> = worn.iter().map(|worn| worn.depth_mm).collect();
-        let shares = wearing.surface.shares.iter();
+        let shares = surface.shares.iter();
         let area_mm2: Vec<f64> = shares.map(|share| share.area_mm2).collect();
         let alone = |node: usize| {
-            let stiffness = wearing.contact.stiffness_mpa_per_mm(wearing.insert, node);
+            let stiffness = contact.stiffness_mpa_per_mm(insert, node);
             relaxation(depth_per_cycle_mm[node], stiffness, &cycles[node])
         };
         let node_relaxation_per_cycle: Vec<f64> = (0..cycles.len()).map(alone).collect();
@@ -63,4 +61,48 @@ fn relaxation(depth_per_cycle_mm: f64, stiffness_mpa_per_mm: f64, cycle: &MeanCy
     } else {
         0.0
     }
+}
+
+/// What every node of the surface went through.
+pub(super) fn mean_cycles<'a>(
+    cycles: &'a [SharedCycle<'a>],
+    surface: &ArticulatingSurface,
+) -> Vec<MeanCycle<'a>> {
+    let shares = surface.shares.iter().enumerate();
+    shares
+        .map(|(node, share)| MeanCycle::new(cycles, node, share.area_mm2))
+        .collect()
+}
+
+/// What a cycle wears by a law at every node.
+pub(super) fn worn(law: &dyn WearLaw, cycles: &[MeanCycle<'_>]) -> Vec<NodeWear> {
+    let worn = |cycle: &MeanCycle<'_>| {
+        // Most of a surface is never touched.
+        if cycle.sliding_distance_mm == 0.0 {
+            return NodeWear::of_depth(0.0);
+        }
+        law.wear(cycle)
+    };
+    cycles.iter().map(worn).collect()
+}
+
+/// The deepest node counts most for the maximum depth: each node by this power of its depth, high enough
+/// to see the bottom of the scar alone, low enough to average over the nodes there.
+const DEEP_POWER: i32 = 8;
+
+/// Sum of depth times area, mm3.
+pub(super) fn volume_mm3(area_mm2: &[f64], depth_mm: &[f64]) -> f64 {
+    area_mm2.iter().zip(depth_mm).map(|(a, d)| a * d).sum()
+}
+
+/// Mean of `values` over the volume that `depth_mm` makes; 0 where there is none.
+pub fn mean_over_volume(area_mm2: &[f64], depth_mm: &[f64], values: &[f64]) -> f64 {
+    let volumes = area_mm2.iter().zip(depth_mm).map(|(a, d)| a * d);
+    let sum: f64 = volumes.zip(values).map(|(v, value)| v * value).sum();
+    sum / volume_mm3(area_mm2, depth_mm).max(f64::MIN_POSITIVE)
+}
+
+/// How much a node of this depth counts for the maximum depth.
+pub fn weight_of_depth(depth: f64) -> f64 {
+    depth.powi(DEEP_POWER)
 }

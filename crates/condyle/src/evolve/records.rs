@@ -1,9 +1,15 @@
-//! What a march tells of itself.
+//! The results of each update.
 
 use serde::{Deserialize, Serialize};
 
-use super::{CreepRecord, UnderSurfaceRecord};
-use crate::machine::CycleRow;
+use super::{DepthFields, step::SolvedStep};
+use crate::{
+    Vec3,
+    contact::{BacksideAtRest, PlasticUnderSurface, Regime, UnderSurface},
+    geometry::{ArticulatingSurface, Insert},
+    machine::CycleRow,
+    wear::MeanCycle,
+};
 
 /// How far a march has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,4 +58,203 @@ pub struct CycleRecord {
     pub cycles: f64,
     /// One row an increment.
     pub rows: Vec<CycleRow>,
+}
+
+/// Results of an update at every node of the articulating surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NodeFields {
+    /// Depth worn so far, mm.
+    pub wear_depth_mm: Vec<f64>,
+    /// Depth one cycle wears, mm.
+    pub depth_per_cycle_mm: Vec<f64>,
+    /// Highest pressure of the cycles, the mean over the node's share, MPa.
+    pub peak_pressure_mpa: Vec<f64>,
+    /// Distance slid under pressure in a cycle, mm: S = sum of A'/A |ds|, with A' the part of the
+    /// node's share A that presses; the mean over all activities by their shares.
+    pub sliding_distance_mm: Vec<f64>,
+    /// Cross-shear ratio of the mean cycle: what of pressure times slip is across the principal direction, 0
+    /// for straight paths to 0.5.
+    pub cross_shear: Vec<f64>,
+    /// The principal direction, a unit vector along the surface in the insert frame that points anteriorly; 0
+    /// where nothing slid, or as much in every direction.
+    pub principal_direction: Vec<[f64; 3]>,
+    /// Thickness left, mm.
+    pub thickness_mm: Vec<f64>,
+}
+
+impl NodeFields {
+    /// Those of an insert that no cycle has worn in this march.
+    pub(super) fn unworn(insert: &Insert, depths: &DepthFields) -> Self {
+        let none = vec![0.0; insert.surface_nodes().len()];
+        Self {
+            wear_depth_mm: depths.wear_mm().to_vec(),
+            depth_per_cycle_mm: none.clone(),
+            peak_pressure_mpa: none.clone(),
+            sliding_distance_mm: none.clone(),
+            principal_direction: vec![[0.0; 3]; none.len()],
+            cross_shear: none,
+            thickness_mm: insert.thickness_mm().to_vec(),
+        }
+    }
+
+    /// The fields after a step.
+    pub(super) fn new(interval: &SolvedStep<'_>, insert: &Insert, depths: &DepthFields) -> Self {
+        let SolvedStep {
+            mean: cycles,
+            surface,
+            rates,
+            ..
+        } = *interval;
+        let each = |value: fn(&MeanCycle<'_>) -> f64| cycles.iter().map(value).collect();
+        let direction = |(node, cycle)| principal_direction(surface, node, cycle);
+        Self {
+            wear_depth_mm: depths.wear_mm().to_vec(),
+            depth_per_cycle_mm: rates.depth_per_cycle_mm.clone(),
+            peak_pressure_mpa: each(|cycle| cycle.peak_pressure_mpa),
+            sliding_distance_mm: each(|cycle| cycle.pressed_distance_mm),
+            cross_shear: each(|cycle| cycle.slip_work.cross_shear()),
+            principal_direction: cycles.iter().enumerate().map(direction).collect(),
+            thickness_mm: insert.thickness_mm().to_vec(),
+        }
+    }
+}
+
+/// The principal direction of a node in the insert frame.
+fn principal_direction(
+    surface: &ArticulatingSurface,
+    node: usize,
+    cycle: &MeanCycle<'_>,
+) -> [f64; 3] {
+    let Some([forwards, aside]) = cycle.slip_work.principal_direction() else {
+        return [0.0; 3];
+    };
+    let [anterior, lateral] = surface.directions(node);
+    (anterior * forwards + lateral * aside).into()
+}
+
+/// Creep so far, and the place where the surface lies deepest by wear and creep together.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CreepRecord {
+    /// Volume that the surface has gone down by without loss of mass, from depth times area, mm3.
+    pub volume_mm3: f64,
+    /// Deepest creep, mm.
+    pub max_depth_mm: f64,
+    /// Deepest penetration, wear and creep together, mm.
+    pub max_penetration_mm: f64,
+    /// What of that is wear, mm.
+    pub wear_there_mm: f64,
+    /// What of that is creep, mm.
+    pub creep_there_mm: f64,
+    /// Deepest place that a scan would find once the insert has rested without load, mm: wear, and what of creep
+    /// is left.
+    pub max_unloaded_mm: f64,
+}
+
+impl CreepRecord {
+    /// The record for these depths at every surface node and the volume of creep; `left_mm` remains on an
+    /// unloaded insert.
+    pub(super) fn new(volume_mm3: f64, wear_mm: &[f64], creep_mm: &[f64], left_mm: &[f64]) -> Self {
+        let penetration = |node: usize| wear_mm[node] + creep_mm[node];
+        let unloaded = |node: usize| wear_mm[node] + left_mm[node];
+        let nodes = || 0..wear_mm.len();
+        let deepest = nodes().max_by(|a, b| penetration(*a).total_cmp(&penetration(*b)));
+        let at = |values: &[f64]| deepest.map_or(0.0, |node| values[node]);
+        Self {
+            volume_mm3,
+            max_depth_mm: creep_mm.iter().copied().fold(0.0, f64::max),
+            max_penetration_mm: deepest.map_or(0.0, penetration),
+            wear_there_mm: at(wear_mm),
+            creep_there_mm: at(creep_mm),
+            max_unloaded_mm: nodes().map(unloaded).fold(0.0, f64::max),
+        }
+    }
+}
+
+/// What is below the surface at the increment of an update with the highest pressure.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct UnderSurfaceRecord {
+    /// Which of the activities has it, from 0.
+    pub activity: usize,
+    /// Place in its cycle, %.
+    pub percent: f64,
+    /// Largest equivalent stress of von Mises, at the centre of an element, MPa.
+    pub von_mises_mpa: f64,
+    /// How deep below the surface that centre is, mm.
+    pub von_mises_depth_mm: f64,
+    /// Largest shear stress, at the centre of an element, MPa.
+    pub max_shear_mpa: f64,
+    /// How deep below the surface that centre is, mm.
+    pub max_shear_depth_mm: f64,
+    /// What has yielded, if the insert does.
+    pub plastic: Option<PlasticRecord>,
+    /// What the backside did in the last cycles, if it rests on its tray.
+    pub backside: Option<BacksideAtRest>,
+}
+
+/// What of an insert has yielded after an update.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlasticRecord {
+    /// How far the surface has given way for good at most, mm.
+    pub max_permanent_set_mm: f64,
+    /// Largest accumulated plastic strain.
+    pub max_plastic_strain: f64,
+    /// Elements that have yielded.
+    pub yielded_elements: usize,
+    /// Elements that yield in every cycle still.
+    pub ratcheting_elements: usize,
+}
+
+impl UnderSurfaceRecord {
+    /// What is most, at a place in the cycle of an activity; `surface` is that of the insert.
+    pub(super) fn new(
+        under: &UnderSurface,
+        insert: &Insert,
+        surface: &ArticulatingSurface,
+        (activity, percent): (usize, f64),
+    ) -> Self {
+        let deepest = |values: &[f64]| {
+            let most = values.iter().enumerate();
+            let most = most.max_by(|a, b| a.1.total_cmp(b.1));
+            most.map_or((0.0, 0.0), |(element, &value)| {
+                (value, depth_mm(insert, surface, element))
+            })
+        };
+        let (von_mises_mpa, von_mises_depth_mm) = deepest(&under.von_mises_mpa);
+        let (max_shear_mpa, max_shear_depth_mm) = deepest(&under.max_shear_mpa);
+        Self {
+            activity,
+            percent,
+            von_mises_mpa,
+            von_mises_depth_mm,
+            max_shear_mpa,
+            max_shear_depth_mm,
+            plastic: under.plastic.as_ref().map(PlasticRecord::new),
+            backside: under.backside,
+        }
+    }
+}
+
+impl PlasticRecord {
+    fn new(plastic: &PlasticUnderSurface) -> Self {
+        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        let in_regimes = |least: Regime| {
+            let regimes = plastic.regime.iter();
+            regimes.filter(|regime| **regime >= least).count()
+        };
+        Self {
+            max_permanent_set_mm: most(&plastic.permanent_set_mm),
+            max_plastic_strain: most(&plastic.plastic_strain),
+            yielded_elements: in_regimes(Regime::ShakenDown),
+            ratcheting_elements: in_regimes(Regime::Ratcheting),
+        }
+    }
+}
+
+/// How deep the centre of an element is below the surface at the node that is nearest, mm.
+fn depth_mm(insert: &Insert, surface: &ArticulatingSurface, element: usize) -> f64 {
+    let centre = insert.mesh().corners(element).iter().sum::<Vec3>() / 8.0;
+    let apart = |place: &Vec3| (place - centre).norm_squared();
+    let places = surface.positions.iter().zip(&surface.normals);
+    let nearest = places.min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)));
+    nearest.map_or(0.0, |(place, normal)| (place - centre).dot(normal))
 }

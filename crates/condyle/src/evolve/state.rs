@@ -1,17 +1,19 @@
 //! What a march must remember.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use super::{
     CreepState, CycleRecord, DepthField, DepthFields, NodeFields, UpdateRecord,
-    accumulated_error::AccumulatedError, activity_wear::ActivityWear, comparison_laws::LawBeside,
-    step_record::StepRecord,
+    accumulated_error::AccumulatedError, activity_wear::ActivityWear,
+    comparison_laws::ComparisonLaw, step::StepRecord,
 };
 use crate::{
     Vec3,
-    contact::{ContactState, UnderSurface},
+    contact::{ContactState, CycleHistory, UnderSurface},
     geometry::Insert,
-    machine::{MachineState, SolverCounters, WarmStart},
+    machine::{Cycle, MachineState, SolverCounters, WarmStart},
 };
 
 /// Parts of the cycles at which two values stand for all: the mean of a cubic polynomial is that
@@ -85,6 +87,19 @@ impl ActivityState {
             wear: ActivityWear::default(),
         }
     }
+
+    /// Keeps a cycle as the last one, and as the first one too if it is; returns the history and its instants.
+    pub(super) fn keep(&mut self, cycles: f64, cycle: Cycle) -> (CycleHistory, Vec<Range<usize>>) {
+        self.machine = cycle.end;
+        self.warm_starts = cycle.warm_starts;
+        let last = CycleRecord {
+            cycles,
+            rows: cycle.rows,
+        };
+        let first = self.first_and_last.take().map(|(first, _)| first);
+        self.first_and_last = Some((first.unwrap_or_else(|| last.clone()), last));
+        (cycle.history, cycle.instants)
+    }
 }
 
 /// All that a march must remember to go on from an update, to the same bytes.
@@ -106,7 +121,7 @@ pub struct MarchState {
     /// known.
     pub outside_mm3: Option<f64>,
     /// What the laws beside it would have worn.
-    pub comparison_laws: Vec<LawBeside>,
+    pub comparison_laws: Vec<ComparisonLaw>,
     /// The history of the contact.
     pub contact: ContactState,
     /// What is below the surface at the increment of the last update with the highest pressure, if the insert is a

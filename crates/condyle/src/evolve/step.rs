@@ -1,99 +1,99 @@
-//! The next step of a march: so many cycles, and what they wear away.
+//! A step of the march: an interval of cycles, and what it wears.
 
-use super::{
-    Schedule, Updates,
-    accumulated_error::accumulated_error_mm,
-    exponential_step::exponential,
-    extrapolated_step::extrapolated,
-    interval::{adaptive_interval, fixed_interval, second_order, shared_out},
-    step_record::{Standing, StepRecord, WearStep},
+use serde::{Deserialize, Serialize};
+
+use super::rates::{Rates, volume_mm3};
+use crate::{
+    geometry::ArticulatingSurface,
+    wear::{MeanCycle, NodeWear, SharedCycle},
 };
 
-/// A step that was a shorter part of the next than this does not tell how rates go on changing through that.
-const MIN_TELLING: f64 = 0.25;
+/// What the next step remembers of a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepRecord {
+    /// Its cycles.
+    pub interval: f64,
+    /// Depth that a cycle wore at every surface node when it began, mm.
+    pub depth_per_cycle_mm: Vec<f64>,
+    /// Depth that it wore at every surface node, mm.
+    pub depth_mm: Vec<f64>,
+    /// How much deeper the exact march would have been at every surface node when it began, mm.
+    pub error_mm: Vec<f64>,
+    /// Area of every surface node's share when it began, mm2.
+    pub area_mm2: Vec<f64>,
+    /// How fast wear flattened the pressure when it began, a cycle.
+    pub relaxation_per_cycle: f64,
+}
 
-/// The next step of a march by `schedule`.
-pub(super) fn next_step(standing: Standing<'_>, schedule: &Schedule) -> WearStep {
-    let left = schedule.cycles - standing.cycles;
-    let (interval, is_last) = match schedule.updates {
-        Updates::Fixed(updates) => {
-            let (done, creeps) = (standing.updates, standing.creeps);
-            let interval = fixed_interval(schedule.cycles, updates, done, creeps);
-            (interval, done + 1 >= updates)
-        }
-        Updates::Auto { tolerance } => {
-            let wished = adaptive_interval(standing, schedule.cycles, tolerance);
-            let interval = shared_out(left, wished);
-            (interval, interval >= left)
-        }
-    };
-    let (depth_mm, predicted_mm) = worn(standing, schedule.updates, interval);
-    WearStep {
-        interval,
-        // The last step lands on the last cycle, whatever the intervals sum up to.
-        cycles_after: if is_last {
-            schedule.cycles
-        } else {
-            standing.cycles + interval
-        },
-        depth_mm,
-        predicted_mm,
-        error_mm: accumulated_error_mm(standing),
+impl StepRecord {
+    /// Volume that a cycle wore when it began, mm3.
+    pub fn volume_per_cycle_mm3(&self) -> f64 {
+        volume_mm3(&self.area_mm2, &self.depth_per_cycle_mm)
+    }
+
+    /// Volume that it wore, mm3.
+    pub fn volume_mm3(&self) -> f64 {
+        volume_mm3(&self.area_mm2, &self.depth_mm)
     }
 }
 
-/// What an interval wears, mm, and what it would wear by a second rule, which tells its error.
-fn worn(standing: Standing<'_>, updates: Updates, interval: f64) -> (Vec<f64>, Vec<f64>) {
-    let tells = |last: &&StepRecord| last.interval > MIN_TELLING * interval;
-    let (rates, last) = (standing.rates, standing.last.filter(tells));
-    let exponential = exponential(rates, last, interval);
-    match updates {
-        Updates::Fixed(_) => (extrapolated(rates, last, interval), exponential),
-        Updates::Auto { .. } => {
-            let each = |node| second_order(standing, node, interval);
-            let extrapolated = (0..standing.worn_mm.len()).map(each).collect();
-            (exponential, extrapolated)
+/// Where a march stands before a step.
+#[derive(Clone, Copy)]
+pub(super) struct StepStart<'a> {
+    /// What a cycle wears now.
+    pub rates: &'a Rates,
+    /// The step that led here.
+    pub last: Option<&'a StepRecord>,
+    /// Depth worn so far at every surface node, mm.
+    pub worn_mm: &'a [f64],
+    /// Cycles done.
+    pub cycles: f64,
+    /// Updates done.
+    pub updates: usize,
+    /// Whether the insert creeps as well.
+    pub creeps: bool,
+}
+
+/// A step of the march.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct WearStep {
+    /// Its cycles.
+    pub interval: f64,
+    /// Cycles of the test done after it.
+    pub cycles_after: f64,
+    /// What it wears at every surface node, mm.
+    pub depth_mm: Vec<f64>,
+    /// What it would wear by another rule of second order, mm; the difference tells its error.
+    pub predicted_mm: Vec<f64>,
+    /// How much deeper the exact march would be at every surface node when it begins, mm.
+    pub error_mm: Vec<f64>,
+}
+
+impl WearStep {
+    /// What the next step remembers of this one.
+    pub fn record(self, rates: Rates) -> StepRecord {
+        StepRecord {
+            interval: self.interval,
+            relaxation_per_cycle: rates.relaxation_per_cycle,
+            depth_per_cycle_mm: rates.depth_per_cycle_mm,
+            depth_mm: self.depth_mm,
+            error_mm: self.error_mm,
+            area_mm2: rates.area_mm2,
         }
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::evolve::rates::Rates;
-
-    #[test]
-    fn the_last_fixed_step_lands_on_the_last_cycle() {
-        for creeps in [false, true] {
-            let ends = ends_of_three_steps(creeps);
-            assert_eq!(ends[2], 5e6);
-            let even = 5e6 / 3.0;
-            let first = if creeps { 0.1 * even } else { even };
-            assert!((ends[0] - first).abs() < 1e-6, "{ends:?}");
-            assert!((ends[2] - 2.0 * ends[1] + ends[0]).abs() < 1e-6, "{ends:?}");
-        }
-    }
-
-    fn ends_of_three_steps(creeps: bool) -> [f64; 3] {
-        let schedule = Schedule::fixed(5e6, 3);
-        let now = Rates {
-            depth_per_cycle_mm: vec![1e-8],
-            area_mm2: vec![2.0],
-            node_relaxation_per_cycle: vec![0.0],
-            relaxation_per_cycle: 0.0,
-        };
-        let mut cycles = 0.0;
-        [0, 1, 2].map(|updates| {
-            let standing = Standing {
-                creeps,
-                rates: &now,
-                last: None,
-                worn_mm: &[0.0],
-                cycles,
-                updates,
-            };
-            cycles = next_step(standing, &schedule).cycles_after;
-            cycles
-        })
-    }
+/// A step with the cycles that it was computed from.
+#[derive(Clone, Copy)]
+pub(super) struct SolvedStep<'a> {
+    /// The surface that the cycles pressed on.
+    pub surface: &'a ArticulatingSurface,
+    /// One cycle of every activity.
+    pub shared: &'a [SharedCycle<'a>],
+    /// Their mean at every node.
+    pub mean: &'a [MeanCycle<'a>],
+    /// What the mean cycle wears at every node.
+    pub worn: &'a [NodeWear],
+    pub rates: &'a Rates,
+    pub step: &'a WearStep,
 }

@@ -25,7 +25,7 @@ pub struct Cycle {
 
 impl Cycle {
     /// The highest that a value which is never negative rises to.
-    pub fn most(&self, value: fn(&CycleRow) -> f64) -> f64 {
+    pub fn max(&self, value: fn(&CycleRow) -> f64) -> f64 {
         self.rows.iter().map(value).fold(0.0, f64::max)
     }
 }

@@ -27,8 +27,8 @@ pub struct MeanCycle<'a> {
 }
 
 impl<'a> MeanCycle<'a> {
-    /// That of node `node`, whose share of the surface is `area_mm2` large.
-    pub fn of(activities: &'a [SharedCycle<'a>], node: usize, area_mm2: f64) -> Self {
+    /// The mean cycle of node `node`, whose share of the surface is `area_mm2` large.
+    pub fn new(activities: &'a [SharedCycle<'a>], node: usize, area_mm2: f64) -> Self {
         let mut mean = Self {
             activities,
             node,
@@ -82,7 +82,7 @@ mod tests {
         let (fore, aside) = (straight(4.0, [6.0, 0.0]), straight(4.0, [0.0, 2.0]));
         let (walking, stairs) = (history(&fore), history(&aside));
         let activities = [(0.75, &walking), (0.25, &stairs)];
-        let mean = MeanCycle::of(&activities, 0, 2.0);
+        let mean = MeanCycle::new(&activities, 0, 2.0);
         assert_eq!(mean.pressure_slip_mpa_mm, 4.0 * (0.75 * 6.0 + 0.25 * 2.0));
         assert_eq!(mean.sliding_distance_mm, 5.0);
         assert_eq!(mean.slip_work.cross_shear(), 0.1);
@@ -95,7 +95,7 @@ mod tests {
         let path = [(2.0, [1.0, 0.0]), (6.0, [0.0, 1.0]), (2.0, [-1.0, 0.0])];
         let history = history(&path);
         let shared = [(1.0, &history)];
-        let mean = MeanCycle::of(&shared, 0, 1.0);
+        let mean = MeanCycle::new(&shared, 0, 1.0);
         assert_eq!(mean.part_above(2.0), 0.6);
         assert_eq!(mean.part_above(6.0), 0.0);
         assert_eq!(mean.part_above(1.0), 1.0);

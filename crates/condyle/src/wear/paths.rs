@@ -31,14 +31,14 @@ pub(super) fn history(path: &[Step]) -> CycleHistory {
 /// What `law` wears in a cycle of that path, mm.
 pub(super) fn depth_mm(law: &dyn WearLaw, path: &[Step]) -> f64 {
     let history = history(path);
-    law.wear(&MeanCycle::of(&[(1.0, &history)], 0, AREA_MM2))
+    law.wear(&MeanCycle::new(&[(1.0, &history)], 0, AREA_MM2))
         .depth_mm
 }
 
 /// What of it, 0 to 1, is outside of what the law was fitted to.
 pub(super) fn outside(law: &dyn WearLaw, path: &[Step]) -> Option<f64> {
     let history = history(path);
-    law.wear(&MeanCycle::of(&[(1.0, &history)], 0, AREA_MM2))
+    law.wear(&MeanCycle::new(&[(1.0, &history)], 0, AREA_MM2))
         .part_outside
 }
 

@@ -46,7 +46,7 @@ fn verify_every_law_of_the_test_wears_so_many_times_as_much() {
         slip_mm: [3.0, 1.0],
     });
     let depth = |law: &dyn WearLaw| {
-        law.wear(&MeanCycle::of(&[(1.0, &history)], 0, 1.0))
+        law.wear(&MeanCycle::new(&[(1.0, &history)], 0, 1.0))
             .depth_mm
     };
     let depths = |text: &str| -> Vec<f64> {

@@ -141,7 +141,7 @@ fn verify_it_is_the_law_that_the_test_wears_by() {
         slip_mm: [10.0, 0.0],
     });
     let shared = [(1.0, &history)];
-    let depth = |law: &dyn WearLaw| law.wear(&MeanCycle::of(&shared, 0, 1.0)).depth_mm;
+    let depth = |law: &dyn WearLaw| law.wear(&MeanCycle::new(&shared, 0, 1.0)).depth_mm;
     let found = depth(test.wear.as_ref());
     assert!((found - 3e-10 * 60.0).abs() < 1e-20, "{found:e}");
 }
