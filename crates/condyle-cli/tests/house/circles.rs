@@ -148,6 +148,27 @@ fn a_child_of_its_parent_and_back_is_a_circle_through_a_re_export() {
 }
 
 #[test]
+fn a_circle_through_types_that_macros_declare_is_found() {
+    let circles = circles_of(&made_up(&[
+        ("lib.rs", "mod femur; mod placement;"),
+        (
+            "femur.rs",
+            "use super::placement::Placement;\nvariants! {\n/// A femur.\nFemur by\n/// Its shape.\nshape = \"generic\" { Generic = \"generic\", } }\nfn read(_: Placement) {}",
+        ),
+        (
+            "placement.rs",
+            "use super::femur::Femur;\nsettings! {\n/// Where it sits.\nPlacement { x_mm: f64; }\n/// More.\nMore {} }\nfn check(_: Femur) {}",
+        ),
+    ]));
+    assert_eq!(circles.len(), 1);
+    assert!(
+        circles[0].starts_with("a circle of 2 files"),
+        "{}",
+        circles[0]
+    );
+}
+
+#[test]
 fn circles_apart_are_told_apart_and_the_larger_first() {
     let circles = circles_of(&made_up(&[
         ("lib.rs", "mod a; mod b; mod c; mod d; mod e;"),

@@ -5,8 +5,8 @@ use std::fmt;
 use thiserror::Error;
 use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 
-use super::contents::Case;
-use super::key_names::{KeyNameError, path_called};
+use super::contents::{Case, LeftOutConstant};
+use super::key_names::{KeyNameError, OverrideError, path_called};
 use super::wear::WearLaws;
 use crate::config::{Problems, likeliest};
 
@@ -16,28 +16,6 @@ pub struct Override {
     path: String,
     text: String,
     value: f64,
-}
-
-/// Why a key or a value cannot stand in for one of a case.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum OverrideError {
-    /// A name that is not that of one number.
-    #[error(transparent)]
-    Name(#[from] KeyNameError),
-    /// Updates of a march that finds them itself.
-    #[error(
-        "the march of this case finds its updates itself, since it has update = \"auto\"; refine what it goes by, such as \
-         depth_tolerance_fraction=0.1,0.03,0.01, or write update = \"fixed\""
-    )]
-    UpdatesAreFound,
-    /// A value that is no number.
-    #[error("`{text}` is no value for `{path}`; write a number, such as 10 or 0.5")]
-    NotNumber {
-        /// The key.
-        path: String,
-        /// As written.
-        text: String,
-    },
 }
 
 impl Override {
@@ -141,15 +119,6 @@ fn set(table: &mut dyn TableLike, key: &str, mut value: Value) {
 
 /// The key that chooses the law.
 const CHOOSES: &str = "wear.law";
-
-/// A constant of the file that the law chosen from outside does not have.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct LeftOutConstant {
-    /// As the file writes it.
-    pub(super) written: String,
-    /// The law chosen from outside.
-    pub(super) law: &'static str,
-}
 
 /// The text of a case with `set` keys changed to those of `changed`, less the constants of the file's own law where
 /// another was set; and these.

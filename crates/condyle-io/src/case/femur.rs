@@ -5,7 +5,6 @@ use condyle::geometry::GenericFemurShape;
 use super::frame::LengthUnit;
 use super::frame::Side;
 use super::frame::{Axes, check as check_axes};
-use super::placement::FemurPlacement;
 use crate::config::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
 
 settings! {
@@ -100,5 +99,56 @@ impl Femur {
             Self::Mesh(mesh) => Some(&mut mesh.file),
             Self::Generic(_) | Self::Sphere(_) | Self::Cylinder(_) => None,
         }
+    }
+}
+
+settings! {
+    /// How the femoral component sits on its bone: turned about the flexion axis, first by flexion, then by varus, then by rotation, and then shifted; the axis stays.
+    FemurPlacement {
+        /// Flexion of the component on the bone, + brings its front up and forward, as a flexed bone over a component that lies still.
+        flexion_deg: f64 = 0.0, in within(-45.0, 45.0);
+        /// Varus of the component on the bone, + lowers its lateral condyle.
+        varus_deg: f64 = 0.0, in within(-30.0, 30.0);
+        /// External rotation of the component on the bone, + turns its front laterally.
+        external_rotation_deg: f64 = 0.0, in within(-45.0, 45.0);
+        /// How far anterior of its place by the file it sits.
+        anterior_offset_mm: f64 = 0.0, in within(-50.0, 50.0);
+        /// How far superior of its place by the file it sits.
+        superior_offset_mm: f64 = 0.0, in within(-50.0, 50.0);
+        /// How far lateral of its place by the file it sits; where ML is free, it finds its own place.
+        lateral_offset_mm: f64 = 0.0, in within(-50.0, 50.0);
+    }
+}
+
+impl FemurPlacement {
+    /// Reads the placement of `femur` from its table; the shapes for verification have none.
+    pub(super) fn read_checked(
+        section: &Section<'_>,
+        femur: Option<&Femur>,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
+        let placement = Self::read(section, log)?;
+        let of_verification = matches!(femur, Some(Femur::Sphere(_) | Femur::Cylinder(_)));
+        if of_verification && placement.is_moved() {
+            section.report_idle(&Self::keys(), "shape = \"generic\" or \"mesh\"", log);
+        }
+        Some(placement)
+    }
+
+    /// Whether it turns or shifts the femoral component.
+    pub(super) fn is_moved(&self) -> bool {
+        self.numbers() != [0.0; 6]
+    }
+
+    /// Degrees and mm, in the order of the keys.
+    pub(super) fn numbers(&self) -> [f64; 6] {
+        [
+            self.flexion_deg,
+            self.varus_deg,
+            self.external_rotation_deg,
+            self.anterior_offset_mm,
+            self.superior_offset_mm,
+            self.lateral_offset_mm,
+        ]
     }
 }

@@ -5,8 +5,9 @@ use condyle::geometry::{GenericInsertShape, Meshing};
 use super::frame::LengthUnit;
 use super::frame::Side;
 use super::frame::{Axes, check as check_axes};
-use super::placement::InsertPlacement;
-use crate::config::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
+use crate::config::{
+    DataFile, Log, Section, Settings, Variants, choice, settings, variants, within,
+};
 
 settings! {
     /// Two dishes with an eminence between.
@@ -123,5 +124,53 @@ impl Insert {
             Self::Hexahedra(mesh) => Some(&mut mesh.file),
             Self::Generic(_) | Self::Flat(_) => None,
         }
+    }
+}
+
+choice! {
+    /// What of an insert is put at the origin of the insert frame, where the machine's axes are.
+    InsertOrigin {
+        /// The origin of its file.
+        File = "file",
+        /// Half-way between the lowest places of its dishes.
+        Centre = "centre",
+    }
+}
+
+settings! {
+    /// How the insert sits in its holder: turned about the origin of the insert frame, first by the slope, then by the tilt, then by the rotation.
+    InsertPlacement {
+        /// What of the insert is at the origin of the insert frame, from which the machine's axes and the medial and lateral side count: the file's origin, or half-way between the dishes; of a generic insert they are the same.
+        origin: InsertOrigin = InsertOrigin::File;
+        /// Posterior slope added to what the shape has, + lowers the posterior edge.
+        posterior_slope_deg: f64 = 0.0, in within(-30.0, 30.0);
+        /// Tilt in the frontal plane, + lowers the medial edge: a component in varus.
+        coronal_tilt_deg: f64 = 0.0, in within(-30.0, 30.0);
+        /// Turn about the long axis, + internal: the front goes medially.
+        axial_rotation_deg: f64 = 0.0, in within(-90.0, 90.0);
+    }
+}
+
+impl InsertPlacement {
+    /// Reads the placement of `insert` from its table; a flat block has none.
+    pub(super) fn read_checked(
+        section: &Section<'_>,
+        insert: Option<&Insert>,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
+        let placement = Self::read(section, log)?;
+        if matches!(insert, Some(Insert::Flat(_))) && placement.is_turned() {
+            section.report_idle(&Self::keys(), "another shape than \"flat\"", log);
+        }
+        Some(placement)
+    }
+
+    /// Whether it turns the insert.
+    pub(super) fn is_turned(&self) -> bool {
+        [
+            self.posterior_slope_deg,
+            self.coronal_tilt_deg,
+            self.axial_rotation_deg,
+        ] != [0.0; 3]
     }
 }

@@ -2,7 +2,6 @@
 
 use thiserror::Error;
 
-use super::assignment::OverrideError;
 use super::contents::Case;
 use crate::config::{nearest, split_unit};
 
@@ -34,6 +33,28 @@ pub enum KeyNameError {
         name: String,
         /// Their dotted paths.
         paths: Vec<String>,
+    },
+}
+
+/// Why a key or a value cannot stand in for one of a case.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum OverrideError {
+    /// A name that is not that of one number.
+    #[error(transparent)]
+    Name(#[from] KeyNameError),
+    /// Updates of a march that finds them itself.
+    #[error(
+        "the march of this case finds its updates itself, since it has update = \"auto\"; refine what it goes by, such as \
+         depth_tolerance_fraction=0.1,0.03,0.01, or write update = \"fixed\""
+    )]
+    UpdatesAreFound,
+    /// A value that is no number.
+    #[error("`{text}` is no value for `{path}`; write a number, such as 10 or 0.5")]
+    NotNumber {
+        /// The key.
+        path: String,
+        /// As written.
+        text: String,
     },
 }
 

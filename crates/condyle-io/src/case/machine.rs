@@ -2,16 +2,15 @@
 
 use condyle::machine::knee::{self, KNEE};
 use condyle::machine::{JointDescription, JointIndex, JointKind, Waveform};
-use thiserror::Error;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::activity::ActivityReason;
+use super::machine_reason::{ActivityReason, DriveReason};
 use super::waveform::CaseChannel;
 use super::waveform::{DEFAULT_WAVEFORM, InterpolationWord};
 use super::waveform_points;
 use crate::config::{
-    Key, KeyReason, Kind, Log, Reason, Section, Setting, Settings, Writer, choice, names, number,
+    Key, KeyReason, Kind, Log, Section, Setting, Settings, Writer, choice, names, number,
     quoted_list, read_table, settings, unit_of, within, wrong_type,
 };
 
@@ -520,42 +519,4 @@ pub(super) fn write_name(out: &mut Writer, table: &str, channel: CaseChannel, _:
         &format!("waveform = {DEFAULT_WAVEFORM:?}"),
         "Or file and column, or knots.",
     );
-}
-
-/// Why a drive or a waveform cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum DriveReason {
-    /// A waveform of a freedom that is driven otherwise.
-    #[error("[{section}] is given, but the {freedom} freedom is {drive}: the two contradict")]
-    UnusedWaveform {
-        /// The table of the waveform.
-        section: String,
-        /// The freedom it would drive.
-        freedom: &'static str,
-        /// How that is driven.
-        drive: &'static str,
-        /// The drive the waveform is for.
-        wanted: &'static str,
-    },
-    /// A drive that no waveform exists for.
-    #[error("the {freedom} freedom cannot be {drive}: a case has no waveform for that")]
-    NoSuchDrive {
-        /// The freedom.
-        freedom: &'static str,
-        /// As written.
-        drive: &'static str,
-        /// Drives it can have.
-        drives: String,
-    },
-}
-
-impl Reason for DriveReason {
-    fn advice(&self) -> Option<String> {
-        Some(match self {
-            Self::UnusedWaveform {
-                section, wanted, ..
-            } => format!("remove [{section}], or make the freedom `drive = \"{wanted}\"`"),
-            Self::NoSuchDrive { drives, .. } => format!("it can be {drives}"),
-        })
-    }
 }

@@ -18,9 +18,8 @@ mod json_schema;
 mod key_location;
 mod key_names;
 mod machine;
+mod machine_reason;
 mod material;
-mod origin;
-mod placement;
 mod pressure_table;
 mod read;
 mod reader;
@@ -34,8 +33,8 @@ mod waveform_points;
 mod wear;
 mod write;
 
-pub use activity::{Activities, Activity, ActivityKeys, ActivityReason};
-pub use assignment::{Assignment, AssignmentError, ChangeError, Override, OverrideError};
+pub use activity::{Activities, Activity, ActivityKeys};
+pub use assignment::{Assignment, AssignmentError, ChangeError, Override};
 pub use build::{
     Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, SharedBodies, StrayPiece, WrongAxes,
 };
@@ -47,20 +46,22 @@ pub use contents::Case;
 pub use deformable::{
     BacksideChoice, FirstYield, J2Plasticity, PlasticityChoice, PlasticityReason, RestingBackside,
 };
-pub use femur::{CylinderFemur, Femur, GenericFemur, MeshFemur, SphereFemur};
+pub use femur::{CylinderFemur, Femur, FemurPlacement, GenericFemur, MeshFemur, SphereFemur};
 pub use frame::{Axes, AxesError, AxesReason, Heading, LengthUnit, Side};
-pub use insert::{FlatInsert, GenericInsert, HexahedralInsert, Insert, MeshInsert};
+pub use insert::{
+    FlatInsert, GenericInsert, HexahedralInsert, Insert, InsertOrigin, InsertPlacement, MeshInsert,
+};
 pub use json_schema::json_schema;
 pub use key_location::CaseConflict;
-pub use key_names::{KeyNameError, NumberKey};
+pub use key_names::{KeyNameError, NumberKey, OverrideError};
 pub use machine::{
-    DriveReason, DriveWord, Freedom, Freedoms, Machine, MachineSettings, Preset, Rotation, Sign,
-    Springs, StiffnessOf, Translation, Waveforms,
+    DriveWord, Freedom, Freedoms, Machine, MachineSettings, Preset, Rotation, Sign, Springs,
+    StiffnessOf, Translation, Waveforms,
 };
+pub use machine_reason::{ActivityReason, DriveReason};
 pub use material::{
     Creep, CrossLinking, HighlyCrossLinked, LogarithmicCreep, Material, ModeratelyCrossLinked,
 };
-pub use placement::{FemurPlacement, InsertOrigin, InsertPlacement};
 pub use pressure_table::{PressureTableReason, StrainTable, TableError};
 pub use reader::CaseReader;
 pub use run_options::{Accuracy, Limits, Output};

@@ -3,14 +3,15 @@
 use super::activity::{self, Activities};
 use super::contact::Contact;
 use super::contents::Case;
+use super::contents::Origin;
 use super::femur::Femur;
+use super::femur::FemurPlacement;
 use super::frame::{Heading, Side};
 use super::insert::Insert;
+use super::insert::InsertPlacement;
 use super::machine::Machine;
 use super::material::Creep;
 use super::material::Material;
-use super::origin::Origin;
-use super::placement::{FemurPlacement, InsertPlacement};
 use super::schedule::March;
 use super::wear::{Wear, WearLaws};
 use crate::config::{Log, Section, Settings, Variants, names, read_table};

@@ -1,19 +1,24 @@
 //! Reading of cases from files, and the hash of what goes into a run.
 
+#[cfg(feature = "file-system")]
+use std::fs;
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
-use std::{fs, io};
 
 use condyle::wear::WEAR_LAWS;
 use miette::NamedSource;
 
 use super::assignment::{Assignment, ChangeError, Override, without_other_laws};
 use super::contents::Case;
+#[cfg(feature = "file-system")]
 use super::machine::write_name;
 use super::read::read_case;
 use super::wear::WearLaws;
 use crate::config::{Base, DataFile, Problems, Source, read_document, read_source};
-use crate::files::{Disk, Files};
+#[cfg(feature = "file-system")]
+use crate::files::Disk;
+use crate::files::Files;
 
 /// Reads cases.
 #[derive(Clone, Debug)]
@@ -129,12 +134,14 @@ impl CaseReader {
     }
 }
 
+#[cfg(feature = "file-system")]
 impl Default for CaseReader {
     fn default() -> Self {
         Self::new(Disk)
     }
 }
 
+#[cfg(feature = "file-system")]
 impl Case {
     /// Reads the case file at `path` on the disk; paths in it count from its folder.
     ///

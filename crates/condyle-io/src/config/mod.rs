@@ -6,12 +6,12 @@
 
 mod columns;
 mod data_file;
-mod json_schema;
 pub(crate) mod key;
 pub(crate) mod log;
 mod problem;
 mod reason;
 mod render;
+mod schema;
 pub(crate) mod section;
 pub(crate) mod setting;
 pub(crate) mod settings;
@@ -33,15 +33,14 @@ pub use variants::{Choices, Offered, Variants};
 pub use writer::Writer;
 
 pub(crate) use columns::{Cell, Columns};
-pub(crate) use json_schema::TableSchema;
 pub(crate) use key::{names, number, plain, quoted_list, split_unit, within};
 pub(crate) use problem::{Placed, Source, read_source};
+pub(crate) use schema::{Page, TableSchema};
 pub(crate) use section::read_document;
 pub(crate) use setting::{choice, pairs, read_word, wrong_type};
 pub(crate) use settings::{read_table, settings};
 pub(crate) use suggest::{likeliest, nearest};
 pub(crate) use variants::variants;
-pub(crate) use writer::Page;
 
 #[cfg(feature = "file-system")]
 pub(crate) use key::quoted;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::key::{Key, type_name};
+use super::key::{Key, names, type_name};
 use super::log::{Base, Log};
 use super::problem::{Problems, Source};
 use super::reason::KeyReason;
@@ -149,6 +149,14 @@ impl<'a> Section<'a> {
             log.problem(self.span(), reason);
         }
         default
+    }
+
+    /// Reports each of `keys` that is given, since it has an effect only with `needs`.
+    pub(crate) fn report_idle(&self, keys: &[Key], needs: &str, log: &mut Log<'_>) {
+        for key in names(keys).filter(|key| self.value(key).is_some()) {
+            let (key, needs) = (key.to_owned(), needs.to_owned());
+            log.problem(self.key_span(&key), KeyReason::Idle { key, needs });
+        }
     }
 
     /// Reports every key that is none of `known`.

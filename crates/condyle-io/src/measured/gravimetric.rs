@@ -1,9 +1,36 @@
 //! Measured masses: a CSV file of specimens and soak controls, as ISO 14243-2 weighs them.
 
-use super::file::GravimetricKeys;
-use super::reason::MeasuredReason;
-use super::reason::{not_growing, repeated};
-use crate::config::{Cell, ColumnReason, Columns, Log, Placed, Section, Settings, names, within};
+use super::reason::{MeasuredReason, not_growing, repeated};
+use crate::config::{
+    Cell, ColumnReason, Columns, DataFile, Log, Names, Placed, Section, Settings, choice, names,
+    settings, within,
+};
+
+choice! {
+    /// What a confidence interval of a wear rate counts as independent.
+    IntervalWord {
+        /// Every weighing: that of one line through all of them.
+        Weighings = "weighings",
+        /// Every specimen: that of the mean of their rates.
+        Specimens = "specimens",
+    }
+}
+
+settings! {
+    /// Measured masses, and how a wear rate is found from them.
+    GravimetricKeys {
+        /// CSV file; `cycles`, then the mass of each specimen and soak control, each name ending in _mg.
+        file: DataFile;
+        /// Columns of the soak controls; those whose name starts with "soak" if not given.
+        soak_controls: Option<Names> = None;
+        /// Confidence of the intervals.
+        confidence_percent: f64 = 95.0, in within(50.0, 99.99);
+        /// Weighings before this many cycles stay out of the line: running in.
+        fit_from_cycles: f64 = 0.0, in within(0.0, 1e10);
+        /// What the interval that calibration uses counts as independent.
+        interval: IntervalWord = IntervalWord::Weighings;
+    }
+}
 
 const EXAMPLE: &str = "cycles,specimen_1_mg,soak_1_mg";
 /// What a column's name begins with where the file does not name its soak controls.

@@ -4,9 +4,43 @@ use condyle::machine::knee::KNEE;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::file::KinematicsKeys;
 use super::reason::{MeasuredReason, not_growing, repeated, too_few};
-use crate::config::{Cell, Columns, Log, Placed, Section, Settings, names, nearest, number};
+use crate::config::{
+    Cell, Columns, DataFile, Log, Placed, Section, Settings, choice, names, nearest, number,
+    settings, within,
+};
+
+choice! {
+    /// The cycle of the run that a measured one is compared with.
+    CycleWord {
+        /// The first: the insert is unworn.
+        First = "first",
+        /// The last: the insert is worn.
+        Last = "last",
+    }
+
+    /// What is done to two curves before they are compared.
+    AlignWord {
+        /// Nothing.
+        None = "none",
+        /// The mean difference is taken out of the measured curve.
+        Mean = "mean",
+    }
+}
+
+settings! {
+    /// Measured motions and loads, and how they are compared.
+    KinematicsKeys {
+        /// CSV file; `percent` of the cycle, then columns named as in kinematics.csv.
+        file: DataFile;
+        /// Which cycle of the run.
+        cycle: CycleWord = CycleWord::First;
+        /// Whether the mean difference is taken out before the errors are found.
+        align: AlignWord = AlignWord::None;
+        /// Between measured points farther apart than this, in percent of the cycle, nothing is compared.
+        largest_gap_percent: f64 = 10.0, in within(0.1, 100.0);
+    }
+}
 
 const EXAMPLE: &str = "percent,ap_mm,ie_deg";
 

@@ -3,14 +3,49 @@
 use condyle::geometry::TriangleMesh;
 use condyle::{Mat3, Vec3};
 
-use super::file::{FitWord, ScanKeys};
-use super::reason::MeasuredReason;
-use super::reason::too_few;
-use crate::case::{Side, check_axes};
+use super::reason::{MeasuredReason, too_few};
+use crate::case::{Axes, LengthUnit, Side, check_axes};
 use crate::config::{
-    Cell, ColumnReason, Columns, KeyReason, Log, Placed, Section, Settings, names,
+    Cell, ColumnReason, Columns, DataFile, KeyReason, Log, Placed, Section, Settings, choice,
+    names, settings, within,
 };
 use crate::mesh::read_surface;
+
+choice! {
+    /// Which part of a scan is laid onto the prediction.
+    FitWord {
+        /// Where the prediction is not worn.
+        Unworn = "unworn",
+        /// Everywhere.
+        All = "all",
+        /// Within `fit_x_mm` and `fit_z_mm`.
+        Region = "region",
+    }
+}
+
+settings! {
+    /// A scan of a worn insert, and how it is laid onto the prediction.
+    ScanKeys {
+        /// STL, PLY, OBJ or VTP surface, or points as CSV with the columns x_mm,y_mm,z_mm.
+        file: DataFile;
+        /// Unit of length of a surface file; a CSV says its own.
+        length_unit: LengthUnit = LengthUnit::Millimetre;
+        /// Where x, y and z of the file point.
+        axes: Axes = Axes::ISB;
+        /// Added to every point, in the frame of the results, before the registration starts.
+        start_mm: [f64; 3] = [0.0; 3], in within(-1000.0, 1000.0);
+        /// Which part is laid onto the prediction.
+        fit: FitWord = FitWord::Unworn;
+        /// Predicted depth up to which a place counts as unworn.
+        unworn_depth_mm: f64 = 0.005, in within(0.0, 10.0);
+        /// Range of x, in the frame of the results, with `fit = "region"`.
+        fit_x_mm: Option<[f64; 2]> = None, in within(-1000.0, 1000.0);
+        /// Range of z, in the frame of the results, with `fit = "region"`.
+        fit_z_mm: Option<[f64; 2]> = None, in within(-1000.0, 1000.0);
+        /// Points of the scan farther than this from the registered surface are left out.
+        farthest_mm: f64 = 2.0, in within(0.01, 50.0);
+    }
+}
 
 const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
 /// Six numbers of a rigid motion need at least as many points.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use proc_macro2::Span;
+use proc_macro2::{Delimiter, Span, TokenTree};
 use syn::visit::{self, Visit};
 
 use super::names::{imports_of, is_test_only, path_attribute, path_of, paths_in};
@@ -64,8 +64,9 @@ impl Reader<'_> {
 
     fn read_items(&mut self, items: &[syn::Item]) {
         for item in items {
-            if let Some(defined) = defined(item).filter(|_| !is_test_only(attributes(item))) {
-                self.here().items.push(defined);
+            if !is_test_only(attributes(item)) {
+                self.here().items.extend(defined(item));
+                self.here().items.extend(made_by_macro(item));
             }
             self.visit_item(item);
         }
@@ -151,6 +152,33 @@ fn defined(item: &syn::Item) -> Option<(String, Kind)> {
         _ => return None,
     };
     Some((name.to_string(), kind))
+}
+
+/// The types that the call of a macro declares. Its grammar is not known: a type has a name with a capital letter, behind
+/// its documentation, a keyword, or the end of the one before.
+fn made_by_macro(item: &syn::Item) -> Vec<(String, Kind)> {
+    let syn::Item::Macro(syn::ItemMacro {
+        ident: None, mac, ..
+    }) = item
+    else {
+        return Vec::new();
+    };
+    let mut made = Vec::new();
+    let mut may_follow = true;
+    for token in mac.tokens.clone() {
+        may_follow = match &token {
+            TokenTree::Ident(word) => {
+                let word = word.to_string();
+                if may_follow && word.starts_with(char::is_uppercase) {
+                    made.push((word.clone(), Kind::Type));
+                }
+                ["pub", "struct", "enum"].contains(&word.as_str())
+            }
+            TokenTree::Group(group) => group.delimiter() != Delimiter::Parenthesis,
+            _ => false,
+        };
+    }
+    made
 }
 
 fn attributes(item: &syn::Item) -> &[syn::Attribute] {

@@ -7,9 +7,9 @@ use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 
-use super::super::assignment::LeftOutConstant;
 use super::super::contact::{ContactModelWord, FrictionModelWord, PressureLawChoice};
 use super::super::contents::Case;
+use super::super::contents::LeftOutConstant;
 use super::super::deformable::PlasticityChoice;
 use super::super::schedule::IntegratorWord;
 use super::super::schedule::Update;

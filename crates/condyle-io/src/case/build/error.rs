@@ -1,19 +1,104 @@
 //! Why a good case makes no wear test.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
+use condyle::Vec3;
+use condyle::anatomy::Recognition;
 use condyle::geometry::{
-    Defect, Hole, InsertError, LeftOut, ShellError, ShellInsertError, WhyLeftOut, listed_holes,
+    Defect, Hole, InsertError, LeftOut, ShellError, ShellInsertError, TriangleMesh, WhyLeftOut,
+    listed_holes,
 };
 use condyle_fem::SolidError;
 use thiserror::Error;
 
-use super::super::frame::AxesError;
-use super::super::frame::LengthUnit;
-use super::super::frame::Side;
-use super::orientation_check::{Body, WrongAxes};
-use super::size::StrayPiece;
+use super::super::frame::{Axes, AxesError, LengthUnit, Side};
 use crate::mesh::MeshFileError;
+
+/// One of the two bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// The femoral component.
+    Femur,
+    /// The tibial insert.
+    Insert,
+}
+
+impl fmt::Display for Body {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Femur => "femur",
+            Self::Insert => "insert",
+        })
+    }
+}
+
+impl Body {
+    /// What the body lies like, from triangles in any frame and unit.
+    pub(crate) fn recognise(self, mesh: &TriangleMesh) -> Option<Recognition> {
+        match self {
+            Self::Femur => Recognition::of_femur(mesh),
+            Self::Insert => Recognition::of_insert(mesh),
+        }
+    }
+
+    fn signs(self) -> &'static str {
+        match self {
+            Self::Femur => {
+                "the box open above, the trochlea in front and the notch between the condyles behind"
+            }
+            Self::Insert => {
+                "two dishes above, the flat backside below, the notch or the lower lip behind"
+            }
+        }
+    }
+}
+
+/// A body that lies otherwise than its axes say.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrongAxes {
+    /// Which.
+    pub body: Body,
+    /// How it lies in the case's frame, such as "upside down".
+    pub how: &'static str,
+    /// The axes that its shape shows.
+    pub better: Axes,
+}
+
+impl fmt::Display for WrongAxes {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.better.words();
+        write!(
+            out,
+            "write axes = [\"{x}\", \"{y}\", \"{z}\"], which its shape shows ({})",
+            self.body.signs()
+        )
+    }
+}
+
+/// A piece of a mesh that lies far from the largest one, the body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrayPiece {
+    /// How many triangles it has.
+    pub triangles: usize,
+    /// Its middle, mm, in the frame of the body.
+    pub at_mm: Vec3,
+    /// How far its box is from that of the body, mm.
+    pub away_mm: f64,
+    /// Longest edge of the body's box, mm.
+    pub body_mm: f64,
+}
+
+impl fmt::Display for StrayPiece {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (at, away) = (self.at_mm, self.away_mm);
+        write!(
+            out,
+            "a piece of {} triangles at ({:.0}, {:.0}, {:.0}) mm lies {away:.0} mm from the body",
+            self.triangles, at.x, at.y, at.z
+        )
+    }
+}
 
 /// Why a good case makes no wear test.
 #[derive(Debug, Error)]

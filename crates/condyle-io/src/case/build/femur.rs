@@ -12,13 +12,14 @@ use condyle::geometry::{
 use serde::{Deserialize, Serialize};
 
 use super::super::contents::Case;
+use super::super::femur::FemurPlacement;
 use super::super::femur::{Femur, MeshFemur};
 use super::super::frame::Side;
-use super::super::placement::FemurPlacement;
 use super::super::run_options::Limits;
+use super::error::Body;
 use super::error::{BuildError, BuildWarning};
 use super::meshes::{Placing, ShellOf, parsed_shell, shell, warn};
-use super::orientation_check::{Body, check_lie, check_side};
+use super::orientation_check::{check_orientation, check_side};
 use super::rigid_motion::RigidMotion;
 use crate::cache::{Keep, kept};
 use crate::mesh::surface_bytes;
@@ -84,7 +85,7 @@ impl Femur {
             Self::Mesh(femur) => {
                 let prepared = femur.prepared(placement, side, preparing)?;
                 warn(&femur.file, &prepared.shell, warnings);
-                femur.check_lie(&prepared.shell.mesh, side, warnings)?;
+                femur.check_orientation(&prepared.shell.mesh, side, warnings)?;
                 femur.over_the_insert(prepared, side, flexion_rad)
             }
         })
@@ -104,14 +105,14 @@ impl MeshFemur {
     }
 
     /// Tells a component that lies otherwise than its axes say; `mesh` is as it lies in its file.
-    fn check_lie(
+    fn check_orientation(
         &self,
         mesh: &TriangleMesh,
         side: Side,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<(), BuildError> {
         let placing = Placing::new(self.length_unit, &self.axes, side)?;
-        if check_lie(Body::Femur, &self.file, mesh, &placing, warnings)? {
+        if check_orientation(Body::Femur, &self.file, mesh, &placing, warnings)? {
             check_side(&self.file, mesh, side, warnings);
         }
         Ok(())

@@ -11,14 +11,14 @@ use condyle_fem::HexMesh;
 
 use super::super::contents::Case;
 use super::super::frame::Side;
+use super::super::insert::InsertPlacement;
 use super::super::insert::{FlatInsert, GenericInsert, HexahedralInsert, Insert, MeshInsert};
-use super::super::placement::InsertPlacement;
 use super::super::run_options::Limits;
+use super::error::Body;
 use super::error::{BuildError, BuildWarning};
 use super::meshes::{Placing, ShellOf, shell};
-use super::orientation_check::Body;
 use super::orientation_check::off_centre;
-use super::orientation_check::{check_lie, check_lie_of_hexahedra};
+use super::orientation_check::{check_orientation, check_orientation_of_hexahedra};
 use super::rigid_motion::{middle_of_mesh, middle_of_points};
 use super::size::check_points;
 use super::tray::without_tray;
@@ -174,7 +174,7 @@ fn from_mesh(
     if shell.closed && insert.thickness_mm.is_some() {
         return Err(BuildError::ThicknessOfClosed { file: file() });
     }
-    check_lie(Body::Insert, &insert.file, &shell.mesh, &placing, warnings)?;
+    check_orientation(Body::Insert, &insert.file, &shell.mesh, &placing, warnings)?;
     if shell.closed && insert.clip_below_mm.is_none() {
         shell = insert_alone(insert, shell, &placing, warnings)?;
     }
@@ -210,7 +210,7 @@ fn insert_alone(
     let count = shell.mesh.triangles.len();
     let alone = without_tray(&insert.file, shell, warnings)?;
     if alone.mesh.triangles.len() != count {
-        check_lie(Body::Insert, &insert.file, &alone.mesh, placing, warnings)?;
+        check_orientation(Body::Insert, &insert.file, &alone.mesh, placing, warnings)?;
     }
     Ok(alone)
 }
@@ -226,7 +226,7 @@ fn from_hexahedra(
     place(&mut file, &placing);
     check_points(path, &file.mesh.nodes, insert.length_unit)?;
     check_nodes(file.mesh.nodes.len() as f64, around.limits)?;
-    check_lie_of_hexahedra(&insert.file, &file.mesh, &placing, warnings)?;
+    check_orientation_of_hexahedra(&insert.file, &file.mesh, &placing, warnings)?;
     let surface = |key, name: &Option<String>, up: f64| match name {
         Some(name) => named(&file, key, name, insert),
         None => Ok(facing(&file.mesh, up)),

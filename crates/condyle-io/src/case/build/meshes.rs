@@ -8,9 +8,9 @@ use condyle::{Mat3, Vec3};
 use super::super::frame::Axes;
 use super::super::frame::LengthUnit;
 use super::super::frame::Side;
-use super::error::{BuildError, BuildWarning};
 #[cfg(feature = "file-system")]
-use super::orientation_check::Body;
+use super::error::Body;
+use super::error::{BuildError, BuildWarning};
 use super::size::check_triangles;
 use super::size::stray_piece;
 use crate::config::DataFile;

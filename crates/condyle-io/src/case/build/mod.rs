@@ -15,11 +15,9 @@ mod tests;
 mod tray;
 
 pub use assemble::Built;
-pub use error::{BuildError, BuildWarning};
+pub use error::{Body, BuildError, BuildWarning, StrayPiece, WrongAxes};
 pub use femur::FEMUR_TRIANGLES;
-pub use orientation_check::{Body, WrongAxes};
 pub use shared::SharedBodies;
-pub use size::StrayPiece;
 
 pub(crate) use femur::in_four;
 

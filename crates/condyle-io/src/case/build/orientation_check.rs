@@ -1,80 +1,18 @@
 //! Checks of orientation, unit, side and origin of a body by its shape.
 
-use std::fmt;
 use std::path::PathBuf;
 
-use condyle::anatomy::{Orientation, Recognition, Sureness, flange_lead_mm};
+use condyle::anatomy::{Orientation, Sureness, flange_lead_mm};
 use condyle::geometry::{self, TriangleMesh};
 use condyle::{Mat3, Vec3};
 use condyle_fem::HexMesh;
 
-use super::super::frame::{Axes, LengthUnit, Side};
-use super::super::placement::{InsertOrigin, InsertPlacement};
-use super::error::{BuildError, BuildWarning};
+use super::super::frame::{LengthUnit, Side};
+use super::super::insert::{InsertOrigin, InsertPlacement};
+use super::error::{Body, BuildError, BuildWarning, WrongAxes};
 use super::meshes::Placing;
 use super::rigid_motion::middle_of_points;
 use crate::config::DataFile;
-
-/// One of the two bodies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Body {
-    /// The femoral component.
-    Femur,
-    /// The tibial insert.
-    Insert,
-}
-
-impl fmt::Display for Body {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::Femur => "femur",
-            Self::Insert => "insert",
-        })
-    }
-}
-
-impl Body {
-    /// What the body lies like, from triangles in any frame and unit.
-    pub(crate) fn recognise(self, mesh: &TriangleMesh) -> Option<Recognition> {
-        match self {
-            Self::Femur => Recognition::of_femur(mesh),
-            Self::Insert => Recognition::of_insert(mesh),
-        }
-    }
-
-    fn signs(self) -> &'static str {
-        match self {
-            Self::Femur => {
-                "the box open above, the trochlea in front and the notch between the condyles behind"
-            }
-            Self::Insert => {
-                "two dishes above, the flat backside below, the notch or the lower lip behind"
-            }
-        }
-    }
-}
-
-/// A body that lies otherwise than its axes say.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WrongAxes {
-    /// Which.
-    pub body: Body,
-    /// How it lies in the case's frame, such as "upside down".
-    pub how: &'static str,
-    /// The axes that its shape shows.
-    pub better: Axes,
-}
-
-impl fmt::Display for WrongAxes {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.better.words();
-        write!(
-            out,
-            "write axes = [\"{x}\", \"{y}\", \"{z}\"], which its shape shows ({})",
-            self.body.signs()
-        )
-    }
-}
 
 /// Longest extent of a femoral component or an insert of a whole knee, mm: from the smallest sizes on
 /// the market, rounded down, to the largest, rounded up.
@@ -82,7 +20,7 @@ const WHOLE_KNEE_MM: std::ops::RangeInclusive<f64> = 40.0..=120.0;
 
 /// Tells a body that lies, or is measured, otherwise than the case says: an error where it is certain. Whether it
 /// is seen to lie as the case says.
-pub(super) fn check_lie(
+pub(super) fn check_orientation(
     body: Body,
     file: &DataFile,
     mesh: &TriangleMesh,
@@ -130,14 +68,14 @@ pub(super) fn check_side(
 }
 
 /// The same for an insert in hexahedra.
-pub(super) fn check_lie_of_hexahedra(
+pub(super) fn check_orientation_of_hexahedra(
     file: &DataFile,
     mesh: &HexMesh,
     placing: &Placing,
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<bool, BuildError> {
     let boundary = TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads());
-    check_lie(Body::Insert, file, &boundary, placing, warnings)
+    check_orientation(Body::Insert, file, &boundary, placing, warnings)
 }
 
 /// A whole knee's body that is too small or too large for one is so for certain where another unit

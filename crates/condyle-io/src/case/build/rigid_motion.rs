@@ -3,7 +3,8 @@
 use condyle::geometry::{Dishes, TriangleMesh};
 use condyle::{Mat3, Vec3};
 
-use super::super::placement::{FemurPlacement, InsertOrigin, InsertPlacement};
+use super::super::femur::FemurPlacement;
+use super::super::insert::{InsertOrigin, InsertPlacement};
 
 /// Distance between the places at which an insert's dishes are looked for, mm.
 const LOOKED_AT_EVERY_MM: f64 = 0.5;

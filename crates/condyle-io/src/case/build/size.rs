@@ -1,13 +1,12 @@
 //! Sizes of bodies, and pieces that lie far from them: memory grows with the size.
 
-use std::fmt;
 use std::path::Path;
 
 use condyle::Vec3;
 use condyle::geometry::TriangleMesh;
 
 use super::super::frame::LengthUnit;
-use super::error::BuildError;
+use super::error::{BuildError, StrayPiece};
 
 /// No part of a knee is shorter, mm ...
 const MIN_MM: f64 = 5.0;
@@ -66,30 +65,6 @@ struct Piece {
     triangles: usize,
     low: Vec3,
     high: Vec3,
-}
-
-/// A piece of a mesh that lies far from the largest one, the body.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StrayPiece {
-    /// How many triangles it has.
-    pub triangles: usize,
-    /// Its middle, mm, in the frame of the body.
-    pub at_mm: Vec3,
-    /// How far its box is from that of the body, mm.
-    pub away_mm: f64,
-    /// Longest edge of the body's box, mm.
-    pub body_mm: f64,
-}
-
-impl fmt::Display for StrayPiece {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (at, away) = (self.at_mm, self.away_mm);
-        write!(
-            out,
-            "a piece of {} triangles at ({:.0}, {:.0}, {:.0}) mm lies {away:.0} mm from the body",
-            self.triangles, at.x, at.y, at.z
-        )
-    }
 }
 
 impl Piece {
