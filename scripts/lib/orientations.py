@@ -128,11 +128,11 @@ def row(condyle, folder, implant):
 HEAD = [
     "implant",
     "wrong pairings",
-    "told: error",
-    "told: warning",
-    "not told",
-    "which changes the mass by",
-    "right one accused",
+    "detected: error",
+    "detected: warning",
+    "not detected",
+    "effect on the mass",
+    "false alarm",
 ]
 
 

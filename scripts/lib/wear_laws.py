@@ -33,7 +33,7 @@ def print_head(cells):
 
 def by_law(folders):
     """A row a law: beside Archard's, and where it moved the surface itself."""
-    print_head(["case", "law", "beside Archard's, mg/Mc", "by itself, mg/Mc", "deepest, mm", "outside of its fit"])
+    print_head(["case", "law", "on Archard's scar, mg/Mc", "on its own, mg/Mc", "deepest, mm", "outside of its fit"])
     for name, folder in folders:
         for beside in laws(folder / "archard"):
             own = laws(folder / beside["law"])[0]

@@ -144,14 +144,14 @@ def table(all_ended):
     lines = ["| ended | designs |", "| --- | ---: |"]
     lines += [f"| {how} | {count} |" for how, count in hows.most_common()]
     lines += [f"| **silently wrong** | **{sum(ended.wrong for ended in all_ended)}** |", ""]
-    lines += ["| found by the judge in an answer | designs | nothing said |", "| --- | ---: | ---: |"]
+    lines += ["| found by the judge | designs | not reported |", "| --- | ---: | ---: |"]
     found = Counter(what for ended in all_ended for what in ended.findings)
     unsaid = Counter(what for ended in all_ended for what in ended.silent)
     lines += [f"| {what} | {count} | {unsaid[what]} |" for what, count in found.most_common()]
     held = [ended for ended in all_ended if ended.refined_mass_percent is not None]
     beyond = sum(any("stated error" in what for what in ended.silent) for ended in held)
-    lines += [f"| stated error, held against a refined run ({len(held)} tried) | {beyond} | {beyond} |", ""]
-    lines += ["| told by condyle | designs |", "| --- | ---: |"]
+    lines += [f"| stated error, compared with a refined run ({len(held)} tried) | {beyond} | {beyond} |", ""]
+    lines += ["| reported by condyle | designs |", "| --- | ---: |"]
     told = Counter(warning["check"] for ended in all_ended for warning in ended.summary.get("plausibility", []))
     lines += [f"| `{check}` | {count} |" for check, count in told.most_common()]
     return "\n".join(lines) + "\n"
