@@ -74,14 +74,14 @@ struct OnTheWay {
 }
 
 /// What one part is told by.
-struct Told {
+struct PartEstimate {
     wear: Stated<OfWear>,
     /// Of the later cycle on the way.
     later: Stated<Peaks>,
     first: Stated<FirstCycle>,
 }
 
-impl Told {
+impl PartEstimate {
     /// Of every number of the summary.
     fn errors(self, summary: &Summary) -> QuantityErrors {
         let [mass, depth] = each(self.wear);
@@ -243,7 +243,7 @@ impl<'a> Again<'a> {
         &mut self,
         coarser: &Stated<Arc<Insert>>,
         summary: &Summary,
-    ) -> ControlFlow<(), (Told, Base)> {
+    ) -> ControlFlow<(), (PartEstimate, Base)> {
         let own = self.own_base();
         let insert = match coarser {
             Ok(insert) => insert,
@@ -259,7 +259,7 @@ impl<'a> Again<'a> {
         ControlFlow::Continue(match unworn {
             Err(why) => (untold(&why), own),
             Ok((wear, first)) => {
-                let told = Told {
+                let told = PartEstimate {
                     wear: Ok(self.between_the_nodes_too(wear)),
                     later,
                     first: Ok(errors(COARSER_MESH, first, own.first)),
@@ -275,14 +275,18 @@ impl<'a> Again<'a> {
         [mass, if missed > depth.abs() { missed } else { depth }]
     }
 
-    fn by_increments(&mut self, base: &Base) -> ControlFlow<(), Told> {
+    fn by_increments(&mut self, base: &Base) -> ControlFlow<(), PartEstimate> {
         let test = finer(self.as_run());
         let on_the_way = stated(self.on_the_way(FINER_INCREMENTS, &test))?;
         let first = stated(self.again_first(FINER_INCREMENTS, finer(base.test.clone()), base))?;
         ControlFlow::Continue(told(on_the_way, first))
     }
 
-    fn by_slip(&mut self, base: &Base, looser: &Arc<dyn ContactLaw>) -> ControlFlow<(), Told> {
+    fn by_slip(
+        &mut self,
+        base: &Base,
+        looser: &Arc<dyn ContactLaw>,
+    ) -> ControlFlow<(), PartEstimate> {
         let test = with_contact(self.as_run(), Arc::clone(looser));
         let on_the_way = stated(self.once(LOOSER_SLIP, &test))?;
         let test = with_contact(base.test.clone(), Arc::clone(looser));
@@ -291,7 +295,7 @@ impl<'a> Again<'a> {
     }
 
     /// The first cycle knows nothing of updates.
-    fn by_updates(&mut self, summary: &Summary) -> ControlFlow<(), Told> {
+    fn by_updates(&mut self, summary: &Summary) -> ControlFlow<(), PartEstimate> {
         let later = if has_later_peak(summary) {
             stated(self.as_deep_as_exact())?
         } else {
@@ -302,7 +306,7 @@ impl<'a> Again<'a> {
         } else {
             of_updates(self.march.state())
         };
-        ControlFlow::Continue(Told {
+        ControlFlow::Continue(PartEstimate {
             wear,
             later,
             first: Ok([0.0; 4]),
@@ -442,8 +446,8 @@ impl<'a> Again<'a> {
 }
 
 /// A part of which nothing can be told.
-fn untold(why: &str) -> Told {
-    Told {
+fn untold(why: &str) -> PartEstimate {
+    PartEstimate {
         wear: Err(why.to_owned()),
         later: Err(why.to_owned()),
         first: Err(why.to_owned()),
@@ -451,12 +455,12 @@ fn untold(why: &str) -> Told {
 }
 
 /// What cycles on the way and the first one tell.
-fn told(on_the_way: Stated<OnTheWay>, first: Stated<FirstCycle>) -> Told {
+fn told(on_the_way: Stated<OnTheWay>, first: Stated<FirstCycle>) -> PartEstimate {
     let (wear, later) = match on_the_way {
         Ok(OnTheWay { wear, peaks }) => (Ok(wear), Ok(peaks)),
         Err(why) => (Err(why.clone()), Err(why)),
     };
-    Told { wear, later, first }
+    PartEstimate { wear, later, first }
 }
 
 /// Errors in %: `factor` times by how much `now` differs from what it was; nothing of what does not change.

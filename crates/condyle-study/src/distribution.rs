@@ -6,6 +6,17 @@ use condyle_io::{
 };
 use statrs::distribution::{ContinuousCDF, Normal};
 
+/// Where a test has an input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Place {
+    /// As the case has it.
+    AsItIs,
+    /// Where this share of its distribution lies below.
+    Share(f64),
+    /// This part of the way from its low end to its high one.
+    Along(f64),
+}
+
 /// A design goes so many standard deviations from the mean of a normal input where it needs an end.
 const END_DEVIATIONS: f64 = 2.0;
 

@@ -22,7 +22,7 @@ use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, batch_run, run_case};
 
 use crate::{
     error::StudyError,
-    plan::{Plan, Shard, Test},
+    plan::{Plan, Shard, Test, TestResult},
     search::search,
     store::{DATABASE, Keeping, Store},
 };
@@ -257,9 +257,6 @@ fn work_on(
         }
     }
 }
-
-/// What a test found: its outputs in the order of [`OUTPUTS`], or why it found nothing.
-pub type TestResult = Result<Vec<f64>, String>;
 
 /// What the tests of a study are run with: bodies that do not vary are built once.
 pub struct TestBench {

@@ -27,12 +27,10 @@ pub use crate::{
         ConvergeError, ConvergeHappening, ConvergeOptions, ConvergePlan, Converged, Convergence,
         Listener, Planned, Point, QUANTITIES, Quantity, converge,
     },
-    engine::{
-        Done, HeldFolder, Progress, StudyEnd, StudyOptions, TestBench, TestResult, merge, run_study,
-    },
+    engine::{Done, HeldFolder, Progress, StudyEnd, StudyOptions, TestBench, merge, run_study},
     error::StudyError,
     observed_order::{Extrapolation, extrapolate},
     page::{answer, write_answers},
-    plan::{Plan, Shard, Test},
+    plan::{Plan, Shard, Test, TestResult},
     store::{DATABASE, Store},
 };

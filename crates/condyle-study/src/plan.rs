@@ -11,11 +11,10 @@ use condyle_lab::RunError;
 
 use crate::{
     design::{
-        Correlated, Place, Saltelli, factorial_places, latin_places, morris_places,
-        one_at_a_time_places,
+        Correlated, Saltelli, factorial_places, latin_places, morris_places, one_at_a_time_places,
         sobol::{MAX_AXES, sobol_places},
     },
-    distribution::{along, at_share},
+    distribution::{Place, along, at_share},
     error::StudyError,
 };
 
@@ -41,6 +40,9 @@ pub struct Test {
     /// The value of every input; none where it is as the case has it.
     pub values: Vec<Option<Level>>,
 }
+
+/// What a test found: its outputs in the order of [`OUTPUTS`], or why it found nothing.
+pub type TestResult = Result<Vec<f64>, String>;
 
 impl Plan {
     /// Reads the study at `path` and checks that its tests can be chosen.

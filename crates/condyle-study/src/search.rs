@@ -7,11 +7,10 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::{
     chance::Numbers,
-    design::Place,
+    distribution::Place,
     distribution::deviations,
-    engine::TestResult,
     error::StudyError,
-    plan::{Plan, Test},
+    plan::{Plan, Test, TestResult},
 };
 
 /// A search ends where its steps are below this part of every range: less makes no other implant.

@@ -14,9 +14,8 @@ use rusqlite::{
 };
 
 use crate::{
-    engine::TestResult,
     error::StudyError,
-    plan::{Plan, Shard, Test},
+    plan::{Plan, Shard, Test, TestResult},
 };
 
 /// Its name in the study's folder.

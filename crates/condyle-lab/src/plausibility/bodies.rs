@@ -6,7 +6,7 @@ use condyle::{
 };
 use condyle_io::results::PlausibilityWarning;
 
-use crate::plausibility::{Finished, SolvedCycle};
+use super::finished::{Finished, SolvedCycle};
 
 /// Nearer than this to the rim a foundation over-estimates pressure, and that of an elastic body has no limit, mm: about the reach of its neighbours that it
 /// does not have there.

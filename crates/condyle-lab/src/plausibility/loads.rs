@@ -6,7 +6,7 @@ use condyle::machine::{
 };
 use condyle_io::results::{PlausibilityWarning, joint_range};
 
-use crate::plausibility::{Finished, SolvedCycle};
+use super::finished::{Finished, SolvedCycle};
 
 /// A load of the machine, and how it has to be reached.
 struct Applied {

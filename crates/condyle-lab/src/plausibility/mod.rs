@@ -5,17 +5,13 @@
 //! fold, two counts of one volume that differ.
 
 pub(crate) mod bodies;
+mod finished;
 pub(crate) mod loads;
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use condyle::{
-    Vec3,
-    evolve::{CycleRecord, March},
-    geometry::{ArticulatingSurface, Insert},
-    machine::{CycleRow, Machine},
-};
+use condyle::evolve::March;
 use condyle_io::results::{PlausibilityWarning, Summary};
+
+use finished::Finished;
 
 /// A check of one number: none where the run is as it should be.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
@@ -55,105 +51,6 @@ pub(crate) fn warnings(march: &March, summary: &Summary) -> Vec<PlausibilityWarn
     warnings.extend(loads::lift_off(&finished));
     warnings.extend(REST.iter().filter_map(one));
     warnings
-}
-
-/// A march that is done, its surface, and what it came to.
-pub(crate) struct Finished<'a> {
-    pub march: &'a March,
-    pub summary: &'a Summary,
-    pub surface: ArticulatingSurface,
-    /// Ends of the edges at which the articulating surface ends.
-    rim: Vec<[u32; 2]>,
-    rim_nodes: BTreeSet<u32>,
-}
-
-/// The first or the last cycle that was solved of an activity.
-#[derive(Clone, Copy)]
-pub(crate) struct SolvedCycle<'a> {
-    /// Which of both, as a sentence calls it.
-    pub name: &'static str,
-    /// Which activity.
-    pub activity: usize,
-    /// Its increments.
-    pub rows: &'a [CycleRow],
-}
-
-impl SolvedCycle<'_> {
-    /// Part of the cycle in which this is so, %.
-    pub fn percent_of_rows(&self, is_so: impl Fn(&CycleRow) -> bool) -> f64 {
-        let count = self.rows.iter().filter(|row| is_so(row)).count();
-        100.0 * count as f64 / self.rows.len().max(1) as f64
-    }
-}
-
-impl<'a> Finished<'a> {
-    pub fn new(march: &'a March, summary: &'a Summary) -> Self {
-        let surface = march.insert().surface();
-        let rim = rim_of(march.insert());
-        Self {
-            rim_nodes: rim.iter().flatten().copied().collect(),
-            rim,
-            march,
-            summary,
-            surface,
-        }
-    }
-
-    /// Distance of a surface node from the rim, mm.
-    pub fn distance_to_rim_mm(&self, node: usize) -> f64 {
-        let place = self.surface.positions[node];
-        let edges = self.rim.iter();
-        let edges = edges.map(|edge| edge.map(|node| self.surface.positions[node as usize]));
-        let distances = edges.map(|edge| distance_mm(&place, &edge));
-        distances.fold(f64::INFINITY, f64::min)
-    }
-
-    /// Whether a surface node is one of the rim.
-    pub fn is_on_rim(&self, node: usize) -> bool {
-        self.rim_nodes.contains(&(node as u32))
-    }
-
-    /// The first and the last cycle of every activity, once where they are the same.
-    pub fn cycles(&self) -> impl Iterator<Item = SolvedCycle<'a>> {
-        let activities = self.march.state().activities.iter().enumerate();
-        activities.flat_map(|(activity, state)| {
-            let solved = |name, cycle: &'a CycleRecord| SolvedCycle {
-                name,
-                activity,
-                rows: &cycle.rows,
-            };
-            let kept = state.first_and_last.as_ref();
-            let first = kept.map(|(first, _)| solved("first", first));
-            let last = kept.filter(|(first, last)| first.cycles < last.cycles);
-            let last = last.map(|(_, last)| solved("last", last));
-            first.into_iter().chain(last)
-        })
-    }
-
-    /// The machine of a cycle.
-    pub fn machine(&self, cycle: &SolvedCycle<'_>) -> &'a Machine {
-        &self.march.test().activities[cycle.activity].machine
-    }
-}
-
-/// Edges that one face alone has.
-fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
-    let mut faces_at = BTreeMap::<[u32; 2], usize>::new();
-    for face in insert.surface_faces() {
-        for side in 0..4 {
-            let (a, b) = (face[side], face[(side + 1) % 4]);
-            *faces_at.entry([a.min(b), a.max(b)]).or_default() += 1;
-        }
-    }
-    let at_end = faces_at.into_iter().filter(|(_, faces)| *faces == 1);
-    at_end.map(|(edge, _)| edge).collect()
-}
-
-/// Distance of a place from a straight line between two others, mm.
-fn distance_mm(place: &Vec3, [from, to]: &[Vec3; 2]) -> f64 {
-    let along = to - from;
-    let part = (place - from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
-    (place - (from + along * part.clamp(0.0, 1.0))).norm()
 }
 
 /// The two counts of the worn volume may differ by this, %.

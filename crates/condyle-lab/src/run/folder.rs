@@ -69,10 +69,10 @@ fn run_read(
 ) -> Result<Outcome, RunError> {
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
     let lock = ResultsFolder::lock(&options.out)?;
-    let begun = match found(case, case_path, options, &inputs_blake3)? {
+    let start_from = match found(case, case_path, options, &inputs_blake3)? {
         Found::Done(summary) => return done_before(summary, options),
-        Found::Checkpoint(checkpoint, spent_s) => Start::Before(checkpoint, spent_s),
-        Found::Case | Found::Nothing => Start::Now,
+        Found::Checkpoint(checkpoint, spent_s) => Start::Resume(checkpoint, spent_s),
+        Found::Case | Found::Nothing => Start::Fresh,
     };
     let means = RunContext {
         threads: options.threads,
@@ -81,12 +81,12 @@ fn run_read(
         out: Some(&options.out),
         wear_law: None,
     };
-    let is_new = matches!(begun, Start::Now);
-    let mut run = Run::begin(case, means, begun, inputs_blake3.clone(), on_event)?;
-    let written = if is_new {
+    let is_fresh = matches!(start_from, Start::Fresh);
+    let mut run = Run::begin(case, means, start_from, inputs_blake3.clone(), on_event)?;
+    let written = if is_fresh {
         WrittenRun::new(options, lock, inputs_blake3, &run)?
     } else {
-        WrittenRun::going_on(options, lock, inputs_blake3, &run)?
+        WrittenRun::resume(options, lock, inputs_blake3, &run)?
     };
     let outcome = run.complete(&mut |run| written.write_update(run), on_event)?;
     if let Outcome::Done(summary) = &outcome {
@@ -158,7 +158,7 @@ impl WrittenRun {
     }
 
     /// A run that goes on in its folder.
-    pub fn going_on(
+    pub fn resume(
         options: &RunOptions,
         lock: Option<FolderLock>,
         inputs_blake3: String,

@@ -15,12 +15,12 @@ use crate::run::{
     prepare::{build_sharing, check_so_far, start},
 };
 
-/// When a run began.
+/// The state from which a run starts.
 pub(crate) enum Start {
-    /// It begins now.
-    Now,
-    /// Before, up to a checkpoint, in so many seconds.
-    Before(Box<Checkpoint>, f64),
+    /// From its first cycle.
+    Fresh,
+    /// From a checkpoint, reached after so many seconds of the solver.
+    Resume(Box<Checkpoint>, f64),
 }
 
 /// What a run is done with.
@@ -54,7 +54,7 @@ impl<'a> Run<'a> {
     pub fn begin(
         case: &'a Case,
         means: RunContext<'a>,
-        begun: Start,
+        start_from: Start,
         inputs_blake3: String,
         on_event: &mut Listener<'_>,
     ) -> Result<Self, RunError> {
@@ -68,12 +68,12 @@ impl<'a> Run<'a> {
             let cross_linking = &case.material.cross_linking;
             built.test.wear = cross_linking.under(named.clone()).law;
         }
-        let march = match begun {
-            Start::Before(checkpoint, spent_s) => {
+        let march = match start_from {
+            Start::Resume(checkpoint, spent_s) => {
                 clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
                 clock.time(|| March::resume(built.test, checkpoint.state))
             }
-            Start::Now => clock.time(|| start(case, built.test, &built.warnings))?,
+            Start::Fresh => clock.time(|| start(case, built.test, &built.warnings))?,
         };
         Ok(Self {
             case,
@@ -238,7 +238,7 @@ pub(crate) fn march_watched(
         wear_law: None,
     };
     let nobody = &mut |_: RunEvent<'_>| ControlFlow::Continue(());
-    Run::begin(case, means, Start::Now, String::new(), nobody)?.marched(watch)
+    Run::begin(case, means, Start::Fresh, String::new(), nobody)?.marched(watch)
 }
 
 /// How a case is run in memory.
@@ -281,7 +281,7 @@ pub fn run_in_memory(
         out: None,
         wear_law: how.wear_law.as_ref(),
     };
-    let mut run = Run::begin(case, means, Start::Now, inputs_blake3, on_event)?;
+    let mut run = Run::begin(case, means, Start::Fresh, inputs_blake3, on_event)?;
     keeper.settled(&run.march, &run.femur_triangles(FEMUR_TRIANGLES)?);
     let mut keep = |run: &Run<'_>| {
         keeper.updated(&run.march);

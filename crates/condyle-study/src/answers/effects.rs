@@ -4,10 +4,7 @@ use condyle_io::study::{Design, Input, Output};
 use serde::Serialize;
 
 use crate::{
-    answers::{
-        Named,
-        spread::{is_of_sample, mean, standard_deviation},
-    },
+    answers::spread::{Named, is_of_sample, mean, standard_deviation},
     chance::Numbers,
     design::Walk,
     error::StudyError,
@@ -265,7 +262,7 @@ impl Elementary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Place, morris_places};
+    use crate::{design::morris_places, distribution::Place};
 
     #[test]
     fn verify_ranks_and_their_correlation() {

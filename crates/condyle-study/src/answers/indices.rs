@@ -4,10 +4,7 @@ use condyle_io::study::{Design, Output};
 use serde::Serialize;
 
 use crate::{
-    answers::{
-        Named,
-        spread::{mean, middle},
-    },
+    answers::spread::{Named, mean, middle},
     chance::Numbers,
     plan::Plan,
 };
@@ -128,7 +125,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    use crate::design::{Place, Saltelli};
+    use crate::{design::Saltelli, distribution::Place};
 
     fn indices(inputs: usize, bases: u64, of: impl Fn(&[f64]) -> f64) -> Vec<Indices> {
         let value = |row| {

@@ -14,11 +14,11 @@ use crate::{
         effects::{Effect, Elementary},
         indices::Indices,
         ranking::{Best, Front, Ranking},
-        spread::Spread,
+        spread::{Named, Spread},
     },
     error::StudyError,
     plan::Plan,
-    store::{Column, Store},
+    store::Store,
 };
 
 /// What the tests of a study tell; `answers.json` has all of it.
@@ -120,12 +120,6 @@ fn outputs<'a>(plan: &Plan, store: &Store) -> Result<Vec<Named<'a, Output>>, Stu
         Ok(Named { of: *of, column })
     };
     outputs.map(named).collect()
-}
-
-/// A column of an input or an output with what it is.
-pub(crate) struct Named<'a, T> {
-    pub of: &'a T,
-    pub column: Column,
 }
 
 /// Rows of a table of inputs at most; the page has all.

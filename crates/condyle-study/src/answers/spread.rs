@@ -3,7 +3,13 @@
 use condyle_io::study::{Bound, Design, Output};
 use serde::Serialize;
 
-use crate::{answers::Named, design::Saltelli, plan::Plan};
+use crate::{design::Saltelli, plan::Plan, store::Column};
+
+/// A column of an input or an output with what it is.
+pub(crate) struct Named<'a, T> {
+    pub of: &'a T,
+    pub column: Column,
+}
 
 /// Percentiles that are told.
 pub const PERCENTILES: [f64; 7] = [2.5, 5.0, 25.0, 50.0, 75.0, 95.0, 97.5];

@@ -8,19 +8,8 @@ use nalgebra::DMatrix;
 use crate::{
     chance::{Numbers, mixed},
     design::sobol::sobol_places,
-    distribution::{deviations, share_below},
+    distribution::{Place, deviations, share_below},
 };
-
-/// Where a test has an input.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Place {
-    /// As the case has it.
-    AsItIs,
-    /// Where this share of its distribution lies below.
-    Share(f64),
-    /// This part of the way from its low end to its high one.
-    Along(f64),
-}
 
 /// Where test `row` has its inputs, of which input `i` has `counts[i]` values: the last input changes fastest.
 pub(crate) fn factorial_places(row: u64, counts: &[u64]) -> Vec<Place> {

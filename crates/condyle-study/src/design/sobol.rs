@@ -2,7 +2,7 @@
 
 use crate::{
     chance::{Numbers, mixed},
-    design::Place,
+    distribution::Place,
 };
 
 /// Axes that there are directions for, the first among them.
