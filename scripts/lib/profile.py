@@ -16,7 +16,7 @@ BASE = 0x555555554000
 
 # Patterns fit "function file".
 PARTS = [
-    ("femur: its distance field, once", r"geometry/curved_mesh|(closest_point|weighted) .*geometry/triangle"
+    ("femur: its distance field, once", r"condyle-mesh/src/curved_mesh|(closest_point|weighted) .*condyle-mesh/src/triangle"
      r"|(new|in_cell|with_cells_beside) .*geometry/smooth_field|geometry/smooth_field/(gaps|far_gaps|second_differences)"),
     ("contact: broad phase", r"contact/broad_phase"),
     ("contact: samples of the femur", r"sample_candidates .*foundation/contact|foundation/cached_sample|geometry/(smooth_field|surface_sample|curvature_bounds|generic_femur|torus|femoral_surface)"),
@@ -29,7 +29,7 @@ PARTS = [
     ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|faces_around|node_blocks)"),
     ("mesh: the inside follows", r"condyle-fem/src/(follow|neighbours)"),
     ("mesh: quality and volume", r"condyle-fem/src/"),
-    ("insert: made, worn, its thickness", r"geometry/|condyle-io/"),
+    ("insert: made, worn, its thickness", r"geometry/|condyle-mesh/|condyle-io/"),
     ("Newton's method, machine and chain", r"condyle/src/machine/"),
     ("placing and marching", r"evolve/"),
 ]

@@ -3,9 +3,10 @@
 use condyle::{
     Mat3, Vec3,
     contact::{Bodies, Tangent},
-    geometry::{ColumnGrid, FemoralSurface, GenericInsertShape, Insert},
+    geometry::{FemoralSurface, GenericInsertShape, Insert},
     spatial::{Mat6, Pose, RelativeMotion, Twist, Vec6, WrenchByTwist},
 };
+use condyle_mesh::columns::ColumnGrid;
 use nalgebra::Rotation3;
 
 use crate::{Row, plate::rubbing, pressed::contact_of};

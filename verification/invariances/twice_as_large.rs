@@ -5,9 +5,10 @@ use std::sync::Arc;
 use condyle::{
     Vec3,
     evolve::{March, WearTest},
-    geometry::{ColumnGrid, GenericInsertShape, Insert},
+    geometry::{GenericInsertShape, Insert},
     machine::{Drive, JointKind, knee},
 };
+use condyle_mesh::columns::ColumnGrid;
 
 use super::knee::EXACTLY;
 use crate::{

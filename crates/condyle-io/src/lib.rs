@@ -22,13 +22,13 @@
 //! # Ok::<(), condyle_io::config::Problems>(())
 //! ```
 
+pub use condyle_mesh::{files, formats as mesh};
+
 pub mod abaqus;
 pub mod cache;
 pub mod case;
 pub mod config;
-pub mod files;
 pub mod measured;
-pub mod mesh;
 pub mod results;
 #[cfg(feature = "file-system")]
 pub mod study;

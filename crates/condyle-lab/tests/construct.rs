@@ -5,13 +5,14 @@ use std::{collections::BTreeMap, fmt::Write, fs, ops::ControlFlow, path::Path};
 use condyle::{
     Vec3,
     evolve::March,
-    geometry::{GenericInsertShape, Meshing, Parts, ShellChecks, Touching, TriangleMesh},
+    geometry::{GenericInsertShape, Meshing, TriangleMesh},
 };
 use condyle_io::{
     case::{BuildError, BuildWarning, Built, Case},
     files::Disk,
     mesh::read_surface,
 };
+use condyle_mesh::repair::{Checks, Parts, Touching};
 use tempfile::TempDir;
 
 const SHORT: &str = "[march]\ncycles = 500_000\nupdates = 1\n[time]\nincrements = 40\n";
@@ -78,7 +79,7 @@ fn with_shells_below(insert: &TriangleMesh) -> TriangleMesh {
 
 /// One closed surface around an insert, cut at a height, and a plate and stem that have grown together with it there.
 fn grown_together(insert: TriangleMesh, height_mm: f64, scale: f64) -> TriangleMesh {
-    let checks = ShellChecks {
+    let checks = Checks {
         touching: Touching::FromAbove,
         parts: Parts::All,
         clip_below_mm: Some(height_mm),

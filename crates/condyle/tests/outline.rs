@@ -3,12 +3,10 @@
 use condyle::{
     Mat3, Vec3,
     contact::{Bodies, ContactLaw, ContactMemory, Foundation, PressureLaw},
-    geometry::{
-        FemoralSurface, Insert, Meshing, ShellInsertError, TriangleMesh, insert_from_shell,
-        insert_over_holes,
-    },
+    geometry::{FemoralSurface, Insert, InsertError, Meshing, TriangleMesh},
     spatial::{Pose, RelativeMotion},
 };
+use condyle_mesh::columns::ColumnError;
 use nalgebra::Rotation3;
 
 const MODULUS_MPA: f64 = 2142.0;
@@ -130,7 +128,7 @@ fn insert(body: &Body, degrees: f64, shift_mm: f64) -> Insert {
             .triangles
             .extend(faces.map(|face: [u32; 3]| face.map(|n| n + chip)));
     }
-    insert_from_shell(&shell, true, None, MESHING).unwrap()
+    Insert::from_surface(&shell, true, None, MESHING).unwrap()
 }
 
 /// Force up on a ball pressed in at a place of the body, N, and the highest pressure, MPa.
@@ -250,13 +248,13 @@ fn holes_under_the_outline_are_errors_that_list_all_with_their_places() {
             .any(|n| over(vertex(n), 3.0, 20.0) || over(vertex(n), -2.0, -20.0))
     };
     shell.triangles.retain(|triangle| !is_cut(triangle));
-    match insert_from_shell(&shell, false, Some(8.0), MESHING) {
-        Err(ShellInsertError::Holes { holes }) => {
+    match Insert::from_surface(&shell, false, Some(8.0), MESHING) {
+        Err(InsertError::Columns(ColumnError::Holes { holes })) => {
             assert_eq!(holes.len(), 2, "{holes:?}");
             assert!(holes.iter().all(|hole| hole.goes_through));
             assert!((holes[0].x_mm + 2.0).abs() < 1.0 && (holes[0].z_mm + 20.0).abs() < 1.0);
             assert!((holes[1].x_mm - 3.0).abs() < 1.0 && (holes[1].z_mm - 20.0).abs() < 1.0);
-            let said = ShellInsertError::Holes { holes }.to_string();
+            let said = ColumnError::Holes { holes }.to_string();
             assert!(
                 said.contains("hole of") && said.contains("x -2.") && said.contains("z 20."),
                 "{said}"
@@ -274,7 +272,7 @@ fn the_surface_goes_on_smoothly_over_a_hole_which_is_named() {
     shell
         .triangles
         .retain(|triangle| !triangle.iter().any(is_cut));
-    let (insert, holes) = insert_over_holes(&shell, false, Some(8.0), MESHING).unwrap();
+    let (insert, holes) = Insert::over_holes(&shell, false, Some(8.0), MESHING).unwrap();
     let [hole] = &holes[..] else {
         panic!("{holes:?}");
     };
@@ -315,9 +313,12 @@ const WITH_POST: Body = Body {
 #[test]
 fn a_post_is_an_error_or_left_out_and_named() {
     let shell = WITH_POST.shell();
-    let refused = insert_from_shell(&shell, true, None, MESHING);
-    assert!(matches!(refused, Err(ShellInsertError::Holes { .. })));
-    let (insert, holes) = insert_over_holes(&shell, true, None, MESHING).unwrap();
+    let refused = Insert::from_surface(&shell, true, None, MESHING);
+    assert!(matches!(
+        refused,
+        Err(InsertError::Columns(ColumnError::Holes { .. }))
+    ));
+    let (insert, holes) = Insert::over_holes(&shell, true, None, MESHING).unwrap();
     assert!(holes.len() == 1 && !holes[0].goes_through, "{holes:?}");
     let (_, high) = insert.surface().height_range_mm();
     let (_, highest) = OVAL.shell().bounds();

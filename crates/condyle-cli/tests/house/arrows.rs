@@ -9,8 +9,9 @@ use crate::repository::cargo_metadata;
 /// Each crate, and the crates of this workspace that it may use. A new crate needs a line here.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle-fem", &[]),
-    ("condyle", &["condyle-fem"]),
-    ("condyle-io", &["condyle", "condyle-fem"]),
+    ("condyle-mesh", &["condyle-fem"]),
+    ("condyle", &["condyle-fem", "condyle-mesh"]),
+    ("condyle-io", &["condyle", "condyle-fem", "condyle-mesh"]),
     // No solver: it reads a results folder.
     ("condyle-report", &["condyle-fem", "condyle-io"]),
     (
@@ -51,7 +52,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // Cases with known answers: nobody uses it.
     (
         "condyle-verification",
-        &["condyle", "condyle-fem", "condyle-io", "condyle-lab"],
+        &[
+            "condyle",
+            "condyle-fem",
+            "condyle-io",
+            "condyle-lab",
+            "condyle-mesh",
+        ],
     ),
     // One paper's table: nobody uses it.
     (

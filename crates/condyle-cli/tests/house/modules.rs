@@ -67,11 +67,48 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_fem::solid",
         ],
     ),
+    ("condyle_mesh::bounds", &[]),
+    ("condyle_mesh::triangle", &[]),
+    ("condyle_mesh::triangle_mesh", &["condyle_mesh::bounds"]),
+    ("condyle_mesh::clustered", &["condyle_mesh::triangle_mesh"]),
+    ("condyle_mesh::height_map", &["condyle_mesh::triangle_mesh"]),
+    (
+        "condyle_mesh::curved_mesh",
+        &["condyle_mesh::triangle", "condyle_mesh::triangle_mesh"],
+    ),
+    (
+        "condyle_mesh::columns",
+        &[
+            "condyle_fem",
+            "condyle_mesh::curved_mesh",
+            "condyle_mesh::triangle_mesh",
+        ],
+    ),
+    (
+        "condyle_mesh::repair",
+        &[
+            "condyle_mesh::bounds",
+            "condyle_mesh::height_map",
+            "condyle_mesh::triangle_mesh",
+        ],
+    ),
+    ("condyle_mesh::files", &[]),
+    (
+        "condyle_mesh::formats",
+        &[
+            "condyle_fem",
+            "condyle_mesh::files",
+            "condyle_mesh::triangle_mesh",
+        ],
+    ),
     ("condyle::number", &[]),
     ("condyle::parameter", &[]),
     ("condyle::spatial", &["condyle::number"]),
-    ("condyle::geometry", &["condyle::number", "condyle_fem"]),
-    ("condyle::anatomy", &["condyle::geometry"]),
+    (
+        "condyle::geometry",
+        &["condyle::number", "condyle_fem", "condyle_mesh"],
+    ),
+    ("condyle::anatomy", &["condyle::geometry", "condyle_mesh"]),
     (
         "condyle::contact",
         &[
@@ -79,6 +116,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle::spatial",
             "condyle::geometry",
             "condyle_fem",
+            "condyle_mesh::bounds",
         ],
     ),
     // What may touch knows shares of a surface, never a law.
@@ -122,7 +160,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_fem",
         ],
     ),
-    ("condyle_report::error", &["condyle_io"]),
+    ("condyle_report::error", &["condyle_io", "condyle_mesh"]),
     ("condyle_report::number", &[]),
     ("condyle_report::file", &["condyle_report::error"]),
     (
@@ -130,6 +168,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_report::error",
             "condyle_io",
+            "condyle_mesh",
             "condyle_fem",
             "condyle::machine::knee",
         ],
@@ -179,6 +218,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::error",
             "condyle_report::results",
             "condyle_io",
+            "condyle_mesh",
             "condyle_fem",
         ],
     ),
@@ -216,9 +256,18 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::file",
         ],
     ),
-    ("condyle_lab::accuracy", &["condyle", "condyle_io"]),
-    ("condyle_lab::at_rest", &["condyle", "condyle_io"]),
-    ("condyle_lab::plausibility", &["condyle", "condyle_io"]),
+    (
+        "condyle_lab::accuracy",
+        &["condyle", "condyle_io", "condyle_mesh"],
+    ),
+    (
+        "condyle_lab::at_rest",
+        &["condyle", "condyle_io", "condyle_mesh"],
+    ),
+    (
+        "condyle_lab::plausibility",
+        &["condyle", "condyle_io", "condyle_mesh"],
+    ),
     (
         "condyle_lab::run",
         &[
@@ -227,6 +276,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_lab::plausibility",
             "condyle",
             "condyle_io",
+            "condyle_mesh",
             "condyle_report",
         ],
     ),
@@ -235,6 +285,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle",
             "condyle_io",
+            "condyle_mesh",
             "condyle_report",
             "condyle_lab::at_rest",
             "condyle_lab::run",
@@ -248,6 +299,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_lab::run",
             "condyle",
             "condyle_io",
+            "condyle_mesh",
         ],
     ),
     (
@@ -256,6 +308,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_lab::run",
             "condyle",
             "condyle_io",
+            "condyle_mesh",
             "condyle_report",
         ],
     ),

@@ -2,7 +2,6 @@
 
 use std::{path::Path, sync::Arc};
 
-use condyle::geometry::{Parts, ShellChecks, Touching};
 use condyle_io::{
     cache::{Cache, Keep},
     case::{CaseReader, Side},
@@ -12,6 +11,7 @@ use condyle_io::{
     results::Checkpoint,
     study::Study,
 };
+use condyle_mesh::repair::{Checks, Parts, Touching};
 
 use super::seeds;
 
@@ -86,7 +86,7 @@ fn surface(name: &str, bytes: &[u8]) {
         (Touching::FromAbove, Parts::SeenFromAbove, Some(2.0)),
         (Touching::FromBelowAndBehind, Parts::All, None),
     ] {
-        let checks = ShellChecks {
+        let checks = Checks {
             touching,
             parts,
             clip_below_mm,

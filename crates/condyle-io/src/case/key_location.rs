@@ -5,8 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use condyle::evolve::PlacementError;
-use condyle::geometry::{InsertError, ShellInsertError};
+use condyle::geometry::InsertError;
 use condyle::machine::knee;
+use condyle_mesh::columns::ColumnError;
 use thiserror::Error;
 use toml::de::DeTable;
 
@@ -115,15 +116,13 @@ impl Case {
             | BuildError::WrongUnit { .. }
             | BuildError::TooManyNodes { .. } => &["length_unit", "file"],
             BuildError::ShellInsert { source, .. } => match source {
-                ShellInsertError::NoColumns { .. }
-                | ShellInsertError::TooCoarse { .. }
-                | ShellInsertError::Insert(InsertError::TooManyNodes { .. }) => {
-                    &["edge_mm", "file"]
-                }
-                ShellInsertError::OpenWithoutThickness
-                | ShellInsertError::Holes { .. }
-                | ShellInsertError::NoColumn { .. }
-                | ShellInsertError::Insert(_) => &["file"],
+                InsertError::TooManyNodes(_)
+                | InsertError::Columns(
+                    ColumnError::NoColumns { .. }
+                    | ColumnError::TooCoarse { .. }
+                    | ColumnError::TooManyNodes(_),
+                ) => &["edge_mm", "file"],
+                _ => &["file"],
             },
             BuildError::InsertTooFine { .. } => &["edge_mm", "layers", "file", "length_unit"],
             BuildError::ClipMisses { .. } => &["clip_below_mm"],
@@ -133,7 +132,7 @@ impl Case {
                 "backside" => &["backside"],
                 _ => &["articulating_surface"],
             },
-            BuildError::Insert(InsertError::TooManyNodes { .. }) => &["edge_mm", "layers"],
+            BuildError::Insert(InsertError::TooManyNodes(_)) => &["edge_mm", "layers"],
             BuildError::Insert(_) | BuildError::Solid(_) => {
                 &["backside", "articulating_surface", "file", "edge_mm"]
             }

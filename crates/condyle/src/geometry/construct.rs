@@ -3,7 +3,9 @@
 mod sections;
 
 use self::sections::Sections;
-use super::{dishes::Dishes, triangle_mesh::TriangleMesh};
+use condyle_mesh::TriangleMesh;
+
+use super::dishes::Dishes;
 
 /// Distance between the vertical lines that sample a body, mm.
 const LINES_EVERY_MM: f64 = 0.5;

@@ -1,9 +1,8 @@
 //! The generic tibial insert: two dishes beside an eminence.
 
-use super::{
-    columns::ColumnGrid,
-    insert::{Insert, error::InsertError},
-};
+use condyle_mesh::columns::{ColumnGrid, Meshing};
+
+use super::insert::{Insert, error::InsertError};
 use crate::Vec3;
 
 /// Measures of the generic insert, mm.
@@ -26,24 +25,6 @@ impl Default for GenericInsertShape {
             coronal_radius_mm: 30.0,
             spacing_mm: 46.0,
             thickness_mm: 9.0,
-        }
-    }
-}
-
-/// How finely an insert is meshed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meshing {
-    /// Length of an edge along the surface, mm.
-    pub edge_mm: f64,
-    /// Hexahedra through the thickness.
-    pub layers: usize,
-}
-
-impl Default for Meshing {
-    fn default() -> Self {
-        Self {
-            edge_mm: 1.05,
-            layers: 3,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The tibial insert: a hexahedral mesh, its articulating surface, and how it wears away.
 
 pub(super) mod error;
+mod from_surface;
 mod thickness;
 mod unworn;
 

@@ -3,15 +3,15 @@
 //! In the order of the data's path:
 //!
 //! 1. **A shape or a triangle mesh comes in.** [`TriangleMesh`] is what a file holds;
-//!    [`checked_shell`] finds out whether it is a surface at all, and turns it the right way.
+//!    [`condyle_mesh::repair`] checks that it is a surface, and turns it the right way.
 //!    [`CurvedMesh`] reads its facets as samples of a curved surface.
 //! 2. **The femur becomes a surface** that gives gap, normal and curvature at any point, a
 //!    [`SurfaceSample`], and [`CurvatureBounds`] around it. [`FemoralSurface`] is one of several:
 //!    [`GenericFemur`] of pieces of [`Torus`], the same turned ([`PlacedFemur`]), one ball, one
 //!    [`Cylinder`], or the [`SmoothField`] of a mesh, which is gaps at the nodes of a grid and a
 //!    spline through them.
-//! 3. **The insert becomes hexahedra**: of measures ([`GenericInsertShape`]), of a shell
-//!    ([`insert_from_shell`]), both in the columns of a [`ColumnGrid`], or read from a file.
+//! 3. **The insert becomes hexahedra**: of measures ([`GenericInsertShape`]), of a surface
+//!    ([`Insert::from_surface`]), both in [`condyle_mesh::columns`], or read from a file.
 //!    [`Insert`] holds them, worn or not, with what does not wear: [`SurfaceRegions`],
 //!    [`FacesAround`] its nodes, and the nodes in [`NodeBlock`]s. Its [`Dishes`] say where it is
 //!    lowest on either side.
@@ -21,12 +21,8 @@
 //! Bodies are cheap to clone, and what is large is shared between clones and threads.
 
 mod articulating_surface;
-mod bounds;
-mod clustered;
-mod columns;
 mod construct;
 mod curvature_bounds;
-mod curved_mesh;
 mod cylinder;
 mod dishes;
 mod faces_around;
@@ -36,41 +32,30 @@ mod generic_insert;
 mod insert;
 mod node_blocks;
 mod placed_femur;
+mod posterior_arc;
 mod share;
-mod shell;
-mod shell_insert;
 mod smooth_field;
 mod surface_regions;
 mod surface_sample;
 mod torus;
-mod triangle;
-mod triangle_mesh;
+
+pub use condyle_mesh::{CurvedMesh, TriangleMesh, bounds, columns::Meshing};
 
 pub use articulating_surface::ArticulatingSurface;
-pub use bounds::bounds;
-pub use columns::{Column, ColumnGrid, ColumnMesh, Plan};
 pub use construct::Underside;
 pub use curvature_bounds::{CurvatureBounds, MAX_GAP_SLOPE};
-pub use curved_mesh::{CurvedMesh, Foot};
 pub use cylinder::Cylinder;
 pub use dishes::Dishes;
 pub use faces_around::FacesAround;
 pub use femoral_surface::FemoralSurface;
 pub use generic_femur::{GenericFemur, GenericFemurShape};
-pub use generic_insert::{GenericInsertShape, Meshing, flat_insert};
+pub use generic_insert::{GenericInsertShape, flat_insert};
 pub use insert::{Insert, error::InsertError};
 pub use node_blocks::NodeBlock;
 pub use placed_femur::PlacedFemur;
+pub use posterior_arc::posterior_arc_centre_mm;
 pub use share::Share;
-pub use shell::{
-    CheckedShell, Crossing, Crossings, Defect, DefectKind, LeftOut, Parts, ShellChecks, ShellError,
-    ShellReport, Touching, WhyLeftOut, checked_shell, crossings, shell_report,
-};
-pub use shell_insert::{
-    Hole, ShellInsertError, insert_from_shell, insert_over_holes, listed_holes,
-};
 pub use smooth_field::SmoothField;
 pub use surface_regions::SurfaceRegions;
 pub use surface_sample::{Curvature, SurfaceSample};
 pub use torus::Torus;
-pub use triangle_mesh::TriangleMesh;

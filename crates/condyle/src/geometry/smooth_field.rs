@@ -26,10 +26,10 @@ use self::{
     node_grid::NodeGrid,
     second_differences::{add_laplacian, spline_coefficients},
 };
-use super::{
-    curvature_bounds::CurvatureBounds, curved_mesh::CurvedMesh, shell::shell_report,
-    surface_sample::SurfaceSample, triangle_mesh::TriangleMesh,
-};
+use condyle_mesh::{CurvedMesh, TriangleMesh, repair::edge_report};
+
+use super::curvature_bounds::CurvatureBounds;
+use super::surface_sample::SurfaceSample;
 use crate::{Vector, number::Number};
 
 /// A smooth signed distance to a triangle mesh.
@@ -63,7 +63,7 @@ impl SmoothField {
     pub fn new(mesh: &TriangleMesh, threads: usize) -> Self {
         let grid = NodeGrid::around(mesh.bounds());
         let mut gaps = gaps_at_nodes(&grid, &CurvedMesh::new(mesh), threads);
-        let is_far = bound_far_gaps(&grid, &mut gaps, shell_report(mesh).is_closed());
+        let is_far = bound_far_gaps(&grid, &mut gaps, edge_report(mesh).is_closed());
         let gap = GapSpline::new(grid, spline_coefficients(&grid, &is_far, gaps));
         Self {
             curvature: CurvatureGrid::new(&gap),

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 
 use condyle::Vec3;
 use condyle::anatomy::Recognition;
-use condyle::geometry::{
-    Defect, Hole, InsertError, LeftOut, ShellError, ShellInsertError, TriangleMesh, WhyLeftOut,
-    listed_holes,
-};
+use condyle::geometry::{InsertError, TriangleMesh};
 use condyle_fem::SolidError;
+use condyle_mesh::columns::{Hole, listed_holes};
+use condyle_mesh::repair::{Defect, LeftOut, RepairError, WhyLeftOut};
 use thiserror::Error;
 
 use super::super::frame::{Axes, AxesError, LengthUnit, Side};
@@ -223,7 +222,7 @@ pub enum BuildError {
         /// The file.
         file: PathBuf,
         /// Why.
-        source: ShellError,
+        source: RepairError,
     },
     /// A height to cut at that the body does not pass.
     #[error(
@@ -260,7 +259,7 @@ pub enum BuildError {
         /// The file.
         file: PathBuf,
         /// Why.
-        source: ShellInsertError,
+        source: InsertError,
     },
     /// A hole or a post at which the femur presses.
     #[error(

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use condyle::Vec3;
 use condyle::evolve::WearTest;
 use condyle::geometry::{
-    CheckedShell, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, PlacedFemur,
-    SmoothField, TriangleMesh,
+    Cylinder, FemoralSurface, GenericFemur, GenericFemurShape, PlacedFemur, SmoothField,
+    TriangleMesh, posterior_arc_centre_mm,
 };
+use condyle_mesh::repair::CheckedMesh;
 use serde::{Deserialize, Serialize};
 
 use super::super::contents::Case;
@@ -122,7 +123,7 @@ impl MeshFemur {
     fn axis_mm(&self, mesh: &TriangleMesh) -> (f64, f64) {
         match self.flexion_axis_mm {
             Some([x, y]) => (x, y),
-            None => mesh.posterior_arc_centre_mm(),
+            None => posterior_arc_centre_mm(&mesh),
         }
     }
 
@@ -206,7 +207,7 @@ fn over_the_dish(shape: &GenericFemurShape, flexion_rad: f64) -> (f64, f64) {
 /// The one-time work on a mesh femur.
 #[derive(Serialize, Deserialize)]
 struct PreparedFemur {
-    shell: CheckedShell,
+    shell: CheckedMesh,
     field: SmoothField,
 }
 

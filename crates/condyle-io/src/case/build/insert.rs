@@ -4,10 +4,9 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use condyle::Vec3;
-use condyle::geometry::{
-    self, CheckedShell, GenericInsertShape, Meshing, flat_insert, insert_over_holes,
-};
+use condyle::geometry::{self, GenericInsertShape, Meshing, flat_insert};
 use condyle_fem::HexMesh;
+use condyle_mesh::repair::CheckedMesh;
 
 use super::super::contents::Case;
 use super::super::frame::Side;
@@ -185,7 +184,7 @@ fn from_mesh(
     let meshing = meshing(insert.edge_mm, insert.layers);
     let (low, high) = mesh.bounds();
     check_node_count((high.x - low.x, high.z - low.z), meshing, around.limits)?;
-    let built = insert_over_holes(&mesh, shell.closed, insert.thickness_mm, meshing);
+    let built = geometry::Insert::over_holes(&mesh, shell.closed, insert.thickness_mm, meshing);
     let (built, holes) = built.map_err(|source| BuildError::ShellInsert {
         file: file(),
         source,
@@ -203,10 +202,10 @@ fn from_mesh(
 /// The insert without a tray that its file holds too; once it is alone, its shape tells how it lies.
 fn insert_alone(
     insert: &MeshInsert,
-    shell: CheckedShell,
+    shell: CheckedMesh,
     placing: &Placing,
     warnings: &mut Vec<BuildWarning>,
-) -> Result<CheckedShell, BuildError> {
+) -> Result<CheckedMesh, BuildError> {
     let count = shell.mesh.triangles.len();
     let alone = without_tray(&insert.file, shell, warnings)?;
     if alone.mesh.triangles.len() != count {

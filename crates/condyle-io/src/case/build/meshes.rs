@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle::geometry::{CheckedShell, Parts, ShellChecks, Touching, TriangleMesh};
+use condyle::geometry::TriangleMesh;
 use condyle::{Mat3, Vec3};
+use condyle_mesh::repair::{CheckedMesh, Checks, Parts, Touching};
 
 use super::super::frame::Axes;
 use super::super::frame::LengthUnit;
@@ -82,14 +83,14 @@ fn turn_round(mesh: &mut TriangleMesh) {
 pub(super) struct ShellOf {
     /// Which way an open surface must face on the whole.
     faces: Faces,
-    checks: ShellChecks,
+    checks: Checks,
 }
 
 impl ShellOf {
     /// Of a femur, which faces down.
     pub(super) const FEMUR: Self = Self {
         faces: Faces::Down,
-        checks: ShellChecks {
+        checks: Checks {
             touching: Touching::FromBelowAndBehind,
             parts: Parts::All,
             clip_below_mm: None,
@@ -100,7 +101,7 @@ impl ShellOf {
     pub(super) fn insert(clip_below_mm: Option<f64>) -> Self {
         Self {
             faces: Faces::Up,
-            checks: ShellChecks {
+            checks: Checks {
                 touching: Touching::FromAbove,
                 parts: Parts::SeenFromAbove,
                 clip_below_mm,
@@ -111,7 +112,7 @@ impl ShellOf {
 
 /// What the shell of a body is checked for, once it lies in the frame of a knee.
 #[cfg(feature = "file-system")]
-pub(in crate::case) fn checks_of(body: Body) -> ShellChecks {
+pub(in crate::case) fn checks_of(body: Body) -> Checks {
     match body {
         Body::Femur => ShellOf::FEMUR.checks,
         Body::Insert => ShellOf::insert(None).checks,
@@ -119,7 +120,7 @@ pub(in crate::case) fn checks_of(body: Body) -> ShellChecks {
 }
 
 /// What an insert is checked for that is cut away below a height.
-pub(in crate::case) fn checks_of_insert(clip_below_mm: Option<f64>) -> ShellChecks {
+pub(in crate::case) fn checks_of_insert(clip_below_mm: Option<f64>) -> Checks {
     ShellOf::insert(clip_below_mm).checks
 }
 
@@ -136,7 +137,7 @@ pub(super) fn shell(
     placing: &Placing,
     of: ShellOf,
     warnings: &mut Vec<BuildWarning>,
-) -> Result<CheckedShell, BuildError> {
+) -> Result<CheckedMesh, BuildError> {
     let bytes = surface_bytes(file.files(), file.path())?;
     let shell = parsed_shell(file.path(), &bytes, placing, of)?;
     warn(file, &shell, warnings);
@@ -149,7 +150,7 @@ pub(super) fn parsed_shell(
     bytes: &[u8],
     placing: &Placing,
     of: ShellOf,
-) -> Result<CheckedShell, BuildError> {
+) -> Result<CheckedMesh, BuildError> {
     let mesh = placing.mesh(parse_surface(file, bytes)?);
     check_triangles(file, &mesh, placing.unit)?;
     check_clip(file, &mesh, of.checks.clip_below_mm)?;
@@ -185,7 +186,7 @@ fn check_clip(
 }
 
 /// Says what was put right in a file, and what looks wrong, by its name alone: results say so too, and name no folder.
-pub(super) fn warn(file: &DataFile, shell: &CheckedShell, warnings: &mut Vec<BuildWarning>) {
+pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<BuildWarning>) {
     let file = || PathBuf::from(file.name());
     if let Some(piece) = stray_piece(&shell.mesh) {
         let file = file();

@@ -86,7 +86,7 @@ fn dm_cases_build_and_lie_the_right_way_round() {
     let placing = Placing::new(femur.length_unit, &femur.axes, Side::Right).unwrap();
     let shell = shell(&femur.file, &placing, ShellOf::FEMUR, &mut Vec::new()).unwrap();
     let (low, high) = shell.mesh.bounds();
-    let (x, y) = shell.mesh.posterior_arc_centre_mm();
+    let (x, y) = condyle::geometry::posterior_arc_centre_mm(&shell.mesh);
     // The posterior condyles lie behind, and the flexion axis inside them.
     assert!(
         low.x < x && x < 0.0 && low.y < y && y < high.y,

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use condyle::geometry::{CheckedShell, ShellError, Underside};
+use condyle::geometry::Underside;
+use condyle_mesh::repair::{CheckedMesh, RepairError};
 
 use super::error::{BuildError, BuildWarning};
 use super::meshes::checks_of_insert;
@@ -21,9 +22,9 @@ const USUAL_PLATE_MM: f64 = 4.0;
 /// [`BuildError::UnclearUnderside`] where it does not, and what a shell is refused for.
 pub(super) fn without_tray(
     file: &DataFile,
-    shell: CheckedShell,
+    shell: CheckedMesh,
     warnings: &mut Vec<BuildWarning>,
-) -> Result<CheckedShell, BuildError> {
+) -> Result<CheckedMesh, BuildError> {
     match Underside::of(&shell.mesh) {
         Underside::Whole => Ok(shell),
         Underside::Ledge {
@@ -60,12 +61,12 @@ pub(super) fn without_tray(
 /// # Errors
 /// What a shell is refused for.
 pub(in crate::case) fn cut_at(
-    whole: CheckedShell,
+    whole: CheckedMesh,
     height_mm: f64,
-) -> Result<CheckedShell, ShellError> {
-    let CheckedShell { mesh, left_out, .. } = whole;
+) -> Result<CheckedMesh, RepairError> {
+    let CheckedMesh { mesh, left_out, .. } = whole;
     let cut = checks_of_insert(Some(height_mm)).check(mesh)?;
-    Ok(CheckedShell { left_out, ..cut })
+    Ok(CheckedMesh { left_out, ..cut })
 }
 
 /// The height to cut at: the next hundredth of a millimetre, so that nothing of the plate is left.

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use condyle::Mat3;
 use condyle::anatomy::{Orientation, Recognition, Sureness};
-use condyle::geometry::{CheckedShell, ShellError, TriangleMesh, Underside};
+use condyle::geometry::{TriangleMesh, Underside};
+use condyle_mesh::repair::{CheckedMesh, RepairError};
 
 use super::knee::DraftError;
 use crate::case::build::{
@@ -72,20 +73,20 @@ impl<'a> Concluded<'a> {
     }
 
     /// The same, mended and checked as a run does it.
-    pub fn shell(&self, lies: &Orientation) -> Result<CheckedShell, DraftError> {
+    pub fn shell(&self, lies: &Orientation) -> Result<CheckedMesh, DraftError> {
         checks_of(self.body)
             .check(self.placed(lies))
             .map_err(|source| self.refused(source))
     }
 
-    pub fn refused(&self, source: ShellError) -> DraftError {
+    pub fn refused(&self, source: RepairError) -> DraftError {
         DraftError::Shell {
             file: self.file.clone(),
             source,
         }
     }
 
-    pub fn remarks(&self, lies: &Orientation, shell: &CheckedShell) -> Vec<String> {
+    pub fn remarks(&self, lies: &Orientation, shell: &CheckedMesh) -> Vec<String> {
         let (low, high) = shell.mesh.bounds();
         let size = high - low;
         let mut remarks = vec![
@@ -140,12 +141,12 @@ impl<'a> Concluded<'a> {
 
 /// An insert without the tray that its file may hold too.
 pub(super) struct Alone {
-    pub shell: CheckedShell,
+    pub shell: CheckedMesh,
     underside: Underside,
 }
 
 impl Alone {
-    pub fn of(whole: CheckedShell) -> Result<Self, ShellError> {
+    pub fn of(whole: CheckedMesh) -> Result<Self, RepairError> {
         let underside = if whole.closed {
             Underside::of(&whole.mesh)
         } else {

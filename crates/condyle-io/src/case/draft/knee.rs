@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use condyle::anatomy::flange_lead_mm;
-use condyle::geometry::{ShellError, TriangleMesh};
+use condyle::geometry::TriangleMesh;
+use condyle_mesh::repair::RepairError;
 use thiserror::Error;
 
 use crate::case::build::{Body, MAX_ACROSS_MM, middle_of_mesh};
@@ -87,7 +88,7 @@ pub enum DraftError {
         /// The file.
         file: PathBuf,
         /// Why.
-        source: ShellError,
+        source: RepairError,
     },
     /// A body that no unit makes as large as a knee's.
     #[error(

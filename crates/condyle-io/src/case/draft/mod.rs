@@ -13,7 +13,8 @@ use super::frame::{Axes, Side};
 use super::machine::Preset;
 use crate::config::quoted;
 use condyle::anatomy::{Orientation, start_over_the_dishes_mm};
-use condyle::geometry::{CheckedShell, GenericInsertShape, TriangleMesh};
+use condyle::geometry::{GenericInsertShape, TriangleMesh};
+use condyle_mesh::repair::CheckedMesh;
 use std::path::Path;
 
 /// What a case is drafted from.
@@ -104,7 +105,7 @@ fn with(mut remarks: Vec<String>, remark: Option<String>) -> Vec<String> {
 }
 
 /// The thickness of an open insert, which has none of its own.
-fn thickness(insert: &CheckedShell) -> String {
+fn thickness(insert: &CheckedMesh) -> String {
     if insert.closed {
         return String::new();
     }

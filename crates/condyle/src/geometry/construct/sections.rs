@@ -1,6 +1,8 @@
 //! Horizontal sections of a closed body.
 
-use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
+use condyle_mesh::TriangleMesh;
+
+use crate::Vec3;
 
 /// Lines lie beside round numbers, where edges of triangles are, by these shares of their distance: not by the same,
 /// or they would lie on diagonals.
@@ -103,14 +105,13 @@ fn pass([a, b, c]: &[Vec3; 3], (x, z): (f64, f64)) -> Option<(f64, i32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::shell::fixtures::{block, joined};
 
     #[test]
     fn verify_areas_of_the_sections_of_a_block_on_a_smaller_one() {
-        let body = joined(
-            block(Vec3::new(-10.0, 0.0, -15.0), Vec3::new(10.0, 8.0, 15.0)),
-            block(Vec3::new(-4.0, -20.0, -3.0), Vec3::new(4.0, 0.5, 3.0)),
-        );
+        let body =
+            TriangleMesh::block(Vec3::new(-10.0, 0.0, -15.0), Vec3::new(10.0, 8.0, 15.0)).joined(
+                &TriangleMesh::block(Vec3::new(-4.0, -20.0, -3.0), Vec3::new(4.0, 0.5, 3.0)),
+            );
         let sections = Sections::of(&body, 0.25);
         for (y, area) in [
             (7.9, 600.0),

@@ -1,10 +1,9 @@
+use condyle_mesh::repair::checked_mesh;
+
 use super::*;
 use crate::{
     Vec3,
-    geometry::{
-        GenericInsertShape, Meshing, checked_shell,
-        shell::fixtures::{block, fused},
-    },
+    geometry::{GenericInsertShape, Meshing},
 };
 
 /// The generic insert as a closed shell, its underside at y = -9 mm.
@@ -26,7 +25,7 @@ fn insert_of(meshing: Meshing) -> TriangleMesh {
 }
 
 fn underside_of(body: TriangleMesh) -> Underside {
-    let shell = checked_shell(body).unwrap();
+    let shell = checked_mesh(body).unwrap();
     assert!(shell.closed, "the fused body is not closed");
     Underside::of(&shell.mesh)
 }
@@ -90,6 +89,78 @@ fn lines_on_the_diagonals_of_a_square_grid_do_not_count_twice() {
 
 #[test]
 fn what_is_thicker_than_any_insert_is_unclear() {
-    let body = block(Vec3::new(-22.0, -40.0, -35.0), Vec3::new(22.0, 0.0, 35.0));
+    let body = TriangleMesh::block(Vec3::new(-22.0, -40.0, -35.0), Vec3::new(22.0, 0.0, 35.0));
     assert!(matches!(underside_of(body), Underside::Unclear { .. }));
+}
+
+/// A body with a flat underside at `height_mm`, grown together with a plate and a stem below: the plate has the
+/// outline of the underside, scaled about its middle, and the stem a fifth of it.
+fn fused(
+    mut body: TriangleMesh,
+    height_mm: f64,
+    scale: f64,
+    plate_mm: f64,
+    stem_mm: f64,
+) -> TriangleMesh {
+    let outline = open_underside(&mut body, height_mm);
+    let places: Vec<Vec3> = outline.iter().map(|&n| body.vertices[n as usize]).collect();
+    let middle = places.iter().sum::<Vec3>() / places.len() as f64;
+    let below_mm = height_mm - plate_mm;
+    let rings = [
+        (scale, height_mm),
+        (scale, below_mm),
+        (0.2, below_mm),
+        (0.2, below_mm - stem_mm),
+    ];
+    let mut above = outline;
+    let is_flat = |ring: &(f64, f64)| *ring == (1.0, height_mm);
+    for (scale, y) in rings.into_iter().filter(|ring| !is_flat(ring)) {
+        let place = |at: &Vec3| {
+            let at = middle + (at - middle) * scale;
+            Vec3::new(at.x, y, at.z)
+        };
+        let first = body.vertices.len() as u32;
+        body.vertices.extend(places.iter().map(place));
+        let below: Vec<u32> = (first..body.vertices.len() as u32).collect();
+        for n in 0..above.len() {
+            let after = (n + 1) % above.len();
+            let quad = [above[n], below[n], below[after], above[after]];
+            body.triangles
+                .extend([[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]]);
+        }
+        above = below;
+    }
+    let tip = body.vertices.len() as u32;
+    body.vertices
+        .push(Vec3::new(middle.x, below_mm - stem_mm, middle.z));
+    let next = above.iter().cycle().skip(1);
+    body.triangles
+        .extend(above.iter().zip(next).map(|(&a, &b)| [a, tip, b]));
+    body
+}
+
+/// Takes away the triangles at a height; gives the line around them, as it lies in what is left.
+fn open_underside(body: &mut TriangleMesh, height_mm: f64) -> Vec<u32> {
+    let heights: Vec<f64> = body.vertices.iter().map(|vertex| vertex.y).collect();
+    let is_there = |n: &u32| (heights[*n as usize] - height_mm).abs() < 1e-9;
+    body.triangles
+        .retain(|triangle| !triangle.iter().all(is_there));
+    let sides = |triangle: &[u32; 3]| {
+        let [a, b, c] = *triangle;
+        [(a, b), (b, c), (c, a)]
+    };
+    let next: std::collections::BTreeMap<u32, u32> = body
+        .triangles
+        .iter()
+        .flat_map(sides)
+        .filter(|(a, b)| is_there(a) && is_there(b))
+        .collect();
+    let start = *next.keys().next().unwrap();
+    let mut outline = vec![start];
+    while let Some(&after) = next.get(&outline[outline.len() - 1])
+        && after != start
+    {
+        outline.push(after);
+    }
+    outline
 }

@@ -1,7 +1,9 @@
 //! The generic femoral component cut into triangles, for pictures and other programs.
 
 use super::GenericFemur;
-use crate::{Vec3, geometry::triangle_mesh::TriangleMesh};
+use condyle_mesh::TriangleMesh;
+
+use crate::Vec3;
 
 /// The condyles reach from here, degrees behind straight down ...
 const FRONT_DEG: f64 = -50.0;
@@ -76,6 +78,17 @@ mod tests {
             let [a, b, c] = mesh.corners(triangle);
             let normal = femur.sample(&((a + b + c) / 3.0), 0.0).normal;
             assert!((b - a).cross(&(c - a)).dot(&normal) > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_clustered_mesh_is_smaller_and_stays_near_the_surface() {
+        let femur = GenericFemur::new(GenericFemurShape::default());
+        let fine = femur.surface_mesh(0.5);
+        let coarse = fine.clustered(2.0);
+        assert!(coarse.triangles.len() * 4 < fine.triangles.len());
+        for vertex in &coarse.vertices {
+            assert!(femur.gap_mm(vertex).abs() < 0.1, "{vertex}");
         }
     }
 }

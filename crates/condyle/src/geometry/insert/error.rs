@@ -1,5 +1,6 @@
 //! Why a mesh makes no insert.
 
+use condyle_mesh::columns::{ColumnError, TooManyNodes};
 use thiserror::Error;
 
 /// Why a mesh makes no insert.
@@ -12,15 +13,11 @@ pub enum InsertError {
         what: &'static str,
     },
     /// More nodes than can be numbered.
-    #[error(
-        "the insert would have {nodes:.0} nodes, and more than {most} cannot be numbered; use a larger edge_mm or fewer layers"
-    )]
-    TooManyNodes {
-        /// How many.
-        nodes: f64,
-        /// How many there may be.
-        most: u32,
-    },
+    #[error(transparent)]
+    TooManyNodes(#[from] TooManyNodes),
+    /// A surface below which no columns of hexahedra can stand.
+    #[error(transparent)]
+    Columns(#[from] ColumnError),
     /// A hexahedron that is inverted or flat.
     #[error(
         "hexahedron {hex} of the insert is inverted or flat (scaled Jacobian {quality:.3}); mend the mesh or use a larger edge"

@@ -1,12 +1,10 @@
 //! Thickness of an insert, measured along the normals of its articulating surface.
 
 use condyle_fem::HexMesh;
+use condyle_mesh::triangle;
 
 use super::error::InsertError;
-use crate::{
-    Vec3,
-    geometry::{articulating_surface::ArticulatingSurface, triangle},
-};
+use crate::{Vec3, geometry::articulating_surface::ArticulatingSurface};
 
 /// Edge of the bins that sort the backside over the transverse plane, mm.
 const BIN_MM: f64 = 2.0;

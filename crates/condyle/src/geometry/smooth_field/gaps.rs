@@ -1,7 +1,7 @@
 //! The gap at the nodes of a grid near a mesh.
 
 use super::node_grid::{BAND_MM, NodeGrid};
-use crate::geometry::curved_mesh::CurvedMesh;
+use condyle_mesh::CurvedMesh;
 
 /// What stands at the nodes beyond the band until a bound is found, mm: no gap is as large.
 pub const BEYOND_BAND_MM: f64 = 1e3;

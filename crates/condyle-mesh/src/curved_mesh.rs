@@ -1,0 +1,219 @@
+//! The curved surface that a triangle mesh samples.
+
+use crate::{
+    Vec3,
+    triangle::{closest_point, weighted},
+    triangle_mesh::TriangleMesh,
+};
+
+/// Vertex normals that lean further from their triangle's than 30 degrees mark a sharp edge.
+const MIN_COSINE: f64 = 0.866;
+
+/// Surfaces steeper than 60 degrees are walls.
+const MIN_SLOPE_COSINE: f64 = 0.5;
+
+/// A triangle mesh with vertex normals, read as samples of a smooth surface.
+///
+/// Over a triangle with corners v_i and vertex normals n_i, the point c with barycentric
+/// coordinates b_i is lifted along the normals by (1/2) sum b_i ((v_i - c) . n_i) n_i. Half of the
+/// blended tangent planes (Boubekeur & Alexa 2008, alpha = 1/2) is exact for a quadratic surface.
+pub struct CurvedMesh<'a> {
+    mesh: &'a TriangleMesh,
+    vertex_normals: Vec<Vec3>,
+    planes: Vec<(Vec3, f64)>,
+}
+
+impl<'a> CurvedMesh<'a> {
+    /// The curved surface that `mesh` samples.
+    pub fn new(mesh: &'a TriangleMesh) -> Self {
+        let plane = |triangle| {
+            let [a, b, c] = mesh.corners(triangle);
+            let normal = (b - a)
+                .cross(&(c - a))
+                .try_normalize(0.0)
+                .unwrap_or_default();
+            (normal, normal.dot(&a))
+        };
+        Self {
+            mesh,
+            vertex_normals: mesh.vertex_normals(),
+            planes: (0..mesh.triangles.len()).map(plane).collect(),
+        }
+    }
+
+    /// Unit normals at the corners of every triangle, each that of the smooth surface the triangle is part of.
+    ///
+    /// Where all triangles around a vertex make one smooth surface that is the vertex normal. At a crease,
+    /// such as the rim of an insert, a mean over all of them would lean across it and raise a ridge
+    /// beside. There the normals of the smooth vertices beside it are mirrored over the middle of the edge
+    /// between, which is exact on a ball.
+    pub fn corner_normals(&self) -> Vec<[Vec3; 3]> {
+        let around = self.triangles_around();
+        let smooth: Vec<bool> = around.iter().map(|star| self.is_smooth(star)).collect();
+        let corner = |triangle: usize, vertex: u32| {
+            if smooth[vertex as usize] {
+                return self.vertex_normals[vertex as usize];
+            }
+            let own = self.planes[triangle].0;
+            let same = |other: &&u32| self.planes[**other as usize].0.dot(&own) > MIN_COSINE;
+            let fan = around[vertex as usize].iter().filter(same);
+            let beside = fan.flat_map(|&other| self.mesh.triangles[other as usize]);
+            let mirrored = beside
+                .filter(|&other| smooth[other as usize])
+                .map(|other| self.mirrored(other, vertex));
+            mirrored.sum::<Vec3>().try_normalize(0.0).unwrap_or(own)
+        };
+        let triangles = self.mesh.triangles.iter().enumerate();
+        triangles
+            .map(|(triangle, vertices)| vertices.map(|vertex| corner(triangle, vertex)))
+            .collect()
+    }
+
+    fn triangles_around(&self) -> Vec<Vec<u32>> {
+        let mut around = vec![Vec::new(); self.mesh.vertices.len()];
+        for (triangle, vertices) in self.mesh.triangles.iter().enumerate() {
+            for &vertex in vertices {
+                around[vertex as usize].push(triangle as u32);
+            }
+        }
+        around
+    }
+
+    /// Whether no two of some triangles lean from one another.
+    fn is_smooth(&self, triangles: &[u32]) -> bool {
+        let normal = |triangle: &u32| self.planes[*triangle as usize].0;
+        triangles.iter().enumerate().all(|(n, one)| {
+            let mut others = triangles[n + 1..].iter();
+            others.all(|other| normal(one).dot(&normal(other)) > MIN_COSINE)
+        })
+    }
+
+    /// The normal at vertex `to` if the surface goes on from `from` as a circle.
+    fn mirrored(&self, from: u32, to: u32) -> Vec3 {
+        let [from, to] = [from, to].map(|vertex| vertex as usize);
+        let along = self.mesh.vertices[to] - self.mesh.vertices[from];
+        let along = along.try_normalize(0.0).unwrap_or_default();
+        let normal = self.vertex_normals[from];
+        normal - along * (2.0 * normal.dot(&along))
+    }
+
+    /// How many triangles the mesh has.
+    pub fn triangle_count(&self) -> usize {
+        self.mesh.triangles.len()
+    }
+
+    /// Positions of the corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.mesh.corners(triangle)
+    }
+
+    /// Squared distance from a point to the triangle's plane: a cheap lower bound.
+    pub fn plane_distance2(&self, triangle: usize, point: &Vec3) -> f64 {
+        let (normal, offset) = self.planes[triangle];
+        (normal.dot(point) - offset).powi(2)
+    }
+
+    /// Squared distance from a point to the flat triangle.
+    pub fn distance2(&self, triangle: usize, point: &Vec3) -> f64 {
+        Self::distance2_to_triangle(&self.corners(triangle), point)
+    }
+
+    /// Squared distance from a point to a flat triangle, mm2.
+    pub fn distance2_to_triangle(corners: &[Vec3; 3], point: &Vec3) -> f64 {
+        (weighted(corners, closest_point(corners, point)) - point).norm_squared()
+    }
+
+    /// The curved surface over the triangle at a place (x, z), if the triangle covers it.
+    ///
+    /// `normals` are those at its corners, as [`CurvedMesh::corner_normals`] gives them.
+    ///
+    /// At a sharp edge, where the vertex normals lean away from the triangle's, and on steep walls,
+    /// where a lift sideways has no height, it stays flat.
+    pub fn over(&self, triangle: usize, normals: &[Vec3; 3], (x, z): (f64, f64)) -> Option<Over> {
+        const COVERED: f64 = -1e-9;
+        let corners = self.corners(triangle);
+        let [a, b, c] = corners;
+        let twice_area = |p: (f64, f64), q: &Vec3, r: &Vec3| {
+            (q.x - p.0) * (r.z - p.1) - (q.z - p.1) * (r.x - p.0)
+        };
+        let all = twice_area((a.x, a.z), &b, &c);
+        let weights = [
+            twice_area((x, z), &b, &c),
+            twice_area((x, z), &c, &a),
+            twice_area((x, z), &a, &b),
+        ]
+        .map(|part| part / all);
+        if all == 0.0 || weights.iter().any(|&weight| weight < COVERED) {
+            return None;
+        }
+        Some(self.lifted(triangle, normals, &corners, weights))
+    }
+
+    fn lifted(
+        &self,
+        triangle: usize,
+        normals: &[Vec3; 3],
+        corners: &[Vec3; 3],
+        weights: [f64; 3],
+    ) -> Over {
+        let flat = weighted(corners, weights);
+        let facet = self.planes[triangle].0;
+        let is_smooth_at = |normal: &Vec3| normal.dot(&facet) > MIN_COSINE;
+        let own = normals.map(|normal| if is_smooth_at(&normal) { normal } else { facet });
+        let normal = weighted(&own, weights);
+        let upward = normal.y / normal.norm();
+        let is_smooth = normals.iter().all(is_smooth_at);
+        let height = if is_smooth && upward.abs() >= MIN_SLOPE_COSINE {
+            flat.y + lift(corners, normals, weights, &flat).dot(&normal) / normal.y
+        } else {
+            flat.y
+        };
+        Over { height, upward }
+    }
+
+    /// Signed distance from a point to the curved surface over the triangle, mm; > 0 outside.
+    pub fn curved_gap_mm(&self, triangle: usize, point: &Vec3) -> f64 {
+        let foot = self.foot(triangle, point);
+        (point - foot.point).dot(&foot.normal)
+    }
+
+    /// The place of the curved surface over the triangle that belongs to a point.
+    pub fn foot(&self, triangle: usize, point: &Vec3) -> Foot {
+        let corners = self.corners(triangle);
+        let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
+        let weights = closest_point(&corners, point);
+        let flat = weighted(&corners, weights);
+        let normal = weighted(&normals, weights);
+        Foot {
+            weights,
+            point: flat + lift(&corners, &normals, weights, &flat),
+            normal: normal.try_normalize(0.0).unwrap_or_default(),
+        }
+    }
+}
+
+/// The curved surface where a vertical line meets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Over {
+    /// Height, mm.
+    pub height: f64,
+    /// How far its unit normal looks up: the cosine of the slope; less than 0 where it looks down.
+    pub upward: f64,
+}
+
+/// A place on the curved surface over a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Foot {
+    /// Barycentric coordinates on the flat triangle.
+    pub weights: [f64; 3],
+    /// Position on the curved surface, mm.
+    pub point: Vec3,
+    /// Outward unit normal there.
+    pub normal: Vec3,
+}
+
+/// From the flat triangle to the curved surface.
+fn lift(corners: &[Vec3; 3], normals: &[Vec3; 3], weights: [f64; 3], flat: &Vec3) -> Vec3 {
+    let half = |i: usize| normals[i] * (weights[i] / 2.0 * (corners[i] - flat).dot(&normals[i]));
+    half(0) + half(1) + half(2)
+}

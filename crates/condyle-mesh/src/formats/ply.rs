@@ -1,0 +1,267 @@
+//! PLY, text and binary of both byte orders, parsed by `ply-rs-bw`.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use crate::TriangleMesh;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
+
+use super::error::{FileLine, MeshFileError};
+use super::surface_draft::SurfaceDraft;
+
+/// A row of any element: what of it is a point, and what a polygon.
+struct PlyElement {
+    point: [f64; 3],
+    corners: Vec<i64>,
+}
+
+impl PropertyAccess for PlyElement {
+    fn new() -> Self {
+        // A file without, say, z must not be read as flat.
+        let point = [f64::NAN; 3];
+        let corners = Vec::new();
+        Self { point, corners }
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        match (name, &value) {
+            ("x", _) => self.point[0] = scalar(&value),
+            ("y", _) => self.point[1] = scalar(&value),
+            ("z", _) => self.point[2] = scalar(&value),
+            ("vertex_indices" | "vertex_index", _) => self.corners = list(value),
+            _ => return PropertyAccessResult::Ignored,
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+fn scalar(value: &Property) -> f64 {
+    match *value {
+        Property::Char(v) => f64::from(v),
+        Property::UChar(v) => f64::from(v),
+        Property::Short(v) => f64::from(v),
+        Property::UShort(v) => f64::from(v),
+        Property::Int(v) => f64::from(v),
+        Property::UInt(v) => f64::from(v),
+        Property::Float(v) => f64::from(v),
+        Property::Double(v) => v,
+        _ => f64::NAN,
+    }
+}
+
+fn list(value: Property) -> Vec<i64> {
+    match value {
+        Property::ListChar(v) => v.into_iter().map(i64::from).collect(),
+        Property::ListUChar(v) => v.into_iter().map(i64::from).collect(),
+        Property::ListShort(v) => v.into_iter().map(i64::from).collect(),
+        Property::ListUShort(v) => v.into_iter().map(i64::from).collect(),
+        Property::ListInt(v) => v.into_iter().map(i64::from).collect(),
+        Property::ListUInt(v) => v.into_iter().map(i64::from).collect(),
+        _ => Vec::new(),
+    }
+}
+
+pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
+    let parser = Parser::<PlyElement>::new();
+    let mut reader = Reader::new(Cursor::new(bytes));
+    let header = parser
+        .read_header(&mut reader)
+        .map_err(|error| in_words(path, &error))?;
+    check_columns(path, &header)?;
+    check_counts(path, bytes, &header)?;
+    let mut draft = SurfaceDraft::new(path, 0);
+    for element in header.elements.values() {
+        let first_line = reader.line();
+        let rows = parser
+            .read_payload_for_element(&mut reader, element, &header)
+            .map_err(|error| in_words(path, &error))?;
+        for (index, row) in rows.iter().enumerate() {
+            let line = (header.encoding == Encoding::Ascii).then_some(first_line + index);
+            match element.name.as_str() {
+                "vertex" => draft.point(line, row.point)?,
+                "face" => draft.polygon(line, &row.corners)?,
+                _ => {}
+            }
+        }
+    }
+    draft.finish()
+}
+
+fn check_columns(path: &Path, header: &Header) -> Result<(), MeshFileError> {
+    let has = |element: &str, property: &str| {
+        header
+            .elements
+            .get(element)
+            .is_some_and(|e| e.properties.contains_key(property))
+    };
+    let complete = ["x", "y", "z"].iter().all(|axis| has("vertex", axis));
+    if !complete {
+        let what = "the header has no element vertex with properties x, y and z";
+        return Err(FileLine::file(path).error(what));
+    }
+    if has("face", "vertex_indices") || has("face", "vertex_index") {
+        return Ok(());
+    }
+    let path = path.to_path_buf();
+    Err(MeshFileError::NoTriangles { path })
+}
+
+/// A row takes at least a byte. One without properties takes none in a binary file, so that only
+/// this bounds how many there may be.
+fn check_counts(path: &Path, bytes: &[u8], header: &Header) -> Result<(), MeshFileError> {
+    let mut left = bytes.len();
+    for (name, element) in &header.elements {
+        left = left.checked_sub(element.count).ok_or_else(|| {
+            let what = format!(
+                "announces {} rows of element {name}, more than a file of {} bytes can hold; \
+                 was it cut off?",
+                element.count,
+                bytes.len()
+            );
+            FileLine::new(path, header_line(bytes, name)).error(what)
+        })?;
+    }
+    Ok(())
+}
+
+/// The line of the header that announces an element.
+fn header_line(bytes: &[u8], element: &str) -> Option<usize> {
+    let announces = |row: &[u8]| {
+        let mut words = row
+            .split(u8::is_ascii_whitespace)
+            .filter(|word| !word.is_empty());
+        words.next() == Some(b"element") && words.next() == Some(element.as_bytes())
+    };
+    let row = bytes.split(|&byte| byte == b'\n').position(announces);
+    row.map(|row| row + 1)
+}
+
+/// The parser's message in one line, without the line number, which the place already says.
+fn in_words(path: &Path, error: &ParseError) -> MeshFileError {
+    let said = error.to_string();
+    let number = error.line().map(|line| format!("Line {line}: "));
+    let said = said
+        .strip_prefix(&number.unwrap_or_default())
+        .unwrap_or(&said);
+    let words: Vec<&str> = said.split_whitespace().collect();
+    FileLine::new(path, error.line()).error(format!("is not PLY: {}", words.join(" ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::fixtures::{message, tetrahedron};
+
+    const TEXT: &str = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 4\n\
+        property float x\nproperty float y\nproperty float z\nproperty uchar red\n\
+        element face 4\nproperty list uchar int vertex_indices\nend_header\n\
+        0 0 0 9\n1 0 0 9\n0 1 0 9\n0 0 1 9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+
+    fn read(bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
+        parse(Path::new("a.ply"), bytes)
+    }
+
+    fn binary(order: &str, float: fn(f64) -> [u8; 8], int: fn(u32) -> [u8; 4]) -> Vec<u8> {
+        let mut bytes = format!(
+            "ply\nformat binary_{order}_endian 1.0\nelement vertex 4\nproperty double x\n\
+             property double y\nproperty double z\nelement face 4\n\
+             property list uchar uint vertex_index\nend_header\n"
+        )
+        .into_bytes();
+        let mesh = tetrahedron();
+        bytes.extend(
+            mesh.vertices
+                .iter()
+                .flat_map(|v| [v.x, v.y, v.z])
+                .flat_map(float),
+        );
+        for triangle in mesh.triangles {
+            bytes.push(3);
+            bytes.extend(triangle.into_iter().flat_map(int));
+        }
+        bytes
+    }
+
+    #[test]
+    fn text_and_both_byte_orders_are_read() {
+        assert_eq!(read(TEXT.as_bytes()).unwrap(), tetrahedron());
+        let little = binary("little", f64::to_le_bytes, u32::to_le_bytes);
+        assert_eq!(read(&little).unwrap(), tetrahedron());
+        let big = binary("big", f64::to_be_bytes, u32::to_be_bytes);
+        assert_eq!(read(&big).unwrap(), tetrahedron());
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        let said = |from, to| message(read(TEXT.replace(from, to).as_bytes()));
+        let parse = said("3 0 1 3", "3 0 one 3");
+        assert!(
+            parse.starts_with("a.ply:17: is not PLY: Couldn't read"),
+            "{parse}"
+        );
+        let range = said("3 1 2 3", "3 1 2 4");
+        assert!(
+            range.starts_with("a.ply:18: polygon 2 names vertex 4"),
+            "{range}"
+        );
+        let infinite = said("0 1 0 9", "0 1e999 0 9");
+        assert!(infinite.starts_with("a.ply:14: vertex 2 has"), "{infinite}");
+        let short = said("3 2 0 3\n", "");
+        assert!(short.contains("end of file"), "{short}");
+        assert!(said("float z", "float w").contains("properties x, y and z"));
+        assert!(said("vertex_indices", "neighbours").contains("holds no triangles"));
+        assert!(said("ply\n", "plywood\n").contains("is not PLY"));
+    }
+
+    #[test]
+    fn a_cut_off_binary_file_is_an_error() {
+        let bytes = binary("little", f64::to_le_bytes, u32::to_le_bytes);
+        assert!(message(read(&bytes[..bytes.len() - 5])).starts_with("a.ply"));
+    }
+
+    #[test]
+    fn rows_that_the_file_cannot_hold_are_refused() {
+        let bytes = binary("little", f64::to_le_bytes, u32::to_le_bytes);
+        let header = |from: &str, to: &str| {
+            let end = bytes
+                .windows(10)
+                .position(|word| word == b"end_header")
+                .unwrap();
+            let text = String::from_utf8(bytes[..end].to_vec()).unwrap();
+            [text.replace(from, to).as_bytes(), &bytes[end..]].concat()
+        };
+        let said = message(read(&header(
+            "element face",
+            "element empty 4000000000\nelement face",
+        )));
+        let expected = "a.ply:7: announces 4000000000 rows of element empty, more than a file of \
+            344 bytes can hold; was it cut off?";
+        assert_eq!(said, expected);
+        let many = message(read(&header("vertex 4", "vertex 4000000000")));
+        assert!(
+            many.starts_with("a.ply:3: announces 4000000000 rows"),
+            "{many}"
+        );
+        let rows = ["a", "b"]
+            .map(|name| format!("element {name} 300\n"))
+            .concat();
+        let sum = message(read(&header(
+            "element face",
+            &format!("{rows}element face"),
+        )));
+        assert!(
+            sum.starts_with("a.ply:8: announces 300 rows of element b"),
+            "{sum}"
+        );
+        let none = header("element face", "element none 0\nelement face");
+        assert_eq!(read(&none).unwrap(), tetrahedron());
+    }
+
+    #[test]
+    fn a_binary_coordinate_that_is_not_finite_is_an_error() {
+        let bytes = binary("little", |v| (v / 0.0).to_le_bytes(), u32::to_le_bytes);
+        let said = message(read(&bytes));
+        assert!(said.starts_with("a.ply: vertex 0 has"), "{said}");
+    }
+}

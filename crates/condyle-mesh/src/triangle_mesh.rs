@@ -1,0 +1,112 @@
+//! A surface of triangles.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Vec3, bounds::bounds};
+
+/// A surface of triangles, each anticlockwise seen from outside.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TriangleMesh {
+    /// Vertex positions, mm.
+    pub vertices: Vec<Vec3>,
+    /// Vertex numbers of each triangle, from 0.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl TriangleMesh {
+    /// The surface of quads, each cut from its first corner to its third.
+    pub fn of_quads(vertices: Vec<Vec3>, quads: impl IntoIterator<Item = [u32; 4]>) -> Self {
+        let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+        let triangles = quads.into_iter().flat_map(halves).collect();
+        Self {
+            vertices,
+            triangles,
+        }
+    }
+
+    /// Positions of the three corners of triangle `triangle`.
+    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.triangles[triangle].map(|vertex| self.vertices[vertex as usize])
+    }
+
+    /// Volume inside a closed surface; negative where the triangles face inwards.
+    pub fn signed_volume(&self) -> f64 {
+        self.volume_of(0..self.triangles.len())
+    }
+
+    /// The same of some of its triangles.
+    pub(crate) fn volume_of(&self, triangles: impl Iterator<Item = usize>) -> f64 {
+        let origin = self.vertices.first().copied().unwrap_or_default();
+        triangles
+            .map(|triangle| {
+                let [a, b, c] = self.corners(triangle).map(|corner| corner - origin);
+                a.dot(&b.cross(&c)) / 6.0
+            })
+            .sum()
+    }
+
+    /// Lowest and highest coordinate along each axis.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        bounds(&self.vertices)
+    }
+
+    /// Unit normal at each vertex: the sum over the triangles around of a x b / (a^2 b^2), with a
+    /// and b the two edges that leave the vertex; exact for vertices on a ball (Max 1999).
+    pub fn vertex_normals(&self) -> Vec<Vec3> {
+        let mut normals = vec![Vec3::zeros(); self.vertices.len()];
+        for (triangle, &numbers) in self.triangles.iter().enumerate() {
+            let corners = self.corners(triangle);
+            for i in 0..3 {
+                let (a, b) = (
+                    corners[(i + 1) % 3] - corners[i],
+                    corners[(i + 2) % 3] - corners[i],
+                );
+                let weight = a.norm_squared() * b.norm_squared();
+                if weight > 0.0 {
+                    normals[numbers[i] as usize] += a.cross(&b) / weight;
+                }
+            }
+        }
+        normals
+            .iter()
+            .map(|normal| normal.try_normalize(0.0).unwrap_or_default())
+            .collect()
+    }
+
+    /// The mesh with every vertex moved by `map`, which keeps left and right.
+    pub fn mapped(mut self, map: impl Fn(&Vec3) -> Vec3) -> Self {
+        self.vertices
+            .iter_mut()
+            .for_each(|vertex| *vertex = map(vertex));
+        self
+    }
+
+    /// A closed block from `low` to `high` of twelve triangles.
+    pub fn block(low: Vec3, high: Vec3) -> Self {
+        let corner = |i: u32| {
+            let pick = |axis: u32| if i >> axis & 1 == 0 { low } else { high }[axis as usize];
+            Vec3::new(pick(0), pick(1), pick(2))
+        };
+        let quads = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        Self::of_quads((0..8).map(corner).collect(), quads)
+    }
+
+    /// Both meshes in one, the vertices and triangles of `other` after its own.
+    pub fn joined(mut self, other: &Self) -> Self {
+        let shift = self.vertices.len() as u32;
+        self.vertices.extend(&other.vertices);
+        let triangles = other
+            .triangles
+            .iter()
+            .map(|t| t.map(|vertex| vertex + shift));
+        self.triangles.extend(triangles);
+        self
+    }
+}
