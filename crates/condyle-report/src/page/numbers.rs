@@ -1,19 +1,12 @@
-//! The numbers of summary.json with their units and meanings.
+//! The numbers of summary.json, as the catalogue names and describes them.
 
+use condyle_io::results::catalogue::{self, Scalar, Section};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::key_words::in_words;
+use super::key_words::{first_letter_large, in_words, with_powers};
 use crate::number::{fixed, significant};
 use crate::results::{contents::Results, summary::Summary};
-
-/// A number that the report knows: name in the summary, label, unit, digits, meaning.
-struct Known {
-    key: &'static str,
-    label: &'static str,
-    unit: &'static str,
-    meaning: &'static str,
-}
 
 /// Numbers under one heading.
 #[derive(Serialize)]
@@ -27,370 +20,22 @@ pub(super) struct Group {
 struct Listed {
     label: String,
     value: String,
-    unit: &'static str,
+    unit: String,
     meaning: String,
 }
 
 /// A number in large type.
 #[derive(Serialize)]
 pub(super) struct Tile {
-    label: &'static str,
+    label: String,
     value: String,
-    unit: &'static str,
+    unit: String,
     /// Estimated discretisation error, in the unit.
     error: Option<String>,
 }
 
-const fn known(
-    key: &'static str,
-    label: &'static str,
-    unit: &'static str,
-    meaning: &'static str,
-) -> Known {
-    Known {
-        key,
-        label,
-        unit,
-        meaning,
-    }
-}
-
-const GROUPS: [(&str, &[Known]); 5] = [
-    (
-        "Wear",
-        &[
-            known(
-                "cycles",
-                "Cycles",
-                "",
-                "Gait cycles that the insert has gone through.",
-            ),
-            known(
-                "mass_loss_mg",
-                "Mass loss",
-                "mg",
-                "Volume loss, from depth, times the density of the material.",
-            ),
-            known(
-                "volume_loss_mm3",
-                "Volume loss, from depth",
-                "mm\u{b3}",
-                "Each update's depth times the area that it wore: what mass is counted from.",
-            ),
-            known(
-                "volume_loss_mesh_mm3",
-                "Volume loss, from the mesh",
-                "mm\u{b3}",
-                "Volume of the unworn mesh less that of the worn one: a second count, to check the first.",
-            ),
-            known(
-                "max_depth_mm",
-                "Maximum wear depth",
-                "mm",
-                "Depth at the deepest node, along the surface's normal.",
-            ),
-            known(
-                "wear_over_conventional",
-                "Cross-linked over conventional",
-                "",
-                "What every law of wear, fitted to conventional polyethylene, was multiplied by.",
-            ),
-        ],
-    ),
-    (
-        "Contact",
-        &[
-            known(
-                "peak_pressure_mpa",
-                "Peak pressure",
-                "MPa",
-                "Largest contact pressure anywhere, between the nodes of the mesh too, at any instant of any cycle solved.",
-            ),
-            known(
-                "peak_pressure_cycle",
-                "Cycles before that peak",
-                "",
-                "After how many cycles the cycle with that pressure comes; 0 is the first.",
-            ),
-            known(
-                "first_cycle_peak_pressure_mpa",
-                "Peak pressure, first cycle",
-                "MPa",
-                "Of the unworn insert.",
-            ),
-            known(
-                "last_cycle_peak_pressure_mpa",
-                "Peak pressure, last cycle",
-                "MPa",
-                "Of the last cycle that was solved.",
-            ),
-            known(
-                "pressure_law_peak_error_percent",
-                "Peak pressure off the deformable insert",
-                "%",
-                "By how much the pressure law, fitted to a deformable insert, misses its peak at most in stance.",
-            ),
-            known(
-                "peak_contact_area_mm2",
-                "Largest contact area",
-                "mm\u{b2}",
-                "Largest area in contact at any instant of any cycle solved, both sides together.",
-            ),
-            known(
-                "peak_contact_area_cycle",
-                "Cycles before that area",
-                "",
-                "After how many cycles the cycle with that area comes; 0 is the first.",
-            ),
-            known(
-                "first_cycle_contact_area_mm2",
-                "Largest contact area, first cycle",
-                "mm\u{b2}",
-                "Of the unworn insert.",
-            ),
-            known(
-                "last_cycle_contact_area_mm2",
-                "Largest contact area, last cycle",
-                "mm\u{b2}",
-                "Of the last cycle that was solved.",
-            ),
-            known(
-                "last_cycle",
-                "Cycles before the last one solved",
-                "",
-                "The last interval of the march is worn by that cycle.",
-            ),
-            known(
-                "medial_load_share",
-                "Medial share of the load",
-                "%",
-                "Medial part of the axial force over the first cycle, weighted by force.",
-            ),
-        ],
-    ),
-    (
-        "Below the surface",
-        &[
-            known(
-                "peak_max_shear_mpa",
-                "Largest shear stress",
-                "MPa",
-                "At the centre of an element, where the pressure of a cycle solved is highest.",
-            ),
-            known(
-                "peak_max_shear_depth_mm",
-                "How deep that is",
-                "mm",
-                "Below the surface, to half an element.",
-            ),
-            known(
-                "peak_max_shear_cycle",
-                "Cycles before that",
-                "",
-                "After how many cycles the cycle with that stress comes; 0 is the first.",
-            ),
-            known(
-                "peak_max_shear_percent",
-                "When in that cycle",
-                "%",
-                "Where the pressure of that cycle is highest.",
-            ),
-            known(
-                "peak_von_mises_mpa",
-                "Largest von Mises stress",
-                "MPa",
-                "The same of the equivalent stress.",
-            ),
-            known(
-                "peak_von_mises_depth_mm",
-                "How deep that is",
-                "mm",
-                "Below the surface, to half an element.",
-            ),
-            known(
-                "first_cycle_max_shear_mpa",
-                "Largest shear stress, first cycle",
-                "MPa",
-                "Of the unworn insert.",
-            ),
-            known(
-                "first_cycle_max_shear_depth_mm",
-                "How deep that is",
-                "mm",
-                "Below the surface, to half an element.",
-            ),
-            known(
-                "max_permanent_set_mm",
-                "Permanent set",
-                "mm",
-                "How far the surface has given way for good by yielding, at most; wear is not in it.",
-            ),
-            known(
-                "first_cycle_permanent_set_mm",
-                "Permanent set, first cycle",
-                "mm",
-                "The same after the first cycle that repeats itself.",
-            ),
-            known(
-                "max_plastic_strain",
-                "Largest plastic strain",
-                "",
-                "Accumulated, at a Gauss point.",
-            ),
-            known(
-                "yielded_elements",
-                "Elements that have yielded",
-                "",
-                "Of those above.",
-            ),
-            known(
-                "ratcheting_elements",
-                "Elements that yield in every cycle",
-                "",
-                "By more than a strain of 1e-5 in the last cycle; the others have shaken down.",
-            ),
-            known(
-                "backside_lift_mm",
-                "Lift of the backside",
-                "mm",
-                "How far a place of it lifts off the tray at most.",
-            ),
-            known(
-                "backside_lifted_percent",
-                "Backside that lifts",
-                "%",
-                "The largest part of it at once.",
-            ),
-            known(
-                "backside_slip_mm",
-                "Slip of the backside",
-                "mm",
-                "Longest way of a place along the tray in a cycle while it presses, there and back.",
-            ),
-            known(
-                "backside_lock_force_n",
-                "Force on the lock",
-                "N",
-                "Along the tray, at most; the femur's friction is not in it.",
-            ),
-            known(
-                "backside_lock_moment_nm",
-                "Moment on the lock",
-                "N m",
-                "About the vertical axis, at most.",
-            ),
-        ],
-    ),
-    (
-        "Motion",
-        &[
-            known(
-                "ap_range_mm",
-                "Anterior\u{2013}posterior range",
-                "mm",
-                "Largest less smallest position of the insert in the first cycle.",
-            ),
-            known(
-                "ie_range_deg",
-                "Internal\u{2013}external range",
-                "degrees",
-                "Largest less smallest rotation of the insert in the first cycle.",
-            ),
-        ],
-    ),
-    (
-        "Computation",
-        &[
-            known(
-                "updates",
-                "Updates of the shape",
-                "",
-                "How often the surface was moved by the wear so far.",
-            ),
-            known(
-                "increments",
-                "Increments a cycle",
-                "",
-                "Steps in time that a gait cycle is cut into.",
-            ),
-            known(
-                "cycles_solved",
-                "Cycles solved",
-                "",
-                "Each update solves until the motion repeats itself, which takes a little more than a cycle.",
-            ),
-            known(
-                "cycles_not_repeating",
-                "Updates that do not repeat",
-                "",
-                "Updates whose motion did not repeat itself within the tolerance.",
-            ),
-            known(
-                "step_halvings",
-                "Steps halved",
-                "",
-                "Steps in time that were taken in halves, since they did not converge or were not exact enough.",
-            ),
-            known(
-                "hexahedra",
-                "Hexahedra",
-                "",
-                "Elements of the insert's mesh.",
-            ),
-            known(
-                "articulating_nodes",
-                "Nodes of the articulating surface",
-                "",
-                "Where pressure and wear are known.",
-            ),
-            known(
-                "newton_iterations",
-                "Newton iterations",
-                "",
-                "Over the whole run, to bring the forces into balance.",
-            ),
-            known(
-                "contact_evaluations",
-                "Contact evaluations",
-                "",
-                "How often force, moment and tangent of the contact were computed.",
-            ),
-            known(
-                "newton_iterations_per_cycle",
-                "Newton iterations a cycle",
-                "",
-                "Of a cycle solved, on average.",
-            ),
-            known(
-                "contact_evaluations_per_cycle",
-                "Contact evaluations a cycle",
-                "",
-                "Of a cycle solved, on average.",
-            ),
-            known(
-                "explicit_steps",
-                "Explicit steps",
-                "",
-                "Steps of central differences, where the explicit integrator was asked for.",
-            ),
-            known(
-                "added_inertia",
-                "Inertia added",
-                "",
-                "Most inertia added to allow the explicit step asked for, as a part of the machine's own.",
-            ),
-            known(
-                "worst_quality",
-                "Worst element quality",
-                "",
-                "Smallest scaled Jacobian of the worn mesh: 1 is a cube, 0 is flat, below 0 is inverted.",
-            ),
-        ],
-    ),
-];
-
-/// Told elsewhere on the page.
-const TOLD_ELSEWHERE: [&str; 6] = [
+/// Entries of the summary that the page shows elsewhere.
+const SHOWN_ELSEWHERE: [&str; 6] = [
     "error",
     "warnings",
     "plausibility",
@@ -400,7 +45,7 @@ const TOLD_ELSEWHERE: [&str; 6] = [
 ];
 /// Where the femur settled.
 const NEUTRAL: &str = "neutral_pose";
-/// In names of what is told elsewhere, or differs from run to run.
+/// Parts of names of entries that differ from run to run of one case, or that the page shows as its origin.
 const NOT_LISTED: [&str; 4] = ["wall_s", "version", "hash", "blake3"];
 
 /// The numbers that matter most.
@@ -408,25 +53,15 @@ pub(super) fn tiles(results: &Results) -> Vec<Tile> {
     let Some(summary) = &results.summary else {
         return Vec::new();
     };
-    let named = [
-        ("mass_loss_mg", "Mass loss"),
-        ("max_depth_mm", "Maximum depth"),
-        ("peak_pressure_mpa", "Peak pressure"),
-        ("ap_range_mm", "AP range"),
-        ("ie_range_deg", "IE range"),
-        ("medial_load_share", "Medial load"),
-    ];
-    let tile = |(key, label)| {
-        let number = known_by(key)?;
-        let value = shown(number, summary.number(key)?, 3);
+    let tile = |number: &'static Scalar| {
         Some(Tile {
-            label,
-            value,
-            unit: number.unit,
-            error: total_error(summary, key),
+            label: label_of(number),
+            value: shown(number, summary.number(number.key)?, 3),
+            unit: unit_of(number),
+            error: total_error(summary, number.key),
         })
     };
-    named.into_iter().filter_map(tile).collect()
+    catalogue::headlines().filter_map(tile).collect()
 }
 
 /// The estimated discretisation error of a number, where the summary has one.
@@ -434,19 +69,21 @@ fn total_error(summary: &Summary, key: &str) -> Option<String> {
     Some(significant(summary.total_error(key)?, 2))
 }
 
-/// All numbers in groups; what the report does not know comes last under its own name.
+/// All numbers in groups; entries that are not in the catalogue come last under their own names.
 pub(super) fn groups(results: &Results) -> Vec<Group> {
     let Some(summary) = &results.summary else {
         return Vec::new();
     };
-    let group = |(heading, numbers): &(&'static str, &[Known])| Group {
-        heading,
-        rows: numbers
+    let group = |section: &Section| Group {
+        heading: section.heading,
+        rows: section
+            .scalars
             .iter()
+            .filter(|number| !is_hidden(number.key))
             .filter_map(|number| listed(number, summary))
             .collect(),
     };
-    let mut groups: Vec<_> = GROUPS.iter().map(group).collect();
+    let mut groups: Vec<_> = catalogue::SECTIONS.iter().map(group).collect();
     groups.insert(NEUTRAL_PLACE, neutral(summary));
     groups.push(Group {
         heading: "Other",
@@ -489,7 +126,7 @@ fn neutral(summary: &Summary) -> Group {
         Some(Listed {
             label: label.to_owned(),
             value: texts.join(", "),
-            unit,
+            unit: unit.to_owned(),
             meaning: meaning.to_owned(),
         })
     };
@@ -499,30 +136,44 @@ fn neutral(summary: &Summary) -> Group {
     }
 }
 
-fn listed(number: &Known, summary: &Summary) -> Option<Listed> {
-    let value = shown(number, summary.number(number.key)?, 4);
+fn listed(number: &Scalar, summary: &Summary) -> Option<Listed> {
+    let meaning = [number.description(), number.definition()].join(" ");
     Some(Listed {
-        label: number.label.to_owned(),
-        value,
-        unit: number.unit,
-        meaning: number.meaning.to_owned(),
+        label: label_of(number),
+        value: shown(number, summary.number(number.key)?, 4),
+        unit: unit_of(number),
+        meaning: with_powers(meaning.trim_end()),
     })
 }
 
-/// What the report does not know, in the words of its key.
+/// The name of a number as a title.
+fn label_of(number: &Scalar) -> String {
+    first_letter_large(number.label)
+}
+
+/// The unit that a number is shown in, as it is printed.
+fn unit_of(number: &Scalar) -> String {
+    with_powers(number.shown_unit())
+}
+
+fn is_hidden(key: &str) -> bool {
+    NOT_LISTED.iter().any(|hidden| key.contains(hidden))
+}
+
+/// Entries that are not in the catalogue, in the words of their keys.
 fn others(summary: &Summary) -> Vec<Listed> {
     let unknown = summary
         .entries()
-        .filter(|(key, _)| known_by(key).is_none())
-        .filter(|(key, _)| !TOLD_ELSEWHERE.contains(key));
+        .filter(|(key, _)| catalogue::scalar(key).is_none())
+        .filter(|(key, _)| !SHOWN_ELSEWHERE.contains(key));
     unknown
         .flat_map(|(key, value)| unlisted(key, key, value))
         .collect()
 }
 
-/// A value that the report does not know; of an object, each of its entries.
+/// An entry that is not in the catalogue; of an object, each of its entries.
 fn unlisted(path: &str, key: &str, value: &Value) -> Vec<Listed> {
-    if NOT_LISTED.iter().any(|hidden| key.contains(hidden)) {
+    if is_hidden(key) {
         return Vec::new();
     }
     if let Value::Object(entries) = value {
@@ -536,7 +187,7 @@ fn unlisted(path: &str, key: &str, value: &Value) -> Vec<Listed> {
     let row = plain(value).map(|value| Listed {
         label,
         value,
-        unit,
+        unit: unit.to_owned(),
         meaning: format!("In summary.json: {path}"),
     });
     Vec::from_iter(row)
@@ -551,39 +202,26 @@ fn under(key: &str, row: Listed) -> Listed {
     }
 }
 
-/// What a number of the summary is called, and its unit, in the order of the page; of results, not of the work.
-pub(crate) fn results_in_words() -> impl Iterator<Item = (&'static str, &'static str, &'static str)>
-{
-    const WORK: &str = "Computation";
-    let of_results = GROUPS.iter().filter(|(heading, _)| *heading != WORK);
-    let numbers = of_results.flat_map(|(_, numbers)| *numbers);
-    numbers.map(|number| (number.key, number.label, number.unit))
+/// Key, name and unit of the numbers of the test, in the order of the page.
+pub(crate) fn results_in_words() -> impl Iterator<Item = (&'static str, String, String)> {
+    catalogue::results().map(|number| (number.key, label_of(number), unit_of(number)))
 }
 
 /// The value of a number in its unit, as the page shows it.
 pub(crate) fn shown_value(key: &str, value: f64, digits: i32) -> String {
-    known_by(key).map_or_else(
+    catalogue::scalar(key).map_or_else(
         || significant(value, digits),
         |number| shown(number, value, digits),
     )
 }
 
-fn known_by(key: &str) -> Option<&'static Known> {
-    GROUPS
-        .iter()
-        .flat_map(|(_, numbers)| *numbers)
-        .find(|number| number.key == key)
-}
-
-fn shown(number: &Known, value: f64, digits: i32) -> String {
-    match (number.key, number.unit) {
-        ("medial_load_share", _) => fixed(100.0 * value, 1),
-        ("worst_quality" | "added_inertia", _) => fixed(value, 3),
-        ("cycles_solved", _) => fixed(value, 1),
-        ("max_plastic_strain", _) => fixed(value, 4),
-        (_, "") => fixed(value, 0),
-        _ => significant(value, digits),
+/// Numbers with a unit span orders of magnitude and get significant digits; counts, shares and ratios get decimals.
+fn shown(number: &Scalar, value: f64, digits: i32) -> String {
+    let value = number.shown(value);
+    if number.unit().is_empty() {
+        return fixed(value, number.decimals);
     }
+    significant(value, digits)
 }
 
 fn plain(value: &Value) -> Option<String> {

@@ -11,9 +11,9 @@ pub struct NumberDifference {
     /// Its name in `summary.json`, which ends in its unit.
     pub key: &'static str,
     /// What people call it.
-    pub label: &'static str,
+    pub label: String,
     /// Its unit as the report shows it.
-    pub unit: &'static str,
+    pub unit: String,
     /// Of the first run.
     pub first: f64,
     /// Of the second.

@@ -103,7 +103,7 @@ fn numbers(runs: &[Run]) -> Table {
         if cells.iter().any(Option::is_some) {
             let cells = cells.into_iter();
             let cells = cells.map(|cell| cell.unwrap_or_else(|| "\u{2013}".to_owned()));
-            let named = [label.to_owned(), unit.to_owned()];
+            let named = [label, unit];
             rows.push(named.into_iter().chain(cells).collect());
         }
     }
