@@ -4,6 +4,7 @@
 import { build } from "esbuild";
 import { writeFileSync } from "node:fs";
 import { deflateSync } from "node:zlib";
+import { licences } from "./licences.mjs";
 
 const [folder = "../crates/condyle-report/src/page"] = process.argv.slice(2);
 
@@ -19,4 +20,5 @@ const { outputFiles } = await build({
   write: false,
 });
 writeFileSync(`${folder}/moving.js.zz`, deflateSync(outputFiles[0].contents, { level: 9 }));
+writeFileSync(`${folder}/moving.licences.txt`, licences());
 console.log(`moving.js: ${outputFiles[0].contents.length} bytes`);

@@ -5,6 +5,7 @@ import { build } from "esbuild";
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { brotliCompressSync, gzipSync } from "node:zlib";
+import { licences } from "./licences.mjs";
 
 const [wasm, folder] = process.argv.slice(2);
 
@@ -29,6 +30,7 @@ const files = {
   "page.js": await bundled("page"),
   "worker.js": await bundled("worker"),
   "condyle-web.wasm": readFileSync(wasm),
+  "licences.txt": Buffer.from(licences()),
 };
 const hash = createHash("sha256");
 for (const bytes of Object.values(files)) hash.update(bytes);
