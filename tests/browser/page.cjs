@@ -1,7 +1,7 @@
 // Uses the web page in a headless browser: node page.cjs CHROMIUM PAGE MADE BODIES
 //
 // PAGE is the folder of the page, MADE has in `node` what its program found in Node, and gets what the page saves; BODIES has
-// a femoral component and an insert as STL files.
+// a femoral component and an insert, femur.stl and insert.stl.
 const assert = require("node:assert");
 const { spawn } = require("node:child_process");
 const { createHash } = require("node:crypto");
@@ -146,16 +146,15 @@ async function cancelled(page) {
 }
 
 async function dropped(page) {
-  const files = ["femoral-component.stl", "tibial-insert.stl"].map((name) => path.join(bodies, name));
-  if (!files.every((file) => fs.existsSync(file))) throw new Error(`${bodies} has not the bodies that the page is tested with`);
+  const files = ["femur.stl", "insert.stl"].map((name) => path.join(bodies, name));
   await drop(page, [{ name: "femur.stl", text: "solid x\nnonsense" }, { name: "insert.stl", text: "solid x\nnonsense" }]);
   await page.waitForSelector("#failure:not([hidden])");
   assert.match(await page.locator("#failure").innerText(), /femur\.stl:2: "nonsense" is not a word of STL/);
   await page.getByLabel("Choose two meshes").setInputFiles(files);
   await page.waitForFunction(() => /shape = "mesh"/.test(document.getElementById("case-text").value));
   const drafted = await page.locator("#case-text").inputValue();
-  assert.match(drafted, /length_unit = "m"/);
-  assert.match(await page.locator("#remarks").innerText(), /length_unit "m", which makes it 66\.4 mm/);
+  assert.match(drafted, /length_unit = "mm"/);
+  assert.match(await page.locator("#remarks").innerText(), /length_unit "mm", which makes it 61\.8 mm/);
   const coarse = drafted.replace(/edge_mm = [\d.]+/, "edge_mm = 2.0").replace(/updates = 10 /, "updates = 2 ").replace(/increments = 200/, "increments = 60");
   await ran(page, () => write(page, coarse));
   assert(await page.getByLabel("Distal radius").isDisabled(), "a mesh has a radius");

@@ -1,5 +1,7 @@
 //! The same case gives the same bytes, whenever and on however many threads.
 
+use std::path::Path;
+
 use crate::bench::{Bench, SMALL, assert_same_bytes, cases_with_data, dm_cases};
 use crate::shapes::{FLEXED_A_LITTLE, femur, insert, stl};
 
@@ -34,6 +36,20 @@ fn an_implant_of_triangles() {
     bench.write("femur.stl", &stl(&femur()));
     bench.write("insert.stl", &stl(&insert()));
     assert_deterministic(&bench);
+}
+
+#[test]
+fn the_implant_of_the_repository() {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let data = cases.join("cad-knee").canonicalize().unwrap();
+    let text = std::fs::read_to_string(cases.join("cad-knee.toml")).unwrap();
+    let text = text
+        .replace("\"cad-knee/", &format!("\"{}/", data.to_string_lossy()))
+        .replace("edge_mm = 1.05", "edge_mm = 2.5")
+        .replace("updates = 10", "updates = 1\n[time]\nincrements = 60");
+    let bench = Bench::with_case(&text);
+    assert_deterministic(&bench);
+    assert!(bench.summary("one").mass_loss_mg > 0.0);
 }
 
 #[test]
