@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use condyle::machine::Waveform;
 
-use super::machine::{Freedoms, Machine, Sign, Waveforms, WriteWaveform};
+use super::machine::{Freedoms, Machine, Sign, Waveforms};
 use super::machine_reason::ActivityReason;
-use super::waveform::CaseChannel;
-use crate::config::{Log, Section, Settings, Writer, names, settings, within};
+use super::table::{Context, Table, WearLaws, WriteWaveform};
+use super::waveform::{CaseChannel, with_waveforms};
+use crate::config::{Log, Page, Section, Settings, TableSchema, Writer, names, settings, within};
 
 /// Shares whose sum is so near to 1 are whole: thirds are written with a few digits.
 const WHOLE: f64 = 1e-3;
@@ -49,7 +50,13 @@ pub struct Activities {
 }
 
 /// What the key that lists them is called.
-pub(super) const TABLE: &str = "activity";
+const TABLE: &str = "activity";
+
+const ACTIVITIES: &str = "
+One table for each thing that the machine does, each with every waveform that its freedoms need as \
+`[activity.axial_force]`, `[activity.flexion]` and so on, with the keys of the waveforms above; `[machine]` then has \
+none. [Activities and creep](activities-and-creep.md) shows how.
+";
 
 impl Activities {
     /// Every activity.
@@ -69,15 +76,11 @@ impl Activities {
         parts.iter().map(|part| part / sum).collect()
     }
 
-    /// Reads every `[[activity]]` of a machine whose freedoms are these.
-    pub(super) fn read(
-        root: &Section<'_>,
-        machine: Option<&Machine>,
-        log: &mut Log<'_>,
-    ) -> Option<Self> {
+    /// Reads every `[[activity]]` of a case.
+    fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let sections = root.list(TABLE, log)?;
-        let freedoms = machine.map(|machine| &machine.freedoms);
-        let read = |section| Activity::read(section, freedoms, log);
+        let freedoms = Machine::freedoms_in(root, log);
+        let read = |section| Activity::read(section, freedoms.as_ref(), log);
         let all: Vec<Option<Activity>> = sections.iter().map(read).collect();
         let all: Vec<Activity> = all.into_iter().collect::<Option<_>>()?;
         check_names(&sections, &all, log);
@@ -86,7 +89,7 @@ impl Activities {
     }
 
     /// Writes every `[[activity]]`.
-    pub(super) fn write(&self, write_waveform: WriteWaveform, out: &mut Writer) {
+    fn write(&self, write_waveform: WriteWaveform, out: &mut Writer) {
         for activity in &self.all {
             out.table_of_list(TABLE);
             activity.keys.write(out);
@@ -215,4 +218,27 @@ fn check_shares(sections: &[Section<'_>], all: &[Activity], log: &mut Log<'_>) {
 
 fn place_of_share(section: &Section<'_>) -> Range<usize> {
     section.value_span("share")
+}
+
+impl Table for Activities {
+    const NAME: &'static str = TABLE;
+
+    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read(root, log)
+    }
+
+    fn write_in(&self, waveforms: WriteWaveform, out: &mut Writer) {
+        self.write(waveforms, out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        let about = "Something that the machine does over and over, with inputs of its own.";
+        let activity = TableSchema::new(about).with_keys(&ActivityKeys::keys());
+        case.with_list(TABLE, with_waveforms(activity))
+    }
+
+    fn add_to_page(page: &mut Page, _: WearLaws) {
+        page.section("`[[activity]]`", &ActivityKeys::keys());
+        page.push(ACTIVITIES);
+    }
 }

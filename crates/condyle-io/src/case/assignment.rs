@@ -7,7 +7,7 @@ use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
 
 use super::contents::{Case, LeftOutConstant};
 use super::key_names::{KeyNameError, OverrideError, path_called};
-use super::wear::WearLaws;
+use super::table::WearLaws;
 use crate::config::{Problems, likeliest};
 
 /// A number to be taken in place of the one that the case file gives, or leaves out.

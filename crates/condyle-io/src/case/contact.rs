@@ -4,10 +4,11 @@ use condyle::contact::{Foundation, FrictionModel, PressureTable, Search, softeni
 
 use super::deformable::BacksideChoice;
 use super::deformable::PlasticityChoice;
-use super::pressure_table::StrainTable;
+use super::pressure_table::{StrainTable, WAYS, WAYS_OF_STRAIN};
+use super::table::{Context, Table, WearLaws, WriteWaveform};
 use crate::config::{
-    Choices, Key, Log, Offered, Section, Settings, Variants, Writer, choice, settings, variants,
-    within,
+    Choices, Key, Log, Offered, Page, Section, Settings, TableSchema, Variants, Writer, choice,
+    settings, variants, within,
 };
 
 choice! {
@@ -286,4 +287,47 @@ fn all_keys(choices: &Choices) -> Vec<Key> {
     let offered = choices.offered.iter();
     let keys = offered.flat_map(|offer| offer.keys.clone());
     [choices.by.clone()].into_iter().chain(keys).collect()
+}
+
+impl Table for Contact {
+    const NAME: &'static str = "contact";
+
+    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read(&root.table(Self::NAME, log), log)
+    }
+
+    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
+        out.table(Self::NAME);
+        self.write(out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        let laws = PressureLawChoice::choices();
+        let table = TableSchema::new("Model of contact, pressure law and friction.")
+            .with_keys(&Self::keys())
+            .with_choices(&Self::models(&[], &[]))
+            .with_choices(&laws)
+            .with_choices(&PlasticityChoice::choices())
+            .with_choices(&BacksideChoice::choices())
+            .with_one_of_under(&laws, "tabulated", &WAYS)
+            .with_one_of_under(&laws, "tabulated-strain", &WAYS_OF_STRAIN);
+        case.with_table(Self::NAME, table)
+    }
+
+    fn add_to_page(page: &mut Page, _: WearLaws) {
+        page.chosen(
+            "`[contact]`",
+            &Self::keys_of_page(),
+            &PressureLawChoice::choices(),
+        );
+        let plasticity = PlasticityChoice::choices();
+        page.chosen(
+            "`[contact]` of a deformable insert",
+            &Self::keys_of_deformable(),
+            &plasticity,
+        );
+        let backside = BacksideChoice::choices();
+        let by = std::slice::from_ref(&backside.by);
+        page.chosen("`[contact]` of a backside", by, &backside);
+    }
 }

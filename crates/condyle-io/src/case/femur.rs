@@ -5,7 +5,11 @@ use condyle::geometry::GenericFemurShape;
 use super::frame::LengthUnit;
 use super::frame::Side;
 use super::frame::{Axes, check as check_axes};
-use crate::config::{DataFile, Log, Section, Settings, Variants, settings, variants, within};
+use super::table::{Context, Table, WearLaws, WriteWaveform};
+use crate::config::{
+    DataFile, Log, Page, Section, Settings, TableSchema, Variants, Writer, settings, variants,
+    within,
+};
 
 settings! {
     /// A pair of condyles, each a piece of torus.
@@ -121,14 +125,10 @@ settings! {
 }
 
 impl FemurPlacement {
-    /// Reads the placement of `femur` from its table; the shapes for verification have none.
-    pub(super) fn read_checked(
-        section: &Section<'_>,
-        femur: Option<&Femur>,
-        log: &mut Log<'_>,
-    ) -> Option<Self> {
+    /// Reads the placement from the table of its femur; the shapes for verification have none.
+    pub(super) fn read_checked(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let placement = Self::read(section, log)?;
-        let of_verification = matches!(femur, Some(Femur::Sphere(_) | Femur::Cylinder(_)));
+        let of_verification = matches!(section.word("shape"), Some("sphere" | "cylinder"));
         if of_verification && placement.is_moved() {
             section.report_idle(&Self::keys(), "shape = \"generic\" or \"mesh\"", log);
         }
@@ -151,4 +151,51 @@ impl FemurPlacement {
             self.lateral_offset_mm,
         ]
     }
+}
+
+impl Table for Femur {
+    const NAME: &'static str = "femur";
+
+    fn read_in(root: &Section<'_>, context: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read_checked(&root.table(Self::NAME, log), context.side, log)
+    }
+
+    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
+        out.table(Self::NAME);
+        self.write(out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        let table = TableSchema::new("The femoral component.")
+            .with_choices(&Self::choices())
+            .with_keys(&FemurPlacement::keys());
+        case.with_table(Self::NAME, table)
+    }
+
+    fn add_to_page(page: &mut Page, _: WearLaws) {
+        let choices = Self::choices();
+        page.chosen(
+            "`[femur]`",
+            &[vec![choices.by.clone()], FemurPlacement::keys()].concat(),
+            &choices,
+        );
+    }
+}
+
+impl Table for FemurPlacement {
+    const NAME: &'static str = "femur";
+
+    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read_checked(&root.part(Self::NAME), log)
+    }
+
+    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
+        self.write(out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        case
+    }
+
+    fn add_to_page(_: &mut Page, _: WearLaws) {}
 }

@@ -5,8 +5,10 @@ use condyle::geometry::{GenericInsertShape, Meshing};
 use super::frame::LengthUnit;
 use super::frame::Side;
 use super::frame::{Axes, check as check_axes};
+use super::table::{Context, Table, WearLaws, WriteWaveform};
 use crate::config::{
-    DataFile, Log, Section, Settings, Variants, choice, settings, variants, within,
+    DataFile, Log, Page, Section, Settings, TableSchema, Variants, Writer, choice, settings,
+    variants, within,
 };
 
 settings! {
@@ -152,14 +154,10 @@ settings! {
 }
 
 impl InsertPlacement {
-    /// Reads the placement of `insert` from its table; a flat block has none.
-    pub(super) fn read_checked(
-        section: &Section<'_>,
-        insert: Option<&Insert>,
-        log: &mut Log<'_>,
-    ) -> Option<Self> {
+    /// Reads the placement from the table of its insert; a flat block has none.
+    pub(super) fn read_checked(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let placement = Self::read(section, log)?;
-        if matches!(insert, Some(Insert::Flat(_))) && placement.is_turned() {
+        if section.word("shape") == Some("flat") && placement.is_turned() {
             section.report_idle(&Self::keys(), "another shape than \"flat\"", log);
         }
         Some(placement)
@@ -173,4 +171,51 @@ impl InsertPlacement {
             self.axial_rotation_deg,
         ] != [0.0; 3]
     }
+}
+
+impl Table for Insert {
+    const NAME: &'static str = "insert";
+
+    fn read_in(root: &Section<'_>, context: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read_checked(&root.table(Self::NAME, log), context.side, log)
+    }
+
+    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
+        out.table(Self::NAME);
+        self.write(out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        let table = TableSchema::new("The tibial insert.")
+            .with_choices(&Self::choices())
+            .with_keys(&InsertPlacement::keys());
+        case.with_table(Self::NAME, table)
+    }
+
+    fn add_to_page(page: &mut Page, _: WearLaws) {
+        let choices = Self::choices();
+        page.chosen(
+            "`[insert]`",
+            &[vec![choices.by.clone()], InsertPlacement::keys()].concat(),
+            &choices,
+        );
+    }
+}
+
+impl Table for InsertPlacement {
+    const NAME: &'static str = "insert";
+
+    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read_checked(&root.part(Self::NAME), log)
+    }
+
+    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
+        self.write(out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        case
+    }
+
+    fn add_to_page(_: &mut Page, _: WearLaws) {}
 }

@@ -6,12 +6,13 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::machine_reason::{ActivityReason, DriveReason};
+use super::table::{Context, Table, WearLaws, WriteWaveform};
 use super::waveform::CaseChannel;
-use super::waveform::{DEFAULT_WAVEFORM, InterpolationWord};
+use super::waveform::{DEFAULT_WAVEFORM, InterpolationWord, list_waveforms, with_waveforms};
 use super::waveform_points;
 use crate::config::{
-    Key, KeyReason, Kind, Log, Section, Setting, Settings, Writer, choice, names, number,
-    quoted_list, read_table, settings, unit_of, within, wrong_type,
+    Key, KeyReason, Kind, Log, Page, Section, Setting, Settings, TableSchema, Writer, choice,
+    names, number, quoted_list, read_table, settings, unit_of, within, wrong_type,
 };
 
 choice! {
@@ -419,12 +420,16 @@ fn check_without_waveforms(machine: &Section<'_>, log: &mut Log<'_>) {
 }
 
 impl Machine {
+    /// The freedoms of the machine of a case, whatever else is wrong with it.
+    pub(super) fn freedoms_in(root: &Section<'_>, log: &Log<'_>) -> Option<Freedoms> {
+        let mut unheard = log.unheard();
+        let section = root.part(Self::NAME);
+        let preset = Start::read(&section, &mut unheard)?.preset;
+        Freedoms::read(&section, preset, &mut unheard)
+    }
+
     /// Reads `[machine]`, whose waveforms are elsewhere where the case has activities.
-    pub(super) fn read(
-        section: &Section<'_>,
-        has_activities: bool,
-        log: &mut Log<'_>,
-    ) -> Option<Self> {
+    fn read(section: &Section<'_>, has_activities: bool, log: &mut Log<'_>) -> Option<Self> {
         let known: Vec<&str> = names(&MachineSettings::keys())
             .chain(names(&Start::keys()))
             .chain(["springs", "freedoms"])
@@ -451,12 +456,9 @@ impl Machine {
     }
 }
 
-/// How the table of a waveform is written.
-pub(super) type WriteWaveform = fn(&mut Writer, &str, CaseChannel, &Waveform);
-
 impl Machine {
     /// Writes `[machine]` and the tables inside it.
-    pub(super) fn write(&self, write_waveform: WriteWaveform, out: &mut Writer) {
+    fn write(&self, write_waveform: WriteWaveform, out: &mut Writer) {
         out.table("machine");
         let preset = self.preset;
         Start { preset }.write(out);
@@ -519,4 +521,63 @@ pub(super) fn write_name(out: &mut Writer, table: &str, channel: CaseChannel, _:
         &format!("waveform = {DEFAULT_WAVEFORM:?}"),
         "Or file and column, or knots.",
     );
+}
+
+impl Table for Machine {
+    const NAME: &'static str = "machine";
+
+    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
+        let has_activities = root.value("activity").is_some();
+        Self::read(&root.table(Self::NAME, log), has_activities, log)
+    }
+
+    fn write_in(&self, waveforms: WriteWaveform, out: &mut Writer) {
+        self.write(waveforms, out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        let keys = [Start::keys(), MachineSettings::keys()].concat();
+        let springs = TableSchema::new("The pair of springs that stands for the ligaments.");
+        let joints = KNEE.in_files.into_iter().map(|index| KNEE.joint(index));
+        let freedoms = joints.fold(TableSchema::new("The six freedoms."), |freedoms, joint| {
+            let about = format!("{}: + is {}.", joint.title, joint.positive);
+            freedoms.with_table(
+                joint.name,
+                TableSchema::new(&about).with_keys(&Freedom::keys(joint)),
+            )
+        });
+        let machine = TableSchema::new("The simulator.")
+            .with_keys(&keys)
+            .with_table("springs", springs.with_keys(&Springs::keys()))
+            .with_table("freedoms", freedoms);
+        case.with_table(Self::NAME, with_waveforms(machine))
+    }
+
+    fn add_to_page(page: &mut Page, _: WearLaws) {
+        let keys = [Start::keys(), MachineSettings::keys()].concat();
+        page.section("`[machine]`", &keys);
+        page.section("`[machine.springs]`", &Springs::keys());
+        page.section(&freedoms(JointKind::Translation), &Translation::keys());
+        page.section(&freedoms(JointKind::Rotation), &Rotation::keys());
+        list_waveforms(page);
+    }
+}
+
+/// The tables of all freedoms of a kind, such as `[machine.freedoms.ap], .ml and .is`.
+fn freedoms(kind: JointKind) -> String {
+    let joints = KNEE.in_files.into_iter().map(|index| KNEE.joint(index));
+    let names: Vec<&str> = joints
+        .filter(|joint| joint.kind() == kind)
+        .map(|joint| joint.name)
+        .collect();
+    let others = names[1..].iter().map(|name| format!(".{name}"));
+    let others: Vec<String> = others.collect();
+    let first = format!("[machine.freedoms.{}]", names[0]);
+    match others.split_last() {
+        Some((last, between)) => {
+            let listed = [&[first], between].concat().join(", ");
+            format!("`{listed} and {last}`")
+        }
+        None => format!("`{first}`"),
+    }
 }

@@ -5,8 +5,10 @@ use condyle::parameter::Parameter;
 use condyle::wear::{CrossLinked, NamedLaw};
 use condyle_fem::Elastic;
 
+use super::table::{Context, Table, WearLaws, WriteWaveform};
 use crate::config::{
-    Key, Limits, Log, Section, Settings, Variants, Writer, settings, variants, within,
+    Key, Limits, Log, Page, Section, Settings, TableSchema, Variants, Writer, settings, variants,
+    within,
 };
 
 settings! {
@@ -163,5 +165,53 @@ impl Creep {
                 recovering_fraction: constants.recovering_fraction,
             }),
         }
+    }
+}
+
+impl Table for Material {
+    const NAME: &'static str = "material";
+
+    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read(&root.table(Self::NAME, log), log)
+    }
+
+    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
+        out.table(Self::NAME);
+        self.write(out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        let table = TableSchema::new("Polyethylene of the insert.")
+            .with_keys(&Self::keys())
+            .with_choices(&CrossLinking::choices());
+        case.with_table(Self::NAME, table)
+    }
+
+    fn add_to_page(page: &mut Page, _: WearLaws) {
+        page.chosen("`[material]`", &Self::keys(), &CrossLinking::choices());
+    }
+}
+
+impl Table for Creep {
+    const NAME: &'static str = "creep";
+
+    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read(&root.table(Self::NAME, log), &[], log)
+    }
+
+    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
+        out.table(Self::NAME);
+        self.write(out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        let table = TableSchema::new("How the polyethylene of the insert creeps.")
+            .with_choices(&Self::choices());
+        case.with_table(Self::NAME, table)
+    }
+
+    fn add_to_page(page: &mut Page, _: WearLaws) {
+        let choices = Self::choices();
+        page.chosen("`[creep]`", std::slice::from_ref(&choices.by), &choices);
     }
 }

@@ -14,24 +14,21 @@ mod draft;
 mod femur;
 mod frame;
 mod insert;
-mod json_schema;
 mod key_location;
 mod key_names;
 mod machine;
 mod machine_reason;
 mod material;
 mod pressure_table;
-mod read;
 mod reader;
 mod run_options;
 mod schedule;
-mod schema;
+mod table;
 #[cfg(test)]
 mod tests;
 mod waveform;
 mod waveform_points;
 mod wear;
-mod write;
 
 pub use activity::{Activities, Activity, ActivityKeys};
 pub use assignment::{Assignment, AssignmentError, ChangeError, Override};
@@ -42,7 +39,7 @@ pub use contact::{
     Contact, ContactModelWord, Finding, Friction, FrictionModelWord, PressureLawChoice, SearchWord,
     SofteningCurve,
 };
-pub use contents::Case;
+pub use contents::{Case, json_schema, schema_markdown};
 pub use deformable::{
     BacksideChoice, FirstYield, J2Plasticity, PlasticityChoice, PlasticityReason, RestingBackside,
 };
@@ -51,7 +48,6 @@ pub use frame::{Axes, AxesError, AxesReason, Heading, LengthUnit, Side};
 pub use insert::{
     FlatInsert, GenericInsert, HexahedralInsert, Insert, InsertOrigin, InsertPlacement, MeshInsert,
 };
-pub use json_schema::json_schema;
 pub use key_location::CaseConflict;
 pub use key_names::{KeyNameError, NumberKey, OverrideError};
 pub use machine::{
@@ -63,13 +59,12 @@ pub use material::{
     Creep, CrossLinking, HighlyCrossLinked, LogarithmicCreep, Material, ModeratelyCrossLinked,
 };
 pub use pressure_table::{PressureTableReason, StrainTable, TableError};
-pub use reader::CaseReader;
+pub use reader::{CaseReader, template};
 pub use run_options::{Accuracy, Limits, Output};
 pub use schedule::{AutoUpdates, FixedUpdates, IntegratorWord, March, Time, Update};
-pub use schema::schema_markdown;
+pub use table::WearLaws;
 pub use waveform::{CaseChannel, InterpolationWord, WaveformReason};
-pub use wear::{ConstantError, Wear, WearLaws};
-pub use write::template;
+pub use wear::{ConstantError, Wear};
 
 #[cfg(feature = "file-system")]
 pub use draft::{Draft, DraftError, Drafted};

@@ -11,14 +11,13 @@ use miette::NamedSource;
 
 use super::assignment::{Assignment, ChangeError, Override, without_other_laws};
 use super::contents::Case;
-#[cfg(feature = "file-system")]
-use super::machine::write_name;
-use super::read::read_case;
-use super::wear::WearLaws;
+use super::contents::read_case;
+use super::machine::{Preset, write_knots, write_name};
+use super::table::WearLaws;
 use crate::config::{Base, DataFile, Problems, Source, read_document, read_source};
 #[cfg(feature = "file-system")]
 use crate::files::Disk;
-use crate::files::Files;
+use crate::files::{Files, MemoryFiles};
 
 /// Reads cases.
 #[derive(Clone, Debug)]
@@ -131,6 +130,23 @@ impl CaseReader {
         read_document(source, base, |root, log| {
             read_case(root, self.wear_laws, log)
         })
+    }
+}
+
+impl Case {
+    /// The case as a file that reads back as an equal case: every default written out, waveforms
+    /// as points, files by their absolute paths.
+    pub fn to_toml(&self) -> String {
+        self.written(write_knots)
+    }
+}
+
+/// A case to start from: every key with its default and its meaning.
+pub fn template(preset: Preset) -> String {
+    let text = format!("[machine]\npreset = {:?}\n", preset.word());
+    match CaseReader::new(MemoryFiles::default()).parse(&text, "template", Path::new("")) {
+        Ok(case) => case.written(write_name),
+        Err(error) => unreachable!("the defaults are a case, a test reads them: {error}"),
     }
 }
 

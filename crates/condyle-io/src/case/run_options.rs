@@ -1,5 +1,6 @@
 //! Options of a run: accuracy, limits of the computer, additional output.
 
+use super::table::plain_tables;
 use crate::config::{settings, within};
 
 settings! {
@@ -41,4 +42,10 @@ settings! {
         /// Whether the first and the last cycle are written for ParaView, increment by increment: the pressure on the insert, and the femur where it is. About 100 kB an increment and body.
         cycle_frames: bool = false;
     }
+}
+
+plain_tables! {
+    Accuracy = "accuracy", "What a run tells of its own accuracy.";
+    Limits = "limits", "What a run may take of the computer.";
+    Output = "output", "What a run writes besides what it always does.";
 }

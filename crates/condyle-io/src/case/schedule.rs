@@ -2,8 +2,10 @@
 
 use condyle::machine::{Integration, TimeSettings};
 
+use super::table::{Context, Table, WearLaws, WriteWaveform, plain_tables};
 use crate::config::{
-    Key, Log, Section, Settings, Variants, Writer, choice, settings, variants, within,
+    Key, Log, Page, Section, Settings, TableSchema, Variants, Writer, choice, settings, variants,
+    within,
 };
 
 settings! {
@@ -109,4 +111,32 @@ settings! {
         /// Explicit: inertia is added wherever a stable step would be shorter than this; 0 adds none.
         explicit_step_s: f64 = 0.0, in within(0.0, 1e-3);
     }
+}
+
+impl Table for March {
+    const NAME: &'static str = "march";
+
+    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read(&root.table(Self::NAME, log), log)
+    }
+
+    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
+        out.table(Self::NAME);
+        self.write(out);
+    }
+
+    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
+        let table = TableSchema::new("The march over the life of the insert.")
+            .with_keys(&Self::keys())
+            .with_choices(&Update::choices());
+        case.with_table(Self::NAME, table)
+    }
+
+    fn add_to_page(page: &mut Page, _: WearLaws) {
+        page.chosen("`[march]`", &Self::keys(), &Update::choices());
+    }
+}
+
+plain_tables! {
+    Time = "time", "Steps and tolerances in time.";
 }

@@ -5,7 +5,8 @@ use condyle::machine::{self, ChannelUnit, Interpolation, WaveformError};
 use thiserror::Error;
 
 use crate::config::{
-    DataFile, Key, Kind, Limits, Reason, Settings, WhereSilent, choice, settings, within,
+    DataFile, Key, Kind, Limits, Page, Reason, Settings, TableSchema, WhereSilent, choice,
+    settings, unit_of, within,
 };
 
 /// A waveform of the machine, as a case has it.
@@ -227,6 +228,54 @@ impl Reason for WaveformReason {
         let may_drift = matches!(self.error, WaveformError::Seam { .. });
         may_drift.then(|| "or, for a measured cycle, set `remove_drift = true`".to_owned())
     }
+}
+
+const WAVEFORMS: &str = "\
+One of `waveform`, `file` or the points themselves. A freedom takes the one its drive \
+needs; one for another drive is an error.
+
+";
+
+const POINTS: &str = "
+| table | points | unit | values may be | named | what |
+| --- | --- | --- | --- | --- | --- |
+";
+
+/// Adds a table of keys for each waveform of the machine.
+pub(super) fn with_waveforms(table: TableSchema) -> TableSchema {
+    CaseChannel::all().fold(table, |table, channel| {
+        let waveform = TableSchema::new(channel.about())
+            .with_keys(&waveform_keys(channel))
+            .with_one_of(&ways(channel))
+            .with_need("column", "file");
+        table.with_table(channel.name(), waveform)
+    })
+}
+
+/// Adds the section of the book's page that lists the waveforms of the machine.
+pub(super) fn list_waveforms(page: &mut Page) {
+    let named = |channel: CaseChannel| format!("`[machine.{}]`", channel.name());
+    let tables: Vec<String> = CaseChannel::all().map(named).collect();
+    page.push(&format!("\n## Waveforms: {}\n\n", tables.join(", ")));
+    page.push(WAVEFORMS);
+    page.table(&WaveformSource::keys());
+    page.push(POINTS);
+    for channel in CaseChannel::all() {
+        page.push(&waveform_row(channel));
+    }
+}
+
+fn waveform_row(channel: CaseChannel) -> String {
+    let key = knots_key(channel);
+    format!(
+        "| `{}` | `{}` | {} | {} | {} | {} |\n",
+        channel.name(),
+        key.name,
+        unit_of(key.name).unwrap_or_default(),
+        channel.limits(),
+        channel.words().join(", "),
+        channel.about(),
+    )
 }
 
 #[cfg(test)]

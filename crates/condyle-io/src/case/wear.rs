@@ -6,12 +6,11 @@ use condyle::parameter::{Known, Parameter};
 use condyle::wear::{NamedLaw, WEAR_LAWS, WearLawKind};
 use thiserror::Error;
 
+use super::table::{Context, Table, WearLaws, WriteWaveform};
 use crate::config::{
-    Choices, Key, Limits, Log, Offered, Section, Setting, WhereSilent, Writer, within,
+    Choices, Key, Limits, Log, Offered, Page, Section, Setting, TableSchema, WhereSilent, Writer,
+    within,
 };
-
-/// Kinds of wear law to choose from; the first is taken where a case names none.
-pub type WearLaws = &'static [&'static WearLawKind];
 
 /// A wear law and its constants.
 #[derive(Clone, Debug)]
@@ -205,4 +204,53 @@ fn doc_of(parameter: &Parameter) -> Cow<'static, str> {
 
 fn limits_of(parameter: &Parameter) -> Limits {
     within(parameter.least, parameter.most)
+}
+
+impl Table for Wear {
+    const NAME: &'static str = "wear";
+
+    fn read_in(root: &Section<'_>, context: &Context, log: &mut Log<'_>) -> Option<Self> {
+        Self::read(&root.table(Self::NAME, log), context.wear_laws, log)
+    }
+
+    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
+        out.table(Self::NAME);
+        self.write(out);
+    }
+
+    fn add_to_schema(case: TableSchema, laws: WearLaws) -> TableSchema {
+        case.with_table(
+            Self::NAME,
+            TableSchema::new("The wear law.").with_choices(&Self::choices(laws)),
+        )
+    }
+
+    fn add_to_page(page: &mut Page, laws: WearLaws) {
+        let choices = Self::choices(laws);
+        page.chosen("`[wear]`", std::slice::from_ref(&choices.by), &choices);
+        page.push("\n");
+        laws.iter().for_each(|law| page.push(&law_line(law)));
+    }
+}
+
+/// The formula of a law and where its constants are from.
+fn law_line(law: &WearLawKind) -> String {
+    let source = |parameter: &Parameter| match parameter.source {
+        "choice" => "choice".to_owned(),
+        key if parameter.known == Known::Approximate => format!("[{key}] (approximate)"),
+        key => format!("[{key}]"),
+    };
+    let sources: Vec<String> = law.parameters.iter().map(source).collect();
+    let (word, about, sources) = (law.word, law.about, sources.join(", "));
+    let formula = if law.known == Known::Approximate {
+        " The formula is approximate: remembered rather than read."
+    } else {
+        ""
+    };
+    let constants = if sources.is_empty() {
+        String::new()
+    } else {
+        format!(" Its constants are from: {sources}.")
+    };
+    format!("- `{word}`: {about}{constants}{formula}\n")
 }

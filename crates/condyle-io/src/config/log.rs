@@ -43,6 +43,11 @@ impl<'a> Log<'a> {
         }
     }
 
+    /// A log of the same file whose problems are not reported.
+    pub(crate) fn unheard(&self) -> Self {
+        Self::new(&self.source, self.base)
+    }
+
     /// The file itself.
     pub(crate) fn source(&self) -> &Source {
         &self.source

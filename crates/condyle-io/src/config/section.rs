@@ -37,17 +37,23 @@ impl<'a> Section<'a> {
 
     /// The table `name` inside this one.
     pub(crate) fn table(&self, name: &str, log: &mut Log<'_>) -> Self {
+        let part = self.part(name);
+        if let (Some(value), None) = (self.value(name), part.table) {
+            let found = type_name(value.get_ref());
+            let (key, wanted) = (name.to_owned(), format!("a table, [{}]", part.path));
+            log.problem(value.span(), KeyReason::WrongType { key, wanted, found });
+        }
+        part
+    }
+
+    /// The same, without a report where `name` is no table.
+    pub(crate) fn part(&self, name: &str) -> Self {
         let path = match self.path.as_str() {
             "" => name.to_owned(),
             above => format!("{above}.{name}"),
         };
         let entry = self.entry(name);
         let table = entry.and_then(|(_, value)| value.get_ref().as_table());
-        if let (Some((_, value)), None) = (entry, table) {
-            let found = type_name(value.get_ref());
-            let (key, wanted) = (name.to_owned(), format!("a table, [{path}]"));
-            log.problem(value.span(), KeyReason::WrongType { key, wanted, found });
-        }
         let span = entry.map_or(self.span.clone(), |(key, _)| key.span());
         Self {
             path,
@@ -118,6 +124,11 @@ impl<'a> Section<'a> {
     /// The value of `name`.
     pub(crate) fn value(&self, name: &str) -> Option<&'a Spanned<DeValue<'a>>> {
         self.entry(name).map(|(_, value)| value)
+    }
+
+    /// The word that `name` has, if it has one.
+    pub(crate) fn word(&self, name: &str) -> Option<&'a str> {
+        self.value(name)?.get_ref().as_str()
     }
 
     /// Where the name of the key `name` stands, or that of the table.
