@@ -6,6 +6,7 @@ use num_traits::{One, Zero};
 use wide::{f32x8, f64x4};
 
 use super::Number;
+use crate::{Vec3, Vector};
 
 /// How many nodes go side by side.
 pub const LANES: usize = 4;
@@ -91,6 +92,14 @@ impl F32x8 {
     pub fn sum(self) -> f64 {
         self.0.to_array().map(f64::from).iter().sum()
     }
+}
+
+/// Four vectors side by side, each of a lane.
+#[inline(always)]
+pub(crate) fn vector_from_lanes<'a>(of: impl Fn(usize) -> &'a Vec3) -> Vector<F64x4> {
+    let lanes: [&Vec3; LANES] = [of(0), of(1), of(2), of(3)];
+    let along = |axis: usize| F64x4::from_lanes(|lane| lanes[lane][axis]);
+    Vector::new(along(0), along(1), along(2))
 }
 
 macro_rules! side_by_side {

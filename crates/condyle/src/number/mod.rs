@@ -8,6 +8,7 @@
 mod lanes;
 mod mixing;
 
+pub(crate) use lanes::vector_from_lanes;
 pub use lanes::{F32x8, F64x4, LANES, LANES_F32};
 pub(crate) use mixing::{Mixing, Turns};
 
@@ -18,7 +19,7 @@ use std::{
 
 use num_traits::{One, Zero};
 
-use crate::{Vec3, Vector};
+use crate::Vector;
 
 /// A real number, or several side by side.
 pub trait Number:
@@ -135,14 +136,6 @@ pub fn zero_vector<T: Number>() -> Vector<T> {
     Vector::new(T::zero(), T::zero(), T::zero())
 }
 
-/// Four vectors side by side, each of a lane.
-#[inline(always)]
-pub fn vector_from_lanes<'a>(of: impl Fn(usize) -> &'a Vec3) -> Vector<F64x4> {
-    let lanes: [&Vec3; LANES] = [of(0), of(1), of(2), of(3)];
-    let along = |axis: usize| F64x4::from_lanes(|lane| lanes[lane][axis]);
-    Vector::new(along(0), along(1), along(2))
-}
-
 /// a . b
 #[inline(always)]
 pub fn dot<T: Number>(a: &Vector<T>, b: &Vector<T>) -> T {
@@ -178,6 +171,7 @@ pub fn tangential_part<T: Number>(v: &Vector<T>, n: &Vector<T>) -> Vector<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Vec3;
 
     #[test]
     fn products_are_those_of_the_vectors() {

@@ -30,7 +30,7 @@ use crate::{
 use traction::{RegionSlips, TangentSum, WrenchSum};
 
 /// The blocks that press at a response, and the forces on them.
-pub(crate) struct PressedBlocks {
+pub(crate) struct ContactPatch {
     /// The blocks near the femur, ascending.
     pub near: Vec<NearBlock>,
     /// What presses each of them.
@@ -42,7 +42,7 @@ pub(crate) struct PressedBlocks {
     directions: Vec<Directions4>,
 }
 
-impl PressedBlocks {
+impl ContactPatch {
     /// Nothing presses yet.
     pub fn none(surface: &ArticulatingSurface, blocks: &[ShareBlock], friction: Coulomb) -> Self {
         let directions = blocks.iter().map(|block| Directions4::new(surface, block));

@@ -217,6 +217,11 @@ impl Candidate {
     pub fn overclosed_mm(&self) -> f64 {
         self.overclosure_mm[0].lane(0)
     }
+
+    /// Moves the node inwards by a displacement that does not depend on the present loads.
+    pub fn displace(&mut self, by_mm: f64) {
+        self.overclosure_mm[0] -= F64x4::new([by_mm, 0.0, 0.0, 0.0]);
+    }
 }
 
 /// A gap may be below zero by this much, mm: a millionth of what a surface is rough by.

@@ -3,30 +3,29 @@
 use std::sync::Arc;
 
 use super::{
-    backside::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD, RestingInsert},
+    backside::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD},
     cholesky::Eight,
     complementarity::{Candidate, Pressing},
     compliance::Compliance,
     edge_and_peak::{EdgeOfContact, PeakSearch, squares, squares_everywhere},
-    friction::{ElasticFriction, FRICTION_FIELD, Pressed},
-    plastic::{FOUND_MM, NodeLoad, PLASTIC_FIELD, PlasticInsert},
+    friction::FRICTION_FIELD,
+    history::{LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads},
+    plastic::PLASTIC_FIELD,
 };
 use crate::{
     Vector,
     contact::{
         broad_phase::BroadPhase,
-        contact_patch::{Coulomb, NearBlock, NearBlocks, PressedBlocks, Sliding, Tractions4},
+        contact_patch::{ContactPatch, Coulomb, NearBlock, NearBlocks, Sliding, Tractions4},
         law::Bodies,
         model::{
-            ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Flattened,
-            Linearization, NotBorne, Response, Settled, Tangent, Tipped,
+            ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Linearization,
+            NotBorne, Response, Settled, Tangent,
         },
         share_block::ShareBlock,
     },
     number::{F64x4, LANES, Number, cross, dot, vector_from_lanes},
-    spatial::{
-        FrameChange, Pose, Pose4, RelativeMotion, Twist, Twist4, Vec6, WrenchByTwist, body::Femur,
-    },
+    spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist4, WrenchByTwist},
 };
 
 /// A node may touch where the bodies at rest are nearer than this, mm: beside a contact a thin layer bulges,
@@ -50,7 +49,7 @@ pub(crate) struct DeformableContact<'a, B> {
     bodies: Bodies<'a>,
     rubbing: FrictionSettings,
     nearby: NearBlocks<'a, B>,
-    pressed: PressedBlocks,
+    pressed: ContactPatch,
     compliance: Arc<Compliance>,
     pressing: Pressing,
     /// The blocks near the femur, the nodes that may touch, and where each of these is: number among the
@@ -63,13 +62,9 @@ pub(crate) struct DeformableContact<'a, B> {
     along: Vec<AlongNormal>,
     /// What the contact after this one is to know.
     state: ContactState,
-    /// How the insert yields, if it does, and the loads of the last response.
-    plastic: Option<PlasticInsert>,
+    /// The loads of the last response, and the parts of the state that depend on what came before.
     node_loads: Vec<NodeLoad>,
-    /// Friction where the surface gives way along itself; else it is that of `rubbing`.
-    friction: Option<ElasticFriction<'a>>,
-    /// How the insert rests on its tray, if it is not bonded to it.
-    resting: Option<RestingInsert>,
+    histories: Vec<Box<dyn LoadHistory + 'a>>,
 }
 
 /// Loads of a block of shares, and their derivatives by six motions.
@@ -138,7 +133,7 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             -vector_from_lanes(|lane| &bodies.surface.normals[block.nodes[lane] as usize])
         };
         Self {
-            pressed: PressedBlocks::none(bodies.surface, &nearby.blocks, rubbing.friction),
+            pressed: ContactPatch::none(bodies.surface, &nearby.blocks, rubbing.friction),
             pressing: Pressing::nothing(compliance.node_count()),
             compliance,
             near: Vec::new(),
@@ -147,85 +142,27 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             inward: nearby.blocks.iter().map(inward).collect(),
             along: Vec::new(),
             state: memory.state,
-            plastic: None,
             node_loads: Vec::new(),
-            friction: None,
-            resting: None,
+            histories: Vec::new(),
             bodies,
             rubbing,
             nearby,
         }
     }
 
-    /// The same of an insert that yields.
-    pub fn yielding(mut self, plastic: Option<PlasticInsert>) -> Self {
-        self.plastic = plastic;
-        self
-    }
-
-    /// The same of an insert that gives way along its surface; `rubbing` is then to be without friction.
-    pub fn sticking(mut self, friction: Option<ElasticFriction<'a>>) -> Self {
-        self.friction = friction;
-        self
-    }
-
-    /// The same of an insert that rests on its tray.
-    pub fn resting(mut self, resting: Option<RestingInsert>) -> Self {
-        self.resting = resting;
-        self
-    }
-
-    /// How the insert flows under the loads of the last response; how far that moves the surface, mm.
-    fn flow(&mut self) -> Result<f64, Flattened> {
-        let Some(plastic) = &mut self.plastic else {
-            return Ok(0.0);
-        };
-        let shares = &self.bodies.surface.shares;
-        let pressures = self.node_loads.iter();
-        let peak_mpa = pressures
-            .map(|&(node, load_n)| load_n / shares[node as usize].area_mm2)
-            .fold(0.0, f64::max);
-        let near = self.candidates.iter().map(|candidate| candidate.node);
-        let around = self.bodies.insert.faces_around();
-        plastic.flow(&self.node_loads, peak_mpa, near, around)
-    }
-
-    /// How the backside comes to rest under them; how far that moves the surface, mm.
-    fn rest(&mut self) -> Result<f64, Tipped> {
-        let near = self.candidates.iter().map(|candidate| candidate.node);
-        let resting = self.resting.as_mut();
-        resting.map_or(Ok(0.0), |resting| resting.rest(&self.node_loads, near))
-    }
-
-    /// The nodes that press, their loads taken along with a short motion of the femur since the last response.
-    fn pressed_nodes(&self, moved: &Twist<Femur, Femur>) -> Vec<Pressed> {
-        let mut pressed_nodes = Vec::new();
-        for (near, tractions) in self.pressed.loaded() {
-            let shares = &self.nearby.blocks[near.block as usize];
-            let force_n = tractions.pressure_mpa * tractions.area_mm2;
-            let shift = &tractions.load_by_motion;
-            let turn = cross(&near.cached.place, shift) + tractions.load_by_turn;
-            let by = [turn.x, turn.y, turn.z, shift.x, shift.y, shift.z];
-            for (lane, &node) in shares.nodes.iter().enumerate() {
-                let own_n = force_n.lane(lane);
-                if own_n * shares.area_mm2.lane(lane) > 0.0 {
-                    let by_motion = Vec6::from_fn(|motion, _| by[motion].lane(lane));
-                    pressed_nodes.push(Pressed {
-                        node,
-                        force_n: (own_n + by_motion.dot(&moved.numbers())).max(0.0),
-                        by_motion,
-                    });
-                }
-            }
+    /// Adds a part of the state that depends on what came before; with one for friction, `rubbing` has none.
+    pub fn with_history(mut self, history: Option<impl LoadHistory + 'a>) -> Self {
+        if let Some(history) = history {
+            self.histories.push(Box::new(history));
         }
-        pressed_nodes
+        self
     }
 
     /// Lists the nodes that may touch.
     fn find_candidates(&mut self, pose: &Pose, pose4: &Pose4) {
         // Where the backside lifts, the surface comes nearer by as much.
-        let lift_mm = self.resting.as_ref().map_or(0.0, RestingInsert::lift_mm);
-        let most_mm = MAX_BULGE_MM + lift_mm;
+        let lifts_mm = self.histories.iter().map(|history| history.lift_mm());
+        let most_mm = MAX_BULGE_MM + lifts_mm.fold(0.0, f64::max);
         let (near, most) = (&mut self.near, F64x4::splat(most_mm));
         let prepared_mm2 = self.bodies.femur.prepared_spread_mm2();
         near.clear();
@@ -255,21 +192,8 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
                 }
             }
         }
-        self.take_what_gives_way();
-    }
-
-    /// Takes from the overclosures what the surface gives way by beside what the loads of this response do.
-    fn take_what_gives_way(&mut self) {
-        let mut take = |set_mm: &mut dyn FnMut(u32) -> f64| {
-            for candidate in &mut self.candidates {
-                candidate.overclosure_mm[0] -= F64x4::new([set_mm(candidate.node), 0.0, 0.0, 0.0]);
-            }
-        };
-        if let Some(plastic) = &self.plastic {
-            take(&mut |node| plastic.set_mm(node));
-        }
-        if let Some(resting) = &mut self.resting {
-            take(&mut |node| resting.set_mm(node));
+        for history in &mut self.histories {
+            history.displace(&mut self.candidates);
         }
     }
 
@@ -306,9 +230,13 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
 impl<B: BroadPhase> Linearization for DeformableContact<'_, B> {
     fn tangent(&self) -> Tangent {
         let mut tangent = self.pressed.tangent();
-        if let Some(friction) = &self.friction {
+        for along_surface in self
+            .histories
+            .iter()
+            .filter_map(|history| history.tangent())
+        {
             let change = FrameChange::to_femur(&self.pressed.pose);
-            let by_pose = change.derivative_back(&WrenchByTwist::new(friction.tangent()));
+            let by_pose = change.derivative_back(&WrenchByTwist::new(along_surface));
             tangent.by_pose.matrix += by_pose.matrix;
         }
         tangent
@@ -321,27 +249,15 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
     }
 
     fn begin_cycle(&mut self) {
-        if let Some(plastic) = &mut self.plastic {
-            plastic.cycle.begin();
-        }
-        if let Some(friction) = &mut self.friction {
-            friction.begin_cycle();
-        }
-        if let Some(resting) = &mut self.resting {
-            resting.begin_cycle();
-        }
+        self.histories
+            .iter_mut()
+            .for_each(|history| history.begin_cycle());
     }
 
     fn begin_increment(&mut self, increment: usize) {
         self.nearby.begin_increment(increment);
-        if let Some(plastic) = &mut self.plastic {
-            plastic.cycle.begin_increment(increment);
-        }
-        if let Some(friction) = &mut self.friction {
-            friction.begin_increment(increment);
-        }
-        if let Some(resting) = &mut self.resting {
-            resting.begin_increment(increment);
+        for history in &mut self.histories {
+            history.begin_increment(increment);
         }
     }
 
@@ -358,19 +274,29 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
                 .press(&self.nearby.blocks, |place, near, shares| {
                     loads[place].tractions(near, &along[place], shares.area_mm2, &twist, friction)
                 });
-        let rubbed = self
-            .friction
-            .is_some()
-            .then(|| self.pressed_nodes(&Twist::zero()));
-        if let Some((friction, pressed)) = self.friction.as_mut().zip(rubbed) {
-            wrench = wrench + friction.respond(&motion.pose, pressed);
+        let patch = LoadedPatch {
+            patch: &self.pressed,
+            blocks: &self.nearby.blocks,
+        };
+        for history in &mut self.histories {
+            if let Some(along_surface) = history.respond(&patch) {
+                wrench = wrench + along_surface;
+            }
         }
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
     fn settle(&mut self, _motion: &RelativeMotion) -> Result<Settled, NotBorne> {
-        let moved_mm = self.flow()?.max(self.rest()?);
-        Ok(if moved_mm <= FOUND_MM {
+        let loads = SurfaceLoads {
+            bodies: self.bodies,
+            loads: &self.node_loads,
+            candidates: &self.candidates,
+        };
+        let mut moved_mm = 0.0_f64;
+        for history in &mut self.histories {
+            moved_mm = moved_mm.max(history.settle(&loads)?);
+        }
+        Ok(if moved_mm <= SETTLED_MM {
             Settled::Yes
         } else {
             Settled::RespondAgain
@@ -378,51 +304,33 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
     }
 
     fn accept(&mut self, motion: &RelativeMotion) {
-        if let Some(plastic) = &mut self.plastic {
-            plastic.accept();
-        }
-        if let Some(resting) = &mut self.resting {
-            resting.accept();
-        }
-        if self.friction.is_some() {
-            let from = &self.pressed.pose;
-            let moved = FrameChange::to_femur(from).twist(&Twist::between(from, &motion.pose));
-            let pressed = self.pressed_nodes(&moved);
-            if let Some(friction) = &mut self.friction {
-                friction.accept(&motion.pose, &moved.numbers(), pressed);
-            }
+        let patch = LoadedPatch {
+            patch: &self.pressed,
+            blocks: &self.nearby.blocks,
+        };
+        for history in &mut self.histories {
+            history.accept(motion, &patch);
         }
     }
 
     fn reject(&mut self) {
-        if let Some(plastic) = &mut self.plastic {
-            plastic.reject();
-        }
-        if let Some(resting) = &mut self.resting {
-            resting.reject();
-        }
+        self.histories
+            .iter_mut()
+            .for_each(|history| history.reject());
     }
 
     fn moved_in_a_cycle_mm(&self) -> f64 {
-        let plastic = self.plastic.as_ref();
-        let set_mm = plastic.map_or(0.0, |plastic| plastic.cycle.moved_mm());
-        let friction = self.friction.as_ref();
-        let friction_mm = friction.map_or(0.0, ElasticFriction::moved_in_a_cycle_mm);
-        let resting = self.resting.as_ref();
-        let backside_mm = resting.map_or(0.0, RestingInsert::moved_in_a_cycle_mm);
-        set_mm.max(friction_mm).max(backside_mm)
+        let moved_mm = self
+            .histories
+            .iter()
+            .map(|history| history.moved_in_a_cycle_mm());
+        moved_mm.fold(0.0, f64::max)
     }
 
     fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
-        if let Some(plastic) = &mut self.plastic {
-            plastic.land();
-        }
-        if let Some(resting) = &mut self.resting {
-            resting.land();
-        }
         let mut touched = self.pressed.touched(&self.nearby.blocks, motion);
-        if let Some(friction) = &mut self.friction {
-            friction.land(&mut touched);
+        for history in &mut self.histories {
+            history.evaluate(&mut touched);
         }
         let (surface, faces) = (self.bodies.surface, self.bodies.insert.faces_around());
         let pressure2 = squares(&touched);
@@ -454,18 +362,10 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
             BACKSIDE_CYCLE_FIELD,
         ];
         state.fields.retain(|field| !own.contains(&&*field.name));
-        let plastic = self.plastic.map(PlasticInsert::into_memory);
+        let histories = self.histories.into_iter();
         state
             .fields
-            .extend(plastic.and_then(|plastic| plastic.field()));
-        let friction = self.friction.into_iter();
-        state
-            .fields
-            .extend(friction.flat_map(ElasticFriction::into_fields));
-        let resting = self.resting.into_iter();
-        state
-            .fields
-            .extend(resting.flat_map(RestingInsert::into_fields));
+            .extend(histories.flat_map(|history| history.into_fields()));
         ContactMemory {
             state,
             cache: ContactCache::of(self.nearby.into_cache()),

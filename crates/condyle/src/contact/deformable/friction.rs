@@ -6,23 +6,15 @@ use super::{
     cholesky::{Eight, get, set, zero},
     complementarity::by_panel,
     compliance::{Compliance, NearMatrix, along_surface},
+    history::{ContactNode, LoadHistory, LoadedPatch},
     stick_slip::{ByMotion, Pair, Rubbed, StickSlip},
 };
 use crate::{
     Mat3, Vec3,
     contact::model::{ContactState, StateField, TouchedNode},
     geometry::ArticulatingSurface,
-    spatial::{Mat6, Pose, Vec6, Wrench, body},
+    spatial::{FrameChange, Mat6, Pose, RelativeMotion, Twist, Vec6, Wrench, body},
 };
-
-/// A node that presses.
-#[derive(Clone, Copy)]
-pub(crate) struct Pressed {
-    pub node: u32,
-    /// The force along the femur's normal, N, and its derivatives by a turn and a shift of the femur in its frame.
-    pub force_n: f64,
-    pub by_motion: Vec6,
-}
 
 /// Coulomb's friction on an elastic surface that sticks and slips.
 ///
@@ -47,7 +39,7 @@ pub(crate) struct ElasticFriction<'a> {
     landed: LoadsAlong,
     /// The last response: the femur's pose, what pressed, and the loads along the surface.
     pose: Pose,
-    pressed: Vec<Pressed>,
+    pressed: Vec<ContactNode>,
     rubbed_nodes: Vec<u32>,
     loads: StickSlip,
     /// The derivatives of those loads by a motion of the femur in its frame, once they were asked for.
@@ -88,16 +80,6 @@ impl<'a> ElasticFriction<'a> {
         friction
     }
 
-    /// The next increments are of the next activity.
-    pub fn begin_cycle(&mut self) {
-        self.memory.begin_cycle(std::mem::take(&mut self.start));
-        self.go_on();
-    }
-
-    pub fn begin_increment(&mut self, increment: usize) {
-        self.memory.begin_increment(increment);
-    }
-
     /// Goes on from where the activity was left.
     fn go_on(&mut self) {
         self.start = self.memory.start();
@@ -109,13 +91,8 @@ impl<'a> ElasticFriction<'a> {
         }
     }
 
-    /// The wrench on the insert about the femur's origin, in its frame, of loads along the surface under what presses with
-    /// the femur at a pose. Before the femur was anywhere there are none.
-    pub fn respond(
-        &mut self,
-        pose: &Pose,
-        pressed: Vec<Pressed>,
-    ) -> Wrench<body::Insert, body::Femur> {
+    /// Finds the loads along the surface under what presses with the femur at a pose; none before the femur was anywhere.
+    fn rub(&mut self, pose: &Pose, pressed: Vec<ContactNode>) {
         self.by_motion.get_mut().clear();
         self.press(pose, pressed);
         let compliance = Arc::clone(&self.compliance);
@@ -126,17 +103,10 @@ impl<'a> ElasticFriction<'a> {
         self.rubbed_nodes
             .extend(rubbed.iter().map(|rubbed| rubbed.node));
         self.spread();
-        let mut total = Wrench::zero();
-        for &node in &self.rubbed_nodes {
-            let screws = self.screws(node as usize, &pose.rotation);
-            let [x, y] = self.loads_n[node as usize];
-            total = total + Wrench::of_numbers(&(screws[0] * x + screws[1] * y));
-        }
-        total
     }
 
     /// Takes a pose and what presses there.
-    fn press(&mut self, pose: &Pose, pressed: Vec<Pressed>) {
+    fn press(&mut self, pose: &Pose, pressed: Vec<ContactNode>) {
         for before in std::mem::replace(&mut self.pressed, pressed) {
             self.sticks[before.node as usize] = false;
         }
@@ -150,111 +120,6 @@ impl<'a> ElasticFriction<'a> {
             self.loads_n[node as usize] = self.loads.loads_n()[place];
             self.sticks[node as usize] = self.loads.sticks(place);
         }
-    }
-
-    /// The derivative of that wrench by a motion of the femur, both in its frame.
-    pub fn tangent(&self) -> Mat6 {
-        let mut tangent = Mat6::zeros();
-        let Some(start) = self.start.pose.filter(|_| !self.pressed.is_empty()) else {
-            return tangent;
-        };
-        let change = |pressed: &Pressed| {
-            let moved = self.screws(pressed.node as usize, &start.rotation);
-            ByMotion {
-                reach_mm: moved.map(|screw| eight(&screw)),
-                limit_n: eight(&(pressed.by_motion * self.coefficient)),
-            }
-        };
-        let changes: Vec<ByMotion> = self.pressed.iter().map(change).collect();
-        let compliance = self.compliance.near(self.asked());
-        let loads = self.loads.by_motion(&changes, &compliance);
-        for (pressed, loads) in self.pressed.iter().zip(&loads) {
-            let screws = self.screws(pressed.node as usize, &self.pose.rotation);
-            for (screw, load) in screws.iter().zip(loads) {
-                tangent += screw * six(load).transpose();
-            }
-        }
-        self.by_motion.replace(loads);
-        tangent
-    }
-
-    /// The increment ends with the femur at a pose, a short motion from that of the last response, and that counts.
-    ///
-    /// The loads are taken along by their derivatives where these were asked for there, else found anew.
-    pub fn accept(&mut self, pose: &Pose, moved: &Vec6, pressed: Vec<Pressed>) {
-        let by_motion = self.by_motion.take();
-        if by_motion.is_empty() {
-            self.respond(pose, pressed);
-        } else {
-            let changes = by_motion.iter();
-            let changes_n: Vec<Pair> = changes
-                .map(|loads| [0, 1].map(|k| six(&loads[k]).dot(moved)))
-                .collect();
-            self.press(pose, pressed);
-            let compliance = Arc::clone(&self.compliance);
-            let compliance = compliance.near(self.asked());
-            let rubbed = self.rubbed(&compliance);
-            self.loads.take_along(&rubbed, &changes_n, &compliance);
-            self.spread();
-        }
-        self.start = Held {
-            pose: Some(*pose),
-            loads: self.loads_now(),
-        };
-        self.start_mm.fill(f64::NAN);
-        for (place, node) in self.rubbed_nodes.iter().enumerate() {
-            let moved_mm = self.loads.moved_mm(place);
-            for (load, moved_mm) in along_surface(*node).into_iter().zip(moved_mm) {
-                self.start_mm[load as usize] = moved_mm;
-            }
-        }
-    }
-
-    /// Adds to nodes that touch what is along the surface: their loads, and how far they have gone along with the femur
-    /// since the increment before landed. Those that stick do not slide.
-    pub fn land(&mut self, touched: &mut [TouchedNode]) {
-        let now = self.loads_now();
-        let compliance = Arc::clone(&self.compliance);
-        let compliance = compliance.near(self.asked());
-        let changes = differences(&now, &self.landed);
-        let change = panels(&changes, &compliance);
-        for node in touched {
-            let at = node.node as usize;
-            let loads = self
-                .surface
-                .directions(at)
-                .into_iter()
-                .zip(self.loads_n[at]);
-            node.force_n += loads.map(|(along, load_n)| along * load_n).sum::<Vec3>();
-            if self.sticks[at] {
-                node.sliding_mm_per_s = [0.0; 2];
-            } else {
-                let rows = along_surface(node.node).map(|load| compliance.row(load));
-                node.along_mm = rows.map(|row| compliance.moved(row, &change));
-            }
-        }
-        let moved_mm = |&(node, by_n): &(u32, Pair)| {
-            let own = along_surface(node).map(|load| compliance.row(load));
-            let [x, y] = own.map(|row| compliance.at(row, row));
-            (x * by_n[0]).hypot(y * by_n[1])
-        };
-        let before = self.memory.land(now.clone());
-        self.moved_in_a_cycle_mm = before.map_or(f64::INFINITY, |before| {
-            let changes = differences(&now, &before);
-            changes.iter().map(moved_mm).fold(0.0, f64::max)
-        });
-        self.landed = now;
-    }
-
-    /// How far a node has gone along the surface, by its own load, from where it was when the same increment landed a cycle
-    /// before, mm.
-    pub fn moved_in_a_cycle_mm(&self) -> f64 {
-        self.moved_in_a_cycle_mm
-    }
-
-    /// The fields of the state that the next contact goes on from.
-    pub fn into_fields(self) -> impl Iterator<Item = StateField> {
-        self.memory.into_fields(self.start)
     }
 
     /// The loads of the last response on nodes that carry one.
@@ -289,7 +154,7 @@ impl<'a> ElasticFriction<'a> {
             }
             *known
         };
-        let rubbed = |pressed: &Pressed| {
+        let rubbed = |pressed: &ContactNode| {
             let node = pressed.node as usize;
             let place = &self.surface.positions[node];
             let moved = place - start.to_insert(&self.pose.to_femur(place));
@@ -314,6 +179,129 @@ impl<'a> ElasticFriction<'a> {
             let moment = place.cross(&along);
             Vec6::new(moment.x, moment.y, moment.z, along.x, along.y, along.z)
         })
+    }
+}
+
+impl LoadHistory for ElasticFriction<'_> {
+    fn begin_cycle(&mut self) {
+        self.memory.begin_cycle(std::mem::take(&mut self.start));
+        self.go_on();
+    }
+
+    fn begin_increment(&mut self, increment: usize) {
+        self.memory.increment = increment;
+    }
+
+    fn respond(&mut self, patch: &LoadedPatch<'_>) -> Option<Wrench<body::Insert, body::Femur>> {
+        let pose = &patch.patch.pose;
+        self.rub(pose, patch.nodes(&Twist::zero()));
+        let mut total = Wrench::zero();
+        for &node in &self.rubbed_nodes {
+            let screws = self.screws(node as usize, &pose.rotation);
+            let [x, y] = self.loads_n[node as usize];
+            total = total + Wrench::of_numbers(&(screws[0] * x + screws[1] * y));
+        }
+        Some(total)
+    }
+
+    fn tangent(&self) -> Option<Mat6> {
+        let mut tangent = Mat6::zeros();
+        let Some(start) = self.start.pose.filter(|_| !self.pressed.is_empty()) else {
+            return Some(tangent);
+        };
+        let change = |pressed: &ContactNode| {
+            let moved = self.screws(pressed.node as usize, &start.rotation);
+            ByMotion {
+                reach_mm: moved.map(|screw| eight(&screw)),
+                limit_n: eight(&(pressed.by_motion * self.coefficient)),
+            }
+        };
+        let changes: Vec<ByMotion> = self.pressed.iter().map(change).collect();
+        let compliance = self.compliance.near(self.asked());
+        let loads = self.loads.by_motion(&changes, &compliance);
+        for (pressed, loads) in self.pressed.iter().zip(&loads) {
+            let screws = self.screws(pressed.node as usize, &self.pose.rotation);
+            for (screw, load) in screws.iter().zip(loads) {
+                tangent += screw * six(load).transpose();
+            }
+        }
+        self.by_motion.replace(loads);
+        Some(tangent)
+    }
+
+    /// The loads are taken along by their derivatives where these were asked for there, else found anew.
+    fn accept(&mut self, motion: &RelativeMotion, patch: &LoadedPatch<'_>) {
+        let (from, pose) = (&patch.patch.pose, &motion.pose);
+        let moved = FrameChange::to_femur(from).twist(&Twist::between(from, pose));
+        let pressed = patch.nodes(&moved);
+        let by_motion = self.by_motion.take();
+        if by_motion.is_empty() {
+            self.rub(pose, pressed);
+        } else {
+            let changes = by_motion.iter();
+            let changes_n: Vec<Pair> = changes
+                .map(|loads| [0, 1].map(|k| six(&loads[k]).dot(&moved.numbers())))
+                .collect();
+            self.press(pose, pressed);
+            let compliance = Arc::clone(&self.compliance);
+            let compliance = compliance.near(self.asked());
+            let rubbed = self.rubbed(&compliance);
+            self.loads.take_along(&rubbed, &changes_n, &compliance);
+            self.spread();
+        }
+        self.start = Held {
+            pose: Some(*pose),
+            loads: self.loads_now(),
+        };
+        self.start_mm.fill(f64::NAN);
+        for (place, node) in self.rubbed_nodes.iter().enumerate() {
+            let moved_mm = self.loads.moved_mm(place);
+            for (load, moved_mm) in along_surface(*node).into_iter().zip(moved_mm) {
+                self.start_mm[load as usize] = moved_mm;
+            }
+        }
+    }
+
+    fn evaluate(&mut self, touched: &mut [TouchedNode]) {
+        let now = self.loads_now();
+        let compliance = Arc::clone(&self.compliance);
+        let compliance = compliance.near(self.asked());
+        let changes = differences(&now, &self.landed);
+        let change = panels(&changes, &compliance);
+        for node in touched {
+            let at = node.node as usize;
+            let loads = self
+                .surface
+                .directions(at)
+                .into_iter()
+                .zip(self.loads_n[at]);
+            node.force_n += loads.map(|(along, load_n)| along * load_n).sum::<Vec3>();
+            if self.sticks[at] {
+                node.sliding_mm_per_s = [0.0; 2];
+            } else {
+                let rows = along_surface(node.node).map(|load| compliance.row(load));
+                node.along_mm = rows.map(|row| compliance.moved(row, &change));
+            }
+        }
+        let moved_mm = |&(node, by_n): &(u32, Pair)| {
+            let own = along_surface(node).map(|load| compliance.row(load));
+            let [x, y] = own.map(|row| compliance.at(row, row));
+            (x * by_n[0]).hypot(y * by_n[1])
+        };
+        let before = self.memory.land(now.clone());
+        self.moved_in_a_cycle_mm = before.map_or(f64::INFINITY, |before| {
+            let changes = differences(&now, &before);
+            changes.iter().map(moved_mm).fold(0.0, f64::max)
+        });
+        self.landed = now;
+    }
+
+    fn moved_in_a_cycle_mm(&self) -> f64 {
+        self.moved_in_a_cycle_mm
+    }
+
+    fn into_fields(self: Box<Self>) -> Vec<StateField> {
+        self.memory.into_fields(self.start).collect()
     }
 }
 
@@ -427,10 +415,6 @@ impl FrictionMemory {
             activity + 1
         }));
         self.landed.clear();
-    }
-
-    pub fn begin_increment(&mut self, increment: usize) {
-        self.increment = increment;
     }
 
     /// An increment ends with loads; those with which it did so a cycle before.

@@ -19,6 +19,7 @@ mod contact;
 mod edge_and_peak;
 mod elastic_surface;
 mod friction;
+mod history;
 mod plastic;
 mod stick_slip;
 #[cfg(test)]
@@ -446,9 +447,9 @@ impl Deformable {
         };
         let memory = ContactMemory { state, ..memory };
         DeformableContact::after(memory, bodies, rubbing, compliance)
-            .yielding(plastic)
-            .sticking(friction)
-            .resting(resting)
+            .with_history(plastic)
+            .with_history(friction)
+            .with_history(resting)
     }
 
     /// How the insert rests on its tray, if it does, after what the state remembers.

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use super::{
     broad_phase::{BroadPhase, BruteForce, Coherent, Search},
-    contact_patch::{CachedSample, Coulomb, NearBlocks, PressedBlocks, Sliding, Tractions4},
+    contact_patch::{CachedSample, ContactPatch, Coulomb, NearBlocks, Sliding, Tractions4},
     law::{Bodies, ContactLaw},
     model::{
         ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Linearization,
@@ -122,7 +122,7 @@ pub(crate) struct FoundationContact<'a, B> {
     bodies: Bodies<'a>,
     nearby: NearBlocks<'a, B>,
     /// The blocks that touched at the last response.
-    pressed: PressedBlocks,
+    pressed: ContactPatch,
     /// The edge slopes of their shares.
     slopes: Vec<EdgeSlopes<F64x4>>,
 }
@@ -137,7 +137,7 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
             ShareBlock::of(bodies.insert, bodies.surface),
             law.sample_reuse_mm,
         );
-        let pressed = PressedBlocks::none(bodies.surface, &nearby.blocks, law.coulomb());
+        let pressed = ContactPatch::none(bodies.surface, &nearby.blocks, law.coulomb());
         Self {
             law,
             bodies,

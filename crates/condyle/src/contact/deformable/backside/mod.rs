@@ -20,13 +20,15 @@ use std::sync::Arc;
 use nalgebra::DVector;
 
 use super::{
+    complementarity::Candidate,
     compliance::Compliance,
     elastic_surface::ElasticSurface,
-    plastic::{FOUND_MM, NodeLoad},
+    history::{LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads},
 };
 use crate::{
-    contact::model::{StateField, Tipped},
+    contact::model::{NotBorne, StateField, Tipped, TouchedNode},
     number::Turns,
+    spatial::RelativeMotion,
 };
 use rest::{CycleOfRest, Rest};
 
@@ -96,12 +98,6 @@ impl RestingInsert {
         self.set_mm[node as usize].unwrap_or_default()
     }
 
-    /// How far the tried backside is off its tray at most, mm.
-    pub fn lift_mm(&self) -> f64 {
-        let points = self.tried_mm.as_chunks::<3>().0.iter();
-        points.map(|point| point[2]).fold(0.0, f64::max)
-    }
-
     /// Finds the rest under loads; how far that moves nodes of the surface from where they were tried to be, mm.
     ///
     /// # Errors
@@ -127,33 +123,13 @@ impl RestingInsert {
             .into_iter()
             .map(|(node, tried_mm)| (self.set_mm(node) - tried_mm).abs());
         let moved_mm = moved.fold(0.0, f64::max);
-        if moved_mm > FOUND_MM {
+        if moved_mm > SETTLED_MM {
             self.tried_mm = self.turns.next(&tried_mm, &found.moved_mm);
             self.set_mm.fill(None);
         }
         self.searched_mm.clone_from(&found.searched_mm);
         self.found = Some(found);
         Ok(moved_mm)
-    }
-
-    /// What was found counts.
-    pub fn accept(&mut self) {
-        if let Some(found) = &self.found {
-            let way = found.moved_mm.iter().zip(&self.left_mm);
-            let way: Vec<f64> = way.map(|(to, from)| to - from).collect();
-            self.left_mm.clone_from(&found.moved_mm);
-            // A first way has nothing to go on from: it may begin anywhere.
-            let goes_on = self.went_mm.is_some();
-            self.try_anew(goes_on.then_some(way.as_slice()));
-            self.went_mm = Some(way);
-        }
-    }
-
-    /// Drops what was tried.
-    pub fn reject(&mut self) {
-        self.found = None;
-        self.went_mm = None;
-        self.try_anew(None);
     }
 
     /// Tries the backside where it was left, or as much farther as it went.
@@ -165,9 +141,10 @@ impl RestingInsert {
         self.set_mm.fill(None);
         self.turns = Turns::default();
     }
+}
 
-    /// The next increments are of the next activity.
-    pub fn begin_cycle(&mut self) {
+impl LoadHistory for RestingInsert {
+    fn begin_cycle(&mut self) {
         let next = self.activity.map_or(0, |activity| {
             self.memory.keep(activity, self.left_mm.clone());
             activity + 1
@@ -179,27 +156,58 @@ impl RestingInsert {
         self.reject();
     }
 
-    pub fn begin_increment(&mut self, increment: usize) {
+    fn begin_increment(&mut self, increment: usize) {
         self.cycle.begin_increment(increment);
     }
 
-    /// The increment has landed.
-    pub fn land(&mut self) {
+    fn displace(&mut self, candidates: &mut [Candidate]) {
+        for candidate in candidates {
+            candidate.displace(self.set_mm(candidate.node));
+        }
+    }
+
+    fn lift_mm(&self) -> f64 {
+        let points = self.tried_mm.as_chunks::<3>().0.iter();
+        points.map(|point| point[2]).fold(0.0, f64::max)
+    }
+
+    fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<f64, NotBorne> {
+        Ok(self.rest(under.loads, under.near())?)
+    }
+
+    fn accept(&mut self, _: &RelativeMotion, _: &LoadedPatch<'_>) {
+        if let Some(found) = &self.found {
+            let way = found.moved_mm.iter().zip(&self.left_mm);
+            let way: Vec<f64> = way.map(|(to, from)| to - from).collect();
+            self.left_mm.clone_from(&found.moved_mm);
+            // A first way has nothing to go on from: it may begin anywhere.
+            let goes_on = self.went_mm.is_some();
+            self.try_anew(goes_on.then_some(way.as_slice()));
+            self.went_mm = Some(way);
+        }
+    }
+
+    fn reject(&mut self) {
+        self.found = None;
+        self.went_mm = None;
+        self.try_anew(None);
+    }
+
+    fn evaluate(&mut self, _: &mut [TouchedNode]) {
         if let Some(found) = &self.found {
             self.cycle.land(&self.tray, found);
         }
     }
 
-    /// How far the backside lies from where it lay when the same increment landed a cycle before, mm.
-    pub fn moved_in_a_cycle_mm(&self) -> f64 {
+    fn moved_in_a_cycle_mm(&self) -> f64 {
         self.cycle.moved_mm
     }
 
-    /// The fields of the state that the next contact goes on from.
-    pub fn into_fields(mut self) -> impl Iterator<Item = StateField> {
-        self.memory.keep(self.activity.unwrap_or(0), self.left_mm);
+    fn into_fields(mut self: Box<Self>) -> Vec<StateField> {
+        let left_mm = std::mem::take(&mut self.left_mm);
+        self.memory.keep(self.activity.unwrap_or(0), left_mm);
         self.memory.last_cycles = self.cycle.most();
-        self.memory.into_fields()
+        self.memory.into_fields().collect()
     }
 }
 

@@ -10,7 +10,7 @@ use crate::{
     Vec3,
     contact::deformable::{
         elastic_surface::{ElasticSurface, HeldBy},
-        plastic::NodeLoad,
+        history::NodeLoad,
     },
     geometry::{Insert, Meshing, Share, flat_insert},
 };

@@ -17,12 +17,18 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use condyle_fem::{ElasticPlastic, ElasticSolid, Hardening, PlasticPoint, Strain};
 
-use super::{compliance::Compliance, elastic_surface::ElasticSurface};
+use super::{
+    complementarity::Candidate,
+    compliance::Compliance,
+    elastic_surface::ElasticSurface,
+    history::{LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads},
+};
 use crate::{
     Vec3,
-    contact::model::Flattened,
+    contact::model::{Flattened, NotBorne, StateField, TouchedNode},
     geometry::FacesAround,
     number::{Mixing, Turns},
+    spatial::RelativeMotion,
 };
 use cycle::{POINTS, Points};
 use influence::{ByTile, product};
@@ -41,8 +47,6 @@ const ON_SURFACE: f64 = 1e-4;
 const MAX_SWEEPS: usize = 600;
 /// Plastic strain beyond which small strains say nothing any more.
 const MAX_STRAIN: f64 = 0.5;
-/// A permanent set that changes by less than this is found, mm: some 1e-5 of how far the surface gives way under load.
-pub(crate) const FOUND_MM: f64 = 1e-5;
 
 /// An elastic insert whose material yields (von Mises).
 ///
@@ -68,9 +72,6 @@ pub(crate) struct PlasticInsert {
     loaded_mm: Vec<Vec3>,
 }
 
-/// A load on a node of the surface along the inward normal, N.
-pub(crate) type NodeLoad = (u32, f64);
-
 impl PlasticInsert {
     /// An insert that goes on from what is remembered.
     pub fn after(
@@ -95,11 +96,6 @@ impl PlasticInsert {
         };
         insert.move_by_committed();
         insert
-    }
-
-    /// How far a node of the surface has given way for good, mm.
-    pub fn set_mm(&self, node: u32) -> f64 {
-        self.set_mm[node as usize]
     }
 
     /// Finds the flow under loads; how far that moves the surface from where it was, mm.
@@ -128,7 +124,7 @@ impl PlasticInsert {
         let mut found_mm = Vec::clone(&self.committed_set_mm);
         self.add_set(&forces, near, &mut found_mm);
         let changed_mm = farthest_mm(&found_mm, &self.set_mm);
-        self.set_mm = if changed_mm <= FOUND_MM {
+        self.set_mm = if changed_mm <= SETTLED_MM {
             found_mm
         } else {
             self.turns.next(&self.set_mm, &found_mm)
@@ -143,15 +139,8 @@ impl PlasticInsert {
         Some(f64::INFINITY)
     }
 
-    /// Drops what was tried.
-    pub fn reject(&mut self) {
-        self.turns = Turns::default();
-        self.trial.clear();
-        self.set_mm.clone_from(&self.committed_set_mm);
-    }
-
-    /// What was tried counts.
-    pub fn accept(&mut self) {
+    /// Commits the trial state.
+    fn commit(&mut self) {
         let before = |element: &u32| self.committed.get(element).copied().unwrap_or_default();
         let mut changed = false;
         for (element, points) in &self.trial {
@@ -170,11 +159,6 @@ impl PlasticInsert {
             self.move_by_committed();
         }
         self.reject();
-    }
-
-    /// The increment has landed.
-    pub fn land(&mut self) {
-        self.cycle.land(&self.committed_set_mm);
     }
 
     /// What the next contact goes on from.
@@ -442,6 +426,49 @@ impl PlasticInsert {
     fn largest_strain(&self) -> f64 {
         let points = self.trial.values().flatten();
         points.map(|point| point.accumulated).fold(0.0, f64::max)
+    }
+}
+
+impl LoadHistory for PlasticInsert {
+    fn begin_cycle(&mut self) {
+        self.cycle.begin();
+    }
+
+    fn begin_increment(&mut self, increment: usize) {
+        self.cycle.begin_increment(increment);
+    }
+
+    fn displace(&mut self, candidates: &mut [Candidate]) {
+        for candidate in candidates {
+            candidate.displace(self.set_mm[candidate.node as usize]);
+        }
+    }
+
+    fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<f64, NotBorne> {
+        let around = under.bodies.insert.faces_around();
+        Ok(self.flow(under.loads, under.peak_mpa(), under.near(), around)?)
+    }
+
+    fn accept(&mut self, _: &RelativeMotion, _: &LoadedPatch<'_>) {
+        self.commit();
+    }
+
+    fn reject(&mut self) {
+        self.turns = Turns::default();
+        self.trial.clear();
+        self.set_mm.clone_from(&self.committed_set_mm);
+    }
+
+    fn evaluate(&mut self, _: &mut [TouchedNode]) {
+        self.cycle.land(&self.committed_set_mm);
+    }
+
+    fn moved_in_a_cycle_mm(&self) -> f64 {
+        self.cycle.moved_mm()
+    }
+
+    fn into_fields(self: Box<Self>) -> Vec<StateField> {
+        self.into_memory().field().into_iter().collect()
     }
 }
 

@@ -84,9 +84,9 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
             .flow(&loads, f64::INFINITY, all, block.insert.faces_around())
             .unwrap();
         let tried_mm: Vec<f64> = (0..block.surface.node_count() as u32)
-            .map(|node| insert.set_mm(node))
+            .map(|node| insert.set_mm[node as usize])
             .collect();
-        insert.accept();
+        insert.commit();
         let solved = block.whole.solve(&block.forces(&loads), &state).unwrap();
         state = solved.state;
         let unloaded = block.whole.elastic_solid().relaxed(
@@ -97,7 +97,7 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
         let exact_mm = block.surface.source.along_normals(&unloaded.0);
         let deepest = exact_mm.iter().copied().fold(0.0, f64::max);
         let set_mm: Vec<f64> = (0..exact_mm.len())
-            .map(|node| insert.set_mm(node as u32))
+            .map(|node| insert.set_mm[node])
             .collect();
         println!("{peak_mpa} MPa at {x}: {deepest:.5} mm");
         assert!(deepest > 0.003, "{deepest}");
@@ -124,7 +124,7 @@ fn what_is_remembered_goes_through_the_state_to_the_same_bytes() {
     let around = block.insert.faces_around();
     insert.cycle.begin_increment(0);
     insert.flow(&loads, f64::INFINITY, 0..1, around).unwrap();
-    insert.accept();
+    insert.commit();
     let remembered = insert.into_memory();
     assert!(remembered.flow_in_cycle.values().any(|flow| *flow > 1e-4));
     let state = crate::contact::ContactState {
@@ -134,7 +134,7 @@ fn what_is_remembered_goes_through_the_state_to_the_same_bytes() {
     // The same load again is elastic: it is what is already there.
     let mut insert = block.plastic(remembered.clone());
     insert.flow(&loads, f64::INFINITY, 0..1, around).unwrap();
-    insert.accept();
+    insert.commit();
     let again = insert.into_memory();
     let flow = again.flow_in_cycle.values().copied().fold(0.0, f64::max);
     assert!(flow < 1e-4, "{flow}");
@@ -153,5 +153,5 @@ fn a_load_that_presses_the_insert_flat_is_an_error() {
     let loads = block.loads(200.0, 0.0);
     assert!(insert.flow(&loads, f64::INFINITY, 0..1, around).is_err());
     insert.reject();
-    assert_eq!(insert.set_mm(0), 0.0);
+    assert_eq!(insert.set_mm[0], 0.0);
 }

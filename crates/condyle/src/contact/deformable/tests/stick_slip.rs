@@ -19,7 +19,7 @@ fn sticking<'a>(plane: &'a Plane, state: &ContactState) -> DeformableContact<'a,
     let along = Arc::new(Compliance::new(along));
     let memory = FrictionMemory::of(state);
     let friction = ElasticFriction::after(memory, MU, &plane.surface, along);
-    plane.contact(0.0).sticking(Some(friction))
+    plane.contact(0.0).with_history(Some(friction))
 }
 
 /// A ball that is pressed, its middle shifted along x and on its way further.
