@@ -9,11 +9,11 @@ use nalgebra::Matrix3;
 
 use crate::{
     Vec3,
-    elastic::{Elastic, Strain},
+    elastic::Elastic,
     element::{Element, Modes, POINTS, Stiffness},
-    material::Stress,
-    plastic::{ElasticPlastic, PlasticPoint},
+    material::Material,
     solid::{ElasticSolid, moved},
+    stress::{Strain, Stress},
 };
 
 impl ElasticSolid {
@@ -171,30 +171,30 @@ impl YieldingElement {
     /// the element are in balance with the plastic strains of `trial`.
     ///
     /// Where that is what comes out, it is the flow of the element.
-    pub fn flow(
+    pub fn flow<M: Material>(
         &self,
         solid: &ElasticSolid,
-        material: &ElasticPlastic,
+        material: &M,
         nodes: &[Vec3; 8],
-        [trial, before]: [&[PlasticPoint; POINTS]; 2],
-    ) -> [PlasticPoint; POINTS] {
+        [trial, before]: [&[M::Point; POINTS]; 2],
+    ) -> [M::Point; POINTS] {
         let element = &solid.elements()[self.number];
-        let pull = self.pull(solid, &trial.map(|point| point.strain));
+        let pull = self.pull(solid, &trial.map(|point| M::eigenstrain(&point)));
         let strains = element.strains(nodes, &self.stiffness.modes(nodes, &pull));
         std::array::from_fn(|p| material.respond(&strains[p], &before[p]).point)
     }
 
     /// The largest part of the yield stress that is used up at a Gauss point, more than 1 where it will flow: under
     /// displacements of the nodes, with the plastic strains remembered.
-    pub fn use_of_yield(
+    pub fn use_of_yield<M: Material>(
         &self,
         solid: &ElasticSolid,
-        material: &ElasticPlastic,
+        material: &M,
         nodes: &[Vec3; 8],
-        before: &[PlasticPoint; POINTS],
+        before: &[M::Point; POINTS],
     ) -> f64 {
         let element = &solid.elements()[self.number];
-        let pull = self.pull(solid, &before.map(|point| point.strain));
+        let pull = self.pull(solid, &before.map(|point| M::eigenstrain(&point)));
         let strains = element.strains(nodes, &self.stiffness.modes(nodes, &pull));
         let used = strains.iter().zip(before);
         used.map(|(strain, before)| material.use_of_yield(strain, before))
@@ -210,29 +210,10 @@ impl YieldingElement {
         std::array::from_fn(|node| nodes[node] - passed_on[node])
     }
 
-    /// Mean of eigenstrains over the element.
-    pub fn mean(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> Strain {
-        mean_over(&solid.elements()[self.number], eigenstrains)
-    }
-
     fn pull(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> Modes {
         let elastic = solid.elastic();
         let stresses = eigenstrains.map(|strain| elastic.stress(&strain));
         solid.elements()[self.number].forces(&stresses).1
-    }
-}
-
-impl Strain {
-    /// The difference to another strain.
-    pub fn since(&self, before: &Self) -> Self {
-        self.less(before)
-    }
-
-    /// Equivalent strain, $\sqrt{2/3\thinspace e : e}$, of a strain without change of volume.
-    pub fn equivalent(&self) -> f64 {
-        let [x, y, z, shears @ ..] = self.0;
-        let shears = shears.iter().map(|shear| shear * shear).sum::<f64>();
-        (2.0 / 3.0 * (x * x + y * y + z * z + 2.0 * shears)).sqrt()
     }
 }
 

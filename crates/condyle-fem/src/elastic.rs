@@ -1,10 +1,8 @@
 //! Isotropic linear elasticity.
 
-use nalgebra::Matrix3;
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::material::Stress;
+use crate::stress::{Strain, Stress};
 
 /// The two constants of an isotropic, linearly elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,49 +90,6 @@ impl Elastic {
             2.0 * g * e[4],
             2.0 * g * e[5],
         ])
-    }
-}
-
-/// A symmetric strain: xx, yy, zz, xy, yz, zx, the last three those of the tensor, half of the angles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Strain(pub [f64; 6]);
-
-impl Strain {
-    /// The symmetric part of a displacement gradient.
-    pub(crate) fn of_gradient(gradient: &Matrix3<f64>) -> Self {
-        let both = |i, j| 0.5 * (gradient[(i, j)] + gradient[(j, i)]);
-        Self([
-            both(0, 0),
-            both(1, 1),
-            both(2, 2),
-            both(0, 1),
-            both(1, 2),
-            both(2, 0),
-        ])
-    }
-
-    /// Change of volume.
-    pub fn trace(&self) -> f64 {
-        self.0[0] + self.0[1] + self.0[2]
-    }
-
-    /// What is left without a part of it.
-    pub(crate) fn less(&self, part: &Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] - part.0[i]))
-    }
-
-    /// Itself and some of a stress.
-    pub(crate) fn plus(&self, factor: f64, stress: &Stress) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] + factor * stress.0[i]))
-    }
-
-    /// The same shear with another change of volume.
-    pub(crate) fn with_trace(mut self, trace: f64) -> Self {
-        let add = (trace - self.trace()) / 3.0;
-        for normal in &mut self.0[..3] {
-            *normal += add;
-        }
-        self
     }
 }
 

@@ -14,9 +14,9 @@ use wide::f64x4;
 
 use crate::{
     Vec3,
-    elastic::{Elastic, Strain},
-    material::Stress,
-    plastic::Softening,
+    elastic::Elastic,
+    material::Softening,
+    stress::{Strain, Stress},
 };
 
 /// Gauss points of an element.
@@ -356,7 +356,10 @@ mod tests {
     use super::*;
     use nalgebra::SymmetricEigen;
 
-    use crate::plastic::{PlasticPoint, tests::material};
+    use crate::{
+        material::Material,
+        plastic::{PlasticPoint, tests::material},
+    };
 
     fn bent() -> [Vec3; 8] {
         let mut corners = SIGNS.map(|s| Vec3::from_row_slice(&s));

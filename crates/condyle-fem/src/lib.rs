@@ -66,20 +66,21 @@ mod plastic;
 mod plastic_solid;
 mod solid;
 mod sparse;
+mod stress;
 mod support;
 
 pub use compliance::Compliance;
 pub use compliance::HalfSolved;
 pub use eigenstrain::{ElementMean, YieldingElement};
-pub use elastic::{Elastic, ElasticError, Strain};
+pub use elastic::{Elastic, ElasticError};
 pub use follow::InteriorFollower;
-pub use material::Stress;
+pub use material::{Material, Response, Softening};
 pub use mesh::HexMesh;
 pub use mesh::{HEX_FACES, trilinear_volume, volume_below};
-pub use plastic::{ElasticPlastic, PlasticPoint};
-pub use plastic::{Hardening, HardeningError};
+pub use plastic::{ElasticPlastic, Hardening, HardeningError, PlasticPoint};
 pub use plastic_solid::{PlasticError, PlasticSolid, PlasticSolution, PlasticState};
 pub use solid::{ElasticSolid, SolidError};
+pub use stress::{Strain, Stress};
 pub use support::MovedSupports;
 
 /// A point or a vector in space.

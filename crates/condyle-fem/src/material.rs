@@ -1,86 +1,74 @@
-//! Stress and what of it is reported.
+//! Materials: the response of a point to strain.
 
-use nalgebra::Matrix3;
-use serde::{Deserialize, Serialize};
+use crate::{
+    elastic::Elastic,
+    stress::{Strain, Stress},
+};
 
-use crate::Vec3;
+/// A material of small strains, of which elastic stiffness is a bound: what yields is softer.
+///
+/// The elements ask every Gauss point for its response; a new material is one file with an implementation of this
+/// trait. The solvers factor the elastic stiffness once and correct it where the response is softer.
+pub trait Material {
+    /// The internal variables of a point, from load to load; the default is the virgin material.
+    type Point: Copy + Default + PartialEq;
 
-/// A symmetric stress: xx, yy, zz, xy, yz, zx; tension is positive.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Stress(pub [f64; 6]);
+    /// Returns the elastic constants.
+    fn elastic(&self) -> Elastic;
 
-impl Stress {
-    /// The mean of the three normal stresses.
-    pub fn mean(&self) -> f64 {
-        (self.0[0] + self.0[1] + self.0[2]) / 3.0
-    }
+    /// Returns the part of the strain that needs no stress.
+    fn eigenstrain(point: &Self::Point) -> Strain;
 
-    /// The deviator, $\sigma - \tfrac{1}{3} \operatorname{tr} \sigma$.
-    pub fn deviator(&self) -> Self {
-        let [xx, yy, zz, xy, yz, zx] = self.0;
-        let mean = self.mean();
-        Self([xx - mean, yy - mean, zz - mean, xy, yz, zx])
-    }
+    /// Returns the response to a strain, from the internal variables before the load.
+    fn respond(&self, strain: &Strain, before: &Self::Point) -> Response<Self::Point>;
 
-    /// Length of the tensor, $\sqrt{\sigma : \sigma}$.
-    pub fn norm(&self) -> f64 {
-        self.dot(self).sqrt()
-    }
-
-    /// Product with another symmetric tensor, over all nine components.
-    pub(crate) fn dot(&self, other: &Self) -> f64 {
-        let part = |i: usize| self.0[i] * other.0[i];
-        part(0) + part(1) + part(2) + 2.0 * (part(3) + part(4) + part(5))
-    }
-
-    /// Product with a vector.
-    pub(crate) fn times(&self, v: &Vec3) -> Vec3 {
-        let [xx, yy, zz, xy, yz, zx] = self.0;
-        Vec3::new(
-            xx * v.x + xy * v.y + zx * v.z,
-            xy * v.x + yy * v.y + yz * v.z,
-            zx * v.x + yz * v.y + zz * v.z,
-        )
-    }
-
-    /// Itself and some of another.
-    pub(crate) fn plus(&self, factor: f64, other: &Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] + factor * other.0[i]))
-    }
-
-    /// Equivalent stress of von Mises, $\sqrt{\tfrac{3}{2} s : s}$ of the deviator.
-    pub fn von_mises(&self) -> f64 {
-        1.5f64.sqrt() * self.deviator().norm()
-    }
-
-    /// Principal stresses, the largest first.
-    pub fn principal(&self) -> [f64; 3] {
-        let [xx, yy, zz, xy, yz, zx] = self.0;
-        let values = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz).symmetric_eigenvalues();
-        let mut values = [values[0], values[1], values[2]];
-        values.sort_by(|a, b| b.total_cmp(a));
-        values
-    }
-
-    /// Largest shear stress: half of the difference of the outer principal stresses.
-    pub fn max_shear(&self) -> f64 {
-        let [first, _, third] = self.principal();
-        0.5 * (first - third)
-    }
+    /// Returns the equivalent stress over the yield stress that an elastic step to a strain would cause; more than 1
+    /// where the material yields, and 0 if it never does.
+    fn use_of_yield(&self, strain: &Strain, before: &Self::Point) -> f64;
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// The response of a material point to a strain.
+#[derive(Clone, Copy, Debug)]
+pub struct Response<P> {
+    /// Stress.
+    pub stress: Stress,
+    /// The internal variables if the load is accepted.
+    pub point: P,
+    /// The loss of stiffness against elastic, if the point yields.
+    pub softening: Option<Softening>,
+}
 
-    #[test]
-    fn verify_invariants_of_tension_and_of_shear() {
-        let tension = Stress([0.0, 30.0, 0.0, 0.0, 0.0, 0.0]);
-        assert!((tension.von_mises() - 30.0).abs() < 1e-12);
-        assert!((tension.max_shear() - 15.0).abs() < 1e-12);
-        let shear = Stress([-5.0, -5.0, -5.0, 0.0, 8.0, 0.0]);
-        assert!((shear.von_mises() - 8.0 * 3f64.sqrt()).abs() < 1e-12);
-        assert!((shear.max_shear() - 8.0).abs() < 1e-12);
-        assert!((shear.principal()[0] - 3.0).abs() < 1e-12);
+/// The elastic tangent less the consistent one: $a\thinspace I_\text{dev} + b\thinspace n \otimes n$.
+#[derive(Clone, Copy, Debug)]
+pub struct Softening {
+    /// a, stress over strain of any deviator.
+    pub deviatoric: f64,
+    /// b, stress over strain along the flow.
+    pub along_flow: f64,
+    /// n, direction of the flow, a deviator of length 1.
+    pub flow: Stress,
+}
+
+impl Material for Elastic {
+    type Point = ();
+
+    fn elastic(&self) -> Elastic {
+        *self
+    }
+
+    fn eigenstrain((): &()) -> Strain {
+        Strain::default()
+    }
+
+    fn respond(&self, strain: &Strain, (): &()) -> Response<()> {
+        Response {
+            stress: self.stress(strain),
+            point: (),
+            softening: None,
+        }
+    }
+
+    fn use_of_yield(&self, _: &Strain, (): &()) -> f64 {
+        0.0
     }
 }

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::{
-    elastic::{Elastic, Strain},
-    material::Stress,
+    elastic::Elastic,
+    material::{Material, Response, Softening},
+    stress::{Strain, Stress},
 };
 
 /// What a place of the material remembers.
@@ -32,40 +33,26 @@ pub struct ElasticPlastic {
     pub hardening: Hardening,
 }
 
-/// What the material does under a strain.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Response {
-    pub(crate) stress: Stress,
-    /// What it remembers then.
-    pub(crate) point: PlasticPoint,
-    /// How much softer it is than elastic, if it yields.
-    pub(crate) softening: Option<Softening>,
-}
+impl Material for ElasticPlastic {
+    type Point = PlasticPoint;
 
-/// The elastic tangent less the consistent one: $a\thinspace I_\text{dev} + b\thinspace n \otimes n$.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Softening {
-    /// Stress over strain, of any deviator.
-    pub(crate) deviatoric: f64,
-    /// The same, along the flow.
-    pub(crate) along_flow: f64,
-    /// Direction of the flow, a deviator of length 1.
-    pub(crate) flow: Stress,
-}
+    fn elastic(&self) -> Elastic {
+        self.elastic
+    }
 
-impl ElasticPlastic {
-    /// Part of the yield stress that an elastic strain after what the material remembers uses up.
-    pub(crate) fn use_of_yield(&self, strain: &Strain, before: &PlasticPoint) -> f64 {
+    fn eigenstrain(point: &PlasticPoint) -> Strain {
+        point.strain
+    }
+
+    fn use_of_yield(&self, strain: &Strain, before: &PlasticPoint) -> f64 {
         let trial = self.elastic.stress(&strain.less(&before.strain));
         let relative = trial.deviator().plus(-1.0, &before.backstress);
         relative.von_mises() / self.hardening.yield_stress(before.accumulated)
     }
 
-    /// The response to a strain after what the material remembers.
-    ///
     /// With the trial stress $s$ and $\xi = s - \beta$, $q = \sqrt{3/2} |\xi|$, the step $\Delta p$ solves
     /// $q - (3 G + H_k) \Delta p = \sigma_y(p + \Delta p)$.
-    pub(crate) fn respond(&self, strain: &Strain, before: &PlasticPoint) -> Response {
+    fn respond(&self, strain: &Strain, before: &PlasticPoint) -> Response<PlasticPoint> {
         let trial = self.elastic.stress(&strain.less(&before.strain));
         let relative = trial.deviator().plus(-1.0, &before.backstress);
         let q = 1.5f64.sqrt() * relative.norm();

@@ -11,11 +11,11 @@ use thiserror::Error;
 
 use crate::{
     Vec3,
-    elastic::Elastic,
     element::{Modes, NodalStiffness, POINTS, Stiffness},
-    material::Stress,
-    plastic::{ElasticPlastic, Hardening, PlasticPoint, Response},
+    material::{Material, Response},
+    plastic::{ElasticPlastic, Hardening, PlasticPoint},
     solid::{ElasticSolid, moved},
+    stress::Stress,
 };
 
 /// Force left over, as part of the forces of loads, elements and plastic strains on nodes, at which there is balance.
@@ -31,27 +31,27 @@ const SOLVED: f64 = 1e-8;
 /// Steps of conjugate gradients for a Newton step.
 const GRADIENT_STEPS: usize = 200;
 
-/// An elastic solid and the yield stress of its material.
-pub struct PlasticSolid {
+/// A solid whose material yields; by default that of von Mises.
+pub struct PlasticSolid<M = ElasticPlastic> {
     solid: ElasticSolid,
-    material: ElasticPlastic,
+    material: M,
     stiffnesses: Vec<Stiffness>,
 }
 
 /// What every Gauss point of a solid remembers, eight an element in the order of its corners.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PlasticState {
+pub struct PlasticState<P = PlasticPoint> {
     /// The points of every element.
-    pub elements: Vec<[PlasticPoint; POINTS]>,
+    pub elements: Vec<[P; POINTS]>,
 }
 
 /// A solid in balance under a load.
 #[derive(Clone, Debug)]
-pub struct PlasticSolution {
+pub struct PlasticSolution<P = PlasticPoint> {
     /// Displacement of every node from the mesh of the solid.
     pub displacements: Vec<Vec3>,
     /// What is remembered if the load is accepted; the next load starts from it.
-    pub state: PlasticState,
+    pub state: PlasticState<P>,
     /// Stress at the Gauss points of every element.
     pub stresses: Vec<[Stress; POINTS]>,
     /// Newton iterations.
@@ -83,11 +83,11 @@ pub enum PlasticError {
     },
 }
 
-impl PlasticState {
+impl<P: Copy + Default> PlasticState<P> {
     /// That of a mesh which never yielded.
     pub fn unloaded(elements: usize) -> Self {
         Self {
-            elements: vec![[PlasticPoint::default(); POINTS]; elements],
+            elements: vec![[P::default(); POINTS]; elements],
         }
     }
 }
@@ -101,14 +101,14 @@ struct Predicted {
 }
 
 /// Forces inside a solid, and how it changes them.
-struct Balance {
+struct Balance<P> {
     /// Force that the elements hold each node with.
     internal: Vec<Vec3>,
     /// Sum of the squares of the forces of elements on nodes.
     size2: f64,
     /// Forces on the modes of every element.
     modal: Vec<Modes>,
-    responses: Vec<[Response; POINTS]>,
+    responses: Vec<[Response<P>; POINTS]>,
     /// Elements that yield.
     yielding: Vec<Yielding>,
 }
@@ -122,15 +122,23 @@ struct Yielding {
 }
 
 impl PlasticSolid {
-    /// A solid whose material yields.
+    /// A solid that yields by von Mises.
     pub fn new(solid: ElasticSolid, hardening: Hardening) -> Self {
+        let elastic = solid.elastic();
+        Self::with_material(solid, ElasticPlastic { elastic, hardening })
+    }
+}
+
+impl<M: Material> PlasticSolid<M> {
+    /// A solid of a material whose elastic part is that of the solid.
+    pub fn with_material(solid: ElasticSolid, material: M) -> Self {
         let elastic = solid.elastic();
         let elements = solid.elements().iter();
         Self {
             stiffnesses: elements
                 .map(|element| element.stiffness(&elastic))
                 .collect(),
-            material: ElasticPlastic { elastic, hardening },
+            material,
             solid,
         }
     }
@@ -152,8 +160,8 @@ impl PlasticSolid {
     pub fn solve(
         &self,
         forces: &[(u32, Vec3)],
-        before: &PlasticState,
-    ) -> Result<PlasticSolution, PlasticError> {
+        before: &PlasticState<M::Point>,
+    ) -> Result<PlasticSolution<M::Point>, PlasticError> {
         let (found, elements) = (before.elements.len(), self.stiffnesses.len());
         if found != elements {
             return Err(PlasticError::WrongState { found, elements });
@@ -168,8 +176,8 @@ impl PlasticSolid {
     fn newton(
         &self,
         external: &[Vec3],
-        before: &PlasticState,
-    ) -> Result<PlasticSolution, PlasticError> {
+        before: &PlasticState<M::Point>,
+    ) -> Result<PlasticSolution<M::Point>, PlasticError> {
         let Predicted {
             mut displacements,
             mut modes,
@@ -197,13 +205,13 @@ impl PlasticSolid {
         })
     }
 
-    fn predicted(&self, external: &[Vec3], before: &PlasticState) -> Predicted {
-        let elastic = &self.material.elastic;
+    fn predicted(&self, external: &[Vec3], before: &PlasticState<M::Point>) -> Predicted {
+        let elastic = self.material.elastic();
         let mut forces = external.to_vec();
         let mut size2 = dot(external, external);
         let mut pulls = Vec::with_capacity(self.stiffnesses.len());
         for (e, points) in before.elements.iter().enumerate() {
-            let stresses = points.map(|point| elastic.stress(&point.strain));
+            let stresses = points.map(|point| elastic.stress(&M::eigenstrain(&point)));
             let (nodes, pull) = self.solid.elements()[e].forces(&stresses);
             let passed_on = self.stiffnesses[e].passed_on(&pull);
             for (corner, &node) in self.solid.mesh().hexes[e].iter().enumerate() {
@@ -224,7 +232,12 @@ impl PlasticSolid {
         }
     }
 
-    fn balance(&self, displacements: &[Vec3], modes: &[Modes], before: &PlasticState) -> Balance {
+    fn balance(
+        &self,
+        displacements: &[Vec3],
+        modes: &[Modes],
+        before: &PlasticState<M::Point>,
+    ) -> Balance<M::Point> {
         let mut balance = Balance {
             internal: vec![Vec3::zeros(); displacements.len()],
             size2: 0.0,
@@ -235,7 +248,7 @@ impl PlasticSolid {
         for (e, hex) in self.solid.mesh().hexes.iter().enumerate() {
             let strains = self.solid.elements()[e].strains(&moved(hex, displacements), &modes[e]);
             let points = &before.elements[e];
-            let responses: [Response; POINTS] =
+            let responses: [Response<M::Point>; POINTS] =
                 std::array::from_fn(|p| self.material.respond(&strains[p], &points[p]));
             let (nodes, modal) = self.solid.elements()[e].forces(&responses.map(|r| r.stress));
             let yielding = self.yielding(e, &responses);
@@ -254,13 +267,17 @@ impl PlasticSolid {
         balance
     }
 
-    fn yielding(&self, element: usize, responses: &[Response; POINTS]) -> Option<Yielding> {
+    fn yielding(
+        &self,
+        element: usize,
+        responses: &[Response<M::Point>; POINTS],
+    ) -> Option<Yielding> {
         let softenings = responses.map(|response| response.softening);
         if softenings.iter().all(Option::is_none) {
             return None;
         }
-        let elastic: &Elastic = &self.material.elastic;
-        let stiffness = self.solid.elements()[element].softened(elastic, &softenings);
+        let elastic = self.material.elastic();
+        let stiffness = self.solid.elements()[element].softened(&elastic, &softenings);
         Some(Yielding {
             element,
             lost: self.stiffnesses[element].condensed() - stiffness.condensed(),
@@ -269,7 +286,7 @@ impl PlasticSolid {
     }
 
     /// Force that is left over at every node.
-    fn residual(&self, external: &[Vec3], balance: &Balance) -> Vec<Vec3> {
+    fn residual(&self, external: &[Vec3], balance: &Balance<M::Point>) -> Vec<Vec3> {
         let nodes = external.iter().zip(&balance.internal).enumerate();
         nodes
             .map(|(node, (external, internal))| self.solid.felt(node as u32, external - internal))
@@ -329,7 +346,7 @@ impl PlasticSolid {
     }
 
     /// Moves the modes on with the nodes.
-    fn follow(&self, step: &[Vec3], balance: &Balance, modes: &mut [Modes]) {
+    fn follow(&self, step: &[Vec3], balance: &Balance<M::Point>, modes: &mut [Modes]) {
         let mut yielding = balance.yielding.iter().peekable();
         for (e, hex) in self.solid.mesh().hexes.iter().enumerate() {
             let softened = yielding.next_if(|yielding| yielding.element == e);
@@ -339,12 +356,12 @@ impl PlasticSolid {
     }
 }
 
-fn solution(
+fn solution<P: Copy>(
     displacements: Vec<Vec3>,
-    balance: &Balance,
+    balance: &Balance<P>,
     iterations: usize,
     solves: usize,
-) -> PlasticSolution {
+) -> PlasticSolution<P> {
     let responses = balance.responses.iter();
     PlasticSolution {
         displacements,

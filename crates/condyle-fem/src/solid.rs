@@ -4,11 +4,11 @@ use thiserror::Error;
 
 use crate::{
     Vec3,
-    elastic::{Elastic, ElasticError, Strain},
+    elastic::{Elastic, ElasticError},
     element::{Element, POINTS},
-    material::Stress,
     mesh::HexMesh,
     sparse::{Dissection, Factor, Loose, Rhs},
+    stress::{Strain, Stress},
 };
 
 const NO_EIGENSTRAIN: [Strain; POINTS] = [Strain([0.0; 6]); POINTS];

@@ -11,18 +11,26 @@ use crate::source::{Edge, Sources, made_up};
 const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle_fem::mesh", &[]),
     ("condyle_fem::follow", &["condyle_fem::mesh"]),
-    ("condyle_fem::material", &[]),
-    ("condyle_fem::elastic", &["condyle_fem::material"]),
+    ("condyle_fem::stress", &[]),
+    ("condyle_fem::elastic", &["condyle_fem::stress"]),
+    (
+        "condyle_fem::material",
+        &["condyle_fem::elastic", "condyle_fem::stress"],
+    ),
     (
         "condyle_fem::plastic",
-        &["condyle_fem::elastic", "condyle_fem::material"],
+        &[
+            "condyle_fem::elastic",
+            "condyle_fem::material",
+            "condyle_fem::stress",
+        ],
     ),
     (
         "condyle_fem::element",
         &[
             "condyle_fem::elastic",
             "condyle_fem::material",
-            "condyle_fem::plastic",
+            "condyle_fem::stress",
         ],
     ),
     (
@@ -34,7 +42,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_fem::elastic",
             "condyle_fem::element",
-            "condyle_fem::material",
+            "condyle_fem::stress",
             "condyle_fem::mesh",
             "condyle_fem::sparse",
         ],
@@ -53,14 +61,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_fem::elastic",
             "condyle_fem::element",
             "condyle_fem::material",
-            "condyle_fem::plastic",
+            "condyle_fem::stress",
             "condyle_fem::solid",
         ],
     ),
     (
         "condyle_fem::plastic_solid",
         &[
-            "condyle_fem::elastic",
+            "condyle_fem::stress",
             "condyle_fem::element",
             "condyle_fem::material",
             "condyle_fem::plastic",

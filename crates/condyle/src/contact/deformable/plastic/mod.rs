@@ -364,7 +364,7 @@ impl PlasticInsert {
         let flowed = own.flow(solid, &self.material, &nodes, [&trial, &before]);
         let apart = flowed.iter().zip(&trial);
         let apart = apart
-            .map(|(flowed, trial)| flowed.strain.since(&trial.strain).equivalent())
+            .map(|(flowed, trial)| flowed.strain.less(&trial.strain).equivalent())
             .fold(0.0, f64::max);
         self.trial.insert(element, flowed);
         apart
@@ -380,7 +380,7 @@ impl PlasticInsert {
                 continue;
             }
             let flow: [Strain; POINTS] =
-                std::array::from_fn(|p| points[p].strain.since(&before[p].strain));
+                std::array::from_fn(|p| points[p].strain.less(&before[p].strain));
             let own = influence.element(solid, element).forces(solid, &flow);
             for (&node, force) in solid.mesh().hexes[element as usize].iter().zip(&own) {
                 influence.add_force(&mut forces, node, force);
