@@ -1,4 +1,4 @@
-//! What forces on some nodes of a solid move those nodes by.
+//! Compliance of some nodes of a solid: their displacements by forces on them.
 
 use std::ops::Range;
 
@@ -26,12 +26,12 @@ pub struct Compliance {
 }
 
 impl Compliance {
-    /// How many nodes move.
+    /// Returns the number of nodes that move.
     pub fn nodes(&self) -> usize {
         self.values.len() / (3 * self.forces.max(1))
     }
 
-    /// How many forces there are.
+    /// The number of forces.
     pub fn forces(&self) -> usize {
         self.forces
     }
@@ -162,7 +162,7 @@ impl ElasticSolid {
         self.half_solved_sums(&alone)
     }
 
-    /// The same of sums of forces: each of `forces` is one, of forces on some nodes. What a node is held against it does
+    /// The same of sums of forces: each of `forces` is one, of forces on some nodes. What a node is compared with it does
     /// not feel.
     ///
     /// # Panics
@@ -211,12 +211,12 @@ fn rows_of(factor: &Factor, groups: &[usize]) -> Vec<(usize, Range<usize>)> {
 }
 
 impl HalfSolved {
-    /// How many forces there are.
+    /// The number of forces.
     pub fn forces(&self) -> usize {
         self.forces
     }
 
-    /// How far each force here moves the place of each of the others along it, row-major, a row for each force
+    /// Returns how far each force here moves the place of each of the others along it, row-major, a row for each force
     /// here; as far as those move the places of these, so the same bytes come the other way round.
     pub fn moved_along(&self, others: &Self) -> Vec<f64> {
         let common = self.common_rows(others);

@@ -121,7 +121,7 @@ pub(crate) fn mean_over(element: &Element, strains: &[Strain; POINTS]) -> Strain
     mean
 }
 
-/// What makes the mean stress of an element of displacements of its nodes.
+/// The operator from the displacements of an element's nodes to its mean stress.
 #[derive(Clone, Debug)]
 pub struct ElementMean {
     gradients: [Vec3; 8],
@@ -143,7 +143,7 @@ impl ElementMean {
 }
 
 impl ElasticSolid {
-    /// What makes the mean stress of an element.
+    /// Returns the operator from displacements to the mean stress of an element.
     ///
     /// # Panics
     /// If there is no such element.
@@ -167,10 +167,10 @@ impl ElasticSolid {
 }
 
 impl YieldingElement {
-    /// What the Gauss points remember after a flow from `before` under displacements of the nodes, if the modes of
+    /// Returns the internal variables after a flow from `before` under displacements of the nodes, if the modes of
     /// the element are in balance with the plastic strains of `trial`.
     ///
-    /// Where that is what comes out, it is the flow of the element.
+    /// The flow of the element is the fixed point: a result equal to `trial`.
     pub fn flow<M: Material>(
         &self,
         solid: &ElasticSolid,

@@ -65,7 +65,7 @@ pub(crate) struct Stiffness {
 }
 
 impl Stiffness {
-    /// That of the nodes after the modes have found their balance.
+    /// Returns the stiffness of the nodes with the modes in balance, condensed out.
     pub(crate) fn condensed(&self) -> NodalStiffness {
         // With z = L^-1 coupling, coupling^T modal^-1 coupling is z^T z.
         let lower = self.modal.l_dirty();
@@ -81,7 +81,7 @@ impl Stiffness {
         self.modal.solve(&(forces - self.coupling * flat))
     }
 
-    /// What forces on the modes come to at the nodes.
+    /// Returns the forces at the nodes that are equivalent to forces on the modes.
     pub(crate) fn passed_on(&self, forces: &Modes) -> [Vec3; 8] {
         let passed = self.coupling.tr_mul(&self.modal.solve(forces));
         std::array::from_fn(|node| passed.fixed_rows::<3>(3 * node).into_owned())
@@ -134,7 +134,7 @@ impl Side {
     }
 }
 
-/// Where the map from natural coordinates folds over.
+/// The error of an element whose map from natural coordinates folds over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Inverted;
 
@@ -331,7 +331,7 @@ fn inverted(jacobian: &Matrix3<f64>) -> Result<(f64, Matrix3<f64>), Inverted> {
     Ok((volume, inverse.ok_or(Inverted)?))
 }
 
-/// How the function of a corner rises along the natural coordinates.
+/// Returns the gradient of a corner's shape function in natural coordinates.
 fn corner_slope(corner: usize, at: [f64; 3]) -> Vec3 {
     let sign = SIGNS[corner];
     let n = |axis: usize| 1.0 + sign[axis] * at[axis];

@@ -17,13 +17,13 @@ const RELATIVE_RESIDUAL: f64 = 1e-2;
 pub struct InteriorFollower {
     /// Nodes that are not held, ascending; "row k" is that of node `free[k]`.
     free: Vec<u32>,
-    /// Those of every row.
+    /// The neighbours of every row.
     neighbours: Neighbours,
     /// One over how many they are: the inverse of the diagonal, the preconditioner.
     scale: Vec<f64>,
 }
 
-/// How large a residual is.
+/// The size of a residual.
 #[derive(Clone, Copy)]
 struct Size {
     /// Square of its length.
@@ -93,7 +93,7 @@ impl InteriorFollower {
         }
     }
 
-    /// What a direction meets: less its product with its image under [`Self::pulls`], which is found
+    /// Returns the stiffness along a direction: minus its product with its image under [`Self::pulls`], which is found
     /// on the way.
     fn resistance(&self, direction: &[Vec3], image: &mut [Vec3]) -> f64 {
         let mut resistance = 0.0;
@@ -121,7 +121,7 @@ impl InteriorFollower {
             })
     }
 
-    /// What the neighbours of every free node pull it by: sum of (u_j - u_i).
+    /// Returns the pull of the neighbours on every free node: the sum of (u_j - u_i).
     fn pulls(&self, u: &[Vec3]) -> impl Iterator<Item = Vec3> {
         self.free.iter().enumerate().map(|(k, &node)| {
             let around = self.neighbours.of(k);
@@ -145,13 +145,13 @@ impl InteriorFollower {
 
 /// The neighbours along the edges of some nodes.
 pub(crate) struct Neighbours {
-    /// Those of row k are `nodes[first[k]..first[k + 1]]`, ascending.
+    /// The neighbours of row k are `nodes[first[k]..first[k + 1]]`, ascending.
     first: Vec<usize>,
     nodes: Vec<u32>,
 }
 
 impl Neighbours {
-    /// Those of `rows` in a mesh; row k is of node `rows[k]`.
+    /// Finds the neighbours of nodes in a mesh; row k belongs to node `rows[k]`.
     pub(crate) fn along_edges(rows: &[u32], mesh: &HexMesh) -> Self {
         // An edge is met once in every hexahedron around it: all are put into their node's place
         // first, and there are few enough of them to sort.
@@ -182,7 +182,7 @@ impl Neighbours {
         &self.nodes[self.first[k]..self.first[k + 1]]
     }
 
-    /// How many neighbours each row has.
+    /// Returns the number of neighbours of each row.
     pub(crate) fn counts(&self) -> impl Iterator<Item = usize> {
         self.first.windows(2).map(|ends| ends[1] - ends[0])
     }

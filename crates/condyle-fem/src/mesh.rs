@@ -56,7 +56,7 @@ impl HexMesh {
         alone.map(|(quad, _)| self.quad(quad)).collect()
     }
 
-    /// Whether each quad belongs to another hexahedron too.
+    /// Returns for each quad whether another hexahedron shares it.
     ///
     /// Every quad is compared with those before it that have the same lowest node: a few.
     fn shared_quads(&self) -> Vec<bool> {
@@ -149,7 +149,7 @@ pub fn volume_below([a, b, c, d]: &[Vec3; 4]) -> f64 {
     (triple(a, b, c) + triple(a, c, d) + triple(a, b, d) + triple(b, c, d)) / 12.0
 }
 
-/// How many go side by side.
+/// The number of hexahedra side by side.
 const LANES: usize = 4;
 
 /// A vector of each of four hexahedra.

@@ -13,7 +13,7 @@ use crate::{
     stress::{Strain, Stress},
 };
 
-/// What a place of the material remembers.
+/// The internal variables of a material point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlasticPoint {
     /// Plastic strain, without change of volume.
@@ -134,7 +134,7 @@ pub enum HardeningError {
         point: usize,
         /// Its plastic strain.
         strain: f64,
-        /// That of the point before.
+        /// The value of the point before.
         before: f64,
     },
     /// The stress falls.
@@ -146,7 +146,7 @@ pub enum HardeningError {
         point: usize,
         /// Its stress.
         stress: f64,
-        /// That of the point before.
+        /// The value of the point before.
         before: f64,
     },
     /// The kinematic modulus is negative or no number.
@@ -232,7 +232,7 @@ impl Hardening {
         after.saturating_sub(1)
     }
 
-    /// Where a piece starts, and its slope.
+    /// Returns the start of a piece of the curve and its slope.
     fn piece(&self, at: usize) -> (f64, f64, f64) {
         let (strain, stress) = self.points[at];
         let slope = self

@@ -38,7 +38,7 @@ pub struct PlasticSolid<M = ElasticPlastic> {
     stiffnesses: Vec<Stiffness>,
 }
 
-/// What every Gauss point of a solid remembers, eight an element in the order of its corners.
+/// The internal variables at every Gauss point of a solid, eight per element in the order of its corners.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlasticState<P = PlasticPoint> {
     /// The points of every element.
@@ -50,7 +50,7 @@ pub struct PlasticState<P = PlasticPoint> {
 pub struct PlasticSolution<P = PlasticPoint> {
     /// Displacement of every node from the mesh of the solid.
     pub displacements: Vec<Vec3>,
-    /// What is remembered if the load is accepted; the next load starts from it.
+    /// The internal variables if the load is accepted; the next load starts from them.
     pub state: PlasticState<P>,
     /// Stress at the Gauss points of every element.
     pub stresses: Vec<[Stress; POINTS]>,
@@ -84,7 +84,7 @@ pub enum PlasticError {
 }
 
 impl<P: Copy + Default> PlasticState<P> {
-    /// That of a mesh which never yielded.
+    /// The state of a mesh that has never yielded.
     pub fn unloaded(elements: usize) -> Self {
         Self {
             elements: vec![[P::default(); POINTS]; elements],
@@ -92,7 +92,7 @@ impl<P: Copy + Default> PlasticState<P> {
     }
 }
 
-/// Where Newton's method begins: the answer if nothing more yields.
+/// The start of Newton's method: the solution if nothing more yields.
 struct Predicted {
     displacements: Vec<Vec3>,
     modes: Vec<Modes>,
@@ -150,7 +150,7 @@ impl<M: Material> PlasticSolid<M> {
 
     /// Balance under all forces that act, after what the material remembers; a node may come more than once.
     ///
-    /// Nothing is committed: whoever accepts the load goes on from the state in the answer.
+    /// Nothing is committed: a caller that accepts the load resumes from the state in the answer.
     ///
     /// # Errors
     /// If there is no balance, or the state is of another mesh.
@@ -299,7 +299,7 @@ impl<M: Material> PlasticSolid<M> {
         if yielding.is_empty() {
             return (direction, 1);
         }
-        // Elastic forces of the direction: kept beside it, so that none has to be computed.
+        // Elastic forces of the direction: kept besides it, so that none has to be computed.
         let mut elastic_forces = residual.clone();
         let mut energy = dot(&residual, &direction);
         let enough = SOLVED * energy;

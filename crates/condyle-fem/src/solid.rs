@@ -38,7 +38,7 @@ pub enum SolidError {
         element: usize,
         /// The node that it names.
         node: u32,
-        /// How many nodes there are.
+        /// The number of nodes.
         nodes: usize,
     },
     /// A node that is to be held is none of the mesh.
@@ -46,7 +46,7 @@ pub enum SolidError {
     NoSuchHeldNode {
         /// The node.
         node: u32,
-        /// How many nodes there are.
+        /// The number of nodes.
         nodes: usize,
     },
     /// An element is flat or folded over.
@@ -65,7 +65,7 @@ pub enum SolidError {
     Loose {
         /// A node of that part.
         node: u32,
-        /// Where it is.
+        /// Its position.
         place: Vec3,
     },
 }
@@ -163,7 +163,7 @@ impl ElasticSolid {
         displacements
     }
 
-    /// What of a force on a node does not go into its support.
+    /// Returns the part of a force on a node that does not go into its support.
     pub(crate) fn felt(&self, node: u32, force: Vec3) -> Vec3 {
         let held = self.held[node as usize];
         Vec3::from_fn(|i, _| if held[i] { 0.0 } else { force[i] })

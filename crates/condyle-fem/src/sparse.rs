@@ -32,14 +32,14 @@ pub(crate) struct Loose {
     pub(crate) node: u32,
 }
 
-/// What a group leaves to the one above.
+/// The remainder that a group leaves to the group above.
 struct Remainder {
     triangle: Triangle,
     /// Rows before those of the boundary.
     columns: usize,
 }
 
-/// What is needed on the way.
+/// The working state of the factorisation.
 struct Assembly<'a, S> {
     hexes: &'a [[u32; 8]],
     held: &'a [[bool; 3]],
@@ -54,7 +54,7 @@ struct Assembly<'a, S> {
 }
 
 impl Factor {
-    /// Of the sum of the stiffnesses of all elements.
+    /// Factors the sum of the stiffnesses of all elements.
     ///
     /// `held`: directions in which each node cannot move; where it is not held in all, they become freedoms
     /// that nothing touches.
@@ -94,12 +94,12 @@ impl Factor {
         Ok(Self { dissection, fronts })
     }
 
-    /// How many freedoms there are.
+    /// The number of freedoms.
     pub(crate) fn freedoms(&self) -> usize {
         3 * self.dissection.order.len()
     }
 
-    /// How many numbers the factor holds.
+    /// Returns the count of numbers in the factor.
     pub(crate) fn len(&self) -> usize {
         self.fronts.iter().map(Front::len).sum()
     }
@@ -196,7 +196,7 @@ pub(crate) struct Rhs<const W: usize> {
 }
 
 impl<const W: usize> Rhs<W> {
-    /// How many columns go side by side.
+    /// The number of columns side by side.
     pub(crate) const COLUMNS: usize = 4 * W;
 
     /// Of zeros.

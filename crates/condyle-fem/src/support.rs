@@ -30,7 +30,7 @@ pub struct MovedSupports {
 }
 
 impl ElasticSolid {
-    /// What motions of held nodes do, each alone; in groups of motions that lie together.
+    /// Condenses the solid to motions of held nodes, each alone, in groups of motions that lie together.
     ///
     /// # Panics
     /// If there is no such node.
@@ -122,7 +122,7 @@ fn direct(motions: &[&Motion], forces: &[BTreeMap<u32, Vec3>]) -> Vec<f64> {
         .collect()
 }
 
-/// Subtracts the products of half-solved forces: what the free nodes give way by.
+/// Subtracts the products of half-solved forces: what the free nodes deflect by.
 fn take_what_gives_way(solved: &[HalfSolved], count: usize, stiffness: &mut [f64]) {
     let mut first_row = 0;
     for one in solved {

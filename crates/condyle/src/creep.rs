@@ -1,4 +1,4 @@
-//! How polyethylene under load grows thinner with time, without losing mass.
+//! Creep: polyethylene under load grows thinner with time, without losing mass.
 
 use crate::parameter::{Known, Parameter};
 
@@ -71,7 +71,7 @@ impl LeePienkowski {
         recovers * recoverable_mm + (1.0 - recovers) * deepest_mm.max(recoverable_mm)
     }
 
-    /// What of creep that was at most so deep is left on an insert long without load, mm.
+    /// Returns the part of the deepest creep that remains on an insert long without load, mm.
     pub fn left_mm(&self, deepest_mm: f64) -> f64 {
         (1.0 - self.recovering_fraction) * deepest_mm
     }

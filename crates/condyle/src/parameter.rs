@@ -5,33 +5,33 @@
 pub struct Parameter {
     /// Its name, which ends in its unit unless it is a pure number: `wear_factor_mm3_per_nm`.
     pub name: &'static str,
-    /// What it is, in one sentence.
+    /// A description in one sentence.
     pub about: &'static str,
-    /// What it is where nobody says otherwise.
+    /// The value unless another is given.
     pub default: f64,
-    /// The least it may be ...
+    /// The least value allowed ...
     pub least: f64,
-    /// ... and the most; both are allowed.
+    /// ... and the most; both limits included.
     pub most: f64,
-    /// Where the default comes from: a key of `references.bib`, or `choice`.
+    /// The source of the default: a key of `references.bib`, or `choice`.
     pub source: &'static str,
-    /// How well the default is known.
+    /// The certainty of the default.
     pub known: Known,
 }
 
-/// How well a constant or a formula is known.
+/// The certainty of a constant or a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
     /// Read in its source.
     Read,
-    /// Remembered rather than read: pages say *approximate*.
+    /// Quoted from memory, not checked at the source: pages say *approximate*.
     Approximate,
     /// A choice of condyle's authors.
     Chosen,
 }
 
 impl Parameter {
-    /// Whether it may be `value`; NaN never.
+    /// Returns whether `value` lies within the limits; NaN never does.
     pub fn allows(&self, value: f64) -> bool {
         (self.least..=self.most).contains(&value)
     }

@@ -39,7 +39,7 @@ pub type Vec6 = nalgebra::Vector6<f64>;
 /// A derivative of six numbers by six others.
 pub type Mat6 = nalgebra::Matrix6<f64>;
 
-/// Where the body `Of` is in the frame of the body `In`: a point p of its frame is at R p + t.
+/// The position of the body `Of` in the frame of the body `In`: a point p of its frame is at R p + t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<In: Body = Insert, Of: Body = Femur> {
     /// R, from the directions of `Of` to those of `In`.
@@ -100,9 +100,9 @@ impl Pose<Insert, Femur> {
 /// Pose and velocity of the femur relative to the insert, in the insert frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelativeMotion {
-    /// Where the femur is.
+    /// The pose of the femur.
     pub pose: Pose,
-    /// How fast it moves, rad/s and mm/s.
+    /// The velocity of the femur, rad/s and mm/s.
     pub twist: Twist,
 }
 
@@ -261,12 +261,12 @@ impl<On: Body, In: Body> Wrench<On, In> {
         Self::new(Vec3::zeros(), Vec3::zeros())
     }
 
-    /// What acts on the other body: action equals reaction.
+    /// Returns the wrench on the other body: action equals reaction.
     pub fn reaction(&self) -> Wrench<On::Other, In> {
         Wrench::new(-self.moment, -self.force)
     }
 
-    /// What the wrench does on a motion of the body that it acts on, N mm/s; for a screw, the load on
+    /// Returns the power of the wrench on a motion of the body that it acts on, N mm/s; for a screw, the load on
     /// its joint, N or N mm.
     pub fn power(&self, twist: &Twist<On, In>) -> f64 {
         twist.numbers().dot(&self.numbers())

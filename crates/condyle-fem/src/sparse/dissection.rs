@@ -38,7 +38,7 @@ pub(crate) struct Dissection {
 }
 
 impl Dissection {
-    /// Of all nodes of a mesh that an element has and that are not held in all directions.
+    /// Orders all nodes of a mesh that belong to an element and are not held in all directions.
     pub(crate) fn new(mesh: &HexMesh, held: &[[bool; 3]]) -> Self {
         let around = elements_around(mesh);
         let free = (0..mesh.nodes.len() as u32)
@@ -112,7 +112,7 @@ impl Dissection {
     }
 }
 
-/// What a dissection needs on the way.
+/// The working state of a dissection.
 struct Cutter<'a> {
     mesh: &'a HexMesh,
     around: &'a [Vec<u32>],

@@ -1,7 +1,7 @@
 //! Dense triangles of numbers in tiles of four by four, and what is done to them.
 //!
 //! Row `t` of tiles holds the columns from 0 on, each as the vector of its four rows. So a product of two
-//! rows of tiles runs through both in order, and nothing is packed anew.
+//! rows of tiles runs through both in order, and nothing is repacked.
 
 use std::ops::Range;
 
@@ -34,7 +34,7 @@ pub(crate) struct BadPivot {
     pub(crate) column: usize,
 }
 
-/// Where row `t` of tiles begins.
+/// Returns the first vector of row `t` of tiles.
 fn start_of_row(t: usize) -> usize {
     TILE * (t * (t + 1) / 2)
 }
@@ -208,7 +208,7 @@ fn products<const N: usize>(strips: [&[f64x4]; N], other: &[f64x4]) -> [[f64x4; 
 pub(crate) struct Front {
     /// Freedoms eliminated, a multiple of [`TILE`].
     pub(crate) columns: usize,
-    /// Where every row of tiles begins, and where the last ends.
+    /// The first vector of every row of tiles, and the end of the last.
     starts: Vec<usize>,
     vectors: Vec<f64x4>,
 }
@@ -240,13 +240,13 @@ impl Front {
         self.starts.len() - 1
     }
 
-    /// How many numbers it holds.
+    /// Returns the count of numbers in the front.
     pub(crate) fn len(&self) -> usize {
         TILE * self.vectors.len()
     }
 }
 
-/// Which rows of a front the freedoms of its nodes have.
+/// The rows of a front that the freedoms of its nodes occupy.
 pub(crate) struct Layout {
     /// Rows of the own freedoms, whole tiles.
     pub(crate) columns: usize,
@@ -255,7 +255,7 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// That of so many own nodes and nodes on the boundary.
+    /// The layout for given numbers of own nodes and of nodes on the boundary.
     pub(crate) fn new(own: usize, boundary: usize) -> Self {
         let columns = whole_tiles(3 * own);
         Self {

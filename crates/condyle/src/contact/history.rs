@@ -1,4 +1,4 @@
-//! What the articulating surface went through in one cycle.
+//! The contact history of the articulating surface over one cycle.
 
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ pub struct Record {
     pub node: u32,
     /// Area of the node's share that presses, mm2; in 32 bits it takes no room of its own.
     pub pressed_mm2: f32,
-    /// What the node feels.
+    /// Pressure and slip at the node.
     pub moment: Moment,
 }
 
@@ -36,7 +36,7 @@ pub struct Record {
 #[derive(Clone, Copy, Debug)]
 pub struct NodeHistory<'a> {
     records: &'a [Record],
-    /// Which of them are the node's, in the order of time.
+    /// The node's own records, in the order of time.
     own: &'a [u32],
     /// Highest mean pressure on the node's share in the cycle, MPa.
     pub peak_pressure_mpa: f64,
@@ -53,7 +53,7 @@ pub struct NodeHistory<'a> {
     pub slip_work: SlipWork,
 }
 
-/// What a node's moments come to.
+/// The sums over a node's moments.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     peak_pressure_mpa: f64,
@@ -96,7 +96,7 @@ impl<'a> NodeHistory<'a> {
 /// than to fill it: one that is cleared keeps its own.
 #[derive(Clone, Debug, Default)]
 pub struct CycleHistory {
-    /// How many instants will likely be recorded.
+    /// The expected number of instants.
     expected: usize,
     /// As they were recorded.
     records: Vec<Record>,
@@ -169,7 +169,7 @@ impl CycleHistory {
         &self.records[at.clone()]
     }
 
-    /// How many nodes the surface has.
+    /// Returns the number of nodes of the surface.
     pub fn node_count(&self) -> usize {
         self.first.len().saturating_sub(1)
     }
@@ -207,7 +207,7 @@ const MIN_MM: f64 = 1e-200;
 /// Pressure times slip of a node by direction: the sum of $p |\Delta s| \thinspace t t^T$ over the instants of a
 /// cycle, $t$ the direction of the slip, MPa mm.
 ///
-/// What slides along a direction $d$ is $d^T T d$, the sum of $p |\Delta s| \cos^2$ of the angle between. The
+/// The part along a direction $d$ is $d^T T d$, the sum of $p |\Delta s| \cos^2$ of the angle between. The
 /// principal direction is the $d$ of the largest: there the molecules of the surface come to lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SlipWork {

@@ -1,4 +1,4 @@
-//! What a test says of contact.
+//! The law of contact of a test, and its results on compliance and on the state below the surface.
 
 use std::{collections::BTreeMap, fmt::Debug, sync::Arc};
 
@@ -37,7 +37,7 @@ pub trait ContactLaw: Debug + Send + Sync {
         0.0
     }
 
-    /// What is below the surface of an insert under loads on surface nodes along the inward normals, N, of the activity
+    /// Returns the state below the surface of an insert under loads on surface nodes along the inward normals, N, of the activity
     /// of that number, after a contact has left `state`; none of an insert that is no solid.
     fn under_surface(
         &self,
@@ -49,7 +49,7 @@ pub trait ContactLaw: Debug + Send + Sync {
         None
     }
 
-    /// What is known of the compliance of an unworn insert, for another run; none where that is about no more than so
+    /// Returns what is known of the compliance of an unworn insert, for another run; none where that is about no more than so
     /// many pairs of tiles, or no more than was known at first.
     fn known_compliance(
         &self,
@@ -63,7 +63,7 @@ pub trait ContactLaw: Debug + Send + Sync {
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw>;
 }
 
-/// What is known of the normal compliance of an insert's surface, mm/N: how far unit loads on the nodes of one tile move
+/// The known part of the normal compliance of an insert's surface, mm/N: how far unit loads on the nodes of one tile move
 /// those of another, for the pairs of tiles that were asked for.
 ///
 /// It follows from the mesh, its backside, its articulating surface and the elastic constants, and from nothing else; and
@@ -75,7 +75,7 @@ pub struct KnownCompliance {
 }
 
 impl KnownCompliance {
-    /// Of how many pairs of tiles something is known.
+    /// Returns the number of known pairs of tiles.
     pub fn pairs(&self) -> usize {
         self.between.len()
     }
@@ -116,20 +116,20 @@ impl KnownCompliance {
 /// increment is found to some 3e-6.
 const SHAKEN_DOWN: f64 = 1e-5;
 
-/// What is below the surface of an insert that is a solid.
+/// The state below the surface of an insert that is a solid.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct UnderSurface {
-    /// Of every element its equivalent stress of von Mises, the mean of the stress over the element, MPa.
+    /// The von Mises stress of every element, of the mean stress over the element, MPa.
     pub von_mises_mpa: Vec<f64>,
-    /// Of every element the largest shear stress of the same mean, MPa.
+    /// The largest shear stress of every element, of the same mean, MPa.
     pub max_shear_mpa: Vec<f64>,
-    /// What has yielded, if the insert does.
+    /// The plastic state, if the insert yields.
     pub plastic: Option<PlasticUnderSurface>,
-    /// What the backside did in the last cycles, if it rests on its tray.
+    /// The motion of the backside in the last cycles, if it rests on its tray.
     pub backside: Option<BacksideAtRest>,
 }
 
-/// What a backside that rests on its tray did at most in the last cycle of any activity.
+/// The extremes of a resting backside in the last cycle of any activity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BacksideAtRest {
     /// Farthest that a place of it lifts off the tray, mm.
@@ -144,18 +144,18 @@ pub struct BacksideAtRest {
     pub lock_moment_nmm: f64,
 }
 
-/// What of an insert has yielded.
+/// The plastic state of an insert.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlasticUnderSurface {
-    /// Of every node of the surface how far it has given way for good along the inward normal, mm.
+    /// The permanent set of every node of the surface along the inward normal, mm.
     pub permanent_set_mm: Vec<f64>,
-    /// Of every element the largest accumulated plastic strain at its Gauss points.
+    /// The largest accumulated plastic strain at the Gauss points of every element.
     pub plastic_strain: Vec<f64>,
-    /// What every element does in a cycle that repeats itself.
+    /// The regime of every element in a cycle that repeats itself.
     pub regime: Vec<Regime>,
 }
 
-/// What a place of an insert does in a cycle that repeats itself.
+/// The regime of a place of an insert in a cycle that repeats itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Regime {
     /// It has never yielded.
@@ -168,7 +168,7 @@ pub enum Regime {
 }
 
 impl Regime {
-    /// That of a place that has yielded, by what accumulates in a cycle.
+    /// Returns the regime of a place that has yielded, by the plastic strain that accumulates in a cycle.
     pub fn of_flow(plastic_strain: f64) -> Self {
         if plastic_strain > SHAKEN_DOWN {
             Self::Ratcheting

@@ -1,4 +1,4 @@
-//! What the machine sees of a contact.
+//! The interface between the machine and a contact.
 
 use std::{any::Any, fmt};
 
@@ -9,10 +9,10 @@ use crate::{
     spatial::{RelativeMotion, Wrench, WrenchByTwist},
 };
 
-/// How many regions of an articulating surface loads and slips are told apart by: the two sides of a knee.
+/// The number of regions of an articulating surface with loads and slips of their own: the two sides of a knee.
 pub const MAX_REGIONS: usize = 2;
 
-/// How the wrench of the contact changes.
+/// The derivatives of the wrench of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tangent {
     /// Derivative of the wrench on the insert by a short motion of the femur.
@@ -27,7 +27,7 @@ pub trait Linearization {
     fn tangent(&self) -> Tangent;
 }
 
-/// How a contact answers a motion.
+/// The response of a contact to a motion.
 pub struct Response<'a> {
     /// Wrench on the insert about its origin, in the insert frame.
     pub wrench: Wrench,
@@ -51,7 +51,7 @@ impl<'a> Response<'a> {
         }
     }
 
-    /// How the wrench changes from here.
+    /// Returns the derivatives of the wrench at this response.
     pub fn tangent(&self) -> Tangent {
         self.linearization.tangent()
     }
@@ -71,7 +71,7 @@ impl fmt::Debug for Response<'_> {
 pub struct TouchedNode {
     /// Number of the surface node.
     pub node: u32,
-    /// Which region of the surface it belongs to.
+    /// The region of the surface that it belongs to.
     pub region: u8,
     /// Mean pressure on the node's share of the surface, MPa.
     pub pressure_mpa: f64,
@@ -82,13 +82,13 @@ pub struct TouchedNode {
     /// Velocity of the femur's surface past the insert's in the surface's own directions, anterior
     /// along the surface, then lateral, mm/s; 0 where they stick.
     pub sliding_mm_per_s: [f64; 2],
-    /// How far the insert's surface has gone along itself with the femur since the increment before landed, in the same
-    /// directions, mm: what of the sliding is no slip. 0 where they stick, and in a contact that does not give way along
+    /// The displacement of the insert's surface along itself with the femur since the increment before, in the same
+    /// directions, mm: the part of the sliding that is no slip. 0 where they stick, and in a contact that does not deflect along
     /// its surface.
     pub along_mm: [f64; 2],
 }
 
-/// Where an increment landed.
+/// The result of a contact at the end of an increment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactResult {
     /// The nodes in contact, each once and always in the same order.
@@ -98,12 +98,12 @@ pub struct ContactResult {
     pub peak_pressure_mpa: f64,
 }
 
-/// Whether a contact has found its own state at a motion.
+/// The state of a contact's search for its history variables at a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Settled {
-    /// It has: the step may be accepted.
+    /// Found: the step may be accepted.
     Yes,
-    /// It has changed since it responded, and is to be asked again: the step is to be solved anew.
+    /// Changed since the last response: the step is to be solved again.
     RespondAgain,
 }
 
@@ -148,7 +148,7 @@ impl From<Tipped> for NotBorne {
 /// [`accept`](Self::accept) once for every step that it goes on from, and [`land`](Self::land) where an
 /// increment ends.
 pub trait ContactModel {
-    /// How many surface nodes there are.
+    /// Returns the number of surface nodes.
     fn node_count(&self) -> usize;
 
     /// The next increments are of another cycle than those before, that of another activity for instance.
@@ -160,7 +160,7 @@ pub trait ContactModel {
     /// A hint that makes a model quicker, and changes none of its answers.
     fn begin_increment(&mut self, _increment: usize) {}
 
-    /// How the contact answers a relative motion.
+    /// Returns the response to a relative motion.
     ///
     /// The answer depends on the motion and on what was accepted, not on the responses before, but
     /// for what a model says it rounds.
@@ -178,7 +178,7 @@ pub trait ContactModel {
     /// The step that settled last is not gone on from: what it would have added is dropped.
     fn reject(&mut self) {}
 
-    /// How far the surface at rest lies from where it lay when the same increment landed a cycle before, mm, times how
+    /// Returns the distance of the surface at rest from its place at the same increment a cycle before, mm, times how
     /// much more exactly than a motion it is to repeat itself; a cycle does not before that has become small.
     fn moved_in_a_cycle_mm(&self) -> f64 {
         0.0
@@ -193,18 +193,18 @@ pub trait ContactModel {
     /// near that loads and speeds may be taken along to first order.
     fn land(&mut self, motion: &RelativeMotion) -> ContactResult;
 
-    /// What the contact after this one is to know, now that this one is no longer needed.
+    /// Returns the memory from which the next contact resumes.
     fn into_memory(self: Box<Self>) -> ContactMemory {
         ContactMemory::default()
     }
 }
 
-/// What a contact knew when it was no longer needed.
+/// The memory that a contact leaves to the next one.
 #[derive(Debug, Default)]
 pub struct ContactMemory {
-    /// What answers depend on.
+    /// The part that results depend on.
     pub state: ContactState,
-    /// What makes the next contact quicker and changes none of its answers.
+    /// The part that makes the next contact quicker and changes none of its results.
     pub cache: ContactCache,
 }
 

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::number::Number;
 
-/// How an elastic layer on a rigid base answers overclosure with pressure: $d$ is the overclosure, $h$ the
+/// The pressure of an elastic layer on a rigid base by overclosure: $d$ is the overclosure, $h$ the
 /// thickness, and $K$ the modulus of the layer where it cannot spread sideways.
 ///
 /// A tenth of a millimetre into 8 mm of polyethylene:
@@ -89,7 +89,7 @@ impl PressureLaw {
         )
     }
 
-    /// What alone the pressure depends on: the strain d/h, or with a table the overclosure d, mm.
+    /// Returns the one variable that the pressure depends on: the strain d/h, or with a table the overclosure d, mm.
     ///
     /// As an overclosure of a layer 1 mm thick it gives the same pressure.
     pub fn measure(&self, overclosure_mm: f64, per_thickness: f64) -> f64 {
@@ -156,7 +156,7 @@ pub enum PressureTableError {
     /// Fewer than two points.
     #[error("a pressure table needs two points or more, it has {count}")]
     TooShort {
-        /// How many there are.
+        /// The number of points.
         count: usize,
     },
     /// The first point is not the origin.
@@ -174,7 +174,7 @@ pub enum PressureTableError {
         "point {index} of the pressure table does not rise: overclosure and pressure must both grow from point to point"
     )]
     NotRising {
-        /// Which point, from 0.
+        /// The number of the point, from 0.
         index: usize,
     },
 }

@@ -10,7 +10,7 @@ use crate::{
 /// The shares of a block of four nodes; a lane too many repeats the last node without area.
 pub(crate) struct ShareBlock {
     pub nodes: [u32; LANES],
-    /// Which region of the surface each node belongs to.
+    /// The region of the surface that each node belongs to.
     pub regions: [u8; LANES],
     /// 1 in the lanes that belong to a region, 0 in the others.
     pub in_region: [F64x4; MAX_REGIONS],
@@ -21,7 +21,7 @@ pub(crate) struct ShareBlock {
     pub spread_mm2: F64x4,
     /// One over the thickness below, 1/mm.
     pub per_thickness: F64x4,
-    /// How far corners lie from their centre at most, mm.
+    /// The largest distance of a corner from its centre, mm.
     pub half_mm: f64,
 }
 

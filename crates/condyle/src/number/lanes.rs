@@ -8,10 +8,10 @@ use wide::{f32x8, f64x4};
 use super::Number;
 use crate::{Vec3, Vector};
 
-/// How many nodes go side by side.
+/// The number of nodes side by side.
 pub const LANES: usize = 4;
 
-/// How many numbers of single precision go side by side.
+/// The count of single-precision numbers side by side.
 pub const LANES_F32: usize = 8;
 
 /// Four numbers side by side.

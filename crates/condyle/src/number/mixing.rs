@@ -9,7 +9,7 @@ const DEPTH: usize = 8;
 /// Part of the mean square of the differences that is added to each, so that those which say the same do not cancel
 /// to rounding.
 const MIN_PART: f64 = 1e-12;
-/// What was seen is forgotten where what is left grows to so many times the least: there the map has bent.
+/// The history is dropped once the residual grows to so many times the least: the map is no longer nearly linear there.
 const BENT: f64 = 3.0;
 
 /// The search for a point $x$ that a map $g$ leaves where it is.
@@ -23,14 +23,14 @@ pub(crate) struct Mixing {
     least: Option<f64>,
 }
 
-/// Where a part of what is left leads to and what was left, or how both changed from one point to the next.
+/// A point reached and its residual, or the change of both from one point to the next.
 struct Seen {
     reached: DVector<f64>,
     left: DVector<f64>,
 }
 
 impl Mixing {
-    /// Where to look next, the map having made `image` of the point `tried`; going the part $\beta$ of the way.
+    /// Returns the next point to try, from the `image` of the point `tried`, with the relaxation $\beta$ `part`.
     pub fn next(&mut self, tried: &[f64], image: &[f64], part: f64) -> Vec<f64> {
         let tried = DVector::from_column_slice(tried);
         let left = DVector::from_column_slice(image) - &tried;
@@ -85,7 +85,7 @@ impl Mixing {
 
 /// The search for the set that stays as it is when loads are found with it, and the flow under these.
 ///
-/// Where the insert gives way by flow more than elastically, each turn would lead farther away: such a turn is taken back, and
+/// Where the insert deflects by flow more than elastically, each turn would lead farther away: such a turn is taken back, and
 /// from then on the search goes shorter ways.
 pub(crate) struct Turns {
     mixing: Mixing,

@@ -41,7 +41,7 @@ pub trait Number:
 {
     /// The same value in every lane.
     fn splat(value: f64) -> Self;
-    /// How many lanes there are.
+    /// The number of lanes.
     const COUNT: usize;
     /// A number from its lanes.
     fn from_lanes(value: impl FnMut(usize) -> f64) -> Self;

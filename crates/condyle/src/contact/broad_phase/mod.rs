@@ -1,4 +1,4 @@
-//! Which blocks of nodes may touch: only under these does the contact sample the femur.
+//! The broad phase: the blocks of nodes that may touch, under which alone the contact samples the femur.
 
 mod separations;
 #[cfg(test)]
@@ -12,7 +12,7 @@ use super::share_block::ShareBlock;
 use crate::spatial::Pose;
 use separations::{BlockPlaces, BlockWear, LastWear, Separations};
 
-/// How the blocks of nodes that may touch are found. The results are the same.
+/// The search for the blocks of nodes that may touch. The results are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Search {
     /// Every block is a candidate, every time: the plain path, and the reference.
@@ -73,7 +73,7 @@ impl BroadPhase for BruteForce {
     fn is_apart(&mut self, _: u32, _: impl FnOnce() -> SeparationBound) {}
 }
 
-/// How far every block is from touching, at least, at every increment of the cycle.
+/// Lower bounds on the separation of every block at every increment of the cycle.
 ///
 /// A block that was found apart is no candidate before the femur can have come near enough. What touches
 /// is exactly what brute force would find. A cycle after, and with a little wear, the femur
@@ -81,7 +81,7 @@ impl BroadPhase for BruteForce {
 /// there; where that does not tell, from what the increment before has just found. Hardly any block is a
 /// candidate but those that touch.
 pub(crate) struct Coherent {
-    /// What is known at the increments come to so far, but for the one that it is now.
+    /// The bounds at the increments so far, but for the present one.
     kept: Vec<Option<Separations>>,
     increment: usize,
     /// The increment before, until the first pose of this one.
@@ -93,7 +93,7 @@ pub(crate) struct Coherent {
 }
 
 impl Coherent {
-    /// What is known at an increment; none if it is older than the last wear but one.
+    /// Takes the bounds at an increment; none if they are older than the last wear but one.
     fn take_kept(&mut self, increment: usize) -> Option<Separations> {
         let kept = self.kept[increment].take()?;
         (kept.worn() + 1 >= self.last_wear.number).then_some(kept)

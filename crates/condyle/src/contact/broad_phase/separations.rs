@@ -1,4 +1,4 @@
-//! How far every block is from touching, carried along as the femur moves.
+//! Lower bounds on the separation of every block, updated as the femur moves.
 
 use crate::{
     Mat3, Vec3, Vector,
@@ -18,13 +18,13 @@ const FARTHEST_MM: f64 = 16.0;
 /// Eight numbers as they lie in memory.
 type Numbers = [f32; LANES_F32];
 
-/// How far every block is from touching where the femur is.
+/// Lower bounds on the separation of every block at a pose of the femur.
 #[derive(Clone)]
 pub(crate) struct Separations {
     at: Option<Pose>,
     eights: Vec<Eight>,
     count: usize,
-    /// How often the blocks had worn.
+    /// The number of updates of the worn blocks.
     worn: u32,
 }
 
@@ -37,7 +37,7 @@ struct Eight {
     radius_mm: Numbers,
 }
 
-/// How points of the insert move in the femoral frame from one pose to another.
+/// The motion of the insert's points in the femoral frame from one pose to another.
 struct FemurStep {
     /// Change of a place by its coordinates x, y and z.
     turn: [Vector<F32x8>; 3],
@@ -45,7 +45,7 @@ struct FemurStep {
     turn_rad: F32x8,
 }
 
-/// What was known where the femur was at another increment, and the way from there.
+/// The bounds at another increment, and the step from there.
 struct Neighbour<'a> {
     eights: &'a [Eight],
     step: FemurStep,
@@ -75,7 +75,7 @@ impl FemurStep {
         }
     }
 
-    /// What eight blocks may lose besides their motion, mm.
+    /// Returns the loss of separation of eight blocks besides their motion, mm.
     #[inline(always)]
     fn lost_mm(&self, places: &BlockPlaces) -> F32x8 {
         let rounded_off_mm = F32x8::splat(ROUNDED_OFF_MM);
@@ -151,7 +151,7 @@ impl Separations {
         }
     }
 
-    /// How often the blocks had worn.
+    /// The number of updates of the worn blocks.
     pub fn worn(&self) -> u32 {
         self.worn
     }
@@ -198,7 +198,7 @@ impl Separations {
         candidates.truncate(candidates.partition_point(|&block| (block as usize) < self.count));
     }
 
-    /// What this knows where the femur is to go, if it is of the blocks as they have worn last.
+    /// Returns the bounds carried to another pose, if they are for the blocks as last worn.
     fn neighbour(&self, to: &Pose, last: &LastWear) -> Option<Neighbour<'_>> {
         let at = self.at.as_ref().filter(|_| self.worn == last.number)?;
         Some(Neighbour {
@@ -238,12 +238,12 @@ impl Separations {
 pub(crate) struct BlockPlaces {
     /// The means of each block's four centres, mm.
     pub middles: Vector<F32x8>,
-    /// How much nearer a turn of the femur brings a block besides, mm/rad: the distance of a centre
+    /// The loss of separation by a turn of the femur, mm/rad: the distance of a centre
     /// from the middle, and the half edges.
     pub levers_mm: F32x8,
 }
 
-/// How eight blocks have worn.
+/// The change of eight blocks by wear.
 pub(crate) struct BlockWear {
     /// Motion of their middles, mm.
     pub moved: Vector<F32x8>,
@@ -251,10 +251,10 @@ pub(crate) struct BlockWear {
     pub lost_mm: F32x8,
 }
 
-/// How all blocks have worn last.
+/// The last change of all blocks by wear.
 #[derive(Default)]
 pub(crate) struct LastWear {
-    /// How often they have worn.
+    /// The number of changes so far.
     pub number: u32,
     /// The last time, eight blocks at a time.
     pub eights: Vec<BlockWear>,
@@ -320,7 +320,7 @@ fn lever_mm(block: &ShareBlock) -> f64 {
     block.half_mm + MAX_GAP_SLOPE * longest_mm(&from_middle)
 }
 
-/// What wear of a block whose middle moves by `moved` may take from its separation besides, mm.
+/// Returns the loss of separation by wear of a block, besides the motion `moved` of its middle, mm.
 ///
 /// Each centre may move otherwise than the middle. The reach of a share changes by no more than half
 /// of what its edges do. A fifth of that again is more than the mean over the share changes, and than
@@ -335,7 +335,7 @@ fn longest_mm(vectors: &Vector<F64x4>) -> f64 {
     dot(vectors, vectors).greatest().sqrt()
 }
 
-/// Where a gap is smaller the curvature of the femur is known, mm; see [`CurvatureBounds`].
+/// The gap below which the curvature of the femur is known, mm; see [`CurvatureBounds`].
 const KNOWN_MM: f64 = 1.5;
 
 /// Those bounds hold at least this far around, mm.
@@ -357,14 +357,14 @@ pub(crate) struct SeparationBound {
     pub clear_mm: f64,
     /// Gradient of the gap by the middle's place in the femoral frame.
     pub slope: Vec3,
-    /// What may be lost besides with each millimetre of motion.
+    /// The further loss with each millimetre of motion.
     pub loss: f64,
     /// The motion that all this holds for, mm.
     pub radius_mm: f64,
 }
 
 impl SeparationBound {
-    /// That of shares with a reach of `reach_mm` under a femur sampled as `sample`, whose gaps are
+    /// The bound for shares with a reach of `reach_mm` under a femur sampled as `sample`, whose gaps are
     /// larger than the reach.
     #[inline(always)]
     pub fn new(

@@ -1,4 +1,4 @@
-//! What is no candidate is apart: held against a search over all blocks, and the gaps at all corners
+//! What is no candidate is apart: compared with a search over all blocks, and the gaps at all corners
 //! of their shares.
 
 use super::separations::{BlockPlaces, BlockWear, LastWear, SeparationBound, Separations};
@@ -109,7 +109,7 @@ fn turned(turn: &Vec3) -> Mat3 {
     nalgebra::Rotation3::new(*turn).into_inner()
 }
 
-/// What is known after every block was sampled.
+/// Separations after every block was sampled.
 fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separations {
     let mut separations = Separations::new(blocks.len());
     let mut candidates = Vec::new();

@@ -33,9 +33,9 @@ use traction::{RegionSlips, TangentSum, WrenchSum};
 pub(crate) struct ContactPatch {
     /// The blocks near the femur, ascending.
     pub near: Vec<NearBlock>,
-    /// What presses each of them.
+    /// The tractions on each of them.
     tractions: Vec<Tractions4>,
-    /// Where the femur is.
+    /// The pose of the femur.
     pub pose: Pose,
     friction: Coulomb,
     /// The surface's own directions at the nodes of every block.
@@ -81,7 +81,7 @@ impl ContactPatch {
         self.near.iter().zip(&self.tractions)
     }
 
-    /// How the wrench changes.
+    /// Returns the derivatives of the wrench.
     pub fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
         for (near, tractions) in self.near.chunks(2).zip(self.tractions.chunks(2)) {

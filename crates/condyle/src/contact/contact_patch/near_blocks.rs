@@ -18,7 +18,7 @@ pub(crate) struct NearBlock {
     pub cached: CachedSample,
 }
 
-/// What one contact knew of which blocks come near, and when; it makes the contact after it quicker.
+/// The search state that one contact leaves to the next one, which it makes quicker.
 pub(crate) struct NearCache<B> {
     blocks: Vec<ShareBlock>,
     search: B,
@@ -26,7 +26,7 @@ pub(crate) struct NearCache<B> {
 
 /// Finds the blocks of shares within reach of the femur, by a broad phase `B`.
 ///
-/// What holds: what is found depends on the pose alone, but for samples that are extrapolated.
+/// Invariant: the result depends on the pose alone, but for samples that are extrapolated.
 pub(crate) struct NearBlocks<'a, B> {
     femur: &'a FemoralSurface,
     pub blocks: Vec<ShareBlock>,
@@ -71,7 +71,7 @@ impl<'a, B: BroadPhase> NearBlocks<'a, B> {
         self.search.begin_increment(increment);
     }
 
-    /// What the contact after this one may go on from.
+    /// Returns the search state for the next contact.
     pub fn into_cache(self) -> NearCache<B> {
         let (blocks, search) = (self.blocks, self.search);
         NearCache { blocks, search }
@@ -159,14 +159,14 @@ impl CachedSample {
         }
     }
 
-    /// A sample taken anew at `place`.
+    /// A sample recomputed at `place`.
     #[inline(always)]
     pub fn at(femur: &FemoralSurface, place: Vector<F64x4>, spread_mm2: F64x4) -> Self {
         let sample = femur.sample(&place, spread_mm2);
         Self { place, sample }
     }
 
-    /// Whether `place` is so near that the sample may be extrapolated there.
+    /// Returns whether `place` is near enough for the sample to be extrapolated there.
     #[inline(always)]
     pub fn reaches(&self, place: &Vector<F64x4>, reuse_mm: f64) -> bool {
         let motion = place - self.place;

@@ -49,7 +49,7 @@ fn highest_of_regions(touched: &[TouchedNode]) -> [f64; MAX_REGIONS] {
     highest
 }
 
-/// What is added to the least squares for every coefficient but the constant, where a length is a
+/// Regularisation added to the least squares for every coefficient but the constant, where a length is a
 /// share's edge: a patch that does not tell a coefficient then takes it to be small, and one that
 /// tells it does not feel it.
 const LEAST_SQUARES_FLOOR: f64 = 1e-10;
@@ -159,7 +159,7 @@ impl Quadratic {
         self.constant + first + self.highest_along([-sine, cosine], mean - apart)
     }
 
-    /// How far it rises along one axis, with the second derivative `bend`.
+    /// Returns the rise along one axis, with the second derivative `bend`.
     fn highest_along(&self, axis: [f64; 2], bend: f64) -> f64 {
         let along = |vector: &[f64; 2]| (vector[0] * axis[0] + vector[1] * axis[1]).abs();
         let slope = along(&self.slope);
@@ -173,7 +173,7 @@ impl Quadratic {
     }
 }
 
-/// How the mean over a share depends on the six coefficients.
+/// Returns the derivatives of the mean over a share by the six coefficients.
 fn row(plane: &Plane, share: &Share, around: &Share) -> SVector<f64, 6> {
     let [x, y] = plane.flat(&(share.centre - around.centre));
     let moment = plane.moment(share);

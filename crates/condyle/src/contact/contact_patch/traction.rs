@@ -38,7 +38,7 @@ pub(crate) struct Tractions4 {
     pub sliding: Sliding,
 }
 
-/// How the femur's material moves past a share.
+/// The motion of the femur's material past a share.
 pub(crate) struct Sliding {
     /// Velocity along the surface, mm/s; where nothing slides, a lean so slight that it only gives
     /// a direction.
@@ -85,7 +85,7 @@ impl Tractions4 {
         }
     }
 
-    /// How the loads of shares at `place` grow by a short motion of the femur, turn and shift in
+    /// Returns the change of the loads of shares at `place` by a short motion of the femur, turn and shift in
     /// its frame, N.
     #[inline(always)]
     pub fn load_change_n(&self, place: &Vector<F64x4>, motion: &Twist4) -> F64x4 {
@@ -168,7 +168,7 @@ pub(crate) struct TangentSum {
     by_twist: [Six<F32x8>; 6],
 }
 
-/// What the tangent asks of shares under pressure; see [`Tractions4`].
+/// The quantities of shares under pressure that enter the tangent; see [`Tractions4`].
 struct Facets<T> {
     place: Vector<T>,
     normal: Vector<T>,

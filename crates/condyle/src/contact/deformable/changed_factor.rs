@@ -6,9 +6,9 @@ use super::{
 };
 use crate::number::{F64x4, Number};
 
-/// How many changes go side by side.
+/// The number of changes side by side.
 const SIDES: usize = ROWS;
-/// With more changes than one to so many nodes the matrix is factored anew: that takes n^3/6 products, each change
+/// With more changes than one to so many nodes the matrix is factored again: that takes n^3/6 products, each change
 /// n^2/2 and more.
 const NODES_A_CHANGE: usize = 4;
 /// Fewest and most changes up to which it is not.
@@ -35,7 +35,7 @@ pub(crate) struct ChangedFactor {
     blocks: Vec<Vec<Eight>>,
     /// Z' Z of the kept columns, up to the diagonal.
     products: Vec<Vec<f64>>,
-    /// Which of the kept columns count now, and the rows of the factor of their matrix.
+    /// The kept columns that count now, and the rows of the factor of their matrix.
     changes: Vec<usize>,
     small: Vec<Vec<f64>>,
     /// y, if it is that of the present overclosures.
@@ -286,7 +286,7 @@ impl ChangedFactor {
         numbers
     }
 
-    /// Where among the changes a node is.
+    /// Returns the place of a node among the changes.
     fn place_of(&self, node: u32) -> Option<usize> {
         self.changes
             .iter()

@@ -2,7 +2,7 @@
 
 use crate::number::{F64x4, LANES, Number};
 
-/// How many rows go side by side.
+/// The number of rows side by side.
 pub(crate) const ROWS: usize = 2 * LANES;
 
 /// Panels that go together past those before, which come from memory once for all of them.
@@ -149,7 +149,7 @@ impl Cholesky {
         }
     }
 
-    /// How many rows right-hand sides have: the order, filled up.
+    /// Returns the number of rows of right-hand sides: the order, rounded up.
     pub fn rows(&self) -> usize {
         self.per_diagonal.len()
     }

@@ -9,12 +9,12 @@ use crate::number::{F64x4, LANES, Number};
 
 /// A load may pull by this much, N.
 const LOAD_TOLERANCE_N: f64 = 1e-9;
-/// How often all that is wrong may be put right at once without there being less of it.
+/// Block exchanges without progress after which single exchanges follow.
 const MAX_TRIES: u32 = 10;
 /// Rounds after which what is left is round-off: ten times what was ever seen.
 const MAX_ROUNDS: u32 = 500;
 
-/// Which nodes press, and the factor of their compliance.
+/// The set of nodes in contact, and the factor of their compliance.
 ///
 /// With the overclosure d of the bodies at rest, the normal compliance C of the surface and the loads N,
 /// the gap is C N - d, and
@@ -25,17 +25,17 @@ const MAX_ROUNDS: u32 = 500;
 /// response before; then without those that pull, and with those that overlap. Block pivoting with Murty's
 /// rule as the last resort (Portugal, Judice and Vicente 1994), which ends.
 pub(crate) struct Pressing {
-    /// Of every surface node, whether it pressed at the last response.
+    /// For every surface node, whether it pressed at the last response.
     pressed_before: Vec<bool>,
-    /// Of every candidate, whether it is tried to press.
+    /// For every candidate, whether it presses in the trial set.
     is_pressing: Vec<bool>,
     /// The pressing nodes, and their places among the candidates.
     places: Vec<usize>,
     nodes: Vec<u32>,
-    /// Of every surface node its overclosure, and the derivatives by six motions: of candidates as it is now.
+    /// The overclosure of every surface node and its derivatives by six motions, current for candidates.
     overclosures: Vec<Eight>,
     factor: ChangedFactor,
-    /// Of every pressing node its load; and when these are right, with the derivatives by six motions.
+    /// The load of every pressing node; and once these are right, with the derivatives by six motions.
     loads_n: Vec<f64>,
     loads: Vec<Eight>,
     /// Those loads by the panels of their nodes.
@@ -208,7 +208,7 @@ pub(crate) fn by_panel(
 #[derive(Clone, Copy)]
 pub(crate) struct Candidate {
     pub node: u32,
-    /// How far the rigid femur reaches into the surface at rest, mm; < 0 apart. Then its derivatives by six
+    /// The overclosure of the rigid femur and the surface at rest, mm; < 0 apart. Then its derivatives by six
     /// motions.
     pub overclosure_mm: Eight,
 }
@@ -227,32 +227,32 @@ impl Candidate {
 /// A gap may be below zero by this much, mm: a millionth of what a surface is rough by.
 const GAP_TOLERANCE_MM: f64 = 1e-10;
 
-/// A node whose gap would be less than this if it had given way as it was last known to is likely to overlap, mm.
+/// A node whose gap would be less than this if it had deflected as it was last known to is likely to overlap, mm.
 const NARROW_MM: f64 = 0.01;
 
-/// What is known of the gaps of nodes that do not press.
+/// Bounds on the gaps of nodes that do not press.
 ///
 /// A gap is the sum of many loads, each times its compliance; but it cannot have closed since it was last computed
 /// where it was wider than all changes of load since then can move a node, and the femur can have come nearer. Tile by
 /// tile is known how far loads there can move the nodes of another. So most need not be computed again. What is told
 /// of a node does not depend on when it was computed last.
 pub(crate) struct Clearances {
-    /// Of every surface node: how far it had given way and what its tile had closed by, when that was computed last, mm.
+    /// For every surface node, its deflection plus the closing of its tile when that was computed last, mm.
     wider_mm: Vec<f64>,
-    /// How far each node had given way when that was computed last, mm.
+    /// The deflection of each node when that was computed last, mm.
     moved_mm: Vec<f64>,
     tiles: Vec<TileClearance>,
-    /// Of every surface node its load, and the nodes that have one.
+    /// The load of every surface node, and the nodes that have one.
     load_n: Vec<f64>,
     loaded: Vec<u32>,
 }
 
-/// What is known of the gaps over a tile of nodes, and of the loads on it.
+/// Bounds on the gaps over a tile of nodes, and the loads on it.
 #[derive(Clone, Copy, Default)]
 struct TileClearance {
-    /// How far all changes of load so far can have moved any of its nodes outwards, mm.
+    /// The largest outward displacement of any of its nodes by all changes of load so far, mm.
     closed_mm: f64,
-    /// How far the loads move any of its nodes outwards at most, mm.
+    /// The largest outward displacement of any of its nodes by the loads, mm.
     most_bulge_mm: f64,
     /// By how much loads on it have become less and more with the last change, and their sum, N.
     less_n: f64,
@@ -304,12 +304,12 @@ impl Clearances {
         }
     }
 
-    /// Whether a node is likely to overlap the femur, as far as is known.
+    /// Returns whether a node is likely to overlap the femur.
     pub fn may_overlap(&self, candidate: &Candidate) -> bool {
         self.moved_mm[candidate.node as usize] - candidate.overclosed_mm() < NARROW_MM
     }
 
-    /// Whether a node that does not press overlaps the femur; `moved_mm` computes how far it has given way.
+    /// Returns whether a node that does not press overlaps the femur; `moved_mm` computes its deflection.
     ///
     /// That is right where no load pulls.
     pub fn overlaps(

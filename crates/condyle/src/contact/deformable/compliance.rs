@@ -1,4 +1,4 @@
-//! How a surface gives way under loads on its nodes.
+//! The compliance of a surface under loads on its nodes, tile by tile.
 
 use std::{
     fmt::{self, Debug},
@@ -15,15 +15,15 @@ use crate::{
     number::{F64x4, LANES, Number},
 };
 
-/// The normal compliance of a surface: how far its nodes give way to loads on them, both along the inward normals.
+/// The normal compliance of a surface: how far its nodes deflect to loads on them, both along the inward normals.
 ///
 /// It is symmetric and positive definite, and given for two tiles of nodes at a time, as they are asked for: of most
-/// nodes nobody ever asks. What it says depends on nothing that was asked before.
+/// nodes no caller ever asks. What it says depends on nothing that was asked before.
 pub(crate) trait SurfaceCompliance: Debug + Send + Sync {
     /// All nodes of the surface, in tiles that lie together.
     fn tiles(&self) -> &[Vec<u32>];
 
-    /// How far unit loads on the nodes of one tile move those of another, mm/N: row-major, a row for each of `one`.
+    /// Returns the displacements of the nodes of one tile by unit loads on another, mm/N: row-major, a row for each of `one`.
     fn between(&self, one: usize, other: usize) -> Vec<f64>;
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct Compliance<S: ?Sized = dyn SurfaceCompliance> {
 }
 
 impl<S: SurfaceCompliance> Compliance<S> {
-    /// That of a surface, of which nothing was asked.
+    /// The compliance of a surface, nothing of it computed yet.
     pub fn new(source: S) -> Self {
         let nodes = source.tiles().iter().map(Vec::len).sum();
         let mut tile_of = vec![0; nodes];
@@ -54,17 +54,17 @@ impl<S: SurfaceCompliance> Compliance<S> {
 }
 
 impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
-    /// How many nodes the surface has.
+    /// Returns the number of nodes of the surface.
     pub fn node_count(&self) -> usize {
         self.tile_of.len()
     }
 
-    /// How many nodes something was asked of.
+    /// Returns the number of nodes whose compliance is computed.
     pub fn known_count(&self) -> usize {
         self.read().row_count()
     }
 
-    /// Of how many pairs of tiles something was asked.
+    /// Returns the number of pairs of tiles whose compliance is computed.
     pub fn asked_pairs(&self) -> usize {
         self.read().pairs().count()
     }
@@ -133,13 +133,13 @@ pub(crate) struct NearMatrix {
     rows: Vec<Vec<Eight>>,
     /// Panels that a row has room for.
     room: usize,
-    /// Of every node the place of its tile among those that were added, and what loads on one tile move another by at
+    /// The place of every node's tile among those that were added, and what loads on one tile move another by at
     /// most.
     slots: Vec<u32>,
     reaches: Vec<Vec<Reach>>,
 }
 
-/// How far a newton on a node of one tile moves another node, of the same or another tile, at most, mm/N.
+/// The largest displacement of a node by a newton on another node, of the same or another tile, mm/N.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reach {
     pub outwards: f64,
@@ -169,7 +169,7 @@ impl NearMatrix {
         self.row_of[node as usize] != UNKNOWN
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn row_count(&self) -> usize {
         self.rows.len()
     }
@@ -188,7 +188,7 @@ impl NearMatrix {
         numbers[row / LANES].lane(row % LANES)
     }
 
-    /// Where a node stands if all do so tile by tile: those with rows in one panel stand together.
+    /// Returns the place of a node in the order of tiles: those with rows in one panel stand together.
     pub fn place(&self, node: u32) -> u32 {
         self.places[node as usize]
     }
@@ -198,7 +198,7 @@ impl NearMatrix {
         self.slots[node as usize] as usize
     }
 
-    /// Of every tile that was added how far a newton on each of all tiles moves its nodes at most, mm/N.
+    /// Returns for every added tile the largest displacement of its nodes by a newton on each added tile, mm/N.
     pub fn reaches(&self) -> &[Vec<Reach>] {
         &self.reaches
     }
@@ -210,7 +210,7 @@ impl NearMatrix {
         pairs.filter(|[one, other]| one <= other)
     }
 
-    /// How far loads on one tile that was added move another, mm/N: row-major.
+    /// Returns the compliance between two added tiles, mm/N: row-major.
     pub fn between(&self, tiles: [&[u32]; 2]) -> Vec<f64> {
         let [rows, columns] = tiles;
         let rows = rows.iter().map(|&node| self.row(node));
@@ -222,7 +222,7 @@ impl NearMatrix {
         rows.flat_map(of_row).collect()
     }
 
-    /// How far loads move the node of a row; of loads there are panels, each with its number.
+    /// Returns the displacement of a row's node by loads, given as panels, each with its number.
     pub fn moved(&self, row: u32, loads: &[(usize, Eight)]) -> f64 {
         // Four sums, so that no addition waits for the one before.
         let mut sums = [F64x4::splat(0.0); 4];
@@ -305,7 +305,7 @@ impl NearMatrix {
         }
     }
 
-    /// What the tile that was added last and another do to each other.
+    /// Records the largest displacements between the tile that was added last and another.
     fn reach(&mut self, other: usize, reach: Reach) {
         let last = self.reaches.len() - 1;
         self.reaches[last][other] = reach;
@@ -324,7 +324,7 @@ impl NearMatrix {
 
 /// Unit loads on places of a solid, each along a direction of its own: the compliance between them.
 ///
-/// Those of a tile are solved half way when they are first asked for, and kept.
+/// The loads of a tile are solved half way when they are first asked for, and kept.
 pub(crate) struct UnitLoads {
     solid: Arc<ElasticSolid>,
     /// The mesh node of every load, and its direction.
@@ -332,7 +332,7 @@ pub(crate) struct UnitLoads {
     /// Loads that lie together, and of every tile what they do.
     tiles: Vec<Vec<u32>>,
     solved: Mutex<Vec<Option<Arc<HalfSolved>>>>,
-    /// What another run has found between them, and nobody has asked for yet.
+    /// The results of another run between them that no caller has asked for yet.
     known: Mutex<KnownCompliance>,
 }
 
@@ -356,7 +356,7 @@ impl UnitLoads {
         }
     }
 
-    /// What another run has found, and nobody has asked for yet.
+    /// Returns the results of another run that no caller has asked for yet.
     pub fn known(&self) -> MutexGuard<'_, KnownCompliance> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }

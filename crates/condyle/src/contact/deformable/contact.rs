@@ -29,10 +29,10 @@ use crate::{
 };
 
 /// A node may touch where the bodies at rest are nearer than this, mm: beside a contact a thin layer bulges,
-/// by a few hundredths of what it gives way.
+/// by a few hundredths of what it deflects.
 const MAX_BULGE_MM: f64 = 0.1;
 
-/// How a deformable contact is computed beside the compliance.
+/// The settings of a deformable contact besides the compliance.
 #[derive(Clone, Copy)]
 pub(crate) struct FrictionSettings {
     pub friction: Coulomb,
@@ -42,7 +42,7 @@ pub(crate) struct FrictionSettings {
 
 /// The contact of a femur with an elastic insert as it is now, with a broad phase `B`.
 ///
-/// What holds: a response depends on the motion alone, but for samples that are extrapolated and for what
+/// Invariant: a response depends on the motion alone, but for samples that are extrapolated and for what
 /// the complementarity is satisfied to. The tangent is the derivative of the response where no node begins or
 /// ceases to press, right to six digits.
 pub(crate) struct DeformableContact<'a, B> {
@@ -57,10 +57,10 @@ pub(crate) struct DeformableContact<'a, B> {
     near: Vec<NearBlock>,
     candidates: Vec<Candidate>,
     lanes: Vec<(usize, usize)>,
-    /// Of every block the inward normals of its nodes; of those near the femur how gaps change along them.
+    /// The inward normals of the nodes of every block; for blocks near the femur the change of the gaps along them.
     inward: Vec<Vector<F64x4>>,
     along: Vec<AlongNormal>,
-    /// What the contact after this one is to know.
+    /// The state that the next contact resumes from.
     state: ContactState,
     /// The loads of the last response, and the parts of the state that depend on what came before.
     node_loads: Vec<NodeLoad>,
@@ -115,7 +115,7 @@ impl Loads4 {
 }
 
 impl<'a, B: BroadPhase> DeformableContact<'a, B> {
-    /// The contact of bodies, of which the insert gives way as `compliance` says; quicker where another left
+    /// The contact of bodies, of which the insert deflects as `compliance` says; quicker where another left
     /// its cache. The state of `memory` is handed on.
     pub fn after(
         memory: ContactMemory,
@@ -376,10 +376,10 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
 /// Below this part of its size a gap's slope does not count as one along the normal: the femur stands on edge there.
 const MIN_SLOPE: f64 = 0.3;
 
-/// How the gaps of a block of nodes change along the insert's normals there.
+/// The change of the gaps of a block of nodes along the insert's normals.
 ///
-/// A node that gives way by w along its inward normal m opens the gap g of the bodies at rest to g + s w, with
-/// s = G . m and G the gradient of the gap. So the bodies touch where the overclosure -g/s is given way by, and a load
+/// A node that deflects by w along its inward normal m opens the gap g of the bodies at rest to g + s w, with
+/// s = G . m and G the gradient of the gap. So the bodies touch where the overclosure -g/s is deflected by, and a load
 /// N along m is the part there of a force N/s along the femur's normal: both do the same work.
 pub(crate) struct AlongNormal {
     slope: F64x4,

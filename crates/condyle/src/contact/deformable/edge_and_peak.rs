@@ -1,4 +1,4 @@
-//! How much of a node's share presses, told from the pressures around it.
+//! The part of a node's share that is in contact, and the peak pressure, both from the pressures at the nodes.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::{
     geometry::{ArticulatingSurface, FacesAround, Share},
 };
 
-/// How far beyond a node the contact reaches, in steps between nodes, by the ratio of its pressure to that of the
+/// The reach of the contact beyond a node, in steps between nodes, by the ratio of its pressure to that of the
 /// next node inside, and what is taken off. With these the radius of a ball's contact errs by 3 % at most on hexahedra
 /// of half of that radius, and by 1 % on those of a fifth.
 const STEPS_BY_RATIO: f64 = 2.3;

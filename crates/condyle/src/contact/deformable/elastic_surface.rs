@@ -33,9 +33,9 @@ const FELT_PER_ROOT: f64 = 6.0;
 /// Nodes that hold an insert while its loads are half-solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HeldBy {
-    /// Those of its backside: it is bonded.
+    /// The nodes of its backside: it is bonded.
     Backside,
-    /// Those of the flat part of it, which rests; walls and recesses hang free.
+    /// The nodes of the flat part of it, which rests; walls and recesses hang free.
     Floor,
 }
 
@@ -54,9 +54,9 @@ pub(crate) struct ElasticSurface {
     known_at_first: AtomicUsize,
     /// Those along the surface, of an insert that sticks and slips.
     tangential: OnceLock<Arc<Compliance<UnitLoads>>>,
-    /// What moves inside; of an insert that yields.
+    /// The influence of loads inside an insert that yields.
     influence: OnceLock<Influence>,
-    /// What holds it.
+    /// The nodes that hold it.
     held_by: HeldBy,
     /// The flat part of the backside, of an insert that rests on it.
     floor: OnceLock<Floor>,
@@ -122,12 +122,12 @@ impl ElasticSurface {
         *self.normal.known() = known;
     }
 
-    /// What another run had found of it, and nobody has asked for yet.
+    /// Returns the results of another run that no caller has asked for yet.
     pub fn known(&self) -> MutexGuard<'_, KnownCompliance> {
         self.normal.known()
     }
 
-    /// Of how many pairs of tiles another run had found something.
+    /// Returns the number of pairs of tiles known from another run.
     pub fn known_at_first(&self) -> usize {
         self.known_at_first.load(Ordering::Relaxed)
     }
@@ -137,7 +137,7 @@ impl ElasticSurface {
         self.floor.get_or_init(|| Floor::of(mesh, &self.backside))
     }
 
-    /// The tray, with points at some spacing: that asked for last, or made anew.
+    /// The tray, with points at some spacing: that asked for last, or recomputed.
     pub fn tray(&self, spacing_mm: f64) -> Arc<Tray> {
         let mut tray = self.tray.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((known_mm, known)) = &*tray
@@ -151,12 +151,12 @@ impl ElasticSurface {
         made
     }
 
-    /// How far the motion of the backside moves the nodes of a tile along their inward normals: a row a node.
+    /// Returns how far the motion of the backside moves the nodes of a tile along their inward normals: a row a node.
     pub fn by_tray<'a>(&self, tray: &'a Tray, tile: usize) -> &'a [f64] {
         tray.of_tile(&self.normal, tile)
     }
 
-    /// What loads along the inward normals of nodes are to the points of the backside, N.
+    /// Returns the forces at the points of the backside by loads along the inward normals of nodes, N.
     pub fn forces_on_tray(&self, tray: &Tray, loads: &[(u32, f64)]) -> DVector<f64> {
         let mut forces_n = DVector::zeros(tray.freedoms());
         for (tile, loads) in self.by_tile(loads) {
@@ -201,7 +201,7 @@ impl ElasticSurface {
         Tray::bytes(3.0 * points[0] * points[1], nodes, self.felt())
     }
 
-    /// How many freedoms feel a load, about.
+    /// Estimates the number of freedoms that feel a load.
     fn felt(&self) -> f64 {
         FELT_PER_ROOT * (3.0 * self.solid.mesh().nodes.len() as f64).sqrt()
     }
@@ -212,7 +212,7 @@ impl ElasticSurface {
         size_of::<f32>() as f64 * rows * nodes.min(self.nodes.len() as f64)
     }
 
-    /// Whether it is that of an insert with its mesh nodes there.
+    /// Returns whether it belongs to an insert with the given mesh nodes.
     pub fn is_of(&self, insert: &Insert, mesh_nodes: &[Vec3], held_by: HeldBy) -> bool {
         let mesh = self.solid.mesh();
         self.held_by == held_by
@@ -226,7 +226,7 @@ impl ElasticSurface {
         &self.solid
     }
 
-    /// What moves inside the insert.
+    /// Returns the influence of loads inside the insert.
     pub fn influence(&self) -> &Influence {
         self.influence.get_or_init(|| {
             let nodes = self.nodes.iter();
@@ -242,7 +242,7 @@ impl ElasticSurface {
         &self.tiles()[tile]
     }
 
-    /// What unit loads on a tile move all mesh nodes by, mm/N: a row for every axis of every mesh node.
+    /// Returns the displacements of all mesh nodes by unit loads on a tile, mm/N: a row for every axis of every mesh node.
     pub fn moved_below(&self, tile: usize) -> &[f32] {
         let loads: Vec<(u32, Vec3)> = self.tiles()[tile]
             .iter()
@@ -265,7 +265,7 @@ impl ElasticSurface {
         by_tile
     }
 
-    /// How far loads along the inward normals of nodes and eigenstrains of elements move all mesh nodes, mm.
+    /// Returns the displacements of all mesh nodes by loads along the inward normals and eigenstrains of elements, mm.
     pub fn moved_by(
         &self,
         loads: &[(u32, f64)],
@@ -285,7 +285,7 @@ impl ElasticSurface {
         self.solid.displacements(&forces)
     }
 
-    /// How far loads along the inward normals of nodes, and a motion of the backside, move all mesh nodes, mm.
+    /// Returns the displacements of all mesh nodes by loads along the inward normals and a motion of the backside, mm.
     pub fn moved_with_tray(
         &self,
         loads: &[(u32, f64)],
@@ -301,7 +301,7 @@ impl ElasticSurface {
             .displacements_with_supports(&forces, &tray.moved_nodes(moved_mm))
     }
 
-    /// How far mesh nodes of the surface move along the inward normals, mm.
+    /// Returns the displacements of the surface's mesh nodes along the inward normals, mm.
     pub fn along_normals(&self, moved_mm: &[Vec3]) -> Vec<f64> {
         (0..self.nodes.len() as u32)
             .map(|node| self.unit(node))

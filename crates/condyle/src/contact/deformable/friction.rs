@@ -1,4 +1,4 @@
-//! Friction on a surface that gives way along itself.
+//! Friction on a surface that deflects along itself.
 
 use std::{cell::RefCell, collections::BTreeMap, sync::Arc};
 
@@ -31,8 +31,8 @@ pub(crate) struct ElasticFriction<'a> {
     compliance: Arc<Compliance>,
     surface: &'a ArticulatingSurface,
     memory: FrictionMemory,
-    /// Where the increment began, and how far the loads then had moved some nodes, mm, by the numbers of the unit loads;
-    /// not a number where nobody asked.
+    /// The state at the start of the increment, and the displacements of some nodes by its loads, mm, by unit load;
+    /// NaN where not computed yet.
     start: Held,
     start_mm: Vec<f64>,
     /// The loads when the increment before landed.
@@ -44,7 +44,7 @@ pub(crate) struct ElasticFriction<'a> {
     loads: StickSlip,
     /// The derivatives of those loads by a motion of the femur in its frame, once they were asked for.
     by_motion: RefCell<Vec<[Eight; 2]>>,
-    /// Those of every node of the surface, and whether it sticks.
+    /// The loads of every node of the surface, and whether it sticks.
     loads_n: Vec<Pair>,
     sticks: Vec<bool>,
     moved_in_a_cycle_mm: f64,
@@ -229,7 +229,7 @@ impl LoadHistory for ElasticFriction<'_> {
         Some(tangent)
     }
 
-    /// The loads are taken along by their derivatives where these were asked for there, else found anew.
+    /// The loads are taken along by their derivatives where these were asked for there, else found again.
     fn accept(&mut self, motion: &RelativeMotion, patch: &LoadedPatch<'_>) {
         let (from, pose) = (&patch.patch.pose, &motion.pose);
         let moved = FrameChange::to_femur(from).twist(&Twist::between(from, pose));
@@ -347,15 +347,15 @@ const OF_POSE: usize = 12;
 /// Loads along the surface on some nodes, ascending, N.
 pub(crate) type LoadsAlong = Vec<(u32, Pair)>;
 
-/// Where an increment begins.
+/// The state at the start of an increment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Held {
-    /// Where the femur is; none before it was anywhere.
+    /// The pose of the femur; none before the first step.
     pub pose: Option<Pose>,
     pub loads: LoadsAlong,
 }
 
-/// What every activity left, and the loads of the cycle that is being solved.
+/// The state left by every activity, and the loads of the cycle that is being solved.
 #[derive(Default)]
 pub(crate) struct FrictionMemory {
     activities: Vec<Held>,
@@ -390,7 +390,7 @@ impl Held {
 }
 
 impl FrictionMemory {
-    /// What a state says.
+    /// Reads the fields of a contact's state.
     pub fn of(state: &ContactState) -> Self {
         let fields = state.fields.iter();
         let fields = fields.filter(|field| field.name == FRICTION_FIELD);
@@ -402,7 +402,7 @@ impl FrictionMemory {
         }
     }
 
-    /// Where the present activity begins.
+    /// Returns the state at the start of the present activity.
     pub fn start(&self) -> Held {
         let held = self.activities.get(self.activity.unwrap_or(0));
         held.cloned().unwrap_or_default()

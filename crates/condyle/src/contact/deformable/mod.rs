@@ -4,8 +4,8 @@
 //! insert's normals (`along_normal`) of the nodes that may touch (`candidate`), finds the loads under which they just
 //! touch (`complementarity`, with the factor of `cholesky` and what has changed since in `changed_factor`; `clearance`
 //! tells which gaps need not be looked at), and adds up what these do as in [`pressed`](super::pressed). How the surface
-//! gives way (`compliance`) is computed by finite elements (`elastic_surface`, `unit_loads`), between the nodes that ever
-//! come near (`near_matrix`), and may be known from another run. Where it gives way along itself too, friction makes it stick and slip (`friction`, with
+//! deflects (`compliance`) is computed by finite elements (`elastic_surface`, `unit_loads`), between the nodes that ever
+//! come near (`near_matrix`), and may be known from another run. Where it deflects along itself too, friction makes it stick and slip (`friction`, with
 //! the loads of `stick_slip` and what is remembered of them in `friction_memory`). Where an increment ends it says how much of every share presses (`covered`), and what the highest
 //! pressure is (`peak`). Below the surface the insert may yield (`plastic`), and has stress there (`under_surface`); its backside is bonded, or rests
 //! (`backside`). What loads and insert have to agree on is found in `turns`, led by mixing.
@@ -60,12 +60,12 @@ pub enum FrictionModel {
     /// It goes with the sliding speed, mu N v / sqrt(v^2 + v0^2), and does not move the surface along itself.
     #[default]
     Regularised,
-    /// The surface gives way along itself, and each node sticks or slides: what carries less than mu N does not slide. What
+    /// The surface deflects along itself, and each node sticks or slides: what carries less than mu N does not slide. What
     /// each carries is remembered from increment to increment.
     StickSlip,
 }
 
-/// What holds the backside of a deformable insert on its tray.
+/// The support of the backside of a deformable insert on its tray.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Backside {
     /// It is bonded: it neither lifts nor slips.
@@ -83,14 +83,14 @@ pub enum Backside {
 
 /// The law of an elastic insert under a rigid femur.
 ///
-/// Small displacements: the surface gives way along its inward normals by the normal compliance C of the insert,
+/// Small displacements: the surface deflects along its inward normals by the normal compliance C of the insert,
 /// computed by finite elements. The loads N at the nodes hold the bodies just in touch where they press,
 ///
 /// $$ N \ge 0, \quad g + C N \ge 0, \quad N \cdot (g + C N) = 0, $$
 ///
 /// with the gaps g of the bodies at rest: nothing is tuned. Every node's share of the surface presses along the
 /// femur's normal and rubs with Coulomb friction, regularised or with stick and slip. Wear goes into the gap; C is that of the insert
-/// unworn, and made anew where an insert has become thinner by more than a twentieth. With a yield stress the insert flows below
+/// unworn, and recomputed where an insert has become thinner by more than a twentieth. With a yield stress the insert flows below
 /// its surface (von Mises, small strains), and what that leaves of a dent goes into the gap; the stiffness stays.
 /// Limits: loads along the surface do not move it along its normal, nor do normal loads along it; a tray that does not give.
 /// An insert that rests on its tray neither yields nor sticks and slips on its surface.
@@ -100,17 +100,17 @@ pub struct Deformable {
     pub elastic: Elastic,
     /// Coulomb's coefficient of friction, mu.
     pub friction: f64,
-    /// Whether the surface gives way along itself under friction.
+    /// The model of friction: with or without elastic deflection along the surface.
     pub friction_model: FrictionModel,
     /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0; of regularised friction.
     pub slip_tolerance_mm_per_s: f64,
-    /// How the nodes that may touch are found; no answer depends on it.
+    /// The search for the nodes that may touch; no result depends on it.
     pub search: Search,
     /// Motion up to which a sample of the femur is extrapolated, mm; 0 takes every sample anew.
     pub sample_reuse_mm: f64,
     /// The yield stress of the insert, MPa, if it yields.
     pub hardening: Option<Hardening>,
-    /// What holds the backside.
+    /// The support of the backside.
     pub(crate) backside: Backside,
     remembered: Arc<KnownSurfaces>,
 }
@@ -170,7 +170,7 @@ impl Deformable {
         Ok(law)
     }
 
-    /// The same law of an insert whose backside is held so; where it rests on its flat part the stiffness is factored anew if
+    /// The same law of an insert whose backside is held so; where it rests on its flat part the stiffness is factored again if
     /// there is more than that.
     ///
     /// # Errors
@@ -185,14 +185,14 @@ impl Deformable {
         Ok(self)
     }
 
-    /// How much of an insert's backside is flat, of what a tray below sees: what can rest.
+    /// Returns the part of an insert's backside, projected onto the tray, that is flat and can rest.
     ///
     /// Faces that lean by less than 15 degrees from straight down, within a quarter of a millimetre of their middle height.
     pub fn flat_part_of_backside(insert: &Insert) -> f64 {
         Floor::of(insert.mesh(), insert.backside_nodes()).part
     }
 
-    /// The surface of an insert with its mesh nodes there: remembered, or made anew.
+    /// The surface of an insert with its mesh nodes there: remembered, or recomputed.
     pub(crate) fn surface(
         &self,
         insert: &Insert,
@@ -232,7 +232,7 @@ impl Deformable {
         Some(Arc::clone(&remembered[place]))
     }
 
-    /// Whether anything is known of the compliance of an unworn insert.
+    /// Returns whether anything is known of the compliance of an unworn insert.
     pub fn knows(&self, insert: &Insert) -> bool {
         let surface = self.remembered(insert, insert.unworn_nodes());
         surface
@@ -265,7 +265,7 @@ impl Deformable {
     }
 }
 
-/// Where the surface of an insert with its mesh nodes there is.
+/// Returns the place of the surface of an insert with the given mesh nodes.
 fn place_of(
     remembered: &[Arc<Compliance<ElasticSurface>>],
     insert: &Insert,
@@ -300,12 +300,12 @@ const MAX_THINNER: f64 = 0.05;
 /// The field of the contact's state that holds the mesh nodes whose compliance is used, x, y and z of each.
 const NODES_FIELD: &str = "compliance_nodes_mm";
 
-/// How much the pressure at a node falls as the node alone gives way, times edge over contact modulus: 1.2 on a
-/// half-space where pressure is even over squares, and 1.7 for squares that give way by turns; more where elements
+/// The fall of the pressure at a node as the node alone recedes, times edge over contact modulus: 1.2 on a
+/// half-space where pressure is even over squares, and 1.7 for squares that deflect by turns; more where elements
 /// are stiffer than the body.
 const ALONE: f64 = 1.9;
 
-/// What an insert and its coarser twin take, of what the insert does.
+/// The memory of an insert and its coarser twin over that of the insert.
 const WITH_TWIN: f64 = 1.5;
 
 impl ContactLaw for Deformable {
@@ -322,7 +322,7 @@ impl ContactLaw for Deformable {
         }
     }
 
-    /// That of a node of an elastic half-space: what gives way along with a node alone is no deeper than its
+    /// The stiffness of a node of an elastic half-space: what deflects along with a node alone is no deeper than its
     /// share is wide.
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64 {
         let ratio = self.elastic.poissons_ratio;
@@ -338,7 +338,7 @@ impl ContactLaw for Deformable {
         let surface = self.surface(insert, insert.unworn_nodes());
         surface.map_or(0.0, |surface| {
             let bytes = surface.source.bytes(nodes_near, [1.0, along_surface]);
-            // The coarser twin of the insert, and the insert as it has worn, are kept beside.
+            // The coarser twin of the insert, and the insert as it has worn, are kept besides.
             let beside = bytes.min(MAX_REMEMBERED_BYTES);
             let below = self
                 .hardening
@@ -452,7 +452,7 @@ impl Deformable {
             .with_history(resting)
     }
 
-    /// How the insert rests on its tray, if it does, after what the state remembers.
+    /// Returns the resting backside, if the insert rests, from the stored state.
     fn resting(
         &self,
         state: &ContactState,
@@ -471,7 +471,7 @@ impl Deformable {
         Some(RestingInsert::after(memory, compliance, tray, friction))
     }
 
-    /// How the insert yields, if it does, after what the state remembers.
+    /// Returns the yielding insert, if it yields, from the stored state.
     fn plastic(
         &self,
         state: &ContactState,

@@ -1,4 +1,4 @@
-//! Where a surface that is rubbed sticks and where it slides, and the loads along it: Coulomb's law on an elastic body.
+//! Stick, slip and the loads along a surface: Coulomb's law on an elastic body.
 
 use super::{
     cholesky::{Cholesky, Eight, ROWS, get, product, set, subtract, zero},
@@ -14,10 +14,10 @@ const FOUND_N: f64 = 1e-7;
 const AT_LIMIT: f64 = 1.0 - 1e-9;
 /// Limits below this are none, N.
 const MIN_LIMIT_N: f64 = 1e-12;
-/// Where a load is to change by more than this part of its limit a sweep goes before a step of Newton's method, which would
+/// If a load is to change by more than this part of its limit, a sweep goes before a step of Newton's method, which would
 /// begin with the wrong nodes sticking.
 const FAR: f64 = 0.5;
-/// Where no more than one in so many nodes has changed, only what they change is computed anew.
+/// If no more than one in so many nodes has changed, only their contributions are recomputed.
 const FEW: usize = 8;
 /// A step of Newton's method counts if it leaves at most this part.
 const LEAPS: f64 = 0.5;
@@ -29,7 +29,7 @@ const MAX_STEPS: u32 = 500;
 /// The loads along a surface under a femur that moves past it.
 ///
 /// The node i that presses may carry a load T_i along the surface up to its limit g_i = mu F_i. Its place there has
-/// moved past the femur, but for what the surface gives way, by b_i, and gives way by the compliance C along the surface:
+/// moved past the femur, but for what the surface deflects, by b_i, and deflects by the compliance C along the surface:
 /// it slips by s_i = b_i - sum_j C_ij T_j. It sticks, or slides the way its load points,
 ///
 /// $$ s_i = 0, \enspace |T_i| \le g_i \qquad \text{or} \qquad s_i = \lambda_i T_i, \enspace \lambda_i > 0, \enspace |T_i| = g_i , $$
@@ -42,17 +42,17 @@ pub(crate) struct StickSlip {
     /// The nodes, in an order that is always the same, and each with its place there, ascending.
     nodes: Vec<u32>,
     places: Vec<(u32, usize)>,
-    /// Of every node that presses the rows of the compliance, and where among `by_panel` its loads are.
+    /// The rows of the compliance of every node that presses, and the places of its loads among `by_panel`.
     rows: Vec<[u32; 2]>,
     slots: Vec<[usize; 2]>,
     limits_n: Vec<f64>,
     reach_mm: Vec<Pair>,
     loads_n: Vec<Pair>,
-    /// How far a load moves its own node at most, N/mm.
+    /// The smallest stiffness of a node against its own load, N/mm.
     stiffness_n_per_mm: Vec<f64>,
     /// The loads by the panels of the compliance.
     by_panel: Vec<(usize, Eight)>,
-    /// How far each node slips under the loads.
+    /// The slip of each node under the loads.
     slips_mm: Vec<Pair>,
 }
 
@@ -62,7 +62,7 @@ pub(crate) struct Rubbed {
     pub node: u32,
     /// Its limit g, N.
     pub limit_n: f64,
-    /// How far its place has moved past the femur since it carried nothing, b, mm.
+    /// The motion of its place past the femur since it carried nothing, b, mm.
     pub reach_mm: Pair,
     /// The load to begin with, N.
     pub load_n: Pair,
@@ -118,7 +118,7 @@ impl StickSlip {
         &self.loads_n
     }
 
-    /// Whether a node sticks.
+    /// Returns whether a node sticks.
     pub fn sticks(&self, place: usize) -> bool {
         length(self.loads_n[place]) < AT_LIMIT * self.limits_n[place]
     }
@@ -140,7 +140,7 @@ impl StickSlip {
         self.find_slips(compliance);
     }
 
-    /// How far the loads move a node along the surface, mm.
+    /// Returns the displacement of a node along the surface by the loads, mm.
     pub fn moved_mm(&self, place: usize) -> Pair {
         [0, 1].map(|k| self.reach_mm[place][k] - self.slips_mm[place][k])
     }
@@ -240,7 +240,7 @@ impl StickSlip {
         }
     }
 
-    /// How far a node slips under the loads as they are, mm.
+    /// Returns the slip of a node under the present loads, mm.
     fn slip_mm(&self, place: usize, compliance: &NearMatrix) -> Pair {
         let moved = self.rows[place].map(|row| compliance.moved(row, &self.by_panel));
         [0, 1].map(|k| self.reach_mm[place][k] - moved[k])
@@ -381,7 +381,7 @@ impl StickSlip {
         loads
     }
 
-    /// What the loads of nodes that slide grow by with their limits.
+    /// Returns the derivatives of the loads of sliding nodes through their limits.
     fn loads_by_limit(&self, changes: &[ByMotion]) -> Vec<[Eight; 2]> {
         let of_node = |(place, change): (usize, &ByMotion)| {
             let slides = self.slides(place);
@@ -400,7 +400,7 @@ impl StickSlip {
         ROWS * self.by_panel.len()
     }
 
-    /// Whether a node is taken to slide: a better load for it is one at its limit.
+    /// Returns whether a node is taken to slide: a better load for it is one at its limit.
     fn slides(&self, place: usize) -> bool {
         let better = self.unlimited_n(place, self.slips_mm[place]);
         length(better) > self.limits_n[place]
@@ -457,7 +457,7 @@ impl StickSlip {
     }
 }
 
-/// How far some loads, by their rows, move a node along the surface, mm.
+/// Returns the displacement of a node along the surface by some loads, given by their rows, mm.
 fn moved_by(loads: &[([u32; 2], Pair)], rows: [u32; 2], compliance: &NearMatrix) -> Pair {
     let mut moved_mm = [0.0; 2];
     for (columns, load_n) in loads {
@@ -468,7 +468,7 @@ fn moved_by(loads: &[([u32; 2], Pair)], rows: [u32; 2], compliance: &NearMatrix)
     moved_mm
 }
 
-/// How reach and limit of a node change with each of six motions; two numbers are nothing.
+/// The derivatives of a node's reach and limit by six motions; two of the eight numbers are unused.
 #[derive(Clone, Copy)]
 pub(crate) struct ByMotion {
     pub reach_mm: [Eight; 2],

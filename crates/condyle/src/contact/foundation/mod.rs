@@ -50,9 +50,9 @@ pub struct Foundation {
     /// Smaller is nearer to Coulomb's stick and slip; larger lets parts that should stick creep, and
     /// is easier to solve.
     pub slip_tolerance_mm_per_s: f64,
-    /// How the nodes that may touch are found; no answer depends on it.
+    /// The search for the nodes that may touch; no result depends on it.
     pub search: Search,
-    /// Motion up to which a sample of the femur is extrapolated to second order rather than taken anew,
+    /// Motion up to which a sample of the femur is extrapolated to second order rather than recomputed,
     /// mm; 0 takes every sample anew.
     ///
     /// This is the one approximation of the search. The second derivatives of a mesh's field vary by
@@ -114,7 +114,7 @@ impl ContactLaw for Foundation {
 
 /// The contact of a femur with an insert as it is now, by a [`Foundation`], with a broad phase `B`.
 ///
-/// What holds: a response depends on the motion alone, but for samples that are extrapolated
+/// Invariant: a response depends on the motion alone, but for samples that are extrapolated
 /// ([`Foundation::sample_reuse_mm`]), which change the force by less than a hundred-thousandth. The tangent is the
 /// derivative of the response, summed up in single precision: right to six digits.
 pub(crate) struct FoundationContact<'a, B> {

@@ -76,7 +76,7 @@ impl PeakSearch<'_> {
         }
     }
 
-    /// What a quadratic rises to that has the edge of contact in the patch that it was fitted over; never more than
+    /// Returns the maximum of a quadratic that has the edge of contact in the patch that it was fitted over; never more than
     /// the quadratic itself.
     ///
     /// At an edge of the femur the surface falls away beyond, and bends it more than the surface inside is bent: it

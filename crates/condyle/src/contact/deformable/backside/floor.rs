@@ -17,9 +17,9 @@ pub(crate) struct Floor {
     pub normal: Vec3,
     /// Its mesh nodes, ascending.
     pub nodes: Vec<u32>,
-    /// Of each its share of the floor, mm2.
+    /// The share of the floor of each, mm2.
     pub share_mm2: Vec<f64>,
-    /// How much of the backside, as the tray sees it, is floor.
+    /// The part of the backside, projected onto the tray, that is floor.
     pub part: f64,
 }
 
@@ -31,7 +31,7 @@ struct Face {
 }
 
 impl Floor {
-    /// That of a backside with those nodes, ascending.
+    /// Finds the floor of a backside with the given nodes, ascending.
     pub fn of(mesh: &HexMesh, backside: &[u32]) -> Self {
         let is_own = |node: &u32| backside.binary_search(node).is_ok();
         let mut quads = mesh.boundary_quads();
@@ -126,7 +126,7 @@ impl Grid {
         self.step_mm[0] * self.step_mm[1]
     }
 
-    /// Where a point is.
+    /// Returns the position of a point.
     pub fn place(&self, at: usize) -> Vec3 {
         let [i, k] = [at % self.columns(), at / self.columns()].map(|i| i as f64);
         self.low + Vec3::new(i * self.step_mm[0], 0.0, k * self.step_mm[1])
@@ -146,7 +146,7 @@ impl Grid {
         ]
     }
 
-    /// Of every point the nodes whose cells it is a corner of.
+    /// Returns for every point the nodes in the cells around it.
     pub fn around(&self, mesh: &HexMesh, nodes: &[u32]) -> Vec<Around> {
         let mut around = vec![Around::new(); self.columns() * (self.cells[1] + 1)];
         for (at, place) in mesh.positions(nodes).enumerate() {

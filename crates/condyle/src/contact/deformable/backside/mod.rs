@@ -41,13 +41,13 @@ pub(crate) struct RestingInsert {
     surface: Arc<Compliance<ElasticSurface>>,
     tray: Arc<Tray>,
     friction: f64,
-    /// Where the backside is after the last increment that counts, and how it went there.
+    /// The position of the backside after the last accepted increment, and its last step.
     left_mm: Vec<f64>,
     went_mm: Option<Vec<f64>>,
-    /// Where it is tried to be, and how far that moves each node of the surface, as far as was asked.
+    /// The trial position, and the displacement of each node of the surface under it, as far as was asked.
     tried_mm: Vec<f64>,
     set_mm: Vec<Option<f64>>,
-    /// Where it is at rest under the loads found last, if any were.
+    /// The equilibrium under the loads found last, if any.
     found: Option<Rest>,
     searched_mm: DVector<f64>,
     turns: Turns,
@@ -83,7 +83,7 @@ impl RestingInsert {
         }
     }
 
-    /// How far the backside lets a node of the surface give way, mm.
+    /// Returns the displacement of a node of the surface by the backside, mm.
     pub fn set_mm(&mut self, node: u32) -> f64 {
         if let Some(set_mm) = self.set_mm[node as usize] {
             return set_mm;

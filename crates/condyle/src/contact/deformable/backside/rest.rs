@@ -1,4 +1,4 @@
-//! Where the backside of an insert comes to rest on its tray.
+//! The equilibrium of a backside on its tray, its results over a cycle, and its stored state.
 
 use std::collections::BTreeMap;
 
@@ -26,9 +26,9 @@ const TIPPED_MM: f64 = 10.0;
 pub(crate) struct Rest {
     /// Motion of every point along its own directions, anterior, lateral, off the tray, mm.
     pub moved_mm: Vec<f64>,
-    /// What the tray pushes each with, N.
+    /// The force of the tray on each, N.
     pub pushes_n: Vec<f64>,
-    /// Where the search for the next rest may begin.
+    /// The start of the search for the next equilibrium.
     pub searched_mm: DVector<f64>,
 }
 
@@ -81,7 +81,7 @@ pub(crate) fn rest(
     Err(Tipped { moved_mm })
 }
 
-/// What the conditions allow every point alone that is pulled to a place by the stiffness of the search.
+/// Projects every point, pulled to a place by the stiffness of the search, onto its contact conditions.
 fn allowed(tray: &Tray, friction: f64, stuck_mm: &[f64], pulled_to: &DVector<f64>) -> DVector<f64> {
     let points = pulled_to.as_slice().as_chunks::<3>().0;
     let stuck = stuck_mm.as_chunks::<3>().0;
@@ -106,7 +106,7 @@ fn allowed_alone(friction: f64, stuck: [f64; 3], to: [f64; 3]) -> [f64; 3] {
     [stuck[0] + part * slip[0], stuck[1] + part * slip[1], 0.0]
 }
 
-/// What the backside did at most in the last cycle of any activity.
+/// The extremes of the backside's motion in the last cycle of any activity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BacksideCycle {
     /// Farthest that a point lifts off the tray, mm.
@@ -153,15 +153,15 @@ impl BacksideCycle {
     }
 }
 
-/// Where each increment landed when it was solved last.
+/// The state at the end of each increment when it was solved last.
 #[derive(Default)]
 pub(crate) struct CycleOfRest {
-    /// Of the increments of the activity that is being solved.
+    /// The increments of the activity that is being solved.
     increments: BTreeMap<usize, Landed>,
     increment: usize,
-    /// What the cycles of the activities before come to.
+    /// The result of the cycles of the activities before.
     before: BacksideCycle,
-    /// How far the backside lies from where it lay when the same increment landed a cycle before, mm.
+    /// The distance of the backside from its place at the same increment a cycle before, mm.
     pub moved_mm: f64,
 }
 
@@ -211,7 +211,7 @@ impl CycleOfRest {
         });
     }
 
-    /// What the last cycle of every activity comes to.
+    /// Returns the extremes over the last cycle of every activity.
     pub fn most(&self) -> BacksideCycle {
         let increments = self.increments.values();
         let most = increments.fold(self.before, |most, landed| most.or_more(&landed.most));
@@ -250,7 +250,7 @@ pub(crate) const BACKSIDE_FIELD: &str = "backside_moved_mm";
 pub(crate) const BACKSIDE_CYCLE_FIELD: &str =
     "backside_lift_mm_lifted_part_slip_mm_lock_n_lock_nmm";
 
-/// Where every activity left the backside, and what the last cycles came to.
+/// The position in which every activity left the backside, and the extremes of the last cycles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct BacksideMemory {
     activities: Vec<Vec<f64>>,
@@ -258,7 +258,7 @@ pub(crate) struct BacksideMemory {
 }
 
 impl BacksideMemory {
-    /// What a state says.
+    /// Reads the fields of a contact's state.
     pub fn of(state: &ContactState) -> Self {
         let named = |name| state.fields.iter().filter(move |field| field.name == name);
         let cycle = named(BACKSIDE_CYCLE_FIELD).find_map(|field| field.values.first_chunk());
@@ -270,8 +270,8 @@ impl BacksideMemory {
         }
     }
 
-    /// Where an activity begins, of so many numbers: where it ended, or on the tray as it was made where it has not begun, or
-    /// did so on other points.
+    /// Returns the position at the start of an activity: where it ended, or on the tray as made where it has not begun, or
+    /// began on other points.
     pub fn start(&self, activity: usize, freedoms: usize) -> Vec<f64> {
         let left = self.activities.get(activity);
         let left = left.filter(|left| left.len() == freedoms);

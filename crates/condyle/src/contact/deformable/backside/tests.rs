@@ -145,7 +145,7 @@ fn verify_a_block_under_even_pressure_on_a_smooth_tray_and_on_a_rough_one() {
 const PEAK_MPA: f64 = 20.0;
 const WIDTH_MM: f64 = 5.0;
 
-/// How far the middle of a layer gives way under the pressure of a bell, mm: the Hankel transform with the transfer
+/// How far the middle of a layer deflects under the pressure of a bell, mm: the Hankel transform with the transfer
 /// function of a layer on a smooth rigid base, or of one that is bonded to it.
 fn of_transform(bonded: bool) -> f64 {
     let v = POISSON;

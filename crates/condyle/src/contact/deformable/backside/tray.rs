@@ -1,4 +1,4 @@
-//! How an insert gives way at its backside.
+//! The tray under an insert: condensed stiffness of the backside, the lock, and the points that carry the motion.
 
 use std::sync::{Arc, OnceLock};
 
@@ -15,10 +15,10 @@ use crate::{
 /// newtons, far less than a load makes the insert slip within the rim.
 const LOCK_N_PER_MM: f64 = 1e5;
 
-/// How much stiffer than a point alone the search for rest takes it: quickest for the inserts of the cases.
+/// The stiffness of the search over that of a point alone: the search is quickest so for the inserts of the cases.
 const STIFFER: f64 = 0.5;
 
-/// What the lock carries.
+/// The load on the lock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LockLoad {
     /// Force along the tray, N.
@@ -30,12 +30,12 @@ pub(crate) struct LockLoad {
 /// The tray under an insert, as its points feel it.
 ///
 /// Three numbers a point, its motion along its own directions: q. Under the forces b along them, which loads on the surface
-/// are there, the tray pushes with R = S q - b, and the surface gives way by B q besides what it does with its backside
+/// are there, the tray pushes with R = S q - b, and the surface deflects by B q besides what it does with its backside
 /// held ([`condyle_fem::MovedSupports`]). S holds the rim that locks the insert sideways: a spring against the mean slip and
 /// the mean turn of the backside.
 pub(crate) struct Tray {
     pub points: Vec<TrayPoint>,
-    /// Of every number of q the stiffness with which rest is searched, N/mm, and the inverse of S with those.
+    /// The stiffness of the search for every number of q, N/mm, and the inverse of S with those.
     pub stiffness_of_search: Vec<f64>,
     inverse: DMatrix<f64>,
     /// Mean slips, anterior and lateral, and mean turn times radius of gyration, by q.
@@ -47,7 +47,7 @@ pub(crate) struct Tray {
 }
 
 impl Tray {
-    /// That of a solid which the floor of its backside holds, of whose surface there are so many tiles.
+    /// The tray of a solid that is held by the floor of its backside and whose surface has `tiles` tiles.
     pub fn new(solid: &ElasticSolid, floor: &Floor, spacing_mm: f64, tiles: usize) -> Self {
         let groups = tray_points(solid.mesh(), floor, spacing_mm);
         let motions = |group: &Vec<TrayPoint>| group.iter().flat_map(motions_of).collect();
@@ -77,7 +77,7 @@ impl Tray {
         }
     }
 
-    /// How many numbers the motion of the backside has: three a point.
+    /// Returns the count of numbers in the motion of the backside: three per point.
     pub fn freedoms(&self) -> usize {
         self.stiffness_of_search.len()
     }
@@ -90,7 +90,7 @@ impl Tray {
         &self.inverse * pulled
     }
 
-    /// How far each number of q moves the nodes of a tile of the surface along their inward normals: row-major, a row a
+    /// Returns how far each number of q moves the nodes of a tile of the surface along their inward normals: row-major, a row a
     /// node.
     pub fn of_tile(&self, loads: &UnitLoads, tile: usize) -> &[f64] {
         self.by_tile[tile].get_or_init(|| {
@@ -123,7 +123,7 @@ impl Tray {
         moved.collect()
     }
 
-    /// What the lock carries as the backside has moved.
+    /// Returns the load on the lock for a motion of the backside.
     pub fn lock_load(&self, moved_mm: &DVector<f64>) -> LockLoad {
         let [x, z, turn] = self
             .lock
@@ -202,7 +202,7 @@ pub(crate) struct TrayPoint {
     pub position: Vec3,
     /// Its own directions: anterior and lateral along the tray, then off the tray, into the insert.
     pub frame: [Vec3; 3],
-    /// How far each mesh node of the floor around it goes along with it.
+    /// The weights with which the mesh nodes of the floor around it follow its motion.
     pub weights: Vec<(u32, f64)>,
     /// Its share of the floor, mm2.
     pub area_mm2: f64,

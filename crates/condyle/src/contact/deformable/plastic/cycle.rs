@@ -1,4 +1,4 @@
-//! What flows in a cycle that repeats itself.
+//! Plastic flow in a cycle that repeats itself, and the stored plastic state.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -9,25 +9,25 @@ use crate::contact::model::{ContactState, StateField};
 /// Gauss points of an element.
 pub(crate) const POINTS: usize = 8;
 
-/// What the Gauss points of elements that have yielded remember, by the number of the element.
+/// The internal variables at the Gauss points of elements that have yielded, by the number of the element.
 pub(crate) type Points = BTreeMap<u32, [PlasticPoint; POINTS]>;
 
-/// How much more exactly than a motion the surface at rest is to repeat itself: what is added to it stays for all
+/// The factor by which the surface at rest repeats itself more exactly than a motion: an error in it stays for all
 /// cycles of an interval.
 const MORE_EXACTLY: f64 = 20.0;
 
 /// Accumulated plastic strain at the Gauss points of an element.
 type Flow = [f64; POINTS];
 
-/// What flowed in each increment when it was solved last, and where the surface at rest was.
+/// The flow of each increment when it was solved last, and the position of the surface at rest.
 #[derive(Default)]
 pub(crate) struct CycleOfFlow {
-    /// Of the increments of the activity that is being solved.
+    /// The increments of the activity that is being solved.
     increments: BTreeMap<usize, Increment>,
     increment: usize,
-    /// What the cycles of the activities before come to.
+    /// The result of the cycles of the activities before.
     before: BTreeMap<u32, Flow>,
-    /// How far the surface at rest lies from where it lay when the same increment landed a cycle before, mm.
+    /// The distance of the surface at rest from its place at the same increment a cycle before, mm.
     moved_mm: f64,
 }
 
@@ -50,7 +50,7 @@ impl CycleOfFlow {
         self.present().flows.clear();
     }
 
-    /// What accumulated at the points of an element.
+    /// Adds the strain that accumulated at the points of an element.
     pub fn add(&mut self, element: u32, flow: Flow) {
         self.present().flows.push((element, flow));
     }
@@ -66,13 +66,13 @@ impl CycleOfFlow {
         };
     }
 
-    /// How far the surface at rest lies from where it lay a cycle before, mm, so often as it is to be more exact than a
+    /// Returns the distance of the surface at rest from its place a cycle before, mm, times the factor of exactness over a
     /// motion.
     pub fn moved_mm(&self) -> f64 {
         MORE_EXACTLY * self.moved_mm
     }
 
-    /// What accumulated in the last cycle of every activity, by elements.
+    /// Returns the plastic strain accumulated in the last cycle of every activity, by elements.
     pub fn flow(&self) -> BTreeMap<u32, Flow> {
         let mut sums = self.before.clone();
         let increments = self.increments.values();
@@ -90,7 +90,7 @@ impl CycleOfFlow {
     }
 }
 
-/// How far apart two surfaces lie at most, mm.
+/// Returns the largest distance between two surfaces, mm.
 pub(crate) fn farthest_mm(one_mm: &[f64], other_mm: &[f64]) -> f64 {
     let apart = one_mm.iter().zip(other_mm).map(|(a, b)| (a - b).abs());
     apart.fold(0.0, f64::max)
@@ -110,12 +110,12 @@ const OF_ELEMENT: usize = 2 + POINTS * OF_POINT;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PlasticMemory {
     pub points: Points,
-    /// Of every element the most that accumulated at one of its Gauss points in the last cycle.
+    /// The largest strain that accumulated at a Gauss point of each element in the last cycle.
     pub flow_in_cycle: BTreeMap<u32, f64>,
 }
 
 impl PlasticMemory {
-    /// What a state says; nothing where it says nothing of plastic strain.
+    /// Reads the field of a contact's state; empty if there is none.
     pub fn of(state: &ContactState) -> Self {
         let mut remembered = Self::default();
         let field = state

@@ -56,19 +56,19 @@ const MAX_STRAIN: f64 = 0.5;
 pub(crate) struct PlasticInsert {
     surface: Arc<Compliance<ElasticSurface>>,
     material: ElasticPlastic,
-    /// What counts: that of all increments accepted.
+    /// The committed state, of all accepted increments.
     committed: Points,
-    /// How far it has moved all mesh nodes, mm, and those of the surface along the inward normals.
+    /// The displacements of all mesh nodes by it, mm, and of those of the surface along the inward normals.
     moved_mm: Vec<Vec3>,
     committed_set_mm: Arc<Vec<f64>>,
-    /// What the present increment makes of some elements if it is accepted, and the set of the surface then.
+    /// The trial state of some elements in the present increment, and the set of the surface with it.
     trial: Points,
     set_mm: Vec<f64>,
     turns: Turns,
     pub cycle: CycleOfFlow,
     /// The largest part of the yield stress that stress without load uses up.
     residual_use: f64,
-    /// How far mesh nodes are moved by loads and by what is committed, mm.
+    /// The displacements of mesh nodes by loads and the committed state, mm.
     loaded_mm: Vec<Vec3>,
 }
 
@@ -161,7 +161,7 @@ impl PlasticInsert {
         self.reject();
     }
 
-    /// What the next contact goes on from.
+    /// Returns the state from which the next contact resumes.
     pub fn into_memory(self) -> PlasticMemory {
         let most = |flow: [f64; POINTS]| flow.into_iter().fold(0.0, f64::max);
         let flows = self.cycle.flow().into_iter();
@@ -171,7 +171,7 @@ impl PlasticInsert {
         }
     }
 
-    /// Whether a pressure can make anything flow: von Mises stresses sum up to no more than their sum.
+    /// Returns whether a pressure can cause flow: the von Mises stress of a sum is at most the sum of the von Mises stresses.
     fn may_flow(&self, peak_mpa: f64) -> bool {
         let by_load = MAX_OF_PRESSURE * peak_mpa / self.material.hardening.yield_stress(0.0);
         self.residual_use + by_load > 1.0
@@ -260,7 +260,7 @@ impl PlasticInsert {
         below.flat_map(|(stack, _)| stack).copied().collect()
     }
 
-    /// How far the nodes of elements are moved by loads and what is committed.
+    /// Computes the displacements of the nodes of elements by loads and the committed state.
     fn load_nodes(&mut self, loads: &[NodeLoad], elements: &[u32]) {
         let hexes = Arc::clone(&self.solid().mesh().hexes);
         let mut is_asked = vec![false; self.loaded_mm.len()];
@@ -480,7 +480,7 @@ pub(crate) fn strains_of(points: &Points) -> BTreeMap<usize, [Strain; POINTS]> {
         .collect()
 }
 
-/// How far loads on tiles of the surface move a mesh node, mm.
+/// Returns the displacement of a mesh node by loads on tiles of the surface, mm.
 fn moved(node: usize, rows: &[(&[f32], &Vec<f64>)]) -> Vec3 {
     let mut moved = Vec3::zeros();
     for (rows, loads) in rows {
