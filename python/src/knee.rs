@@ -85,7 +85,7 @@ impl RawKnee {
         come_to_rest(contact.as_mut(), &motion)?;
         let response = contact.respond(&motion);
         let (wrench, tangent) = (response.wrench, response.tangent().by_pose.matrix);
-        let landing = contact.land(&motion);
+        let landing = contact.evaluate(&motion);
         let told = pressed(py, &landing, surface.positions.len())?;
         told.set_item("force_n", array(py, numbers(&wrench.force).to_vec(), [3])?)?;
         told.set_item(

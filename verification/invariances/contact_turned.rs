@@ -41,7 +41,7 @@ impl Moved {
                 self.turn * motion.pose.rotation,
                 self.point(&motion.pose.translation),
             ),
-            twist: Twist::of_numbers(&(to_new * motion.twist.numbers())),
+            twist: Twist::from_numbers(&(to_new * motion.twist.numbers())),
         }
     }
 }

@@ -32,7 +32,7 @@ impl ContactModel for Apart {
         Response::new(Wrench::zero(), [Vec3::zeros(); MAX_REGIONS], self)
     }
 
-    fn land(&mut self, _: &RelativeMotion) -> ContactResult {
+    fn evaluate(&mut self, _: &RelativeMotion) -> ContactResult {
         ContactResult::default()
     }
 }

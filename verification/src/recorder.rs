@@ -52,8 +52,8 @@ impl ContactModel for Recorder<'_> {
         self.inner.accept(motion);
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
-        let landing = self.inner.land(motion);
+    fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
+        let landing = self.inner.evaluate(motion);
         let sum = landing.touched.iter().map(|node| self.rubs(node)).sum();
         self.rubbed.borrow_mut().push(sum);
         landing

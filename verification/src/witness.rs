@@ -86,9 +86,9 @@ impl ContactModel for Witness<'_> {
         self.inner.accept(motion);
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
+    fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
         let wrench = self.inner.respond(motion).wrench;
-        let landing = self.inner.land(motion);
+        let landing = self.inner.evaluate(motion);
         let touched = || landing.touched.iter();
         self.seen.borrow_mut().push(Instant {
             twist: motion.twist,

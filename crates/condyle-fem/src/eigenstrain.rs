@@ -107,7 +107,7 @@ pub(crate) fn mean_strain(gradients: &[Vec3; 8], nodes: &[Vec3; 8]) -> Strain {
     for (node, by) in nodes.iter().zip(gradients) {
         gradient += node * by.transpose();
     }
-    Strain::of_gradient(&gradient)
+    Strain::from_gradient(&gradient)
 }
 
 /// Mean over the volume of strains at the Gauss points.

@@ -108,7 +108,7 @@ impl Point {
 struct Side([f64x4; 2]);
 
 impl Side {
-    fn of(number: impl Fn(usize) -> f64) -> Self {
+    fn from_fn(number: impl Fn(usize) -> f64) -> Self {
         let four = |first: usize| f64x4::new(std::array::from_fn(|p| number(first + p)));
         Self([four(0), four(4)])
     }
@@ -218,8 +218,8 @@ impl Element {
         all: &mut SMatrix<f64, 33, 33>,
     ) {
         let lost = softenings.map(|s| s.map_or(0.0, |softening| 0.5 * softening.deviatoric));
-        let shear = Side::of(|p| (elastic.shear_modulus() - lost[p]) * self.points[p].volume);
-        let bulk = Side::of(|p| elastic.bulk_modulus() * self.points[p].volume);
+        let shear = Side::from_fn(|p| (elastic.shear_modulus() - lost[p]) * self.points[p].volume);
+        let bulk = Side::from_fn(|p| elastic.bulk_modulus() * self.points[p].volume);
         let gradients = self.sides(|point, f, k| point.gradients[f][k]);
         let dilatations = self.sides(|point, f, k| point.dilatations[f][k]);
         for b in 0..FUNCTIONS {
@@ -243,7 +243,9 @@ impl Element {
 
     /// Numbers of every function and axis, all Gauss points side by side.
     fn sides(&self, of: impl Fn(&Point, usize, usize) -> f64) -> [[Side; 3]; FUNCTIONS] {
-        std::array::from_fn(|f| std::array::from_fn(|k| Side::of(|p| of(&self.points[p], f, k))))
+        std::array::from_fn(|f| {
+            std::array::from_fn(|k| Side::from_fn(|p| of(&self.points[p], f, k)))
+        })
     }
 
     /// Forces of stresses at the Gauss points on the nodes, and on the modes.
@@ -284,7 +286,7 @@ impl Element {
                 gradient += u * point.gradients[f].transpose();
                 dilatation += u.dot(&point.dilatations[f]);
             }
-            Strain::of_gradient(&gradient).with_trace(dilatation)
+            Strain::from_gradient(&gradient).with_trace(dilatation)
         })
     }
 
@@ -420,7 +422,7 @@ mod tests {
         let element = Element::new(&bent()).unwrap();
         let slope = Matrix3::new(0.1, 0.2, -0.3, 0.05, -0.15, 0.07, 0.02, -0.11, 0.21);
         let nodes = bent().map(|corner| slope * corner);
-        let exact = elastic.stress(&Strain::of_gradient(&slope));
+        let exact = elastic.stress(&Strain::from_gradient(&slope));
         let none = [Strain::default(); POINTS];
         for stress in element.stresses(&elastic, &nodes, &none) {
             assert!(std::iter::zip(stress.0, exact.0).all(|(a, b)| (a - b).abs() < 1e-11));

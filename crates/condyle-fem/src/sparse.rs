@@ -85,7 +85,7 @@ impl Factor {
                 let node = dissection.order[place];
                 return Err(Loose { node });
             }
-            fronts.push(Front::of(&triangle, layout.columns, layout.rows));
+            fronts.push(Front::from_triangle(&triangle, layout.columns, layout.rows));
             left.push(Some(Remainder {
                 triangle,
                 columns: layout.columns,

@@ -75,7 +75,7 @@ pub struct Strain(pub [f64; 6]);
 
 impl Strain {
     /// The symmetric part of a displacement gradient.
-    pub(crate) fn of_gradient(gradient: &Matrix3<f64>) -> Self {
+    pub(crate) fn from_gradient(gradient: &Matrix3<f64>) -> Self {
         let both = |i, j| 0.5 * (gradient[(i, j)] + gradient[(j, i)]);
         Self([
             both(0, 0),

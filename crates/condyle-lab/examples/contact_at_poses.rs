@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for ((percent, pose), [first_us, again_us]) in poses.iter().zip(times) {
         let motion = RelativeMotion::at_rest(*pose);
         let force_n = contact.respond(&motion).wrench.force;
-        let touched = contact.land(&motion).touched;
+        let touched = contact.evaluate(&motion).touched;
         let area_mm2: f64 = touched.iter().map(|node| node.covered_mm2).sum();
         let (x, y, z) = (force_n.x, force_n.y, force_n.z);
         println!("{percent:.1},{x:.4},{y:.4},{z:.4},{area_mm2:.4},{first_us:.2},{again_us:.2}");

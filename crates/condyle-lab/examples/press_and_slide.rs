@@ -175,7 +175,7 @@ fn go(
 /// Force on the insert along x and y, peak, and highest pressure of a node.
 fn answer(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> String {
     let force_n = contact.respond(motion).wrench.force;
-    let landing = contact.land(motion);
+    let landing = contact.evaluate(motion);
     let pressures = landing.touched.iter().map(|node| node.pressure_mpa);
     let (x, y, peak) = (force_n.x, force_n.y, landing.peak_pressure_mpa);
     format!(

@@ -118,7 +118,7 @@ fn answer(march: &March, pose: &Pose) -> Result<Answer, Box<dyn Error>> {
     let motion = RelativeMotion::at_rest(*pose);
     let force_n = press(contact.as_mut(), &motion)?;
     let time_s = start.elapsed().as_secs_f64();
-    let landing = contact.land(&motion);
+    let landing = contact.evaluate(&motion);
     let pressures = landing.touched.iter().map(|node| node.pressure_mpa);
     let left = contact.into_memory();
     let under = law.under_surface(march.insert(), &left.state, 0, &[]);

@@ -52,7 +52,7 @@ impl AtRest {
         let bodies = march.bodies(&surface);
         let mut contact = test.contact.contact(bodies, ContactMemory::default());
         contact.respond(&motion);
-        let landing = contact.land(&motion);
+        let landing = contact.evaluate(&motion);
         let sum = |value: fn(&TouchedNode) -> f64| landing.touched.iter().map(value).sum::<f64>();
         let axial_force_n = sum(|node| -node.force_n.y);
         let medial_n = sum(|node| {

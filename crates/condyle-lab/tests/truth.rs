@@ -217,7 +217,7 @@ fn assert_small_steps_are_exact(name: &str) {
             let fresh = anew(&march, &surface, &law).respond(&motion).wrench;
             let force_n = fresh.force;
             let apart_n = (walked.respond(&motion).wrench.force - force_n).norm();
-            let touched = walked.land(&motion).touched;
+            let touched = walked.evaluate(&motion).touched;
             let allowed_n = (ASTRAY * force_n.norm()).max(0.5 * test.time.force_tolerance_n)
                 + jump_n(&march, &surface, &law, &touched, &motion);
             let place = format!("{name} {} %: {apart_n:.1e} N", row.percent);

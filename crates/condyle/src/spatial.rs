@@ -186,7 +186,7 @@ impl<Of: Body, In: Body> Twist<Of, In> {
     }
 
     /// From six numbers side by side.
-    pub fn of_numbers(numbers: &Vec6) -> Self {
+    pub fn from_numbers(numbers: &Vec6) -> Self {
         Self::new(
             numbers.fixed_rows::<3>(0).into(),
             numbers.fixed_rows::<3>(3).into(),
@@ -289,7 +289,7 @@ impl<On: Body, In: Body> Wrench<On, In> {
     }
 
     /// From six numbers side by side.
-    pub fn of_numbers(numbers: &Vec6) -> Self {
+    pub fn from_numbers(numbers: &Vec6) -> Self {
         Self::new(
             numbers.fixed_rows::<3>(0).into(),
             numbers.fixed_rows::<3>(3).into(),
@@ -332,7 +332,7 @@ impl<In: Body> Mul<&Twist<Femur, In>> for &WrenchByTwist<In> {
     type Output = Wrench<Insert, In>;
 
     fn mul(self, twist: &Twist<Femur, In>) -> Wrench<Insert, In> {
-        Wrench::of_numbers(&(self.matrix * twist.numbers()))
+        Wrench::from_numbers(&(self.matrix * twist.numbers()))
     }
 }
 
@@ -360,12 +360,12 @@ impl FrameChange {
 
     /// A twist of the femur in its own frame.
     pub fn twist(&self, twist: &Twist<Femur, Insert>) -> Twist<Femur, Femur> {
-        Twist::of_numbers(&(self.matrix * twist.numbers()))
+        Twist::from_numbers(&(self.matrix * twist.numbers()))
     }
 
     /// A wrench on the insert back in the insert frame.
     pub fn wrench_back(&self, wrench: &Wrench<Insert, Femur>) -> Wrench<Insert, Insert> {
-        Wrench::of_numbers(&self.matrix.tr_mul(&wrench.numbers()))
+        Wrench::from_numbers(&self.matrix.tr_mul(&wrench.numbers()))
     }
 
     /// A derivative of the one by the other back in the insert frame.

@@ -82,7 +82,7 @@ fn settled_n(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> f64 {
         let down_n = -contact.respond(motion).wrench.force.y;
         if contact.settle(motion).unwrap() == Settled::Yes {
             contact.accept(motion);
-            contact.land(motion);
+            contact.evaluate(motion);
             return down_n;
         }
     }

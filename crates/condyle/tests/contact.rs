@@ -124,14 +124,14 @@ fn by_differences(step: f64, mut wrench: impl FnMut(&Vec6) -> Vec6) -> Mat6 {
 
 fn check_tangent(contact: &mut dyn ContactModel, motion: &RelativeMotion, tolerance: f64) {
     let tangent = contact.respond(motion).tangent();
-    assert!(contact.land(motion).touched.len() > 20);
+    assert!(contact.evaluate(motion).touched.len() > 20);
     let by_pose = by_differences(1e-6, |small| {
         let pose = moved(&motion.pose, small);
         let moved = RelativeMotion { pose, ..*motion };
         contact.respond(&moved).wrench.numbers()
     });
     let by_twist = by_differences(1e-4, |small| {
-        let twist = motion.twist + Twist::of_numbers(small);
+        let twist = motion.twist + Twist::from_numbers(small);
         let faster = RelativeMotion { twist, ..*motion };
         contact.respond(&faster).wrench.numbers()
     });
@@ -293,7 +293,7 @@ fn verify_ball_on_a_flat_foundation() {
             let exact = exact_ball_force(overclosure);
             assert!((force / exact - 1.0).abs() < tolerance, "{force} {exact}");
             let area: f64 = contact
-                .land(&motion)
+                .evaluate(&motion)
                 .touched
                 .iter()
                 .map(|node| node.covered_mm2)
@@ -317,7 +317,7 @@ fn verify_highest_mean_pressure_under_a_ball_on_a_node() {
     let motion = at(Vec3::new(0.0, 24.0 - overclosure, 0.0));
     contact.respond(&motion);
     let peak = contact
-        .land(&motion)
+        .evaluate(&motion)
         .touched
         .iter()
         .map(|node| node.pressure_mpa)
@@ -375,7 +375,7 @@ fn verify_a_rolling_ball_does_not_slide() {
     motion.twist = Twist::new(Vec3::new(0.0, 0.0, -speed), Vec3::zeros());
     contact.respond(&motion);
     let fastest = contact
-        .land(&motion)
+        .evaluate(&motion)
         .touched
         .iter()
         .map(|node| node.sliding_mm_per_s[0].hypot(node.sliding_mm_per_s[1]))
@@ -459,7 +459,7 @@ fn answer(
 ) -> (Wrench, Tangent, Vec<TouchedNode>) {
     let response = contact.respond(motion);
     let (wrench, tangent) = (response.wrench, response.tangent());
-    (wrench, tangent, contact.land(motion).touched)
+    (wrench, tangent, contact.evaluate(motion).touched)
 }
 
 #[test]
@@ -572,7 +572,7 @@ fn verify_wrench_is_the_sum_of_the_nodes_forces() {
         let place = insert.surface().shares[touched.node as usize].centre;
         Wrench::<body::Insert, body::Insert>::new(place.cross(&touched.force_n), touched.force_n)
     };
-    let touched = contact.land(&motion).touched;
+    let touched = contact.evaluate(&motion).touched;
     let sum = touched
         .iter()
         .map(of_node)

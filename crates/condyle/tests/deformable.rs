@@ -94,7 +94,7 @@ fn under(
     let low_mm = height_mm(contact, [high_mm - 1.0, high_mm], force_n, at);
     let motion = at(low_mm);
     contact.respond(&motion);
-    (high_mm - low_mm, contact.land(&motion))
+    (high_mm - low_mm, contact.evaluate(&motion))
 }
 
 fn covered_mm2(landing: &ContactResult) -> f64 {
@@ -142,7 +142,7 @@ fn off_an_even_pressure(aside_mm: f64) -> (f64, Vec<f64>) {
     let mut contact = pair.contact(&law);
     let motion = over([0.0, radius_mm - depth_mm, 0.0]);
     let force_n = down_n(contact.as_mut(), &motion);
-    let landing = contact.land(&motion);
+    let landing = contact.evaluate(&motion);
     assert_eq!(landing.touched.len(), pair.surface.positions.len());
     let even_mpa = MODULUS_MPA * depth_mm / thickness_mm;
     let pressures = landing.touched.iter().map(|node| node.pressure_mpa);
@@ -194,7 +194,7 @@ fn verify_a_cylinder_on_a_thick_block_against_hertz() {
     let mut contact = pair.contact(&law);
     let motion = over([0.0, radius_mm - 0.35, 0.0]);
     contact.respond(&motion);
-    let landing = contact.land(&motion);
+    let landing = contact.evaluate(&motion);
     let positions = &pair.surface.positions;
     let middle = || {
         let touched = landing.touched.iter();
@@ -326,7 +326,7 @@ fn verify_a_ball_on_bonded_layers_from_thick_to_thin() {
         {
             let motion = over([0.0, radius_mm - depth_mm, 0.0]);
             let found_n = down_n(contact.as_mut(), &motion);
-            let landing = contact.land(&motion);
+            let landing = contact.evaluate(&motion);
             let found_mm = (covered_mm2(&landing) / PI).sqrt();
             let peak = landing.peak_pressure_mpa / peak_mpa;
             let off = [found_n / force_n, found_mm / contact_mm, peak];
@@ -410,7 +410,7 @@ fn an_answer_does_not_depend_on_what_was_asked_of_the_compliance() {
     let landed = |law: &Deformable| {
         let mut contact = pair.contact(law);
         contact.respond(&motion);
-        let landing = contact.land(&motion);
+        let landing = contact.evaluate(&motion);
         let state = contact.into_memory().state;
         (landing.touched, landing.peak_pressure_mpa, state)
     };
@@ -473,7 +473,7 @@ fn loads_along_the_generic_insert_move_it_a_little_along_its_normal() {
     let at = |y: f64| over([0.0, y, 0.0]);
     let motion = at(height_mm(contact.as_mut(), [20.0, 60.0], 1500.0, at));
     contact.respond(&motion);
-    let touched = contact.land(&motion).touched;
+    let touched = contact.evaluate(&motion).touched;
     let elastic = Elastic::new(MODULUS_MPA, POISSON).unwrap();
     let held = pair.insert.backside_nodes().iter().copied();
     let solid = ElasticSolid::new(pair.insert.mesh(), elastic, held).unwrap();

@@ -69,8 +69,8 @@ impl ContactModel for CountingContact<'_> {
         self.inner.accept(motion);
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
-        self.inner.land(motion)
+    fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
+        self.inner.evaluate(motion)
     }
 
     fn into_memory(self: Box<Self>) -> ContactMemory {

@@ -147,7 +147,7 @@ fn pressed(insert: &Insert, degrees: f64, centre: Vec3) -> [f64; 2] {
     let mut contact = law.contact(bodies, ContactMemory::default());
     let motion = RelativeMotion::at_rest(Pose::new(Mat3::identity(), turn(degrees) * centre));
     let force = contact.respond(&motion).wrench.force;
-    [force.y.abs(), contact.land(&motion).peak_pressure_mpa]
+    [force.y.abs(), contact.evaluate(&motion).peak_pressure_mpa]
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn mean_and_peak(
     let turn = Mat3::from(Rotation3::new(Vec3::y() * turn_rad));
     let motion = RelativeMotion::at_rest(Pose::new(turn, place));
     contact.respond(&motion);
-    let landing = contact.land(&motion);
+    let landing = contact.evaluate(&motion);
     let means = landing.touched.iter().map(|node| node.pressure_mpa);
     [means.fold(0.0, f64::max), landing.peak_pressure_mpa]
 }

@@ -153,7 +153,7 @@ impl ContactModel for Tip {
         self.accepted += 1;
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
+    fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
         let (load_n, slip) = Self::at(motion);
         let pressure_mpa = load_n / FACE_MM2;
         let node = TouchedNode {

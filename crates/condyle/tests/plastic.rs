@@ -83,7 +83,7 @@ fn press(contact: &mut dyn ContactModel, depth_mm: f64) -> ContactResult {
         }
     }
     contact.accept(&motion);
-    contact.land(&motion)
+    contact.evaluate(&motion)
 }
 
 fn force_n(landing: &ContactResult) -> f64 {

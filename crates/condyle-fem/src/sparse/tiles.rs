@@ -215,7 +215,7 @@ pub(crate) struct Front {
 
 impl Front {
     /// The first `columns` of an eliminated triangle.
-    pub(crate) fn of(triangle: &Triangle, columns: usize, rows: usize) -> Self {
+    pub(crate) fn from_triangle(triangle: &Triangle, columns: usize, rows: usize) -> Self {
         let (mut starts, mut vectors) = (vec![0], Vec::with_capacity(columns * rows / TILE));
         for t in 0..rows / TILE {
             let row = triangle.row(t);

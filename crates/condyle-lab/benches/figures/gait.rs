@@ -51,9 +51,9 @@ impl ContactModel for Recorder<'_> {
         self.contact.respond(motion)
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
+    fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
         self.is_first = true;
-        self.contact.land(motion)
+        self.contact.evaluate(motion)
     }
 }
 

@@ -200,7 +200,7 @@ fn mean_pressing(updates: &Updates) -> f64 {
     let mut contact = gait.contact_after(updates.cache(SECOND));
     let pressing = |asked: &Asked| {
         contact.respond(&asked.motion);
-        contact.land(&asked.motion).touched.len()
+        contact.evaluate(&asked.motion).touched.len()
     };
     asked.iter().map(pressing).sum::<usize>() as f64 / asked.len() as f64
 }

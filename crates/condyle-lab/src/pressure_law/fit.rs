@@ -325,7 +325,7 @@ impl Target {
 fn land(contact: &mut dyn ContactModel, pose: &Pose) -> ContactResult {
     let motion = RelativeMotion::at_rest(*pose);
     contact.respond(&motion);
-    contact.land(&motion)
+    contact.evaluate(&motion)
 }
 
 /// Part of the axial force on every region of the surface, N.

@@ -169,7 +169,7 @@ pub enum Regime {
 
 impl Regime {
     /// Returns the regime of a place that has yielded, by the plastic strain that accumulates in a cycle.
-    pub fn of_flow(plastic_strain: f64) -> Self {
+    pub fn from_flow(plastic_strain: f64) -> Self {
         if plastic_strain > SHAKEN_DOWN {
             Self::Ratcheting
         } else {

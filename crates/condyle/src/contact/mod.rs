@@ -2,17 +2,14 @@
 //!
 //! | file or folder | what |
 //! | --- | --- |
-//! | [`ContactModel`] (`model`) | what the machine asks of a contact, and its answers |
-//! | [`ContactLaw`] (`contact_law`) | what a test says of contact: it makes the contact of two bodies |
-//! | `memory` | what a contact hands on to the next one: its history, and what makes that quicker |
-//! | `history` | what every surface node went through in a cycle |
-//! | `slip_work` | pressure times slip by direction: cross-shear and principal direction |
+//! | [`ContactModel`] (`model`) | the interface between machine and contact, and the memory that one contact leaves to the next |
+//! | [`ContactLaw`] (`law`) | the law of a test, which makes the contact of two bodies, and its further results |
+//! | `history` | pressure and slip of every surface node over a cycle, and their work by direction |
 //! | `foundation` | the elastic foundation: rigid bodies, and pressure from local overclosure |
 //! | `deformable` | the deformable insert: pressure under which an elastic body just touches the femur |
-//! | `known_compliance` | what was computed of an insert's compliance, for another run |
-//! | `under_surface` | stress below the surface, and what has yielded there |
-//! | `pressed` | what contacts have in common: shares under pressure, and what they add up to |
-//! | `broad_phase` | which blocks of nodes may touch, by brute force or coherently |
+//! | `contact_patch` | the shares under pressure and their sums, common to all laws |
+//! | `pressure_law` | pressure from overclosure of an elastic layer |
+//! | `broad_phase` | the blocks of nodes that may touch, by brute force or coherently |
 
 mod broad_phase;
 mod contact_patch;

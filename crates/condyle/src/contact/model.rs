@@ -145,7 +145,7 @@ impl From<Tipped> for NotBorne {
 /// A contact between femur and insert: the machine sees this, never a mesh.
 ///
 /// The machine asks [`respond`](Self::respond) as often as it needs to find an increment's end, says
-/// [`accept`](Self::accept) once for every step that it goes on from, and [`land`](Self::land) where an
+/// [`accept`](Self::accept) once for every step that it goes on from, and [`evaluate`](Self::evaluate) where an
 /// increment ends.
 pub trait ContactModel {
     /// Returns the number of surface nodes.
@@ -191,7 +191,7 @@ pub trait ContactModel {
 
     /// The nodes in contact and the highest pressure at a motion: that of the last response, or one so
     /// near that loads and speeds may be taken along to first order.
-    fn land(&mut self, motion: &RelativeMotion) -> ContactResult;
+    fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult;
 
     /// Returns the memory from which the next contact resumes.
     fn into_memory(self: Box<Self>) -> ContactMemory {
@@ -231,7 +231,7 @@ pub struct ContactCache(Option<Box<dyn Any + Send + Sync>>);
 
 impl ContactCache {
     /// Keeps a value.
-    pub fn of<T: Any + Send + Sync>(value: T) -> Self {
+    pub fn new<T: Any + Send + Sync>(value: T) -> Self {
         Self(Some(Box::new(value)))
     }
 
@@ -248,8 +248,8 @@ mod tests {
 
     #[test]
     fn a_cache_gives_its_value_to_the_law_that_kept_it_alone() {
-        assert_eq!(ContactCache::of(3_u8).into_inner::<u8>(), Some(3));
-        assert_eq!(ContactCache::of(3_u8).into_inner::<u16>(), None);
+        assert_eq!(ContactCache::new(3_u8).into_inner::<u8>(), Some(3));
+        assert_eq!(ContactCache::new(3_u8).into_inner::<u16>(), None);
         assert_eq!(ContactCache::default().into_inner::<u8>(), None);
     }
 }

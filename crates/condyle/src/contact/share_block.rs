@@ -27,7 +27,7 @@ pub(crate) struct ShareBlock {
 
 impl ShareBlock {
     /// All shares of an insert's surface, in its blocks of nodes.
-    pub fn of(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
+    pub fn from_shares(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
         let blocks = insert.node_blocks().iter();
         blocks
             .map(|block| Self::new(block, surface, insert))
@@ -35,13 +35,13 @@ impl ShareBlock {
     }
 
     /// The same, each share taken to be what lies at its node alone: its centre there, and without spread.
-    pub fn of_nodes(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
+    pub fn from_nodes(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
         let at_nodes = |block: Self| Self {
             centre: vector_from_lanes(|lane| &surface.positions[block.nodes[lane] as usize]),
             spread_mm2: F64x4::splat(0.0),
             ..block
         };
-        Self::of(insert, surface)
+        Self::from_shares(insert, surface)
             .into_iter()
             .map(at_nodes)
             .collect()

@@ -94,7 +94,7 @@ fn check_depth(
 ) -> Result<(), PlacementError> {
     let motion = RelativeMotion::at_rest(*pose);
     contact.respond(&motion);
-    for touched in contact.land(&motion).touched {
+    for touched in contact.evaluate(&motion).touched {
         let node = touched.node as usize;
         let overclosure_mm = -bodies
             .femur

@@ -209,7 +209,7 @@ mod tests {
             self.accepted += 1;
         }
 
-        fn land(&mut self, _: &RelativeMotion) -> ContactResult {
+        fn evaluate(&mut self, _: &RelativeMotion) -> ContactResult {
             ContactResult::default()
         }
     }

@@ -139,7 +139,7 @@ impl<'a> Simulator<'a> {
     /// of a cycle that repeats, second order in the increment.
     fn land(&mut self, place: usize, end: &Accepted) -> Landed {
         let percent = 100.0 * (place + 1) as f64 / self.time.increments as f64;
-        let landing = self.contact.land(&end.motion);
+        let landing = self.contact.evaluate(&end.motion);
         let increment_s = self.time.increment_s(self.machine.frequency_hz);
         let record = |touched: &TouchedNode| Record {
             node: touched.node,

@@ -107,7 +107,7 @@ impl BroadPhase for Coherent {
             increment: 0,
             neighbour: None,
             now: Separations::new(blocks.len()),
-            places: BlockPlaces::of(blocks),
+            places: BlockPlaces::from_blocks(blocks),
             last_wear: LastWear::default(),
             candidates: Vec::new(),
         }
@@ -124,7 +124,7 @@ impl BroadPhase for Coherent {
             number: self.last_wear.number + 1,
             eights: BlockWear::between(before, after),
         };
-        self.places = BlockPlaces::of(after);
+        self.places = BlockPlaces::from_blocks(after);
         self
     }
 

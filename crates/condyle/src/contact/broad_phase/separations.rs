@@ -57,7 +57,7 @@ impl Neighbour<'_> {
     #[inline(always)]
     fn help(&self, number: usize, places: &BlockPlaces, bounds: &mut Eight, may_touch: u32) -> u32 {
         let mut known = self.eights[number].clone();
-        let motion = self.step.of(&places.middles);
+        let motion = self.step.motion(&places.middles);
         let apart = may_touch & !known.carry(&motion, self.step.lost_mm(places));
         bounds.take_over(apart, &known);
         may_touch & !apart
@@ -84,7 +84,7 @@ impl FemurStep {
 
     /// The motion of places.
     #[inline(always)]
-    fn of(&self, place: &Vector<F32x8>) -> Vector<F32x8> {
+    fn motion(&self, place: &Vector<F32x8>) -> Vector<F32x8> {
         let [x, y, z] = &self.turn;
         let along = |axis: usize| {
             let across = y[axis].mul_add(place.y, z[axis].mul_add(place.z, self.shift[axis]));
@@ -178,7 +178,7 @@ impl Separations {
         candidates.clear();
         for (number, (bounds, places)) in self.eights.iter_mut().zip(places).enumerate() {
             let mut lost_mm = step.lost_mm(places);
-            let mut motion = step.of(&places.middles);
+            let mut motion = step.motion(&places.middles);
             if let Some(wear) = wear.map(|wear| &wear[number]) {
                 motion += wear.seen_along(&axes);
                 lost_mm += wear.lost_mm;
@@ -262,7 +262,7 @@ pub(crate) struct LastWear {
 
 impl BlockPlaces {
     /// All blocks of a surface.
-    pub fn of(blocks: &[ShareBlock]) -> Vec<Self> {
+    pub fn from_blocks(blocks: &[ShareBlock]) -> Vec<Self> {
         blocks.chunks(LANES_F32).map(Self::new).collect()
     }
 

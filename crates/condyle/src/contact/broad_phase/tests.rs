@@ -115,7 +115,7 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
     let mut candidates = Vec::new();
     separations.follow(
         pose,
-        &BlockPlaces::of(blocks),
+        &BlockPlaces::from_blocks(blocks),
         &LastWear::default(),
         None,
         &mut candidates,
@@ -140,7 +140,7 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
 /// two of three steps, and holds what is no candidate then against a search, with the help of another increment
 /// near by. Gives how many blocks were no candidates.
 fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
-    let shares = |insert: &Insert| ShareBlock::of(insert, &insert.surface());
+    let shares = |insert: &Insert| ShareBlock::from_shares(insert, &insert.surface());
     let (unworn, worn) = (shares(&insert()), shares(&worn(insert())));
     let mut numbers = Numbers(17);
     let (mut sure, mut taken_over) = (0, 0);
@@ -159,7 +159,7 @@ fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) ->
         let mut candidates = Vec::new();
         // There by way of half of it, as over many steps.
         let half = Pose::new(from.rotation, to.translation);
-        let places = BlockPlaces::of(after);
+        let places = BlockPlaces::from_blocks(after);
         separations.follow(&half, &places, &wear, None, &mut candidates);
         let mut alone = separations.clone();
         alone.follow(&to, &places, &wear, None, &mut candidates);

@@ -44,7 +44,7 @@ pub(crate) struct ContactPatch {
 
 impl ContactPatch {
     /// Nothing presses yet.
-    pub fn none(surface: &ArticulatingSurface, blocks: &[ShareBlock], friction: Coulomb) -> Self {
+    pub fn new(surface: &ArticulatingSurface, blocks: &[ShareBlock], friction: Coulomb) -> Self {
         let directions = blocks.iter().map(|block| Directions4::new(surface, block));
         Self {
             near: Vec::new(),
@@ -105,7 +105,7 @@ impl ContactPatch {
         for pressed in self.near.iter().zip(&self.tractions) {
             let block = pressed.0.block as usize;
             let place = (&blocks[block], &self.directions[block]);
-            way.land(self.friction, pressed, place, &mut touched);
+            way.add_touched(self.friction, pressed, place, &mut touched);
         }
         touched
     }
@@ -152,7 +152,7 @@ impl ShortWay {
 
     /// Adds the nodes of a block that press at its end.
     #[inline(always)]
-    pub fn land(
+    pub fn add_touched(
         &self,
         friction: Coulomb,
         (near, tractions): (&NearBlock, &Tractions4),

@@ -75,7 +75,7 @@ struct Plane {
 }
 
 impl Plane {
-    fn of(share: &Share) -> Self {
+    fn new(share: &Share) -> Self {
         let first = share.edge_a.normalize();
         let normal = share.edge_a.cross(&share.edge_b).normalize();
         Self {
@@ -104,7 +104,7 @@ impl Quadratic {
         around: &Share,
         means: impl Iterator<Item = (&'a Share, f64)> + Clone,
     ) -> Option<Self> {
-        let plane = Plane::of(around);
+        let plane = Plane::new(around);
         let (_, base) = means.clone().next()?;
         let mut matrix = SMatrix::<f64, 6, 6>::identity() * LEAST_SQUARES_FLOOR;
         let mut right = SVector::<f64, 6>::zeros();
@@ -136,7 +136,7 @@ impl Quadratic {
         around: &Share,
         means: impl Iterator<Item = (&'a Share, f64)>,
     ) -> f64 {
-        let plane = Plane::of(around);
+        let plane = Plane::new(around);
         let [xx, xy, yy] = self.bend;
         let [x, y] = self.slope;
         let coefficients = SVector::from([self.constant, x, y, xx, xy, yy]);

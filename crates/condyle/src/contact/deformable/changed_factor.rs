@@ -48,7 +48,7 @@ pub(crate) struct ChangedFactor {
 
 impl ChangedFactor {
     /// No node presses, of a surface with so many.
-    pub fn of_nothing(node_count: usize) -> Self {
+    pub fn new(node_count: usize) -> Self {
         Self {
             nodes: Vec::new(),
             row_of: vec![NONE; node_count],

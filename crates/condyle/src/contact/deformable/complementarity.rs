@@ -45,18 +45,18 @@ pub(crate) struct Pressing {
 
 impl Pressing {
     /// Nothing presses yet on a surface with so many nodes.
-    pub fn nothing(node_count: usize) -> Self {
+    pub fn new(node_count: usize) -> Self {
         Self {
             pressed_before: vec![false; node_count],
             is_pressing: Vec::new(),
             places: Vec::new(),
             nodes: Vec::new(),
             overclosures: vec![zero(); node_count],
-            factor: ChangedFactor::of_nothing(node_count),
+            factor: ChangedFactor::new(node_count),
             loads_n: Vec::new(),
             loads: Vec::new(),
             by_panel: Vec::new(),
-            clearances: Clearances::unknown(node_count),
+            clearances: Clearances::new(node_count),
         }
     }
 
@@ -262,7 +262,7 @@ struct TileClearance {
 
 impl Clearances {
     /// Nothing is known of a surface with so many nodes, and nothing presses on it.
-    pub fn unknown(node_count: usize) -> Self {
+    pub fn new(node_count: usize) -> Self {
         Self {
             wider_mm: vec![f64::NEG_INFINITY; node_count],
             moved_mm: vec![f64::NEG_INFINITY; node_count],

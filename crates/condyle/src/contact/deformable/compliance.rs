@@ -46,7 +46,7 @@ impl<S: SurfaceCompliance> Compliance<S> {
             }
         }
         Self {
-            near: RwLock::new(NearMatrix::of_nothing(source.tiles())),
+            near: RwLock::new(NearMatrix::new(source.tiles())),
             tile_of,
             source,
         }
@@ -148,7 +148,7 @@ pub(crate) struct Reach {
 
 impl NearMatrix {
     /// Nothing is known of a surface of these tiles.
-    pub fn of_nothing(tiles: &[Vec<u32>]) -> Self {
+    pub fn new(tiles: &[Vec<u32>]) -> Self {
         let nodes = || tiles.iter().flatten();
         let mut places = vec![0; nodes().count()];
         for (place, &node) in nodes().enumerate() {

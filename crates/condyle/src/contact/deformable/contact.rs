@@ -49,7 +49,7 @@ pub(crate) struct DeformableContact<'a, B> {
     bodies: Bodies<'a>,
     rubbing: FrictionSettings,
     nearby: NearBlocks<'a, B>,
-    pressed: ContactPatch,
+    patch: ContactPatch,
     compliance: Arc<Compliance>,
     pressing: Pressing,
     /// The blocks near the femur, the nodes that may touch, and where each of these is: number among the
@@ -126,15 +126,15 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         let nearby = NearBlocks::after(
             memory.cache.into_inner(),
             bodies.femur,
-            ShareBlock::of_nodes(bodies.insert, bodies.surface),
+            ShareBlock::from_nodes(bodies.insert, bodies.surface),
             rubbing.sample_reuse_mm,
         );
         let inward = |block: &ShareBlock| {
             -vector_from_lanes(|lane| &bodies.surface.normals[block.nodes[lane] as usize])
         };
         Self {
-            pressed: ContactPatch::none(bodies.surface, &nearby.blocks, rubbing.friction),
-            pressing: Pressing::nothing(compliance.node_count()),
+            patch: ContactPatch::new(bodies.surface, &nearby.blocks, rubbing.friction),
+            pressing: Pressing::new(compliance.node_count()),
             compliance,
             near: Vec::new(),
             candidates: Vec::new(),
@@ -220,8 +220,8 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         self.along.retain(|_| pressing.next().unwrap_or(false));
         let pressing = self.near.drain(..).zip(&loads);
         let pressing = pressing.filter(|(_, loads)| !loads.is_none());
-        self.pressed.near.clear();
-        self.pressed.near.extend(pressing.map(|(near, _)| near));
+        self.patch.near.clear();
+        self.patch.near.extend(pressing.map(|(near, _)| near));
         loads.retain(|loads| !loads.is_none());
         loads
     }
@@ -229,13 +229,13 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
 
 impl<B: BroadPhase> Linearization for DeformableContact<'_, B> {
     fn tangent(&self) -> Tangent {
-        let mut tangent = self.pressed.tangent();
+        let mut tangent = self.patch.tangent();
         for along_surface in self
             .histories
             .iter()
             .filter_map(|history| history.tangent())
         {
-            let change = FrameChange::to_femur(&self.pressed.pose);
+            let change = FrameChange::to_femur(&self.patch.pose);
             let by_pose = change.derivative_back(&WrenchByTwist::new(along_surface));
             tangent.by_pose.matrix += by_pose.matrix;
         }
@@ -262,7 +262,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
     }
 
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
-        self.pressed.pose = motion.pose;
+        self.patch.pose = motion.pose;
         let change = FrameChange::to_femur(&motion.pose);
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
@@ -270,12 +270,12 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         let (loads, friction) = (self.find_loads(), self.rubbing.friction);
         let along = &self.along;
         let (mut wrench, mean_slip) =
-            self.pressed
+            self.patch
                 .press(&self.nearby.blocks, |place, near, shares| {
                     loads[place].tractions(near, &along[place], shares.area_mm2, &twist, friction)
                 });
         let patch = LoadedPatch {
-            patch: &self.pressed,
+            patch: &self.patch,
             blocks: &self.nearby.blocks,
         };
         for history in &mut self.histories {
@@ -305,7 +305,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
 
     fn accept(&mut self, motion: &RelativeMotion) {
         let patch = LoadedPatch {
-            patch: &self.pressed,
+            patch: &self.patch,
             blocks: &self.nearby.blocks,
         };
         for history in &mut self.histories {
@@ -327,8 +327,8 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         moved_mm.fold(0.0, f64::max)
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
-        let mut touched = self.pressed.touched(&self.nearby.blocks, motion);
+    fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
+        let mut touched = self.patch.touched(&self.nearby.blocks, motion);
         for history in &mut self.histories {
             history.evaluate(&mut touched);
         }
@@ -368,7 +368,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
             .extend(histories.flat_map(|history| history.into_fields()));
         ContactMemory {
             state,
-            cache: ContactCache::of(self.nearby.into_cache()),
+            cache: ContactCache::new(self.nearby.into_cache()),
         }
     }
 }

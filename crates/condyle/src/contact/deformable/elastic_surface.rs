@@ -93,7 +93,7 @@ impl ElasticSurface {
         let backside = insert.backside_nodes();
         let held = match held_by {
             HeldBy::Backside => backside.to_vec(),
-            HeldBy::Floor => Floor::of(&mesh, backside).nodes,
+            HeldBy::Floor => Floor::from_backside(&mesh, backside).nodes,
         };
         let solid = Arc::new(ElasticSolid::new(&mesh, elastic, held)?);
         let nodes = insert.surface_nodes();
@@ -134,7 +134,8 @@ impl ElasticSurface {
 
     fn floor(&self) -> &Floor {
         let mesh = self.solid.mesh();
-        self.floor.get_or_init(|| Floor::of(mesh, &self.backside))
+        self.floor
+            .get_or_init(|| Floor::from_backside(mesh, &self.backside))
     }
 
     /// The tray, with points at some spacing: that asked for last, or recomputed.
@@ -233,7 +234,7 @@ impl ElasticSurface {
             let places: Vec<Vec3> = nodes
                 .map(|&node| self.solid.mesh().nodes[node as usize])
                 .collect();
-            Influence::of_nothing(&self.solid, &places, self.tiles().len())
+            Influence::new(&self.solid, &places, self.tiles().len())
         })
     }
 

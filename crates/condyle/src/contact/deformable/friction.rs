@@ -199,7 +199,7 @@ impl LoadHistory for ElasticFriction<'_> {
         for &node in &self.rubbed_nodes {
             let screws = self.screws(node as usize, &pose.rotation);
             let [x, y] = self.loads_n[node as usize];
-            total = total + Wrench::of_numbers(&(screws[0] * x + screws[1] * y));
+            total = total + Wrench::from_numbers(&(screws[0] * x + screws[1] * y));
         }
         Some(total)
     }
@@ -288,7 +288,7 @@ impl LoadHistory for ElasticFriction<'_> {
             let [x, y] = own.map(|row| compliance.at(row, row));
             (x * by_n[0]).hypot(y * by_n[1])
         };
-        let before = self.memory.land(now.clone());
+        let before = self.memory.end_increment(now.clone());
         self.moved_in_a_cycle_mm = before.map_or(f64::INFINITY, |before| {
             let changes = differences(&now, &before);
             changes.iter().map(moved_mm).fold(0.0, f64::max)
@@ -367,7 +367,7 @@ pub(crate) struct FrictionMemory {
 }
 
 impl Held {
-    fn of(values: &[f64]) -> Option<Self> {
+    fn from_values(values: &[f64]) -> Option<Self> {
         let (pose, loads) = values.split_at_checked(OF_POSE)?;
         let rotation = Mat3::from_column_slice(&pose[..9]);
         let translation = Vec3::from_column_slice(&pose[9..]);
@@ -391,12 +391,12 @@ impl Held {
 
 impl FrictionMemory {
     /// Reads the fields of a contact's state.
-    pub fn of(state: &ContactState) -> Self {
+    pub fn from_state(state: &ContactState) -> Self {
         let fields = state.fields.iter();
         let fields = fields.filter(|field| field.name == FRICTION_FIELD);
         Self {
             activities: fields
-                .map(|field| Held::of(&field.values).unwrap_or_default())
+                .map(|field| Held::from_values(&field.values).unwrap_or_default())
                 .collect(),
             ..Self::default()
         }
@@ -418,7 +418,7 @@ impl FrictionMemory {
     }
 
     /// An increment ends with loads; those with which it did so a cycle before.
-    pub fn land(&mut self, loads: LoadsAlong) -> Option<LoadsAlong> {
+    pub fn end_increment(&mut self, loads: LoadsAlong) -> Option<LoadsAlong> {
         self.landed.insert(self.increment, loads)
     }
 

@@ -1,14 +1,14 @@
 //! The deformable insert: a rigid femur on an elastic body, without penalty.
 //!
-//! [`Deformable`] is the law. It makes a `DeformableContact`, which takes the gaps of the bodies at rest along the
-//! insert's normals (`along_normal`) of the nodes that may touch (`candidate`), finds the loads under which they just
-//! touch (`complementarity`, with the factor of `cholesky` and what has changed since in `changed_factor`; `clearance`
-//! tells which gaps need not be looked at), and adds up what these do as in [`pressed`](super::pressed). How the surface
-//! deflects (`compliance`) is computed by finite elements (`elastic_surface`, `unit_loads`), between the nodes that ever
-//! come near (`near_matrix`), and may be known from another run. Where it deflects along itself too, friction makes it stick and slip (`friction`, with
-//! the loads of `stick_slip` and what is remembered of them in `friction_memory`). Where an increment ends it says how much of every share presses (`covered`), and what the highest
-//! pressure is (`peak`). Below the surface the insert may yield (`plastic`), and has stress there (`under_surface`); its backside is bonded, or rests
-//! (`backside`). What loads and insert have to agree on is found in `turns`, led by mixing.
+//! [`Deformable`] is the law; it makes a `DeformableContact` (`contact`). That takes the gaps of the bodies at rest along
+//! the insert's normals and finds the loads under which the bodies just touch (`complementarity`, by the factor of
+//! `cholesky` and its updates in `changed_factor`). The deflection of the surface is its `compliance`, computed by finite
+//! elements (`elastic_surface`) for the nodes that come near. At the end of an increment `edge_and_peak` finds the part of
+//! every share that presses, and the peak pressure.
+//!
+//! State that depends on what came before is a load history (`history`): the insert may yield below its surface
+//! (`plastic`), stick and slip along it (`friction`, `stick_slip`), and rest on its tray (`backside`). Loads and histories
+//! are solved in turns, accelerated by Anderson's mixing.
 
 mod backside;
 mod changed_factor;
@@ -189,7 +189,7 @@ impl Deformable {
     ///
     /// Faces that lean by less than 15 degrees from straight down, within a quarter of a millimetre of their middle height.
     pub fn flat_part_of_backside(insert: &Insert) -> f64 {
-        Floor::of(insert.mesh(), insert.backside_nodes()).part
+        Floor::from_backside(insert.mesh(), insert.backside_nodes()).part
     }
 
     /// The surface of an insert with its mesh nodes there: remembered, or recomputed.
@@ -365,14 +365,17 @@ impl ContactLaw for Deformable {
         let surface = &compliance.source;
         Some(match self.backside {
             Backside::Bonded => {
-                let remembered = self.hardening.as_ref().map(|_| PlasticMemory::of(&state));
+                let remembered = self
+                    .hardening
+                    .as_ref()
+                    .map(|_| PlasticMemory::from_state(&state));
                 under_surface(surface, remembered, loads)
             }
             Backside::Resting {
                 friction,
                 spacing_mm,
             } => {
-                let (tray, memory) = (surface.tray(spacing_mm), BacksideMemory::of(&state));
+                let (tray, memory) = (surface.tray(spacing_mm), BacksideMemory::from_state(&state));
                 above_tray(surface, &tray, friction, &memory, (activity, loads))
             }
         })
@@ -431,7 +434,7 @@ impl Deformable {
             FrictionModel::Regularised => (None, self.coulomb()),
             FrictionModel::StickSlip => {
                 let tangential = Arc::clone(compliance.source.tangential());
-                let memory = FrictionMemory::of(&state);
+                let memory = FrictionMemory::from_state(&state);
                 let friction =
                     ElasticFriction::after(memory, self.friction, bodies.surface, tangential);
                 let without = Coulomb {
@@ -465,7 +468,7 @@ impl Deformable {
         else {
             return None;
         };
-        let memory = BacksideMemory::of(state);
+        let memory = BacksideMemory::from_state(state);
         let tray = compliance.source.tray(spacing_mm);
         let compliance = Arc::clone(compliance);
         Some(RestingInsert::after(memory, compliance, tray, friction))
@@ -478,7 +481,7 @@ impl Deformable {
         compliance: &Arc<Compliance<ElasticSurface>>,
     ) -> Option<PlasticInsert> {
         let hardening = self.hardening.clone()?;
-        let remembered = PlasticMemory::of(state);
+        let remembered = PlasticMemory::from_state(state);
         Some(PlasticInsert::after(
             remembered,
             Arc::clone(compliance),
@@ -578,7 +581,7 @@ fn plastic(surface: &ElasticSurface, remembered: &PlasticMemory) -> PlasticUnder
         let largest = |largest: f64, point: &PlasticPoint| largest.max(point.accumulated);
         plastic_strain[element as usize] = points.iter().fold(0.0, largest);
         let flow = remembered.flow_in_cycle.get(&element).copied();
-        regime[element as usize] = Regime::of_flow(flow.unwrap_or_default());
+        regime[element as usize] = Regime::from_flow(flow.unwrap_or_default());
     }
     let set_mm = if remembered.points.is_empty() {
         vec![0.0; surface.along_normals(&surface.solid().mesh().nodes).len()]

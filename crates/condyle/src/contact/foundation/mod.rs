@@ -1,7 +1,7 @@
 //! The elastic foundation: rigid bodies, and pressure from local overclosure.
 //!
 //! [`Foundation`] is the law; it makes a `FoundationContact`, which finds the blocks that touch, presses them
-//! (`press`, `mean_overclosure`), and adds up what they do, all as in [`pressed`](super::pressed). Where an
+//! (`press`, `mean_overclosure`), and adds up what they do, all as in `contact_patch`. Where an
 //! increment ends it says what the highest pressure is (`peak`).
 
 mod mean_overclosure;
@@ -122,7 +122,7 @@ pub(crate) struct FoundationContact<'a, B> {
     bodies: Bodies<'a>,
     nearby: NearBlocks<'a, B>,
     /// The blocks that touched at the last response.
-    pressed: ContactPatch,
+    patch: ContactPatch,
     /// The edge slopes of their shares.
     slopes: Vec<EdgeSlopes<F64x4>>,
 }
@@ -134,15 +134,15 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
         let nearby = NearBlocks::after(
             cache.into_inner(),
             bodies.femur,
-            ShareBlock::of(bodies.insert, bodies.surface),
+            ShareBlock::from_shares(bodies.insert, bodies.surface),
             law.sample_reuse_mm,
         );
-        let pressed = ContactPatch::none(bodies.surface, &nearby.blocks, law.coulomb());
+        let patch = ContactPatch::new(bodies.surface, &nearby.blocks, law.coulomb());
         Self {
             law,
             bodies,
             nearby,
-            pressed,
+            patch,
             slopes: Vec::new(),
         }
     }
@@ -151,11 +151,11 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
     fn find_touching(&mut self, pose: &Pose, pose4: &Pose4) {
         let Self {
             nearby,
-            pressed,
+            patch,
             slopes,
             ..
         } = self;
-        pressed.near.clear();
+        patch.near.clear();
         slopes.clear();
         nearby.find(
             pose,
@@ -167,7 +167,7 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
                 (slopes.reach_mm(), slopes)
             },
             |near, edges| {
-                pressed.near.push(near);
+                patch.near.push(near);
                 slopes.push(edges);
             },
         );
@@ -192,7 +192,7 @@ impl<'a, B: BroadPhase> FoundationContact<'a, B> {
 
 impl<B: BroadPhase> Linearization for FoundationContact<'_, B> {
     fn tangent(&self) -> Tangent {
-        self.pressed.tangent()
+        self.patch.tangent()
     }
 }
 
@@ -206,22 +206,22 @@ impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
     }
 
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
-        self.pressed.pose = motion.pose;
+        self.patch.pose = motion.pose;
         let change = FrameChange::to_femur(&motion.pose);
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
         self.find_touching(&motion.pose, &pose);
         let (law, slopes) = (self.law, &self.slopes);
         let (wrench, mean_slip) = self
-            .pressed
+            .patch
             .press(&self.nearby.blocks, |place, near, shares| {
                 law.press(&near.cached, &slopes[place], shares, &pose, &twist)
             });
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
-    fn land(&mut self, motion: &RelativeMotion) -> ContactResult {
-        let touched = self.pressed.touched(&self.nearby.blocks, motion);
+    fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
+        let touched = self.patch.touched(&self.nearby.blocks, motion);
         ContactResult {
             peak_pressure_mpa: self.peak_search(&motion.pose).highest_mpa(&touched),
             touched,
@@ -231,7 +231,7 @@ impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
     fn into_memory(self: Box<Self>) -> ContactMemory {
         ContactMemory {
             state: ContactState::default(),
-            cache: ContactCache::of(self.nearby.into_cache()),
+            cache: ContactCache::new(self.nearby.into_cache()),
         }
     }
 }

@@ -32,11 +32,11 @@ struct Face {
 
 impl Floor {
     /// Finds the floor of a backside with the given nodes, ascending.
-    pub fn of(mesh: &HexMesh, backside: &[u32]) -> Self {
+    pub fn from_backside(mesh: &HexMesh, backside: &[u32]) -> Self {
         let is_own = |node: &u32| backside.binary_search(node).is_ok();
         let mut quads = mesh.boundary_quads();
         quads.retain(|quad| quad.iter().all(is_own));
-        let faces: Vec<Face> = quads.iter().map(|quad| Face::of(mesh, *quad)).collect();
+        let faces: Vec<Face> = quads.iter().map(|quad| Face::new(mesh, *quad)).collect();
         let level = level_faces(&faces);
         let inward: Vec3 = level.iter().map(|face| face.inward).sum();
         let normal = inward.try_normalize(0.0).unwrap_or_else(Vec3::y);
@@ -57,7 +57,7 @@ impl Floor {
 }
 
 impl Face {
-    fn of(mesh: &HexMesh, quad: [u32; 4]) -> Self {
+    fn new(mesh: &HexMesh, quad: [u32; 4]) -> Self {
         let [a, b, c, d] = quad.map(|node| mesh.nodes[node as usize]);
         Self {
             quad,
@@ -221,7 +221,7 @@ mod tests {
         };
         let insert = flat_insert((20.0, 10.0), 5.0, meshing).unwrap();
         let (mut mesh, backside) = (insert.mesh().clone(), insert.backside_nodes());
-        let whole = Floor::of(&mesh, backside);
+        let whole = Floor::from_backside(&mesh, backside);
         assert!((whole.normal - Vec3::y()).norm() < 1e-12 && (whole.part - 1.0).abs() < 1e-12);
         for &node in backside {
             let place = &mut mesh.nodes[node as usize];
@@ -231,7 +231,7 @@ mod tests {
                 place.y += 0.5;
             }
         }
-        let floor = Floor::of(&mesh, backside);
+        let floor = Floor::from_backside(&mesh, backside);
         // From -4 mm, a step inside of the recess, to 5 mm.
         assert!((floor.share_mm2.iter().sum::<f64>() - 90.0).abs() < 1e-9);
         assert!((floor.part - 0.45).abs() < 0.01, "{}", floor.part);

@@ -195,7 +195,7 @@ impl LoadHistory for RestingInsert {
 
     fn evaluate(&mut self, _: &mut [TouchedNode]) {
         if let Some(found) = &self.found {
-            self.cycle.land(&self.tray, found);
+            self.cycle.end_increment(&self.tray, found);
         }
     }
 

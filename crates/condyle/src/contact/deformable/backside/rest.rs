@@ -120,7 +120,7 @@ pub(crate) struct BacksideCycle {
 }
 
 impl BacksideCycle {
-    pub fn of_numbers(numbers: &[f64; 5]) -> Self {
+    pub fn from_numbers(numbers: &[f64; 5]) -> Self {
         let [lift_mm, lifted_part, slip_mm, force_n, moment_nmm] = *numbers;
         Self {
             lift_mm,
@@ -149,7 +149,7 @@ impl BacksideCycle {
 
     fn or_more(&self, other: &Self) -> Self {
         let (own, others) = (self.numbers(), other.numbers());
-        Self::of_numbers(&std::array::from_fn(|i| own[i].max(others[i])))
+        Self::from_numbers(&std::array::from_fn(|i| own[i].max(others[i])))
     }
 }
 
@@ -157,7 +157,7 @@ impl BacksideCycle {
 #[derive(Default)]
 pub(crate) struct CycleOfRest {
     /// The increments of the activity that is being solved.
-    increments: BTreeMap<usize, Landed>,
+    increments: BTreeMap<usize, IncrementEnd>,
     increment: usize,
     /// The result of the cycles of the activities before.
     before: BacksideCycle,
@@ -165,7 +165,7 @@ pub(crate) struct CycleOfRest {
     pub moved_mm: f64,
 }
 
-struct Landed {
+struct IncrementEnd {
     moved_mm: Vec<f64>,
     presses: Vec<bool>,
     /// All but the slip.
@@ -184,7 +184,7 @@ impl CycleOfRest {
     }
 
     /// The increment has landed with the backside at rest.
-    pub fn land(&mut self, tray: &Tray, rest: &Rest) {
+    pub fn end_increment(&mut self, tray: &Tray, rest: &Rest) {
         let points = rest.moved_mm.as_chunks::<3>().0;
         let pushes = rest.pushes_n.as_chunks::<3>().0.iter();
         let presses: Vec<bool> = pushes.map(|push| push[2] > 0.0).collect();
@@ -199,7 +199,7 @@ impl CycleOfRest {
             slip_mm: 0.0,
             lock: tray.lock_load(&rest.moved_mm.clone().into()),
         };
-        let landed = Landed {
+        let landed = IncrementEnd {
             moved_mm: rest.moved_mm.clone(),
             presses,
             most,
@@ -259,14 +259,14 @@ pub(crate) struct BacksideMemory {
 
 impl BacksideMemory {
     /// Reads the fields of a contact's state.
-    pub fn of(state: &ContactState) -> Self {
+    pub fn from_state(state: &ContactState) -> Self {
         let named = |name| state.fields.iter().filter(move |field| field.name == name);
         let cycle = named(BACKSIDE_CYCLE_FIELD).find_map(|field| field.values.first_chunk());
         Self {
             activities: named(BACKSIDE_FIELD)
                 .map(|field| field.values.clone())
                 .collect(),
-            last_cycles: cycle.map_or_else(BacksideCycle::default, BacksideCycle::of_numbers),
+            last_cycles: cycle.map_or_else(BacksideCycle::default, BacksideCycle::from_numbers),
         }
     }
 

@@ -56,7 +56,7 @@ impl CycleOfFlow {
     }
 
     /// The increment has landed on a surface with that permanent set.
-    pub fn land(&mut self, set_mm: &Arc<Vec<f64>>) {
+    pub fn end_increment(&mut self, set_mm: &Arc<Vec<f64>>) {
         let before = self.present().set_mm.replace(Arc::clone(set_mm));
         self.moved_mm = match before {
             // The surface of no increment is known yet.
@@ -116,7 +116,7 @@ pub(crate) struct PlasticMemory {
 
 impl PlasticMemory {
     /// Reads the field of a contact's state; empty if there is none.
-    pub fn of(state: &ContactState) -> Self {
+    pub fn from_state(state: &ContactState) -> Self {
         let mut remembered = Self::default();
         let field = state
             .fields

@@ -38,7 +38,7 @@ pub(crate) type ByTile = BTreeMap<u32, Vec<f64>>;
 
 impl Influence {
     /// Nothing is known of a solid whose surface has nodes there, in so many tiles.
-    pub fn of_nothing(solid: &ElasticSolid, surface: &[Vec3], surface_tiles: usize) -> Self {
+    pub fn new(solid: &ElasticSolid, surface: &[Vec3], surface_tiles: usize) -> Self {
         let mesh = solid.mesh();
         let node_tiles = tiles(&mesh.nodes, TILE_NODES);
         let mut place_of = vec![(0, 0); mesh.nodes.len()];

@@ -460,7 +460,7 @@ impl LoadHistory for PlasticInsert {
     }
 
     fn evaluate(&mut self, _: &mut [TouchedNode]) {
-        self.cycle.land(&self.committed_set_mm);
+        self.cycle.end_increment(&self.committed_set_mm);
     }
 
     fn moved_in_a_cycle_mm(&self) -> f64 {

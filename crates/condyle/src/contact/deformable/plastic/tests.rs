@@ -130,7 +130,7 @@ fn what_is_remembered_goes_through_the_state_to_the_same_bytes() {
     let state = crate::contact::ContactState {
         fields: remembered.field().into_iter().collect(),
     };
-    assert_eq!(PlasticMemory::of(&state), remembered);
+    assert_eq!(PlasticMemory::from_state(&state), remembered);
     // The same load again is elastic: it is what is already there.
     let mut insert = block.plastic(remembered.clone());
     insert.flow(&loads, f64::INFINITY, 0..1, around).unwrap();

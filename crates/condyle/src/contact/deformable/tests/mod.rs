@@ -129,7 +129,7 @@ fn verify_hertz_on_a_half_space() {
             let motion = pressed(depth_mm, x, z);
             let mut contact = plane.contact(0.0);
             let force_n = -contact.respond(&motion).wrench.force.y;
-            let landing = contact.land(&motion);
+            let landing = contact.evaluate(&motion);
             let radius_mm = (covered_mm2(&landing.touched) / PI).sqrt();
             let ratios = [
                 force_n / hertz.force_n,
@@ -193,7 +193,7 @@ fn tangent_is_the_derivative_of_the_wrench() {
     let by_pose = by_pose_differences(1e-6, &mut contact, &motion);
     assert_near(&tangent.by_pose.matrix, &by_pose);
     let by_twist = by_differences(1e-4, |small| {
-        let twist = Twist::of_numbers(&(motion.twist.numbers() + small));
+        let twist = Twist::from_numbers(&(motion.twist.numbers() + small));
         contact
             .respond(&RelativeMotion { twist, ..motion })
             .wrench
@@ -246,7 +246,7 @@ fn the_work_of_the_femur_is_kept_in_the_surface() {
             (last + on_femur).dot(&way) / 2.0
         };
         last = on_femur;
-        touched = contact.land(&motion).touched;
+        touched = contact.evaluate(&motion).touched;
     }
     let energy = elastic_energy(&plane, &touched);
     assert!((work / energy - 1.0).abs() < 2e-3, "{work} {energy}");
@@ -258,7 +258,7 @@ fn what_presses_is_not_above_the_plane_and_does_not_pull() {
     let motion = pressed(0.4, 0.2, 0.3);
     let mut contact = plane.contact(0.0);
     contact.respond(&motion);
-    let touched = contact.land(&motion).touched;
+    let touched = contact.evaluate(&motion).touched;
     let share = |node: u32| &plane.surface.shares[node as usize];
     for (node, position) in plane.surface.positions.iter().enumerate() {
         let deflection = |on: &TouchedNode| {

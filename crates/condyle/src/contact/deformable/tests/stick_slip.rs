@@ -17,7 +17,7 @@ fn shear_modulus_mpa() -> f64 {
 fn sticking<'a>(plane: &'a Plane, state: &ContactState) -> DeformableContact<'a, BruteForce> {
     let along = AlongHalfSpace::under(&plane.surface, shear_modulus_mpa(), POISSON);
     let along = Arc::new(Compliance::new(along));
-    let memory = FrictionMemory::of(state);
+    let memory = FrictionMemory::from_state(state);
     let friction = ElasticFriction::after(memory, MU, &plane.surface, along);
     plane.contact(0.0).with_history(Some(friction))
 }
@@ -35,7 +35,7 @@ fn pressed_ball(plane: &Plane) -> DeformableContact<'_, BruteForce> {
     let mut contact = sticking(plane, &ContactState::default());
     contact.respond(&shifted(0.0));
     contact.accept(&shifted(0.0));
-    contact.land(&shifted(0.0));
+    contact.evaluate(&shifted(0.0));
     contact
 }
 
@@ -43,7 +43,10 @@ fn pressed_ball(plane: &Plane) -> DeformableContact<'_, BruteForce> {
 fn moved_to(contact: &mut DeformableContact<'_, BruteForce>, x: f64) -> (f64, Vec<TouchedNode>) {
     let force = contact.respond(&shifted(x)).wrench.force;
     contact.accept(&shifted(x));
-    (force.x / (-MU * force.y), contact.land(&shifted(x)).touched)
+    (
+        force.x / (-MU * force.y),
+        contact.evaluate(&shifted(x)).touched,
+    )
 }
 
 /// The shift of Cattaneo and Mindlin at which all slides, mm.
