@@ -8,8 +8,6 @@
 //!    [`CurvedMesh`] reads its facets as samples of a curved surface.
 //! 3. **A surface becomes hexahedra.** [`columns`] fills the space below it with columns along y.
 
-mod bounds;
-mod clustered;
 pub mod columns;
 mod curved_mesh;
 pub mod files;
@@ -19,7 +17,7 @@ pub mod repair;
 pub mod triangle;
 mod triangle_mesh;
 
-pub use bounds::bounds;
+pub use crate::triangle_mesh::bounds;
 pub use condyle_fem::Vec3;
 pub use curved_mesh::{CurvedMesh, Foot};
 pub use height_map::height_over;

@@ -1,6 +1,6 @@
 //! One flat triangle: its point closest to another, and where a ray meets it.
 
-use crate::Vec3;
+use super::Vec3;
 
 /// The vector with barycentric coordinates `weights` between those at the corners.
 #[inline]

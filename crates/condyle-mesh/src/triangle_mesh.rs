@@ -1,8 +1,10 @@
-//! A surface of triangles.
+//! A surface of triangles, and the box around points.
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Vec3, bounds::bounds};
+use super::Vec3;
 
 /// A surface of triangles, each anticlockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -108,5 +110,48 @@ impl TriangleMesh {
             .map(|t| t.map(|vertex| vertex + shift));
         self.triangles.extend(triangles);
         self
+    }
+}
+
+/// Lowest and highest coordinate of `points` along each axis; of none, infinity and minus infinity.
+pub fn bounds<'a>(points: impl IntoIterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
+    let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    let wider = |(low, high): (Vec3, Vec3), point: &Vec3| (low.inf(point), high.sup(point));
+    points.into_iter().fold(none, wider)
+}
+
+impl TriangleMesh {
+    /// The mesh with all vertices of a cubic cell put together in their mean; triangles that fall in less
+    /// than three cells are left out.
+    ///
+    /// A surface moves by less than a cell, and a flat one not at all. For pictures: nothing is computed
+    /// from it.
+    pub fn clustered(&self, cell_mm: f64) -> Self {
+        let cell = |vertex: &Vec3| {
+            let place = vertex / cell_mm;
+            [place.x, place.y, place.z].map(|along| along.floor() as i64)
+        };
+        let mut numbers = BTreeMap::new();
+        let mut sums: Vec<(Vec3, f64)> = Vec::new();
+        let mut number_of = Vec::with_capacity(self.vertices.len());
+        for vertex in &self.vertices {
+            let number = *numbers.entry(cell(vertex)).or_insert(sums.len());
+            if number == sums.len() {
+                sums.push((Vec3::zeros(), 0.0));
+            }
+            sums[number].0 += vertex;
+            sums[number].1 += 1.0;
+            number_of.push(number as u32);
+        }
+        let moved = self
+            .triangles
+            .iter()
+            .map(|corners| corners.map(|corner| number_of[corner as usize]));
+        Self {
+            vertices: sums.iter().map(|(sum, count)| sum / *count).collect(),
+            triangles: moved
+                .filter(|[a, b, c]| a != b && b != c && c != a)
+                .collect(),
+        }
     }
 }

@@ -75,10 +75,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_fem::solid",
         ],
     ),
-    ("condyle_mesh::bounds", &[]),
     ("condyle_mesh::triangle", &[]),
-    ("condyle_mesh::triangle_mesh", &["condyle_mesh::bounds"]),
-    ("condyle_mesh::clustered", &["condyle_mesh::triangle_mesh"]),
+    ("condyle_mesh::triangle_mesh", &[]),
     ("condyle_mesh::height_map", &["condyle_mesh::triangle_mesh"]),
     (
         "condyle_mesh::curved_mesh",
@@ -94,11 +92,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     (
         "condyle_mesh::repair",
-        &[
-            "condyle_mesh::bounds",
-            "condyle_mesh::height_map",
-            "condyle_mesh::triangle_mesh",
-        ],
+        &["condyle_mesh::height_map", "condyle_mesh::triangle_mesh"],
     ),
     ("condyle_mesh::files", &[]),
     (
@@ -124,7 +118,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle::spatial",
             "condyle::geometry",
             "condyle_fem",
-            "condyle_mesh::bounds",
+            "condyle_mesh::triangle_mesh::bounds",
         ],
     ),
     // What may touch knows shares of a surface, never a law.

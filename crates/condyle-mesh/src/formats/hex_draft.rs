@@ -1,14 +1,15 @@
-//! A hexahedral mesh as it is being read: labels become numbers from 0, everything is checked.
+//! A hexahedral mesh as its reader builds it, and the checked result with its named surfaces and nodes.
 
-use std::cell::OnceCell;
-use std::collections::{HashMap, HashSet};
-use std::path::Path;
+use std::{
+    cell::OnceCell,
+    collections::{HashMap, HashSet},
+    path::Path,
+};
 
-use crate::Vec3;
 use condyle_fem::{HEX_FACES, HexMesh};
 
 use super::error::{FileLine, MeshFileError};
-use super::hex_file::{HexFile, NamedNodes, NamedSurface};
+use crate::Vec3;
 
 /// Nodes, elements and sets by the labels of the file.
 pub(crate) struct HexDraft<'a> {
@@ -286,4 +287,50 @@ fn without_unused_nodes(full: &HexMesh) -> (HexMesh, Vec<Option<u32>>) {
 fn sorted<T: Ord>(mut quad: [T; 4]) -> [T; 4] {
     quad.sort_unstable();
     quad
+}
+
+/// A hexahedral mesh as a file gives it, with its named surfaces and node sets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HexFile {
+    /// The hexahedra and their nodes, in the file's unit and axes and in its order; nodes that no
+    /// hexahedron uses are left out.
+    pub mesh: HexMesh,
+    /// Named parts of the boundary, in the order of the file.
+    pub surfaces: Vec<NamedSurface>,
+    /// Named sets of nodes, in the order of the file.
+    pub node_sets: Vec<NamedNodes>,
+}
+
+impl HexFile {
+    /// The surface of that name, in whatever case the letters are.
+    pub fn surface(&self, name: &str) -> Option<&NamedSurface> {
+        self.surfaces
+            .iter()
+            .find(|surface| surface.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The node set of that name, in whatever case the letters are.
+    pub fn node_set(&self, name: &str) -> Option<&NamedNodes> {
+        self.node_sets
+            .iter()
+            .find(|set| set.name.eq_ignore_ascii_case(name))
+    }
+}
+
+/// A part of the boundary of a hexahedral mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedSurface {
+    /// Name as written in the file.
+    pub name: String,
+    /// Node numbers from 0, anticlockwise seen from outside.
+    pub quads: Vec<[u32; 4]>,
+}
+
+/// A set of nodes of a hexahedral mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedNodes {
+    /// Name as written in the file.
+    pub name: String,
+    /// Node numbers from 0, rising, each once.
+    pub nodes: Vec<u32>,
 }

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::error::MeshFileError;
-use super::file::{Parser, parser, read_bytes};
-use super::hex_file::HexFile;
+use super::hex_draft::HexFile;
+use super::text::{Parser, parser, read_bytes};
 use crate::files::Files;
 
 /// Every format by the ending of its name.

@@ -4,11 +4,9 @@
 //! and nodes are numbered from 0 in the order of the file, whatever numbers the file uses.
 
 mod error;
-mod file;
 #[cfg(test)]
 mod fixtures;
 mod hex_draft;
-mod hex_file;
 mod hexahedra;
 mod inp;
 mod inp_writer;
@@ -22,15 +20,14 @@ mod stl;
 mod surface;
 mod surface_draft;
 mod text;
-mod vtk_binary;
 mod vtk_xml;
 mod vtp;
 mod vtu;
-mod vtu_triangles;
 mod vtu_write;
 
+pub use self::hex_draft::{HexFile, NamedNodes, NamedSurface};
+pub use self::vtu::parse_vtu_triangles;
 pub use error::{FileLine, MeshFileError};
-pub use hex_file::{HexFile, NamedNodes, NamedSurface};
 pub use hexahedra::read_hexahedra;
 pub use inp_writer::{
     AnalysisStep, Application, InpWriter, PressureOverclosure, Procedure, RigidTriangle,
@@ -42,7 +39,6 @@ pub use pvd::{parse_pvd, pvd_text, pvd_text_of_parts};
 pub use stl::write_stl;
 pub use surface::{parse_surface, read_surface};
 pub use vtu::{VtuFile, parse_vtu_points};
-pub use vtu_triangles::parse_vtu_triangles;
 pub use vtu_write::{Grid, PointArray, PointValues, compact_vtu_bytes, vtu_bytes};
 
 pub use surface::surface_bytes;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use condyle_fem::HexMesh;
 
 use super::error::MeshFileError;
-use super::file::read_bytes;
 use super::pvd::{parse_pvd, pvd_text};
+use super::text::read_bytes;
 use super::vtu::{VtuFile, parse_vtu_points};
 use super::vtu_write::{PointArray, vtu_bytes};
 use crate::files::Disk;

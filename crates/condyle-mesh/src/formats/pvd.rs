@@ -1,13 +1,17 @@
 //! ParaView collections (`.pvd`): a series of files, each at a time.
 
-use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::{
+    fmt::Write as _,
+    path::{Path, PathBuf},
+};
 
 use roxmltree::Document;
 
-use super::error::{FileLine, MeshFileError};
-use super::text;
-use super::vtu_write::escaped;
+use super::{
+    error::{FileLine, MeshFileError},
+    text,
+    vtu_write::escaped,
+};
 
 /// The text of a `.pvd` file: each data set's time and its file relative to the collection.
 ///
@@ -67,8 +71,10 @@ pub fn parse_pvd(path: &Path, bytes: &[u8]) -> Result<Vec<(f64, PathBuf)>, MeshF
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::fixtures::message;
-    use crate::formats::on_disk::{read_pvd, write_pvd};
+    use crate::formats::{
+        fixtures::message,
+        on_disk::{read_pvd, write_pvd},
+    };
 
     #[test]
     fn times_and_files_come_back() {

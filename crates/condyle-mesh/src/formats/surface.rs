@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::TriangleMesh;
 
 use super::error::MeshFileError;
-use super::file::{Parser, parser, read_bytes};
+use super::text::{Parser, parser, read_bytes};
 use crate::files::Files;
 
 /// Every format by the ending of its name.

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use crate::Vec3;
 use condyle_fem::HexMesh;
 
-use super::error::{FileLine, MeshFileError};
-use super::hex_draft::{DraftHex, HexDraft};
-use super::hex_file::HexFile;
-use super::vtk_xml::{DataArray, VtkDocument, VtkSource};
-use super::vtp::cells;
+use super::{
+    error::{FileLine, MeshFileError},
+    hex_draft::{DraftHex, HexDraft, HexFile},
+    vtk_xml::{DataArray, VtkDocument, VtkSource},
+    vtp::cells,
+};
+use crate::{TriangleMesh, Vec3};
 
 const HEXAHEDRON: i64 = 12;
 const QUAD: i64 = 9;
@@ -252,11 +253,47 @@ fn kind_in_words(kind: i64) -> String {
     format!("{kind} ({name})")
 }
 
+/// A `.vtu` of triangles, such as the `femur.vtu` of a run, from the bytes of the file called `path`.
+///
+/// # Errors
+/// Those of the format, and other cells than triangles.
+pub fn parse_vtu_triangles(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
+    let source = VtkSource::new(bytes);
+    let document = VtkDocument::open(path, &source, "UnstructuredGrid")?;
+    let piece = document.piece()?;
+    let points = document.point_array(piece)?;
+    let vertices: Vec<Vec3> = points.points().map(Vec3::from).collect();
+    let cells = cells(path, &document.group(piece, "Cells")?)?;
+    let triangle = |(line, corners): &(usize, Vec<i64>)| {
+        triangle_of(corners, vertices.len()).ok_or_else(|| {
+            let what = "a cell is no triangle of points of the file".to_owned();
+            FileLine::line(path, *line).error(what)
+        })
+    };
+    let triangles: Result<_, _> = cells.iter().map(triangle).collect();
+    Ok(TriangleMesh {
+        triangles: triangles?,
+        vertices,
+    })
+}
+
+fn triangle_of(corners: &[i64], vertices: usize) -> Option<[u32; 3]> {
+    let number = |&corner: &i64| {
+        let number = u32::try_from(corner).ok();
+        number.filter(|&number| (number as usize) < vertices)
+    };
+    let numbers: Option<Vec<u32>> = corners.iter().map(number).collect();
+    numbers?.try_into().ok()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::fixtures::{message, two_cubes};
-    use crate::formats::vtu_write::{PointArray, PointValues, vtu_bytes};
+    use crate::formats::{
+        Grid, compact_vtu_bytes,
+        fixtures::{message, two_cubes},
+        vtu_write::{PointArray, PointValues, vtu_bytes},
+    };
 
     const TEXT: &str = r#"<VTKFile type="UnstructuredGrid" version="0.1">
 <UnstructuredGrid><Piece NumberOfPoints="13" NumberOfCells="4">
@@ -359,5 +396,20 @@ mod tests {
         let expected =
             "a.vtu:12: cell 3 names vertex 77, but the file numbers its vertices from 0 to 12";
         assert_eq!(said, expected);
+    }
+
+    #[test]
+    fn triangles_come_back() {
+        let nodes = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]].map(Vec3::from);
+        let triangles = [[0, 2, 1], [0, 1, 3]];
+        let bytes = compact_vtu_bytes(&Grid::triangles(&nodes, &triangles), &[]).unwrap();
+        let mesh = parse_vtu_triangles(Path::new("a.vtu"), &bytes).unwrap();
+        assert_eq!(
+            (mesh.vertices, mesh.triangles),
+            (nodes.into(), triangles.into())
+        );
+        let quads = compact_vtu_bytes(&Grid::quads(&nodes, &[[0, 1, 2, 3]]), &[]).unwrap();
+        let said = message(parse_vtu_triangles(Path::new("a.vtu"), &quads));
+        assert!(said.contains("a cell is no triangle"), "{said}");
     }
 }

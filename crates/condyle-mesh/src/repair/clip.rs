@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{
     edges::{by_edge, edge_uses},
-    fill::fill,
-    joints::join_filled,
+    holes::{fill, join_filled},
 };
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 

@@ -1,8 +1,11 @@
-//! What is wrong with a triangle mesh: kinds, how many, and where.
+//! Defects of a triangle mesh: kinds, counts and places, and those that matter because another body can touch there.
+
+use std::cell::OnceCell;
 
 use serde::{Deserialize, Serialize};
 
-use crate::Vec3;
+use super::touching::{TouchMap, Touching};
+use crate::{Vec3, triangle_mesh::TriangleMesh};
 
 /// What can be wrong with a triangle mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -129,6 +132,81 @@ pub(super) fn add(defects: &mut Vec<Defect>, kind: DefectKind, at_mm: Vec3) {
     defect.count += 1;
     if defect.places_mm.len() < Defect::MAX_PLACES {
         defect.places_mm.push(at_mm);
+    }
+}
+
+/// Why a triangle mesh is not a shell.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RepairError {
+    /// There is no triangle with an area.
+    #[error("the mesh has no triangle with an area; check the export")]
+    Empty,
+    /// Defects where bodies can touch.
+    #[error(
+        "the surface is not sound where bodies can touch: {}; repair the mesh there",
+        listed(defects)
+    )]
+    Defects {
+        /// All of them, by kind.
+        defects: Vec<Defect>,
+    },
+}
+
+/// All kinds, with twenty places between them.
+fn listed(defects: &[Defect]) -> String {
+    let mut left = Defect::MAX_PLACES;
+    let mut said = Vec::new();
+    for (index, defect) in defects.iter().enumerate() {
+        let to_come = defects.len() - index - 1;
+        // Every kind shows one place at least.
+        let most = left.saturating_sub(to_come).max(1);
+        said.push(defect.listed(most));
+        left = left.saturating_sub(defect.places_mm.len().min(most));
+    }
+    said.join("; ")
+}
+
+/// Defects that were found, those that matter apart.
+pub(super) struct Judge {
+    touching: Touching,
+    /// Looked at when there is a defect.
+    map: OnceCell<TouchMap>,
+    pub(super) that_matter: Vec<Defect>,
+    pub(super) others: Vec<Defect>,
+}
+
+impl Judge {
+    pub(super) fn new(touching: Touching, repaired: Vec<Defect>) -> Self {
+        Self {
+            touching,
+            map: OnceCell::new(),
+            that_matter: Vec::new(),
+            others: repaired,
+        }
+    }
+
+    /// Counts a defect that reaches these places; says whether it matters.
+    pub(super) fn judge(
+        &mut self,
+        mesh: &TriangleMesh,
+        kind: DefectKind,
+        at_mm: Vec3,
+        reaches: &[Vec3],
+    ) -> bool {
+        let map = self.map.get_or_init(|| TouchMap::new(mesh, self.touching));
+        let matters = reaches.iter().any(|place| map.contains(place));
+        let defects = if matters {
+            &mut self.that_matter
+        } else {
+            &mut self.others
+        };
+        add(defects, kind, at_mm);
+        matters
+    }
+
+    /// Counts a defect that matters wherever it is.
+    pub(super) fn refuse(&mut self, kind: DefectKind, at_mm: Vec3) {
+        add(&mut self.that_matter, kind, at_mm);
     }
 }
 

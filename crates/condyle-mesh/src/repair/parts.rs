@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{orientation::Piece, weld::drop_unused};
+use super::{edges::Piece, weld::drop_unused};
 use crate::{Vec3, height_map::height_over, triangle_mesh::TriangleMesh};
 
 /// Distance between the lines of sight from above, mm ...

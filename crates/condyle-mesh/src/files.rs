@@ -1,0 +1,180 @@
+//! Files behind an interface: on a disk, or as bytes in memory, where a browser or another program has put them.
+
+#[cfg(feature = "file-system")]
+use std::fs;
+use std::{
+    collections::BTreeMap,
+    fmt::Debug,
+    io,
+    path::{Component, Path, PathBuf},
+};
+
+/// Files that can be found and read.
+pub trait Files: Debug + Send + Sync {
+    /// The bytes of the file at `path`.
+    ///
+    /// # Errors
+    /// A file that is not there ([`io::ErrorKind::NotFound`]) or cannot be read.
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+
+    /// The path of the file `written`, counted from `folder`, under which it can be read from
+    /// anywhere.
+    ///
+    /// # Errors
+    /// The path that was looked at, where there is no such file.
+    fn find(&self, written: &str, folder: &Path) -> Result<PathBuf, PathBuf>;
+}
+
+/// Files in memory, each a path and its bytes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct MemoryFiles {
+    files: BTreeMap<PathBuf, Vec<u8>>,
+}
+
+impl MemoryFiles {
+    /// The same with a file at `path`, in place of one that was there.
+    pub fn with(mut self, path: impl AsRef<Path>, bytes: impl Into<Vec<u8>>) -> Self {
+        self.files.insert(plain(path.as_ref()), bytes.into());
+        self
+    }
+}
+
+impl Files for MemoryFiles {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let found = self.files.get(&plain(path));
+        found.cloned().ok_or(io::ErrorKind::NotFound.into())
+    }
+
+    fn find(&self, written: &str, folder: &Path) -> Result<PathBuf, PathBuf> {
+        let looked_at = folder.join(written);
+        let path = plain(&looked_at);
+        if self.files.contains_key(&path) {
+            Ok(path)
+        } else {
+            Err(looked_at)
+        }
+    }
+}
+
+/// A path without `.`, and without `..` but at its start.
+fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if plain.file_name().is_some() => {
+                plain.pop();
+            }
+            _ => plain.push(part),
+        }
+    }
+    plain
+}
+
+#[cfg(feature = "file-system")]
+/// Files on the disk; what is found is absolute, in a folder without `..` or links. Its own name is
+/// the one written, whatever that links to, since a name says of what format a file is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Disk;
+
+#[cfg(feature = "file-system")]
+impl Files for Disk {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        fs::read(path)
+    }
+
+    fn find(&self, written: &str, folder: &Path) -> Result<PathBuf, PathBuf> {
+        let path = folder.join(written);
+        match in_true_folder(&path) {
+            Some(found) if found.is_file() => Ok(found),
+            Some(_) | None => Err(path),
+        }
+    }
+}
+
+#[cfg(feature = "file-system")]
+/// The file of that name in the folder that its path leads to.
+fn in_true_folder(path: &Path) -> Option<PathBuf> {
+    let folder = match path.parent()? {
+        here if here.as_os_str().is_empty() => Path::new("."),
+        folder => folder,
+    };
+    Some(folder.canonicalize().ok()?.join(path.file_name()?))
+}
+
+#[cfg(all(test, unix, feature = "file-system"))]
+mod disk_tests {
+    use std::os::unix::fs::symlink;
+
+    use super::*;
+
+    #[test]
+    fn a_link_keeps_its_own_name_in_the_true_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().canonicalize().unwrap();
+        fs::create_dir(root.join("store")).unwrap();
+        fs::write(root.join("store/0a1b2c"), "solid").unwrap();
+        symlink("store/0a1b2c", root.join("linked.stl")).unwrap();
+        symlink("store", root.join("meshes")).unwrap();
+        symlink("nowhere", root.join("broken.stl")).unwrap();
+        let found = Disk.find("store/../linked.stl", &root).unwrap();
+        assert_eq!(found, root.join("linked.stl"));
+        assert_eq!(Disk.read(&found).unwrap(), b"solid");
+        let inside = Disk.find("meshes/0a1b2c", &root).unwrap();
+        assert_eq!(inside, root.join("store/0a1b2c"));
+        for none in ["broken.stl", "store", ".."] {
+            assert_eq!(Disk.find(none, &root), Err(root.join(none)));
+        }
+    }
+}
+
+#[cfg(feature = "file-system")]
+/// The path of `file` counted from `folder`, both absolute and without `..` or links; none where
+/// they have nothing in common, as on two drives.
+pub fn path_from(folder: &Path, file: &Path) -> Option<PathBuf> {
+    let both = folder.components().zip(file.components());
+    let common = both.take_while(|(one, other)| one == other).count();
+    let up = folder
+        .components()
+        .skip(common)
+        .map(|_| Component::ParentDir);
+    let down = file.components().skip(common);
+    (common > 0).then(|| up.chain(down).collect())
+}
+
+#[cfg(all(test, unix, feature = "file-system"))]
+mod path_tests {
+    use super::*;
+
+    #[test]
+    fn up_to_what_is_common_and_down_again() {
+        let from = |folder, file| path_from(Path::new(folder), Path::new(file));
+        assert_eq!(from("/a/b", "/a/b/c.stl"), Some("c.stl".into()));
+        assert_eq!(from("/a/b/c", "/a/d/e.stl"), Some("../../d/e.stl".into()));
+        assert_eq!(from("/a", "/b.stl"), Some("../b.stl".into()));
+        assert_eq!(from("a", "b.stl"), None);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_found_from_its_folder() {
+        let files = MemoryFiles::default().with("./knees/femur.stl", *b"solid");
+        let found = files.find("../knees/femur.stl", Path::new("cases"));
+        let found = found.expect("it is there");
+        assert_eq!(files.read(&found).expect("it is there"), b"solid");
+        assert_eq!(found, Path::new("knees/femur.stl"));
+    }
+
+    #[test]
+    fn a_file_that_is_not_there_says_where_it_was_looked_for() {
+        let files = MemoryFiles::default();
+        let looked_at = files.find("a.stl", Path::new("cases"));
+        assert_eq!(looked_at, Err(PathBuf::from("cases/a.stl")));
+        let error = files.read(Path::new("a.stl")).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::NotFound);
+    }
+}
