@@ -1,6 +1,11 @@
-//! A mechanism as one table: its joints, the regions of its surface, and what files tell of a cycle.
+//! A mechanism as a table: its joints, the regions of its surface, and the columns of a cycle.
 
-use super::{Channel, CycleRow, JointDescription, JointIndex};
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Channel, JointDescription, JointIndex, JointKind};
+use crate::contact::{ContactResult, MAX_REGIONS};
 
 /// A region of the articulating surface that loads are told apart by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,5 +111,86 @@ impl Mechanism {
             CycleQuantity::PeakPressure => row.peak_pressure_mpa,
             CycleQuantity::RegionForce(region) => row.region_force_n[region],
         }
+    }
+}
+
+/// The machine at the end of an increment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CycleRow {
+    /// Place in the cycle, %.
+    pub percent: f64,
+    /// Positions, mm or rad, in the order of the chain.
+    pub positions: [f64; 6],
+    /// Load pressing the bodies together along y, as the contact carries it, N.
+    pub axial_force_n: f64,
+    /// Area in contact, mm2.
+    pub contact_area_mm2: f64,
+    /// Highest pressure anywhere, at a node or between nodes, MPa.
+    pub peak_pressure_mpa: f64,
+    /// Part of the axial force on every region of the surface, N, in the order of the mechanism's regions.
+    pub region_force_n: [f64; MAX_REGIONS],
+}
+
+impl CycleRow {
+    /// The row at `percent` of the cycle, where the joints are at `positions` and the contact has landed.
+    pub(super) fn new(percent: f64, positions: [f64; 6], landing: &ContactResult) -> Self {
+        let (mut region_force_n, mut contact_area_mm2) = ([0.0; MAX_REGIONS], 0.0);
+        for node in &landing.touched {
+            region_force_n[usize::from(node.region)] -= node.force_n.y;
+            contact_area_mm2 += node.covered_mm2;
+        }
+        Self {
+            percent,
+            positions,
+            axial_force_n: region_force_n.iter().sum(),
+            contact_area_mm2,
+            peak_pressure_mpa: landing.peak_pressure_mpa,
+            region_force_n,
+        }
+    }
+}
+
+/// Positions of all joints, in the unit of files: translations first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Readings {
+    values: Vec<(JointDescription, f64)>,
+}
+
+impl Readings {
+    /// The positions (mm and rad, in the order of the chain) of a mechanism's joints.
+    pub fn new(mechanism: &Mechanism, positions: &[f64; 6]) -> Self {
+        let in_files = mechanism.in_files.iter();
+        let mut values: Vec<_> = in_files
+            .map(|&index| (*mechanism.joint(index), index.of(positions)))
+            .collect();
+        values.sort_by_key(|(joint, _)| joint.kind() == JointKind::Rotation);
+        Self { values }
+    }
+}
+
+impl fmt::Display for Readings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (joint, position)) in self.values.iter().enumerate() {
+            let between = if i == 0 { "" } else { ", " };
+            let (symbol, decimals, kind) = (joint.symbol, joint.decimals, joint.kind());
+            let value = kind.in_files(*position);
+            write!(f, "{between}{symbol} {value:.decimals$} {}", kind.unit())?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::knee::KNEE;
+
+    #[test]
+    fn readings_of_a_knee_tell_shifts_then_turns() {
+        let positions = [0.1, -0.2, 1.0, -2.5, 0.25, 1.0];
+        assert_eq!(
+            Readings::new(&KNEE, &positions).to_string(),
+            "AP -2.500 mm, ML 1.000 mm, IS 0.250 mm, IE -11.459 deg, VV 5.730 deg, flexion 57.30 deg"
+        );
     }
 }

@@ -6,10 +6,9 @@ use super::{
     Chain, Cycle, CycleError, CycleRow, Integration, Machine, MachineState, Mechanism,
     SolverCounters, TimeSettings, WarmStart,
     balance::Balance,
+    cycle::Repetition,
     explicit::Explicit,
-    implicit::{Implicit, NotConverged, Stepped},
-    repetition::Repetition,
-    step_error::step_error_mm,
+    implicit::{Implicit, NotConverged, Stepped, step_error_mm},
 };
 use crate::{
     contact::{ContactModel, CycleHistory, Moment, NotBorne, Record, Settled, TouchedNode},

@@ -1,12 +1,72 @@
 //! A quantity over the gait cycle.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
-use super::{
-    Knot, WaveformError,
-    knot::{check_no_gap, checked, span_percent},
-    spline::{cubic, spline_bends},
-};
+use thiserror::Error;
+
+/// Samples of a spline may be this far apart, % of the cycle: beyond it a gap is likelier than a
+/// coarse recording.
+const LONGEST_SAMPLE_GAP_PERCENT: f64 = 10.0;
+
+/// A value at a place in the cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knot {
+    /// Place in the cycle, 0 to 100 %.
+    pub percent: f64,
+    /// Value there, in the unit of the quantity.
+    pub value: f64,
+}
+
+/// Length of the piece that starts at knot `a`, round the seam for the last.
+pub(super) fn span_percent(knots: &[Knot], a: usize) -> f64 {
+    if a + 1 < knots.len() {
+        knots[a + 1].percent - knots[a].percent
+    } else {
+        knots[0].percent + 100.0 - knots[a].percent
+    }
+}
+
+/// The knots, if they are finite and each comes after the one before, within the cycle.
+pub(super) fn checked(knots: Vec<Knot>) -> Result<Vec<Knot>, WaveformError> {
+    if knots.is_empty() {
+        return Err(WaveformError::Empty);
+    }
+    for (index, knot) in knots.iter().enumerate() {
+        let percent = knot.percent;
+        if !(percent.is_finite() && knot.value.is_finite()) {
+            return Err(WaveformError::NotFinite { index });
+        }
+        if !(0.0..=100.0).contains(&percent) {
+            return Err(WaveformError::OutsideCycle { index, percent });
+        }
+        if index > 0 && percent <= knots[index - 1].percent {
+            let before = knots[index - 1].percent;
+            return Err(WaveformError::NotIncreasing {
+                index,
+                percent,
+                before,
+            });
+        }
+    }
+    Ok(knots)
+}
+
+/// Refuses knots too far apart to be samples.
+pub(super) fn check_no_gap(knots: &[Knot]) -> Result<(), WaveformError> {
+    let limit = LONGEST_SAMPLE_GAP_PERCENT;
+    for (a, knot) in knots.iter().enumerate() {
+        let span = span_percent(knots, a);
+        if span > limit && knots.len() > 1 {
+            let from = knot.percent;
+            return Err(WaveformError::Gap {
+                from,
+                to: from + span,
+                limit,
+            });
+        }
+    }
+    Ok(())
+}
 
 /// How a waveform goes from knot to knot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,10 +195,145 @@ fn half_cosine(ya: f64, yb: f64, along: f64) -> (f64, f64) {
     (ya + rise * (1.0 - cosine) / 2.0, rise * PI * sine / 2.0)
 }
 
+/// Second derivatives at the knots of the periodic cubic spline.
+///
+/// The system is cyclic, diagonally dominant and small; Gauss-Seidel contracts by at least a
+/// half a sweep, so it is solved to round-off in a few dozen sweeps.
+pub(super) fn spline_bends(knots: &[Knot]) -> Vec<f64> {
+    let n = knots.len();
+    let mut bends = vec![0.0; n];
+    if n < 3 {
+        return bends;
+    }
+    let slope = |a: usize| (knots[(a + 1) % n].value - knots[a].value) / span_percent(knots, a);
+    for _ in 0..100 {
+        for i in 0..n {
+            let (before, after) = ((i + n - 1) % n, (i + 1) % n);
+            let (left, right) = (span_percent(knots, before), span_percent(knots, i));
+            let load = 6.0 * (slope(i) - slope(before));
+            bends[i] =
+                (load - left * bends[before] - right * bends[after]) / (2.0 * (left + right));
+        }
+    }
+    bends
+}
+
+/// A spline piece from its end values and its end bends (second derivative times span^2 / 6).
+pub(super) fn cubic(ya: f64, yb: f64, bend_a: f64, bend_b: f64, along: f64) -> (f64, f64) {
+    let (u, v) = (along, 1.0 - along);
+    let value = v * ya + u * yb + (v * v * v - v) * bend_a + (u * u * u - u) * bend_b;
+    let slope = yb - ya - (3.0 * v * v - 1.0) * bend_a + (3.0 * u * u - 1.0) * bend_b;
+    (value, slope)
+}
+
+/// Samples whose difference between 0 and 100 % is spread evenly over the cycle, so that they
+/// repeat without a step; the mean stays.
+///
+/// Measured cycles seldom end quite where they began.
+pub fn without_drift(samples: &[Knot]) -> Vec<Knot> {
+    let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
+        return Vec::new();
+    };
+    if last.percent - first.percent < 100.0 {
+        return samples.to_vec();
+    }
+    let drift = last.value - first.value;
+    let level = |knot: &Knot| Knot {
+        percent: knot.percent,
+        value: knot.value - drift * (knot.percent / 100.0 - 0.5),
+    };
+    let mut levelled: Vec<Knot> = samples.iter().map(level).collect();
+    let seam = levelled[0].value;
+    if let Some(end) = levelled.last_mut() {
+        end.value = seam;
+    }
+    levelled
+}
+
+/// The mean and the first `harmonics` Fourier terms of a periodic waveform, sampled every percent.
+pub fn low_passed(waveform: &Waveform, harmonics: usize) -> Vec<Knot> {
+    const SAMPLES: usize = 1000;
+    let sample = |k: usize| waveform.at(k as f64 / SAMPLES as f64).0;
+    let values: Vec<f64> = (0..SAMPLES).map(sample).collect();
+    let project = |order: usize, wave: fn(f64) -> f64| {
+        let weighted = |(k, y): (usize, &f64)| y * wave(TAU * (order * k) as f64 / SAMPLES as f64);
+        values.iter().enumerate().map(weighted).sum::<f64>() / SAMPLES as f64
+    };
+    let terms: Vec<(f64, f64)> = (0..=harmonics)
+        .map(|order| (project(order, f64::cos), project(order, f64::sin)))
+        .collect();
+    let value = |percent: f64| {
+        let term = |(order, (c, s)): (usize, &(f64, f64))| {
+            let (sine, cosine) = (TAU * order as f64 * percent / 100.0).sin_cos();
+            (c * cosine + s * sine) * if order == 0 { 1.0 } else { 2.0 }
+        };
+        terms.iter().enumerate().map(term).sum()
+    };
+    (0..100)
+        .map(f64::from)
+        .map(|percent| Knot {
+            percent,
+            value: value(percent),
+        })
+        .collect()
+}
+
+/// Why knots make no waveform.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum WaveformError {
+    /// No knot at all.
+    #[error("the waveform has no points; give at least one")]
+    Empty,
+    /// A value or a place that is NaN or infinite.
+    #[error("point {index} of the waveform is not a finite number; correct or remove it")]
+    NotFinite {
+        /// Which point, from 0.
+        index: usize,
+    },
+    /// A place outside the cycle.
+    #[error("point {index} of the waveform is at {percent} % of the cycle; use 0 to 100")]
+    OutsideCycle {
+        /// Which point, from 0.
+        index: usize,
+        /// Its place.
+        percent: f64,
+    },
+    /// A place not after the one before.
+    #[error(
+        "point {index} of the waveform, at {percent} %, does not come after {before} %; sort the points and keep one for each place"
+    )]
+    NotIncreasing {
+        /// Which point, from 0.
+        index: usize,
+        /// Its place.
+        percent: f64,
+        /// The place of the point before it.
+        before: f64,
+    },
+    /// Samples too far apart.
+    #[error(
+        "the waveform has a gap from {from} % to {to} % of the cycle; add points between, at most {limit} % apart"
+    )]
+    Gap {
+        /// Start of the gap, %.
+        from: f64,
+        /// End of the gap, %.
+        to: f64,
+        /// Longest distance allowed, %.
+        limit: f64,
+    },
+    /// Different values at the two ends.
+    #[error("the waveform steps at the seam: {first} at 0 % but {last} at 100 %; make them equal")]
+    Seam {
+        /// Value at 0 %.
+        first: f64,
+        /// Value at 100 %.
+        last: f64,
+    },
+}
+
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
-
     use super::*;
 
     fn knots(points: &[(f64, f64)]) -> Vec<Knot> {
@@ -215,5 +410,27 @@ mod tests {
         assert!(spline(&[(5.0, 1.0), (5.0, 2.0)]).contains("does not come after 5 %"));
         assert!(spline(&[(0.0, 1.0), (40.0, 1.0), (100.0, 1.0)]).contains("gap from 0 % to 40 %"));
         assert!(spline(&[(0.0, 1.0), (100.0, 2.0)]).contains("steps at the seam"));
+    }
+
+    #[test]
+    fn low_pass_keeps_a_low_harmonic_and_drops_a_high_one() {
+        let noisy = |knot: Knot| Knot {
+            value: knot.value + (TAU * 20.0 * knot.percent / 100.0).sin(),
+            ..knot
+        };
+        let samples = sine(200).into_iter().map(noisy).collect();
+        let wave = Waveform::new(samples, Interpolation::Spline).unwrap();
+        for knot in low_passed(&wave, 8) {
+            assert!((knot.value - (TAU * knot.percent / 100.0).sin()).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn drift_is_spread_over_the_cycle() {
+        let level = without_drift(&knots(&[(0.0, 1.0), (50.0, 4.0), (100.0, 3.0)]));
+        assert_eq!(
+            level.iter().map(|k| k.value).collect::<Vec<_>>(),
+            [2.0, 4.0, 2.0]
+        );
     }
 }
