@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let force_n = -contact.respond(&motion).wrench.force.y;
 
     // 4. The nodes in contact, with the peak between nodes as well.
-    let result = contact.land(&motion);
+    let result = contact.evaluate(&motion);
     let area_mm2: f64 = result.touched.iter().map(|node| node.covered_mm2).sum();
     println!(
         "force {force_n:.1} N, peak {:.2} MPa, area {area_mm2:.2} mm2",
