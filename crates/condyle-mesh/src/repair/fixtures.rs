@@ -58,6 +58,10 @@ pub(crate) fn fine_block(size: Vec3, edge: f64) -> TriangleMesh {
     mesh
 }
 
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "tests join values that they make on the spot"
+)]
 pub(crate) fn joined(a: TriangleMesh, b: TriangleMesh) -> TriangleMesh {
     a.joined(&b)
 }

@@ -123,7 +123,7 @@ impl MeshFemur {
     fn axis_mm(&self, mesh: &TriangleMesh) -> (f64, f64) {
         match self.flexion_axis_mm {
             Some([x, y]) => (x, y),
-            None => posterior_arc_centre_mm(&mesh),
+            None => posterior_arc_centre_mm(mesh),
         }
     }
 

@@ -365,7 +365,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         let histories = self.histories.into_iter();
         state
             .fields
-            .extend(histories.flat_map(|history| history.into_fields()));
+            .extend(histories.flat_map(LoadHistory::into_fields));
         ContactMemory {
             state,
             cache: ContactCache::new(self.nearby.into_cache()),
