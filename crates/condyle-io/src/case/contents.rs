@@ -1,5 +1,7 @@
 //! All that a case says: the one list of its tables, from which it is read, written and described.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use condyle::wear::WEAR_LAWS;
@@ -61,7 +63,11 @@ macro_rules! tables {
             Some(Case {
                 heading: heading?,
                 $( $field: $field?, )+
-                origin: Origin::of(log.source()),
+                origin: Origin {
+                    source: Arc::clone(log.source()),
+                    places: root.places(),
+                    left_out: Vec::new(),
+                },
             })
         }
 
@@ -141,24 +147,17 @@ impl Case {
     }
 }
 
-/// The text of a case file, and what of it was left out.
+/// The text of a case file, the places of its keys, and what of it was left out.
 ///
 /// All origins are equal: two cases are the same if they say the same, wherever they stand.
 #[derive(Clone, Debug)]
 pub(super) struct Origin {
     /// The text.
     pub(super) source: Source,
+    /// The places of its keys and tables, by dotted path: a failed build points to them.
+    pub(super) places: BTreeMap<String, Range<usize>>,
     /// Constants that a law chosen from outside does not have.
     pub(super) left_out: Vec<LeftOutConstant>,
-}
-
-impl Origin {
-    pub(super) fn of(source: &Source) -> Self {
-        Self {
-            source: Arc::clone(source),
-            left_out: Vec::new(),
-        }
-    }
 }
 
 impl PartialEq for Origin {

@@ -1,22 +1,20 @@
-//! What in a case is behind a failure of its bodies, so that the message points to the key.
+//! The key of a case that is behind a failed build, so that the message points to it.
 
+use std::collections::BTreeMap;
+use std::iter;
 use std::ops::Range;
-use std::path::Path;
-use std::sync::Arc;
 
 use condyle::evolve::PlacementError;
 use condyle::geometry::InsertError;
 use condyle::machine::knee;
 use condyle_mesh::columns::ColumnError;
 use thiserror::Error;
-use toml::de::DeTable;
 
 use super::build::{Body, BuildError, BuildWarning};
 use super::contents::Case;
 use super::machine::DriveWord;
 use super::run_options::Limits;
-use crate::config::{Base, DataFile, Log, Problem, Problems, Reason, Section, Source};
-use crate::files::{Files, MemoryFiles};
+use crate::config::{DataFile, Problem, Problems, Reason};
 
 /// Values that are good one by one and make no wear test together.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -55,7 +53,7 @@ const SOFT_MPA: f64 = 100.0;
 impl Case {
     /// A failed build, at the key of this case that is behind it.
     pub fn at_its_key(&self, error: &BuildError) -> Problems {
-        self.errors_at(&[(self.culprit_of_build(error), error.to_string())])
+        self.errors_at(&[(self.location_of_build(error), error.to_string())])
     }
 
     /// A failed placement of this case's bodies, at the key that is behind it, after axes that `warnings` say are
@@ -65,8 +63,8 @@ impl Case {
         error: &PlacementError,
         warnings: &[BuildWarning],
     ) -> Problems {
-        let culprit = match error {
-            PlacementError::DeepOverlap { .. } => self.culprit_of_overlap(),
+        let location = match error {
+            PlacementError::DeepOverlap { .. } => self.location_of_overlap(),
             PlacementError::Unsteady { .. } => FINENESS,
             _ => START,
         };
@@ -76,7 +74,7 @@ impl Case {
                 errors.push((axes_of(wrong.body), warning.to_string()));
             }
         }
-        errors.push((culprit, error.to_string()));
+        errors.push((location, error.to_string()));
         self.errors_at(&errors)
     }
 
@@ -94,7 +92,7 @@ impl Case {
         self.errors_at(&[(if is_given { limits } else { insert }, message)])
     }
 
-    fn culprit_of_build(&self, error: &BuildError) -> KeyLocation {
+    fn location_of_build(&self, error: &BuildError) -> KeyLocation {
         let keys: &[&str] = match error {
             BuildError::RestingBeside { .. } | BuildError::BacksideNotFlat { .. } => {
                 return KeyLocation {
@@ -145,7 +143,7 @@ impl Case {
         KeyLocation { table, keys }
     }
 
-    fn culprit_of_overlap(&self) -> KeyLocation {
+    fn location_of_overlap(&self) -> KeyLocation {
         if self.machine.freedoms.get(knee::IS).drive() == DriveWord::Locked {
             KeyLocation {
                 table: "machine.freedoms.is",
@@ -163,11 +161,26 @@ impl Case {
 
     fn errors_at(&self, errors: &[(KeyLocation, String)]) -> Problems {
         let source = &self.origin.source;
-        let problem = |(culprit, message): &(KeyLocation, String)| {
+        let problem = |(location, message): &(KeyLocation, String)| {
             let message = message.clone();
-            Problem::at(source, span_of(source, culprit), CaseConflict { message })
+            Problem::at(
+                source,
+                location.span(&self.origin.places),
+                CaseConflict { message },
+            )
         };
         Problems::new(errors.iter().map(problem).collect(), source)
+    }
+}
+
+impl KeyLocation {
+    /// The value of its first key that is given, or else the name of its table, or of the nearest table around that.
+    fn span(&self, places: &BTreeMap<String, Range<usize>>) -> Range<usize> {
+        let keys = self.keys.iter().map(|key| format!("{}.{key}", self.table));
+        let tables = iter::successors(Some(self.table), |table| Some(table.rsplit_once('.')?.0));
+        let mut names = keys.chain(tables.map(str::to_owned));
+        let place = names.find_map(|name| places.get(&name).cloned());
+        place.unwrap_or_default()
     }
 }
 
@@ -179,17 +192,4 @@ fn axes_of(body: Body) -> KeyLocation {
     };
     let keys = &["axes", "file"];
     KeyLocation { table, keys }
-}
-
-/// Where the first key of `culprit` that is given has its value, or else the name of the table.
-fn span_of(source: &Source, culprit: &KeyLocation) -> Range<usize> {
-    let (document, _) = DeTable::parse_recoverable(source.inner());
-    let files: Arc<dyn Files> = Arc::new(MemoryFiles::default());
-    let base = Base::of(&files, Path::new(""));
-    let mut unheard = Log::new(source, base);
-    let root = Section::root(document.get_ref());
-    let tables = culprit.table.split('.');
-    let section = tables.fold(root, |above, name| above.table(name, &mut unheard));
-    let given = culprit.keys.iter().find(|key| section.value(key).is_some());
-    given.map_or(section.span(), |key| section.value_span(key))
 }

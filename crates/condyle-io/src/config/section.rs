@@ -1,5 +1,6 @@
 //! Tables of a file: finding keys, reporting those that are not known.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -124,6 +125,18 @@ impl<'a> Section<'a> {
     /// The value of `name`.
     pub(crate) fn value(&self, name: &str) -> Option<&'a Spanned<DeValue<'a>>> {
         self.entry(name).map(|(_, value)| value)
+    }
+
+    /// The places of all keys and tables in this one, by dotted path: of a key its value, of a table its name.
+    pub(crate) fn places(&self) -> BTreeMap<String, Range<usize>> {
+        let mut places = BTreeMap::new();
+        for (key, value) in self.table.into_iter().flatten() {
+            let part = self.part(key.get_ref());
+            let is_table = part.is_given();
+            places.extend(part.places());
+            places.insert(part.path, if is_table { key.span() } else { value.span() });
+        }
+        places
     }
 
     /// The word that `name` has, if it has one.

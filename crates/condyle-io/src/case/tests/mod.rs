@@ -3,10 +3,10 @@
 mod activities;
 mod errors;
 mod files;
-mod lie;
 mod material;
 mod memory;
 mod messages;
+mod orientation_check;
 mod round_trip;
 mod wear;
 
