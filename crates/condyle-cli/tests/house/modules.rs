@@ -227,6 +227,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "condyle_report::page",
         &[
+            "condyle_io::results",
             "condyle_report::figure",
             "condyle_report::number",
             "condyle_report::results",

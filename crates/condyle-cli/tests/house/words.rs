@@ -43,7 +43,11 @@ fn no_file_names_a_folder_of_one_machine() {
 #[test]
 fn no_file_is_larger_than_a_reader_can_use() {
     const LARGEST_BYTES: usize = 512 * 1024;
-    for file in text_files() {
+    // A CAD file is read by programs.
+    for file in text_files()
+        .iter()
+        .filter(|file| !file.path.ends_with(".step"))
+    {
         let size = file.text.len();
         assert!(size <= LARGEST_BYTES, "{}: {size} bytes", file.path);
     }

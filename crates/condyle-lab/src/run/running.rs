@@ -118,7 +118,6 @@ impl<'a> Run<'a> {
 
     /// Updates until all cycles are done, then the march and what it found, of which no error is estimated and nothing
     /// doubted; `watch` sees the march before the first update and after each.
-
     pub fn marched(mut self, watch: &mut dyn FnMut(&March)) -> Result<(March, Summary), RunError> {
         watch(&self.march);
         let mut keep = |run: &Run<'_>| {

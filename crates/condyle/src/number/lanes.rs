@@ -5,7 +5,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 use num_traits::{One, Zero};
 use wide::{f32x8, f64x4};
 
-use super::Number;
+use super::real::Number;
 use crate::{Vec3, Vector};
 
 /// The number of nodes side by side.
