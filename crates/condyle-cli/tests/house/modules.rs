@@ -162,6 +162,18 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_fem",
         ],
     ),
+    // The names of all of them that a wear test is put together from.
+    (
+        "condyle::prelude",
+        &[
+            "condyle::contact",
+            "condyle::evolve",
+            "condyle::geometry",
+            "condyle::machine",
+            "condyle::spatial",
+            "condyle::wear",
+        ],
+    ),
     ("condyle_report::error", &["condyle_io", "condyle_mesh"]),
     ("condyle_report::number", &[]),
     ("condyle_report::file", &["condyle_report::error"]),
@@ -235,7 +247,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             // What the summary says of each activity.
             "condyle_io::results::activities",
             // The table of joints that the columns of kinematics.csv are made by.
-            "condyle::machine::joint_kind",
+            "condyle::machine::joint",
             "condyle::machine::knee",
             "condyle::machine::mechanism",
         ],

@@ -75,7 +75,7 @@ fn rust_of_the_book_is_compiled() {
     let compiled = read("verification/src/book.rs");
     for page in text_files_ending(".md") {
         let has_rust = page.text.contains("```rust");
-        let is_compiled = compiled.contains(&format!("/{}\"", page.path));
+        let is_compiled = compiled.contains(&format!("\"../../{}\"", page.path));
         assert_eq!(
             has_rust, is_compiled,
             "{} in verification/src/book.rs",

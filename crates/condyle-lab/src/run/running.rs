@@ -262,7 +262,7 @@ pub trait RunKeeper {
 }
 
 /// Runs a case, and writes no file: `keeper` takes what is wanted of it. The numbers are those of
-/// [`run_case`](crate::run::folder).
+/// [`run_case`](crate::run_case).
 ///
 /// # Errors
 /// A bad case, or physics that cannot be solved.
