@@ -32,49 +32,18 @@ fn generic() -> TriangleMesh {
     TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads())
 }
 
-fn joined(mut one: TriangleMesh, other: &TriangleMesh) -> TriangleMesh {
-    let shift = one.vertices.len() as u32;
-    one.vertices.extend(&other.vertices);
-    let shifted = other
-        .triangles
-        .iter()
-        .map(|t| t.map(|vertex| vertex + shift));
-    one.triangles.extend(shifted);
-    one
-}
-
-/// A closed block.
-fn block(low: [f64; 3], high: [f64; 3]) -> TriangleMesh {
-    let corner = |i: usize| {
-        let at = |axis: usize| {
-            if i >> axis & 1 == 0 {
-                low[axis]
-            } else {
-                high[axis]
-            }
-        };
-        Vec3::new(at(0), at(1), at(2))
-    };
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    TriangleMesh::of_quads((0..8).map(corner).collect(), quads)
-}
-
 /// The tray and stem of an insert as shells of their own, which reach a little into it.
 fn with_shells_below(insert: &TriangleMesh) -> TriangleMesh {
     let (low, high) = insert.bounds();
-    let tray = block(
-        [low.x - 2.0, low.y - 4.0, low.z - 2.0],
-        [high.x + 2.0, low.y + 0.3, high.z + 2.0],
+    let tray = TriangleMesh::block(
+        Vec3::new(low.x - 2.0, low.y - 4.0, low.z - 2.0),
+        Vec3::new(high.x + 2.0, low.y + 0.3, high.z + 2.0),
     );
-    let stem = block([-6.0, low.y - STEM_MM, -6.0], [6.0, low.y - 3.5, 6.0]);
-    joined(joined(tray, insert), &stem)
+    let stem = TriangleMesh::block(
+        Vec3::new(-6.0, low.y - STEM_MM, -6.0),
+        Vec3::new(6.0, low.y - 3.5, 6.0),
+    );
+    tray.joined(insert).joined(&stem)
 }
 
 /// One closed surface around an insert, cut at a height, and a plate and stem that have grown together with it there.

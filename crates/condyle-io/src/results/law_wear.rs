@@ -3,7 +3,6 @@
 use condyle::evolve::March;
 use serde::{Deserialize, Serialize};
 
-use super::catalogue::Scalar;
 use crate::case::Wear;
 
 /// What a law of wear says of a run: of the law that moved the surface what it wore, of every other what it
@@ -30,16 +29,6 @@ pub struct LawWear {
 }
 
 impl LawWear {
-    /// The value of a number of the catalogue by this law; none of a number that laws do not predict.
-    pub fn get(&self, scalar: &Scalar) -> Option<f64> {
-        match scalar.key {
-            "mass_loss_mg" => Some(self.mass_loss_mg),
-            "volume_loss_mm3" => Some(self.volume_loss_mm3),
-            "max_depth_mm" => Some(self.max_depth_mm),
-            _ => None,
-        }
-    }
-
     /// Those of a march of a case with this law, which is the first.
     pub fn of(march: &March, wear: &Wear) -> Vec<Self> {
         let state = march.state();

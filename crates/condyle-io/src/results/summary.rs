@@ -8,10 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     activities::ActivitySummary,
-    catalogue::Scalar,
     creep::CreepSummary,
     cycle_motion::{joint_range, medial_load_share},
-    error_estimate::{ErrorEstimate, ErrorParts},
+    error_estimate::ErrorEstimate,
     femur_pose::NeutralPose,
     law_wear::LawWear,
     plausibility::PlausibilityWarning,
@@ -165,18 +164,6 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// The value of a number of the catalogue; none where the run has none.
-    pub fn get(&self, scalar: &Scalar) -> Option<f64> {
-        let summary = serde_json::to_value(self).ok()?;
-        summary.get(scalar.key)?.as_f64()
-    }
-
-    /// The parts of the discretisation error of a number, in its unit; none where it is not estimated.
-    pub fn error_parts(&self, scalar: &Scalar) -> Option<ErrorParts> {
-        let error = serde_json::to_value(self.error.as_ref()?).ok()?;
-        ErrorParts::deserialize(error.get(scalar.key)?).ok()
-    }
-
     /// The summary of a march; none before its first update.
     pub fn new(input: SummaryInput<'_>) -> Option<Self> {
         let state = input.state;

@@ -1,18 +1,9 @@
 //! The catalogue of results: every number of `summary.json`, declared once.
 //!
 //! A [`Scalar`] has a key, a name, a unit (the end of its key), decimals, a description and a definition (its doc
-//! comment), the way its error is found, the joints that have it, and the function that computes it from a
-//! [`FinishedRun`]. One file has one [`Section`]; [`SECTIONS`] lists them all. A new number is one such file and one
-//! line below, or one entry in an existing file. The summary, the terminal, the report, studies and the types of
-//! Python and TypeScript follow from the catalogue.
-//!
-//! A caller picks numbers by what they are for and reads them from a [`Summary`](super::Summary):
-//!
-//! - [`scalars`]: all of them; [`scalar`]: the one with a key;
-//! - [`headlines`]: those in large type;
-//! - [`estimated`]: those with an estimated discretisation error, which studies compare;
-//! - [`outputs`]: the columns of a study's tables;
-//! - `summary.get(&scalar)`, `summary.error_parts(&scalar)`, `law_wear.get(&scalar)`: values.
+//! comment), the way its error is found, and the joints that have it. One file has one [`Section`]; [`SECTIONS`] lists
+//! them all. The report's page, its comparison of runs and `condyle diff` name and format numbers by it; `Summary`
+//! computes the values.
 //!
 //! ```
 //! use condyle_io::results::catalogue;
@@ -20,12 +11,11 @@
 //! let mass = catalogue::scalar("mass_loss_mg").expect("is in the catalogue");
 //! assert_eq!((mass.label, mass.unit()), ("mass loss", "mg"));
 //! assert_eq!(mass.text(10.909), "10.91");
-//! assert!(catalogue::outputs().any(|output| output.key == mass.key));
 //! ```
 
 mod scalar;
 
-pub use scalar::{ErrorMethod, FinishedRun, Joint, Prominence, Scalar, Section};
+pub use scalar::{ErrorMethod, Joint, Prominence, Scalar, Section};
 
 scalar::sections! {
     wear,
@@ -60,16 +50,6 @@ pub fn scalar(key: &str) -> Option<&'static Scalar> {
 /// Numbers in large type.
 pub fn headlines() -> impl Iterator<Item = &'static Scalar> {
     results().filter(|scalar| scalar.prominence == Prominence::Headline)
-}
-
-/// Numbers with an estimated discretisation error.
-pub fn estimated() -> impl Iterator<Item = &'static Scalar> {
-    results().filter(|scalar| scalar.error == ErrorMethod::Estimated)
-}
-
-/// Numbers that studies keep of every test: those shown on the terminal that every run has.
-pub fn outputs() -> impl Iterator<Item = &'static Scalar> {
-    results().filter(|scalar| scalar.prominence > Prominence::Listed && scalar.is_always_there)
 }
 
 #[cfg(test)]

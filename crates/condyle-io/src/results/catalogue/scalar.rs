@@ -1,56 +1,6 @@
 //! A number of `summary.json`, and how it is shown.
 
-use condyle::evolve::{March, MarchState, UpdateRecord};
-
 use crate::config::split_unit;
-
-/// A finished run, as the catalogue computes numbers from it.
-pub struct FinishedRun<'a> {
-    march: &'a March,
-    first: &'a UpdateRecord,
-    last: &'a UpdateRecord,
-    /// Factor that cross-linking puts on every wear law; none for conventional polyethylene.
-    pub wear_over_conventional: Option<f64>,
-    /// Error of the peak pressure of a law fitted to a deformable insert, %; none where the case states none.
-    pub pressure_law_peak_error_percent: Option<f64>,
-    /// Time spent on the solver, s.
-    pub wall_s: f64,
-}
-
-impl<'a> FinishedRun<'a> {
-    /// The run of a march; none before its first update.
-    pub fn new(march: &'a March) -> Option<Self> {
-        let updates = &march.state().updates;
-        Some(Self {
-            march,
-            first: updates.first()?,
-            last: updates.last()?,
-            wear_over_conventional: None,
-            pressure_law_peak_error_percent: None,
-            wall_s: 0.0,
-        })
-    }
-
-    /// The march: its test, its insert as worn, its fields.
-    pub fn march(&self) -> &'a March {
-        self.march
-    }
-
-    /// The state that the march ended in: records of all updates, the first and the last cycle.
-    pub fn state(&self) -> &'a MarchState {
-        self.march.state()
-    }
-
-    /// The first update.
-    pub fn first(&self) -> &'a UpdateRecord {
-        self.first
-    }
-
-    /// The last update.
-    pub fn last(&self) -> &'a UpdateRecord {
-        self.last
-    }
-}
 
 /// A joint replacement whose tests condyle runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,17 +82,11 @@ pub struct Scalar {
     /// Key of the number of cycles before the cycle that it comes from.
     pub cycle_key: Option<&'static str>,
     about: &'static str,
-    value: fn(&FinishedRun<'_>) -> Option<f64>,
 }
 
 impl Scalar {
     /// A real number that every run of every joint has.
-    pub const fn new(
-        key: &'static str,
-        label: &'static str,
-        decimals: usize,
-        value: fn(&FinishedRun<'_>) -> Option<f64>,
-    ) -> Self {
+    pub const fn new(key: &'static str, label: &'static str, decimals: usize) -> Self {
         Self {
             key,
             label,
@@ -155,7 +99,6 @@ impl Scalar {
             is_share: false,
             cycle_key: None,
             about: "",
-            value,
         }
     }
 
@@ -234,11 +177,6 @@ impl Scalar {
             cycle_key: Some(key),
             ..self
         }
-    }
-
-    /// Its value in a run; none where the run has none.
-    pub fn value(&self, run: &FinishedRun<'_>) -> Option<f64> {
-        (self.value)(run)
     }
 
     /// The key without its unit: `mass_loss`.
