@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use condyle_io::case::{Assignment, AssignmentError, Case, CaseReader, ChangeError};
+use condyle_case::case::{Assignment, AssignmentError, Case, CaseReader, ChangeError};
 use condyle_lab::Preview;
 use pyo3::prelude::*;
 use toml_edit::DocumentMut;

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use condyle_io::config::{Problem, Problems};
+use condyle_case::config::{Problem, Problems};
 use condyle_lab::{Reached, RunError};
 use condyle_study::StudyError;
 use pyo3::prelude::*;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use condyle_io::files::{Disk, Files, MemoryFiles};
+use condyle_mesh::files::{Disk, Files, MemoryFiles};
 
 /// Files in memory over those on the disk, where relative paths count from a folder that stays what it was.
 #[derive(Debug)]

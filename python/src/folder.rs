@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use condyle_io::mesh::{VtuFile, parse_vtu_triangles, read_pvd, read_vtu_points};
-use condyle_io::results::check_file;
+use condyle_mesh::formats::{VtuFile, parse_vtu_triangles, read_pvd, read_vtu_points};
+use condyle_results::check_file;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -4,7 +4,7 @@ use condyle::contact::{ContactMemory, ContactModel, ContactResult, NotBorne, Set
 use condyle::evolve::{March, SolvedCycle};
 use condyle::spatial::{Pose, RelativeMotion};
 use condyle::{Mat3, Vec3};
-use condyle_io::cache::Cache;
+use condyle_case::cache::Cache;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

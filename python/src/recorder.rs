@@ -1,14 +1,11 @@
 //! Keeps in memory what the command writes into a folder.
 
 use condyle::{evolve::March, geometry::TriangleMesh};
-use condyle_io::{
-    case::{Case, Side},
-    results::{
-        InsertFields, Summary, femur_on_side, femur_pose_csv, kinematics_csv, kinematics_file,
-        wear_csv,
-    },
-};
+use condyle_case::case::{Case, Side};
 use condyle_lab::RunKeeper;
+use condyle_results::{
+    InsertFields, Summary, femur_on_side, femur_pose_csv, kinematics_csv, kinematics_file, wear_csv,
+};
 
 use crate::record::Record;
 use crate::table::Table;

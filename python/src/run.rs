@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use condyle_io::cache::Cache;
+use condyle_case::cache::Cache;
 use condyle_lab::{InMemory, Outcome, RunError, RunOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Mutex;
 
-use condyle_io::case::Assignment;
-use condyle_io::study::{OUTPUTS, Study};
+use condyle_case::case::Assignment;
+use condyle_case::study::{OUTPUTS, Study};
 use condyle_study::{
     HeldFolder, Plan, Shard, Store, StudyEnd, StudyError, StudyOptions, Test, TestBench,
     TestResult, merge, run_study, write_answers,
@@ -59,7 +59,7 @@ impl RawStudy {
     /// Word of the design.
     #[getter]
     fn design(&self) -> &'static str {
-        use condyle_io::config::Variants;
+        use condyle_case::config::Variants;
         self.plan.study().design.word()
     }
 

@@ -29,7 +29,7 @@ PARTS = [
     ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|faces_around|node_blocks)"),
     ("mesh: the inside follows", r"condyle-fem/src/(follow|neighbours)"),
     ("mesh: quality and volume", r"condyle-fem/src/"),
-    ("insert: made, worn, its thickness", r"geometry/|condyle-mesh/|condyle-io/"),
+    ("insert: made, worn, its thickness", r"geometry/|condyle-mesh/|condyle-case/"),
     ("Newton's method, machine and chain", r"condyle/src/machine/"),
     ("placing and marching", r"evolve/"),
 ]

@@ -114,7 +114,7 @@ fn of_a_knee() -> Vec<Row> {
     ]
 }
 
-fn knee() -> condyle_io::case::Case {
+fn knee() -> condyle_case::case::Case {
     let default = include_str!("../../cases/stanmore-force.toml");
     let above = default.split("[march]").next().unwrap_or_default();
     let cycles = CYCLES as u64;

@@ -7,7 +7,7 @@ use condyle::{
     evolve::{March, WearTest},
     geometry::ArticulatingSurface,
 };
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 /// The wear test that a case file describes.
 pub(crate) fn test_of(case: &str) -> WearTest {

@@ -1,6 +1,6 @@
 //! What each of several activities did.
 
-use condyle_io::results::ActivitySummary;
+use condyle_results::ActivitySummary;
 
 use crate::output::Lines;
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use condyle_io::case::{Assignment, Preset, Side};
+use condyle_case::case::{Assignment, Preset, Side};
 use condyle_study::Shard;
 
 /// A virtual wear test of a joint replacement: from an implant to its wear.

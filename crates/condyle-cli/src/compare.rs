@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use condyle_io::results::COMPARED;
 use condyle_lab::measured::{
     CompareError, Comparison, Errors, GravimetricComparison, Interval, KinematicsComparison,
     NodeDepths, Rate, SurfaceComparison, SurfaceErrors, compare as study,
 };
+use condyle_results::COMPARED;
 
 use crate::{
     arguments::Compare,

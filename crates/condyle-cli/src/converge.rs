@@ -9,7 +9,7 @@ use std::{
     thread,
 };
 
-use condyle_io::cache::Cache;
+use condyle_case::cache::Cache;
 use condyle_lab::RunEvent;
 use condyle_study::{
     ConvergeError, ConvergeHappening, ConvergeOptions, ConvergePlan, Converged, Convergence,

@@ -6,7 +6,7 @@ use std::{
     process::ExitCode,
 };
 
-use condyle_io::config::{Problems, RenderStyle};
+use condyle_case::config::{Problems, RenderStyle};
 use condyle_lab::RunError;
 
 use crate::standard_error::{show, tell};

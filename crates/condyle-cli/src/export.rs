@@ -2,7 +2,7 @@
 
 use std::{fs::File, io::Write, process::ExitCode};
 
-use condyle_io::{
+use condyle_case::{
     abaqus::{AbaqusOptions, ExportError, PressedCase, write_abaqus},
     case::{BuildWarning, Case},
 };

@@ -1,6 +1,6 @@
 //! What every law of wear says of a run: before its numbers, as all that makes them doubtful.
 
-use condyle_io::results::LawWear;
+use condyle_results::LawWear;
 
 use crate::output::Lines;
 

@@ -8,7 +8,7 @@ use std::{
     thread,
 };
 
-use condyle_io::case::{Case, Draft, DraftError, template};
+use condyle_case::case::{Case, Draft, DraftError, template};
 use condyle_lab::Preview;
 
 use crate::{arguments::New, exit, output, standard_error::tell};

@@ -7,7 +7,7 @@ use std::{
     process::ExitCode,
 };
 
-use condyle_io::config::visible;
+use condyle_case::config::visible;
 use serde::Serialize;
 
 use crate::exit;

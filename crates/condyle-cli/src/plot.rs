@@ -6,8 +6,8 @@ use std::{
     process::ExitCode,
 };
 
-use condyle_io::results::PLOTTED;
 use condyle_report::{Picture, Results, pictures};
+use condyle_results::PLOTTED;
 
 use crate::{
     arguments::{PictureFormat, Plot},

@@ -10,12 +10,12 @@ use std::{
     },
 };
 
-use condyle_io::cache::Cache;
-use condyle_io::results::{
+use condyle_case::cache::Cache;
+use condyle_lab::{Outcome, RunOptions};
+use condyle_results::{
     BacksideSummary, CreepSummary, ErrorEstimate, ErrorParts, PlasticSummary, Summary,
     UnderSurfaceSummary,
 };
-use condyle_lab::{Outcome, RunOptions};
 
 use crate::{
     activity_table,

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 use crate::output;
 

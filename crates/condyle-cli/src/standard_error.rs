@@ -5,7 +5,7 @@ use std::{
     io::{self, Write},
 };
 
-use condyle_io::config::visible;
+use condyle_case::config::visible;
 
 /// Says `words` on standard error, which may hold what a file or the command line says.
 pub fn tell(words: impl Display) {

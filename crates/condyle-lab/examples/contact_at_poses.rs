@@ -18,7 +18,7 @@ use condyle::{
     evolve::March,
     spatial::{Pose, RelativeMotion},
 };
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 /// Rounds over all poses.
 const ROUNDS: usize = 101;

@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 /// A hexahedron as six tetrahedra around its diagonal from corner 0 to corner 6; neighbours whose
 /// corners are numbered alike fit.

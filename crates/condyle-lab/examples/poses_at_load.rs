@@ -14,7 +14,7 @@ use condyle::{
     machine::{Chain, Drive, SolverCounters, Waveform, knee, settle},
     spatial::Pose,
 };
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 /// Force left out of balance, N.
 const TOLERANCE_N: f64 = 1e-3;

@@ -14,8 +14,8 @@ use condyle::{
     geometry::{FemoralSurface, Insert, Meshing, TriangleMesh, flat_insert},
     spatial::{Pose, RelativeMotion, Twist},
 };
+use condyle_case::abaqus::{Pressed, Slide};
 use condyle_fem::Elastic;
-use condyle_io::abaqus::{Pressed, Slide};
 
 const RADIUS_MM: f64 = 24.0;
 const DEPTH_MM: f64 = 0.25;

@@ -23,7 +23,7 @@ use condyle::{
     evolve::March,
     spatial::{Pose, RelativeMotion},
 };
-use condyle_io::{
+use condyle_case::{
     abaqus::PressedCase,
     case::{Case, PlasticityChoice},
 };

@@ -25,10 +25,8 @@ use condyle::{
         knee::{AP, IE},
     },
 };
-use condyle_io::{
-    case::Case,
-    results::{ErrorEstimate, Part, QuantityErrors, Summary, joint_range},
-};
+use condyle_case::case::Case;
+use condyle_results::{ErrorEstimate, Part, QuantityErrors, Summary, joint_range};
 
 use worn_surface::WornSurface;
 

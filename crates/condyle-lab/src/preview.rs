@@ -13,15 +13,12 @@ use condyle::{
     machine::knee::{IE, VV},
     spatial::{Pose, RelativeMotion},
 };
-use condyle_io::{
+use condyle_case::{
     cache::Cache,
     case::{Assignment, Case, FEMUR_TRIANGLES, Side, Update},
     config::{DataFile, Variants},
 };
-use condyle_report::{
-    Side as ReportSide,
-    bodies::{BodiesPicture, BodySurface, MachineAxes, bodies_svg},
-};
+use condyle_report::bodies::{BodiesPicture, BodySurface, MachineAxes, bodies_svg};
 use serde::Serialize;
 
 use crate::{
@@ -313,10 +310,7 @@ pub(crate) fn svg(case: &Case, march: &March, femur: &TriangleMesh, at_rest: &At
         [femur, insert, pressed(march, at_rest)].map(|body| mirrored(body, side));
     bodies_svg(&BodiesPicture {
         title: &case.heading.title,
-        side: match side {
-            Side::Right => ReportSide::Right,
-            Side::Left => ReportSide::Left,
-        },
+        side,
         femur: &femur,
         insert: &insert,
         contact: &contact,

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle_io::{
+use condyle_case::{
     cache::Cache,
     case::{Case, Update},
-    results::{ErrorEstimate, ErrorParts, Summary},
 };
 use condyle_lab::{Outcome, RunOptions, run_case};
+use condyle_results::{ErrorEstimate, ErrorParts, Summary};
 
 fn case(name: &str) -> Case {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
@@ -198,7 +198,7 @@ fn verify_the_estimated_errors_of_the_default_case() {
         |parts| parts.mesh,
         4.0 / 3.0,
         |case| match &mut case.insert {
-            condyle_io::case::Insert::Generic(insert) => insert.edge_mm /= 2.0,
+            condyle_case::case::Insert::Generic(insert) => insert.edge_mm /= 2.0,
             other => panic!("{other:?}"),
         },
     );

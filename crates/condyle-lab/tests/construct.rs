@@ -7,11 +7,9 @@ use condyle::{
     evolve::March,
     geometry::{GenericInsertShape, Meshing, TriangleMesh},
 };
-use condyle_io::{
-    case::{BuildError, BuildWarning, Built, Case},
-    files::Disk,
-    mesh::read_surface,
-};
+use condyle_case::case::{BuildError, BuildWarning, Built, Case};
+use condyle_mesh::files::Disk;
+use condyle_mesh::formats::read_surface;
 use condyle_mesh::repair::{Checks, Parts, Touching};
 use tempfile::TempDir;
 

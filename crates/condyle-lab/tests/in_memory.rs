@@ -4,12 +4,9 @@ use std::fs;
 use std::ops::ControlFlow;
 
 use condyle::{evolve::March, geometry::TriangleMesh};
-use condyle_io::{
-    cache::Cache,
-    case::Case,
-    results::{Summary, wear_csv},
-};
+use condyle_case::{cache::Cache, case::Case};
 use condyle_lab::{InMemory, Outcome, RunEvent, RunKeeper, RunOptions, run_case, run_in_memory};
+use condyle_results::{Summary, wear_csv};
 
 const CASE: &str = "\
 [insert]

@@ -7,7 +7,7 @@ use condyle::{
     evolve::March,
     machine::{Chain, Cycle, Simulator, SolverCounters, TimeSettings, knee::AP},
 };
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 /// One repeating cycle of the default case.
 fn cycle(march: &March, increments: usize, increment_error_mm: f64) -> Cycle {

@@ -9,7 +9,7 @@ use condyle::{
     geometry::ArticulatingSurface,
     machine::{Chain, MachineState, Simulator, SolverCounters, TimeSettings},
 };
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 /// How far the residuals are followed, N.
 const EXACT_N: f64 = 1e-7;

@@ -8,7 +8,7 @@ use condyle::{
     geometry::{GenericFemur, GenericFemurShape, GenericInsertShape, Meshing, TriangleMesh},
     machine::{CycleRow, knee::MEDIAL},
 };
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 use condyle_lab::Preview;
 use nalgebra::Rotation3;
 use tempfile::TempDir;

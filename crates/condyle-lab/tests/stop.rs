@@ -5,8 +5,9 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use condyle_io::{cache::Cache, results::Checkpoint};
+use condyle_case::cache::Cache;
 use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, check, run};
+use condyle_results::Checkpoint;
 use tempfile::TempDir;
 
 const CASE: &str = "\

@@ -14,7 +14,7 @@ use condyle::{
     machine::{Chain, JointIndex, Simulator, SolverCounters, knee::KNEE, settle},
     spatial::RelativeMotion,
 };
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 /// How far a result may be from the exact one, as a fraction.
 const TOLERANCE: f64 = 1e-3;

@@ -111,10 +111,10 @@ pub enum ReportError {
     },
     /// A mesh is no longer what the run wrote.
     #[error(transparent)]
-    Damaged(#[from] condyle_io::results::DamagedFile),
+    Damaged(#[from] condyle_results::DamagedFile),
     /// A mesh is damaged.
     #[error(transparent)]
-    Mesh(#[from] condyle_io::mesh::MeshFileError),
+    Mesh(#[from] condyle_mesh::formats::MeshFileError),
     /// A mesh lacks a field of a picture.
     #[error("The mesh {path} has no point data `{field}`.")]
     MissingField {

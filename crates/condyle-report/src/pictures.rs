@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle_io::results::{KINEMATICS_PICTURE, MAP_PICTURES, SLIP_PATHS_PICTURE, WEAR_PICTURE};
+use condyle_results::{KINEMATICS_PICTURE, MAP_PICTURES, SLIP_PATHS_PICTURE, WEAR_PICTURE};
 
 use crate::error::ReportError;
 use crate::figure::{Map, Panel, alone, sheet};

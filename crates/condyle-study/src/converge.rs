@@ -13,14 +13,14 @@ use std::{
     thread,
 };
 
-use condyle_io::{
+use condyle_case::{
     cache::Cache,
     case::{Case, Override, OverrideError},
     config::Problems,
-    results::Summary,
 };
 use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, run_case};
 use condyle_report::{Plot, plots_svg};
+use condyle_results::Summary;
 use serde::Serialize;
 use thiserror::Error;
 

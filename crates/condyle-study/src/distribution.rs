@@ -1,6 +1,6 @@
 //! Values of an input by where they lie in its distribution.
 
-use condyle_io::{
+use condyle_case::{
     config::Level,
     study::{Input, TriangularKeys, TruncatedKeys, Variation},
 };
@@ -92,7 +92,7 @@ fn triangular(keys: &TriangularKeys, share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use condyle_io::study::{NormalKeys, UniformKeys};
+    use condyle_case::study::{NormalKeys, UniformKeys};
 
     #[test]
     fn verify_medians_and_ends() {

@@ -12,13 +12,9 @@ use std::{
     thread,
 };
 
-use condyle_io::{
-    cache::Cache,
-    case::SharedBodies,
-    results::{FolderLock, ResultsFolder},
-    study::OUTPUTS,
-};
+use condyle_case::{cache::Cache, case::SharedBodies, study::OUTPUTS};
 use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, batch_run, run_case};
+use condyle_results::{FolderLock, ResultsFolder};
 
 use crate::{
     error::StudyError,

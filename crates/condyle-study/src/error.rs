@@ -2,9 +2,10 @@
 
 use std::{io, path::PathBuf};
 
-use condyle_io::{config::Problems, results::ResultsError};
+use condyle_case::config::Problems;
 use condyle_lab::RunError;
 use condyle_report::ReportError;
+use condyle_results::ResultsError;
 use thiserror::Error;
 
 /// Why a study is not done.

@@ -2,7 +2,7 @@
 
 use std::{fmt, path::Path, str::FromStr};
 
-use condyle_io::{
+use condyle_case::{
     case::{Assignment, Case},
     config::{Level, Variants},
     study::{Design, Input, OUTPUTS, Study, Variation},

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use condyle_io::study::{Bound, Design, OUTPUTS, OptimiseKeys, Output};
+use condyle_case::study::{Bound, Design, OUTPUTS, OptimiseKeys, Output};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::{

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use Tried::{Instead, Plus, Times};
-use condyle_io::{
+use condyle::parameter::unit_of;
+use condyle_case::{
     cache::Cache,
     case::{Assignment, Case, SharedBodies},
-    config::unit_of,
-    results::Summary,
 };
 use condyle_lab::{RunError, aligned, batch_run};
+use condyle_results::Summary;
 use serde::Serialize;
 
 use crate::engine::{first_line, in_parallel};

@@ -7,7 +7,7 @@ use std::{
     time::Duration,
 };
 
-use condyle_io::config::Level;
+use condyle_case::config::Level;
 use rusqlite::{
     Connection, params_from_iter,
     types::{Value, ValueRef},

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 use crate::failure::Failure;
 

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use condyle_io::case::{Draft, DraftError, Preset};
+use condyle_case::case::{Draft, DraftError, Preset};
 
 use crate::{
     failure::Failure,

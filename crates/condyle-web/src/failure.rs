@@ -2,7 +2,7 @@
 
 use std::{fmt::Display, io, path::Path};
 
-use condyle_io::config::{Problem, Problems};
+use condyle_case::config::{Problem, Problems};
 use condyle_lab::RunError;
 use serde::Serialize;
 

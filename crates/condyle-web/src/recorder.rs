@@ -3,17 +3,15 @@
 use std::path::Path;
 
 use condyle::{evolve::March, geometry::TriangleMesh};
-use condyle_io::{
-    case::Side,
-    results::{
-        InsertFields, KeptCycle, NeutralPose, cycle_pressure_csv, cycle_pressure_file,
-        femur_on_side, femur_pose_csv, kinematics_csv, wear_csv,
-    },
-};
+use condyle_case::case::Side;
 use condyle_lab::RunKeeper;
 use condyle_report::{
     Table,
     scene::{Scene, SceneBody, SceneCycle},
+};
+use condyle_results::{
+    InsertFields, KeptCycle, NeutralPose, cycle_pressure_csv, cycle_pressure_file, femur_on_side,
+    femur_pose_csv, kinematics_csv, wear_csv,
 };
 
 /// Keeps of a run what the page shows: the scene that its results folder would make.

@@ -2,8 +2,9 @@
 
 use std::{fs, ops::ControlFlow, path::Path};
 
-use condyle_io::{cache::Cache, case::Case, results::Summary};
+use condyle_case::{cache::Cache, case::Case};
 use condyle_lab::{InMemory, Outcome, Reached, RunError, RunEvent, RunOptions};
+use condyle_results::Summary;
 
 use crate::{
     failure::Failure,

@@ -6,7 +6,7 @@ use std::{
     process::{Command, Output},
 };
 
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 use condyle_report::{Results, scene::Scene};
 use serde_json::Value;
 

@@ -12,7 +12,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use condyle_io::cache::Cache;
+use condyle_case::cache::Cache;
 use serde::Serialize;
 
 use condyle_study::{ConvergeOptions, ConvergePlan, Converged, Listener, converge};

@@ -6,8 +6,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use condyle_io::results::Summary;
 use condyle_report::{Plot, ReportError, Results, plots_svg};
+use condyle_results::Summary;
 use condyle_study::{ConvergeError, Convergence};
 use thiserror::Error;
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use condyle_io::results::{Checkpoint, Summary};
+use condyle_results::{Checkpoint, Summary};
 use tempfile::TempDir;
 
 /// The generic implant on a coarse mesh: about a tenth of a second.

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use condyle_io::mesh::{read_pvd, read_vtu_points};
+use condyle_mesh::formats::{read_pvd, read_vtu_points};
 use serde_json::Value;
 
 use crate::bench::{Bench, SMALL};

@@ -1,6 +1,6 @@
 //! A left knee wears as its mirror image does, and its results lie on the left.
 
-use condyle_io::mesh::read_vtu_points;
+use condyle_mesh::formats::read_vtu_points;
 
 use crate::bench::{Bench, SMALL};
 use crate::shapes::{FLEXED_A_LITTLE, Triangle, femur, insert, moved, stl};

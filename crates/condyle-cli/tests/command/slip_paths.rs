@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use condyle_io::mesh::{VtuFile, read_vtu_points};
+use condyle_mesh::formats::{VtuFile, read_vtu_points};
 
 use crate::bench::{Bench, SMALL};
 

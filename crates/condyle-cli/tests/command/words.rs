@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use condyle_io::results::Summary;
+use condyle_results::Summary;
 
 use crate::bench::{Bench, SMALL};
 

@@ -11,23 +11,47 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("condyle-fem", &[]),
     ("condyle-mesh", &["condyle-fem"]),
     ("condyle", &["condyle-fem", "condyle-mesh"]),
-    ("condyle-io", &["condyle", "condyle-fem", "condyle-mesh"]),
+    (
+        "condyle-results",
+        &["condyle", "condyle-fem", "condyle-mesh"],
+    ),
+    (
+        "condyle-case",
+        &["condyle", "condyle-fem", "condyle-mesh", "condyle-results"],
+    ),
     // No solver: it reads a results folder.
-    ("condyle-report", &["condyle-fem", "condyle-io"]),
+    (
+        "condyle-report",
+        &["condyle-fem", "condyle-mesh", "condyle-results"],
+    ),
     (
         "condyle-lab",
-        &["condyle", "condyle-fem", "condyle-io", "condyle-report"],
+        &[
+            "condyle",
+            "condyle-case",
+            "condyle-fem",
+            "condyle-mesh",
+            "condyle-report",
+            "condyle-results",
+        ],
     ),
     (
         "condyle-study",
-        &["condyle", "condyle-io", "condyle-lab", "condyle-report"],
+        &[
+            "condyle",
+            "condyle-case",
+            "condyle-lab",
+            "condyle-report",
+            "condyle-results",
+        ],
     ),
     (
         "condyle-cli",
         &[
             "condyle",
             "condyle-fem",
-            "condyle-io",
+            "condyle-case",
+            "condyle-results",
             "condyle-lab",
             "condyle-report",
             "condyle-study",
@@ -39,7 +63,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle",
             "condyle-fem",
-            "condyle-io",
+            "condyle-case",
+            "condyle-mesh",
+            "condyle-results",
             "condyle-lab",
             "condyle-study",
         ],
@@ -47,7 +73,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // What the web page calls: runs in memory, their scenes, and the results folder.
     (
         "condyle-web",
-        &["condyle", "condyle-io", "condyle-lab", "condyle-report"],
+        &[
+            "condyle",
+            "condyle-case",
+            "condyle-lab",
+            "condyle-report",
+            "condyle-results",
+        ],
     ),
     // Cases with known answers: nobody uses it.
     (
@@ -55,7 +87,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle",
             "condyle-fem",
-            "condyle-io",
+            "condyle-case",
             "condyle-lab",
             "condyle-mesh",
         ],
@@ -63,7 +95,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // One paper's table: nobody uses it.
     (
         "condyle-knight-2007",
-        &["condyle-io", "condyle-report", "condyle-study"],
+        &[
+            "condyle-case",
+            "condyle-report",
+            "condyle-results",
+            "condyle-study",
+        ],
     ),
 ];
 

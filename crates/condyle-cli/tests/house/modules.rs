@@ -174,14 +174,17 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle::wear",
         ],
     ),
-    ("condyle_report::error", &["condyle_io", "condyle_mesh"]),
+    (
+        "condyle_report::error",
+        &["condyle_results", "condyle_mesh"],
+    ),
     ("condyle_report::number", &[]),
     ("condyle_report::file", &["condyle_report::error"]),
     (
         "condyle_report::results",
         &[
             "condyle_report::error",
-            "condyle_io",
+            "condyle_results",
             "condyle_mesh",
             "condyle_fem",
             "condyle::machine::knee",
@@ -231,7 +234,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_report::error",
             "condyle_report::results",
-            "condyle_io",
+            "condyle_results",
             "condyle_mesh",
             "condyle_fem",
         ],
@@ -239,13 +242,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "condyle_report::page",
         &[
-            "condyle_io::results",
+            "condyle_results",
             "condyle_report::figure",
             "condyle_report::number",
             "condyle_report::results",
             "condyle_report::scene",
             // What the summary says of each activity.
-            "condyle_io::results::activities",
+            "condyle_results::activities",
             // The table of joints that the columns of kinematics.csv are made by.
             "condyle::machine::joint",
             "condyle::machine::knee",
@@ -263,7 +266,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "condyle_report::pictures",
         &[
-            "condyle_io::results::added",
+            "condyle_results::added",
             "condyle_report::error",
             "condyle_report::figure",
             "condyle_report::page",
@@ -273,15 +276,15 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     (
         "condyle_lab::accuracy",
-        &["condyle", "condyle_io", "condyle_mesh"],
+        &["condyle", "condyle_case", "condyle_results", "condyle_mesh"],
     ),
     (
         "condyle_lab::at_rest",
-        &["condyle", "condyle_io", "condyle_mesh"],
+        &["condyle", "condyle_case", "condyle_results", "condyle_mesh"],
     ),
     (
         "condyle_lab::plausibility",
-        &["condyle", "condyle_io", "condyle_mesh"],
+        &["condyle", "condyle_case", "condyle_results", "condyle_mesh"],
     ),
     (
         "condyle_lab::run",
@@ -290,7 +293,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_lab::at_rest",
             "condyle_lab::plausibility",
             "condyle",
-            "condyle_io",
+            "condyle_case",
+            "condyle_results",
             "condyle_mesh",
             "condyle_report",
         ],
@@ -299,7 +303,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "condyle_lab::preview",
         &[
             "condyle",
-            "condyle_io",
+            "condyle_case",
+            "condyle_results",
             "condyle_mesh",
             "condyle_report",
             "condyle_lab::at_rest",
@@ -313,7 +318,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_lab::markdown",
             "condyle_lab::run",
             "condyle",
-            "condyle_io",
+            "condyle_case",
+            "condyle_results",
             "condyle_mesh",
         ],
     ),
@@ -322,7 +328,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "condyle_lab::run",
             "condyle",
-            "condyle_io",
+            "condyle_case",
+            "condyle_results",
             "condyle_mesh",
             "condyle_report",
         ],

@@ -6,7 +6,7 @@ use std::{
 };
 
 use condyle::evolve::{March, MarchState, WearTest};
-use condyle_io::case::{Case, Override};
+use condyle_case::case::{Case, Override};
 
 /// The generic implant: no file is needed.
 pub const GENERIC: &str = "stanmore-force";

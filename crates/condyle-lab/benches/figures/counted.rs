@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use condyle::contact::ContactModel;
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 use crate::{
     cases::{self, GENERIC},

@@ -9,7 +9,7 @@ use condyle::{
     machine::{Chain, Drive, Simulator, SolverCounters, Waveform, knee},
     spatial::RelativeMotion,
 };
-use condyle_io::case::Case;
+use condyle_case::case::Case;
 
 use crate::cases;
 

@@ -10,7 +10,7 @@ use std::{
 };
 
 use condyle::{contact::ContactModel, evolve::MarchState};
-use condyle_io::{cache::Cache, case::Case};
+use condyle_case::{cache::Cache, case::Case};
 
 use crate::{
     budgets,
@@ -220,7 +220,7 @@ fn solved(case: &Case) -> MarchState {
 
 /// The generic case with edges half as long.
 fn finer(generic: &Case) -> Case {
-    let condyle_io::case::Insert::Generic(insert) = &generic.insert else {
+    let condyle_case::case::Insert::Generic(insert) = &generic.insert else {
         panic!("the generic case has a generic insert");
     };
     cases::generic_with("insert.edge_mm", insert.edge_mm / 2.0)

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use condyle_io::config::Problems;
-use condyle_io::{mesh::MeshFileError, results::DamagedFile};
+use condyle_case::config::Problems;
+use condyle_mesh::formats::MeshFileError;
 use condyle_report::ReportError;
+use condyle_results::DamagedFile;
 use thiserror::Error;
 
 /// A comparison could not be made.

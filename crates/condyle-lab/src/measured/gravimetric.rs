@@ -1,6 +1,6 @@
 //! Predicted against weighed wear.
 
-use condyle_io::measured::{Gravimetric, IntervalWord, Specimen};
+use condyle_case::measured::{Gravimetric, IntervalWord, Specimen};
 use condyle_report::Table;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};

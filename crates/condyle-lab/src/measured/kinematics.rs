@@ -1,6 +1,6 @@
 //! Predicted against measured kinematics.
 
-use condyle_io::measured::{AlignWord, CycleWord, Kinematics, MeasuredCurve, Phase, Sample};
+use condyle_case::measured::{AlignWord, CycleWord, Kinematics, MeasuredCurve, Phase, Sample};
 use condyle_report::Table;
 use serde::Serialize;
 

@@ -12,7 +12,7 @@ pub(crate) mod write;
 
 use std::path::Path;
 
-use condyle_io::{case::Side, measured::Measured};
+use condyle_case::{case::Side, measured::Measured};
 use condyle_report::Results;
 use serde::Serialize;
 
@@ -39,7 +39,7 @@ pub struct Comparison {
     pub surface: Option<SurfaceComparison>,
     /// Which knee it is.
     #[serde(skip)]
-    pub side: condyle_report::Side,
+    pub side: Side,
 }
 
 /// Holds the run in `results` against the measured data that the file `measured` names.
@@ -48,7 +48,7 @@ pub struct Comparison {
 /// Either cannot be read, or they have nothing to be compared by.
 pub fn compare(results: &Path, measured: &Path) -> Result<Comparison, CompareError> {
     let run = Results::read(results)?;
-    let measured = Measured::read(measured, side(run.side))?;
+    let measured = Measured::read(measured, run.side)?;
     let table = |table: &Option<condyle_report::Table>, file: &str, key| {
         let path = results.join(file);
         table
@@ -73,11 +73,4 @@ pub fn compare(results: &Path, measured: &Path) -> Result<Comparison, CompareErr
         surface: surface.transpose()?,
         side: run.side,
     })
-}
-
-fn side(side: condyle_report::Side) -> Side {
-    match side {
-        condyle_report::Side::Right => Side::Right,
-        condyle_report::Side::Left => Side::Left,
-    }
 }

@@ -6,7 +6,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use condyle_io::results::{COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR};
 use condyle_report::{
     SurfaceFields,
     measured::{
@@ -14,6 +13,7 @@ use condyle_report::{
         compared_wear_svg,
     },
 };
+use condyle_results::{COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR};
 
 use crate::measured::{
     CompareError, Comparison, gravimetric::GravimetricComparison, kinematics::KinematicsComparison,

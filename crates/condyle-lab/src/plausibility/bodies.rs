@@ -4,7 +4,7 @@ use condyle::{
     machine::{Chain, knee::KNEE},
     spatial::Pose,
 };
-use condyle_io::results::PlausibilityWarning;
+use condyle_results::PlausibilityWarning;
 
 use super::finished::{Finished, SolvedCycle};
 

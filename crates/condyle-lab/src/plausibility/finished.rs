@@ -8,7 +8,7 @@ use condyle::{
     geometry::{ArticulatingSurface, Insert},
     machine::{CycleRow, Machine},
 };
-use condyle_io::results::Summary;
+use condyle_results::Summary;
 
 /// A march that is done, its surface, and what it came to.
 pub(crate) struct Finished<'a> {

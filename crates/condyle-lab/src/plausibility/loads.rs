@@ -4,7 +4,7 @@ use condyle::machine::{
     CycleRow, Drive, JointIndex, JointKind, Machine, Spring, Waveform,
     knee::{AP, IE, IS, KNEE, ML, VV},
 };
-use condyle_io::results::{PlausibilityWarning, joint_range};
+use condyle_results::{PlausibilityWarning, joint_range};
 
 use super::finished::{Finished, SolvedCycle};
 

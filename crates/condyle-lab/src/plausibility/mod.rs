@@ -9,7 +9,7 @@ mod finished;
 pub(crate) mod loads;
 
 use condyle::evolve::March;
-use condyle_io::results::{PlausibilityWarning, Summary};
+use condyle_results::{PlausibilityWarning, Summary};
 
 use finished::Finished;
 

@@ -16,14 +16,14 @@ use condyle::{
         knee::{AP, IE, KNEE},
     },
 };
-use condyle_io::{
+use condyle_case::{
     cache::Cache,
     case::{
         Assignment, Case, ContactModelWord, PressureLawChoice, SharedBodies, StrainTable,
         TableError,
     },
-    results::Summary,
 };
+use condyle_results::Summary;
 use serde::Serialize;
 
 use crate::{

@@ -6,11 +6,11 @@ use std::{
 };
 
 use condyle::evolve::{MarchError, PlacementError};
-use condyle_io::{
+use condyle_case::{
     case::{AssignmentError, BuildError, Case, ChangeError},
     config::Problems,
-    results::ResultsError,
 };
+use condyle_results::ResultsError;
 use thiserror::Error;
 
 /// Why a run failed.

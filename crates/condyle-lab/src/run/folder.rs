@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use condyle::geometry::TriangleMesh;
-use condyle_io::{
+use condyle_case::{
     case::{Assignment, Case, FEMUR_TRIANGLES, SharedBodies},
     config::DataFile,
-    results::{
-        FRAME_TRIANGLES, FolderLock, Found, ResultsError, ResultsFolder, Summary, femur_of_frames,
-    },
+};
+use condyle_results::{
+    FRAME_TRIANGLES, FolderLock, Found, ResultsError, ResultsFolder, Summary, femur_of_frames,
 };
 
 use crate::run::{

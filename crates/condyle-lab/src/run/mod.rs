@@ -12,7 +12,8 @@ use std::{
 };
 
 use condyle::evolve::{March, Progress, UpdateRecord};
-use condyle_io::{cache::Cache, results::Summary};
+use condyle_case::cache::Cache;
+use condyle_results::Summary;
 
 /// Hears of everything that happens, and may stop the run by breaking.
 pub(crate) type Listener<'a> = dyn FnMut(RunEvent<'_>) -> ControlFlow<()> + 'a;

@@ -7,7 +7,7 @@ use condyle::{
     geometry::FemoralSurface,
     machine::{Drive, knee::IS},
 };
-use condyle_io::{
+use condyle_case::{
     cache::Cache,
     case::{Assignment, BuildError, BuildWarning, Built, Case, Limits, SharedBodies},
     config::DataFile,

@@ -3,11 +3,11 @@
 use std::{ops::ControlFlow, path::Path, time::Duration};
 
 use condyle::{evolve::March, geometry::TriangleMesh, wear::NamedLaw};
-use condyle_io::{
+use condyle_case::{
     cache::Cache,
     case::{BuildWarning, Case, FEMUR_TRIANGLES, SharedBodies},
-    results::{ActivitySummary, Checkpoint, LawWear, NeutralPose, Summary, SummaryInput},
 };
+use condyle_results::{ActivitySummary, Checkpoint, LawWear, NeutralPose, Summary, SummaryInput};
 
 use crate::run::{
     Clock, Listener, Outcome, Reached, RunEvent,
@@ -205,14 +205,17 @@ impl<'a> Run<'a> {
         .expect("a march that is done has an update")
     }
 
-    /// What every law says; the first has moved the surface, whether it is the case's or not.
     fn wear_laws(&self) -> Vec<LawWear> {
-        let mut laws = LawWear::of(&self.march, &self.case.wear);
-        if let (Some(named), Some(first)) = (self.means.wear_law, laws.first_mut()) {
-            first.law = named.word.to_owned();
-            first.approximate = false;
+        let wear = &self.case.wear;
+        match &self.means.wear_law {
+            // A law that a program brings along is not known to be approximate.
+            Some(named) => LawWear::of(&self.march, named.word, |word| {
+                word != named.word && wear.is_approximate(word)
+            }),
+            None => LawWear::of(&self.march, wear.kind().word, |word| {
+                wear.is_approximate(word)
+            }),
         }
-        laws
     }
 }
 

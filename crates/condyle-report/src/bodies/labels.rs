@@ -1,12 +1,13 @@
 //! What stands over the image of a view: directions, the machine's axes, the scale.
 
+use condyle_results::Side;
+
 use condyle_fem::Vec3;
 
 use super::frame::Frame;
 use super::machine_axes::MachineAxes;
 use super::view::{From, View};
 use crate::figure::escape;
-use crate::results::side::Side;
 
 /// Text over an image, with a white rim to be read on any colour.
 const OVER: &str = "paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round";

@@ -13,10 +13,11 @@ mod view;
 
 use std::path::{Path, PathBuf};
 
+use condyle_results::Side;
+
 use crate::error::ReportError;
 use crate::figure::alone;
 use crate::file::write_text;
-use crate::results::side::Side;
 use frame::Frame;
 use raster::Raster;
 use view::{VIEWS, View};

@@ -1,6 +1,8 @@
 //! A field on the articulating surface, seen as a surgeon looks down on the tibia:
 //! anterior up, +z to the right.
 
+use condyle_results::Side;
+
 use super::axis::{Axis, round_step};
 use super::contour::{Contours, borders};
 use super::escape::escape;
@@ -9,7 +11,6 @@ use super::path::Path;
 use crate::number::{fixed, significant};
 use crate::results::{
     measure::{Extreme, Region},
-    side::Side,
     surface::SurfaceFields,
 };
 

@@ -1,7 +1,9 @@
 //! Predicted and scanned wear on the articulating surface, and their difference.
 
+use condyle_results::Side;
+
 use crate::figure::{ColourRange, Map, Shades, alone};
-use crate::results::{side::Side, surface::SurfaceFields};
+use crate::results::surface::SurfaceFields;
 
 /// Scale of each map, px per mm.
 const PX_PER_MM: f64 = 5.0;

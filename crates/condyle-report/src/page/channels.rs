@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use condyle_io::results::{CycleQuantity, JointKind, KNEE};
+use condyle_results::{CycleQuantity, JointKind, KNEE};
 
 use super::captions::cycle_caption;
 use crate::figure::{Axis, Curve, Panel};

@@ -1,9 +1,11 @@
 //! Medial and lateral compared: what the report measures on the last mesh.
 
+use condyle_results::Side;
+
 use serde::Serialize;
 
 use crate::number::{fixed, significant};
-use crate::results::{contents::Results, measure::Region, side::Side, surface::SurfaceFields};
+use crate::results::{contents::Results, measure::Region, surface::SurfaceFields};
 
 /// Depth above which a face counts as part of the scar, as a share of the largest depth.
 const SCAR_SHARE: f64 = 0.05;

@@ -1,10 +1,12 @@
 //! The fields of the last mesh as maps.
 
+use condyle_results::Side;
+
 use serde::Serialize;
 
 use super::slip::slip_map;
 use crate::figure::{ColourRange, Map, Shades};
-use crate::results::{contents::Results, side::Side, surface::SurfaceFields};
+use crate::results::{contents::Results, surface::SurfaceFields};
 
 /// A small map with its caption.
 #[derive(Serialize)]

@@ -1,6 +1,6 @@
 //! The numbers of summary.json, as the catalogue names and describes them.
 
-use condyle_io::results::catalogue::{self, Scalar, Section};
+use condyle_results::catalogue::{self, Scalar, Section};
 use serde::Serialize;
 use serde_json::Value;
 

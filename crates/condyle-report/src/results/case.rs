@@ -1,8 +1,8 @@
 //! What the report takes from the case file: its title, the side of the knee, the model of contact.
 
-use toml::{Table, Value};
+use condyle_results::Side;
 
-use super::side::Side;
+use toml::{Table, Value};
 
 /// The text of `title` or `name` at the top of a case.
 pub(crate) fn title(case: &str) -> Option<String> {

@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use condyle_io::{
-    mesh::read_vtu_points,
-    results::{ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, check_file},
+use condyle_mesh::formats::read_vtu_points;
+use condyle_results::{
+    ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, Side, check_file,
 };
 
 use super::{
-    case::side, contents::Results, side::Side, summary::Summary, surface::SurfaceFields,
-    table::Table,
+    case::side, contents::Results, summary::Summary, surface::SurfaceFields, table::Table,
 };
 use crate::error::ReportError;
 

@@ -1,6 +1,6 @@
 //! `summary.json`.
 
-use condyle_io::results::{ActivitySummary, LawWear, NeutralPose, PlausibilityWarning};
+use condyle_results::{ActivitySummary, LawWear, NeutralPose, PlausibilityWarning};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 

@@ -1,7 +1,7 @@
 //! A scene as bytes.
 
 use condyle_fem::Vec3;
-use condyle_io::results::NeutralPose;
+use condyle_results::NeutralPose;
 use serde::Serialize;
 
 use super::{

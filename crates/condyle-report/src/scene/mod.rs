@@ -9,7 +9,7 @@ mod encode;
 mod read;
 
 use condyle_fem::{HexMesh, Vec3};
-use condyle_io::results::NeutralPose;
+use condyle_results::NeutralPose;
 
 use crate::results::{surface_of_mesh::Articulating, table::Table};
 

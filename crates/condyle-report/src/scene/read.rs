@@ -6,10 +6,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use condyle_io::{
-    mesh::{VtuFile, parse_vtu_triangles, read_vtu_points},
-    results::{KeptCycle, check_file, cycle_pressure_file},
-};
+use condyle_mesh::formats::{VtuFile, parse_vtu_triangles, read_vtu_points};
+use condyle_results::{KeptCycle, check_file, cycle_pressure_file};
 
 use super::{Scene, SceneBody, SceneCycle};
 use crate::{

@@ -1,6 +1,6 @@
 //! How outputs go with inputs, of any design.
 
-use condyle_io::study::{Design, Input, Output};
+use condyle_case::study::{Design, Input, Output};
 use serde::Serialize;
 
 use crate::{

@@ -1,6 +1,6 @@
 //! Sobol's indices.
 
-use condyle_io::study::{Design, Output};
+use condyle_case::study::{Design, Output};
 use serde::Serialize;
 
 use crate::{

@@ -5,7 +5,7 @@ pub(crate) mod indices;
 pub(crate) mod ranking;
 pub(crate) mod spread;
 
-use condyle_io::{config::Variants, study::Output};
+use condyle_case::{config::Variants, study::Output};
 use condyle_lab::aligned;
 use serde::Serialize;
 

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use condyle_io::study::{Design, OUTPUTS};
+use condyle_case::study::{Design, OUTPUTS};
 use serde::Serialize;
 
 use crate::{

@@ -1,6 +1,6 @@
 //! How an output is distributed.
 
-use condyle_io::study::{Bound, Design, Output};
+use condyle_case::study::{Bound, Design, Output};
 use serde::Serialize;
 
 use crate::{design::Saltelli, plan::Plan, store::Column};

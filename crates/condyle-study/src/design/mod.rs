@@ -2,7 +2,7 @@
 
 pub(crate) mod sobol;
 
-use condyle_io::study::Correlation;
+use condyle_case::study::Correlation;
 use nalgebra::DMatrix;
 
 use crate::{

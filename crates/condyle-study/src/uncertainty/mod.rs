@@ -5,12 +5,12 @@ pub(crate) mod scatter;
 use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 
 use condyle::{evolve::March, geometry::TriangleMesh};
-use condyle_io::{
+use condyle_case::{
     cache::Cache,
     case::{Assignment, Case, SharedBodies},
-    results::{ErrorEstimate, LawWear, Summary},
 };
 use condyle_lab::{InMemory, Outcome, RunError, RunKeeper, aligned, batch_run, run_in_memory};
+use condyle_results::{ErrorEstimate, LawWear, Summary};
 use serde::Serialize;
 
 use crate::{

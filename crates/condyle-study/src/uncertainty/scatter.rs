@@ -1,10 +1,8 @@
 //! What of a test is never quite the same, and by how much.
 
 use By::{Part, Step};
-use condyle_io::{
-    case::{Assignment, Case},
-    config::unit_of,
-};
+use condyle::parameter::unit_of;
+use condyle_case::case::{Assignment, Case};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Values farther off than so many standard deviations do not occur: they are found out and thrown away.

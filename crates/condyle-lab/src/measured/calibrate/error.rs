@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use condyle::evolve::MarchError;
-use condyle_io::{case::ConstantError, config::Problems};
+use condyle_case::{case::ConstantError, config::Problems};
 use thiserror::Error;
 
 use super::super::error::CompareError;

@@ -1,6 +1,6 @@
 //! Least squares of a model that takes seconds to ask, and how sure what it finds is.
 
-use condyle_io::case::{ConstantError, Wear};
+use condyle_case::case::{ConstantError, Wear};
 use nalgebra::{DMatrix, DVector};
 
 use crate::measured::{

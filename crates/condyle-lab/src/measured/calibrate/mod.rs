@@ -9,7 +9,7 @@ use std::{
 };
 
 use condyle::{evolve::Progress, wear::Archard};
-use condyle_io::{
+use condyle_case::{
     cache::Cache,
     case::{Case, Wear},
 };

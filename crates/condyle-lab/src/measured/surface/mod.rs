@@ -5,12 +5,10 @@ pub(crate) mod register;
 use std::path::Path;
 
 use condyle::{Mat3, Vec3};
-use condyle_io::{
-    measured::Scan,
-    mesh::read_vtu_points,
-    results::{check_file, insert_file_name},
-};
+use condyle_case::measured::Scan;
+use condyle_mesh::formats::read_vtu_points;
 use condyle_report::SurfaceFields;
+use condyle_results::{check_file, insert_file_name};
 use rstar::{RTree, primitives::GeomWithData};
 use serde::Serialize;
 

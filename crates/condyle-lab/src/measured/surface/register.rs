@@ -4,7 +4,7 @@ use condyle::{
     Mat3, Vec3,
     geometry::{CurvedMesh, TriangleMesh},
 };
-use condyle_io::measured::{FitWord, Scan, ScanKeys};
+use condyle_case::measured::{FitWord, Scan, ScanKeys};
 use condyle_report::SurfaceFields;
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector6};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
@@ -399,11 +399,11 @@ mod tests {
     use super::*;
     use std::{path::Path, sync::Arc};
 
-    use condyle_io::{
+    use condyle_case::{
         case::{Axes, LengthUnit},
         config::DataFile,
-        files::{Disk, Files},
     };
+    use condyle_mesh::files::{Disk, Files};
 
     fn pairs(normal: impl Fn(f64, f64) -> Vec3) -> Vec<Pair> {
         let pair = |index: u32| {

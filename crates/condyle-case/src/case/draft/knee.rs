@@ -1,0 +1,110 @@
+//! The side of a draft, the origin of its insert, and why there is no draft.
+
+use std::path::PathBuf;
+
+use condyle::anatomy::flange_lead_mm;
+use condyle::geometry::TriangleMesh;
+use condyle_mesh::repair::RepairError;
+use thiserror::Error;
+
+use crate::case::build::{Body, MAX_ACROSS_MM, middle_of_mesh};
+use crate::case::frame::Side;
+use crate::config::Problems;
+use condyle_mesh::formats::MeshFileError;
+
+/// Which knee a case is of, and where that comes from.
+pub(super) struct ConcludedSide {
+    pub side: Side,
+    pub remark: String,
+}
+
+impl ConcludedSide {
+    /// Of a femur that lies x anterior, y superior, z right, of which the user may have said the side.
+    pub fn of(femur: &TriangleMesh, said: Option<Side>) -> Self {
+        let shown = flange_lead_mm(femur).map(|lead| {
+            let side = if lead > 0.0 { Side::Right } else { Side::Left };
+            (side, lead.abs())
+        });
+        let side = said.or(shown.map(|(side, _)| side)).unwrap_or(Side::Right);
+        let of_shape = match shown {
+            Some((shown, lead_mm)) => format!(
+                "likely a {} knee, since one flange of the trochlea stands out by {lead_mm:.1} mm there",
+                shown.word()
+            ),
+            None => "not told by the shape, of which both sides are alike".to_owned(),
+        };
+        let why = match said {
+            Some(_) => "as it was said",
+            None if shown.is_some() => "check it",
+            None => "assumed: check it",
+        };
+        let remark = format!("  side \"{}\", {why}; {of_shape}.", side.word());
+        Self { side, remark }
+    }
+}
+
+/// An origin so far in front of the dishes' middle, or behind it, is not that of a machine, mm.
+const FAR_ALONG_MM: f64 = 20.0;
+
+/// Where the origin of an insert frame is.
+pub(super) struct ConcludedOrigin {
+    pub key: &'static str,
+    pub remark: Option<String>,
+}
+
+impl ConcludedOrigin {
+    /// That of the file, unless the dishes lie off it; then between them, where the insert is moved to.
+    pub fn centred(insert: &mut TriangleMesh) -> Self {
+        let middle = middle_of_mesh(insert);
+        // Flat dishes are lowest at no certain place along: only what is far off is taken for another origin.
+        let is_far = middle.z.abs() > MAX_ACROSS_MM || middle.x.abs() > FAR_ALONG_MM;
+        if !is_far {
+            return Self {
+                key: "",
+                remark: None,
+            };
+        }
+        *insert = std::mem::take(insert).mapped(|vertex| vertex - middle);
+        let remark = format!(
+            "  origin \"centre\", since the file has its own {:.0} mm from the middle of the dishes.",
+            middle.norm()
+        );
+        Self {
+            key: "origin = \"centre\"\n",
+            remark: Some(remark),
+        }
+    }
+}
+
+/// Why no case can be drafted from two files.
+#[derive(Debug, Error)]
+pub enum DraftError {
+    /// A file that cannot be read.
+    #[error(transparent)]
+    MeshFile(#[from] MeshFileError),
+    /// Triangles that are no shell.
+    #[error("{}: {source}", file.display())]
+    Shell {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: RepairError,
+    },
+    /// A body that no unit makes as large as a knee's.
+    #[error(
+        "{}: this {body} is {size:.4} long in the unit of the file, and none of mm, cm, m and in makes it \
+         40 mm to 120 mm long, as that of a whole knee is; scale it, or write the case by hand",
+        file.display()
+    )]
+    NoUnit {
+        /// The file.
+        file: PathBuf,
+        /// Which body.
+        body: Body,
+        /// Its longest extent, in the unit of the file.
+        size: f64,
+    },
+    /// The draft is no case.
+    #[error(transparent)]
+    Case(#[from] Problems),
+}

@@ -1,0 +1,247 @@
+//! The heading of a case, and the frames and units of the files that it names.
+
+use condyle::{Mat3, Vec3};
+use thiserror::Error;
+use toml::Spanned;
+use toml::de::DeValue;
+
+use crate::config::{Key, Kind, Log, Reason, Setting, choice, read_word, settings, wrong_type};
+
+pub use condyle_results::Side;
+
+impl Setting for Side {
+    fn kind() -> Kind {
+        Kind::Word(Self::WORDS.to_vec())
+    }
+
+    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
+        Self::from_word(read_word(value, key, Self::WORDS, log)?)
+    }
+
+    fn text(&self) -> Option<String> {
+        Some(format!("{:?}", self.word()))
+    }
+}
+
+settings! {
+    /// What stands above the first table of a case.
+    Heading {
+        /// One line that says what the case is.
+        title: String = "Untitled".to_owned();
+        /// Which knee; a left one is mirrored on the way in and out.
+        side: Side = Side::Right;
+    }
+}
+
+/// Where x, y and z of a file point, in words of the body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axes {
+    words: [&'static str; 3],
+}
+
+/// Why three words make no frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum AxesError {
+    /// Two words on one line.
+    #[error("two of the axes lie along the same line, so one direction of space has none")]
+    SameLine,
+    /// A mirrored frame.
+    #[error("these axes are left-handed, which would mirror the shape")]
+    LeftHanded,
+}
+
+/// Axes that are no right-handed frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("`{key}`: {error}")]
+pub struct AxesReason {
+    /// The key that gives them.
+    pub key: &'static str,
+    /// Why.
+    pub error: AxesError,
+}
+
+impl Reason for AxesReason {
+    fn advice(&self) -> Option<String> {
+        const ADVICE: &str = "name where x, y and z of the file point; the third is the cross \
+            product of the first two, such as [\"anterior\", \"superior\", \"right\"]";
+        Some(ADVICE.to_owned())
+    }
+}
+
+/// Words that say a direction.
+const WORDS: &[&str] = &[
+    "anterior",
+    "posterior",
+    "superior",
+    "inferior",
+    "right",
+    "left",
+    "medial",
+    "lateral",
+];
+
+impl Axes {
+    /// x anterior, y superior, z right: the frame of the insert.
+    pub const ISB: Self = Self {
+        words: ["anterior", "superior", "right"],
+    };
+
+    /// The axes of which [`Axes::rotation`] is `rotation`, in words that do not depend on the side.
+    pub fn of(rotation: &Mat3) -> Self {
+        let words = [0, 1, 2].map(|axis| word(rotation.column(axis).into()));
+        Self { words }
+    }
+
+    /// The words for x, y and z.
+    pub fn words(&self) -> [&'static str; 3] {
+        self.words
+    }
+
+    /// The rotation from the file's frame to x anterior, y superior, z right of a `side` knee,
+    /// before a left knee is mirrored.
+    ///
+    /// # Errors
+    /// Two axes along one line, or a left-handed frame.
+    pub fn rotation(&self, side: Side) -> Result<Mat3, AxesError> {
+        let columns = self.words.map(|word| direction(word, side));
+        let rotation = Mat3::from_columns(&columns);
+        let determinant = rotation.determinant();
+        if determinant.abs() < 0.5 {
+            Err(AxesError::SameLine)
+        } else if determinant < 0.0 {
+            Err(AxesError::LeftHanded)
+        } else {
+            Ok(rotation)
+        }
+    }
+}
+
+/// Where a word points, in x anterior, y superior, z right.
+fn direction(word: &str, side: Side) -> Vec3 {
+    let right = match side {
+        Side::Right => Vec3::z(),
+        Side::Left => -Vec3::z(),
+    };
+    match word {
+        "anterior" => Vec3::x(),
+        "posterior" => -Vec3::x(),
+        "superior" => Vec3::y(),
+        "inferior" => -Vec3::y(),
+        "right" => Vec3::z(),
+        "left" => -Vec3::z(),
+        "lateral" => right,
+        _ => -right,
+    }
+}
+
+/// The word of the direction that is nearest to one in x anterior, y superior, z right.
+fn word(toward: Vec3) -> &'static str {
+    let [forward, backward] = match toward.iamax() {
+        0 => ["anterior", "posterior"],
+        1 => ["superior", "inferior"],
+        _ => ["right", "left"],
+    };
+    if toward[toward.iamax()] > 0.0 {
+        forward
+    } else {
+        backward
+    }
+}
+
+impl Setting for Axes {
+    fn kind() -> Kind {
+        Kind::ThreeWords(WORDS)
+    }
+
+    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
+        let Some([x, y, z]) = value.get_ref().as_array().and_then(three) else {
+            wrong_type(value, key, log);
+            return None;
+        };
+        let words = [x, y, z].map(|word| read_word(word, key, WORDS, log));
+        let [Some(x), Some(y), Some(z)] = words else {
+            return None;
+        };
+        Some(Self { words: [x, y, z] })
+    }
+
+    fn text(&self) -> Option<String> {
+        Some(format!("{:?}", self.words))
+    }
+}
+
+fn three<'a, 'i>(array: &'a toml::de::DeArray<'i>) -> Option<[&'a Spanned<DeValue<'i>>; 3]> {
+    let all: Vec<_> = array.iter().collect();
+    all.try_into().ok()
+}
+
+/// Reports axes that are no right-handed frame on a `side` knee.
+pub(crate) fn check(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
+    if let Err(error) = axes.rotation(side) {
+        log.problem(span, AxesReason { key: "axes", error });
+    }
+}
+
+choice! {
+    /// Unit of length of a mesh file.
+    LengthUnit {
+        /// Millimetre.
+        Millimetre = "mm",
+        /// Centimetre.
+        Centimetre = "cm",
+        /// Metre.
+        Metre = "m",
+        /// Inch.
+        Inch = "in",
+    }
+}
+
+impl LengthUnit {
+    /// How many mm it has.
+    pub fn in_mm(self) -> f64 {
+        match self {
+            Self::Millimetre => 1.0,
+            Self::Centimetre => 10.0,
+            Self::Metre => 1000.0,
+            Self::Inch => 25.4,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verify_axes_of_the_dm_meshes_turn_half_round_about_superior() {
+        let axes = Axes {
+            words: ["posterior", "superior", "left"],
+        };
+        let turned = axes.rotation(Side::Right).unwrap() * Vec3::new(1.0, 2.0, 3.0);
+        assert_eq!(turned, Vec3::new(-1.0, 2.0, -3.0));
+    }
+
+    #[test]
+    fn verify_words_of_a_rotation_are_those_it_comes_from() {
+        for words in [
+            ["posterior", "superior", "left"],
+            ["right", "anterior", "superior"],
+        ] {
+            let axes = Axes { words };
+            assert_eq!(Axes::of(&axes.rotation(Side::Left).unwrap()), axes);
+        }
+    }
+
+    #[test]
+    fn lateral_depends_on_the_side() {
+        let axes = Axes {
+            words: ["anterior", "superior", "lateral"],
+        };
+        assert!(axes.rotation(Side::Right).is_ok());
+        assert_eq!(axes.rotation(Side::Left), Err(AxesError::LeftHanded));
+        let axes = Axes {
+            words: ["left", "right", "superior"],
+        };
+        assert_eq!(axes.rotation(Side::Right), Err(AxesError::SameLine));
+    }
+}

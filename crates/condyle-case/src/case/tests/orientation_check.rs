@@ -1,0 +1,296 @@
+//! Which way bodies lie: what is told of it, and what is concluded for a new case.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use condyle::Vec3;
+use condyle::anatomy::{Orientation, Sureness};
+use condyle::geometry::{
+    GenericFemur, GenericFemurShape, GenericInsertShape, Meshing, TriangleMesh,
+};
+use tempfile::TempDir;
+
+use crate::case::{Body, BuildWarning, Case, Draft, Preset, Side};
+use condyle_mesh::files::Disk;
+use condyle_mesh::formats::{read_surface, write_stl};
+
+/// A femur and an insert in mm, x anterior, y superior, z right.
+struct Pair {
+    femur: TriangleMesh,
+    insert: TriangleMesh,
+}
+
+fn generic() -> Pair {
+    let (edge_mm, layers) = (1.5, 1);
+    let insert = GenericInsertShape::default().insert(Meshing { edge_mm, layers });
+    let insert = insert.unwrap();
+    let mesh = insert.mesh();
+    Pair {
+        femur: GenericFemur::new(GenericFemurShape::default()).surface_mesh(1.5),
+        insert: TriangleMesh::of_quads(mesh.nodes.clone(), mesh.boundary_quads()),
+    }
+}
+
+/// The implant of the repository, and two that are not part of it; those that are not there are left out by name.
+fn real(test: &str) -> Vec<Pair> {
+    let own = pair(test, "cases/cad-knee", "femur.stl", "insert.stl", |v| {
+        Vec3::new(v.y, v.z, v.x)
+    });
+    assert!(own.is_some(), "the implant of the repository is there");
+    own.into_iter().chain(third_party(test)).collect()
+}
+
+/// The pair in the files of a folder, turned to the axes of the insert; none, and its name, where the files are absent.
+fn pair(
+    test: &str,
+    folder: &str,
+    femur: &str,
+    insert: &str,
+    turn: fn(&Vec3) -> Vec3,
+) -> Option<Pair> {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(folder);
+    let [femur, insert] = [femur, insert].map(|file| folder.join(file));
+    if !(femur.is_file() && insert.is_file()) {
+        eprintln!("skipped: {test}: {} is not there", femur.display());
+        return None;
+    }
+    let [femur, insert] =
+        [femur, insert].map(|file| read_surface(&Disk, file).unwrap().mapped(turn));
+    Some(Pair { femur, insert })
+}
+
+/// The implants that are not part of the repository.
+fn third_party(test: &str) -> Vec<Pair> {
+    let dm = pair(
+        test,
+        "../shared/data/dm-knee",
+        "femoral-component.stl",
+        "tibial-insert.stl",
+        |v| 1000.0 * Vec3::new(-v.x, v.y, -v.z),
+    );
+    let cams = pair(
+        test,
+        "../shared/data/cams-knee",
+        "femur_implant_Mplus_JWI_meters_reduce.stl",
+        "tibia_inlay_JWI_meters.stl",
+        |v| 1000.0 * Vec3::new(v.y, v.z, v.x),
+    );
+    [dm, cams].into_iter().flatten().collect()
+}
+
+fn turned(mesh: &TriangleMesh, orientation: &Orientation) -> TriangleMesh {
+    let back = orientation.rotation().transpose();
+    mesh.clone().mapped(|vertex| back * vertex)
+}
+
+#[test]
+fn every_wrong_orientation_of_real_bodies_is_told_and_the_right_one_is_not() {
+    for pair in real("every_wrong_orientation") {
+        for (body, mesh) in [(Body::Femur, &pair.femur), (Body::Insert, &pair.insert)] {
+            for orientation in Orientation::all() {
+                let recognition = body.recognise(&turned(mesh, &orientation)).unwrap();
+                let told = recognition.against(&Orientation::ISB).is_some();
+                assert_eq!(
+                    told,
+                    orientation != Orientation::ISB,
+                    "{body} {orientation:?}"
+                );
+                assert_eq!(recognition.nearest(), orientation, "{body}");
+            }
+        }
+    }
+}
+
+/// Vertices as a coarse scan may have them, on a grid of 2 mm, and the other side's implant.
+#[test]
+fn rough_and_mirrored_real_bodies_are_not_accused() {
+    let snap = |v: &Vec3| v.map(|x| (x / 2.0).round() * 2.0);
+    let mirror = |v: &Vec3| Vec3::new(v.x, v.y, -v.z);
+    // The insert of the repository has a nearly flat underside and shallow dishes: snapped to the grid, its sides are only likely.
+    for pair in third_party("rough_and_mirrored") {
+        for (body, mesh) in [(Body::Femur, &pair.femur), (Body::Insert, &pair.insert)] {
+            for change in [&snap as &dyn Fn(&Vec3) -> Vec3, &mirror] {
+                let recognition = body.recognise(&mesh.clone().mapped(change)).unwrap();
+                assert_eq!(recognition.against(&Orientation::ISB), None, "{body}");
+                let upside_down = Orientation::all().filter(|one| one.rotation()[(1, 1)] < -0.5);
+                for other in upside_down {
+                    assert_eq!(
+                        recognition.against(&other),
+                        Some(Sureness::Certain),
+                        "{body}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The pair in files whose axes point as `orientation` says, of which `unit_mm` mm are one.
+fn written(pair: &Pair, orientation: &Orientation, unit_mm: f64) -> (TempDir, PathBuf, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, mesh: &TriangleMesh| {
+        let path = folder.path().join(name);
+        let mesh = turned(mesh, orientation).mapped(|vertex| vertex / unit_mm);
+        write_stl(File::create(&path).unwrap(), &mesh).unwrap();
+        path
+    };
+    let (femur, insert) = (write("f.stl", &pair.femur), write("i.stl", &pair.insert));
+    (folder, femur, insert)
+}
+
+#[test]
+fn a_drafted_case_builds_without_a_word_of_axes_from_any_unit_and_orientation() {
+    let mut pairs = real("a_drafted_case");
+    pairs.push(generic());
+    let orientations: Vec<Orientation> = Orientation::all().collect();
+    let units = [(1.0, "mm"), (10.0, "cm"), (1000.0, "m"), (25.4, "in")];
+    for pair in &pairs {
+        for (i, (unit_mm, word)) in units.into_iter().enumerate() {
+            let (folder, femur, insert) = written(pair, &orientations[7 * i + 1], unit_mm);
+            let draft = Draft {
+                preset: Preset::StanmoreForce,
+                side: None,
+                femur: &femur,
+                insert: &insert,
+            };
+            let drafted = draft.drafted(folder.path()).unwrap();
+            let unit = format!("length_unit = \"{word}\"");
+            assert_eq!(drafted.text.matches(&unit).count(), 2, "{}", drafted.text);
+            assert!(
+                drafted.text.contains("file = \"f.stl\""),
+                "{}",
+                drafted.text
+            );
+            let case = Case::parse(&drafted.text, "case.toml", folder.path()).unwrap();
+            let built = case.build(1).unwrap();
+            let of_lie = |warning: &BuildWarning| {
+                matches!(
+                    warning,
+                    BuildWarning::WrongAxes { .. }
+                        | BuildWarning::UnusualSize { .. }
+                        | BuildWarning::OtherSide { .. }
+                )
+            };
+            assert!(!built.warnings.iter().any(of_lie), "{:?}", built.warnings);
+        }
+    }
+}
+
+fn refused(pair: &Pair, axes: &str, unit: &str) -> String {
+    let (folder, ..) = written(pair, &Orientation::ISB, 1.0);
+    let keys = |file| format!("shape = \"mesh\"\nfile = \"{file}\"\nlength_unit = \"{unit}\"\n");
+    let (femur, insert) = (keys("f.stl"), keys("i.stl"));
+    let text = format!("[femur]\n{femur}[insert]\n{insert}axes = {axes}\nedge_mm = 3\n");
+    let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
+    match case.build(1) {
+        Ok(built) => format!("{:?}", built.warnings),
+        Err(error) => case.at_its_key(&error).to_string().replace("\n  | ", " "),
+    }
+}
+
+#[test]
+fn what_is_wrong_for_certain_is_an_error_at_its_key_with_the_line_to_write() {
+    let said = refused(&generic(), r#"["anterior", "inferior", "left"]"#, "mm");
+    assert!(said.contains("lies upside down; write axes ="), "{said}");
+    assert!(said.contains("case.toml:9"), "{said}");
+    let said = refused(&generic(), r#"["superior", "anterior", "left"]"#, "mm");
+    assert!(said.contains("lies on its side; write axes ="), "{said}");
+    let said = refused(&generic(), r#"["anterior", "superior", "right"]"#, "in");
+    assert!(said.contains("write length_unit = \"mm\""), "{said}");
+    let said = refused(&generic(), r#"["posterior", "superior", "left"]"#, "mm");
+    assert_eq!(said, "[]");
+}
+
+/// The warnings of a case of a pair whose side is said to be `side`.
+fn warned_of_side(pair: &Pair, side: &str) -> Vec<BuildWarning> {
+    let (folder, ..) = written(pair, &Orientation::ISB, 1.0);
+    let keys = |file| format!("shape = \"mesh\"\nfile = \"{file}\"\nlength_unit = \"mm\"\n");
+    let (femur, insert) = (keys("f.stl"), keys("i.stl"));
+    let text = format!("side = \"{side}\"\n[femur]\n{femur}[insert]\n{insert}edge_mm = 3\n");
+    let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
+    let warnings = case.build(1).unwrap().warnings.into_iter();
+    let of_side = |warning: &BuildWarning| matches!(warning, BuildWarning::OtherSide { .. });
+    warnings.filter(of_side).collect()
+}
+
+#[test]
+fn a_knee_of_the_other_side_is_told_where_the_trochlea_shows_it() {
+    for pair in real("other_side") {
+        assert!(warned_of_side(&pair, "right").is_empty());
+        let told = warned_of_side(&pair, "left");
+        let said = told.iter().map(ToString::to_string).collect::<String>();
+        assert!(
+            said.contains("as in a right knee; write side = \"right\""),
+            "{said}"
+        );
+    }
+    for side in ["right", "left"] {
+        assert!(warned_of_side(&generic(), side).is_empty());
+    }
+}
+
+#[test]
+fn a_draft_takes_the_side_that_the_trochlea_shows_unless_it_is_said() {
+    let mirror = |v: &Vec3| Vec3::new(v.x, v.y, -v.z);
+    for pair in real("draft_takes_the_side") {
+        let mirrored = Pair {
+            femur: pair.femur.clone().mapped(mirror),
+            insert: pair.insert.clone().mapped(mirror),
+        };
+        let cases = [
+            (&pair, None, "right", "check it"),
+            (&mirrored, None, "left", "check it"),
+            (&mirrored, Some(Side::Right), "right", "as it was said"),
+        ];
+        for (pair, side, word, why) in cases {
+            let (folder, femur, insert) = written(pair, &Orientation::ISB, 1.0);
+            let draft = Draft {
+                preset: Preset::StanmoreForce,
+                side,
+                femur: &femur,
+                insert: &insert,
+            };
+            let text = draft.drafted(folder.path()).unwrap().text;
+            assert!(text.contains(&format!("\nside = \"{word}\"")), "{text}");
+            assert!(text.contains(&format!("side \"{word}\", {why};")), "{text}");
+        }
+    }
+}
+
+#[test]
+fn a_draft_puts_the_origin_between_dishes_that_lie_off_that_of_their_file() {
+    let pair = generic();
+    let away = Pair {
+        femur: pair
+            .femur
+            .clone()
+            .mapped(|v| v + Vec3::new(-40.0, 10.0, 0.0)),
+        insert: pair
+            .insert
+            .clone()
+            .mapped(|v| v + Vec3::new(30.0, 500.0, -12.0)),
+    };
+    let mut starts = Vec::new();
+    for (pair, is_centred) in [(&pair, false), (&away, true)] {
+        let (folder, femur, insert) = written(pair, &Orientation::ISB, 1.0);
+        let draft = Draft {
+            preset: Preset::StanmoreForce,
+            side: None,
+            femur: &femur,
+            insert: &insert,
+        };
+        let text = draft.drafted(folder.path()).unwrap().text;
+        assert_eq!(text.contains("origin = \"centre\""), is_centred, "{text}");
+        let case = Case::parse(&text, "case.toml", folder.path()).unwrap();
+        let built = case.build(1).unwrap();
+        let off = |warning: &BuildWarning| matches!(warning, BuildWarning::OffCentre { .. });
+        assert!(!built.warnings.iter().any(off), "{:?}", built.warnings);
+        starts.push(built.test.start_mm);
+    }
+    let [at_home, away] = [starts[0], starts[1]];
+    // Of the file that lies at home the dishes' middle is within a millimetre of the origin.
+    assert!(
+        (at_home.0 - away.0).abs() < 1.0 && (at_home.1 - away.1).abs() < 1.0,
+        "{starts:?}"
+    );
+}

@@ -1,0 +1,191 @@
+//! Cases written out and read again, the shipped ones and their waveforms.
+
+use std::path::Path;
+
+use condyle::machine::{self, knee};
+use condyle::wear::WEAR_LAWS;
+
+use super::{cases, has_dm_data, parsed};
+use crate::case::{
+    Case, CaseChannel, DriveWord, Femur, Insert, Preset, Side, json_schema, schema_markdown,
+    template,
+};
+
+fn shipped(name: &str) -> Case {
+    Case::read(&cases().join(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Asserts that a case comes back equal from what it writes, read from any folder.
+fn assert_round_trip(case: &Case) {
+    let text = case.to_toml();
+    match Case::parse(&text, "written.toml", Path::new("elsewhere")) {
+        Ok(again) => {
+            assert_eq!(&again, case);
+            assert_eq!(again.to_toml(), text);
+        }
+        Err(error) => panic!("{error}\nin\n{text}"),
+    }
+}
+
+#[test]
+fn generic_cases_round_trip() {
+    assert_round_trip(&shipped("stanmore-force.toml"));
+    assert_round_trip(&shipped("stanmore-displacement.toml"));
+    assert_round_trip(&shipped("gait-and-stairs.toml"));
+    assert_round_trip(&shipped("daily-life.toml"));
+    assert_round_trip(&shipped("creep.toml"));
+}
+
+#[test]
+fn dm_cases_round_trip() {
+    if has_dm_data("dm_cases_round_trip") {
+        assert_round_trip(&shipped("dm-knee.toml"));
+        assert_round_trip(&shipped("dm-knee-displacement.toml"));
+    }
+}
+
+#[test]
+fn every_choice_round_trips() {
+    let texts = [
+        "title = \"a \\\"b\\\" \\\\ c\"\nside = \"left\"\n",
+        "[femur]\nshape = \"sphere\"\nradius_mm = 12.5\nstart_mm = [1.0, -2.0]\n",
+        "[femur]\nshape = \"cylinder\"\nradius_mm = 12.5\nstart_mm = [1.0, -2.0]\n",
+        "[insert]\nshape = \"flat\"\nlayers = 5\n",
+        "[contact]\nlaw = \"logarithmic\"\n",
+        "[contact]\nlaw = \"tabulated\"\ntable = [[0, 0], [0.05, 5.0], [0.1, 12.0]]\n",
+        "[machine]\nap_force_sign = -1\n[machine.springs]\nstiffness_of = \"each\"\n",
+        "[machine.freedoms.ap]\ndrive = \"locked\"\nlocked_at_mm = 1.5\n",
+        "[machine.freedoms.ap]\ndrive = \"prescribed\"\n[machine.ap_motion]\nwaveform = \"none\"\n",
+        "[machine.flexion]\nwaveform = \"iso-like\"\nlow_pass_harmonics = 3\nscale = 0.1\n",
+    ];
+    for text in texts {
+        assert_round_trip(&parsed(text).unwrap());
+    }
+}
+
+#[test]
+fn force_case_is_the_default_but_for_its_title_and_axial_force() {
+    let (mut case, default) = (shipped("stanmore-force.toml"), parsed("").unwrap());
+    let peak = |case: &Case| {
+        case.machine
+            .waveforms
+            .get(CaseChannel::of(&knee::AXIAL_FORCE))
+            .map(|w| w.at(0.13).0)
+    };
+    assert_eq!((peak(&case), peak(&default)), (Some(3200.0), Some(2600.3)));
+    case.heading = default.heading.clone();
+    case.machine.waveforms = default.machine.waveforms.clone();
+    assert_eq!(case, default);
+}
+
+#[test]
+fn every_shipped_waveform_is_read_and_stays_near_its_points() {
+    for channel in CaseChannel::all() {
+        for named in channel.named() {
+            let drive = match channel.name() {
+                "ap_motion" | "ie_motion" => "stanmore-displacement",
+                _ => "stanmore-force",
+            };
+            let (table, word) = (channel.name(), named.word);
+            let text = format!(
+                "[machine]\npreset = \"{drive}\"\n[machine.{table}]\nwaveform = \"{word}\"\n"
+            );
+            let case = parsed(&text).unwrap_or_else(|error| panic!("{error}"));
+            let waveform = case.machine.waveforms.get(channel).unwrap();
+            let values = waveform.knots().iter().map(|knot| knot.value);
+            let (low, high) = (
+                values.clone().fold(0.0, f64::min),
+                values.fold(0.0, f64::max),
+            );
+            let slack = 0.05 * (high - low);
+            for i in 0..1000 {
+                let value = waveform.at(f64::from(i) / 1000.0).0;
+                assert!(
+                    value > low - slack - 1e-9 && value < high + slack + 1e-9,
+                    "{table} {i}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn validate_signs_of_the_measured_gait() {
+    if !has_dm_data("validate_signs_of_the_measured_gait") {
+        return;
+    }
+    let case = shipped("dm-knee-displacement.toml");
+    let at = |channel: &'static machine::Channel, percent: f64| {
+        let channel = CaseChannel::of(channel);
+        let waveform = case.machine.waveforms.get(channel).unwrap();
+        waveform.at(percent / 100.0).0
+    };
+    // The rows at 5, 40 and 80 % of the gait file: x' -6.1, -6.9 and 0.9 mm, zrot -7.4, -7.8, -51.6.
+    for (percent, flexion, ap) in [(5.0, 7.4, 1.3), (40.0, 7.8, 0.5), (80.0, 51.6, 8.3)] {
+        assert!(
+            (at(&knee::FLEXION_MOTION, percent) - flexion).abs() < 1.5,
+            "{percent}"
+        );
+        assert!(
+            (at(&knee::AP_MOTION, percent) - ap).abs() < 2.0,
+            "{percent}"
+        );
+    }
+    assert!((at(&knee::IE_MOTION, 15.0) + 4.06).abs() < 1.0);
+    assert!(at(&knee::AP_MOTION, 0.0).abs() < 0.5);
+}
+
+#[test]
+fn dm_cases_turn_the_meshes_half_round() {
+    if !has_dm_data("dm_cases_turn_the_meshes_half_round") {
+        return;
+    }
+    let case = shipped("dm-knee.toml");
+    let (Femur::Mesh(femur), Insert::Mesh(insert)) = (&case.femur, &case.insert) else {
+        panic!("both are meshes");
+    };
+    for axes in [femur.axes, insert.axes] {
+        let rotation = axes.rotation(Side::Right).unwrap();
+        assert_eq!(rotation.diagonal().as_slice(), [-1.0, 1.0, -1.0]);
+    }
+    assert_eq!(femur.length_unit.in_mm(), 1000.0);
+}
+
+#[test]
+fn templates_are_cases_of_their_preset() {
+    for preset in [Preset::StanmoreForce, Preset::StanmoreDisplacement] {
+        let case = parsed(&template(preset)).unwrap();
+        assert_eq!(case.machine.preset, preset);
+        let prescribed = preset == Preset::StanmoreDisplacement;
+        assert_eq!(
+            case.machine.freedoms.get(knee::AP).drive() == DriveWord::Prescribed,
+            prescribed
+        );
+    }
+}
+
+#[test]
+fn page_of_keys_has_unit_range_default_and_meaning() {
+    let page = schema_markdown(WEAR_LAWS);
+    let row = "| `edge_mm` | mm | a number, 0.1 to 10 | `1.05` | Edge of a hexahedron, seen from above. |";
+    assert!(page.contains(row), "{page}");
+    assert!(page.contains("| `file` |  | a path in quotes | must be given |"));
+    assert!(page.contains("| `axial_force` | `knots_n` | N | 0 to 20000 | iso-like, paper-like, stairs-like, chair-like |"));
+}
+
+#[test]
+fn schema_beside_the_cases_is_up_to_date() {
+    let path = cases().join("condyle.schema.json");
+    let schema = std::fs::read_to_string(path).unwrap_or_default();
+    let advice = "run: condyle schema > cases/condyle.schema.json";
+    assert!(schema == json_schema(WEAR_LAWS), "{advice}");
+}
+
+#[test]
+fn page_of_keys_in_the_book_is_up_to_date() {
+    let path = cases().join("../docs/src/case-file.md");
+    let page = std::fs::read_to_string(path).unwrap_or_default();
+    let advice =
+        "run: cargo run -q -p condyle-case --example case_file_page > docs/src/case-file.md";
+    assert!(page == schema_markdown(WEAR_LAWS), "{advice}");
+}

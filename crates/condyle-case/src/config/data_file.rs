@@ -1,0 +1,120 @@
+//! Files that a file names.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::key::Key;
+use super::key::Kind;
+use super::key::quoted;
+use super::log::Log;
+use super::problem::{Source, read_source};
+use super::reason::FileReason;
+use super::section::Section;
+use super::setting::Setting;
+use super::setting::wrong_type;
+use condyle_mesh::files::Files;
+#[cfg(feature = "file-system")]
+use condyle_mesh::files::path_from;
+
+/// A file that another names, and that was there when that one was read.
+///
+/// Two of them are equal if their paths are, wherever they are kept.
+#[derive(Clone, Debug)]
+pub struct DataFile {
+    files: Arc<dyn Files>,
+    /// Absolute on a disk, its folder without `..` or links.
+    path: PathBuf,
+    /// How a file that names it says where it is.
+    written: PathBuf,
+}
+
+impl PartialEq for DataFile {
+    fn eq(&self, other: &Self) -> bool {
+        self.path == other.path
+    }
+}
+
+impl DataFile {
+    /// The one of `files` at `written`, counted from `folder`.
+    ///
+    /// # Errors
+    /// The path that was looked at, where there is no such file.
+    pub fn find(files: &Arc<dyn Files>, written: &str, folder: &Path) -> Result<Self, PathBuf> {
+        let (path, files) = (files.find(written, folder)?, Arc::clone(files));
+        let written = path.clone();
+        Ok(Self {
+            files,
+            path,
+            written,
+        })
+    }
+
+    /// The same as files in `folder`, an absolute path without links, are to name it: by its path
+    /// counted from there, where it has one.
+    #[cfg(feature = "file-system")]
+    pub(crate) fn named_from(&self, folder: &Path) -> Self {
+        let mut file = self.clone();
+        if let Some(written) = path_from(folder, &self.path) {
+            file.written = written;
+        }
+        file
+    }
+
+    /// What it is kept in, and read from.
+    pub fn files(&self) -> &dyn Files {
+        self.files.as_ref()
+    }
+
+    /// Where it is; absolute on a disk.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Its name without its folder.
+    pub fn name(&self) -> String {
+        let name = self.path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+
+    /// Its text, or the reason at the key `key` of `section` that names it.
+    pub(crate) fn source(
+        &self,
+        section: &Section<'_>,
+        key: &str,
+        log: &mut Log<'_>,
+    ) -> Option<Source> {
+        let source = read_source(self.files(), &self.path);
+        source
+            .map_err(|reason| log.problem(section.value_span(key), reason))
+            .ok()
+    }
+}
+
+impl Setting for DataFile {
+    fn kind() -> Kind {
+        Kind::Path
+    }
+
+    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
+        let Some(written) = value.get_ref().as_str() else {
+            wrong_type(value, key, log);
+            return None;
+        };
+        let base = log.base();
+        match Self::find(base.files, written, base.folder) {
+            Ok(file) => Some(file),
+            Err(path) => {
+                let key = key.name.to_owned();
+                log.problem(value.span(), FileReason::Missing { key, path });
+                None
+            }
+        }
+    }
+
+    fn text(&self) -> Option<String> {
+        Some(quoted(&self.written.display().to_string()))
+    }
+}

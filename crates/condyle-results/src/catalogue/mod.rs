@@ -1,0 +1,96 @@
+//! The catalogue of results: every number of `summary.json`, declared once.
+//!
+//! A [`Scalar`] has a key, a name, a unit (the end of its key), decimals, a description and a definition (its doc
+//! comment), the way its error is found, and the joints that have it. One file has one [`Section`]; [`SECTIONS`] lists
+//! them all. The report's page, its comparison of runs and `condyle diff` name and format numbers by it; `Summary`
+//! computes the values.
+//!
+//! ```
+//! use condyle_results::catalogue;
+//!
+//! let mass = catalogue::scalar("mass_loss_mg").expect("is in the catalogue");
+//! assert_eq!((mass.label, mass.unit()), ("mass loss", "mg"));
+//! assert_eq!(mass.text(10.909), "10.91");
+//! ```
+
+mod scalar;
+
+pub use scalar::{ErrorMethod, Joint, Prominence, Scalar, Section};
+
+scalar::sections! {
+    wear,
+    contact,
+    below_surface,
+    motion,
+    computation,
+}
+
+/// Heading of the section on the computation, whose numbers are no results of the test.
+pub const COMPUTATION: &str = computation::SECTION.heading;
+
+/// All numbers, in the order of `summary.json`.
+pub fn scalars() -> impl Iterator<Item = &'static Scalar> {
+    let all = SECTIONS.iter().flat_map(|section| section.scalars);
+    all.copied()
+}
+
+/// Numbers of the test, without those of the computation.
+pub fn results() -> impl Iterator<Item = &'static Scalar> {
+    let of_test = SECTIONS
+        .iter()
+        .filter(|section| section.heading != COMPUTATION);
+    of_test.flat_map(|section| section.scalars).copied()
+}
+
+/// The number with this key.
+pub fn scalar(key: &str) -> Option<&'static Scalar> {
+    scalars().find(|scalar| scalar.key == key)
+}
+
+/// Numbers in large type.
+pub fn headlines() -> impl Iterator<Item = &'static Scalar> {
+    results().filter(|scalar| scalar.prominence == Prominence::Headline)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn keys_differ_and_end_in_units_that_are_known() {
+        let keys: BTreeSet<_> = scalars().map(|scalar| scalar.key).collect();
+        assert_eq!(keys.len(), scalars().count());
+        for (key, unit) in [
+            ("mass_loss_mg", "mg"),
+            ("volume_loss_mm3", "mm3"),
+            ("peak_contact_area_mm2", "mm2"),
+            ("backside_lifted_percent", "%"),
+            ("medial_load_share", ""),
+            ("wall_s", "s"),
+        ] {
+            assert_eq!(scalar(key).map(Scalar::unit), Some(unit));
+        }
+    }
+
+    #[test]
+    fn every_number_is_described_and_names_a_cycle_that_there_is() {
+        for each in scalars() {
+            assert!(
+                each.description().ends_with('.'),
+                "{}: {}",
+                each.key,
+                each.description()
+            );
+            assert!(
+                each.cycle_key.is_none_or(|key| scalar(key).is_some()),
+                "{}",
+                each.key
+            );
+        }
+        let mass = &wear::MASS_LOSS_MG;
+        assert_eq!(mass.description(), "Mass worn.");
+        assert!(mass.definition().starts_with("Volume loss, from depth"));
+    }
+}

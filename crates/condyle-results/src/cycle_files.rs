@@ -1,0 +1,128 @@
+//! The first and the last cycle as ParaView plays them: at every increment the insert with its pressure,
+//! and the femur where it is.
+
+use condyle::{
+    Vec3,
+    evolve::{March, SolvedCycle},
+    geometry::TriangleMesh,
+    spatial::Pose,
+};
+
+use condyle_mesh::formats::{
+    Grid, MeshFileError, PointArray, PointValues, compact_vtu_bytes, pvd_text_of_parts,
+};
+
+use super::side::{Side, point_on_side, quad_on_side, triangle_on_side};
+
+/// Which of the two cycles whose motions are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptCycle {
+    /// On the unworn insert.
+    First,
+    /// On the insert as it was before the last update.
+    Last,
+}
+
+impl KeptCycle {
+    /// Both of them.
+    pub const BOTH: [Self; 2] = [Self::First, Self::Last];
+
+    /// Name of its folder, and of its `.pvd` file without the ending.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::First => "cycle_first",
+            Self::Last => "cycle_last",
+        }
+    }
+
+    /// Those that a march has just solved: after one update the first, after all of them the last.
+    pub fn solved_by(march: &March) -> impl Iterator<Item = Self> {
+        let is_first = march.state().updates.len() == 1;
+        let first = is_first.then_some(Self::First);
+        first
+            .into_iter()
+            .chain(march.is_done().then_some(Self::Last))
+    }
+}
+
+/// The bodies of a frame, in the order of their parts in the `.pvd` file.
+pub const BODIES: [&str; 2] = ["insert", "femur"];
+
+/// Name of the file of a body at increment number `increment`, from 0, in the cycle's folder.
+pub fn frame_name(body: &str, increment: usize) -> String {
+    format!("{body}_{:04}.vtu", increment + 1)
+}
+
+/// The articulating surface that a cycle pressed on, with the pressure at the end of an increment:
+/// `pressure_mpa` at the nodes, each the mean over the node's share of the surface.
+///
+/// # Errors
+/// None but those of [`compact_vtu_bytes`].
+pub fn insert_frame(
+    march: &March,
+    cycle: &SolvedCycle<'_>,
+    increment: usize,
+    side: Side,
+) -> Result<Vec<u8>, MeshFileError> {
+    let pressure: Vec<f32> = cycle
+        .pressures_mpa(increment)
+        .iter()
+        .map(|&pressure_mpa| pressure_mpa as f32)
+        .collect();
+    let positions = cycle.surface.positions.iter();
+    let nodes: Vec<Vec3> = positions.map(|place| point_on_side(place, side)).collect();
+    let faces = march.insert().surface_faces().iter();
+    let quads: Vec<[u32; 4]> = faces.map(|&face| quad_on_side(face, side)).collect();
+    let array = PointArray {
+        name: "pressure_mpa",
+        values: PointValues::Float32(&pressure),
+    };
+    compact_vtu_bytes(&Grid::quads(&nodes, &quads), &[array])
+}
+
+/// The femur in the insert frame at a pose; `femur.vtu` is at the neutral one.
+///
+/// # Errors
+/// None but those of [`compact_vtu_bytes`].
+pub fn femur_vtu(femur: &TriangleMesh, pose: &Pose, side: Side) -> Result<Vec<u8>, MeshFileError> {
+    let placed = femur_on_side(femur, pose, side);
+    compact_vtu_bytes(&Grid::triangles(&placed.vertices, &placed.triangles), &[])
+}
+
+/// The femur in the insert frame at a pose, in the knee of that side.
+pub fn femur_on_side(femur: &TriangleMesh, pose: &Pose, side: Side) -> TriangleMesh {
+    let place = |vertex: &Vec3| point_on_side(&pose.to_insert(vertex), side);
+    let triangle = |&corners| triangle_on_side(corners, side);
+    TriangleMesh {
+        vertices: femur.vertices.iter().map(place).collect(),
+        triangles: femur.triangles.iter().map(triangle).collect(),
+    }
+}
+
+/// The `.pvd` file of a cycle: both bodies at every increment, the time in % of the cycle.
+pub fn cycle_pvd(cycle: KeptCycle, percents: &[f64]) -> String {
+    let frames = percents.iter().enumerate();
+    let files: Vec<(f64, Vec<String>)> = frames
+        .map(|(increment, &percent)| {
+            let path = |body| format!("{}/{}", cycle.name(), frame_name(body, increment));
+            (percent, BODIES.map(path).to_vec())
+        })
+        .collect();
+    pvd_text_of_parts(files.iter().flat_map(|(percent, parts)| {
+        let parts = parts.iter().enumerate();
+        parts.map(|(part, file)| (*percent, part, file.as_str()))
+    }))
+}
+
+/// About so many triangles show a femur in motion well enough.
+pub const FRAME_TRIANGLES: f64 = 6000.0;
+/// A mesh with more than [`FRAME_TRIANGLES`] is coarsened to cells of this size for the frames, mm.
+const FRAME_CELL_MM: f64 = 2.0;
+
+/// The femur as the frames show it: a fine mesh is written hundreds of times, and so coarsened.
+pub fn femur_of_frames(femur: TriangleMesh) -> TriangleMesh {
+    if femur.triangles.len() as f64 > 1.5 * FRAME_TRIANGLES {
+        return femur.clustered(FRAME_CELL_MM);
+    }
+    femur
+}

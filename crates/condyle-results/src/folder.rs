@@ -1,0 +1,521 @@
+//! The folder of a run.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use condyle::{evolve::March, geometry::TriangleMesh};
+use thiserror::Error;
+
+use super::side::Side;
+use super::{
+    activities::kinematics_file,
+    checkpoint::{Checkpoint, CheckpointError},
+    checksums::{CHECKSUMS, DamagedFile, check_all, is_listed, write_checksum},
+    cycle_files::{KeptCycle, cycle_pvd, femur_vtu, frame_name, insert_frame},
+    cycle_pressures::{cycle_pressure_csv, cycle_pressure_file},
+    femur_pose::femur_pose_csv,
+    insert_series::{insert_file_name, insert_pvd, insert_vtu},
+    lock::{FolderLock, LOCK},
+    replace::{beside, replace_file, replace_file_durably},
+    slip_paths::slip_paths_csv,
+    summary::Summary,
+    tables::{kinematics_csv, wear_csv},
+};
+use condyle_mesh::formats::MeshFileError;
+
+/// Why a results folder cannot be used.
+#[derive(Debug, Error)]
+pub enum ResultsError {
+    /// A run is already in it.
+    #[error(
+        "{}: the folder already holds a run ({file} is there); \
+         give another folder with --out, go on with --resume, or write over it with --force",
+        folder.display()
+    )]
+    HoldsRun {
+        /// The folder.
+        folder: PathBuf,
+        /// A file of the run.
+        file: &'static str,
+    },
+    /// Files of a run's names are in it, and nothing to go on from.
+    #[error(
+        "{}: the folder already holds a run or a part of one ({file} is there, and no checkpoint to go on from); \
+         give another folder with --out, or take the file away yourself",
+        folder.display()
+    )]
+    HoldsPartOfRun {
+        /// The folder.
+        folder: PathBuf,
+        /// A file of the run.
+        file: &'static str,
+    },
+    /// A run that is done is in it.
+    #[error(
+        "{}: the folder already holds a run, which is done (summary.json is there); \
+         give another folder with --out, or write over it with --force: there is nothing left to --resume",
+        folder.display()
+    )]
+    HoldsDoneRun {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// Files that a run would replace, and no run that they are of.
+    #[error(
+        "{}: {file} is there, but no checkpoint, so that it may be something else than a run; \
+         give another folder with --out, or take the file away yourself",
+        folder.display()
+    )]
+    HoldsNoWholeRun {
+        /// The folder.
+        folder: PathBuf,
+        /// The file.
+        file: &'static str,
+    },
+    /// A run that would be written over by one that reads it.
+    #[error(
+        "{}: the run reads {} of the folder that it would write over; \
+         give another folder with --out",
+        folder.display(),
+        file.display()
+    )]
+    HoldsInput {
+        /// The folder.
+        folder: PathBuf,
+        /// What is read.
+        file: PathBuf,
+    },
+    /// Another run is writing.
+    #[error(
+        "{}: another run is writing into this folder; \
+         wait until it has ended, or give another folder with --out",
+        folder.display()
+    )]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A file stands where the folder should be.
+    #[error("{}: this is a file and no folder; give another folder with --out", path.display())]
+    NoFolder {
+        /// The file.
+        path: PathBuf,
+    },
+    /// No run is in it to go on with.
+    #[error(
+        "{}: the folder holds no run to go on with: there is no checkpoint, and no case.toml of this case; \
+         leave out --resume to begin one",
+        folder.display()
+    )]
+    HoldsNone {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The run in it was begun by another version.
+    #[error(
+        "{}: the run in this folder was begun by condyle {version}, and this is {}; \
+         go on with that version, or run the case anew into another folder",
+        folder.display(),
+        env!("CARGO_PKG_VERSION")
+    )]
+    OtherVersion {
+        /// The folder.
+        folder: PathBuf,
+        /// The version that began it.
+        version: String,
+    },
+    /// The run in it is one of another case.
+    #[error("{}: the run in this folder is one of another case or other meshes; give another folder with --out", folder.display())]
+    OtherCase {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A checkpoint that cannot be read.
+    #[error("{}: the checkpoint cannot be used: {source}", file.display())]
+    Checkpoint {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: CheckpointError,
+    },
+    /// The system refused to read or write.
+    #[error("{}: {source}; check that the folder can be written and the disk is not full", file.display())]
+    Refused {
+        /// The file or folder.
+        file: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A mesh of the run that is no longer what the run wrote.
+    #[error(transparent)]
+    Damaged(#[from] DamagedFile),
+    /// An insert that cannot be written.
+    #[error(transparent)]
+    Insert(#[from] MeshFileError),
+}
+
+/// The folder of a run.
+#[derive(Clone, Debug)]
+pub struct ResultsFolder {
+    path: PathBuf,
+}
+
+/// Files of a run that are never written over by another; the one written first comes first.
+pub(super) const SIGNS_OF_A_RUN: [&str; 16] = [
+    "case.toml",
+    "checkpoint",
+    "summary.json",
+    "wear.csv",
+    "kinematics.csv",
+    "insert.pvd",
+    "insert_0000.vtu",
+    "report.html",
+    CHECKSUMS,
+    "femur.vtu",
+    "femur_pose.csv",
+    "slip_paths.csv",
+    "cycle_first.pvd",
+    "cycle_last.pvd",
+    "cycle_first_pressure.csv",
+    "cycle_last_pressure.csv",
+];
+
+/// Seconds spent by the parts of a run that is not done; gone once it is, so that what is left
+/// is the same bytes whether it was stopped or not.
+pub(super) const TIME_SPENT: &str = "time_spent_s";
+
+/// What a folder holds of a run to go on with.
+#[derive(Debug)]
+pub enum Found {
+    /// Nothing yet: a new run starts.
+    Nothing,
+    /// Nothing but the case: the run was stopped before its first checkpoint.
+    Case,
+    /// A checkpoint, and the seconds that the run has taken so far.
+    Checkpoint(Box<Checkpoint>, f64),
+    /// The whole run, with its summary.
+    Done(Box<Summary>),
+}
+
+impl ResultsFolder {
+    /// The folder at `path`, as it is.
+    pub fn existing(path: &Path) -> Self {
+        let path = path.to_owned();
+        Self { path }
+    }
+
+    /// Whether a new run can be written to `path`; nothing is made.
+    ///
+    /// # Errors
+    /// A folder that holds a run, done or not, or a file in its place.
+    pub fn free(path: &Path) -> Result<(), ResultsError> {
+        let folder = Self::existing(path);
+        if path.exists() && !path.is_dir() {
+            return Err(ResultsError::NoFolder { path: folder.path });
+        }
+        let is_there = |name: &&&str| folder.file(name).exists();
+        if ["checkpoint", "summary.json"]
+            .iter()
+            .all(|name| is_there(&name))
+        {
+            return Err(ResultsError::HoldsDoneRun {
+                folder: folder.path,
+            });
+        }
+        let Some(&file) = SIGNS_OF_A_RUN.iter().find(is_there) else {
+            return Ok(());
+        };
+        let has_something_to_go_on_from = file == "case.toml" || is_there(&&"checkpoint");
+        let folder = folder.path;
+        Err(if has_something_to_go_on_from {
+            ResultsError::HoldsRun { folder, file }
+        } else {
+            ResultsError::HoldsPartOfRun { folder, file }
+        })
+    }
+
+    /// The lock of the folder at `path`, so that no other run writes into it; none where there is
+    /// no such folder.
+    ///
+    /// # Errors
+    /// Another run that has it, or a folder that cannot be written.
+    pub fn lock(path: &Path) -> Result<Option<FolderLock>, ResultsError> {
+        if !path.is_dir() {
+            return Ok(None);
+        }
+        let taken = FolderLock::take(path).map_err(|source| ResultsError::Refused {
+            file: path.to_owned(),
+            source,
+        })?;
+        let folder = path.to_owned();
+        taken.map(Some).ok_or(ResultsError::InUse { folder })
+    }
+
+    /// A folder for a run, made if it is not there.
+    ///
+    /// # Errors
+    /// A folder that cannot be made.
+    pub fn create(path: &Path) -> Result<Self, ResultsError> {
+        fs::create_dir_all(path).map_err(|source| ResultsError::Refused {
+            file: path.to_owned(),
+            source,
+        })?;
+        Ok(Self::existing(path))
+    }
+
+    /// What the folder holds of a run of `cycles` gait cycles to go on with.
+    ///
+    /// `case_toml` is the case as [`Self::write_case`] would write it.
+    ///
+    /// # Errors
+    /// A folder without a run, with one of other inputs, or with a damaged checkpoint or mesh.
+    pub fn reopen(
+        path: &Path,
+        case_toml: &str,
+        inputs_blake3: &str,
+        cycles: f64,
+    ) -> Result<Found, ResultsError> {
+        let folder = Self::existing(path);
+        if !folder.file("checkpoint").exists() {
+            return match fs::read_to_string(folder.file("case.toml")) {
+                Ok(text) if text == case_toml => Ok(Found::Case),
+                Err(_) if folder.was_only_made() => Ok(Found::Nothing),
+                Ok(_) | Err(_) => Err(ResultsError::HoldsNone {
+                    folder: folder.path,
+                }),
+            };
+        }
+        let checkpoint = folder.checkpoint()?;
+        if checkpoint.inputs_blake3 != inputs_blake3 {
+            return Err(ResultsError::OtherCase {
+                folder: folder.path,
+            });
+        }
+        if checkpoint.version != env!("CARGO_PKG_VERSION") {
+            return Err(ResultsError::OtherVersion {
+                folder: folder.path,
+                version: checkpoint.version,
+            });
+        }
+        check_all(&folder.path)?;
+        let last = checkpoint.state.updates.last();
+        let done = last.is_some_and(|last| last.cycles >= cycles);
+        Ok(match folder.summary() {
+            Some(summary) if done => Found::Done(summary),
+            Some(_) | None => Found::Checkpoint(Box::new(checkpoint), folder.time_spent_s()),
+        })
+    }
+
+    /// Whether it is there and holds nothing but what a run has before its first file is whole.
+    fn was_only_made(&self) -> bool {
+        let begun = beside(Path::new("case.toml"));
+        let is_of_beginning = |entry: io::Result<fs::DirEntry>| {
+            let name = entry.map(|entry| entry.file_name());
+            name.is_ok_and(|name| name == LOCK || *name == begun)
+        };
+        fs::read_dir(&self.path).is_ok_and(|mut entries| entries.all(is_of_beginning))
+    }
+
+    fn checkpoint(&self) -> Result<Checkpoint, ResultsError> {
+        let file = self.file("checkpoint");
+        let bytes = fs::read(&file).map_err(|source| ResultsError::Refused {
+            file: file.clone(),
+            source,
+        })?;
+        Checkpoint::from_bytes(&bytes).map_err(|source| ResultsError::Checkpoint { file, source })
+    }
+
+    /// The summary, which is the last file of a run.
+    fn summary(&self) -> Option<Box<Summary>> {
+        let text = fs::read_to_string(self.file("summary.json")).ok()?;
+        serde_json::from_str(&text).ok()
+    }
+
+    /// What [`Self::write_time_spent`] wrote; 0 if that is gone.
+    fn time_spent_s(&self) -> f64 {
+        let text = fs::read_to_string(self.file(TIME_SPENT)).unwrap_or_default();
+        let seconds = text.trim().parse().unwrap_or(0.0);
+        if f64::is_finite(seconds) {
+            seconds
+        } else {
+            0.0
+        }
+    }
+
+    /// Writes how many seconds the run has taken so far.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_time_spent(&self, seconds: f64) -> Result<(), ResultsError> {
+        self.replace(TIME_SPENT, format!("{seconds}\n").as_bytes())
+    }
+
+    /// Takes away what only a run that is not done needs.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn finish(&self) -> Result<(), ResultsError> {
+        let file = self.file(TIME_SPENT);
+        for file in [beside(&file), file] {
+            match fs::remove_file(&file) {
+                Err(source) if source.kind() != io::ErrorKind::NotFound => {
+                    return Err(ResultsError::Refused { file, source });
+                }
+                Ok(()) | Err(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the case as run.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_case(&self, toml: &str) -> Result<(), ResultsError> {
+        self.replace("case.toml", toml.as_bytes())
+    }
+
+    /// Writes the femur as it stands at neutral, in the insert frame.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_femur(
+        &self,
+        march: &March,
+        femur: &TriangleMesh,
+        side: Side,
+    ) -> Result<(), ResultsError> {
+        let bytes = femur_vtu(femur, &march.neutral_pose(), side)?;
+        self.replace("femur.vtu", &bytes)
+    }
+
+    /// Writes the cycle that the march has just solved, increment by increment, where it is the first or the
+    /// last; to be done before [`Self::write_update`], so that a checkpoint never lacks it.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_cycles(
+        &self,
+        march: &March,
+        femur: &TriangleMesh,
+        side: Side,
+    ) -> Result<(), ResultsError> {
+        for cycle in KeptCycle::solved_by(march) {
+            self.write_frames(cycle, march, femur, side)?;
+        }
+        Ok(())
+    }
+
+    fn write_frames(
+        &self,
+        kept: KeptCycle,
+        march: &March,
+        femur: &TriangleMesh,
+        side: Side,
+    ) -> Result<(), ResultsError> {
+        let Some(cycle) = march.last_cycle() else {
+            return Ok(());
+        };
+        let folder = kept.name();
+        Self::create(&self.file(folder))?;
+        let frame = |body, increment| format!("{folder}/{}", frame_name(body, increment));
+        for increment in 0..cycle.rows.len() {
+            let insert = insert_frame(march, &cycle, increment, side)?;
+            self.replace(&frame("insert", increment), &insert)?;
+            let femur = femur_vtu(femur, &cycle.pose(increment), side)?;
+            self.replace(&frame("femur", increment), &femur)?;
+        }
+        let percents: Vec<f64> = cycle.rows.iter().map(|row| row.percent).collect();
+        let pvd = cycle_pvd(kept, &percents);
+        self.replace(&format!("{}.pvd", kept.name()), pvd.as_bytes())
+    }
+
+    /// Writes the pressures of the cycle that the march has just solved, where it is the first or the last; to be
+    /// done before [`Self::write_update`], as [`Self::write_cycles`].
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_pressures(&self, march: &March) -> Result<(), ResultsError> {
+        for cycle in KeptCycle::solved_by(march) {
+            if let Some(table) = cycle_pressure_csv(march) {
+                self.replace(&cycle_pressure_file(cycle), table.as_bytes())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes all that the march has found so far, and last of all the checkpoint: whatever it
+    /// remembers is then already in the other files.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_update(
+        &self,
+        march: &March,
+        side: Side,
+        inputs_blake3: &str,
+    ) -> Result<(), ResultsError> {
+        let state = march.state();
+        self.replace(
+            &insert_file_name(state.updates.len()),
+            &insert_vtu(march, side)?,
+        )?;
+        self.replace("insert.pvd", insert_pvd(&state.updates).as_bytes())?;
+        self.replace("wear.csv", wear_csv(&state.updates).as_bytes())?;
+        let activities = march.test().activities.iter().zip(&state.activities);
+        for (number, (activity, own)) in activities.enumerate() {
+            let (mechanism, cycles) = (activity.machine.mechanism, own.first_and_last.as_ref());
+            self.replace(
+                &kinematics_file(number, &activity.name),
+                kinematics_csv(mechanism, cycles).as_bytes(),
+            )?;
+        }
+        self.replace("femur_pose.csv", femur_pose_csv(march, side).as_bytes())?;
+        if let Some(paths) = slip_paths_csv(march, side) {
+            self.replace("slip_paths.csv", paths.as_bytes())?;
+        }
+        let checkpoint = Checkpoint {
+            inputs_blake3: inputs_blake3.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            state: state.clone(),
+        };
+        let file = self.file("checkpoint");
+        replace_file_durably(&file, &checkpoint.to_bytes())
+            .map_err(|source| ResultsError::Refused { file, source })
+    }
+
+    /// Writes the summary.
+    ///
+    /// # Errors
+    /// Where the system refuses.
+    pub fn write_summary(&self, summary: &Summary) -> Result<(), ResultsError> {
+        let mut text =
+            serde_json::to_string_pretty(summary).expect("numbers and text always serialise");
+        text.push('\n');
+        self.replace("summary.json", text.as_bytes())
+    }
+
+    fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {
+        let file = self.file(name);
+        let refused = |source| ResultsError::Refused {
+            file: self.file(name),
+            source,
+        };
+        replace_file(&file, bytes).map_err(refused)?;
+        if is_listed(name) {
+            write_checksum(&self.path, name, bytes).map_err(refused)?;
+        }
+        Ok(())
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+}

@@ -1,0 +1,68 @@
+//! The results folder: what a run writes, one file a table, all readable without condyle.
+
+mod activities;
+mod added;
+pub mod catalogue;
+mod checkpoint;
+#[cfg(feature = "file-system")]
+mod checksums;
+mod creep;
+mod cycle_files;
+mod cycle_motion;
+mod cycle_pressures;
+mod error_estimate;
+mod femur_pose;
+#[cfg(feature = "file-system")]
+mod folder;
+mod insert_fields;
+mod insert_series;
+mod law_wear;
+#[cfg(feature = "file-system")]
+mod lock;
+mod plausibility;
+#[cfg(feature = "file-system")]
+mod replace;
+mod side;
+#[cfg(feature = "file-system")]
+mod slip_paths;
+mod summary;
+mod tables;
+mod under_surface;
+#[cfg(feature = "file-system")]
+mod write_over;
+
+/// What the columns of `kinematics.csv` are.
+pub use condyle::machine::{
+    CycleQuantity, JointKind,
+    knee::{KNEE, LATERAL, MEDIAL},
+};
+
+pub use activities::{ActivitySummary, kinematics_file};
+pub use added::{
+    AddedFiles, COMPARED, COMPARED_KINEMATICS, COMPARED_NUMBERS, COMPARED_SURFACE, COMPARED_WEAR,
+    KINEMATICS_PICTURE, MAP_PICTURES, PLOTTED, SLIP_PATHS_PICTURE, WEAR_PICTURE,
+};
+pub use checkpoint::{Checkpoint, CheckpointError};
+#[cfg(feature = "file-system")]
+pub use checksums::{DamagedFile, check_file};
+pub use creep::{CreepSummary, Penetration, ScanLine};
+pub use cycle_files::{
+    BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pvd, femur_of_frames, femur_on_side, femur_vtu,
+    frame_name, insert_frame,
+};
+pub use cycle_motion::joint_range;
+pub use cycle_pressures::{cycle_pressure_csv, cycle_pressure_file};
+pub use error_estimate::{ErrorEstimate, ErrorParts, Part, Quantity, QuantityErrors};
+pub use femur_pose::{NeutralPose, femur_pose_csv};
+#[cfg(feature = "file-system")]
+pub use folder::{Found, ResultsError, ResultsFolder};
+pub use insert_fields::InsertFields;
+pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
+pub use law_wear::LawWear;
+#[cfg(feature = "file-system")]
+pub use lock::FolderLock;
+pub use plausibility::PlausibilityWarning;
+pub use side::Side;
+pub use summary::{Summary, SummaryInput};
+pub use tables::{kinematics_csv, wear_csv};
+pub use under_surface::{BacksideSummary, PlasticSummary, UnderSurfaceSummary};

@@ -1,0 +1,140 @@
+//! Left knees are mirrored in z on the way in and out: every run computes a right one.
+
+use condyle::machine::knee::{KNEE, LATERAL, MEDIAL};
+use condyle::{Mat3, Vec3, spatial::Pose};
+use condyle_fem::HexMesh;
+
+/// The side of the body that a knee is of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// A right knee: +z is lateral.
+    #[default]
+    Right,
+    /// A left knee, mirrored on the way in and out: +z is medial.
+    Left,
+}
+
+impl Side {
+    /// Both sides.
+    pub const ALL: &'static [Self] = &[Self::Right, Self::Left];
+
+    /// The words that files use for them.
+    pub const WORDS: &'static [&'static str] = &["right", "left"];
+
+    /// The word that files use.
+    pub fn word(self) -> &'static str {
+        Self::WORDS[self as usize]
+    }
+
+    /// A description in one sentence.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Right => "A right knee.",
+            Self::Left => "A left knee, mirrored on the way in and out.",
+        }
+    }
+
+    /// The side that `word` names.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|side| side.word() == word)
+    }
+
+    /// The other side.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Right => Self::Left,
+            Self::Left => Self::Right,
+        }
+    }
+
+    /// Names of the regions at -z and at +z.
+    pub fn regions(self) -> [&'static str; 2] {
+        let [medial, lateral] = [MEDIAL, LATERAL].map(|region| KNEE.regions[region].label);
+        match self {
+            Self::Right => [medial, lateral],
+            Self::Left => [lateral, medial],
+        }
+    }
+}
+
+/// A point of the insert frame, mm.
+pub(super) fn point_on_side(point: &Vec3, side: Side) -> Vec3 {
+    match side {
+        Side::Right => *point,
+        Side::Left => Vec3::new(point.x, point.y, -point.z),
+    }
+}
+
+/// The pose of mirrored bodies in the mirrored frame: M R M and M t, with M the mirror.
+pub(super) fn pose_on_side(pose: &Pose, side: Side) -> Pose {
+    let mirror = Mat3::from_diagonal(&point_on_side(&Vec3::repeat(1.0), side));
+    Pose::new(mirror * pose.rotation * mirror, mirror * pose.translation)
+}
+
+/// A face that faces out after the mirror too.
+pub(super) fn quad_on_side([a, b, c, d]: [u32; 4], side: Side) -> [u32; 4] {
+    match side {
+        Side::Right => [a, b, c, d],
+        Side::Left => [a, d, c, b],
+    }
+}
+
+/// A triangle that faces out after the mirror too.
+pub(super) fn triangle_on_side([a, b, c]: [u32; 3], side: Side) -> [u32; 3] {
+    match side {
+        Side::Right => [a, b, c],
+        Side::Left => [a, c, b],
+    }
+}
+
+/// The mesh as it lies in the knee of that side.
+pub(super) fn mesh_on_side(mesh: &HexMesh, side: Side) -> HexMesh {
+    match side {
+        Side::Right => mesh.clone(),
+        Side::Left => HexMesh {
+            nodes: mesh
+                .nodes
+                .iter()
+                .map(|node| point_on_side(node, side))
+                .collect(),
+            hexes: mesh
+                .hexes
+                .iter()
+                .map(|&[a, b, c, d, e, f, g, h]| [a, d, c, b, e, h, g, f])
+                .collect(),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use condyle::geometry::{GenericInsertShape, Meshing};
+
+    use super::*;
+
+    #[test]
+    fn a_left_insert_is_the_mirror_image_and_not_inside_out() {
+        let insert = GenericInsertShape::default()
+            .insert(Meshing {
+                edge_mm: 6.0,
+                layers: 1,
+            })
+            .unwrap();
+        let left = mesh_on_side(insert.mesh(), Side::Left);
+        assert!((left.volume() - insert.mesh().volume()).abs() < 1e-9);
+        assert!((left.worst_quality() - insert.mesh().worst_quality()).abs() < 1e-12);
+        assert_eq!(left.nodes[0].z, -insert.mesh().nodes[0].z);
+    }
+
+    #[test]
+    fn a_mirrored_pose_takes_a_mirrored_point_to_the_mirrored_place() {
+        let (sine, cosine) = 0.3f64.sin_cos();
+        let turn = Mat3::new(cosine, sine, 0.0, -sine, cosine, 0.0, 0.0, 0.0, 1.0)
+            * Mat3::new(1.0, 0.0, 0.0, 0.0, cosine, sine, 0.0, -sine, cosine);
+        let pose = Pose::new(turn, Vec3::new(1.0, 2.0, 3.0));
+        let point = Vec3::new(-4.0, 5.0, 6.0);
+        let left = |point: &Vec3| point_on_side(point, Side::Left);
+        let there = pose_on_side(&pose, Side::Left).to_insert(&left(&point));
+        assert!((there - left(&pose.to_insert(&point))).norm() < 1e-12);
+    }
+}

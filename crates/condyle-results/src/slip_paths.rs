@@ -1,0 +1,104 @@
+//! `slip_paths.csv`: how the femur slides past some places of the insert in the last cycle.
+
+use std::fmt::Write;
+
+use condyle::{
+    Vec3,
+    evolve::{March, SolvedCycle},
+};
+
+use super::side::Side;
+use super::side::point_on_side;
+
+/// How far the other places of a side lie from its deepest one, mm.
+const AROUND_MM: f64 = 6.0;
+
+/// `slip_paths.csv`: the slip of the femur past the place of each side that is worn deepest, and past four around it, a row
+/// an increment in which the place is pressed; none before a march has solved a cycle.
+pub(super) fn slip_paths_csv(march: &March, side: Side) -> Option<String> {
+    let cycle = march.last_cycle()?;
+    let mut text =
+        String::from("path,x_mm,z_mm,percent,pressure_mpa,slip_anterior_mm,slip_right_mm\n");
+    let depth_mm = &march.fields().wear_depth_mm;
+    let nodes = places(&cycle.surface.positions, depth_mm);
+    for (path, node) in nodes.into_iter().enumerate() {
+        add_path(&mut text, path + 1, &cycle, node, side);
+    }
+    Some(text)
+}
+
+/// The deepest node of each side that is worn and the nodes nearest to the places around it, each once.
+fn places(positions: &[Vec3], depth_mm: &[f64]) -> Vec<usize> {
+    let mut nodes = Vec::new();
+    for is_of_side in [|z: f64| z < 0.0, |z: f64| z >= 0.0] {
+        let own = (0..positions.len())
+            .filter(|&node| is_of_side(positions[node].z) && depth_mm[node] > 0.0);
+        let Some(deepest) = own.max_by(|&a, &b| depth_mm[a].total_cmp(&depth_mm[b])) else {
+            continue;
+        };
+        let middle = positions[deepest];
+        let around = [[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+        for [x, z] in around {
+            let node = nearest(
+                positions,
+                [middle.x + AROUND_MM * x, middle.z + AROUND_MM * z],
+            );
+            if !nodes.contains(&node) {
+                nodes.push(node);
+            }
+        }
+    }
+    nodes
+}
+
+/// The node nearest to a place seen from above.
+fn nearest(positions: &[Vec3], [x, z]: [f64; 2]) -> usize {
+    let distance = |node: usize| (positions[node].x - x).hypot(positions[node].z - z);
+    let nodes = 0..positions.len();
+    nodes
+        .min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+        .unwrap_or(0)
+}
+
+fn add_path(text: &mut String, path: usize, cycle: &SolvedCycle<'_>, node: usize, side: Side) {
+    let place = point_on_side(&cycle.surface.positions[node], side);
+    for (increment, row) in cycle.rows.iter().enumerate() {
+        let Some(moment) = cycle.moment(increment, node) else {
+            continue;
+        };
+        let [anterior, lateral] = moment.slip_mm;
+        let right = match side {
+            Side::Right => lateral,
+            Side::Left => -lateral,
+        };
+        let (x, z, percent, pressure) = (place.x, place.z, row.percent, moment.pressure_mpa);
+        writeln!(
+            text,
+            "{path},{x},{z},{percent},{pressure},{anterior},{right}"
+        )
+        .expect("writing to a string cannot fail");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_the_deepest_of_each_side_and_four_around_each_once() {
+        let at = |x: f64, z: f64| Vec3::new(x, 0.0, z);
+        let left = [
+            at(0.0, -20.0),
+            at(6.0, -20.0),
+            at(-6.0, -20.0),
+            at(0.0, -14.0),
+            at(0.0, -26.0),
+        ];
+        let positions = [&left[..], &[at(1.0, 20.0)]].concat();
+        let depth_mm = [0.3, 0.1, 0.2, 0.1, 0.0, 0.1];
+        // On the right there is one node, nearest to every place around it.
+        assert_eq!(places(&positions, &depth_mm), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(places(&positions, &[0.0, 0.1, 0.0, 0.0, 0.0, 0.0])[0], 1);
+        assert!(places(&positions, &[0.0; 6]).is_empty());
+    }
+}
