@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use condyle_case::case::Assignment;
-use condyle_case::study::{OUTPUTS, Study};
+use condyle_case::study::Study;
+use condyle_results::catalogue;
 use condyle_study::{
     HeldFolder, Plan, Shard, Store, StudyEnd, StudyError, StudyOptions, Test, TestBench,
     TestResult, merge, run_study, write_answers,
@@ -197,7 +198,9 @@ impl RawHeldStudy {
     fn keep(&self, study: &RawStudy, found: Vec<(u64, Found)>) -> PyResult<()> {
         let tested = |(row, found): (u64, Found)| {
             let found: TestResult = match found {
-                Found::Outputs(outputs) if outputs.len() == OUTPUTS.len() => Ok(outputs),
+                Found::Outputs(outputs) if outputs.len() == catalogue::outputs().count() => {
+                    Ok(outputs)
+                }
                 Found::Outputs(_) => {
                     return Err(errors::bad_input(
                         &"a worker found other numbers than a test has",

@@ -1,5 +1,6 @@
 //! `condyle converge`.
 
+use condyle_results::catalogue;
 use std::{
     collections::BTreeSet,
     fs,
@@ -77,8 +78,8 @@ fn show(on_event: &ConvergeHappening<'_>, told: &Mutex<BTreeSet<String>>) {
             "{} = {}: {:.3} mg worn, {:.4} mm deep",
             run.number.path(),
             run.number.text(),
-            summary.mass_loss_mg,
-            summary.max_depth_mm
+            summary[&catalogue::MASS_LOSS_MG],
+            summary[&catalogue::MAX_DEPTH_MM]
         )),
         ConvergeHappening::In(_, RunEvent::Warning(warning)) => {
             let mut told = told.lock().expect("no thread panics with it");
@@ -137,7 +138,10 @@ fn table(convergence: &Convergence) -> String {
     let mut text = line(key, &|column| column.title.to_owned(), "cycles solved");
     text += &line("", &|column| column.unit.to_owned(), "");
     for (row, value) in texts.iter().enumerate() {
-        let solved = format!("{:.1}", convergence.points[row].summary.cycles_solved);
+        let solved = format!(
+            "{:.1}",
+            convergence.points[row].summary[&catalogue::CYCLES_SOLVED]
+        );
         text += &line(value, &|column| significant(column.values[row]), &solved);
     }
     text += &format!("\ndifference from {key} = {finest}, %\n");

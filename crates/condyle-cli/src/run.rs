@@ -13,8 +13,8 @@ use std::{
 use condyle_case::cache::Cache;
 use condyle_lab::{Outcome, RunOptions};
 use condyle_results::{
-    BacksideSummary, CreepSummary, ErrorEstimate, ErrorParts, PlasticSummary, Summary,
-    UnderSurfaceSummary,
+    CreepSummary, ErrorEstimate, ErrorParts, Summary,
+    catalogue::{self, MASS_LOSS_MG, MAX_DEPTH_MM, Prominence, Scalar, WEAR_OVER_CONVENTIONAL},
 };
 
 use crate::{
@@ -22,7 +22,7 @@ use crate::{
     arguments::Run,
     exit, law_table,
     output::{self, Lines},
-    progress::{Progress, in_words},
+    progress::{self, Progress},
     standard_error::tell,
 };
 
@@ -61,7 +61,7 @@ pub fn run(arguments: &Run) -> ExitCode {
         Ok(Outcome::Interrupted(reached)) => {
             tell(format_args!(
                 "interrupted: {}, and kept; go on with: {}",
-                in_words(&reached),
+                progress::in_words(&reached),
                 command_to_go_on(arguments, &options)
             ));
             ExitCode::from(exit::INTERRUPTED)
@@ -110,14 +110,14 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     }
     let mut lines = Lines::default();
     add_doubts(summary, &mut lines);
-    law_table::add(
-        &summary.wear_laws,
-        summary.wear_over_conventional,
-        &mut lines,
-    );
+    let wear_over_conventional = summary.get(&WEAR_OVER_CONVENTIONAL);
+    law_table::add(&summary.wear_laws, wear_over_conventional, &mut lines);
     activity_table::add(&summary.activities, &mut lines);
-    for (what, value) in rows(summary) {
-        lines.line(format_args!("{what:<28}{value}"));
+    let rows = rows(summary);
+    let labels = rows.iter().map(|(label, _)| label.len());
+    let width = labels.max().unwrap_or_default() + 2;
+    for (label, value) in rows {
+        lines.line(format_args!("{label:<width$}{value}"));
     }
     add_warnings(summary, &mut lines);
     lines.line(format_args!(
@@ -161,43 +161,36 @@ fn not_estimated(summary: &Summary) -> impl Iterator<Item = (String, &String)> {
     parts.map(|(part, why)| (part.replace('_', " "), why))
 }
 
-/// A name and what is said of it.
+/// A label and its value in words.
 type SummaryLine = (&'static str, String);
 
+/// The numbers of the catalogue, then creep and the parts of the error.
 fn rows(summary: &Summary) -> Vec<SummaryLine> {
-    let mut rows = vec![("gait cycles", format!("{:.0}", summary.cycles))];
-    rows.extend(rows_of_wear(summary));
-    rows.extend(summary.creep.iter().flat_map(rows_of_creep));
-    rows.extend(rows_of_contact(summary));
-    rows.extend(summary.pressure_law_peak_error_percent.map(row_of_law));
-    rows.extend(summary.under_surface.iter().flat_map(rows_under_surface));
-    rows.extend(rows_of_motion(summary));
-    rows.extend(rows_of_work(summary));
-    rows.extend(summary.error.iter().flat_map(rows_of_error));
-    rows
+    let shown = catalogue::scalars().filter(|scalar| scalar.prominence >= Prominence::Printed);
+    let numbers = shown.filter_map(|scalar| Some((scalar.label, in_words(summary, scalar)?)));
+    let creep = summary.creep.iter().flat_map(rows_of_creep);
+    let error = summary.error.iter().flat_map(rows_of_error);
+    numbers.chain(creep).chain(error).collect()
 }
 
-fn rows_of_wear(summary: &Summary) -> [SummaryLine; 3] {
-    let Summary {
-        volume_loss_mm3,
-        volume_loss_mesh_mm3,
-        ..
-    } = summary;
-    let parts = |of: fn(&ErrorEstimate) -> &ErrorParts| summary.error.as_ref().map(of);
-    let mass_parts = parts(|error| &error.mass_loss_percent);
-    let depth_parts = parts(|error| &error.max_depth_percent);
-    let volumes = format!("{volume_loss_mm3:.2} mm3 ({volume_loss_mesh_mm3:.2} from the mesh)");
-    [
-        (
-            "mass loss",
-            with_error(summary.mass_loss_mg, 2, "mg", mass_parts),
-        ),
-        ("volume loss", volumes),
-        (
-            "deepest wear",
-            with_error(summary.max_depth_mm, 4, "mm", depth_parts),
-        ),
-    ]
+/// The value of a number with its unit, its estimated discretisation error and the cycle that has it.
+fn in_words(summary: &Summary, scalar: &Scalar) -> Option<String> {
+    let with_unit = |value: f64| {
+        let text = format!("{} {}", scalar.text(value), scalar.shown_unit());
+        text.trim_end().to_owned()
+    };
+    let mut words = with_unit(summary.get(scalar)?);
+    if let Some(error) = summary.error.as_ref().and_then(|errors| errors.get(scalar)) {
+        let (off, percent) = (with_unit(error.in_unit.total), error.percent.total);
+        words += &format!(", discretisation error +/- {off} ({percent:.2} %)");
+    }
+    let cycles_before = scalar.cycle_key.and_then(catalogue::scalar);
+    match cycles_before.and_then(|scalar| summary.get(scalar)) {
+        Some(0.0) => words += ", in the first cycle",
+        Some(cycles) => words += &format!(", after {cycles:.0} cycles"),
+        None => {}
+    }
+    Some(words)
 }
 
 fn rows_of_creep(creep: &CreepSummary) -> Vec<SummaryLine> {
@@ -235,175 +228,16 @@ fn rows_of_creep(creep: &CreepSummary) -> Vec<SummaryLine> {
     rows
 }
 
-fn rows_of_contact(summary: &Summary) -> [SummaryLine; 3] {
-    let error = summary.error.as_ref();
-    let pressure = with_error(
-        summary.peak_pressure_mpa,
-        1,
-        "MPa",
-        error.map(|error| &error.peak_pressure_percent),
-    );
-    let area = with_error(
-        summary.peak_contact_area_mm2,
-        0,
-        "mm2",
-        error.map(|error| &error.peak_contact_area_percent),
-    );
-    [
-        (
-            "peak pressure",
-            format!("{pressure}, {}", when(summary.peak_pressure_cycle)),
-        ),
-        (
-            "largest contact area",
-            format!("{area}, {}", when(summary.peak_contact_area_cycle)),
-        ),
-        (
-            "  first and last cycle",
-            format!(
-                "{:.1} and {:.1} MPa, {:.0} and {:.0} mm2",
-                summary.first_cycle_peak_pressure_mpa,
-                summary.last_cycle_peak_pressure_mpa,
-                summary.first_cycle_contact_area_mm2,
-                summary.last_cycle_contact_area_mm2
-            ),
-        ),
-    ]
-}
-
-fn row_of_law(percent: f64) -> SummaryLine {
-    let said = format!("fitted to a deformable insert, whose peak it misses by up to {percent} %");
-    ("  pressure law", said)
-}
-
-fn rows_under_surface(under: &UnderSurfaceSummary) -> Vec<SummaryLine> {
-    let at = |stress: f64, depth: f64| format!("{stress:.1} MPa, {depth:.1} mm below the surface");
-    let shear = at(under.peak_max_shear_mpa, under.peak_max_shear_depth_mm);
-    let von_mises = at(under.peak_von_mises_mpa, under.peak_von_mises_depth_mm);
-    let when = when(under.peak_max_shear_cycle);
-    let mut rows = vec![
-        ("largest shear stress", format!("{shear}, {when}")),
-        ("largest von Mises stress", von_mises),
-    ];
-    rows.extend(under.plastic.iter().flat_map(rows_of_plasticity));
-    rows.extend(under.backside.iter().flat_map(rows_of_backside));
-    rows
-}
-
-fn rows_of_backside(backside: &BacksideSummary) -> [SummaryLine; 2] {
-    let BacksideSummary {
-        backside_lift_mm,
-        backside_lifted_percent,
-        backside_slip_mm,
-        backside_lock_force_n,
-        backside_lock_moment_nm,
-    } = backside;
-    [
-        (
-            "backside",
-            format!(
-                "lifts by up to {backside_lift_mm:.4} mm, {backside_lifted_percent:.0} % of it at once; slips \
-                 {backside_slip_mm:.4} mm a cycle"
-            ),
-        ),
-        (
-            "  lock",
-            format!(
-                "carries up to {backside_lock_force_n:.0} N and {backside_lock_moment_nm:.2} N m"
-            ),
-        ),
-    ]
-}
-
-fn rows_of_plasticity(plastic: &PlasticSummary) -> [SummaryLine; 2] {
-    let PlasticSummary {
-        max_permanent_set_mm,
-        first_cycle_permanent_set_mm,
-        max_plastic_strain,
-        yielded_elements,
-        ratcheting_elements,
-    } = plastic;
-    [
-        (
-            "permanent set",
-            format!(
-                "{max_permanent_set_mm:.4} mm, after the first cycle {first_cycle_permanent_set_mm:.4} mm"
-            ),
-        ),
-        (
-            "  yielded elements",
-            format!(
-                "{yielded_elements}, {ratcheting_elements} of them in every cycle still; plastic strain up to {max_plastic_strain:.4}"
-            ),
-        ),
-    ]
-}
-
-/// Which cycle, by the cycles before it.
-fn when(cycles_before: f64) -> String {
-    if cycles_before == 0.0 {
-        return "in the first cycle".to_owned();
-    }
-    format!("after {cycles_before:.0} cycles")
-}
-
-fn rows_of_motion(summary: &Summary) -> [SummaryLine; 3] {
-    let share = 100.0 * summary.medial_load_share;
-    let error = summary.error.as_ref();
-    let ap_parts = error.map(|error| &error.ap_range_percent);
-    let ie_parts = error.map(|error| &error.ie_range_percent);
-    [
-        (
-            "AP range, first cycle",
-            with_error(summary.ap_range_mm, 2, "mm", ap_parts),
-        ),
-        (
-            "IE range, first cycle",
-            with_error(summary.ie_range_deg, 2, "deg", ie_parts),
-        ),
-        ("medial share of the load", format!("{share:.1} %")),
-    ]
-}
-
-fn rows_of_work(summary: &Summary) -> [SummaryLine; 5] {
-    let iterations = per_cycle(
-        summary.newton_iterations,
-        summary.newton_iterations_per_cycle,
-    );
-    let evaluations = per_cycle(
-        summary.contact_evaluations,
-        summary.contact_evaluations_per_cycle,
-    );
-    [
-        (
-            "updates, cycles solved",
-            format!("{}, {:.1}", summary.updates, summary.cycles_solved),
-        ),
-        ("Newton iterations", iterations),
-        ("contact evaluations", evaluations),
-        (
-            "hexahedra, worst quality",
-            format!("{}, {:.3}", summary.hexahedra, summary.worst_quality),
-        ),
-        ("time, solver only", format!("{:.3} s", summary.wall_s)),
-    ]
-}
-
-/// Work in all, and of a cycle solved.
-fn per_cycle(all: u64, per_cycle: f64) -> String {
-    format!("{all}, {per_cycle:.0} a cycle")
-}
-
-/// Where the discretisation error comes from: signed, what finer values would change.
+/// The parts of the discretisation error, with the sign of the change that finer values would make.
 fn rows_of_error(error: &ErrorEstimate) -> [SummaryLine; 3] {
     [
         (
             "error of mass, by parts",
-            in_parts(&error.mass_loss_percent),
+            in_parts(&error[&MASS_LOSS_MG].percent),
         ),
         (
             "error of depth, by parts",
-            in_parts(&error.max_depth_percent),
+            in_parts(&error[&MAX_DEPTH_MM].percent),
         ),
         ("time, error estimate", format!("{:.3} s", error.wall_s)),
     ]
@@ -421,14 +255,4 @@ fn in_parts(error: &ErrorParts) -> String {
         ("slip tolerance", error.slip_tolerance),
     ];
     parts.map(part).join(", ")
-}
-
-/// A number with its unit and its estimated discretisation error.
-fn with_error(value: f64, digits: usize, unit: &str, error: Option<&ErrorParts>) -> String {
-    let plain = format!("{value:.digits$} {unit}");
-    let Some(ErrorParts { total, .. }) = error else {
-        return plain;
-    };
-    let off = value * total / 100.0;
-    format!("{plain}, discretisation error +/- {off:.digits$} {unit} ({total:.2} %)")
 }

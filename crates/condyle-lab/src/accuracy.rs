@@ -26,7 +26,14 @@ use condyle::{
     },
 };
 use condyle_case::case::Case;
-use condyle_results::{ErrorEstimate, Part, QuantityErrors, Summary, joint_range};
+use condyle_results::{
+    ErrorEstimate, Part, QuantityErrors, Summary,
+    catalogue::{
+        AP_RANGE_MM, IE_RANGE_DEG, MASS_LOSS_MG, MAX_DEPTH_MM, PEAK_CONTACT_AREA_CYCLE,
+        PEAK_CONTACT_AREA_MM2, PEAK_PRESSURE_CYCLE, PEAK_PRESSURE_MPA,
+    },
+    joint_range,
+};
 
 use worn_surface::WornSurface;
 
@@ -86,13 +93,15 @@ impl PartEstimate {
         let [later_pressure, later_area] = each(self.later);
         let [pressure, area, ap, ie] = each(self.first);
         let of_peak = |cycle: f64, first, later| if cycle > 0.0 { later } else { first };
-        [
-            mass,
-            depth,
-            of_peak(summary.peak_pressure_cycle, pressure, later_pressure),
-            of_peak(summary.peak_contact_area_cycle, area, later_area),
-            ap,
-            ie,
+        let pressure = of_peak(summary[&PEAK_PRESSURE_CYCLE], pressure, later_pressure);
+        let area = of_peak(summary[&PEAK_CONTACT_AREA_CYCLE], area, later_area);
+        vec![
+            (&MASS_LOSS_MG, mass),
+            (&MAX_DEPTH_MM, depth),
+            (&PEAK_PRESSURE_MPA, pressure),
+            (&PEAK_CONTACT_AREA_MM2, area),
+            (&AP_RANGE_MM, ap),
+            (&IE_RANGE_DEG, ie),
         ]
     }
 }
@@ -127,15 +136,8 @@ pub(crate) fn estimate(
         (Part::Mesh, mesh.errors(summary)),
         (Part::SlipTolerance, looser.errors(summary)),
     ];
-    let values = [
-        summary.mass_loss_mg,
-        summary.max_depth_mm,
-        summary.peak_pressure_mpa,
-        summary.peak_contact_area_mm2,
-        summary.ap_range_mm,
-        summary.ie_range_deg,
-    ];
-    ControlFlow::Continue(Some(ErrorEstimate::of(values, parts)))
+    let estimate = ErrorEstimate::new(|scalar| summary[scalar], parts);
+    ControlFlow::Continue(Some(estimate))
 }
 
 /// What was found, or why not in words.
@@ -166,7 +168,7 @@ fn with_insert(test: WearTest, insert: Arc<Insert>) -> WearTest {
 
 /// Whether a peak is not of the first cycle.
 fn has_later_peak(summary: &Summary) -> bool {
-    summary.peak_pressure_cycle > 0.0 || summary.peak_contact_area_cycle > 0.0
+    summary[&PEAK_PRESSURE_CYCLE] > 0.0 || summary[&PEAK_CONTACT_AREA_CYCLE] > 0.0
 }
 
 /// The last update; none of a march of one, which has no other to be compared with.

@@ -1,5 +1,6 @@
 //! The default case: how exact it is, what it says of that, and a march that finds its own intervals.
 
+use condyle_results::catalogue;
 use std::path::{Path, PathBuf};
 
 use condyle_case::{
@@ -52,7 +53,10 @@ fn losses(mut case: Case, change: impl FnOnce(&mut Case)) -> [f64; 2] {
     change(&mut case);
     let summary = run(&case);
     assert_eq!(summary.error, None);
-    [summary.mass_loss_mg, summary.max_depth_mm]
+    [
+        summary[&catalogue::MASS_LOSS_MG],
+        summary[&catalogue::MAX_DEPTH_MM],
+    ]
 }
 
 fn updated(case: &mut Case, updates: u64) {
@@ -86,12 +90,12 @@ fn numbers(change: impl FnOnce(&mut Case), cycle: f64) -> [f64; 6] {
     change(&mut case);
     let (summary, table) = run_with_table(&case);
     [
-        summary.mass_loss_mg,
-        summary.max_depth_mm,
-        summary.peak_pressure_mpa,
+        summary[&catalogue::MASS_LOSS_MG],
+        summary[&catalogue::MAX_DEPTH_MM],
+        summary[&catalogue::PEAK_PRESSURE_MPA],
         contact_area_mm2(&table, cycle),
-        summary.ap_range_mm,
-        summary.ie_range_deg,
+        summary[&catalogue::AP_RANGE_MM],
+        summary[&catalogue::IE_RANGE_DEG],
     ]
 }
 
@@ -108,15 +112,18 @@ impl Stated {
         let error = summary.error.clone();
         let error = error.expect("a case asks for it unless it says otherwise");
         assert!(error.not_estimated.is_empty() && error.wall_s > 0.0);
-        assert_eq!(summary.peak_pressure_cycle, 0.0);
-        assert_eq!(summary.peak_contact_area_cycle, summary.last_cycle);
+        assert_eq!(summary[&catalogue::PEAK_PRESSURE_CYCLE], 0.0);
+        assert_eq!(
+            summary[&catalogue::PEAK_CONTACT_AREA_CYCLE],
+            summary[&catalogue::LAST_CYCLE]
+        );
         let numbers = [
-            summary.mass_loss_mg,
-            summary.max_depth_mm,
-            summary.peak_pressure_mpa,
-            summary.peak_contact_area_mm2,
-            summary.ap_range_mm,
-            summary.ie_range_deg,
+            summary[&catalogue::MASS_LOSS_MG],
+            summary[&catalogue::MAX_DEPTH_MM],
+            summary[&catalogue::PEAK_PRESSURE_MPA],
+            summary[&catalogue::PEAK_CONTACT_AREA_MM2],
+            summary[&catalogue::AP_RANGE_MM],
+            summary[&catalogue::IE_RANGE_DEG],
         ];
         Self {
             summary,
@@ -134,15 +141,39 @@ impl Stated {
         factor: f64,
         refine: impl FnOnce(&mut Case),
     ) {
-        let refined = numbers(refine, self.summary.peak_contact_area_cycle);
+        let refined = numbers(refine, self.summary[&catalogue::PEAK_CONTACT_AREA_CYCLE]);
         let error = &self.error;
         let of = [
-            ("mass", &error.mass_loss_percent, NOISE_PERCENT),
-            ("depth", &error.max_depth_percent, NOISE_PERCENT),
-            ("peak pressure", &error.peak_pressure_percent, NOISE_PERCENT),
-            ("area", &error.peak_contact_area_percent, AREA_NOISE_PERCENT),
-            ("AP range", &error.ap_range_percent, NOISE_PERCENT),
-            ("IE range", &error.ie_range_percent, NOISE_PERCENT),
+            (
+                "mass",
+                &error[&catalogue::MASS_LOSS_MG].percent,
+                NOISE_PERCENT,
+            ),
+            (
+                "depth",
+                &error[&catalogue::MAX_DEPTH_MM].percent,
+                NOISE_PERCENT,
+            ),
+            (
+                "peak pressure",
+                &error[&catalogue::PEAK_PRESSURE_MPA].percent,
+                NOISE_PERCENT,
+            ),
+            (
+                "area",
+                &error[&catalogue::PEAK_CONTACT_AREA_MM2].percent,
+                AREA_NOISE_PERCENT,
+            ),
+            (
+                "AP range",
+                &error[&catalogue::AP_RANGE_MM].percent,
+                NOISE_PERCENT,
+            ),
+            (
+                "IE range",
+                &error[&catalogue::IE_RANGE_DEG].percent,
+                NOISE_PERCENT,
+            ),
         ];
         for ((number, parts, noise), i) in of.into_iter().zip(0..) {
             let truth = 100.0 * factor * (refined[i] / self.numbers[i] - 1.0);
@@ -214,20 +245,20 @@ fn verify_the_estimated_errors_of_updates_where_the_insert_creeps() {
         case
     };
     let summary = run(&creeping());
-    let error = summary.error.expect("is asked for");
+    let error = summary.error.clone().expect("is asked for");
     // Twice the updates leave a third of the error: with 80 instead of 10 a twenty-seventh of it is left.
     let [mass_mg, depth_mm] = losses(creeping(), |case| updated(case, 80));
     for (what, parts, now, truth) in [
         (
             "mass",
-            &error.mass_loss_percent,
-            summary.mass_loss_mg,
+            &error[&catalogue::MASS_LOSS_MG].percent,
+            summary[&catalogue::MASS_LOSS_MG],
             mass_mg,
         ),
         (
             "depth",
-            &error.max_depth_percent,
-            summary.max_depth_mm,
+            &error[&catalogue::MAX_DEPTH_MM].percent,
+            summary[&catalogue::MAX_DEPTH_MM],
             depth_mm,
         ),
     ] {
@@ -241,11 +272,19 @@ fn the_default_case_states_half_a_percent_of_mass_and_one_of_depth() {
     let summary = run(&default_case());
     let error = summary
         .error
+        .clone()
         .expect("a case asks for it unless it says otherwise");
-    assert!(error.mass_loss_percent.total < 0.5, "{error:?}");
-    assert!(error.max_depth_percent.total < 1.0, "{error:?}");
-    let mass_mg = error.mass_loss_percent.total / 100.0 * summary.mass_loss_mg;
-    assert!((error.mass_loss_mg.total / mass_mg - 1.0).abs() < 1e-9);
+    assert!(
+        error[&catalogue::MASS_LOSS_MG].percent.total < 0.5,
+        "{error:?}"
+    );
+    assert!(
+        error[&catalogue::MAX_DEPTH_MM].percent.total < 1.0,
+        "{error:?}"
+    );
+    let mass_mg =
+        error[&catalogue::MASS_LOSS_MG].percent.total / 100.0 * summary[&catalogue::MASS_LOSS_MG];
+    assert!((error[&catalogue::MASS_LOSS_MG].in_unit.total / mass_mg - 1.0).abs() < 1e-9);
 }
 
 /// A shipped case; none where its meshes are not there.
@@ -269,17 +308,25 @@ fn assert_as_deep_as_forty_updates(name: &str, most_cycles: f64, stated: fn(f64,
     let mut case = case;
     case.march.update = auto_case().march.update;
     let few = run(&case);
-    assert!(few.cycles_solved <= most_cycles, "{}", few.cycles_solved);
-    let depth = few.max_depth_mm / forty[1] - 1.0;
+    assert!(
+        few[&catalogue::CYCLES_SOLVED] <= most_cycles,
+        "{}",
+        few[&catalogue::CYCLES_SOLVED]
+    );
+    let depth = few[&catalogue::MAX_DEPTH_MM] / forty[1] - 1.0;
     assert!(depth.abs() < 0.01, "depth {depth}");
-    let mass = few.mass_loss_mg / forty[0] - 1.0;
+    let mass = few[&catalogue::MASS_LOSS_MG] / forty[0] - 1.0;
     assert!(mass.abs() < 0.005, "mass {mass}");
     let error = few
         .error
+        .clone()
         .expect("a case asks for it unless it says otherwise");
-    let found = error.max_depth_percent.updates.expect("it has updates");
+    let found = error[&catalogue::MAX_DEPTH_MM]
+        .percent
+        .updates
+        .expect("it has updates");
     let exact_mm = 2.0 * forty[1] - twenty[1];
-    let truth = 100.0 * (exact_mm / few.max_depth_mm - 1.0);
+    let truth = 100.0 * (exact_mm / few[&catalogue::MAX_DEPTH_MM] - 1.0);
     assert!(stated(found, truth), "stated {found} %, true {truth} %");
 }
 
@@ -315,7 +362,7 @@ fn a_tighter_tolerance_takes_more_intervals_and_is_held() {
     let [forty, eighty] =
         [40, 80].map(|updates| losses(default_case(), |case| updated(case, updates)));
     let exact_mm = 2.0 * eighty[1] - forty[1];
-    let mut updates = 0;
+    let mut updates = 0.0;
     for tolerance in [0.03, 0.01, 0.003, 0.001] {
         let mut case = auto_case();
         case.accuracy.estimate = false;
@@ -324,10 +371,13 @@ fn a_tighter_tolerance_takes_more_intervals_and_is_held() {
             Update::Fixed(_) => panic!("this case finds its updates itself"),
         }
         let summary = run(&case);
-        let off = summary.max_depth_mm / exact_mm - 1.0;
-        assert!(summary.updates > updates, "{tolerance}: {updates} before");
+        let off = summary[&catalogue::MAX_DEPTH_MM] / exact_mm - 1.0;
+        assert!(
+            summary[&catalogue::UPDATES] > updates,
+            "{tolerance}: {updates} before"
+        );
         assert!(off.abs() < tolerance, "{tolerance}: {off}");
-        updates = summary.updates;
+        updates = summary[&catalogue::UPDATES];
     }
 }
 
@@ -337,7 +387,7 @@ fn what_cannot_be_estimated_says_why() {
     updated(&mut case, 1);
     case.time.increments = 40;
     let error = run(&case).error.expect("the other parts can");
-    assert_eq!(error.mass_loss_percent.updates, None);
+    assert_eq!(error[&catalogue::MASS_LOSS_MG].percent.updates, None);
     assert!(error.not_estimated["updates"].contains("one update has no other"));
-    assert!(error.mass_loss_percent.increments.is_some());
+    assert!(error[&catalogue::MASS_LOSS_MG].percent.increments.is_some());
 }

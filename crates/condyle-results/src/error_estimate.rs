@@ -1,10 +1,13 @@
-//! How far a run's numbers lie from what finer steps and meshes would give.
+//! Estimated discretisation errors of a run: the differences from finer steps and meshes.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, ops::Index};
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error, ser::SerializeMap};
+use serde_json::{Map, Value};
 
-/// Where an error comes from.
+use super::catalogue::{self, ErrorMethod, MASS_LOSS_MG, Scalar};
+
+/// The source of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Increments in the gait cycle.
@@ -17,28 +20,11 @@ pub enum Part {
     SlipTolerance,
 }
 
-/// A number of a run whose discretisation error is estimated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// Mass loss, and so volume loss.
-    MassLoss,
-    /// Maximum depth.
-    MaxDepth,
-    /// Highest pressure, in the cycle that has it.
-    PeakPressure,
-    /// Largest contact area, in the cycle that has it.
-    PeakContactArea,
-    /// AP range of the first cycle.
-    ApRange,
-    /// IE range of the first cycle.
-    IeRange,
-}
+/// Of each number that is estimated: an error in %, or the reason why there is none.
+pub type QuantityErrors = Vec<(&'static Scalar, Result<f64, String>)>;
 
-/// Of each of [`Quantity::ALL`] in that order: an error in %, or why there is none.
-pub type QuantityErrors = [Result<f64, String>; Quantity::ALL.len()];
-
-/// Estimated discretisation error of a number by its parts: what a much finer value would change
-/// it by; none where a part cannot be estimated.
+/// Estimated discretisation error of a number by its parts: the change that a much finer value would make; none where a
+/// part cannot be estimated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorParts {
     /// From the increments in the gait cycle.
@@ -49,53 +35,33 @@ pub struct ErrorParts {
     pub mesh: Option<f64>,
     /// From the slip tolerance of the friction.
     pub slip_tolerance: Option<f64>,
-    /// Root of the sum of squares of the parts there are, 0 or more.
+    /// Root of the sum of squares of the parts that are estimated.
     pub total: f64,
 }
 
-/// Estimated discretisation errors of a run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Estimated discretisation error of one number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QuantityError {
+    /// The number.
+    pub scalar: &'static Scalar,
+    /// In % of the number.
+    pub percent: ErrorParts,
+    /// In its unit.
+    pub in_unit: ErrorParts,
+}
+
+/// Estimated discretisation errors of a run; `errors[&MASS_LOSS_MG]` is that of a number, and of the volume loss too.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorEstimate {
-    /// Of the mass loss, and so of the volume loss, %.
-    pub mass_loss_percent: ErrorParts,
-    /// The same, mg.
-    pub mass_loss_mg: ErrorParts,
-    /// Of the maximum depth, %.
-    pub max_depth_percent: ErrorParts,
-    /// The same, mm.
-    pub max_depth_mm: ErrorParts,
-    /// Of the highest pressure, in the cycle that has it, %.
-    #[serde(default)]
-    pub peak_pressure_percent: ErrorParts,
-    /// The same, MPa.
-    #[serde(default)]
-    pub peak_pressure_mpa: ErrorParts,
-    /// Of the largest contact area, in the cycle that has it, %.
-    #[serde(default)]
-    pub peak_contact_area_percent: ErrorParts,
-    /// The same, mm2.
-    #[serde(default)]
-    pub peak_contact_area_mm2: ErrorParts,
-    /// Of the AP range of the first cycle, %.
-    #[serde(default)]
-    pub ap_range_percent: ErrorParts,
-    /// The same, mm.
-    #[serde(default)]
-    pub ap_range_mm: ErrorParts,
-    /// Of the IE range of the first cycle, %.
-    #[serde(default)]
-    pub ie_range_percent: ErrorParts,
-    /// The same, degrees.
-    #[serde(default)]
-    pub ie_range_deg: ErrorParts,
-    /// Parts that could not be estimated, and why; `mesh_of_ap_range` where that of one number alone could not.
+    quantities: Vec<QuantityError>,
+    /// Reasons why parts could not be estimated; `mesh_of_ap_range` where that of one number alone could not.
     pub not_estimated: BTreeMap<String, String>,
-    /// Seconds that the estimate took, which are not among those of the solver.
+    /// Time of the estimate, s, in addition to that of the solver.
     pub wall_s: f64,
 }
 
 impl Part {
-    /// Its name in the summary.
+    /// The name in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Increments => "increments",
@@ -107,12 +73,12 @@ impl Part {
 }
 
 impl ErrorParts {
-    fn set(&mut self, part: Part, percent: Option<f64>) {
+    fn set(&mut self, part: Part, error: Option<f64>) {
         match part {
-            Part::Increments => self.increments = percent,
-            Part::Updates => self.updates = percent,
-            Part::Mesh => self.mesh = percent,
-            Part::SlipTolerance => self.slip_tolerance = percent,
+            Part::Increments => self.increments = error,
+            Part::Updates => self.updates = error,
+            Part::Mesh => self.mesh = error,
+            Part::SlipTolerance => self.slip_tolerance = error,
         }
         let parts = [
             self.increments,
@@ -125,82 +91,129 @@ impl ErrorParts {
     }
 }
 
-impl Quantity {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::MassLoss,
-        Self::MaxDepth,
-        Self::PeakPressure,
-        Self::PeakContactArea,
-        Self::ApRange,
-        Self::IeRange,
-    ];
-
-    /// Its name in the summary, without a unit.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::MassLoss => "mass_loss",
-            Self::MaxDepth => "max_depth",
-            Self::PeakPressure => "peak_pressure",
-            Self::PeakContactArea => "peak_contact_area",
-            Self::ApRange => "ap_range",
-            Self::IeRange => "ie_range",
-        }
-    }
-}
-
 impl ErrorEstimate {
-    /// Of the numbers `values`, in the order of [`Quantity::ALL`]: of each part % of every one, or why there is
-    /// none.
-    pub fn of(
-        values: [f64; Quantity::ALL.len()],
+    /// The errors, by their parts, of numbers whose values are those of `value_of`.
+    pub fn new(
+        value_of: impl Fn(&Scalar) -> f64,
         parts: impl IntoIterator<Item = (Part, QuantityErrors)>,
     ) -> Self {
-        let mut estimate = Self::default();
+        let mut estimate = Self {
+            quantities: estimated().map(QuantityError::unknown).collect(),
+            ..Self::default()
+        };
         for (part, errors) in parts {
-            let numbers = Quantity::ALL.into_iter().zip(values);
-            for ((quantity, value), error) in numbers.zip(errors) {
+            for (scalar, error) in errors {
                 let error = error.and_then(finite);
                 let percent = error.as_ref().ok().copied();
-                let [in_percent, in_unit] = estimate.tables(quantity);
-                in_percent.set(part, percent);
-                in_unit.set(part, percent.map(|percent| percent / 100.0 * value));
+                let quantities = estimate.quantities.iter_mut();
+                for quantity in quantities.filter(|quantity| quantity.scalar == scalar) {
+                    let in_unit = percent.map(|percent| percent / 100.0 * value_of(scalar));
+                    quantity.percent.set(part, percent);
+                    quantity.in_unit.set(part, in_unit);
+                }
                 if let Err(why) = error {
-                    estimate.leave_out(part, quantity, why);
+                    estimate.leave_out(part, scalar, why);
                 }
             }
         }
         estimate
     }
 
-    /// What is stated of a number: % of it, and in its unit.
-    fn tables(&mut self, quantity: Quantity) -> [&mut ErrorParts; 2] {
-        match quantity {
-            Quantity::MassLoss => [&mut self.mass_loss_percent, &mut self.mass_loss_mg],
-            Quantity::MaxDepth => [&mut self.max_depth_percent, &mut self.max_depth_mm],
-            Quantity::PeakPressure => {
-                [&mut self.peak_pressure_percent, &mut self.peak_pressure_mpa]
-            }
-            Quantity::PeakContactArea => [
-                &mut self.peak_contact_area_percent,
-                &mut self.peak_contact_area_mm2,
-            ],
-            Quantity::ApRange => [&mut self.ap_range_percent, &mut self.ap_range_mm],
-            Quantity::IeRange => [&mut self.ie_range_percent, &mut self.ie_range_deg],
-        }
+    /// The error of a number; none where it was not estimated.
+    pub fn get(&self, scalar: &Scalar) -> Option<&QuantityError> {
+        self.quantities
+            .iter()
+            .find(|quantity| quantity.scalar == scalar)
     }
 
-    /// Says why a part of a number's error has no estimate; once, where that is so of the mass loss too.
-    fn leave_out(&mut self, part: Part, quantity: Quantity, why: String) {
+    /// Keeps the reason why a part has no estimate; once, where the mass loss has the same.
+    fn leave_out(&mut self, part: Part, scalar: &Scalar, why: String) {
         if self.not_estimated.get(part.name()) == Some(&why) {
             return;
         }
-        let name = match quantity {
-            Quantity::MassLoss => part.name().to_owned(),
-            other => format!("{}_of_{}", part.name(), other.name()),
+        let name = if *scalar == MASS_LOSS_MG {
+            part.name().to_owned()
+        } else {
+            format!("{}_of_{}", part.name(), scalar.stem())
         };
         self.not_estimated.insert(name, why);
     }
+}
+
+impl QuantityError {
+    fn unknown(scalar: &'static Scalar) -> Self {
+        Self {
+            scalar,
+            percent: ErrorParts::default(),
+            in_unit: ErrorParts::default(),
+        }
+    }
+
+    fn percent_key(scalar: &Scalar) -> String {
+        format!("{}_percent", scalar.stem())
+    }
+}
+
+/// # Panics
+/// If the error of the number was not estimated.
+impl Index<&Scalar> for ErrorEstimate {
+    type Output = QuantityError;
+
+    fn index(&self, scalar: &Scalar) -> &QuantityError {
+        self.get(scalar)
+            .expect("the error of the number is estimated")
+    }
+}
+
+impl Serialize for ErrorEstimate {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for quantity in &self.quantities {
+            map.serialize_entry(
+                &QuantityError::percent_key(quantity.scalar),
+                &quantity.percent,
+            )?;
+            map.serialize_entry(quantity.scalar.key, &quantity.in_unit)?;
+        }
+        map.serialize_entry("not_estimated", &self.not_estimated)?;
+        map.serialize_entry("wall_s", &self.wall_s)?;
+        map.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for ErrorEstimate {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut entries = Map::<String, Value>::deserialize(deserializer)?;
+        let mut parts = |key: &str| {
+            let entry = entries.remove(key).map(serde_json::from_value);
+            entry.transpose().map_err(D::Error::custom)
+        };
+        let mut quantities = Vec::new();
+        for scalar in estimated() {
+            let percent = parts(&QuantityError::percent_key(scalar))?;
+            if let (Some(percent), Some(in_unit)) = (percent, parts(scalar.key)?) {
+                quantities.push(QuantityError {
+                    scalar,
+                    percent,
+                    in_unit,
+                });
+            }
+        }
+        let not_estimated = entries.remove("not_estimated").map(serde_json::from_value);
+        let not_estimated = not_estimated.transpose().map_err(D::Error::custom)?;
+        Ok(Self {
+            quantities,
+            not_estimated: not_estimated.unwrap_or_default(),
+            wall_s: entries
+                .get("wall_s")
+                .and_then(Value::as_f64)
+                .unwrap_or_default(),
+        })
+    }
+}
+
+fn estimated() -> impl Iterator<Item = &'static Scalar> {
+    catalogue::scalars().filter(|scalar| scalar.error == ErrorMethod::Estimated)
 }
 
 fn finite(percent: f64) -> Result<f64, String> {
@@ -214,43 +227,61 @@ fn finite(percent: f64) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::catalogue::{AP_RANGE_MM, MAX_DEPTH_MM, PEAK_CONTACT_AREA_MM2};
 
     /// Errors of mass and depth, with none of the other numbers.
     fn of_wear(percent: [f64; 2]) -> QuantityErrors {
         let [mass, depth] = percent;
-        [mass, depth, 0.0, 0.0, 0.0, 0.0].map(Ok)
+        let others = estimated().skip(2).map(|scalar| (scalar, Ok(0.0)));
+        let of_wear = [(&MASS_LOSS_MG, Ok(mass)), (&MAX_DEPTH_MM, Ok(depth))];
+        of_wear.into_iter().chain(others).collect()
     }
 
     #[test]
     fn verify_parts_add_in_quadrature_and_the_rest_says_why() {
-        let no_mesh = || Err("there is no coarser mesh".to_owned());
+        let no_mesh = |scalar| (scalar, Err("there is no coarser mesh".to_owned()));
         let parts = [
             (Part::Increments, of_wear([-3.0, 0.5])),
             (Part::SlipTolerance, of_wear([4.0, 1.2])),
-            (Part::Mesh, std::array::from_fn(|_| no_mesh())),
+            (Part::Mesh, estimated().map(no_mesh).collect()),
             (Part::Updates, of_wear([f64::NAN, 0.0])),
         ];
-        let estimate = ErrorEstimate::of([200.0, 0.1, 20.0, 300.0, 5.0, 8.0], parts);
-        assert_eq!(estimate.mass_loss_percent.total, 5.0);
-        assert_eq!(estimate.max_depth_percent.total, 1.3);
-        assert_eq!(estimate.mass_loss_mg.increments, Some(-6.0));
-        assert_eq!(estimate.mass_loss_mg.total, 10.0);
-        let of_depth = estimate.max_depth_mm.slip_tolerance;
+        let value_of = |scalar: &Scalar| if *scalar == MASS_LOSS_MG { 200.0 } else { 0.1 };
+        let estimate = ErrorEstimate::new(value_of, parts);
+        let (mass, depth) = (&estimate[&MASS_LOSS_MG], &estimate[&MAX_DEPTH_MM]);
+        assert_eq!(mass.percent.total, 5.0);
+        assert_eq!(depth.percent.total, 1.3);
+        assert_eq!(mass.in_unit.increments, Some(-6.0));
+        assert_eq!(mass.in_unit.total, 10.0);
+        let of_depth = depth.in_unit.slip_tolerance;
         assert!((of_depth.expect("it is estimated") - 0.0012).abs() < 1e-12);
-        assert_eq!(estimate.mass_loss_percent.mesh, None);
+        assert_eq!(mass.percent.mesh, None);
         assert_eq!(estimate.not_estimated["mesh"], "there is no coarser mesh");
         assert_eq!(estimate.not_estimated["updates"], "nothing was worn");
         assert_eq!(estimate.not_estimated.len(), 2);
     }
 
     #[test]
-    fn what_is_unknown_of_one_number_alone_is_said_of_that() {
+    fn a_reason_of_one_number_alone_names_that_number() {
         let mut errors = of_wear([1.0, 1.0]);
-        errors[3] = Err("it is apart".to_owned());
-        let estimate = ErrorEstimate::of([1.0; 6], [(Part::Updates, errors)]);
-        assert_eq!(estimate.peak_contact_area_percent.updates, None);
-        assert_eq!(estimate.ap_range_mm.updates, Some(0.0));
+        errors[3].1 = Err("it is apart".to_owned());
+        assert_eq!(*errors[3].0, PEAK_CONTACT_AREA_MM2);
+        let estimate = ErrorEstimate::new(|_| 1.0, [(Part::Updates, errors)]);
+        assert_eq!(estimate[&PEAK_CONTACT_AREA_MM2].percent.updates, None);
+        assert_eq!(estimate[&AP_RANGE_MM].in_unit.updates, Some(0.0));
         let said: Vec<_> = estimate.not_estimated.keys().collect();
         assert_eq!(said, ["updates_of_peak_contact_area"]);
+    }
+
+    #[test]
+    fn a_file_gives_the_same_estimate_back() {
+        let estimate = ErrorEstimate::new(|_| 2.0, [(Part::Mesh, of_wear([1.0, 3.0]))]);
+        let text = serde_json::to_string(&estimate).expect("it can be written");
+        let start = r#"{"mass_loss_percent":{"increments":null,"updates":null,"mesh":1.0,"slip_tolerance":null,"total":1.0},"mass_loss_mg":"#;
+        assert!(text.starts_with(start), "{text}");
+        assert_eq!(
+            serde_json::from_str::<ErrorEstimate>(&text).expect("is read"),
+            estimate
+        );
     }
 }

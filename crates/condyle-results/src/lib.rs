@@ -27,7 +27,6 @@ mod side;
 mod slip_paths;
 mod summary;
 mod tables;
-mod under_surface;
 #[cfg(feature = "file-system")]
 mod write_over;
 
@@ -52,7 +51,7 @@ pub use cycle_files::{
 };
 pub use cycle_motion::joint_range;
 pub use cycle_pressures::{cycle_pressure_csv, cycle_pressure_file};
-pub use error_estimate::{ErrorEstimate, ErrorParts, Part, Quantity, QuantityErrors};
+pub use error_estimate::{ErrorEstimate, ErrorParts, Part, QuantityError, QuantityErrors};
 pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
@@ -63,6 +62,5 @@ pub use law_wear::LawWear;
 pub use lock::FolderLock;
 pub use plausibility::PlausibilityWarning;
 pub use side::Side;
-pub use summary::{Summary, SummaryInput};
+pub use summary::Summary;
 pub use tables::{kinematics_csv, wear_csv};
-pub use under_surface::{BacksideSummary, PlasticSummary, UnderSurfaceSummary};

@@ -1,5 +1,6 @@
 //! A case run over finer and finer values of one of its numbers.
 
+use condyle_results::catalogue;
 use std::{
     collections::BTreeMap,
     fmt::Write,
@@ -103,31 +104,31 @@ pub const QUANTITIES: [Quantity; 5] = [
         name: "mass_loss_mg",
         title: "mass loss",
         unit: "mg",
-        of: |summary| summary.mass_loss_mg,
+        of: |summary| summary[&catalogue::MASS_LOSS_MG],
     },
     Quantity {
         name: "volume_loss_mm3",
         title: "volume loss",
         unit: "mm3",
-        of: |summary| summary.volume_loss_mm3,
+        of: |summary| summary[&catalogue::VOLUME_LOSS_MM3],
     },
     Quantity {
         name: "max_depth_mm",
         title: "deepest wear",
         unit: "mm",
-        of: |summary| summary.max_depth_mm,
+        of: |summary| summary[&catalogue::MAX_DEPTH_MM],
     },
     Quantity {
         name: "peak_pressure_mpa",
         title: "peak pressure",
         unit: "MPa",
-        of: |summary| summary.peak_pressure_mpa,
+        of: |summary| summary[&catalogue::PEAK_PRESSURE_MPA],
     },
     Quantity {
         name: "peak_contact_area_mm2",
         title: "largest area",
         unit: "mm2",
-        of: |summary| summary.peak_contact_area_mm2,
+        of: |summary| summary[&catalogue::PEAK_CONTACT_AREA_MM2],
     },
 ];
 
@@ -463,7 +464,7 @@ impl Convergence {
                 "{},{},{},{}",
                 point.value,
                 values.join(","),
-                point.summary.cycles_solved,
+                point.summary[&catalogue::CYCLES_SOLVED],
                 differences.join(",")
             )
             .expect("writing to a string cannot fail");
@@ -497,7 +498,7 @@ impl Convergence {
                 .iter()
                 .map(|quantity| (quantity.name, (quantity.of)(&point.summary)))
                 .collect(),
-            cycles_solved: point.summary.cycles_solved,
+            cycles_solved: point.summary[&catalogue::CYCLES_SOLVED],
             differences_percent: QUANTITIES
                 .iter()
                 .map(|quantity| (quantity.name, self.differences_percent(quantity)[row]))

@@ -12,8 +12,9 @@ use std::{
     thread,
 };
 
-use condyle_case::{cache::Cache, case::SharedBodies, study::OUTPUTS};
+use condyle_case::{cache::Cache, case::SharedBodies};
 use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, batch_run, run_case};
+use condyle_results::catalogue;
 use condyle_results::{FolderLock, ResultsFolder};
 
 use crate::{
@@ -266,7 +267,7 @@ impl TestBench {
         let case = plan.case_of(test);
         let summary = case.and_then(|case| batch_run(&case, &self.cache, &self.bodies));
         let summary = summary.map_err(|error| reason(&error))?;
-        Ok(OUTPUTS.iter().map(|output| (output.of)(&summary)).collect())
+        Ok(catalogue::outputs().map(|output| summary[output]).collect())
     }
 }
 

@@ -5,9 +5,10 @@ use std::{fmt, path::Path, str::FromStr};
 use condyle_case::{
     case::{Assignment, Case},
     config::{Level, Variants},
-    study::{Design, Input, OUTPUTS, Study, Variation},
+    study::{Design, Input, Study, Variation},
 };
 use condyle_lab::RunError;
+use condyle_results::catalogue;
 
 use crate::{
     design::{
@@ -41,7 +42,7 @@ pub struct Test {
     pub values: Vec<Option<Level>>,
 }
 
-/// What a test found: its outputs in the order of [`OUTPUTS`], or why it found nothing.
+/// What a test found: its outputs in the order of [`catalogue::outputs`], or why it found nothing.
 pub type TestResult = Result<Vec<f64>, String>;
 
 impl Plan {
@@ -181,7 +182,7 @@ impl Plan {
         let inputs = self.study.inputs.iter().map(|input| input.key.as_str());
         (
             inputs.collect(),
-            OUTPUTS.iter().map(|output| output.name).collect(),
+            catalogue::outputs().map(|output| output.key).collect(),
         )
     }
 }

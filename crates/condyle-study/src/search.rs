@@ -2,7 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use condyle_case::study::{Bound, Design, OUTPUTS, OptimiseKeys, Output};
+use condyle_case::study::{Bound, Design, OptimiseKeys};
+use condyle_results::catalogue::{self, Scalar};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::{
@@ -98,14 +99,12 @@ fn worth(plan: &Plan, keys: &OptimiseKeys, found: &TestResult) -> (f64, f64) {
         return (f64::INFINITY, f64::INFINITY);
     };
     let value = |name: &str| {
-        let place = OUTPUTS
-            .iter()
-            .position(|output: &Output| output.name == name);
+        let place = catalogue::outputs().position(|output: &Scalar| output.key == name);
         place.map_or(f64::INFINITY, |place| outputs[place])
     };
     let beyond = |bound: &Bound| {
         let scale = bound.most.or(bound.least).unwrap_or(1.0).abs().max(1e-300);
-        bound.excess(value(bound.output.name)) / scale
+        bound.excess(value(bound.output.key)) / scale
     };
     let bounds = &plan.study().answers.bounds;
     (bounds.iter().map(beyond).sum(), value(&keys.minimise))

@@ -1,5 +1,6 @@
 //! A case run again with each of its assumptions changed, one at a time.
 
+use condyle_results::catalogue;
 use std::path::Path;
 
 use Tried::{Instead, Plus, Times};
@@ -359,11 +360,11 @@ pub struct Sensitivity {
 impl Results {
     fn of(summary: &Summary) -> Self {
         Self {
-            mass_loss_mg: summary.mass_loss_mg,
-            max_depth_mm: summary.max_depth_mm,
-            peak_pressure_mpa: summary.peak_pressure_mpa,
-            ap_range_mm: summary.ap_range_mm,
-            ie_range_deg: summary.ie_range_deg,
+            mass_loss_mg: summary[&catalogue::MASS_LOSS_MG],
+            max_depth_mm: summary[&catalogue::MAX_DEPTH_MM],
+            peak_pressure_mpa: summary[&catalogue::PEAK_PRESSURE_MPA],
+            ap_range_mm: summary[&catalogue::AP_RANGE_MM],
+            ie_range_deg: summary[&catalogue::IE_RANGE_DEG],
         }
     }
 

@@ -30,8 +30,8 @@ impl Recorder {
         }
     }
 
-    pub fn into_scene(mut self, neutral_pose: NeutralPose) -> Scene {
-        self.scene.neutral_pose = Some(neutral_pose);
+    pub fn into_scene(mut self, neutral_pose: Option<NeutralPose>) -> Scene {
+        self.scene.neutral_pose = neutral_pose;
         self.scene
     }
 

@@ -1,6 +1,7 @@
 //! The results of the runs, as numbers.
 
 use condyle_report::{Region, Side, SurfaceFields, Vec3};
+use condyle_results::catalogue;
 use serde::Serialize;
 
 use crate::runs::{Ran, StudyError, TableOf, reference};
@@ -79,18 +80,18 @@ impl Findings {
         Ok(Self {
             displacement_intervals: Intervals::of(displacement)?,
             force_intervals: Intervals::of(force)?,
-            ap_range_mm: summary.ap_range_mm,
-            ie_range_deg: summary.ie_range_deg,
+            ap_range_mm: summary[&catalogue::AP_RANGE_MM],
+            ie_range_deg: summary[&catalogue::IE_RANGE_DEG],
             ap_posterior_shift_mm: mean_ap(of_paper, true)? - mean_ap(of_paper, false)?,
             volume_r_squared: line.r_squared,
             volume_rate_mm3_per_million_cycles: 1e6 * line.slope,
             rate_growth_force_percent: rate_growth(of_paper)?,
             rate_growth_displacement_percent: rate_growth(held)?,
-            mass_force_mg: summary.mass_loss_mg,
-            mass_displacement_mg: held.summary.mass_loss_mg,
+            mass_force_mg: summary[&catalogue::MASS_LOSS_MG],
+            mass_displacement_mg: held.summary[&catalogue::MASS_LOSS_MG],
             mass_force_against_displacement_percent: above_percent(
-                summary.mass_loss_mg,
-                held.summary.mass_loss_mg,
+                summary[&catalogue::MASS_LOSS_MG],
+                held.summary[&catalogue::MASS_LOSS_MG],
             ),
             depth_force_against_displacement_percent: *end,
             depth_force_least_against_displacement_percent: least,
@@ -103,8 +104,8 @@ impl Findings {
             ie_stance_largest_rise_at_percent: rise.0,
             medial,
             lateral,
-            wall_s: summary.wall_s,
-            cycles_solved: summary.cycles_solved,
+            wall_s: summary[&catalogue::WALL_S],
+            cycles_solved: summary[&catalogue::CYCLES_SOLVED],
         })
     }
 }
@@ -227,17 +228,17 @@ impl Intervals {
         let five = with_updates(runs, 5);
         let coarser = runs[..runs.len() - 1].iter();
         Ok(Self {
-            volume_loss_mm3: over_updates(runs, |ran| ran.summary.volume_loss_mm3),
+            volume_loss_mm3: over_updates(runs, |ran| ran.summary[&catalogue::VOLUME_LOSS_MM3]),
             volume_1_against_10_percent: above_percent(
-                coarsest.volume_loss_mm3,
-                of_paper.volume_loss_mm3,
+                coarsest[&catalogue::VOLUME_LOSS_MM3],
+                of_paper[&catalogue::VOLUME_LOSS_MM3],
             ),
             pressure_5_against_40_percent: at_last_cycle(five, finest, "peak_pressure_mpa")?,
             area_5_against_40_percent: at_last_cycle(five, finest, "peak_contact_area_mm2")?,
-            max_depth_mm: over_updates(runs, |ran| ran.summary.max_depth_mm),
+            max_depth_mm: over_updates(runs, |ran| ran.summary[&catalogue::MAX_DEPTH_MM]),
             depth_10_against_40_percent: above_percent(
-                of_paper.max_depth_mm,
-                finest.summary.max_depth_mm,
+                of_paper[&catalogue::MAX_DEPTH_MM],
+                finest.summary[&catalogue::MAX_DEPTH_MM],
             ),
             depth_excess: coarser
                 .map(|ran| excess(ran, finest))
@@ -267,7 +268,7 @@ fn over_updates(runs: &[Ran], of: fn(&Ran) -> f64) -> Vec<OverUpdates> {
 fn at_last_cycle(coarse: &Ran, fine: &Ran, name: &'static str) -> Result<f64, StudyError> {
     let starts = |ran: &Ran| -> Result<Vec<f64>, StudyError> {
         let ends = ran.column(TableOf::Wear, "cycles")?;
-        let interval = ran.summary.cycles / ran.updates as f64;
+        let interval = ran.summary[&catalogue::CYCLES] / ran.updates as f64;
         Ok(ends.iter().map(|end| end - interval).collect())
     };
     let (coarse_starts, fine_starts) = (starts(coarse)?, starts(fine)?);
@@ -286,7 +287,7 @@ fn excess(ran: &Ran, finest: &Ran) -> Result<Excess, StudyError> {
     const FROM_SHARE: f64 = 0.2;
     let (cycles, depth) = ran.depths()?;
     let (known_cycles, known_depth) = finest.depths()?;
-    let from = FROM_SHARE * ran.summary.cycles * (1.0 - 1e-9);
+    let from = FROM_SHARE * ran.summary[&catalogue::CYCLES] * (1.0 - 1e-9);
     let later = cycles
         .iter()
         .zip(depth)

@@ -1,5 +1,6 @@
 //! The table of Knight et al. 2007; `validation/knight-2007/run` is how to run it.
 
+use condyle_results::catalogue;
 use std::{env, ops::ControlFlow, path::PathBuf, process::ExitCode};
 
 use condyle_knight_2007::{Stamp, StudyFiles, study};
@@ -36,7 +37,10 @@ fn main() -> ExitCode {
 fn tell(on_event: &ConvergeHappening<'_>) -> ControlFlow<()> {
     if let ConvergeHappening::Ran(run, summary) = on_event {
         let (path, text) = (run.number.path(), run.number.text());
-        eprintln!("{path} = {text}: {:.3} mg worn", summary.mass_loss_mg);
+        eprintln!(
+            "{path} = {text}: {:.3} mg worn",
+            summary[&catalogue::MASS_LOSS_MG]
+        );
     }
     ControlFlow::Continue(())
 }

@@ -1,5 +1,6 @@
 //! The runs of the study, read back from their folders; the waveforms and the picture made from them.
 
+use condyle_results::catalogue;
 use std::{
     fmt::Write,
     io,
@@ -62,7 +63,7 @@ pub(crate) fn read_back(convergence: Convergence, out: &Path) -> Result<Vec<Ran>
         .map(|point| {
             let folder = out.join(&point.folder);
             Ok(Ran {
-                updates: point.summary.updates,
+                updates: point.summary[&catalogue::UPDATES] as usize,
                 results: Results::read(&folder)?,
                 summary: point.summary,
                 folder,

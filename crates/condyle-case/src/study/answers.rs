@@ -1,19 +1,19 @@
 //! What is asked of a study.
 
 use super::declared::{AnswersKeys, BoundKeys};
-use super::output::{OUTPUTS, Output};
 use super::reason::StudyReason;
 use crate::config::{Log, Section, Settings, likeliest, names, read_table};
+use condyle_results::catalogue::{self, Scalar};
 
 /// What is asked of a study.
 #[derive(Clone, Debug)]
 pub struct Answers {
     /// Outputs that answers and pictures are about, one or more.
-    pub outputs: Vec<&'static Output>,
+    pub outputs: Vec<&'static Scalar>,
     /// The output that designs are ranked by, the least first.
-    pub rank_by: &'static Output,
+    pub rank_by: &'static Scalar,
     /// Two outputs that are both to be small.
-    pub pareto: Option<[&'static Output; 2]>,
+    pub pareto: Option<[&'static Scalar; 2]>,
     /// What outputs must keep to.
     pub bounds: Vec<Bound>,
 }
@@ -22,7 +22,7 @@ pub struct Answers {
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
     /// The output.
-    pub output: &'static Output,
+    pub output: &'static Scalar,
     /// Least that is allowed.
     pub least: Option<f64>,
     /// Most that is allowed.
@@ -95,10 +95,10 @@ pub(super) fn output(
     key: &str,
     section: &Section<'_>,
     log: &mut Log<'_>,
-) -> Option<&'static Output> {
-    let found = Output::named(name);
+) -> Option<&'static Scalar> {
+    let found = catalogue::output(name);
     if found.is_none() {
-        let all: Vec<&str> = OUTPUTS.iter().map(|output| output.name).collect();
+        let all: Vec<&str> = catalogue::outputs().map(|output| output.key).collect();
         let (name, near, outputs) = (name.to_owned(), likeliest(name, &all), all.join(", "));
         let reason = StudyReason::UnknownOutput {
             name,

@@ -37,7 +37,7 @@ impl Study {
             Design::Optimise(keys) => {
                 keys.write(&mut out);
                 let bounds = self.answers.bounds.iter();
-                let bound = bounds.map(|bound| (bound.output.name, bound.least, bound.most));
+                let bound = bounds.map(|bound| (bound.output.key, bound.least, bound.most));
                 out.line(&format!("{:?}", bound.collect::<Vec<_>>()), "");
             }
             design => design.write(&mut out),

@@ -11,7 +11,6 @@ mod count;
 mod declared;
 mod fingerprint;
 mod input;
-mod output;
 mod read;
 mod reason;
 mod rows;
@@ -26,5 +25,4 @@ pub use declared::{
     RowsKeys, SampleKeys, TriangularKeys, TruncatedKeys, UniformKeys, Variation,
 };
 pub use input::Input;
-pub use output::{OUTPUTS, Output};
 pub use reason::StudyReason;

@@ -2,6 +2,7 @@
 
 use crate::bench::{Bench, SMALL};
 use crate::shapes::{self, FLEXED_A_LITTLE, Triangle, inside_out, stl};
+use condyle_results::catalogue;
 
 const MESH_INSERT: &str = "[insert]\nshape = \"mesh\"\nfile = \"insert.stl\"\nedge_mm = 1.5\n";
 const MESH_FEMUR: &str = "[femur]\nshape = \"mesh\"\nfile = \"femur.stl\"\n";
@@ -36,7 +37,7 @@ fn assert_refused(bench: &Bench, code: i32, words: &[&str]) {
 fn assert_runs(bench: &Bench, warnings: &[&str]) {
     let said = bench.run_into("out");
     let summary = bench.summary("out");
-    assert!(summary.mass_loss_mg > 0.0);
+    assert!(summary[&catalogue::MASS_LOSS_MG] > 0.0);
     assert_eq!(summary.warnings.len(), warnings.len(), "{}", said.err);
     for (warning, expected) in summary.warnings.iter().zip(warnings) {
         assert!(warning.contains(expected), "{warning}");
@@ -87,7 +88,7 @@ fn normals_inside_out_are_turned_round_with_a_warning() {
     assert_runs(&bench, &[&turned("insert.stl"), &turned("femur.stl")]);
     let sound = knee_of(&format!("{MESH_INSERT}{MESH_FEMUR}"));
     sound.run_into("out");
-    let mass_mg = |bench: &Bench| bench.summary("out").mass_loss_mg;
+    let mass_mg = |bench: &Bench| bench.summary("out")[&catalogue::MASS_LOSS_MG];
     assert!((mass_mg(&bench) / mass_mg(&sound) - 1.0).abs() < 1e-6);
 }
 

@@ -1,5 +1,6 @@
 //! A folder for a test, and the command run in it.
 
+use condyle_results::catalogue;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -149,7 +150,7 @@ pub fn files_but_wall_time(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         .collect();
     if files.contains_key("summary.json") {
         let mut summary = summary(folder);
-        summary.wall_s = 0.0;
+        summary.set(&catalogue::WALL_S, 0.0);
         summary
             .error
             .iter_mut()

@@ -1,5 +1,6 @@
 //! Values of a case changed on the command line.
 
+use condyle_results::catalogue;
 use std::fs;
 
 use crate::bench::{Bench, SMALL, assert_same_bytes};
@@ -10,7 +11,7 @@ fn a_changed_case_runs_as_if_it_were_written_so() {
     let changed = ["--set", "updates=2", "--set", "contact.law = logarithmic"];
     let said = bench.say(&[&["run", "case.toml", "-o", "set"][..], &changed].concat());
     assert_eq!(said.code, Some(0), "{}", said.err);
-    assert_eq!(bench.summary("set").updates, 2);
+    assert_eq!(bench.summary("set")[&catalogue::UPDATES], 2.0);
     let written = SMALL.replace("updates = 3", "updates = 2");
     bench.write(
         "case.toml",

@@ -1,5 +1,6 @@
 //! Scans made from the predicted surface, moved by a known motion, with noise of a known size.
 
+use condyle_results::catalogue;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -157,7 +158,7 @@ fn verify_deeper_scars_are_measured_as_much_deeper() {
     let ratio = deepest["scanned_mm"].as_f64().unwrap() / deepest["predicted_mm"].as_f64().unwrap();
     assert!((ratio - 1.25).abs() < 0.03, "{ratio}");
     let predicted = number(json, ["deepest_predicted", "predicted_mm"]);
-    assert!((predicted / bench.summary("out").max_depth_mm - 1.0).abs() < 0.01);
+    assert!((predicted / bench.summary("out")[&catalogue::MAX_DEPTH_MM] - 1.0).abs() < 0.01);
     assert!(
         json["notes"][0]
             .as_str()

@@ -1,6 +1,7 @@
 //! A left knee wears as its mirror image does, and its results lie on the left.
 
 use condyle_mesh::formats::read_vtu_points;
+use condyle_results::catalogue;
 
 use crate::bench::{Bench, SMALL};
 use crate::shapes::{FLEXED_A_LITTLE, Triangle, femur, insert, moved, stl};
@@ -27,7 +28,7 @@ fn assert_mirror_images(right: &Bench, left: &Bench) {
             }
         }
     }
-    let shares = [right, left].map(|bench| bench.summary("out").medial_load_share);
+    let shares = [right, left].map(|bench| bench.summary("out")[&catalogue::MEDIAL_LOAD_SHARE]);
     assert!((shares[0] - shares[1]).abs() < 1e-7);
     for update in ["insert_0000.vtu", "insert_0002.vtu"] {
         assert_mirrored(right, left, update);

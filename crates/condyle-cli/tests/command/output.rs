@@ -2,6 +2,7 @@
 
 #![cfg(target_os = "linux")]
 
+use condyle_results::catalogue;
 use std::fs::{self, File, OpenOptions};
 use std::io::pipe;
 
@@ -46,7 +47,7 @@ fn a_reader_that_has_gone_is_no_error() {
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {err}");
         assert!(!err.contains("error"), "{arguments:?}: {err}");
     }
-    assert_eq!(bench.summary("table").updates, 3);
+    assert_eq!(bench.summary("table")[&catalogue::UPDATES], 3.0);
 }
 
 #[test]
@@ -57,7 +58,7 @@ fn a_run_goes_on_where_nobody_hears_it() {
     let mut command = bench.command(&["run", "case.toml", "--out", "out"]);
     let output = command.stderr(writer).output().unwrap();
     assert_eq!(output.status.code(), Some(0));
-    assert_eq!(bench.summary("out").updates, 3);
+    assert_eq!(bench.summary("out")[&catalogue::UPDATES], 3.0);
 }
 
 #[test]
@@ -79,6 +80,6 @@ fn a_full_disk_behind_standard_output_costs_no_results() {
     let bench = Bench::with_case(SMALL);
     let said = full(&bench, &["run", "case.toml", "--out", "out"]);
     said.assert_refused(2, &["the results are kept in out"]);
-    assert_eq!(bench.summary("out").updates, 3);
+    assert_eq!(bench.summary("out")[&catalogue::UPDATES], 3.0);
     assert!(fs::exists(bench.path("out/report.html")).unwrap());
 }

@@ -1,5 +1,6 @@
 //! Closed forms through the front door: a ball or two condyles on a flat insert.
 
+use condyle_results::catalogue;
 use std::f64::consts::PI;
 
 use crate::bench::Bench;
@@ -54,7 +55,7 @@ increments = 60
 fn volume_over_archard(bench: &Bench, path_mm: f64) -> f64 {
     bench.run_into("out");
     let archard_mm3 = KW_MM3_PER_NM * LOAD_N * path_mm / 1000.0 * CYCLES;
-    bench.summary("out").volume_loss_mm3 / archard_mm3
+    bench.summary("out")[&catalogue::VOLUME_LOSS_MM3] / archard_mm3
 }
 
 #[test]
@@ -63,8 +64,12 @@ fn verify_volume_of_a_sliding_ball_is_kw_f_s() {
     let ratio = volume_over_archard(&sliding, 20.0);
     assert!((ratio - 1.0).abs() < 5e-3, "{ratio}");
     let summary = sliding.summary("out");
-    assert!((summary.volume_loss_mesh_mm3 / summary.volume_loss_mm3 - 1.0).abs() < 0.01);
-    assert!((summary.ap_range_mm - 10.0).abs() < 1e-6);
+    assert!(
+        (summary[&catalogue::VOLUME_LOSS_MESH_MM3] / summary[&catalogue::VOLUME_LOSS_MM3] - 1.0)
+            .abs()
+            < 0.01
+    );
+    assert!((summary[&catalogue::AP_RANGE_MM] - 10.0).abs() < 1e-6);
 }
 
 #[test]
@@ -157,7 +162,7 @@ fn verify_load_off_the_middle_splits_by_its_levers() {
         let bench = standing(medial_mm, &format!("side = \"{side}\""));
         bench.run_into("out");
         let (share, expected) = (
-            bench.summary("out").medial_load_share,
+            bench.summary("out")[&catalogue::MEDIAL_LOAD_SHARE],
             (23.0 + medial_mm) / 46.0,
         );
         assert!(

@@ -1,5 +1,6 @@
 //! A run that should not be believed says so, in the terminal, in its summary and on its page.
 
+use condyle_results::catalogue;
 use std::fs;
 
 use crate::bench::{Bench, SMALL};
@@ -91,7 +92,7 @@ fn pressure_that_polyethylene_cannot_bear_is_told_apart() {
         bench.run_into("out");
         let found = checks(&bench, "out");
         let flows = found.iter().any(|found| found == "pressure_beyond_flow");
-        let peak = bench.summary("out").peak_pressure_mpa;
+        let peak = bench.summary("out")[&catalogue::PEAK_PRESSURE_MPA];
         assert_eq!(flows, is_beyond, "{radius} mm: {peak} MPa, {found:?}");
     }
 }
@@ -190,7 +191,10 @@ fn pressure_beyond_yield_is_told_with_area_and_time() {
         .iter()
         .find(|warning| warning.check == "pressure_beyond_yield");
     let warning = warning.expect("35 MPa are beyond 22.4 MPa");
-    assert_eq!(warning.value, bench.summary("out").peak_pressure_mpa);
+    assert_eq!(
+        warning.value,
+        bench.summary("out")[&catalogue::PEAK_PRESSURE_MPA]
+    );
     assert!(
         warning.message.contains("mm2 are pressed harder"),
         "{warning:?}"

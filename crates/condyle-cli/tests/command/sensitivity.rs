@@ -1,5 +1,6 @@
 //! `condyle sensitivity`, through the front door.
 
+use condyle_results::catalogue;
 use serde_json::Value;
 
 use crate::bench::Bench;
@@ -45,7 +46,7 @@ fn each_assumption_is_changed_alone_and_the_threads_do_not_matter() {
     assert_eq!(bench.say(&run).code, Some(0));
     assert_eq!(
         half["found"]["mass_loss_mg"],
-        bench.summary("half").mass_loss_mg
+        bench.summary("half")[&catalogue::MASS_LOSS_MG]
     );
 }
 

@@ -1,5 +1,6 @@
 //! Runs held against each other: `condyle diff`, `condyle report` of several, `condyle plot`.
 
+use condyle_results::catalogue;
 use std::fs;
 
 use serde_json::Value;
@@ -29,11 +30,11 @@ fn two_runs_differ_by_what_their_summaries_say_ranked_beside_their_errors() {
     let numbers = told["numbers"].as_array().expect("a list");
     let mass = numbers.iter().find(|one| one["key"] == "mass_loss_mg");
     let mass = mass.expect("the mass differs");
-    let off = second.mass_loss_mg - first.mass_loss_mg;
+    let off = second[&catalogue::MASS_LOSS_MG] - first[&catalogue::MASS_LOSS_MG];
     assert_eq!(mass["difference"], off);
     let [one, two] = [&first, &second].map(|summary| {
         let error = summary.error.as_ref().expect("is estimated");
-        error.mass_loss_mg.total
+        error[&catalogue::MASS_LOSS_MG].in_unit.total
     });
     let times = mass["times_errors"].as_f64().expect("has errors");
     assert!((times - off.abs() / (one + two)).abs() < 1e-12);

@@ -1,5 +1,6 @@
 //! `condyle study`, through the front door.
 
+use condyle_results::catalogue;
 use std::fs;
 
 use serde_json::Value;
@@ -178,7 +179,7 @@ fn a_row_made_a_run_has_the_numbers_of_the_table() {
     let table = table(&bench, &[]);
     let said = bench.say(&["study", "run-row", "study.toml", "2", "--out", "row"]);
     assert_eq!(said.code, Some(0), "{}", said.err);
-    let mass = bench.summary("row").mass_loss_mg.to_string();
+    let mass = bench.summary("row")[&catalogue::MASS_LOSS_MG].to_string();
     assert!(
         table.lines().nth(3).unwrap().contains(&mass),
         "{mass} in {table}"

@@ -4,7 +4,12 @@ use condyle::{
     machine::{Chain, knee::KNEE},
     spatial::Pose,
 };
-use condyle_results::PlausibilityWarning;
+use condyle_results::{
+    PlausibilityWarning,
+    catalogue::{
+        BACKSIDE_LIFT_MM, MAX_DEPTH_MM, MAX_PLASTIC_STRAIN, PEAK_PRESSURE_CYCLE, PEAK_PRESSURE_MPA,
+    },
+};
 
 use super::finished::{Finished, SolvedCycle};
 
@@ -100,7 +105,7 @@ fn pressures<'a>(finished: &Finished<'a>) -> Vec<(&'static str, &'a [f64])> {
 /// Pressure that polyethylene cannot bear, since it flows under less.
 pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FULL_FLOW * YIELD_MPA;
-    let peak = finished.summary.peak_pressure_mpa;
+    let peak = finished.summary[&PEAK_PRESSURE_MPA];
     (peak > limit).then(|| PlausibilityWarning {
         check: "pressure_beyond_flow".to_owned(),
         value: peak,
@@ -109,7 +114,7 @@ pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
         message: format!(
             "the highest pressure is {peak:.1} MPa, after {:.0} cycles; from about {limit:.0} MPa polyethylene flows, and there \
              is no such pressure",
-            finished.summary.peak_pressure_cycle
+            finished.summary[&PEAK_PRESSURE_CYCLE]
         ),
         advice: "See that the sizes and units of both bodies, their axes, sides and placement are right, and the load: the \
                  contact is far smaller than that of a knee."
@@ -120,14 +125,13 @@ pub(crate) fn pressure_beyond_flow(finished: &Finished<'_>) -> Option<Plausibili
 /// Pressure beyond what polyethylene bears without yielding below the surface, of an insert that does not yield.
 pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let limit = FIRST_YIELD * YIELD_MPA;
-    let peak = finished.summary.peak_pressure_mpa;
+    let peak = finished.summary[&PEAK_PRESSURE_MPA];
     let extents = || {
         let cycles = pressures(finished).into_iter();
         let extents = cycles.map(|(cycle, pressures)| extent(finished, cycle, pressures, limit));
         extents.collect::<Vec<_>>().join("; ")
     };
-    let under = finished.summary.under_surface.as_ref();
-    let yields = under.is_some_and(|under| under.plastic.is_some());
+    let yields = finished.summary.get(&MAX_PLASTIC_STRAIN).is_some();
     (peak > limit && !yields).then(|| PlausibilityWarning {
         check: "pressure_beyond_yield".to_owned(),
         value: peak,
@@ -164,8 +168,7 @@ fn time_above_percent(finished: &Finished<'_>, cycle: &str, limit_mpa: f64) -> f
 
 /// An insert that rocks on its tray, which the lock of the model does not hold down.
 pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let under = finished.summary.under_surface.as_ref()?;
-    let lift_mm = under.backside.as_ref()?.backside_lift_mm;
+    let lift_mm = finished.summary.get(&BACKSIDE_LIFT_MM)?;
     (lift_mm > MAX_LIFT_MM).then(|| PlausibilityWarning {
         check: "insert_rocks".to_owned(),
         value: lift_mm,
@@ -184,7 +187,7 @@ pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarnin
 /// Little polyethylene left under the scar.
 pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let fields = finished.march.fields();
-    let in_scar = finished.summary.max_depth_mm * SCAR;
+    let in_scar = finished.summary[&MAX_DEPTH_MM] * SCAR;
     let nodes = fields.wear_depth_mm.iter().zip(&fields.thickness_mm);
     let under_scar = nodes.filter(|(depth_mm, _)| **depth_mm > in_scar);
     let thinnest = under_scar.map(|(_, thickness_mm)| *thickness_mm);

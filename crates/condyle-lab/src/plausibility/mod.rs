@@ -9,7 +9,13 @@ mod finished;
 pub(crate) mod loads;
 
 use condyle::evolve::March;
-use condyle_results::{PlausibilityWarning, Summary};
+use condyle_results::{
+    PlausibilityWarning, Summary,
+    catalogue::{
+        ADDED_INERTIA, CYCLES_NOT_REPEATING, MASS_LOSS_MG, MAX_DEPTH_MM, Scalar,
+        VOLUME_LOSS_MESH_MM3, VOLUME_LOSS_MM3, WORST_QUALITY,
+    },
+};
 
 use finished::Finished;
 
@@ -69,11 +75,8 @@ const MAX_ERROR_PERCENT: f64 = 5.0;
 
 /// The volume of depth times area beside that of the mesh.
 pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let Summary {
-        volume_loss_mm3: depth,
-        volume_loss_mesh_mm3: mesh,
-        ..
-    } = *finished.summary;
+    let [depth, mesh] =
+        [&VOLUME_LOSS_MM3, &VOLUME_LOSS_MESH_MM3].map(|volume| finished.summary[volume]);
     let percent = 100.0 * (depth - mesh).abs() / depth.max(mesh).max(f64::MIN_POSITIVE);
     (percent > COUNTS_PERCENT).then(|| PlausibilityWarning {
         check: "counts_of_volume".to_owned(),
@@ -90,7 +93,7 @@ pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWa
 
 /// The worst element of any update.
 pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let quality = finished.summary.worst_quality;
+    let quality = finished.summary[&WORST_QUALITY];
     (quality < MIN_QUALITY).then(|| PlausibilityWarning {
         check: "mesh_quality".to_owned(),
         value: quality,
@@ -107,27 +110,26 @@ pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarnin
 
 /// The discretisation error of the mass.
 pub(crate) fn error_of_mass(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let error = finished.summary.error.as_ref()?;
-    large_error("error_of_mass", "mass loss", error.mass_loss_percent.total)
+    large_error("error_of_mass", &MASS_LOSS_MG, finished)
 }
 
 /// The discretisation error of the depth.
 pub(crate) fn error_of_depth(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let error = finished.summary.error.as_ref()?;
-    large_error(
-        "error_of_depth",
-        "deepest wear",
-        error.max_depth_percent.total,
-    )
+    large_error("error_of_depth", &MAX_DEPTH_MM, finished)
 }
 
-fn large_error(check: &str, what: &str, percent: f64) -> Option<PlausibilityWarning> {
-    (percent.abs() > MAX_ERROR_PERCENT).then(|| PlausibilityWarning {
+fn large_error(
+    check: &str,
+    scalar: &Scalar,
+    finished: &Finished<'_>,
+) -> Option<PlausibilityWarning> {
+    let percent = finished.summary.error.as_ref()?[scalar].percent.total;
+    (percent > MAX_ERROR_PERCENT).then(|| PlausibilityWarning {
         check: check.to_owned(),
-        value: percent.abs(),
+        value: percent,
         limit: MAX_ERROR_PERCENT,
         unit: "%".to_owned(),
-        message: format!("the {what} has a discretisation error of {:.1} %", percent.abs()),
+        message: format!("the {} has a discretisation error of {percent:.1} %", scalar.label),
         advice: "The parts of the error say what to refine: increments, updates, edge_mm or slip tolerance.".to_owned(),
     })
 }
@@ -153,7 +155,7 @@ pub(crate) fn single_update(finished: &Finished<'_>) -> Option<PlausibilityWarni
 /// Steps of the march so long that the estimate of what they cost is too small itself.
 pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let error = finished.summary.error.as_ref()?;
-    let percent = error.max_depth_percent.updates?.abs();
+    let percent = error[&MAX_DEPTH_MM].percent.updates?.abs();
     (percent > MAX_OF_UPDATES_PERCENT).then(|| PlausibilityWarning {
         check: "updates_too_few".to_owned(),
         value: percent,
@@ -169,7 +171,7 @@ pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWar
 
 /// Inertia that explicit steps were given.
 pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let added = finished.summary.added_inertia?;
+    let added = finished.summary.get(&ADDED_INERTIA)?;
     (added > MAX_ADDED_INERTIA).then(|| PlausibilityWarning {
         check: "added_inertia".to_owned(),
         value: added,
@@ -187,10 +189,10 @@ pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarni
 
 /// Updates whose cycle did not repeat itself.
 pub(crate) fn cycles_not_repeating(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
-    let count = finished.summary.cycles_not_repeating;
-    (count > 0).then(|| PlausibilityWarning {
+    let count = finished.summary[&CYCLES_NOT_REPEATING];
+    (count > 0.0).then(|| PlausibilityWarning {
         check: "cycles_not_repeating".to_owned(),
-        value: count as f64,
+        value: count,
         limit: 0.0,
         unit: String::new(),
         message: format!("in {count} updates no cycle repeated itself within the tolerance"),

@@ -2,6 +2,7 @@
 
 pub(crate) mod fit;
 
+use condyle_results::catalogue;
 use std::path::{Path, PathBuf};
 
 use condyle::{
@@ -366,14 +367,20 @@ impl Left {
         Self {
             first_cycle,
             last_cycle,
-            deformable_mass_loss_mg: wanted.mass_loss_mg,
-            mass_loss_mg: found.mass_loss_mg,
-            mass_loss_percent: off_percent(found.mass_loss_mg, wanted.mass_loss_mg),
-            deformable_max_depth_mm: wanted.max_depth_mm,
-            max_depth_mm: found.max_depth_mm,
-            max_depth_percent: off_percent(found.max_depth_mm, wanted.max_depth_mm),
-            deformable_wall_s: wanted.wall_s,
-            wall_s: found.wall_s,
+            deformable_mass_loss_mg: wanted[&catalogue::MASS_LOSS_MG],
+            mass_loss_mg: found[&catalogue::MASS_LOSS_MG],
+            mass_loss_percent: off_percent(
+                found[&catalogue::MASS_LOSS_MG],
+                wanted[&catalogue::MASS_LOSS_MG],
+            ),
+            deformable_max_depth_mm: wanted[&catalogue::MAX_DEPTH_MM],
+            max_depth_mm: found[&catalogue::MAX_DEPTH_MM],
+            max_depth_percent: off_percent(
+                found[&catalogue::MAX_DEPTH_MM],
+                wanted[&catalogue::MAX_DEPTH_MM],
+            ),
+            deformable_wall_s: wanted[&catalogue::WALL_S],
+            wall_s: found[&catalogue::WALL_S],
         }
     }
 }

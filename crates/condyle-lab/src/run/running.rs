@@ -7,7 +7,7 @@ use condyle_case::{
     cache::Cache,
     case::{BuildWarning, Case, FEMUR_TRIANGLES, SharedBodies},
 };
-use condyle_results::{ActivitySummary, Checkpoint, LawWear, NeutralPose, Summary, SummaryInput};
+use condyle_results::{Checkpoint, LawWear, NeutralPose, Summary, catalogue::RunFacts};
 
 use crate::run::{
     Clock, Listener, Outcome, Reached, RunEvent,
@@ -187,22 +187,18 @@ impl<'a> Run<'a> {
     }
 
     fn summary_without_error(&self) -> Summary {
-        Summary::new(SummaryInput {
-            state: self.march.state(),
-            increments: self.march.test().time.increments,
-            hexahedra: self.march.insert().mesh().hexes.len(),
-            articulating_nodes: self.march.insert().surface_nodes().len(),
+        let facts = RunFacts {
             wall_s: self.clock.spent.as_secs_f64(),
-            inputs_blake3: self.inputs_blake3.clone(),
-            warnings: self.warnings.iter().map(ToString::to_string).collect(),
-            error: None,
-            neutral_pose: NeutralPose::of(&self.march, self.case.heading.side),
-            wear_laws: self.wear_laws(),
             wear_over_conventional: self.case.material.cross_linking.wear_over_conventional(),
-            activities: ActivitySummary::of(&self.march),
             pressure_law_peak_error_percent: self.case.contact.law.peak_error_percent(),
-        })
-        .expect("a march that is done has an update")
+        };
+        let mut summary =
+            Summary::new(&self.march, facts).expect("a march that is done has an update");
+        summary.inputs_blake3.clone_from(&self.inputs_blake3);
+        summary.warnings = self.warnings.iter().map(ToString::to_string).collect();
+        summary.neutral_pose = Some(NeutralPose::of(&self.march, self.case.heading.side));
+        summary.wear_laws = self.wear_laws();
+        summary
     }
 
     fn wear_laws(&self) -> Vec<LawWear> {

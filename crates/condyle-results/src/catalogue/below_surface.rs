@@ -2,61 +2,109 @@
 //!
 //! Stress is that of the centres of elements, at the increment of each update with the highest pressure.
 
+use condyle::{
+    contact::BacksideAtRest,
+    evolve::{PlasticRecord, UnderSurfaceRecord},
+};
+
+use super::finished::FinishedRun;
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Below the surface";
     /// Largest von Mises stress. At the centre of an element, at the instant of highest pressure of a cycle solved.
-    PEAK_VON_MISES_MPA = Scalar::new("peak_von_mises_mpa", "largest von Mises stress", 1).sometimes();
+    PEAK_VON_MISES_MPA = Scalar::sometimes("peak_von_mises_mpa", "largest von Mises stress", 1, |run| Some(most_stressed(run)?.von_mises_mpa));
 
     /// Depth of the largest von Mises stress. Below the surface, to half an element.
-    PEAK_VON_MISES_DEPTH_MM = Scalar::new("peak_von_mises_depth_mm", "depth of that stress", 1).sometimes();
+    PEAK_VON_MISES_DEPTH_MM = Scalar::sometimes("peak_von_mises_depth_mm", "depth of that stress", 1, |run| Some(most_stressed(run)?.von_mises_depth_mm));
 
     /// Largest shear stress. At the centre of an element, at the instant of highest pressure of a cycle solved.
-    PEAK_MAX_SHEAR_MPA = Scalar::new("peak_max_shear_mpa", "largest shear stress", 1).sometimes().in_cycle("peak_max_shear_cycle");
+    PEAK_MAX_SHEAR_MPA = Scalar::sometimes("peak_max_shear_mpa", "largest shear stress", 1, |run| Some(most_sheared(run)?.1.max_shear_mpa))
+        .in_cycle("peak_max_shear_cycle");
 
     /// Depth of the largest shear stress. Below the surface, to half an element.
-    PEAK_MAX_SHEAR_DEPTH_MM = Scalar::new("peak_max_shear_depth_mm", "depth of that stress", 1).sometimes();
+    PEAK_MAX_SHEAR_DEPTH_MM = Scalar::sometimes("peak_max_shear_depth_mm", "depth of that stress", 1, |run| Some(most_sheared(run)?.1.max_shear_depth_mm));
 
     /// Cycles done before the cycle with the largest shear stress. 0 is the first cycle.
-    PEAK_MAX_SHEAR_CYCLE = Scalar::new("peak_max_shear_cycle", "cycles before that stress", 0).sometimes().listed();
+    PEAK_MAX_SHEAR_CYCLE = Scalar::sometimes("peak_max_shear_cycle", "cycles before that stress", 0, |run| Some(run.state().cycles_before(most_sheared(run)?.0)))
+        .listed();
 
     /// Instant of the largest shear stress in its cycle.
-    PEAK_MAX_SHEAR_PERCENT = Scalar::new("peak_max_shear_percent", "instant of that stress", 1).sometimes().listed();
+    PEAK_MAX_SHEAR_PERCENT = Scalar::sometimes("peak_max_shear_percent", "instant of that stress", 1, |run| Some(most_sheared(run)?.1.percent))
+        .listed();
 
     /// Largest shear stress of the first cycle. Of the unworn insert.
-    FIRST_CYCLE_MAX_SHEAR_MPA = Scalar::new("first_cycle_max_shear_mpa", "largest shear stress, first cycle", 1).sometimes().listed();
+    FIRST_CYCLE_MAX_SHEAR_MPA = Scalar::sometimes("first_cycle_max_shear_mpa", "largest shear stress, first cycle", 1, |run| Some(first(run)?.max_shear_mpa))
+        .listed();
 
     /// Depth of the largest shear stress of the first cycle. Below the surface, to half an element.
-    FIRST_CYCLE_MAX_SHEAR_DEPTH_MM = Scalar::new("first_cycle_max_shear_depth_mm", "depth of that stress", 1).sometimes().listed();
+    FIRST_CYCLE_MAX_SHEAR_DEPTH_MM = Scalar::sometimes("first_cycle_max_shear_depth_mm", "depth of that stress", 1, |run| Some(first(run)?.max_shear_depth_mm))
+        .listed();
 
     /// Largest permanent set. How far yielding has lowered the surface for good; wear is not included.
-    MAX_PERMANENT_SET_MM = Scalar::new("max_permanent_set_mm", "permanent set", 4).sometimes();
+    MAX_PERMANENT_SET_MM = Scalar::sometimes("max_permanent_set_mm", "permanent set", 4, |run| Some(plastic(run)?.max_permanent_set_mm));
 
     /// Largest permanent set of the first cycle. After the first cycle that repeats itself.
-    FIRST_CYCLE_PERMANENT_SET_MM = Scalar::new("first_cycle_permanent_set_mm", "permanent set, first cycle", 4).sometimes();
+    FIRST_CYCLE_PERMANENT_SET_MM = Scalar::sometimes("first_cycle_permanent_set_mm", "permanent set, first cycle", 4, |run| {
+        plastic(run)?;
+        Some(first(run)?.plastic.map_or(0.0, |plastic| plastic.max_permanent_set_mm))
+    });
 
     /// Largest accumulated plastic strain. At a Gauss point.
-    MAX_PLASTIC_STRAIN = Scalar::new("max_plastic_strain", "largest plastic strain", 4).sometimes();
+    MAX_PLASTIC_STRAIN = Scalar::sometimes("max_plastic_strain", "largest plastic strain", 4, |run| Some(plastic(run)?.max_plastic_strain));
 
     /// Elements that have yielded.
-    YIELDED_ELEMENTS = Scalar::new("yielded_elements", "yielded elements", 0).count().sometimes();
+    YIELDED_ELEMENTS = Scalar::sometimes("yielded_elements", "yielded elements", 0, |run| Some(plastic(run)?.yielded_elements as f64))
+        .count();
 
     /// Elements that still yield in every cycle. By a strain of more than 1e-5 in the last cycle; the other yielded
     /// elements have shaken down.
-    RATCHETING_ELEMENTS = Scalar::new("ratcheting_elements", "ratcheting elements", 0).count().sometimes();
+    RATCHETING_ELEMENTS = Scalar::sometimes("ratcheting_elements", "ratcheting elements", 0, |run| Some(plastic(run)?.ratcheting_elements as f64))
+        .count();
 
     /// Largest lift of the backside off the tray. In the last cycle of any update, as all numbers of the backside.
-    BACKSIDE_LIFT_MM = Scalar::new("backside_lift_mm", "lift of the backside", 4).sometimes();
+    BACKSIDE_LIFT_MM = Scalar::sometimes("backside_lift_mm", "lift of the backside", 4, |run| backside(run, |rest| rest.lift_mm));
 
     /// Largest part of the backside that lifts at once.
-    BACKSIDE_LIFTED_PERCENT = Scalar::new("backside_lifted_percent", "part of the backside that lifts", 0).sometimes();
+    BACKSIDE_LIFTED_PERCENT = Scalar::sometimes("backside_lifted_percent", "part of the backside that lifts", 0, |run| Some(100.0 * backside(run, |rest| rest.lifted_part)?));
 
     /// Longest slip of the backside in a cycle. The path of a node along the tray while it presses, there and back.
-    BACKSIDE_SLIP_MM = Scalar::new("backside_slip_mm", "slip of the backside", 4).sometimes();
+    BACKSIDE_SLIP_MM = Scalar::sometimes("backside_slip_mm", "slip of the backside", 4, |run| backside(run, |rest| rest.slip_mm));
 
     /// Largest force on the lock. Along the tray; friction under the insert carries the rest.
-    BACKSIDE_LOCK_FORCE_N = Scalar::new("backside_lock_force_n", "force on the lock", 0).sometimes();
+    BACKSIDE_LOCK_FORCE_N = Scalar::sometimes("backside_lock_force_n", "force on the lock", 0, |run| backside(run, |rest| rest.lock_force_n));
 
     /// Largest moment on the lock. About the vertical axis.
-    BACKSIDE_LOCK_MOMENT_NM = Scalar::new("backside_lock_moment_nm", "moment on the lock", 2).sometimes();
+    BACKSIDE_LOCK_MOMENT_NM = Scalar::sometimes("backside_lock_moment_nm", "moment on the lock", 2, |run| Some(1e-3 * backside(run, |rest| rest.lock_moment_nmm)?));
+}
+
+/// The numbers of the updates of a deformable insert, with their records; none of a foundation.
+fn records<'a>(
+    run: &FinishedRun<'a>,
+) -> impl DoubleEndedIterator<Item = (usize, &'a UnderSurfaceRecord)> {
+    let updates = run.state().updates.iter().enumerate();
+    updates.filter_map(|(number, update)| Some((number, update.under_surface.as_ref()?)))
+}
+
+fn first<'a>(run: &FinishedRun<'a>) -> Option<&'a UnderSurfaceRecord> {
+    records(run).next().map(|(_, record)| record)
+}
+
+fn most_stressed<'a>(run: &FinishedRun<'a>) -> Option<&'a UnderSurfaceRecord> {
+    let records = records(run).map(|(_, record)| record);
+    records.max_by(|a, b| a.von_mises_mpa.total_cmp(&b.von_mises_mpa))
+}
+
+fn most_sheared<'a>(run: &FinishedRun<'a>) -> Option<(usize, &'a UnderSurfaceRecord)> {
+    records(run).max_by(|a, b| a.1.max_shear_mpa.total_cmp(&b.1.max_shear_mpa))
+}
+
+/// The yielding up to the last update; none of an insert that does not yield.
+fn plastic(run: &FinishedRun<'_>) -> Option<PlasticRecord> {
+    records(run).next_back()?.1.plastic
+}
+
+/// The largest value of all updates; none of a bonded backside.
+fn backside(run: &FinishedRun<'_>, value: fn(&BacksideAtRest) -> f64) -> Option<f64> {
+    let rests = records(run).filter_map(|(_, record)| record.backside);
+    rests.map(|rest| value(&rest)).reduce(f64::max)
 }

@@ -1,53 +1,92 @@
 //! The computation: its size, its work and its time.
 
+use condyle::machine::SolverCounters;
+
+use super::finished::FinishedRun;
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Computation";
     /// Updates of the geometry. How often wear has moved the surface.
-    UPDATES = Scalar::new("updates", "updates", 0).count();
+    UPDATES = Scalar::new("updates", "updates", 0, |run| run.state().updates.len() as f64)
+        .count();
 
     /// Increments a cycle. Steps in time.
-    INCREMENTS = Scalar::new("increments", "increments a cycle", 0).count().listed();
+    INCREMENTS = Scalar::new("increments", "increments a cycle", 0, |run| run.march.test().time.increments as f64)
+        .count()
+        .listed();
 
     /// Cycles solved in all. Each update solves until the motion repeats itself, which takes a little more than a cycle.
-    CYCLES_SOLVED = Scalar::new("cycles_solved", "cycles solved", 1).exact();
+    CYCLES_SOLVED = Scalar::new("cycles_solved", "cycles solved", 1, cycles_solved)
+        .exact();
 
     /// Updates whose motion did not repeat itself within the tolerance.
-    CYCLES_NOT_REPEATING = Scalar::new("cycles_not_repeating", "updates that do not repeat", 0).count().listed();
+    CYCLES_NOT_REPEATING = Scalar::new("cycles_not_repeating", "updates that do not repeat", 0, |run| {
+        let updates = run.state().updates.iter();
+        updates.filter(|update| !update.repeats).count() as f64
+    })
+        .count()
+        .listed();
 
     /// Newton iterations in all. They bring the forces into balance.
-    NEWTON_ITERATIONS = Scalar::new("newton_iterations", "Newton iterations", 0).count();
+    NEWTON_ITERATIONS = Scalar::new("newton_iterations", "Newton iterations", 0, |run| run.state().counters.newton_iterations as f64)
+        .count();
 
     /// Contact evaluations in all. Each computes force, moment and tangent of the contact at a pose.
-    CONTACT_EVALUATIONS = Scalar::new("contact_evaluations", "contact evaluations", 0).count();
+    CONTACT_EVALUATIONS = Scalar::new("contact_evaluations", "contact evaluations", 0, |run| run.state().counters.contact_evaluations as f64)
+        .count();
 
     /// Newton iterations of a cycle solved, on average.
-    NEWTON_ITERATIONS_PER_CYCLE = Scalar::new("newton_iterations_per_cycle", "Newton iterations a cycle", 0).exact().listed();
+    NEWTON_ITERATIONS_PER_CYCLE = Scalar::new("newton_iterations_per_cycle", "Newton iterations a cycle", 0, |run| run.state().counters.newton_iterations as f64 / cycles_solved(run))
+        .exact()
+        .printed();
 
     /// Contact evaluations of a cycle solved, on average.
-    CONTACT_EVALUATIONS_PER_CYCLE = Scalar::new("contact_evaluations_per_cycle", "contact evaluations a cycle", 0).exact().listed();
+    CONTACT_EVALUATIONS_PER_CYCLE = Scalar::new("contact_evaluations_per_cycle", "contact evaluations a cycle", 0, |run| run.state().counters.contact_evaluations as f64 / cycles_solved(run))
+        .exact()
+        .printed();
 
     /// Steps in time that were halved. They did not converge, or were not accurate enough.
-    STEP_HALVINGS = Scalar::new("step_halvings", "steps halved", 0)
-        .count().listed();
+    STEP_HALVINGS = Scalar::new("step_halvings", "steps halved", 0, |run| run.state().counters.halvings as f64)
+        .count()
+        .listed();
 
     /// Steps of central differences. Of the explicit integrator, where the case asks for it.
-    EXPLICIT_STEPS = Scalar::new("explicit_steps", "explicit steps", 0).count().sometimes().listed();
+    EXPLICIT_STEPS = Scalar::sometimes("explicit_steps", "explicit steps", 0, |run| Some(explicit(run)?.explicit_steps as f64))
+        .count()
+        .listed();
 
     /// Largest inertia added by the explicit integrator. A part of the machine's own, to allow the step asked for.
-    ADDED_INERTIA = Scalar::new("added_inertia", "inertia added", 3)
-        .exact().sometimes().listed();
+    ADDED_INERTIA = Scalar::sometimes("added_inertia", "inertia added", 3, |run| Some(explicit(run)?.added_inertia))
+        .exact()
+        .listed();
 
     /// Hexahedra of the insert's mesh.
-    HEXAHEDRA = Scalar::new("hexahedra", "hexahedra", 0).count();
+    HEXAHEDRA = Scalar::new("hexahedra", "hexahedra", 0, |run| run.march.insert().mesh().hexes.len() as f64)
+        .count();
 
     /// Nodes of the articulating surface. Pressure and wear are known there.
-    ARTICULATING_NODES = Scalar::new("articulating_nodes", "nodes of the articulating surface", 0).count().listed();
+    ARTICULATING_NODES = Scalar::new("articulating_nodes", "nodes of the articulating surface", 0, |run| run.march.insert().surface_nodes().len() as f64)
+        .count()
+        .listed();
 
     /// Smallest scaled Jacobian of any update's mesh. 1 is a cube, 0 is flat, below 0 is inverted.
-    WORST_QUALITY = Scalar::new("worst_quality", "worst element quality", 3).exact();
+    WORST_QUALITY = Scalar::new("worst_quality", "worst element quality", 3, |run| {
+        let updates = run.state().updates.iter();
+        updates.map(|update| update.worst_quality).fold(f64::INFINITY, f64::min)
+    })
+        .exact();
 
     /// Time of the solver. From the case as read to the last update, without files and report; a run that was resumed
     /// has the sum of its parts.
-    WALL_S = Scalar::new("wall_s", "time, solver only", 3).exact();
+    WALL_S = Scalar::new("wall_s", "time, solver only", 3, |run| run.facts.wall_s)
+        .exact();
+}
+
+fn cycles_solved(run: &FinishedRun<'_>) -> f64 {
+    run.state().updates.iter().map(|update| update.cycles_solved).sum()
+}
+
+/// The counters of a run with the explicit integrator; none of another.
+fn explicit<'a>(run: &FinishedRun<'a>) -> Option<&'a SolverCounters> {
+    Some(&run.state().counters).filter(|counters| counters.explicit_steps > 0)
 }

@@ -1,36 +1,62 @@
 //! Contact at the surface.
 
+use condyle::evolve::UpdateRecord;
+
+use super::finished::FinishedRun;
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Contact";
     /// Highest contact pressure. Anywhere on the surface, between nodes too, at any instant of any cycle solved.
-    PEAK_PRESSURE_MPA = Scalar::new("peak_pressure_mpa", "peak pressure", 1).headline().estimated().in_cycle("peak_pressure_cycle");
+    PEAK_PRESSURE_MPA = Scalar::new("peak_pressure_mpa", "peak pressure", 1, |run| peak_pressure(run).1.peak_pressure_mpa)
+        .headline()
+        .estimated()
+        .in_cycle("peak_pressure_cycle");
 
     /// Cycles done before the cycle with the peak pressure. 0 is the first cycle.
-    PEAK_PRESSURE_CYCLE = Scalar::new("peak_pressure_cycle", "cycles before the peak pressure", 0).listed();
+    PEAK_PRESSURE_CYCLE = Scalar::new("peak_pressure_cycle", "cycles before the peak pressure", 0, |run| run.state().cycles_before(peak_pressure(run).0))
+        .listed();
 
     /// Peak pressure of the first cycle. Of the unworn insert.
-    FIRST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("first_cycle_peak_pressure_mpa", "peak pressure, first cycle", 1);
+    FIRST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("first_cycle_peak_pressure_mpa", "peak pressure, first cycle", 1, |run| run.first.peak_pressure_mpa);
 
     /// Peak pressure of the last cycle solved.
-    LAST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("last_cycle_peak_pressure_mpa", "peak pressure, last cycle", 1);
+    LAST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("last_cycle_peak_pressure_mpa", "peak pressure, last cycle", 1, |run| run.last.peak_pressure_mpa);
 
     /// Error of the peak pressure by the pressure law. Largest difference in stance from the deformable insert that the
     /// law was fitted to.
-    PRESSURE_LAW_PEAK_ERROR_PERCENT = Scalar::new("pressure_law_peak_error_percent", "peak error of the pressure law", 1).sometimes().exact();
+    PRESSURE_LAW_PEAK_ERROR_PERCENT = Scalar::sometimes("pressure_law_peak_error_percent", "peak error of the pressure law", 1, |run| run.facts.pressure_law_peak_error_percent)
+        .exact();
 
     /// Largest contact area. At any instant of any cycle solved, all regions together.
-    PEAK_CONTACT_AREA_MM2 = Scalar::new("peak_contact_area_mm2", "largest contact area", 0).headline().estimated().in_cycle("peak_contact_area_cycle");
+    PEAK_CONTACT_AREA_MM2 = Scalar::new("peak_contact_area_mm2", "largest contact area", 0, |run| largest_area(run).1.peak_contact_area_mm2)
+        .headline()
+        .estimated()
+        .in_cycle("peak_contact_area_cycle");
 
     /// Cycles done before the cycle with the largest contact area. 0 is the first cycle.
-    PEAK_CONTACT_AREA_CYCLE = Scalar::new("peak_contact_area_cycle", "cycles before the largest area", 0).listed();
+    PEAK_CONTACT_AREA_CYCLE = Scalar::new("peak_contact_area_cycle", "cycles before the largest area", 0, |run| run.state().cycles_before(largest_area(run).0))
+        .listed();
 
     /// Largest contact area of the first cycle. Of the unworn insert.
-    FIRST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("first_cycle_contact_area_mm2", "largest area, first cycle", 0).listed();
+    FIRST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("first_cycle_contact_area_mm2", "largest area, first cycle", 0, |run| run.first.peak_contact_area_mm2)
+        .printed();
 
     /// Largest contact area of the last cycle solved.
-    LAST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("last_cycle_contact_area_mm2", "largest area, last cycle", 0).listed();
+    LAST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("last_cycle_contact_area_mm2", "largest area, last cycle", 0, |run| run.last.peak_contact_area_mm2)
+        .printed();
 
     /// Cycles done before the last cycle solved. That cycle wears the last interval of the march.
-    LAST_CYCLE = Scalar::new("last_cycle", "cycles before the last one solved", 0).exact().listed();
+    LAST_CYCLE = Scalar::new("last_cycle", "cycles before the last one solved", 0, |run| run.state().cycles_before(run.state().updates.len() - 1))
+        .exact()
+        .listed();
+}
+
+/// The number and record of the first update with the peak pressure.
+fn peak_pressure<'a>(run: &FinishedRun<'a>) -> (usize, &'a UpdateRecord) {
+    run.largest(|update| update.peak_pressure_mpa)
+}
+
+/// The number and record of the first update with the largest area.
+fn largest_area<'a>(run: &FinishedRun<'a>) -> (usize, &'a UpdateRecord) {
+    run.largest(|update| update.peak_contact_area_mm2)
 }

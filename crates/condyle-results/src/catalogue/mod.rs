@@ -1,9 +1,9 @@
-//! The catalogue of results: every number of `summary.json`, declared once.
+//! The catalogue of results: every entry of `summary.json`, declared once.
 //!
 //! A [`Scalar`] has a key, a name, a unit (the end of its key), decimals, a description and a definition (its doc
-//! comment), the way its error is found, and the joints that have it. One file has one [`Section`]; [`SECTIONS`] lists
-//! them all. The report's page, its comparison of runs and `condyle diff` name and format numbers by it; `Summary`
-//! computes the values.
+//! comment), the function that computes it, the way in which its error is found, and the joints that have it. One file
+//! has one [`Section`]; [`SECTIONS`] lists them all. `summary.json`, the terminal, the report, its comparison of runs,
+//! the outputs of studies, the JSON schema and the types for Python and TypeScript follow from it.
 //!
 //! ```
 //! use condyle_results::catalogue;
@@ -13,8 +13,12 @@
 //! assert_eq!(mass.text(10.909), "10.91");
 //! ```
 
+mod finished;
+mod part;
 mod scalar;
 
+pub use finished::{FinishedRun, RunFacts};
+pub use part::{PARTS, Part, PartKind};
 pub use scalar::{ErrorMethod, Joint, Prominence, Scalar, Section};
 
 scalar::sections! {
@@ -25,8 +29,8 @@ scalar::sections! {
     computation,
 }
 
-/// Heading of the section on the computation, whose numbers are no results of the test.
-pub const COMPUTATION: &str = computation::SECTION.heading;
+/// Heading of the last section, on the computation, whose numbers are no results of the test.
+pub const COMPUTATION: &str = SECTIONS[SECTIONS.len() - 1].heading;
 
 /// All numbers, in the order of `summary.json`.
 pub fn scalars() -> impl Iterator<Item = &'static Scalar> {
@@ -50,6 +54,16 @@ pub fn scalar(key: &str) -> Option<&'static Scalar> {
 /// Numbers in large type.
 pub fn headlines() -> impl Iterator<Item = &'static Scalar> {
     results().filter(|scalar| scalar.prominence == Prominence::Headline)
+}
+
+/// Numbers that a study keeps of every test: results that every run has, in the order of its table.
+pub fn outputs() -> impl Iterator<Item = &'static Scalar> {
+    results().filter(|scalar| scalar.is_always_there() && scalar.prominence >= Prominence::Shown)
+}
+
+/// The output of a study with this key.
+pub fn output(key: &str) -> Option<&'static Scalar> {
+    outputs().find(|scalar| scalar.key == key)
 }
 
 #[cfg(test)]
@@ -89,7 +103,7 @@ mod tests {
                 each.key
             );
         }
-        let mass = &wear::MASS_LOSS_MG;
+        let mass = &MASS_LOSS_MG;
         assert_eq!(mass.description(), "Mass worn.");
         assert!(mass.definition().starts_with("Volume loss, from depth"));
     }

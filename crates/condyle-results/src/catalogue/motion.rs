@@ -1,16 +1,27 @@
 //! Motion and loads of the first cycle.
 
+use condyle::machine::knee::{AP, IE};
+
+use crate::cycle_motion::{joint_range, medial_load_share};
+
 use super::{Scalar, scalar::scalars};
 
 scalars! { "Motion";
     /// Range of AP in the first cycle. Largest less smallest position of the insert, of the first activity.
-    AP_RANGE_MM = Scalar::new("ap_range_mm", "AP range", 2)
-        .headline().estimated().of_knee();
+    AP_RANGE_MM = Scalar::new("ap_range_mm", "AP range, first cycle", 2, |run| joint_range(run.first_cycle, AP))
+        .headline()
+        .estimated()
+        .of_knee();
 
     /// Range of IE in the first cycle. Largest less smallest rotation of the insert, of the first activity.
-    IE_RANGE_DEG = Scalar::new("ie_range_deg", "IE range", 2)
-        .headline().estimated().of_knee();
+    IE_RANGE_DEG = Scalar::new("ie_range_deg", "IE range, first cycle", 2, |run| joint_range(run.first_cycle, IE))
+        .headline()
+        .estimated()
+        .of_knee();
 
     /// Medial part of the axial force. Averaged over the first cycle of the first activity, weighted by force.
-    MEDIAL_LOAD_SHARE = Scalar::new("medial_load_share", "medial load share", 1).headline().share().of_knee();
+    MEDIAL_LOAD_SHARE = Scalar::new("medial_load_share", "medial load share", 1, |run| medial_load_share(run.first_cycle))
+        .headline()
+        .share()
+        .of_knee();
 }

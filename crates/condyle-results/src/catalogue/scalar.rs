@@ -1,6 +1,8 @@
-//! A number of `summary.json`, and how it is shown.
+//! A number of `summary.json`: its name, its definition, and the function that computes it.
 
 use condyle::parameter::split_unit;
+
+use super::finished::FinishedRun;
 
 /// A joint replacement whose tests condyle runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,18 +21,29 @@ impl Joint {
     }
 }
 
-/// Where a number is shown besides `summary.json`, the report's list and the Python and TypeScript types.
+/// The places that show a number in addition to `summary.json`, the report's list and the Python and TypeScript types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Prominence {
-    /// Nowhere else.
+    /// None.
     Listed,
-    /// On the terminal and, if every run has it, in the tables of studies.
+    /// The terminal.
+    Printed,
+    /// The terminal and, for a result that every run has, the tables of studies.
     Shown,
-    /// There, and in large type at the top of report and page.
+    /// These, and large type at the top of report and page.
     Headline,
 }
 
-/// How the error of a number is found.
+/// The function that computes a number.
+#[derive(Clone, Copy, Debug)]
+enum Compute {
+    /// For every run.
+    Always(fn(&FinishedRun<'_>) -> f64),
+    /// For some runs only.
+    Sometimes(fn(&FinishedRun<'_>) -> Option<f64>),
+}
+
+/// The way in which the error of a number is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorMethod {
     /// A count, an input or a time: it has no discretisation error.
@@ -61,32 +74,62 @@ impl ErrorMethod {
 /// It is declared once, by `scalars!` in one of the files of the catalogue.
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar {
-    /// Its key in `summary.json`, which ends in its unit; a dot leads into a table.
+    /// Its key in `summary.json`, which ends in its unit.
     pub key: &'static str,
     /// Its name in words, lower case, without the unit.
     pub label: &'static str,
     /// Decimals in tables and on the terminal.
     pub decimals: usize,
-    /// Where it is shown.
+    /// The places that show it.
     pub prominence: Prominence,
-    /// How its error is found.
+    /// The way in which its error is found.
     pub error: ErrorMethod,
     /// The only joints that have it; empty for all.
     pub joints: &'static [Joint],
-    /// Whether it is a whole number.
+    /// True of a whole number.
     pub is_count: bool,
-    /// Whether every run has it.
-    pub is_always_there: bool,
-    /// A part of one, shown in %.
+    /// True of a part of one, which is shown in %.
     pub is_share: bool,
     /// Key of the number of cycles before the cycle that it comes from.
     pub cycle_key: Option<&'static str>,
     about: &'static str,
+    compute: Compute,
+}
+
+/// Two numbers are equal if their keys are.
+impl PartialEq for Scalar {
+    fn eq(&self, other: &Self) -> bool {
+        self.key == other.key
+    }
 }
 
 impl Scalar {
-    /// A real number that every run of every joint has.
-    pub const fn new(key: &'static str, label: &'static str, decimals: usize) -> Self {
+    /// A real number that every run of every joint has, computed by `compute`.
+    pub const fn new(
+        key: &'static str,
+        label: &'static str,
+        decimals: usize,
+        compute: fn(&FinishedRun<'_>) -> f64,
+    ) -> Self {
+        Self::with(key, label, decimals, Compute::Always(compute))
+    }
+
+    /// A real number that some runs have: those for which `compute` finds one.
+    pub const fn sometimes(
+        key: &'static str,
+        label: &'static str,
+        decimals: usize,
+        compute: fn(&FinishedRun<'_>) -> Option<f64>,
+    ) -> Self {
+        Self::with(key, label, decimals, Compute::Sometimes(compute))
+    }
+
+    const fn with(
+        key: &'static str,
+        label: &'static str,
+        decimals: usize,
+        compute: Compute,
+    ) -> Self {
         Self {
             key,
             label,
@@ -95,10 +138,10 @@ impl Scalar {
             error: ErrorMethod::NotEstimated,
             joints: &[],
             is_count: false,
-            is_always_there: true,
             is_share: false,
             cycle_key: None,
             about: "",
+            compute,
         }
     }
 
@@ -111,6 +154,14 @@ impl Scalar {
     pub const fn headline(self) -> Self {
         Self {
             prominence: Prominence::Headline,
+            ..self
+        }
+    }
+
+    /// Shown on the terminal, not in the tables of studies.
+    pub const fn printed(self) -> Self {
+        Self {
+            prominence: Prominence::Printed,
             ..self
         }
     }
@@ -147,14 +198,6 @@ impl Scalar {
         }
     }
 
-    /// Absent from some runs.
-    pub const fn sometimes(self) -> Self {
-        Self {
-            is_always_there: false,
-            ..self
-        }
-    }
-
     /// A part of one, shown in %.
     pub const fn share(self) -> Self {
         Self {
@@ -163,7 +206,7 @@ impl Scalar {
         }
     }
 
-    /// Of the knee alone.
+    /// Of the knee only.
     pub const fn of_knee(self) -> Self {
         Self {
             joints: &[Joint::Knee],
@@ -171,12 +214,25 @@ impl Scalar {
         }
     }
 
-    /// Found in the cycle that comes after so many others.
+    /// Of one cycle; `key` is that of the number of cycles before it.
     pub const fn in_cycle(self, key: &'static str) -> Self {
         Self {
             cycle_key: Some(key),
             ..self
         }
+    }
+
+    /// Returns the value for a run; none for a run that does not have it.
+    pub fn compute(&self, run: &FinishedRun<'_>) -> Option<f64> {
+        match self.compute {
+            Compute::Always(compute) => Some(compute(run)),
+            Compute::Sometimes(compute) => compute(run),
+        }
+    }
+
+    /// Returns whether every run has it.
+    pub const fn is_always_there(&self) -> bool {
+        matches!(self.compute, Compute::Always(_))
     }
 
     /// The key without its unit: `mass_loss`.
@@ -212,12 +268,12 @@ impl Scalar {
         }
     }
 
-    /// What it is, in a sentence.
+    /// A description in one sentence.
     pub fn description(&self) -> &'static str {
         self.sentences().0
     }
 
-    /// Its definition: how exactly it is found, and from what; empty where the description is all.
+    /// The definition; empty where the description says all.
     pub fn definition(&self) -> &'static str {
         self.sentences().1
     }
@@ -228,7 +284,7 @@ impl Scalar {
         (&about[..end], about[end..].trim_start())
     }
 
-    /// Whether tests of this joint have it.
+    /// Returns whether tests of this joint have it.
     pub fn applies_to(&self, joint: Joint) -> bool {
         self.joints.is_empty() || self.joints.contains(&joint)
     }
@@ -260,7 +316,10 @@ macro_rules! scalars {
 /// Declares the files of sections, in the order of lists.
 macro_rules! sections {
     ($($file:ident,)+) => {
-        $( pub mod $file; )+
+        $(
+            mod $file;
+            pub use $file::*;
+        )+
 
         /// Every number of `summary.json`, in sections.
         pub const SECTIONS: &[Section] = &[$( $file::SECTION, )+];

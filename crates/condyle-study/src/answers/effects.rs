@@ -1,6 +1,7 @@
 //! How outputs go with inputs, of any design.
 
-use condyle_case::study::{Design, Input, Output};
+use condyle_case::study::{Design, Input};
+use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
@@ -50,7 +51,7 @@ const MAX_POINTS: usize = 400;
 pub(crate) fn all(
     plan: &Plan,
     store: &Store,
-    outputs: &[Named<'_, Output>],
+    outputs: &[Named<'_, Scalar>],
 ) -> Result<Vec<Effect>, StudyError> {
     let mut effects = Vec::new();
     for (place, input) in plan.study().inputs.iter().enumerate() {
@@ -89,7 +90,7 @@ fn pairs(plan: &Plan, place: usize, input: &Column, output: &Column) -> Vec<(f64
 
 impl Effect {
     fn of(
-        output: &Output,
+        output: &Scalar,
         input: &Input,
         column: &Column,
         mut pairs: Vec<(f64, f64)>,
@@ -103,7 +104,7 @@ impl Effect {
         let means: Vec<(f64, f64)> = slices.iter().map(|slice| means(slice)).collect();
         let span = span(means.iter().map(|mean| mean.1));
         Self {
-            output: output.name,
+            output: output.key,
             input: input.key.clone(),
             name: input.name.clone(),
             rank_correlation: correlation.filter(|_| column.words.is_empty()),
@@ -208,7 +209,7 @@ pub struct Elementary {
     pub walks: usize,
 }
 
-pub(crate) fn all_elementary(plan: &Plan, outputs: &[Named<'_, Output>]) -> Vec<Elementary> {
+pub(crate) fn all_elementary(plan: &Plan, outputs: &[Named<'_, Scalar>]) -> Vec<Elementary> {
     let study = plan.study();
     let Design::Morris(keys) = &study.design else {
         return Vec::new();
@@ -220,7 +221,7 @@ pub(crate) fn all_elementary(plan: &Plan, outputs: &[Named<'_, Output>]) -> Vec<
         let effects = effects(inputs, &walk, &output.column.values);
         let told = study.inputs.iter().zip(effects);
         all.extend(
-            told.map(|(input, effects)| Elementary::of(output.of.name, &input.key, &effects)),
+            told.map(|(input, effects)| Elementary::of(output.of.key, &input.key, &effects)),
         );
     }
     all

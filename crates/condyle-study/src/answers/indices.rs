@@ -1,6 +1,7 @@
 //! Sobol's indices.
 
-use condyle_case::study::{Design, Output};
+use condyle_case::study::Design;
+use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
@@ -33,7 +34,7 @@ pub struct Indices {
     pub bases: usize,
 }
 
-pub(crate) fn all(plan: &Plan, outputs: &[Named<'_, Output>]) -> Vec<Indices> {
+pub(crate) fn all(plan: &Plan, outputs: &[Named<'_, Scalar>]) -> Vec<Indices> {
     let study = plan.study();
     if !matches!(study.design, Design::Saltelli(_)) {
         return Vec::new();
@@ -43,7 +44,7 @@ pub(crate) fn all(plan: &Plan, outputs: &[Named<'_, Output>]) -> Vec<Indices> {
         .iter()
         .map(|input| input.key.as_str())
         .collect();
-    let of = |output: &Named<'_, Output>| of_output(output.of.name, &keys, &output.column.values);
+    let of = |output: &Named<'_, Scalar>| of_output(output.of.key, &keys, &output.column.values);
     outputs.iter().flat_map(of).collect()
 }
 

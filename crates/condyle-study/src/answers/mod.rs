@@ -5,8 +5,9 @@ pub(crate) mod indices;
 pub(crate) mod ranking;
 pub(crate) mod spread;
 
-use condyle_case::{config::Variants, study::Output};
+use condyle_case::config::Variants;
 use condyle_lab::aligned;
+use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
@@ -113,10 +114,10 @@ fn largest_first<'a, T>(own: impl Iterator<Item = &'a T>, size: impl Fn(&T) -> f
     own
 }
 
-fn outputs<'a>(plan: &Plan, store: &Store) -> Result<Vec<Named<'a, Output>>, StudyError> {
+fn outputs<'a>(plan: &Plan, store: &Store) -> Result<Vec<Named<'a, Scalar>>, StudyError> {
     let outputs = plan.study().answers.outputs.iter();
-    let named = |of: &&'static Output| {
-        let column = store.column(plan, of.name)?;
+    let named = |of: &&'static Scalar| {
+        let column = store.column(plan, of.key)?;
         Ok(Named { of: *of, column })
     };
     outputs.map(named).collect()

@@ -2,7 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use condyle_case::study::{Design, OUTPUTS};
+use condyle_case::study::Design;
+use condyle_results::catalogue::{self, Scalar};
 use serde::Serialize;
 
 use crate::{
@@ -62,7 +63,7 @@ impl Ranking {
             return Ok(None);
         }
         let output = study.answers.rank_by;
-        let values = store.column(plan, output.name)?.values;
+        let values = store.column(plan, output.key)?.values;
         let within = within_limits(plan, store)?;
         let count = designs(study);
         let is_common = |values: &[f64]| values.iter().all(|value| value.is_finite());
@@ -85,9 +86,9 @@ impl Ranking {
                     .collect(),
             });
         Ok(Some(Self {
-            output: output.name,
-            title: output.title,
-            unit: output.unit,
+            output: output.key,
+            title: output.label,
+            unit: output.unit(),
             disturbances: common.len(),
             designs: ranked(tried.collect()),
         }))
@@ -98,7 +99,7 @@ impl Ranking {
 pub(crate) fn within_limits(plan: &Plan, store: &Store) -> Result<Vec<bool>, StudyError> {
     let mut within = vec![true; plan.tests() as usize];
     for bound in &plan.study().answers.bounds {
-        let values = store.column(plan, bound.output.name)?.values;
+        let values = store.column(plan, bound.output.key)?.values;
         for (within, value) in within.iter_mut().zip(values) {
             *within &= bound.excess(value) == 0.0 && value.is_finite();
         }
@@ -200,9 +201,9 @@ impl Best {
         let values = store.column(plan, &keys.minimise)?.values;
         let within = within_limits(plan, store)?;
         let (row, progress) = least(&values, &within);
-        let minimised = OUTPUTS.iter().find(|output| output.name == keys.minimise);
+        let minimised = catalogue::outputs().find(|output| output.key == keys.minimise);
         let mut best = Self {
-            minimised: minimised.map_or("", |output| output.name),
+            minimised: minimised.map_or("", |output| output.key),
             row: row.map(|row| row as u64),
             inputs: Vec::new(),
             outputs: Vec::new(),
@@ -222,9 +223,9 @@ impl Best {
             let value = store.column(plan, &input.key)?.values[row];
             self.inputs.push((input.key.clone(), value));
         }
-        for output in OUTPUTS {
-            let value = store.column(plan, output.name)?.values[row];
-            self.outputs.push((output.name, value));
+        for output in catalogue::outputs() {
+            let value = store.column(plan, output.key)?.values[row];
+            self.outputs.push((output.key, value));
         }
         Ok(())
     }
@@ -269,8 +270,8 @@ impl Front {
             return Ok(None);
         };
         let within = within_limits(plan, store)?;
-        let one = store.column(plan, outputs[0].name)?.values;
-        let other = store.column(plan, outputs[1].name)?.values;
+        let one = store.column(plan, outputs[0].key)?.values;
+        let other = store.column(plan, outputs[1].key)?.values;
         let both = one.into_iter().zip(other).zip(within);
         let tests: Vec<(u64, f64, f64)> = (0..)
             .zip(both)
@@ -280,9 +281,9 @@ impl Front {
         let every = tests.len().div_ceil(MAX_POINTS).max(1);
         let shown = tests.iter().step_by(every);
         Ok(Some(Self {
-            outputs: outputs.map(|output| output.name),
-            titles: outputs.map(|output| output.title),
-            units: outputs.map(|output| output.unit),
+            outputs: outputs.map(|output| output.key),
+            titles: outputs.map(|output| output.label),
+            units: outputs.map(Scalar::unit),
             others: shown.map(|(_, one, other)| (*one, *other)).collect(),
             tests: undominated(tests),
         }))

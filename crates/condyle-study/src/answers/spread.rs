@@ -1,6 +1,7 @@
 //! How an output is distributed.
 
-use condyle_case::study::{Bound, Design, Output};
+use condyle_case::study::{Bound, Design};
+use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{design::Saltelli, plan::Plan, store::Column};
@@ -58,7 +59,7 @@ pub struct Beyond {
 }
 
 impl Spread {
-    pub(crate) fn of(plan: &Plan, output: &Named<'_, Output>) -> Self {
+    pub(crate) fn of(plan: &Plan, output: &Named<'_, Scalar>) -> Self {
         let all = || output.column.values.iter().enumerate();
         let of_sample =
             all().filter(|(row, _)| is_of_sample(plan, row / crate::plan::designs(plan.study())));
@@ -70,11 +71,11 @@ impl Spread {
         sorted.retain(|value| value.is_finite());
         sorted.sort_by(f64::total_cmp);
         let bounds = plan.study().answers.bounds.iter();
-        let own = bounds.filter(|bound| bound.output.name == output.of.name);
+        let own = bounds.filter(|bound| bound.output.key == output.of.key);
         Self {
-            output: output.of.name,
-            title: output.of.title,
-            unit: output.of.unit,
+            output: output.of.key,
+            title: output.of.label,
+            unit: output.of.unit(),
             tests: sorted.len(),
             is_sample,
             least: quantile(&sorted, 0.0),

@@ -2,6 +2,7 @@
 
 pub(crate) mod scatter;
 
+use condyle_results::catalogue;
 use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
 
 use condyle::{evolve::March, geometry::TriangleMesh};
@@ -134,40 +135,40 @@ const NUMBERS: [Number; 5] = [
         name: "mass_loss_mg",
         title: "mass loss, mg",
         decimals: 2,
-        of: |summary| summary.mass_loss_mg,
-        error: |error| error.mass_loss_mg.total,
+        of: |summary| summary[&catalogue::MASS_LOSS_MG],
+        error: |error| error[&catalogue::MASS_LOSS_MG].in_unit.total,
         by_law: Some(|law| law.mass_loss_mg),
     },
     Number {
         name: "max_depth_mm",
         title: "deepest wear, mm",
         decimals: 4,
-        of: |summary| summary.max_depth_mm,
-        error: |error| error.max_depth_mm.total,
+        of: |summary| summary[&catalogue::MAX_DEPTH_MM],
+        error: |error| error[&catalogue::MAX_DEPTH_MM].in_unit.total,
         by_law: Some(|law| law.max_depth_mm),
     },
     Number {
         name: "peak_pressure_mpa",
         title: "peak pressure, MPa",
         decimals: 1,
-        of: |summary| summary.peak_pressure_mpa,
-        error: |error| error.peak_pressure_mpa.total,
+        of: |summary| summary[&catalogue::PEAK_PRESSURE_MPA],
+        error: |error| error[&catalogue::PEAK_PRESSURE_MPA].in_unit.total,
         by_law: None,
     },
     Number {
         name: "ap_range_mm",
         title: "AP range, mm",
         decimals: 2,
-        of: |summary| summary.ap_range_mm,
-        error: |error| error.ap_range_mm.total,
+        of: |summary| summary[&catalogue::AP_RANGE_MM],
+        error: |error| error[&catalogue::AP_RANGE_MM].in_unit.total,
         by_law: None,
     },
     Number {
         name: "ie_range_deg",
         title: "IE range, degrees",
         decimals: 2,
-        of: |summary| summary.ie_range_deg,
-        error: |error| error.ie_range_deg.total,
+        of: |summary| summary[&catalogue::IE_RANGE_DEG],
+        error: |error| error[&catalogue::IE_RANGE_DEG].in_unit.total,
         by_law: None,
     },
 ];
