@@ -67,7 +67,7 @@ impl ElasticSolid {
     /// Displacements of `nodes` by forces on other nodes, each alone.
     ///
     /// By reciprocity it is also what forces on `nodes`, such as those of an eigenstrain
-    /// ([`Self::eigenstrain_forces`]), move along the other forces by. A force along a direction that is held moves
+    /// ([`YieldingElement::forces`](crate::YieldingElement::forces)), move along the other forces by. A force along a direction that is held moves
     /// nothing. A column has the same bytes whatever stands beside it, on every run.
     ///
     /// # Panics
@@ -285,19 +285,24 @@ fn put(matrix: &mut [f64], [rows, columns]: [usize; 2], [row, column]: [usize; 2
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Elastic, solid::tests::distorted};
+    use crate::tests::standing;
+
+    /// Some of the top, one that is held, and one at the side, in no order.
+    fn some_nodes() -> Vec<u32> {
+        (0..40)
+            .map(|i| 360 + (i * 37) % 90)
+            .chain([3, 95])
+            .collect()
+    }
+
+    fn direction(node: u32) -> Vec3 {
+        Vec3::new(0.1, f64::from(node).sin(), -1.0).normalize()
+    }
 
     #[test]
     fn columns_are_the_displacements_by_single_forces() {
-        let mesh = distorted([9, 8, 4]);
-        let held = (0..90).filter(|&n| mesh.nodes[n as usize].z == 0.0);
-        let elastic = Elastic::new(463.0, 0.46).unwrap();
-        let solid = ElasticSolid::new(&mesh, elastic, held).unwrap();
-        // Some of the top, one that is held, and one at the side, in no order.
-        let mut nodes: Vec<u32> = (0..40).map(|i| 360 + (i * 37) % 90).collect();
-        nodes.extend([3, 95]);
-        let direction = |&n: &u32| Vec3::new(0.1, f64::from(n).sin(), -1.0).normalize();
-        let directions: Vec<Vec3> = nodes.iter().map(direction).collect();
+        let (solid, nodes) = (standing([9, 8, 4]), some_nodes());
+        let directions: Vec<Vec3> = nodes.iter().map(|&n| direction(n)).collect();
         let compliance = solid.compliance(&nodes, &directions);
         assert_eq!(compliance.values().len(), 3 * 42 * 42);
         for (j, (&node, &direction)) in nodes.iter().zip(&directions).enumerate() {
@@ -317,14 +322,7 @@ mod tests {
 
     #[test]
     fn products_are_what_forces_move() {
-        let mesh = distorted([9, 8, 4]);
-        let held = (0..90).filter(|&n| mesh.nodes[n as usize].z == 0.0);
-        let elastic = Elastic::new(463.0, 0.46).unwrap();
-        let solid = ElasticSolid::new(&mesh, elastic, held).unwrap();
-        // Some of the top, one that is held, and one at the side, in no order.
-        let mut nodes: Vec<u32> = (0..40).map(|i| 360 + (i * 37) % 90).collect();
-        nodes.extend([3, 95]);
-        let direction = |n: u32| Vec3::new(0.1, f64::from(n).sin(), -1.0).normalize();
+        let (solid, nodes) = (standing([9, 8, 4]), some_nodes());
         let forces: Vec<(u32, Vec3)> = nodes.iter().map(|&n| (n, direction(n))).collect();
         for (one, other) in [(&forces[..17], &forces[17..]), (&forces[3..], &forces[..])] {
             let (half, other_half) = (solid.half_solved(one), solid.half_solved(other));

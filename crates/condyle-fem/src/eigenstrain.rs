@@ -10,41 +10,13 @@ use nalgebra::Matrix3;
 use crate::{
     Vec3,
     elastic::Elastic,
-    element::{Element, Modes, POINTS, Stiffness},
+    element::{Modes, POINTS, Stiffness},
     material::Material,
     solid::{ElasticSolid, moved},
     stress::{Strain, Stress},
 };
 
 impl ElasticSolid {
-    /// Forces on the eight nodes of an element by eigenstrains at its Gauss points, in the order of its corners.
-    ///
-    /// The displacements under them are those of the eigenstrains.
-    ///
-    /// # Panics
-    /// If there is no such element.
-    pub fn eigenstrain_forces(&self, element: usize, eigenstrains: &[Strain; POINTS]) -> [Vec3; 8] {
-        let (element, elastic) = (&self.elements()[element], self.elastic());
-        let stresses = eigenstrains.map(|strain| elastic.stress(&strain));
-        let (nodes, modes) = element.forces(&stresses);
-        let passed_on = element.stiffness(&elastic).passed_on(&modes);
-        std::array::from_fn(|node| nodes[node] - passed_on[node])
-    }
-
-    /// Stress at the Gauss points of an element under displacements of its eight nodes and eigenstrains.
-    ///
-    /// # Panics
-    /// If there is no such element.
-    pub fn element_stresses(
-        &self,
-        element: usize,
-        displacements: &[Vec3; 8],
-        eigenstrains: &[Strain; POINTS],
-    ) -> [Stress; POINTS] {
-        let element = &self.elements()[element];
-        element.stresses(&self.elastic(), displacements, eigenstrains)
-    }
-
     /// Displacements of all nodes by eigenstrains of some elements, and the stresses that stay in those.
     ///
     /// # Panics
@@ -55,7 +27,7 @@ impl ElasticSolid {
     ) -> (Vec<Vec3>, Vec<[Stress; POINTS]>) {
         let mut forces = vec![Vec3::zeros(); self.mesh().nodes.len()];
         for (element, eigenstrains) in eigenstrains {
-            let own = self.eigenstrain_forces(*element, eigenstrains);
+            let own = self.yielding_element(*element).forces(self, eigenstrains);
             for (&node, force) in self.mesh().hexes[*element].iter().zip(own) {
                 forces[node as usize] += force;
             }
@@ -63,14 +35,12 @@ impl ElasticSolid {
         let displacements = self.displacements_by(&forces);
         let stresses = eigenstrains.iter().map(|(element, eigenstrains)| {
             let nodes = moved(&self.mesh().hexes[*element], &displacements);
-            self.element_stresses(*element, &nodes, eigenstrains)
+            self.elements()[*element].stresses(&self.elastic(), &nodes, eigenstrains)
         });
         let stresses = stresses.collect();
         (displacements, stresses)
     }
-}
 
-impl ElasticSolid {
     /// Mean stress of every element under displacements of the nodes: that of its centre, where stress is
     /// most exact.
     ///
@@ -90,35 +60,43 @@ impl ElasticSolid {
         displacements: &[Vec3],
         eigenstrains: &BTreeMap<usize, [Strain; POINTS]>,
     ) -> Vec<Stress> {
-        let hexes = self.mesh().hexes.iter().zip(self.elements()).enumerate();
-        let stress = |(number, (hex, element)): (usize, (&[u32; 8], &Element))| {
-            let strain = mean_strain(&element.mean_gradients(), &moved(hex, displacements));
-            let own = eigenstrains.get(&number);
-            let own = own.map_or_else(Strain::default, |own| mean_over(element, own));
-            self.elastic().stress(&strain.less(&own))
+        let hexes = self.mesh().hexes.iter().enumerate();
+        let stress = |(number, hex): (usize, &[u32; 8])| {
+            let mut mean = Strain::default();
+            if let Some(strains) = eigenstrains.get(&number) {
+                let volumes = self.elements()[number].volumes();
+                let volume: f64 = volumes.iter().sum();
+                for (part, strain) in volumes.iter().zip(strains) {
+                    mean = mean.plus(part / volume, &Stress(strain.0));
+                }
+            }
+            let operator = self.element_mean(number);
+            operator.stress(&moved(hex, displacements), &mean)
         };
         hexes.map(stress).collect()
     }
-}
 
-/// Mean strain of an element, to which its incompatible modes add nothing.
-pub(crate) fn mean_strain(gradients: &[Vec3; 8], nodes: &[Vec3; 8]) -> Strain {
-    let mut gradient = Matrix3::zeros();
-    for (node, by) in nodes.iter().zip(gradients) {
-        gradient += node * by.transpose();
+    /// Returns the operator from displacements to the mean stress of an element.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    pub fn element_mean(&self, element: usize) -> ElementMean {
+        ElementMean {
+            gradients: self.elements()[element].mean_gradients(),
+            elastic: self.elastic(),
+        }
     }
-    Strain::from_gradient(&gradient)
-}
 
-/// Mean over the volume of strains at the Gauss points.
-pub(crate) fn mean_over(element: &Element, strains: &[Strain; POINTS]) -> Strain {
-    let volumes = element.volumes();
-    let volume: f64 = volumes.iter().sum();
-    let mut mean = Strain::default();
-    for (part, strain) in volumes.iter().zip(strains) {
-        mean = mean.plus(part / volume, &Stress(strain.0));
+    /// Returns an element by itself.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    pub fn yielding_element(&self, element: usize) -> YieldingElement {
+        YieldingElement {
+            number: element,
+            stiffness: self.elements()[element].stiffness(&self.elastic()),
+        }
     }
-    mean
 }
 
 /// The operator from the displacements of an element's nodes to its mean stress.
@@ -137,32 +115,13 @@ pub struct YieldingElement {
 impl ElementMean {
     /// Mean stress under displacements of the nodes, and a mean eigenstrain.
     pub fn stress(&self, nodes: &[Vec3; 8], eigenstrain: &Strain) -> Stress {
-        let strain = mean_strain(&self.gradients, nodes);
+        // The incompatible modes add nothing to the mean.
+        let mut gradient = Matrix3::zeros();
+        for (node, by) in nodes.iter().zip(&self.gradients) {
+            gradient += node * by.transpose();
+        }
+        let strain = Strain::from_gradient(&gradient);
         self.elastic.stress(&strain.less(eigenstrain))
-    }
-}
-
-impl ElasticSolid {
-    /// Returns the operator from displacements to the mean stress of an element.
-    ///
-    /// # Panics
-    /// If there is no such element.
-    pub fn element_mean(&self, element: usize) -> ElementMean {
-        ElementMean {
-            gradients: self.elements()[element].mean_gradients(),
-            elastic: self.elastic(),
-        }
-    }
-
-    /// An element by itself.
-    ///
-    /// # Panics
-    /// If there is no such element.
-    pub fn yielding_element(&self, element: usize) -> YieldingElement {
-        YieldingElement {
-            number: element,
-            stiffness: self.elements()[element].stiffness(&self.elastic()),
-        }
     }
 }
 
@@ -178,9 +137,7 @@ impl YieldingElement {
         nodes: &[Vec3; 8],
         [trial, before]: [&[M::Point; POINTS]; 2],
     ) -> [M::Point; POINTS] {
-        let element = &solid.elements()[self.number];
-        let pull = self.pull(solid, &trial.map(|point| M::eigenstrain(&point)));
-        let strains = element.strains(nodes, &self.stiffness.modes(nodes, &pull));
+        let strains = self.strains(solid, nodes, &trial.map(|point| M::eigenstrain(&point)));
         std::array::from_fn(|p| material.respond(&strains[p], &before[p]).point)
     }
 
@@ -193,34 +150,44 @@ impl YieldingElement {
         nodes: &[Vec3; 8],
         before: &[M::Point; POINTS],
     ) -> f64 {
-        let element = &solid.elements()[self.number];
-        let pull = self.pull(solid, &before.map(|point| M::eigenstrain(&point)));
-        let strains = element.strains(nodes, &self.stiffness.modes(nodes, &pull));
+        let strains = self.strains(solid, nodes, &before.map(|point| M::eigenstrain(&point)));
         let used = strains.iter().zip(before);
         used.map(|(strain, before)| material.use_of_yield(strain, before))
             .fold(0.0, f64::max)
     }
 
-    /// Forces on the nodes by eigenstrains, as [`ElasticSolid::eigenstrain_forces`].
+    /// Returns the forces on the eight nodes of the element by eigenstrains at its Gauss points, in the order of its
+    /// corners: the displacements under them are those of the eigenstrains.
     pub fn forces(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> [Vec3; 8] {
-        let element = &solid.elements()[self.number];
-        let elastic = solid.elastic();
-        let (nodes, modes) = element.forces(&eigenstrains.map(|strain| elastic.stress(&strain)));
-        let passed_on = self.stiffness.passed_on(&modes);
+        let (nodes, pull) = self.pull(solid, eigenstrains);
+        let passed_on = self.stiffness.passed_on(&pull);
         std::array::from_fn(|node| nodes[node] - passed_on[node])
     }
 
-    fn pull(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> Modes {
+    /// Strains at the Gauss points with the modes in balance with eigenstrains.
+    fn strains(
+        &self,
+        solid: &ElasticSolid,
+        nodes: &[Vec3; 8],
+        eigenstrains: &[Strain; POINTS],
+    ) -> [Strain; POINTS] {
+        let (_, pull) = self.pull(solid, eigenstrains);
+        let modes = self.stiffness.modes(nodes, &pull);
+        solid.elements()[self.number].strains(nodes, &modes)
+    }
+
+    /// Forces of eigenstrains on the nodes and on the modes.
+    fn pull(&self, solid: &ElasticSolid, eigenstrains: &[Strain; POINTS]) -> ([Vec3; 8], Modes) {
         let elastic = solid.elastic();
         let stresses = eigenstrains.map(|strain| elastic.stress(&strain));
-        solid.elements()[self.number].forces(&stresses).1
+        solid.elements()[self.number].forces(&stresses)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Elastic, solid::tests::distorted};
+    use crate::tests::{distorted, standing};
 
     /// A block that is held at one corner and against turning, so that it is free to swell.
     fn free() -> ElasticSolid {
@@ -265,7 +232,9 @@ mod tests {
         let (displacements, _) = solid.relaxed(&[(17, eigenstrains)]);
         let (node, force) = (75, Vec3::new(0.3, -0.8, 0.4));
         let by_force = solid.displacements(&[(node, force)]);
-        let stresses = solid.gauss_stresses(&by_force)[17];
+        let nodes = moved(&solid.mesh().hexes[17], &by_force);
+        let none = [Strain::default(); POINTS];
+        let stresses = solid.elements()[17].stresses(&solid.elastic(), &nodes, &none);
         let volumes = solid.elements()[17].volumes();
         let works = (0..POINTS).map(|p| volumes[p] * stresses[p].dot(&Stress(eigenstrains[p].0)));
         let work = force.dot(&displacements[node as usize]);
@@ -274,21 +243,20 @@ mod tests {
 
     #[test]
     fn the_mean_of_an_element_is_that_of_its_gauss_points() {
-        let mesh = distorted([4, 3, 3]);
-        let held = (0..20).filter(|&n| mesh.nodes[n as usize].z == 0.0);
-        let elastic = Elastic::new(463.0, 0.46).unwrap();
-        let solid = ElasticSolid::new(&mesh, elastic, held).unwrap();
+        let solid = standing([4, 3, 3]);
         let displacements = solid.displacements(&[(75, Vec3::new(3.0, -8.0, 4.0))]);
         let eigenstrain = |p: usize| Strain(std::array::from_fn(|i| ((i + 5 * p) as f64).sin()));
         let eigenstrains: [Strain; POINTS] = std::array::from_fn(eigenstrain);
         let means = solid.stresses_with(&displacements, &BTreeMap::from([(7, eigenstrains)]));
-        for (number, hex) in mesh.hexes.iter().enumerate() {
+        for (number, hex) in solid.mesh().hexes.iter().enumerate() {
             let own = if number == 7 {
                 eigenstrains
             } else {
                 Default::default()
             };
-            let stresses = solid.element_stresses(number, &moved(hex, &displacements), &own);
+            let nodes = moved(hex, &displacements);
+            let element = &solid.elements()[number];
+            let stresses = element.stresses(&solid.elastic(), &nodes, &own);
             let volumes = solid.elements()[number].volumes();
             let volume: f64 = volumes.iter().sum();
             for i in 0..6 {

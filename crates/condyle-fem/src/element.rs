@@ -42,6 +42,11 @@ pub(crate) type NodalStiffness = SMatrix<f64, 24, 24>;
 /// Amplitudes of the incompatible modes.
 pub(crate) type Modes = SMatrix<f64, 9, 1>;
 
+/// Returns the components of eight vectors, one node after the other.
+pub(crate) fn flat(nodes: &[Vec3; 8]) -> SMatrix<f64, 24, 1> {
+    SMatrix::from_fn(|i, _| nodes[i / 3][i % 3])
+}
+
 /// Strains of an element by its displacements.
 pub(crate) struct Element {
     points: [Point; POINTS],
@@ -77,8 +82,7 @@ impl Stiffness {
 
     /// Modes in balance with displacements of the nodes and with forces on the modes.
     pub(crate) fn modes(&self, nodes: &[Vec3; 8], forces: &Modes) -> Modes {
-        let flat = SMatrix::<f64, 24, 1>::from_fn(|i, _| nodes[i / 3][i % 3]);
-        self.modal.solve(&(forces - self.coupling * flat))
+        self.modal.solve(&(forces - self.coupling * flat(nodes)))
     }
 
     /// Returns the forces at the nodes that are equivalent to forces on the modes.
@@ -134,13 +138,9 @@ impl Side {
     }
 }
 
-/// The error of an element whose map from natural coordinates folds over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Inverted;
-
 impl Element {
-    /// The element with these corners.
-    pub(crate) fn new(corners: &[Vec3; 8]) -> Result<Self, Inverted> {
+    /// Returns the element with these corners, or none if its map from natural coordinates folds over.
+    pub(crate) fn new(corners: &[Vec3; 8]) -> Option<Self> {
         let (centre_volume, centre_inverse) = inverted(&jacobian(corners, [0.0; 3]))?;
         let mut points = Vec::with_capacity(POINTS);
         for at in gauss_points() {
@@ -155,10 +155,10 @@ impl Element {
                 volume,
             });
         }
-        let points = points.try_into().map_err(|_| Inverted)?;
+        let points = points.try_into().ok()?;
         let mut element = Self { points };
         element.project_dilatations();
-        Ok(element)
+        Some(element)
     }
 
     /// Replaces the divergences by their best fits, the shares of the volume as weights.
@@ -267,16 +267,9 @@ impl Element {
 
     /// Strain at every Gauss point.
     pub(crate) fn strains(&self, nodes: &[Vec3; 8], modes: &Modes) -> [Strain; POINTS] {
-        let amplitude = |f: usize| {
-            if f < 8 {
-                nodes[f]
-            } else {
-                Vec3::new(
-                    modes[3 * (f - 8)],
-                    modes[3 * (f - 8) + 1],
-                    modes[3 * (f - 8) + 2],
-                )
-            }
+        let amplitude = |f: usize| match f.checked_sub(8) {
+            None => nodes[f],
+            Some(mode) => modes.fixed_rows::<3>(3 * mode).into_owned(),
         };
         std::array::from_fn(|p| {
             let point = &self.points[p];
@@ -327,10 +320,10 @@ fn gauss_points() -> [[f64; 3]; POINTS] {
 }
 
 /// Determinant and inverse of a Jacobian, if it does not fold over.
-fn inverted(jacobian: &Matrix3<f64>) -> Result<(f64, Matrix3<f64>), Inverted> {
+fn inverted(jacobian: &Matrix3<f64>) -> Option<(f64, Matrix3<f64>)> {
     let volume = jacobian.determinant();
     let inverse = jacobian.try_inverse().filter(|_| volume > 0.0);
-    Ok((volume, inverse.ok_or(Inverted)?))
+    Some((volume, inverse?))
 }
 
 /// Returns the gradient of a corner's shape function in natural coordinates.
@@ -358,10 +351,7 @@ mod tests {
     use super::*;
     use nalgebra::SymmetricEigen;
 
-    use crate::{
-        material::Material,
-        plastic::{PlasticPoint, tests::material},
-    };
+    use crate::{material::Material, plastic::PlasticPoint, tests::material};
 
     fn bent() -> [Vec3; 8] {
         let mut corners = SIGNS.map(|s| Vec3::from_row_slice(&s));
@@ -372,20 +362,20 @@ mod tests {
         corners
     }
 
+    /// Eigenvalues of the condensed stiffness, rising.
+    fn eigenvalues(corners: &[Vec3; 8], elastic: &Elastic) -> Vec<f64> {
+        let stiffness = Element::new(corners).unwrap().stiffness(elastic);
+        let values = SymmetricEigen::new(stiffness.condensed()).eigenvalues;
+        let mut values: Vec<f64> = values.iter().copied().collect();
+        values.sort_by(f64::total_cmp);
+        values
+    }
+
     #[test]
     fn only_rigid_motions_need_no_force() {
         for v in [0.0, 0.3, 0.49] {
             let elastic = Elastic::new(1.0, v).unwrap();
-            let stiffness = Element::new(&bent())
-                .unwrap()
-                .stiffness(&elastic)
-                .condensed();
-            let mut values: Vec<f64> = SymmetricEigen::new(stiffness)
-                .eigenvalues
-                .iter()
-                .copied()
-                .collect();
-            values.sort_by(f64::total_cmp);
+            let values = eigenvalues(&bent(), &elastic);
             assert!(values[..6].iter().all(|value| value.abs() < 1e-13));
             assert!(values[6] > 0.02, "{}", values[6]);
         }
@@ -397,17 +387,7 @@ mod tests {
         for corners in [SIGNS.map(|s| Vec3::from_row_slice(&s)), bent()] {
             let stiff = |v: f64| {
                 let elastic = Elastic::new(2.0 * (1.0 + v), v).unwrap();
-                let stiffness = Element::new(&corners)
-                    .unwrap()
-                    .stiffness(&elastic)
-                    .condensed();
-                let mut values: Vec<f64> = SymmetricEigen::new(stiffness)
-                    .eigenvalues
-                    .iter()
-                    .copied()
-                    .collect();
-                values.sort_by(f64::total_cmp);
-                values
+                eigenvalues(&corners, &elastic)
             };
             let (soft, hard) = (stiff(0.499), stiff(0.4999));
             assert!(hard[23] > 5.0 * soft[23]);
@@ -472,6 +452,6 @@ mod tests {
         corners.swap(3, 2);
         corners.swap(4, 5);
         corners.swap(7, 6);
-        assert!(Element::new(&corners).is_err());
+        assert!(Element::new(&corners).is_none());
     }
 }

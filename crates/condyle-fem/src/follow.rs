@@ -23,15 +23,6 @@ pub struct InteriorFollower {
     scale: Vec<f64>,
 }
 
-/// The size of a residual.
-#[derive(Clone, Copy)]
-struct Size {
-    /// Square of its length.
-    length2: f64,
-    /// Its product with itself, preconditioned.
-    scaled2: f64,
-}
-
 impl InteriorFollower {
     /// A follower of `mesh` whose `held` nodes take a given displacement, and the rest follow.
     ///
@@ -66,22 +57,22 @@ impl InteriorFollower {
     pub fn follow(&self, displacement: &mut [Vec3]) {
         let enough2 = (RELATIVE_RESIDUAL * self.pull_of_held(displacement)).powi(2);
         let mut residual: Vec<Vec3> = self.pulls(displacement).collect();
-        let mut size = self.size(&residual);
+        let (mut length2, mut scaled2) = self.size(&residual);
         let mut direction = vec![Vec3::zeros(); displacement.len()];
         self.turn(&mut direction, &residual, 0.0);
         let mut image = vec![Vec3::zeros(); residual.len()];
         for _ in 0..self.free.len() {
-            if size.length2 <= enough2 {
+            if length2 <= enough2 {
                 break;
             }
-            let step = size.scaled2 / self.resistance(&direction, &mut image);
+            let step = scaled2 / self.resistance(&direction, &mut image);
             for ((residual, image), &node) in residual.iter_mut().zip(&image).zip(&self.free) {
                 *residual += image * step;
                 displacement[node as usize] += direction[node as usize] * step;
             }
-            let before = size;
-            size = self.size(&residual);
-            self.turn(&mut direction, &residual, size.scaled2 / before.scaled2);
+            let before = scaled2;
+            (length2, scaled2) = self.size(&residual);
+            self.turn(&mut direction, &residual, scaled2 / before);
         }
     }
 
@@ -104,21 +95,13 @@ impl InteriorFollower {
         resistance
     }
 
-    fn size(&self, residual: &[Vec3]) -> Size {
-        let none = Size {
-            length2: 0.0,
-            scaled2: 0.0,
-        };
-        residual
-            .iter()
-            .zip(&self.scale)
-            .fold(none, |sum, (r, scale)| {
-                let length2 = r.norm_squared();
-                Size {
-                    length2: sum.length2 + length2,
-                    scaled2: sum.scaled2 + length2 * scale,
-                }
-            })
+    /// Returns the square of a residual's length, and its product with itself preconditioned.
+    fn size(&self, residual: &[Vec3]) -> (f64, f64) {
+        let parts = residual.iter().zip(&self.scale);
+        parts.fold((0.0, 0.0), |(length2, scaled2), (r, scale)| {
+            let own = r.norm_squared();
+            (length2 + own, scaled2 + own * scale)
+        })
     }
 
     /// Returns the pull of the neighbours on every free node: the sum of (u_j - u_i).
@@ -201,7 +184,7 @@ fn both_ways(mesh: &HexMesh, mut tell: impl FnMut(u32, u32)) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::tests::block;
+    use crate::tests::block;
 
     #[test]
     fn verify_uniform_push_is_linear_through_the_layers() {

@@ -68,6 +68,8 @@ mod solid;
 mod sparse;
 mod stress;
 mod support;
+#[cfg(test)]
+mod tests;
 
 pub use compliance::Compliance;
 pub use compliance::HalfSolved;

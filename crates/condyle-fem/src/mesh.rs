@@ -280,43 +280,9 @@ fn quad_forces(corners: &[Vec3; 4], traction: impl Fn(Vec3, Vec3) -> Vec3) -> [V
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
-    use crate::solid::tests::distorted;
-
-    /// A block of `n` unit cubes along each axis, nodes numbered x fastest, then y, then z.
-    pub(crate) fn block(n: [usize; 3]) -> HexMesh {
-        let id = |i: usize, j: usize, k: usize| (i + (n[0] + 1) * (j + (n[1] + 1) * k)) as u32;
-        let mut nodes = Vec::new();
-        for k in 0..=n[2] {
-            for j in 0..=n[1] {
-                for i in 0..=n[0] {
-                    nodes.push(Vec3::new(i as f64, j as f64, k as f64));
-                }
-            }
-        }
-        let mut hexes = Vec::new();
-        for k in 0..n[2] {
-            for j in 0..n[1] {
-                for i in 0..n[0] {
-                    let quad = |k| {
-                        [
-                            id(i, j, k),
-                            id(i + 1, j, k),
-                            id(i + 1, j + 1, k),
-                            id(i, j + 1, k),
-                        ]
-                    };
-                    let ([a, b, c, d], [e, f, g, h]) = (quad(k), quad(k + 1));
-                    hexes.push([a, b, c, d, e, f, g, h]);
-                }
-            }
-        }
-        HexMesh {
-            nodes,
-            hexes: hexes.into(),
-        }
-    }
+    use crate::tests::{block, distorted};
 
     #[test]
     fn verify_block_volume_boundary_and_quality() {

@@ -262,16 +262,9 @@ fn checked_piece(point: usize, before: (f64, f64), here: (f64, f64)) -> Result<(
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
-
-    pub(crate) fn material(kinematic: f64) -> ElasticPlastic {
-        let points = vec![(0.0, 14.0), (0.02, 20.0), (0.1, 28.0)];
-        ElasticPlastic {
-            elastic: Elastic::new(571.6, 0.45).unwrap(),
-            hardening: Hardening::new(points, kinematic).unwrap(),
-        }
-    }
+    use crate::tests::material;
 
     /// The stress that yielding takes away under a small strain.
     fn lost(softening: &Softening, strain: &Strain) -> Stress {

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::{
     Vec3,
-    element::{Modes, NodalStiffness, POINTS, Stiffness},
+    element::{Modes, NodalStiffness, POINTS, Stiffness, flat},
     material::{Material, Response},
     plastic::{ElasticPlastic, Hardening, PlasticPoint},
     solid::{ElasticSolid, moved},
@@ -92,14 +92,6 @@ impl<P: Copy + Default> PlasticState<P> {
     }
 }
 
-/// The start of Newton's method: the solution if nothing more yields.
-struct Predicted {
-    displacements: Vec<Vec3>,
-    modes: Vec<Modes>,
-    /// Sum of the squares of the forces, those of plastic strains too: a scale where no stress is left.
-    size2: f64,
-}
-
 /// Forces inside a solid, and how it changes them.
 struct Balance<P> {
     /// Force that the elements hold each node with.
@@ -178,11 +170,7 @@ impl<M: Material> PlasticSolid<M> {
         external: &[Vec3],
         before: &PlasticState<M::Point>,
     ) -> Result<PlasticSolution<M::Point>, PlasticError> {
-        let Predicted {
-            mut displacements,
-            mut modes,
-            size2,
-        } = self.predicted(external, before);
+        let (mut displacements, mut modes, size2) = self.predicted(external, before);
         let (mut solves, mut left) = (1, f64::INFINITY);
         for iterations in 0..ITERATIONS {
             let balance = self.balance(&displacements, &modes, before);
@@ -205,7 +193,13 @@ impl<M: Material> PlasticSolid<M> {
         })
     }
 
-    fn predicted(&self, external: &[Vec3], before: &PlasticState<M::Point>) -> Predicted {
+    /// Returns the start of Newton's method: displacements and modes if nothing more yields, and the sum of the
+    /// squares of the forces, those of plastic strains too, as a scale where no stress is left.
+    fn predicted(
+        &self,
+        external: &[Vec3],
+        before: &PlasticState<M::Point>,
+    ) -> (Vec<Vec3>, Vec<Modes>, f64) {
         let elastic = self.material.elastic();
         let mut forces = external.to_vec();
         let mut size2 = dot(external, external);
@@ -225,11 +219,8 @@ impl<M: Material> PlasticSolid<M> {
         let modes = hexes
             .zip(&self.stiffnesses)
             .map(|((hex, pull), stiffness)| stiffness.modes(&moved(hex, &displacements), pull));
-        Predicted {
-            modes: modes.collect(),
-            displacements,
-            size2,
-        }
+        let modes = modes.collect();
+        (displacements, modes, size2)
     }
 
     fn balance(
@@ -334,9 +325,7 @@ impl<M: Material> PlasticSolid<M> {
         let mut forces = elastic_forces.to_vec();
         for yielding in yielding {
             let hex = &self.solid.mesh().hexes[yielding.element];
-            let moved = moved(hex, direction);
-            let flat = nalgebra::SMatrix::<f64, 24, 1>::from_fn(|i, _| moved[i / 3][i % 3]);
-            let lost = yielding.lost * flat;
+            let lost = yielding.lost * flat(&moved(hex, direction));
             for (corner, &node) in hex.iter().enumerate() {
                 let lost = lost.fixed_rows::<3>(3 * corner).into_owned();
                 forces[node as usize] -= self.solid.felt(node, lost);
@@ -405,10 +394,7 @@ fn turn(direction: &mut [Vec3], keep: f64, other: &[Vec3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        plastic::tests::material,
-        solid::tests::{between_planes, distorted, traction},
-    };
+    use crate::tests::{between_planes, distorted, material, traction};
 
     fn block(kinematic: f64) -> PlasticSolid {
         let material = material(kinematic);

@@ -5,13 +5,10 @@ use thiserror::Error;
 use crate::{
     Vec3,
     elastic::{Elastic, ElasticError},
-    element::{Element, POINTS},
+    element::Element,
     mesh::HexMesh,
-    sparse::{Dissection, Factor, Loose, Rhs},
-    stress::{Strain, Stress},
+    sparse::{Dissection, Factor, Rhs},
 };
-
-const NO_EIGENSTRAIN: [Strain; POINTS] = [Strain([0.0; 6]); POINTS];
 
 /// A mesh of an elastic material, held at some nodes, with its stiffness factorised.
 ///
@@ -99,13 +96,22 @@ impl ElasticSolid {
     ) -> Result<Self, SolidError> {
         let elastic = elastic.checked()?;
         let held = checked_supports(mesh, supports)?;
-        let elements = checked_elements(mesh)?;
+        let element = |element: usize| {
+            let corners = mesh.corners(element);
+            Element::new(&corners).ok_or_else(|| SolidError::Inverted {
+                element,
+                place: corners.iter().sum::<Vec3>() / 8.0,
+            })
+        };
+        let elements: Vec<Element> = (0..mesh.hexes.len())
+            .map(element)
+            .collect::<Result<_, _>>()?;
         let dissection = Dissection::new(mesh, &held);
         let stiffness = |element: usize| elements[element].stiffness(&elastic).condensed();
         let factor = Factor::new(&mesh.hexes, &held, dissection, stiffness);
-        let factor = factor.map_err(|Loose { node }| {
-            let place = mesh.nodes[node as usize];
-            SolidError::Loose { node, place }
+        let factor = factor.map_err(|node| SolidError::Loose {
+            node,
+            place: mesh.nodes[node as usize],
         })?;
         Ok(Self {
             mesh: mesh.clone(),
@@ -169,20 +175,6 @@ impl ElasticSolid {
         Vec3::from_fn(|i, _| if held[i] { 0.0 } else { force[i] })
     }
 
-    /// Stress at the eight Gauss points of every element under displacements of the nodes, the points in
-    /// the order of the corners.
-    ///
-    /// # Panics
-    /// If there are fewer displacements than nodes.
-    pub fn gauss_stresses(&self, displacements: &[Vec3]) -> Vec<[Stress; 8]> {
-        let hexes = self.mesh.hexes.iter().zip(&self.elements);
-        hexes
-            .map(|(hex, element)| {
-                element.stresses(&self.elastic, &moved(hex, displacements), &NO_EIGENSTRAIN)
-            })
-            .collect()
-    }
-
     /// Strains of every element.
     pub(crate) fn elements(&self) -> &[Element] {
         &self.elements
@@ -224,61 +216,11 @@ fn checked_supports(
     }
 }
 
-/// All elements, if each has a volume everywhere.
-fn checked_elements(mesh: &HexMesh) -> Result<Vec<Element>, SolidError> {
-    let checked = |element: usize| {
-        let corners = mesh.corners(element);
-        Element::new(&corners).map_err(|_| SolidError::Inverted {
-            element,
-            place: corners.iter().sum::<Vec3>() / 8.0,
-        })
-    };
-    (0..mesh.hexes.len()).map(checked).collect()
-}
-
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
-    use crate::mesh::tests::block;
-
-    /// A block of which no element is a brick, the outside still flat.
-    pub(crate) fn distorted(n: [usize; 3]) -> HexMesh {
-        let mut mesh = block(n);
-        for (i, node) in mesh.nodes.iter_mut().enumerate() {
-            for axis in 0..3 {
-                if node[axis] > 0.0 && node[axis] < n[axis] as f64 {
-                    node[axis] += 0.25 * ((7 * i + 3 * axis) as f64).sin();
-                }
-            }
-        }
-        mesh
-    }
-
-    fn nodes_where(mesh: &HexMesh, is_there: impl Fn(&Vec3) -> bool) -> Vec<u32> {
-        let nodes = (0..mesh.nodes.len() as u32).zip(&mesh.nodes);
-        nodes.filter(|(_, p)| is_there(p)).map(|(n, _)| n).collect()
-    }
-
-    /// Forces of a uniform traction on the quads whose corners are all there.
-    pub(crate) fn traction(
-        mesh: &HexMesh,
-        on: impl Fn(&Vec3) -> bool,
-        traction: Vec3,
-    ) -> Vec<(u32, Vec3)> {
-        let mut quads = mesh.boundary_quads();
-        quads.retain(|quad| mesh.positions(quad).all(|place| on(&place)));
-        mesh.traction_forces(&quads, |_, _| traction)
-    }
-
-    /// A distorted block held as planes of symmetry hold it, so that stress can be uniform.
-    pub(crate) fn between_planes(mesh: &HexMesh, elastic: Elastic) -> ElasticSolid {
-        let supports = (0..3).flat_map(|axis| {
-            let on_plane = nodes_where(mesh, |p| p[axis] == 0.0);
-            let along = [0, 1, 2].map(|k| k == axis);
-            on_plane.into_iter().map(move |node| (node, along))
-        });
-        ElasticSolid::with_supports(mesh, elastic, supports.collect::<Vec<_>>()).unwrap()
-    }
+    use crate::element::flat;
+    use crate::tests::{between_planes, block, distorted, nodes_where, standing, traction};
 
     #[test]
     fn verify_tension_of_a_distorted_block() {
@@ -374,10 +316,9 @@ pub(crate) mod tests {
     #[test]
     fn every_motion_of_a_solid_needs_its_force() {
         // Forces by stiffness times displacements, against those that were given.
-        let mesh = distorted([5, 4, 3]);
-        let elastic = Elastic::new(463.0, 0.46).unwrap();
-        let held = nodes_where(&mesh, |p| p.z == 0.0);
-        let solid = ElasticSolid::new(&mesh, elastic, held.clone()).unwrap();
+        let solid = standing([5, 4, 3]);
+        let (mesh, elastic) = (solid.mesh(), solid.elastic());
+        let held = nodes_where(mesh, |p| p.z == 0.0);
         let given: Vec<(u32, Vec3)> = (0..mesh.nodes.len() as u32)
             .map(|n| (n, Vec3::new(f64::from(n).sin(), f64::from(n).cos(), 0.3)))
             .collect();
@@ -385,10 +326,7 @@ pub(crate) mod tests {
         let mut forces = vec![Vec3::zeros(); mesh.nodes.len()];
         for (hex, element) in mesh.hexes.iter().zip(solid.elements()) {
             let stiffness = element.stiffness(&elastic).condensed();
-            let u = nalgebra::SMatrix::<f64, 24, 1>::from_fn(|i, _| {
-                displacements[hex[i / 3] as usize][i % 3]
-            });
-            let f = stiffness * u;
+            let f = stiffness * flat(&moved(hex, &displacements));
             for (corner, &node) in hex.iter().enumerate() {
                 forces[node as usize] +=
                     Vec3::new(f[3 * corner], f[3 * corner + 1], f[3 * corner + 2]);

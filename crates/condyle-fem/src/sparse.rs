@@ -27,11 +27,6 @@ pub(crate) struct Factor {
     pub(crate) fronts: Vec<Front>,
 }
 
-/// A node that can move without force.
-pub(crate) struct Loose {
-    pub(crate) node: u32,
-}
-
 /// The remainder that a group leaves to the group above.
 struct Remainder {
     triangle: Triangle,
@@ -58,12 +53,15 @@ impl Factor {
     ///
     /// `held`: directions in which each node cannot move; where it is not held in all, they become freedoms
     /// that nothing touches.
+    ///
+    /// # Errors
+    /// A node that can move without force.
     pub(crate) fn new(
         hexes: &[[u32; 8]],
         held: &[[bool; 3]],
         dissection: Dissection,
         stiffness: impl FnMut(usize) -> NodalStiffness,
-    ) -> Result<Self, Loose> {
+    ) -> Result<Self, u32> {
         let free = dissection.order.len();
         let mut assembly = Assembly {
             hexes,
@@ -80,11 +78,8 @@ impl Factor {
             let layout = Layout::new(group.own.len(), group.boundary.len());
             let mut triangle = assembly.front(group, &layout, &mut left);
             let least = assembly.least_pivots(group, &layout);
-            if let Err(bad) = triangle.eliminate(layout.columns, &least) {
-                let place = group.own.start as usize + bad.column / 3;
-                let node = dissection.order[place];
-                return Err(Loose { node });
-            }
+            let pivots = triangle.eliminate(layout.columns, &least);
+            pivots.map_err(|column| dissection.order[group.own.start as usize + column / 3])?;
             fronts.push(Front::from_triangle(&triangle, layout.columns, layout.rows));
             left.push(Some(Remainder {
                 triangle,

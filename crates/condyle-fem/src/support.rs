@@ -144,22 +144,16 @@ fn take_what_gives_way(solved: &[HalfSolved], count: usize, stiffness: &mut [f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Elastic, mesh::HexMesh, solid::tests::distorted};
+    use crate::tests::{nodes_where, standing};
 
-    /// A block that stands on held nodes, and these.
-    fn standing() -> (ElasticSolid, HexMesh, Vec<u32>) {
-        let mesh = distorted([4, 3, 3]);
-        let held: Vec<u32> = (0..mesh.nodes.len() as u32)
-            .filter(|&n| mesh.nodes[n as usize].z == 0.0)
-            .collect();
-        let elastic = Elastic::new(463.0, 0.46).unwrap();
-        let solid = ElasticSolid::new(&mesh, elastic, held.clone()).unwrap();
-        (solid, mesh, held)
+    fn held(solid: &ElasticSolid) -> Vec<u32> {
+        nodes_where(solid.mesh(), |place| place.z == 0.0)
     }
 
     #[test]
     fn verify_supports_that_move_as_a_rigid_body_take_all_along_without_force() {
-        let (solid, mesh, held) = standing();
+        let solid = standing([4, 3, 3]);
+        let (mesh, held) = (solid.mesh(), held(&solid));
         let (turn, shift) = (Vec3::new(0.01, -0.02, 0.03), Vec3::new(0.1, 0.2, -0.3));
         let rigid = |node: u32| turn.cross(&mesh.nodes[node as usize]) + shift;
         let moved: Vec<(u32, Vec3)> = held.iter().map(|&node| (node, rigid(node))).collect();
@@ -174,9 +168,10 @@ mod tests {
     #[test]
     fn verify_what_supports_need_is_what_takes_the_solid_there() {
         // The forces that move single supports, against a solid of which those nodes are free.
-        let (solid, mesh, held) = standing();
+        let solid = standing([4, 3, 3]);
+        let (mesh, held) = (solid.mesh(), held(&solid));
         let (free, still) = held.split_at(2);
-        let looser = ElasticSolid::new(&mesh, solid.elastic(), still.iter().copied()).unwrap();
+        let looser = ElasticSolid::new(mesh, solid.elastic(), still.iter().copied()).unwrap();
         let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
         let motions = |node: u32| axes.map(|axis| vec![(node, axis)]).to_vec();
         let supports = solid.moved_supports(&[motions(free[0]), motions(free[1])]);

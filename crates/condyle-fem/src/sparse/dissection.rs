@@ -189,7 +189,7 @@ fn longest_side(points: impl Iterator<Item = Vec3>) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::tests::block;
+    use crate::tests::block;
 
     #[test]
     fn every_free_node_is_ordered_once_and_elements_meet_no_gap() {

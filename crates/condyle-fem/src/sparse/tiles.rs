@@ -16,22 +16,11 @@ const TOGETHER: usize = 3;
 /// Columns that are eliminated before the rest is updated by all of them: they stay in the cache.
 const PANEL: usize = 64;
 
-/// Rounded up to whole tiles.
-pub(crate) fn whole_tiles(count: usize) -> usize {
-    count.next_multiple_of(TILE)
-}
-
 /// The lower triangle of a symmetric matrix, whole tiles on the diagonal.
 pub(crate) struct Triangle {
     /// Rows, a multiple of [`TILE`].
     size: usize,
     vectors: Vec<f64x4>,
-}
-
-/// A pivot that is not positive enough.
-pub(crate) struct BadPivot {
-    /// Its column.
-    pub(crate) column: usize,
 }
 
 /// Returns the first vector of row `t` of tiles.
@@ -77,7 +66,10 @@ impl Triangle {
     /// the inverses on its diagonal, and in the rest what the elimination leaves.
     ///
     /// `least`: pivots that are too small for each column.
-    pub(crate) fn eliminate(&mut self, columns: usize, least: &[f64]) -> Result<(), BadPivot> {
+    ///
+    /// # Errors
+    /// The first column whose pivot is too small.
+    pub(crate) fn eliminate(&mut self, columns: usize, least: &[f64]) -> Result<(), usize> {
         let rows = self.size / TILE;
         for start in (0..columns).step_by(PANEL) {
             let end = (start + PANEL).min(columns);
@@ -135,12 +127,12 @@ impl Triangle {
     }
 
     /// Cholesky factor of a tile on the diagonal.
-    fn factor_tile(&mut self, tile: usize, least: &[f64]) -> Result<(), BadPivot> {
+    fn factor_tile(&mut self, tile: usize, least: &[f64]) -> Result<(), usize> {
         let start = TILE * tile;
         for j in start..start + TILE {
             let pivot = self.at(j, j);
             if pivot.is_nan() || pivot <= least[j - start] {
-                return Err(BadPivot { column: j });
+                return Err(j);
             }
             let inverse = 1.0 / pivot.sqrt();
             *self.at_mut(j, j) = inverse;
@@ -161,13 +153,8 @@ impl Triangle {
     fn solve_tiles(&mut self, tile: usize) {
         let start = TILE * tile;
         let factor: [[f64; TILE]; TILE] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                if j <= i {
-                    self.at(start + i, start + j)
-                } else {
-                    0.0
-                }
-            })
+            let at = |j: usize| self.at(start + i, start + j);
+            std::array::from_fn(|j| if j <= i { at(j) } else { 0.0 })
         });
         for t in tile + 1..self.size / TILE {
             let at = start_of_row(t) + start;
@@ -257,10 +244,10 @@ pub(crate) struct Layout {
 impl Layout {
     /// The layout for given numbers of own nodes and of nodes on the boundary.
     pub(crate) fn new(own: usize, boundary: usize) -> Self {
-        let columns = whole_tiles(3 * own);
+        let columns = (3 * own).next_multiple_of(TILE);
         Self {
             columns,
-            rows: columns + whole_tiles(3 * boundary),
+            rows: columns + (3 * boundary).next_multiple_of(TILE),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A hexahedral mesh as its reader builds it, and the checked result with its named surfaces and nodes.
+//! A hexahedral mesh while it is read, and the checked result with its named surfaces and nodes.
 
 use std::{
     cell::OnceCell,
@@ -8,7 +8,7 @@ use std::{
 
 use condyle_fem::{HEX_FACES, HexMesh};
 
-use super::error::{FileLine, MeshFileError};
+use super::{error::MeshFileError, text::At};
 use crate::Vec3;
 
 /// Nodes, elements and sets by the labels of the file.
@@ -18,58 +18,58 @@ pub(crate) struct HexDraft<'a> {
     node_of_label: HashMap<u64, usize>,
     hexes: Vec<DraftHex>,
     hex_of_label: HashMap<u64, usize>,
-    /// How many hexahedra have each face, counted when it is first asked for.
+    /// Number of hexahedra that have each face, counted on first use.
     uses_of_quad: OnceCell<HashMap<[u64; 4], usize>>,
-    surfaces: DraftSets<(Option<usize>, [u64; 4])>,
-    node_sets: DraftSets<u64>,
+    surfaces: NamedLists<DraftQuad>,
+    node_sets: NamedLists<u64>,
 }
+
+/// Line and labels of a quad.
+type DraftQuad = (Option<usize>, [u64; 4]);
 
 /// One hexahedron by the labels of its nodes, in VTK order.
 pub(crate) struct DraftHex {
-    pub(crate) label: u64,
-    pub(crate) line: Option<usize>,
     pub(crate) nodes: [u64; 8],
+    label: u64,
+    line: Option<usize>,
 }
 
 impl DraftHex {
-    /// The six faces by the labels of their nodes, facing outwards, S1 to S6 of Abaqus.
+    /// Returns the six faces by the labels of their nodes, facing outwards, S1 to S6 of Abaqus.
     pub(crate) fn quads(&self) -> [[u64; 4]; 6] {
         HEX_FACES.map(|face| face.map(|corner| self.nodes[corner]))
     }
 }
 
-/// Sets in the order of the file.
-struct DraftSets<T> {
-    sets: Vec<DraftSet<T>>,
-    /// By the name in capitals, since names do not know their case.
-    set_of_name: HashMap<String, usize>,
+/// Lists in the order of the file, by names that do not depend on case.
+pub(crate) struct NamedLists<T> {
+    lists: Vec<(String, Vec<T>)>,
+    /// By the name in capitals.
+    list_of_name: HashMap<String, usize>,
 }
 
-struct DraftSet<T> {
-    name: String,
-    members: Vec<T>,
-}
-
-impl<T> DraftSets<T> {
-    fn new() -> Self {
+impl<T> NamedLists<T> {
+    pub(crate) fn new() -> Self {
         Self {
-            sets: Vec::new(),
-            set_of_name: HashMap::new(),
+            lists: Vec::new(),
+            list_of_name: HashMap::new(),
         }
     }
 
-    /// Members of the set of that name, which is begun where there is none.
-    fn members(&mut self, name: &str) -> &mut Vec<T> {
-        let next = self.sets.len();
-        let known = self.set_of_name.entry(name.to_ascii_uppercase());
+    /// Returns the list of that name, which starts empty.
+    pub(crate) fn entry(&mut self, name: &str) -> &mut Vec<T> {
+        let next = self.lists.len();
+        let known = self.list_of_name.entry(name.to_ascii_uppercase());
         let index = *known.or_insert(next);
         if index == next {
-            self.sets.push(DraftSet {
-                name: name.to_string(),
-                members: Vec::new(),
-            });
+            self.lists.push((name.to_string(), Vec::new()));
         }
-        &mut self.sets[index].members
+        &mut self.lists[index].1
+    }
+
+    /// Returns the list of a name in capitals.
+    pub(crate) fn get(&self, name: &str) -> Option<&[T]> {
+        Some(&self.lists[*self.list_of_name.get(name)?].1)
     }
 }
 
@@ -82,45 +82,40 @@ impl<'a> HexDraft<'a> {
             hexes: Vec::new(),
             hex_of_label: HashMap::new(),
             uses_of_quad: OnceCell::new(),
-            surfaces: DraftSets::new(),
-            node_sets: DraftSets::new(),
+            surfaces: NamedLists::new(),
+            node_sets: NamedLists::new(),
         }
+    }
+
+    fn at(&self, line: Option<usize>) -> At<'a> {
+        let path = self.path;
+        At { path, line }
     }
 
     pub(crate) fn node(
         &mut self,
-        line: Option<usize>,
+        at: At,
         label: u64,
-        position: [f64; 3],
+        point: [f64; 3],
     ) -> Result<(), MeshFileError> {
-        let at = FileLine::new(self.path, line);
-        if position.iter().any(|coordinate| !coordinate.is_finite()) {
-            let what = format!("node {label}");
-            return Err(MeshFileError::NonFinite { at, what });
-        }
+        let position = at.position(format_args!("node {label}"), point)?;
         if self.node_of_label.insert(label, self.nodes.len()).is_some() {
             return Err(at.error(format!(
                 "node {label} is given twice; number each node once"
             )));
         }
-        self.nodes.push(Vec3::from(position));
+        self.nodes.push(position);
         Ok(())
     }
 
-    pub(crate) fn hex(&mut self, hex: DraftHex) -> Result<(), MeshFileError> {
-        if self
-            .hex_of_label
-            .insert(hex.label, self.hexes.len())
-            .is_some()
-        {
-            let what = format!(
-                "element {} is given twice; number each element once",
-                hex.label
-            );
-            return Err(FileLine::new(self.path, hex.line).error(what));
+    pub(crate) fn hex(&mut self, at: At, label: u64, nodes: [u64; 8]) -> Result<(), MeshFileError> {
+        if self.hex_of_label.insert(label, self.hexes.len()).is_some() {
+            let problem = format!("element {label} is given twice; number each element once");
+            return Err(at.error(problem));
         }
         self.uses_of_quad.take();
-        self.hexes.push(hex);
+        let line = at.line;
+        self.hexes.push(DraftHex { nodes, label, line });
         Ok(())
     }
 
@@ -132,52 +127,60 @@ impl<'a> HexDraft<'a> {
         Some(&self.hexes[*self.hex_of_label.get(&label)?])
     }
 
-    /// Adds a face, in any sense of turning, to the surface of that name.
-    pub(crate) fn quad(&mut self, surface: &str, line: Option<usize>, nodes: [u64; 4]) {
-        self.surfaces.members(surface).push((line, nodes));
+    /// Adds a face, turned either way, to the surface of that name.
+    pub(crate) fn quad(&mut self, surface: &str, at: At, nodes: [u64; 4]) {
+        self.surfaces.entry(surface).push((at.line, nodes));
     }
 
     /// Adds nodes to the set of that name.
     pub(crate) fn set_nodes(&mut self, set: &str, nodes: impl IntoIterator<Item = u64>) {
-        self.node_sets.members(set).extend(nodes);
+        self.node_sets.entry(set).extend(nodes);
     }
 
-    /// Faces of these hexahedra that no other hexahedron of the mesh shares.
+    pub(crate) fn node_sets(&self) -> &NamedLists<u64> {
+        &self.node_sets
+    }
+
+    /// Returns the faces of these hexahedra that no other hexahedron of the mesh shares.
     pub(crate) fn free_quads<'h>(
         &self,
         hexes: impl IntoIterator<Item = &'h DraftHex>,
     ) -> Vec<[u64; 4]> {
-        let uses = self.uses_of_quad.get_or_init(|| self.count_quads());
+        let uses = self.uses_of_quad.get_or_init(|| {
+            let mut uses = HashMap::new();
+            for quad in self.hexes.iter().flat_map(DraftHex::quads) {
+                *uses.entry(sorted(quad)).or_default() += 1;
+            }
+            uses
+        });
         let quads = hexes.into_iter().flat_map(DraftHex::quads);
         quads.filter(|&quad| uses[&sorted(quad)] == 1).collect()
     }
 
-    fn count_quads(&self) -> HashMap<[u64; 4], usize> {
-        let mut uses = HashMap::new();
-        for quad in self.hexes.iter().flat_map(DraftHex::quads) {
-            *uses.entry(sorted(quad)).or_default() += 1;
-        }
-        uses
-    }
-
-    /// The mesh with its sets; an error for whatever cannot be calculated with.
+    /// Returns the mesh with its sets, if it can be computed with.
     pub(crate) fn finish(self) -> Result<HexFile, MeshFileError> {
         if self.hexes.is_empty() {
-            let path = self.path.to_path_buf();
-            return Err(MeshFileError::NoHexahedra { path });
+            let problem = "holds no hexahedra; export the volume mesh with 8-node hexahedra";
+            return Err(At::file(self.path).error(problem));
         }
-        let full = self.all_nodes()?;
-        self.check_shapes(&full)?;
-        let (mesh, kept) = without_unused_nodes(&full);
+        let all = self.all_nodes()?;
+        for (hex, quality) in self.hexes.iter().zip(all.qualities()) {
+            if quality <= 0.0 {
+                return Err(self.at(hex.line).error(format!(
+                    "hexahedron {} is inverted or flat (scaled Jacobian {quality:.3}); \
+                     check its node order, or mesh again",
+                    hex.label
+                )));
+            }
+        }
+        let (mesh, kept) = without_unused_nodes(&all);
         let number = |label: &u64| kept[*self.node_of_label.get(label)?];
-        let node_sets = self.node_sets.sets.iter().map(|set| {
-            let mut nodes: Vec<u32> = set.members.iter().filter_map(number).collect();
+        let node_sets = self.node_sets.lists.iter().map(|(name, members)| {
+            let mut nodes: Vec<u32> = members.iter().filter_map(number).collect();
             nodes.sort_unstable();
             nodes.dedup();
-            NamedNodes {
-                name: set.name.clone(),
-                nodes,
-            }
+            let name = name.clone();
+            NamedNodes { name, nodes }
         });
         let node_sets = node_sets.filter(|set| !set.nodes.is_empty()).collect();
         let surfaces = self.outward_surfaces(&mesh, number)?;
@@ -192,95 +195,68 @@ impl<'a> HexDraft<'a> {
         let mut hexes = Vec::with_capacity(self.hexes.len());
         for hex in &self.hexes {
             let mut numbers = [0; 8];
-            for (number, label) in numbers.iter_mut().zip(&hex.nodes) {
-                let node = self.node_of_label.get(label);
-                *number = *node.ok_or_else(|| self.no_such_node(hex, *label))? as u32;
+            for (number, &label) in numbers.iter_mut().zip(&hex.nodes) {
+                let node = self.node_of_label.get(&label).ok_or_else(|| {
+                    let element = format_args!("element {}", hex.label);
+                    self.at(hex.line)
+                        .no_such_vertex(element, label.cast_signed(), "otherwise")
+                })?;
+                *number = *node as u32;
             }
             hexes.push(numbers);
         }
-        let nodes = self.nodes.clone();
-        let hexes = hexes.into();
-        Ok(HexMesh { nodes, hexes })
+        Ok(HexMesh {
+            nodes: self.nodes.clone(),
+            hexes: hexes.into(),
+        })
     }
 
-    fn no_such_node(&self, hex: &DraftHex, label: u64) -> MeshFileError {
-        MeshFileError::IndexOutOfRange {
-            at: FileLine::new(self.path, hex.line),
-            what: format!("element {}", hex.label),
-            index: label.cast_signed(),
-            numbering: "otherwise".to_string(),
-        }
-    }
-
-    fn check_shapes(&self, mesh: &HexMesh) -> Result<(), MeshFileError> {
-        for (hex, quality) in self.hexes.iter().zip(mesh.qualities()) {
-            if quality <= 0.0 {
-                let at = FileLine::new(self.path, hex.line);
-                return Err(MeshFileError::Inverted {
-                    at,
-                    element: hex.label,
-                    quality,
-                });
-            }
-        }
-        Ok(())
-    }
-
+    /// Returns the surfaces with each quad once, as the mesh's boundary has it.
     fn outward_surfaces(
         &self,
         mesh: &HexMesh,
         number: impl Fn(&u64) -> Option<u32>,
     ) -> Result<Vec<NamedSurface>, MeshFileError> {
-        let outward: HashMap<[u32; 4], [u32; 4]> = mesh
-            .boundary_quads()
-            .into_iter()
-            .map(|quad| (sorted(quad), quad))
-            .collect();
-        let mut surfaces = Vec::new();
-        for set in &self.surfaces.sets {
-            let name = set.name.clone();
-            let mut quads = Vec::with_capacity(set.members.len());
+        let boundary = mesh.boundary_quads().into_iter();
+        let outward: HashMap<_, _> = boundary.map(|quad| (sorted(quad), quad)).collect();
+        let surface = |(name, members): &(String, Vec<DraftQuad>)| {
+            let mut quads = Vec::with_capacity(members.len());
             let mut seen = HashSet::new();
-            for (line, labels) in &set.members {
-                let key = labels
+            for (line, labels) in members {
+                let quad = labels
                     .each_ref()
                     .map(|label| number(label).unwrap_or(u32::MAX));
-                let quad = outward.get(&sorted(key)).ok_or_else(|| {
-                    let at = FileLine::new(self.path, *line);
-                    MeshFileError::NotOnBoundary {
-                        at,
-                        surface: name.clone(),
-                    }
+                let quad = outward.get(&sorted(quad)).ok_or_else(|| {
+                    self.at(*line).error(format!(
+                        "a face of surface {name:?} is not on the outside of the hexahedra; \
+                         choose the surface on the boundary of the mesh"
+                    ))
                 })?;
                 if seen.insert(*quad) {
                     quads.push(*quad);
                 }
             }
-            surfaces.push(NamedSurface { name, quads });
-        }
-        Ok(surfaces)
+            let name = name.clone();
+            Ok(NamedSurface { name, quads })
+        };
+        self.surfaces.lists.iter().map(surface).collect()
     }
 }
 
-/// The mesh without nodes that no hexahedron uses, and the new number of each old node.
-fn without_unused_nodes(full: &HexMesh) -> (HexMesh, Vec<Option<u32>>) {
-    let mut used = vec![false; full.nodes.len()];
-    for &node in full.hexes.as_flattened() {
+/// Returns the mesh without nodes that no hexahedron uses, and the new number of each old node.
+fn without_unused_nodes(all: &HexMesh) -> (HexMesh, Vec<Option<u32>>) {
+    let mut used = vec![false; all.nodes.len()];
+    for &node in all.hexes.as_flattened() {
         used[node as usize] = true;
     }
     let mut nodes = Vec::new();
-    let mut kept = vec![None; full.nodes.len()];
-    for (index, position) in full
-        .nodes
-        .iter()
-        .enumerate()
-        .filter(|&(index, _)| used[index])
-    {
+    let mut kept = vec![None; all.nodes.len()];
+    for (index, position) in all.nodes.iter().enumerate().filter(|&(i, _)| used[i]) {
         kept[index] = Some(nodes.len() as u32);
         nodes.push(*position);
     }
     let renumber = |node: u32| kept[node as usize].unwrap_or_default();
-    let hexes = full.hexes.iter().map(|hex| hex.map(renumber)).collect();
+    let hexes = all.hexes.iter().map(|hex| hex.map(renumber)).collect();
     (HexMesh { nodes, hexes }, kept)
 }
 
@@ -289,7 +265,15 @@ fn sorted<T: Ord>(mut quad: [T; 4]) -> [T; 4] {
     quad
 }
 
-/// A hexahedral mesh as a file gives it, with its named surfaces and node sets.
+/// Error of a volume element that is not an 8-node hexahedron.
+pub(crate) fn not_hexahedron(at: At, element: u64, kind: &str) -> MeshFileError {
+    at.error(format!(
+        "element {element} is of type {kind}; only 8-node hexahedra can be read, \
+         so mesh the insert with those"
+    ))
+}
+
+/// A hexahedral mesh from a file, with its named surfaces and node sets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HexFile {
     /// The hexahedra and their nodes, in the file's unit and axes and in its order; nodes that no
@@ -302,22 +286,20 @@ pub struct HexFile {
 }
 
 impl HexFile {
-    /// The surface of that name, in whatever case the letters are.
+    /// Returns the surface of that name; case is ignored.
     pub fn surface(&self, name: &str) -> Option<&NamedSurface> {
-        self.surfaces
-            .iter()
-            .find(|surface| surface.name.eq_ignore_ascii_case(name))
+        let mut surfaces = self.surfaces.iter();
+        surfaces.find(|surface| surface.name.eq_ignore_ascii_case(name))
     }
 
-    /// The node set of that name, in whatever case the letters are.
+    /// Returns the node set of that name; case is ignored.
     pub fn node_set(&self, name: &str) -> Option<&NamedNodes> {
-        self.node_sets
-            .iter()
-            .find(|set| set.name.eq_ignore_ascii_case(name))
+        let mut sets = self.node_sets.iter();
+        sets.find(|set| set.name.eq_ignore_ascii_case(name))
     }
 }
 
-/// A part of the boundary of a hexahedral mesh.
+/// A named part of the boundary of a hexahedral mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedSurface {
     /// Name as written in the file.
@@ -326,7 +308,7 @@ pub struct NamedSurface {
     pub quads: Vec<[u32; 4]>,
 }
 
-/// A set of nodes of a hexahedral mesh.
+/// A named set of nodes of a hexahedral mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedNodes {
     /// Name as written in the file.

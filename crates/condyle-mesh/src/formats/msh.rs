@@ -3,37 +3,39 @@
 use std::{collections::HashMap, path::Path};
 
 use super::{
-    error::{FileLine, MeshFileError},
-    hex_draft::{DraftHex, HexDraft, HexFile},
-    text,
+    error::MeshFileError,
+    hex_draft::{HexDraft, HexFile, not_hexahedron},
+    text::{At, Rows, decode},
 };
 
 pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileError> {
-    let content = text::decode(bytes);
-    let mut lines = Lines::new(path, &content);
-    let mut groups = Groups::default();
-    let mut draft = HexDraft::new(path);
+    let content = decode(bytes);
+    let mut file = Reader {
+        rows: Rows::new(path, &content),
+        group_names: HashMap::new(),
+        groups_of_entity: HashMap::new(),
+        draft: HexDraft::new(path),
+    };
     let mut version = None;
-    while let Some((line, row)) = lines.next() {
-        match (row, version) {
-            ("$MeshFormat", _) => {
-                version = Some(read_version(&mut lines)?);
-                lines.skip_to_end_of("$MeshFormat");
-            }
-            ("$PhysicalNames", _) => groups.read_names(&mut lines)?,
-            ("$Entities", Some(Version::V4)) => groups.read_entities(&mut lines)?,
-            ("$Nodes", Some(Version::V2)) => nodes_v2(&mut lines, &mut draft)?,
-            ("$Nodes", Some(Version::V4)) => nodes_v4(&mut lines, &mut draft)?,
-            ("$Elements", Some(Version::V2)) => elements_v2(&mut lines, &groups, &mut draft)?,
-            ("$Elements", Some(Version::V4)) => elements_v4(&mut lines, &groups, &mut draft)?,
+    while let Some((at, section)) = file.rows.next() {
+        match (section, version) {
+            ("$MeshFormat", _) => version = Some(file.version()?),
+            ("$PhysicalNames", _) => file.physical_names()?,
             (_, None) => {
-                let what = "does not start with $MeshFormat; is this a Gmsh file?";
-                return Err(FileLine::line(path, line).error(what));
+                let problem = "does not start with $MeshFormat; is this a Gmsh file?";
+                return Err(at.error(problem));
             }
-            (section, _) => lines.skip_to_end_of(section),
+            ("$Entities", Some(Version::V4)) => file.entities()?,
+            ("$Nodes", Some(Version::V2)) => file.nodes_v2()?,
+            ("$Nodes", Some(Version::V4)) => file.nodes_v4()?,
+            ("$Elements", Some(Version::V2)) => file.elements_v2()?,
+            ("$Elements", Some(Version::V4)) => file.elements_v4()?,
+            _ => {}
         }
+        let end = section.replacen('$', "$End", 1);
+        while file.rows.next().is_some_and(|(_, row)| row != end) {}
     }
-    draft.finish()
+    file.draft.finish()
 }
 
 #[derive(Clone, Copy)]
@@ -42,284 +44,166 @@ enum Version {
     V4,
 }
 
-fn read_version(lines: &mut Lines) -> Result<Version, MeshFileError> {
-    let (line, row) = lines.expect_row()?;
-    let words: Vec<&str> = row.split_ascii_whitespace().collect();
-    match words[..] {
-        ["2.2", "0", ..] => Ok(Version::V2),
-        ["4.1", "0", ..] => Ok(Version::V4),
-        [version, kind, ..] => {
-            let kind = if kind == "0" { "text" } else { "binary" };
-            let what = format!(
-                "is Gmsh version {version} as {kind}; save it as version 4.1 or 2.2, ASCII"
-            );
-            Err(lines.at(line).error(what))
-        }
-        _ => Err(lines
-            .at(line)
-            .error("the format line needs version, type and size")),
-    }
+/// Dimension and number of an entity or a physical group.
+type Key = (i64, i64);
+
+struct Reader<'t> {
+    rows: Rows<'t>,
+    group_names: HashMap<Key, String>,
+    /// In version 4, elements belong to entities, and these to groups.
+    groups_of_entity: HashMap<Key, Vec<i64>>,
+    draft: HexDraft<'t>,
 }
 
-/// Lines that are not empty, with their numbers.
-pub(super) struct Lines<'t> {
-    pub path: &'t Path,
-    lines: std::iter::Enumerate<std::str::Lines<'t>>,
-}
-
-impl<'t> Lines<'t> {
-    pub(super) fn new(path: &'t Path, content: &'t str) -> Self {
-        let lines = content.lines().enumerate();
-        Self { path, lines }
-    }
-
-    pub(super) fn next(&mut self) -> Option<(usize, &'t str)> {
-        let mut filled = self
-            .lines
-            .by_ref()
-            .map(|(index, row)| (index + 1, row.trim()));
-        filled.find(|(_, row)| !row.is_empty())
-    }
-
-    pub(super) fn expect_row(&mut self) -> Result<(usize, &'t str), MeshFileError> {
-        let end =
-            || FileLine::file(self.path).error("ends in the middle of a section; was it cut off?");
-        self.next().ok_or_else(end)
-    }
-
-    pub(super) fn at(&self, line: usize) -> FileLine {
-        FileLine::line(self.path, line)
-    }
-
-    /// The next row as whole numbers, at least `least` of them.
-    pub(super) fn integers(&mut self, least: usize) -> Result<(usize, Vec<i64>), MeshFileError> {
-        let (line, row) = self.expect_row()?;
-        let words = row.split_ascii_whitespace();
-        let numbers: Result<Vec<i64>, _> = words
-            .map(|word| text::number(self.path, line, word))
-            .collect();
-        let numbers = numbers?;
-        if numbers.len() < least {
-            let what = format!("this row has {} numbers; it needs {least}", numbers.len());
-            return Err(self.at(line).error(what));
-        }
-        Ok((line, numbers))
-    }
-
-    pub(super) fn skip_to_end_of(&mut self, section: &str) {
-        let end = section.replacen('$', "$End", 1);
-        while self.next().is_some_and(|(_, row)| row != end) {}
-    }
-}
-
-pub(super) fn nodes_v2(lines: &mut Lines, draft: &mut HexDraft) -> Result<(), MeshFileError> {
-    let (_, count) = lines.integers(1)?;
-    for _ in 0..count[0] {
-        let (line, row) = lines.expect_row()?;
-        let mut words = row.split_ascii_whitespace();
-        let label = text::number(lines.path, line, words.next().unwrap_or_default())?;
-        let position = text::coordinates(lines.path, line, &mut words)?;
-        draft.node(Some(line), label, position)?;
-    }
-    lines.skip_to_end_of("$Nodes");
-    Ok(())
-}
-
-pub(super) fn nodes_v4(lines: &mut Lines, draft: &mut HexDraft) -> Result<(), MeshFileError> {
-    let (_, head) = lines.integers(4)?;
-    for _ in 0..head[0] {
-        let (_, block) = lines.integers(4)?;
-        let mut labels = Vec::new();
-        for _ in 0..block[3] {
-            labels.push(lines.integers(1)?.1[0]);
-        }
-        for label in labels {
-            let (line, row) = lines.expect_row()?;
-            let mut words = row.split_ascii_whitespace();
-            let position = text::coordinates(lines.path, line, &mut words)?;
-            draft.node(Some(line), label.cast_unsigned(), position)?;
+impl<'t> Reader<'t> {
+    fn version(&mut self) -> Result<Version, MeshFileError> {
+        let (at, row) = self.rows.required()?;
+        let words: Vec<&str> = row.split_ascii_whitespace().collect();
+        match words[..] {
+            ["2.2", "0", ..] => Ok(Version::V2),
+            ["4.1", "0", ..] => Ok(Version::V4),
+            [version, kind, ..] => {
+                let kind = if kind == "0" { "text" } else { "binary" };
+                Err(at.error(format!(
+                    "is Gmsh version {version} as {kind}; save it as version 4.1 or 2.2, ASCII"
+                )))
+            }
+            _ => Err(at.error("the format line needs version, type and size")),
         }
     }
-    lines.skip_to_end_of("$Nodes");
-    Ok(())
-}
 
-/// Physical groups: names by dimension and number, and in version 4 the groups of each entity.
-#[derive(Default)]
-pub(super) struct Groups {
-    names: HashMap<(i64, i64), String>,
-    pub of_entity: HashMap<(i64, i64), Vec<i64>>,
-}
+    /// Reads the next row as whole numbers, at least `min` of them.
+    fn integers(&mut self, min: usize) -> Result<(At<'t>, Vec<i64>), MeshFileError> {
+        let (at, row) = self.rows.required()?;
+        let numbers = at.numbers(row.split_ascii_whitespace())?;
+        if numbers.len() < min {
+            let count = numbers.len();
+            return Err(at.error(format!("this row has {count} numbers; it needs {min}")));
+        }
+        Ok((at, numbers))
+    }
 
-impl Groups {
-    pub(super) fn read_names(&mut self, lines: &mut Lines) -> Result<(), MeshFileError> {
-        let (_, count) = lines.integers(1)?;
-        for _ in 0..count[0] {
-            let (line, row) = lines.expect_row()?;
+    /// Reads the head of a block of version 4: four numbers.
+    fn head(&mut self) -> Result<[i64; 4], MeshFileError> {
+        let (_, head) = self.integers(4)?;
+        Ok([head[0], head[1], head[2], head[3]])
+    }
+
+    fn physical_names(&mut self) -> Result<(), MeshFileError> {
+        for _ in 0..self.integers(1)?.1[0] {
+            let (at, row) = self.rows.required()?;
             let mut words = row.splitn(3, char::is_whitespace);
-            let mut number = || text::number(lines.path, line, words.next().unwrap_or_default());
+            let mut number = || at.number(words.next().unwrap_or_default());
             let key = (number()?, number()?);
             let name = words.next().unwrap_or_default().trim().trim_matches('"');
-            self.names.insert(key, name.to_string());
+            self.group_names.insert(key, name.to_string());
         }
-        lines.skip_to_end_of("$PhysicalNames");
         Ok(())
     }
 
-    pub(super) fn read_entities(&mut self, lines: &mut Lines) -> Result<(), MeshFileError> {
-        let (_, counts) = lines.integers(4)?;
-        for (dimension, count) in (0..).zip(counts) {
+    fn entities(&mut self) -> Result<(), MeshFileError> {
+        for (dimension, count) in (0..).zip(self.integers(4)?.1) {
             for _ in 0..count {
-                self.read_entity(lines, dimension)?;
+                // A tag, a point or the two corners of a box, then the number of groups and the groups.
+                let (at, row) = self.rows.required()?;
+                let mut words = row.split_ascii_whitespace();
+                let tag = at.number(words.next().unwrap_or_default())?;
+                let mut words = words.skip(if dimension == 0 { 3 } else { 6 });
+                let count = at.number(words.next().unwrap_or_default())?;
+                let groups = at.numbers(words.take(count))?;
+                self.groups_of_entity.insert((dimension, tag), groups);
             }
         }
-        lines.skip_to_end_of("$Entities");
         Ok(())
     }
 
-    /// Tag, a point or the two corners of a box, then the number of groups and the groups.
-    fn read_entity(&mut self, lines: &mut Lines, dimension: i64) -> Result<(), MeshFileError> {
-        let (line, row) = lines.expect_row()?;
-        let mut words = row.split_ascii_whitespace();
-        let tag = text::number(lines.path, line, words.next().unwrap_or_default())?;
-        let extent = if dimension == 0 { 3 } else { 6 };
-        let mut words = words.skip(extent);
-        let count: usize = text::number(lines.path, line, words.next().unwrap_or_default())?;
-        let groups: Result<_, _> = words
-            .take(count)
-            .map(|word| text::number(lines.path, line, word))
-            .collect();
-        self.of_entity.insert((dimension, tag), groups?);
+    fn nodes_v2(&mut self) -> Result<(), MeshFileError> {
+        for _ in 0..self.integers(1)?.1[0] {
+            let (at, row) = self.rows.required()?;
+            let mut words = row.split_ascii_whitespace();
+            let label = at.number(words.next().unwrap_or_default())?;
+            self.draft.node(at, label, at.coordinates(words)?)?;
+        }
         Ok(())
     }
 
-    /// Name of a group; its number where it has none. A negative number means turned round.
-    pub(super) fn name(&self, dimension: i64, group: i64) -> String {
+    fn nodes_v4(&mut self) -> Result<(), MeshFileError> {
+        let [blocks, ..] = self.head()?;
+        for _ in 0..blocks {
+            let [.., count] = self.head()?;
+            let mut labels = Vec::new();
+            for _ in 0..count {
+                labels.push(self.integers(1)?.1[0]);
+            }
+            for label in labels {
+                let (at, row) = self.rows.required()?;
+                let position = at.coordinates(row.split_ascii_whitespace())?;
+                self.draft.node(at, label.cast_unsigned(), position)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn elements_v2(&mut self) -> Result<(), MeshFileError> {
+        for _ in 0..self.integers(1)?.1[0] {
+            let (at, numbers) = self.integers(3)?;
+            let tags = usize::try_from(numbers[2]).unwrap_or(0);
+            // The first tag is the group; without one it is missing or 0.
+            let groups = numbers[3..].iter().take(tags.min(1)).copied();
+            let groups: Vec<i64> = groups.filter(|&group| group != 0).collect();
+            let nodes = numbers.get(3 + tags..).unwrap_or_default();
+            self.element(at, [numbers[0], numbers[1]], &groups, nodes)?;
+        }
+        Ok(())
+    }
+
+    fn elements_v4(&mut self) -> Result<(), MeshFileError> {
+        let [blocks, ..] = self.head()?;
+        for _ in 0..blocks {
+            let [dimension, entity, kind, count] = self.head()?;
+            let groups = self.groups_of_entity.get(&(dimension, entity)).cloned();
+            let groups = groups.unwrap_or_default();
+            for _ in 0..count {
+                let (at, numbers) = self.integers(1)?;
+                self.element(at, [numbers[0], kind], &groups, &numbers[1..])?;
+            }
+        }
+        Ok(())
+    }
+
+    fn element(
+        &mut self,
+        at: At,
+        [label, kind]: [i64; 2],
+        groups: &[i64],
+        nodes: &[i64],
+    ) -> Result<(), MeshFileError> {
+        let (name, label) = (format_args!("element {label}"), label.cast_unsigned());
+        match kind {
+            5 => self.draft.hex(at, label, at.corners(name, nodes)?)?,
+            3 => {
+                let corners = at.corners(name, nodes)?;
+                for &group in groups {
+                    self.draft.quad(&self.name(2, group), at, corners);
+                }
+            }
+            1 | 15 => {
+                let dimension = i64::from(kind == 1);
+                for &group in groups {
+                    let nodes = nodes.iter().map(|node| node.cast_unsigned());
+                    self.draft.set_nodes(&self.name(dimension, group), nodes);
+                }
+            }
+            other => return Err(not_hexahedron(at, label, &kind_in_words(other))),
+        }
+        Ok(())
+    }
+
+    /// Returns the name of a group, or its number if it has none. A negative number means turned round.
+    fn name(&self, dimension: i64, group: i64) -> String {
         let group = group.saturating_abs();
-        let name = self.names.get(&(dimension, group));
+        let name = self.group_names.get(&(dimension, group));
         name.cloned().unwrap_or_else(|| group.to_string())
-    }
-}
-
-pub(super) fn elements_v2(
-    lines: &mut Lines,
-    groups: &Groups,
-    draft: &mut HexDraft,
-) -> Result<(), MeshFileError> {
-    let (_, count) = lines.integers(1)?;
-    for _ in 0..count[0] {
-        let (line, numbers) = lines.integers(3)?;
-        let tags = usize::try_from(numbers[2]).unwrap_or(0);
-        // Without a group, the first tag is missing or 0.
-        let group = numbers[3..]
-            .iter()
-            .take(tags.min(1))
-            .copied()
-            .filter(|&group| group != 0);
-        let element = Element {
-            line,
-            label: numbers[0].cast_unsigned(),
-            kind: numbers[1],
-            groups: &group.collect::<Vec<_>>(),
-            nodes: numbers.get(3 + tags..).unwrap_or_default(),
-        };
-        element.add_to(draft, groups, lines)?;
-    }
-    lines.skip_to_end_of("$Elements");
-    Ok(())
-}
-
-pub(super) fn elements_v4(
-    lines: &mut Lines,
-    groups: &Groups,
-    draft: &mut HexDraft,
-) -> Result<(), MeshFileError> {
-    let (_, head) = lines.integers(4)?;
-    for _ in 0..head[0] {
-        let (_, block) = lines.integers(4)?;
-        let [dimension, entity, kind, count] = [block[0], block[1], block[2], block[3]];
-        let of_entity = groups.of_entity.get(&(dimension, entity));
-        for _ in 0..count {
-            let (line, numbers) = lines.integers(1)?;
-            let element = Element {
-                line,
-                label: numbers[0].cast_unsigned(),
-                kind,
-                groups: of_entity.map_or(&[], Vec::as_slice),
-                nodes: &numbers[1..],
-            };
-            element.add_to(draft, groups, lines)?;
-        }
-    }
-    lines.skip_to_end_of("$Elements");
-    Ok(())
-}
-
-struct Element<'e> {
-    line: usize,
-    label: u64,
-    kind: i64,
-    groups: &'e [i64],
-    nodes: &'e [i64],
-}
-
-impl Element<'_> {
-    fn add_to(
-        &self,
-        draft: &mut HexDraft,
-        groups: &Groups,
-        lines: &Lines,
-    ) -> Result<(), MeshFileError> {
-        match self.kind {
-            5 => draft.hex(DraftHex {
-                label: self.label,
-                line: Some(self.line),
-                nodes: self.corners(lines)?,
-            }),
-            3 => self.add_quad(draft, groups, lines),
-            1 => self.add_nodes(draft, groups, 1),
-            15 => self.add_nodes(draft, groups, 0),
-            other => Err(MeshFileError::NotHexahedron {
-                at: lines.at(self.line),
-                element: self.label,
-                kind: kind_in_words(other),
-            }),
-        }
-    }
-
-    fn corners<const N: usize>(&self, lines: &Lines) -> Result<[u64; N], MeshFileError> {
-        let corners = <[i64; N]>::try_from(self.nodes).map_err(|_| {
-            let found = self.nodes.len();
-            let what = format!("element {} has {found} nodes; its type has {N}", self.label);
-            lines.at(self.line).error(what)
-        })?;
-        Ok(corners.map(i64::cast_unsigned))
-    }
-
-    fn add_quad(
-        &self,
-        draft: &mut HexDraft,
-        groups: &Groups,
-        lines: &Lines,
-    ) -> Result<(), MeshFileError> {
-        let corners = self.corners(lines)?;
-        for &group in self.groups {
-            draft.quad(&groups.name(2, group), Some(self.line), corners);
-        }
-        Ok(())
-    }
-
-    fn add_nodes(
-        &self,
-        draft: &mut HexDraft,
-        groups: &Groups,
-        dimension: i64,
-    ) -> Result<(), MeshFileError> {
-        for &group in self.groups {
-            let nodes = self.nodes.iter().map(|node| node.cast_unsigned());
-            draft.set_nodes(&groups.name(dimension, group), nodes);
-        }
-        Ok(())
     }
 }
 
@@ -342,7 +226,7 @@ fn kind_in_words(kind: i64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::fixtures::{message, two_cubes};
+    use crate::formats::tests::{message, two_cubes};
 
     const V2: &str = "$MeshFormat
 2.2 0 8
@@ -484,7 +368,7 @@ $EndPeriodic
             "{kind}"
         );
         assert!(
-            said("8 9 12 11\n$End", "8 9 12\n$End").contains("element 6 has 7 nodes; its type")
+            said("8 9 12 11\n$End", "8 9 12\n$End").contains("element 6 has 7 corners; its type")
         );
         assert!(said("9 12 11\n$End", "9 12 77\n$End").contains("element 6 names vertex 77"));
         let quad = said("7 10 11 8\n", "2 5 11 8\n");

@@ -2,22 +2,42 @@
 
 use std::path::Path;
 
+use super::{
+    error::MeshFileError,
+    surface_draft::SurfaceDraft,
+    text::{At, decode},
+};
 use crate::TriangleMesh;
-
-use super::error::MeshFileError;
-use super::surface_draft::SurfaceDraft;
-use super::text;
 
 pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
     let mut draft = SurfaceDraft::new(path, 1);
-    for (line, row) in joined_rows(&text::decode(bytes)) {
+    let content = decode(bytes);
+    let mut lines = (1..).zip(content.lines());
+    while let Some((line, first)) = lines.next() {
+        let at = At::line(path, line);
+        let mut row = first.to_owned();
+        // A backslash at the end of a line joins the next one to it.
+        while row.ends_with('\\') {
+            row.pop();
+            row.push(' ');
+            row.push_str(lines.next().map_or("", |(_, more)| more));
+        }
         let row = row.split('#').next().unwrap_or_default();
         let mut words = row.split_ascii_whitespace();
         match words.next() {
-            Some("v") => draft.point(Some(line), text::coordinates(path, line, &mut words)?)?,
+            Some("v") => draft.point(at, at.coordinates(words)?)?,
             Some("f") => {
-                let corners = corners(path, line, draft.points(), words)?;
-                draft.polygon(Some(line), &corners)?;
+                let points = draft.points() as i64;
+                let corners = words.map(|word| {
+                    // `7`, `7/1`, `7//3` or `7/1/3`; a negative number counts back from the last vertex.
+                    let vertex: i64 = at.number(word.split('/').next().unwrap_or_default())?;
+                    Ok(if vertex < 0 {
+                        points + 1 + vertex
+                    } else {
+                        vertex
+                    })
+                });
+                draft.polygon(at, &corners.collect::<Result<Vec<_>, _>>()?)?;
             }
             _ => {}
         }
@@ -25,50 +45,10 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileE
     draft.finish()
 }
 
-/// Rows with the line they start on; a backslash at the end joins the next line on.
-fn joined_rows(content: &str) -> Vec<(usize, String)> {
-    let mut rows: Vec<(usize, String)> = Vec::new();
-    let mut open = false;
-    for (line, text) in (1..).zip(content.lines()) {
-        let (text, continues) = text
-            .strip_suffix('\\')
-            .map_or((text, false), |text| (text, true));
-        match rows.last_mut().filter(|_| open) {
-            Some((_, row)) => {
-                row.push(' ');
-                row.push_str(text);
-            }
-            None => rows.push((line, text.to_string())),
-        }
-        open = continues;
-    }
-    rows
-}
-
-/// Vertex numbers out of `7`, `7/1`, `7//3`, `7/1/3`; a negative one counts back from the last.
-fn corners<'w>(
-    path: &Path,
-    line: usize,
-    points: usize,
-    words: impl Iterator<Item = &'w str>,
-) -> Result<Vec<i64>, MeshFileError> {
-    words
-        .map(|word| {
-            let vertex = word.split('/').next().unwrap_or_default();
-            let index: i64 = text::number(path, line, vertex)?;
-            Ok(if index < 0 {
-                points as i64 + 1 + index
-            } else {
-                index
-            })
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::fixtures::message;
+    use crate::formats::tests::message;
 
     fn read(content: &str) -> Result<TriangleMesh, MeshFileError> {
         parse(Path::new("a.obj"), content.as_bytes())

@@ -1,16 +1,20 @@
 //! PLY, text and binary of both byte orders, parsed by `ply-rs-bw`.
 
-use std::io::Cursor;
-use std::path::Path;
+use std::{io::Cursor, path::Path};
 
+use ply_rs_bw::{
+    parser::{ParseError, Parser, Reader},
+    ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult},
+};
+
+use super::{
+    error::MeshFileError,
+    surface_draft::{SurfaceDraft, no_triangles},
+    text::At,
+};
 use crate::TriangleMesh;
-use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
 
-use super::error::{FileLine, MeshFileError};
-use super::surface_draft::SurfaceDraft;
-
-/// A row of any element: what of it is a point, and what a polygon.
+/// A row of any element: its properties that belong to a point or to a polygon.
 struct PlyElement {
     point: [f64; 3],
     corners: Vec<i64>,
@@ -18,18 +22,19 @@ struct PlyElement {
 
 impl PropertyAccess for PlyElement {
     fn new() -> Self {
-        // A file without, say, z must not be read as flat.
-        let point = [f64::NAN; 3];
-        let corners = Vec::new();
-        Self { point, corners }
+        Self {
+            // A file without, say, z must not be read as flat.
+            point: [f64::NAN; 3],
+            corners: Vec::new(),
+        }
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        match (name, &value) {
-            ("x", _) => self.point[0] = scalar(&value),
-            ("y", _) => self.point[1] = scalar(&value),
-            ("z", _) => self.point[2] = scalar(&value),
-            ("vertex_indices" | "vertex_index", _) => self.corners = list(value),
+        match name {
+            "x" => self.point[0] = scalar(&value),
+            "y" => self.point[1] = scalar(&value),
+            "z" => self.point[2] = scalar(&value),
+            "vertex_indices" | "vertex_index" => self.corners = list(value),
             _ => return PropertyAccessResult::Ignored,
         }
         PropertyAccessResult::Set
@@ -38,13 +43,13 @@ impl PropertyAccess for PlyElement {
 
 fn scalar(value: &Property) -> f64 {
     match *value {
-        Property::Char(v) => f64::from(v),
-        Property::UChar(v) => f64::from(v),
-        Property::Short(v) => f64::from(v),
-        Property::UShort(v) => f64::from(v),
-        Property::Int(v) => f64::from(v),
-        Property::UInt(v) => f64::from(v),
-        Property::Float(v) => f64::from(v),
+        Property::Char(v) => v.into(),
+        Property::UChar(v) => v.into(),
+        Property::Short(v) => v.into(),
+        Property::UShort(v) => v.into(),
+        Property::Int(v) => v.into(),
+        Property::UInt(v) => v.into(),
+        Property::Float(v) => v.into(),
         Property::Double(v) => v,
         _ => f64::NAN,
     }
@@ -65,22 +70,20 @@ fn list(value: Property) -> Vec<i64> {
 pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
     let parser = Parser::<PlyElement>::new();
     let mut reader = Reader::new(Cursor::new(bytes));
-    let header = parser
-        .read_header(&mut reader)
-        .map_err(|error| in_words(path, &error))?;
-    check_columns(path, &header)?;
-    check_counts(path, bytes, &header)?;
+    let header = parser.read_header(&mut reader);
+    let header = header.map_err(|error| located(path, &error))?;
+    check_header(path, bytes, &header)?;
     let mut draft = SurfaceDraft::new(path, 0);
     for element in header.elements.values() {
         let first_line = reader.line();
-        let rows = parser
-            .read_payload_for_element(&mut reader, element, &header)
-            .map_err(|error| in_words(path, &error))?;
+        let rows = parser.read_payload_for_element(&mut reader, element, &header);
+        let rows = rows.map_err(|error| located(path, &error))?;
         for (index, row) in rows.iter().enumerate() {
             let line = (header.encoding == Encoding::Ascii).then_some(first_line + index);
+            let at = At { path, line };
             match element.name.as_str() {
-                "vertex" => draft.point(line, row.point)?,
-                "face" => draft.polygon(line, &row.corners)?,
+                "vertex" => draft.point(at, row.point)?,
+                "face" => draft.polygon(at, &row.corners)?,
                 _ => {}
             }
         }
@@ -88,70 +91,61 @@ pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileE
     draft.finish()
 }
 
-fn check_columns(path: &Path, header: &Header) -> Result<(), MeshFileError> {
+fn check_header(path: &Path, bytes: &[u8], header: &Header) -> Result<(), MeshFileError> {
     let has = |element: &str, property: &str| {
-        header
-            .elements
-            .get(element)
-            .is_some_and(|e| e.properties.contains_key(property))
+        let element = header.elements.get(element);
+        element.is_some_and(|element| element.properties.contains_key(property))
     };
-    let complete = ["x", "y", "z"].iter().all(|axis| has("vertex", axis));
-    if !complete {
-        let what = "the header has no element vertex with properties x, y and z";
-        return Err(FileLine::file(path).error(what));
+    if !["x", "y", "z"].iter().all(|axis| has("vertex", axis)) {
+        let problem = "the header has no element vertex with properties x, y and z";
+        return Err(At::file(path).error(problem));
     }
-    if has("face", "vertex_indices") || has("face", "vertex_index") {
-        return Ok(());
+    if !has("face", "vertex_indices") && !has("face", "vertex_index") {
+        return Err(no_triangles(path));
     }
-    let path = path.to_path_buf();
-    Err(MeshFileError::NoTriangles { path })
-}
-
-/// A row takes at least a byte. One without properties takes none in a binary file, so that only
-/// this bounds how many there may be.
-fn check_counts(path: &Path, bytes: &[u8], header: &Header) -> Result<(), MeshFileError> {
+    // A row takes at least a byte, except that one without properties takes none in a binary file:
+    // without this bound a few bytes could announce any number of rows.
     let mut left = bytes.len();
     for (name, element) in &header.elements {
         left = left.checked_sub(element.count).ok_or_else(|| {
-            let what = format!(
+            let line = header_line(bytes, name);
+            At { path, line }.error(format!(
                 "announces {} rows of element {name}, more than a file of {} bytes can hold; \
                  was it cut off?",
                 element.count,
                 bytes.len()
-            );
-            FileLine::new(path, header_line(bytes, name)).error(what)
+            ))
         })?;
     }
     Ok(())
 }
 
-/// The line of the header that announces an element.
+/// Number of the header's line that announces an element.
 fn header_line(bytes: &[u8], element: &str) -> Option<usize> {
     let announces = |row: &[u8]| {
-        let mut words = row
-            .split(u8::is_ascii_whitespace)
-            .filter(|word| !word.is_empty());
+        let words = row.split(u8::is_ascii_whitespace);
+        let mut words = words.filter(|word| !word.is_empty());
         words.next() == Some(b"element") && words.next() == Some(element.as_bytes())
     };
     let row = bytes.split(|&byte| byte == b'\n').position(announces);
     row.map(|row| row + 1)
 }
 
-/// The parser's message in one line, without the line number, which the place already says.
-fn in_words(path: &Path, error: &ParseError) -> MeshFileError {
-    let said = error.to_string();
-    let number = error.line().map(|line| format!("Line {line}: "));
-    let said = said
-        .strip_prefix(&number.unwrap_or_default())
-        .unwrap_or(&said);
-    let words: Vec<&str> = said.split_whitespace().collect();
-    FileLine::new(path, error.line()).error(format!("is not PLY: {}", words.join(" ")))
+/// The parser's error in one line, its line number as the place.
+fn located(path: &Path, error: &ParseError) -> MeshFileError {
+    let (line, message) = (error.line(), error.to_string());
+    let prefix = line.map(|line| format!("Line {line}: "));
+    let message = message
+        .strip_prefix(&prefix.unwrap_or_default())
+        .unwrap_or(&message);
+    let words: Vec<&str> = message.split_whitespace().collect();
+    At { path, line }.error(format!("is not PLY: {}", words.join(" ")))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::fixtures::{message, tetrahedron};
+    use crate::formats::tests::{message, tetrahedron};
 
     const TEXT: &str = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 4\n\
         property float x\nproperty float y\nproperty float z\nproperty uchar red\n\

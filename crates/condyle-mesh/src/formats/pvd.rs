@@ -5,15 +5,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use roxmltree::Document;
-
 use super::{
-    error::{FileLine, MeshFileError},
-    text,
+    error::MeshFileError,
+    text::{At, decode},
+    vtk_xml::parse_xml,
     vtu_write::escaped,
 };
 
-/// The text of a `.pvd` file: each data set's time and its file relative to the collection.
+/// Returns the text of a `.pvd` file: the time of each data set and its file, relative to the collection.
 ///
 /// For a wear test the time is the number of cycles.
 pub fn pvd_text<'a>(series: impl IntoIterator<Item = (f64, &'a str)>) -> String {
@@ -21,7 +20,7 @@ pub fn pvd_text<'a>(series: impl IntoIterator<Item = (f64, &'a str)>) -> String 
     pvd_text_of_parts(parts)
 }
 
-/// The text of a `.pvd` file with several parts, such as bodies, at each time: time, number of the part,
+/// Returns the text of a `.pvd` file with several parts, such as bodies, at each time: time, number of the part,
 /// and file.
 pub fn pvd_text_of_parts<'a>(series: impl IntoIterator<Item = (f64, usize, &'a str)>) -> String {
     let mut xml = String::from(
@@ -39,31 +38,26 @@ pub fn pvd_text_of_parts<'a>(series: impl IntoIterator<Item = (f64, usize, &'a s
     xml
 }
 
-/// Each data set's time and its file, joined to the collection's folder, from the bytes of the
-/// `.pvd` file called `path`.
+/// Reads the time of each data set and its file, joined to the collection's folder, from the bytes of the
+/// `.pvd` file at `path`.
 ///
 /// # Errors
-/// No collection, a data set without a time or a file.
+/// Content that is not XML, a data set without a time or a file.
 pub fn parse_pvd(path: &Path, bytes: &[u8]) -> Result<Vec<(f64, PathBuf)>, MeshFileError> {
-    let content = text::decode(bytes);
-    let document = Document::parse(&content).map_err(|error| {
-        let line = error.pos().row as usize;
-        FileLine::line(path, line).error(format!("is not XML: {error}"))
-    })?;
+    let content = decode(bytes);
+    let document = parse_xml(path, &content)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let sets = document
-        .descendants()
-        .filter(|node| node.has_tag_name("DataSet"));
+    let nodes = document.descendants();
+    let sets = nodes.filter(|node| node.has_tag_name("DataSet"));
     sets.map(|node| {
         let time = node
             .attribute("timestep")
             .and_then(|time| time.parse().ok());
-        let line = document.text_pos_at(node.range().start).row as usize;
-        time.zip(node.attribute("file"))
-            .map(|(time, file)| (time, folder.join(file)))
-            .ok_or_else(|| {
-                FileLine::line(path, line).error("a DataSet needs a number as timestep, and a file")
-            })
+        let file = node.attribute("file").map(|file| folder.join(file));
+        time.zip(file).ok_or_else(|| {
+            let line = document.text_pos_at(node.range().start).row as usize;
+            At::line(path, line).error("a DataSet needs a number as timestep, and a file")
+        })
     })
     .collect()
 }
@@ -71,16 +65,14 @@ pub fn parse_pvd(path: &Path, bytes: &[u8]) -> Result<Vec<(f64, PathBuf)>, MeshF
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::{
-        fixtures::message,
-        on_disk::{read_pvd, write_pvd},
-    };
+    use crate::formats::{read_pvd, tests::message};
 
     #[test]
     fn times_and_files_come_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("insert.pvd");
-        write_pvd(&path, [(0.0, "insert_0000.vtu"), (5e5, "insert_0001.vtu")]).unwrap();
+        let text = pvd_text([(0.0, "insert_0000.vtu"), (5e5, "insert_0001.vtu")]);
+        std::fs::write(&path, text).unwrap();
         let series = read_pvd(&path).unwrap();
         assert_eq!(series[0], (0.0, folder.path().join("insert_0000.vtu")));
         assert_eq!(series[1].0, 500_000.0);

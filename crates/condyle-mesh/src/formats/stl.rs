@@ -1,108 +1,76 @@
 //! STL, binary and text: triangles without connections, welded on the way in.
 
-use std::io::{self, Write};
-use std::path::Path;
+use std::{
+    io::{self, Write},
+    path::Path,
+};
 
+use super::{
+    error::MeshFileError,
+    surface_draft::SurfaceDraft,
+    text::{At, Rows, decode},
+};
 use crate::TriangleMesh;
-use crate::Vec3;
-
-use super::error::{FileLine, MeshFileError};
-use super::surface_draft::SurfaceDraft;
-use super::text;
 
 const HEADER_BYTES: usize = 84;
 const TRIANGLE_BYTES: usize = 50;
 
 pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
-    if is_text(bytes) {
-        parse_text(path, &text::decode(bytes))
-    } else {
-        parse_binary(path, bytes)
+    let count = bytes.get(80..HEADER_BYTES).and_then(|c| c.try_into().ok());
+    let announced = count.map(|count| u32::from_le_bytes(count) as usize);
+    let binary_length = announced.map(|triangles| HEADER_BYTES + TRIANGLE_BYTES * triangles);
+    // Many binary files start with `solid` too, so the length that the count implies decides first.
+    if bytes.trim_ascii_start().starts_with(b"solid") && binary_length != Some(bytes.len()) {
+        return parse_text(path, &decode(bytes));
     }
+    let announced = announced
+        .ok_or_else(|| At::file(path).error("is too short for an STL file; was it cut off?"))?;
+    parse_binary(path, &bytes[HEADER_BYTES..], announced)
 }
 
-/// Many binary files start with `solid` too, so the length that the count asks for decides first.
-fn is_text(bytes: &[u8]) -> bool {
-    let starts_solid = bytes.trim_ascii_start().starts_with(b"solid");
-    let binary_length =
-        announced_triangles(bytes).map(|triangles| HEADER_BYTES + TRIANGLE_BYTES * triangles);
-    starts_solid && binary_length != Some(bytes.len())
-}
-
-fn announced_triangles(bytes: &[u8]) -> Option<usize> {
-    let count = bytes.get(80..HEADER_BYTES)?.try_into().ok()?;
-    Some(u32::from_le_bytes(count) as usize)
-}
-
-fn parse_binary(path: &Path, bytes: &[u8]) -> Result<TriangleMesh, MeshFileError> {
-    let announced = announced_triangles(bytes).ok_or_else(|| {
-        FileLine::file(path).error("is too short for an STL file; was it cut off?")
-    })?;
-    let records = bytes[HEADER_BYTES..].chunks_exact(TRIANGLE_BYTES);
+fn parse_binary(path: &Path, data: &[u8], announced: usize) -> Result<TriangleMesh, MeshFileError> {
+    let at = At::file(path);
+    let records = data.chunks_exact(TRIANGLE_BYTES);
     if records.len() < announced {
-        let what = format!(
+        return Err(at.error(format!(
             "announces {announced} triangles but ends after {}; was it cut off?",
             records.len()
-        );
-        return Err(FileLine::file(path).error(what));
+        )));
     }
     let mut draft = SurfaceDraft::new(path, 0);
     for record in records.take(announced) {
-        // 12 bytes of normal, then three corners; the order of the corners says the normal again.
-        for corner in record[12..48].chunks_exact(12) {
-            draft.point(None, single_precision(corner))?;
+        // Twelve bytes of normal, which follows from the order of the corners, then the three corners.
+        for corner in record[12..48].as_chunks::<12>().0 {
+            let [x, y, z] =
+                [0, 4, 8].map(|i| f32::from_le_bytes([0, 1, 2, 3].map(|k| corner[i + k])));
+            draft.point(at, [x.into(), y.into(), z.into()])?;
         }
-        close_triangle(&mut draft, None)?;
+        draft.triangle_of_last_points(at)?;
     }
     draft.finish()
-}
-
-fn single_precision(bytes: &[u8]) -> [f64; 3] {
-    [0, 4, 8].map(|at| {
-        let value = [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
-        f64::from(f32::from_le_bytes(value))
-    })
-}
-
-fn close_triangle(draft: &mut SurfaceDraft, line: Option<usize>) -> Result<(), MeshFileError> {
-    let end = draft.points() as i64;
-    draft.polygon(line, &[end - 3, end - 2, end - 1])
 }
 
 fn parse_text(path: &Path, content: &str) -> Result<TriangleMesh, MeshFileError> {
     let mut draft = SurfaceDraft::new(path, 0);
     let mut facet_start = 0;
-    for (line, row) in (1..).zip(content.lines()) {
+    for (at, row) in Rows::new(path, content) {
         let mut words = row.split_ascii_whitespace();
-        match words.next().map(str::to_ascii_lowercase).as_deref() {
-            Some("facet") => facet_start = draft.points(),
-            Some("vertex") => {
-                let point = text::coordinates(path, line, &mut words)?;
-                draft.point(Some(line), point)?;
+        let keyword = words.next().unwrap_or_default().to_ascii_lowercase();
+        match keyword.as_str() {
+            "facet" => facet_start = draft.points(),
+            "vertex" => draft.point(at, at.coordinates(words)?)?,
+            "endfacet" if draft.points() == facet_start + 3 => draft.triangle_of_last_points(at)?,
+            "endfacet" => {
+                let corners = draft.points() - facet_start;
+                return Err(at.error(format!(
+                    "a facet ends here with {corners} vertices; STL facets have three"
+                )));
             }
-            Some("endfacet") => close_facet(path, line, facet_start, &mut draft)?,
-            None | Some("solid" | "outer" | "endloop" | "endsolid") => {}
-            Some(word) => {
-                let what = format!("{word:?} is not a word of STL");
-                return Err(FileLine::line(path, line).error(what));
-            }
+            "" | "solid" | "outer" | "endloop" | "endsolid" => {}
+            word => return Err(at.error(format!("{word:?} is not a word of STL"))),
         }
     }
     draft.finish()
-}
-
-fn close_facet(
-    path: &Path,
-    line: usize,
-    facet_start: usize,
-    draft: &mut SurfaceDraft,
-) -> Result<(), MeshFileError> {
-    let corners = draft.points() - facet_start;
-    if corners != 3 {
-        let what = format!("a facet ends here with {corners} vertices; STL facets have three");
-        return Err(FileLine::line(path, line).error(what));
-    }
-    close_triangle(draft, Some(line))
 }
 
 /// Writes a surface as binary STL: single precision, normals from the corners.
@@ -115,30 +83,24 @@ pub fn write_stl(mut out: impl Write, mesh: &TriangleMesh) -> io::Result<()> {
     header[80..].copy_from_slice(&(mesh.triangles.len() as u32).to_le_bytes());
     out.write_all(&header)?;
     for triangle in 0..mesh.triangles.len() {
-        out.write_all(&record(mesh.corners(triangle)))?;
+        let [a, b, c] = mesh.corners(triangle);
+        let normal = (b - a).cross(&(c - a)).try_normalize(0.0);
+        let mut record = [0; TRIANGLE_BYTES];
+        let rows = [normal.unwrap_or_default(), a, b, c];
+        let values = rows.iter().flat_map(|row| [row.x, row.y, row.z]);
+        for (slot, value) in record.chunks_exact_mut(4).zip(values) {
+            slot.copy_from_slice(&(value as f32).to_le_bytes());
+        }
+        out.write_all(&record)?;
     }
     Ok(())
-}
-
-fn record([a, b, c]: [Vec3; 3]) -> [u8; TRIANGLE_BYTES] {
-    let normal = (b - a)
-        .cross(&(c - a))
-        .try_normalize(0.0)
-        .unwrap_or_default();
-    let mut bytes = [0; TRIANGLE_BYTES];
-    let values = [normal, a, b, c]
-        .into_iter()
-        .flat_map(|point| [point.x, point.y, point.z]);
-    for (slot, value) in bytes.chunks_exact_mut(4).zip(values) {
-        slot.copy_from_slice(&(value as f32).to_le_bytes());
-    }
-    bytes
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::fixtures::{corners, message, tetrahedron};
+    use crate::Vec3;
+    use crate::formats::tests::{corners, message, tetrahedron};
 
     const TEXT: &str = "solid wedge\n facet normal 0 0 -1\n  outer loop\n   vertex 0 0 0\n   \
         vertex 0 1e0 0\n   vertex 1 0 0\n  endloop\n endfacet\nendsolid wedge\n";

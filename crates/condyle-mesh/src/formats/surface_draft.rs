@@ -1,17 +1,14 @@
-//! A surface as it is being read: polygons become triangles, equal points one vertex.
+//! A surface while it is read: polygons become triangles, equal points one vertex.
 
-use std::collections::HashMap;
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
 
-use crate::TriangleMesh;
-use crate::Vec3;
+use super::{error::MeshFileError, text::At};
+use crate::{TriangleMesh, Vec3};
 
-use super::error::{FileLine, MeshFileError};
-
-/// Vertices and polygons in the order of the file, with the lines they came from.
+/// Vertices and polygons in the order of the file, with their lines.
 pub(crate) struct SurfaceDraft<'a> {
     path: &'a Path,
-    /// What the file calls its first vertex: 0 or 1.
+    /// The file's number of its first vertex, 0 or 1.
     first_vertex: i64,
     points: Vec<Vec3>,
     triangles: Vec<DraftTriangle>,
@@ -19,7 +16,8 @@ pub(crate) struct SurfaceDraft<'a> {
 }
 
 struct DraftTriangle {
-    corners: [i64; 3],
+    /// Numbers of points from 0; a number that the file does not have is out of range.
+    corners: [usize; 3],
     polygon: usize,
     line: Option<usize>,
 }
@@ -40,106 +38,87 @@ impl<'a> SurfaceDraft<'a> {
     }
 
     /// Adds the next vertex.
-    pub(crate) fn point(
-        &mut self,
-        line: Option<usize>,
-        point: [f64; 3],
-    ) -> Result<(), MeshFileError> {
+    pub(crate) fn point(&mut self, at: At, point: [f64; 3]) -> Result<(), MeshFileError> {
         let number = self.points.len() as i64 + self.first_vertex;
-        if point.iter().any(|coordinate| !coordinate.is_finite()) {
-            return Err(MeshFileError::NonFinite {
-                at: FileLine::new(self.path, line),
-                what: format!("vertex {number}"),
-            });
-        }
-        // Adding zero turns -0 into 0, which would otherwise be another point.
-        self.points.push(Vec3::from(point).add_scalar(0.0));
+        let position = at.position(format_args!("vertex {number}"), point)?;
+        // Adding zero turns -0 into 0: points are welded by their bits.
+        self.points.push(position.add_scalar(0.0));
         Ok(())
     }
 
     /// Adds a polygon by the file's vertex numbers, cut into triangles as a fan.
-    pub(crate) fn polygon(
-        &mut self,
-        line: Option<usize>,
-        corners: &[i64],
-    ) -> Result<(), MeshFileError> {
+    pub(crate) fn polygon(&mut self, at: At, corners: &[i64]) -> Result<(), MeshFileError> {
         let polygon = self.polygons + self.first_vertex as usize;
         self.polygons += 1;
         if corners.len() < 3 {
-            let what = format!(
+            return Err(at.error(format!(
                 "polygon {polygon} has {} corners; it needs three or more",
                 corners.len()
-            );
-            return Err(FileLine::new(self.path, line).error(what));
+            )));
         }
+        // A number below the first one wraps round and is as much out of range.
+        let index = |corner: i64| corner.wrapping_sub(self.first_vertex) as usize;
         let fan = corners[1..].windows(2).map(|ends| DraftTriangle {
-            corners: [corners[0], ends[0], ends[1]],
+            corners: [corners[0], ends[0], ends[1]].map(index),
             polygon,
-            line,
+            line: at.line,
         });
         self.triangles.extend(fan);
         Ok(())
     }
 
-    /// The mesh, points of equal coordinates welded and those no triangle uses dropped.
+    /// Adds a triangle between the last three points.
+    pub(crate) fn triangle_of_last_points(&mut self, at: At) -> Result<(), MeshFileError> {
+        let end = self.points.len() as i64 + self.first_vertex;
+        self.polygon(at, &[end - 3, end - 2, end - 1])
+    }
+
+    /// Returns the mesh, with points of equal coordinates welded and unused ones dropped.
     pub(crate) fn finish(self) -> Result<TriangleMesh, MeshFileError> {
         if self.triangles.is_empty() {
-            let path = self.path.to_path_buf();
-            return Err(MeshFileError::NoTriangles { path });
+            return Err(no_triangles(self.path));
         }
         let mut used = vec![false; self.points.len()];
         for triangle in &self.triangles {
-            for corner in self.positions(triangle)? {
-                used[corner] = true;
+            for &corner in &triangle.corners {
+                let used = used.get_mut(corner);
+                *used.ok_or_else(|| self.no_such_vertex(triangle, corner))? = true;
             }
         }
-        let (vertices, vertex_of_point) = weld(&self.points, &used);
-        let mut triangles = Vec::with_capacity(self.triangles.len());
-        for triangle in &self.triangles {
-            triangles.push(
-                self.positions(triangle)?
-                    .map(|point| vertex_of_point[point]),
-            );
+        let mut vertices = Vec::new();
+        let mut vertex_at = HashMap::with_capacity(self.points.len() / 4);
+        let mut vertex_of_point = vec![0; self.points.len()];
+        for (index, point) in self.points.iter().enumerate().filter(|&(i, _)| used[i]) {
+            let key = [point.x, point.y, point.z].map(f64::to_bits);
+            vertex_of_point[index] = *vertex_at.entry(key).or_insert_with(|| {
+                vertices.push(*point);
+                vertices.len() as u32 - 1
+            });
         }
+        let triangles = self.triangles.iter();
+        let triangles = triangles.map(|triangle| triangle.corners.map(|p| vertex_of_point[p]));
         Ok(TriangleMesh {
+            triangles: triangles.collect(),
             vertices,
-            triangles,
         })
     }
 
-    fn positions(&self, triangle: &DraftTriangle) -> Result<[usize; 3], MeshFileError> {
-        let mut positions = [0; 3];
-        for (position, &corner) in positions.iter_mut().zip(&triangle.corners) {
-            *position = usize::try_from(corner - self.first_vertex)
-                .ok()
-                .filter(|&point| point < self.points.len())
-                .ok_or_else(|| self.out_of_range(triangle, corner))?;
-        }
-        Ok(positions)
-    }
-
-    fn out_of_range(&self, triangle: &DraftTriangle, index: i64) -> MeshFileError {
-        let last = self.points.len() as i64 + self.first_vertex - 1;
-        MeshFileError::IndexOutOfRange {
-            at: FileLine::new(self.path, triangle.line),
-            what: format!("polygon {}", triangle.polygon),
-            index,
-            numbering: format!("from {} to {last}", self.first_vertex),
-        }
+    fn no_such_vertex(&self, triangle: &DraftTriangle, corner: usize) -> MeshFileError {
+        let at = At {
+            path: self.path,
+            line: triangle.line,
+        };
+        let first = self.first_vertex;
+        let last = self.points.len() as i64 + first - 1;
+        at.no_such_vertex(
+            format_args!("polygon {}", triangle.polygon),
+            (corner as i64).wrapping_add(first),
+            format_args!("from {first} to {last}"),
+        )
     }
 }
 
-/// Points of equal coordinates made one; a point that is not used gets no vertex.
-fn weld(points: &[Vec3], used: &[bool]) -> (Vec<Vec3>, Vec<u32>) {
-    let mut vertices = Vec::new();
-    let mut vertex_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(points.len() / 4);
-    let mut vertex_of_point = vec![0; points.len()];
-    for (index, point) in points.iter().enumerate().filter(|&(index, _)| used[index]) {
-        let key = [point.x, point.y, point.z].map(f64::to_bits);
-        vertex_of_point[index] = *vertex_at.entry(key).or_insert_with(|| {
-            vertices.push(*point);
-            vertices.len() as u32 - 1
-        });
-    }
-    (vertices, vertex_of_point)
+/// Error of a surface file without a triangle or polygon.
+pub(crate) fn no_triangles(path: &Path) -> MeshFileError {
+    At::file(path).error("holds no triangles; export the surface as triangles")
 }

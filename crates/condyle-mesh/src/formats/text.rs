@@ -1,80 +1,139 @@
-//! The bytes of a file, and numbers in text.
+//! Rows and numbers of text files, and the places that errors name.
 
-use std::{io::ErrorKind, path::Path, str::FromStr};
+use std::{borrow::Cow, fmt::Display, iter::Enumerate, path::Path, str::FromStr, str::Lines};
 
-use super::error::{FileLine, MeshFileError};
-use crate::files::Files;
+use super::error::MeshFileError;
+use crate::Vec3;
 
-/// Content of a text format; bytes that are not UTF-8 can only be in names and comments,
-/// and are replaced.
-pub(crate) fn decode(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
+/// Content of a text format.
+pub(crate) fn decode(bytes: &[u8]) -> Cow<'_, str> {
+    // Bytes that are not UTF-8 can only be in names and comments.
     String::from_utf8_lossy(bytes)
 }
 
-/// A number out of a text file.
-pub(crate) fn number<T: FromStr>(path: &Path, line: usize, word: &str) -> Result<T, MeshFileError> {
-    let word = word.trim();
-    word.parse()
-        .map_err(|_| FileLine::line(path, line).error(format!("{word:?} is not a number here")))
+/// A place in a file that errors name: a line where the format is text, else the file alone.
+#[derive(Clone, Copy)]
+pub(crate) struct At<'p> {
+    pub(crate) path: &'p Path,
+    /// Line number from 1.
+    pub(crate) line: Option<usize>,
 }
 
-/// The next three words as coordinates.
-pub(crate) fn coordinates<'w>(
-    path: &Path,
-    line: usize,
-    words: &mut impl Iterator<Item = &'w str>,
-) -> Result<[f64; 3], MeshFileError> {
-    let mut point = [0.0; 3];
-    for coordinate in &mut point {
-        let word = words
-            .next()
-            .ok_or_else(|| FileLine::line(path, line).error("a point needs three coordinates"))?;
-        *coordinate = number(path, line, word)?;
+impl<'p> At<'p> {
+    pub(crate) fn file(path: &'p Path) -> Self {
+        Self { path, line: None }
     }
-    Ok(point)
-}
 
-/// The ending of a file's name in small letters, without the dot.
-fn ending(path: &Path) -> String {
-    path.extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_lowercase()
-}
-
-/// What makes a mesh of the bytes of a file; the path is for messages.
-pub(super) type Parser<M> = fn(&Path, &[u8]) -> Result<M, MeshFileError>;
-
-/// The parser for the ending of a name, out of `formats`: endings with their parsers.
-pub(super) fn parser<M>(
-    path: &Path,
-    formats: &[(&str, Parser<M>)],
-) -> Result<Parser<M>, MeshFileError> {
-    let ending = ending(path);
-    let mut known = formats.iter();
-    match known.find(|(known, _)| *known == ending) {
-        Some((_, parse)) => Ok(*parse),
-        None => Err(MeshFileError::UnknownExtension {
-            path: path.to_path_buf(),
-            ending,
-            known: listed(formats.iter().map(|(known, _)| *known)),
-        }),
+    pub(crate) fn line(path: &'p Path, line: usize) -> Self {
+        let line = Some(line);
+        Self { path, line }
     }
-}
 
-/// Endings as a message gives them: `.inp, .msh`.
-fn listed<'e>(endings: impl Iterator<Item = &'e str>) -> String {
-    let dotted: Vec<String> = endings.map(|ending| format!(".{ending}")).collect();
-    dotted.join(", ")
-}
-
-pub(super) fn read_bytes(files: &dyn Files, path: &Path) -> Result<Vec<u8>, MeshFileError> {
-    files.read(path).map_err(|source| {
-        let path = path.to_path_buf();
-        if source.kind() == ErrorKind::NotFound {
-            MeshFileError::Missing { path }
-        } else {
-            MeshFileError::Unreadable { path, source }
+    pub(crate) fn error(self, problem: impl Into<String>) -> MeshFileError {
+        MeshFileError::Content {
+            path: self.path.to_path_buf(),
+            line: self.line,
+            problem: problem.into(),
         }
-    })
+    }
+
+    pub(crate) fn number<T: FromStr>(self, word: &str) -> Result<T, MeshFileError> {
+        let word = word.trim();
+        let number = word.parse();
+        number.map_err(|_| self.error(format!("{word:?} is not a number here")))
+    }
+
+    pub(crate) fn numbers<'w, T: FromStr>(
+        self,
+        words: impl IntoIterator<Item = &'w str>,
+    ) -> Result<Vec<T>, MeshFileError> {
+        let words = words.into_iter();
+        words.map(|word| self.number(word)).collect()
+    }
+
+    /// Parses the next three words.
+    pub(crate) fn coordinates<'w>(
+        self,
+        mut words: impl Iterator<Item = &'w str>,
+    ) -> Result<[f64; 3], MeshFileError> {
+        let mut point = [0.0; 3];
+        for coordinate in &mut point {
+            let word = words.next();
+            let word = word.ok_or_else(|| self.error("a point needs three coordinates"))?;
+            *coordinate = self.number(word)?;
+        }
+        Ok(point)
+    }
+
+    /// Returns the position of a vertex or node if it is finite.
+    pub(crate) fn position(
+        self,
+        vertex: impl Display,
+        point: [f64; 3],
+    ) -> Result<Vec3, MeshFileError> {
+        if point.iter().all(|coordinate| coordinate.is_finite()) {
+            return Ok(Vec3::from(point));
+        }
+        let problem =
+            format!("{vertex} has a coordinate that is not a finite number; repair the mesh");
+        Err(self.error(problem))
+    }
+
+    /// Returns the `N` corners of an element or cell as labels of nodes.
+    pub(crate) fn corners<const N: usize>(
+        self,
+        element: impl Display,
+        nodes: &[i64],
+    ) -> Result<[u64; N], MeshFileError> {
+        let corners = <[i64; N]>::try_from(nodes).map_err(|_| {
+            let count = nodes.len();
+            self.error(format!("{element} has {count} corners; its type has {N}"))
+        })?;
+        Ok(corners.map(i64::cast_unsigned))
+    }
+
+    /// Error of a polygon or element that names a vertex that the file does not have.
+    ///
+    /// `numbering` names those that it has: "from 0 to 11".
+    pub(crate) fn no_such_vertex(
+        self,
+        element: impl Display,
+        vertex: i64,
+        numbering: impl Display,
+    ) -> MeshFileError {
+        self.error(format!(
+            "{element} names vertex {vertex}, but the file numbers its vertices {numbering}"
+        ))
+    }
+}
+
+/// The rows of a text file that are not blank, trimmed, each with its place.
+pub(crate) struct Rows<'t> {
+    path: &'t Path,
+    lines: Enumerate<Lines<'t>>,
+}
+
+impl<'t> Rows<'t> {
+    pub(crate) fn new(path: &'t Path, content: &'t str) -> Self {
+        let lines = content.lines().enumerate();
+        Self { path, lines }
+    }
+
+    /// Returns the next row; its absence is an error.
+    pub(crate) fn required(&mut self) -> Result<(At<'t>, &'t str), MeshFileError> {
+        let path = self.path;
+        self.next()
+            .ok_or_else(|| At::file(path).error("ends in the middle of a section; was it cut off?"))
+    }
+}
+
+impl<'t> Iterator for Rows<'t> {
+    type Item = (At<'t>, &'t str);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let path = self.path;
+        let rows = self.lines.by_ref();
+        rows.map(|(index, row)| (At::line(path, index + 1), row.trim()))
+            .find(|(_, row)| !row.is_empty())
+    }
 }

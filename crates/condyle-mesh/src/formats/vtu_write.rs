@@ -5,10 +5,10 @@
 //! the array have another offset from then on, which may well be that of a later block. Where the
 //! array of the later block stands first, it is found first.
 
-use crate::Vec3;
 use condyle_fem::HexMesh;
 
 use super::error::MeshFileError;
+use crate::Vec3;
 
 /// Values at the nodes.
 #[derive(Clone, Copy, Debug)]
@@ -19,55 +19,17 @@ pub enum PointValues<'a> {
     Float32(&'a [f32]),
     /// Vectors, written as Float64 of three components.
     Vectors(&'a [[f64; 3]]),
-    /// Written as UInt8; values of 0 and 1 come back as a node set and a surface.
+    /// Written as UInt8; values of 0 and 1 are read back as a node set and a surface.
     UInt8(&'a [u8]),
 }
 
-/// A named array with one value or vector a node.
+/// A named array with one value or vector per node.
 #[derive(Clone, Copy, Debug)]
 pub struct PointArray<'a> {
     /// Name with the unit in it, such as `wear_depth_mm`.
     pub name: &'a str,
-    /// One value or vector a node of the mesh.
+    /// One value or vector per node of the mesh.
     pub values: PointValues<'a>,
-}
-
-impl PointValues<'_> {
-    fn len(self) -> usize {
-        match self {
-            Self::Float64(values) => values.len(),
-            Self::Float32(values) => values.len(),
-            Self::Vectors(values) => values.len(),
-            Self::UInt8(values) => values.len(),
-        }
-    }
-
-    fn kind(self) -> &'static str {
-        match self {
-            Self::Float64(_) | Self::Vectors(_) => "Float64",
-            Self::Float32(_) => "Float32",
-            Self::UInt8(_) => "UInt8",
-        }
-    }
-
-    fn components(self) -> usize {
-        match self {
-            Self::Vectors(_) => 3,
-            Self::Float64(_) | Self::Float32(_) | Self::UInt8(_) => 1,
-        }
-    }
-
-    fn bytes(self) -> Vec<u8> {
-        match self {
-            Self::Float64(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Self::Float32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Self::Vectors(vectors) => {
-                let values = vectors.as_flattened().iter();
-                values.flat_map(|v| v.to_le_bytes()).collect()
-            }
-            Self::UInt8(values) => values.to_vec(),
-        }
-    }
 }
 
 /// Cells of one kind between nodes.
@@ -82,71 +44,100 @@ pub struct Grid<'a> {
 }
 
 impl<'a> Grid<'a> {
-    /// Triangles, anticlockwise seen from outside.
+    /// A grid of triangles, anticlockwise seen from outside.
     pub fn triangles(nodes: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
-        Self {
-            nodes,
-            corners: triangles.as_flattened(),
-            corners_of_cell: 3,
-            kind: 5,
-        }
+        Self::new(nodes, triangles, 5)
     }
 
-    /// Quads, anticlockwise seen from outside.
+    /// A grid of quads, anticlockwise seen from outside.
     pub fn quads(nodes: &'a [Vec3], quads: &'a [[u32; 4]]) -> Self {
+        Self::new(nodes, quads, 9)
+    }
+
+    fn new<const N: usize>(nodes: &'a [Vec3], cells: &'a [[u32; N]], kind: u8) -> Self {
         Self {
             nodes,
-            corners: quads.as_flattened(),
-            corners_of_cell: 4,
-            kind: 9,
+            corners: cells.as_flattened(),
+            corners_of_cell: N,
+            kind,
         }
-    }
-
-    fn hexahedra(mesh: &'a HexMesh) -> Self {
-        Self {
-            nodes: &mesh.nodes,
-            corners: mesh.hexes.as_flattened(),
-            corners_of_cell: 8,
-            kind: 12,
-        }
-    }
-
-    fn cells(&self) -> usize {
-        self.corners.len() / self.corners_of_cell
     }
 }
 
-/// How many bytes coordinates and node numbers take.
-#[derive(Clone, Copy)]
-enum Width {
-    /// Eight each.
-    Whole,
-    /// Four each.
-    Compact,
-}
-
-/// A `.vtu` file of the mesh with its arrays, as bytes.
+/// Returns a `.vtu` file of the mesh with its arrays, as bytes.
 ///
 /// # Errors
-/// [`MeshFileError::ArrayLength`] where an array does not have one value a node.
+/// [`MeshFileError::ArrayLength`] if an array does not have one value per node.
 pub fn vtu_bytes(mesh: &HexMesh, arrays: &[PointArray]) -> Result<Vec<u8>, MeshFileError> {
-    grid_bytes(&Grid::hexahedra(mesh), Width::Whole, arrays)
+    let grid = Grid::new(&mesh.nodes, &mesh.hexes, 12);
+    grid_bytes(&grid, arrays, false)
 }
 
-/// A `.vtu` file for pictures, as bytes: coordinates of 32 bits, which is 1e-6 mm in a knee.
+/// Returns a `.vtu` file for pictures, as bytes: coordinates of 32 bits, which resolve 1e-6 mm in a knee.
 ///
 /// # Errors
 /// As [`vtu_bytes`].
 pub fn compact_vtu_bytes(grid: &Grid, arrays: &[PointArray]) -> Result<Vec<u8>, MeshFileError> {
-    grid_bytes(grid, Width::Compact, arrays)
+    grid_bytes(grid, arrays, true)
 }
 
-fn grid_bytes(grid: &Grid, width: Width, arrays: &[PointArray]) -> Result<Vec<u8>, MeshFileError> {
-    for array in arrays {
-        check_length(grid, array)?;
+/// An array with the attributes of its XML element, and its bytes behind the XML.
+struct DataArray<'a> {
+    name: &'a str,
+    kind: &'static str,
+    components: usize,
+    bytes: Vec<u8>,
+}
+
+fn le_bytes<T, const N: usize>(
+    values: impl IntoIterator<Item = T>,
+    to_bytes: fn(T) -> [u8; N],
+) -> Vec<u8> {
+    values.into_iter().flat_map(to_bytes).collect()
+}
+
+impl<'a> DataArray<'a> {
+    /// Encodes an array, if it has a value for each of some nodes.
+    fn at_nodes(array: &PointArray<'a>, nodes: usize) -> Result<Self, MeshFileError> {
+        let doubles = |values: &[f64]| le_bytes(values.iter().copied(), f64::to_le_bytes);
+        let (kind, components, values, bytes) = match array.values {
+            PointValues::Float64(v) => ("Float64", 1, v.len(), doubles(v)),
+            PointValues::Vectors(v) => ("Float64", 3, v.len(), doubles(v.as_flattened())),
+            PointValues::Float32(v) => {
+                let bytes = le_bytes(v.iter().copied(), f32::to_le_bytes);
+                ("Float32", 1, v.len(), bytes)
+            }
+            PointValues::UInt8(v) => ("UInt8", 1, v.len(), v.to_vec()),
+        };
+        if values != nodes {
+            let name = array.name.to_string();
+            return Err(MeshFileError::ArrayLength {
+                name,
+                values,
+                nodes,
+            });
+        }
+        Ok(Self {
+            name: array.name,
+            kind,
+            components,
+            bytes,
+        })
     }
-    let data = data_arrays(grid, width, arrays);
-    let mut bytes = xml(grid, &data, arrays.len()).into_bytes();
+
+    /// Returns the length of its block: a byte count of eight bytes, then the bytes.
+    fn block_length(&self) -> usize {
+        8 + self.bytes.len()
+    }
+}
+
+fn grid_bytes(grid: &Grid, arrays: &[PointArray], compact: bool) -> Result<Vec<u8>, MeshFileError> {
+    let arrays = arrays.iter();
+    let at_nodes = arrays.map(|array| DataArray::at_nodes(array, grid.nodes.len()));
+    let mut data: Vec<DataArray> = at_nodes.collect::<Result<_, _>>()?;
+    let count = data.len();
+    data.extend(mesh_arrays(grid, compact));
+    let mut bytes = xml(grid, &data, count).into_bytes();
     for array in data.iter().rev() {
         bytes.extend_from_slice(&(array.bytes.len() as u64).to_le_bytes());
         bytes.extend_from_slice(&array.bytes);
@@ -155,87 +146,69 @@ fn grid_bytes(grid: &Grid, width: Width, arrays: &[PointArray]) -> Result<Vec<u8
     Ok(bytes)
 }
 
-fn check_length(grid: &Grid, array: &PointArray) -> Result<(), MeshFileError> {
-    let (values, nodes) = (array.values.len(), grid.nodes.len());
-    if values == nodes {
-        return Ok(());
-    }
-    let name = array.name.to_string();
-    Err(MeshFileError::ArrayLength {
+/// Encodes points, connectivity, offsets and types, in the order of the XML; `compact` numbers take 32 bits.
+fn mesh_arrays(grid: &Grid, compact: bool) -> [DataArray<'static>; 4] {
+    let places = grid
+        .nodes
+        .iter()
+        .flat_map(|place| [place.x, place.y, place.z]);
+    let cells = grid.corners.len() / grid.corners_of_cell;
+    let ends = (1..=cells as u32).map(|cell| grid.corners_of_cell as u32 * cell);
+    let integers = |numbers: &mut dyn Iterator<Item = u32>| {
+        if compact {
+            le_bytes(numbers, u32::to_le_bytes)
+        } else {
+            le_bytes(numbers.map(i64::from), i64::to_le_bytes)
+        }
+    };
+    let points = if compact {
+        le_bytes(places.map(|v| v as f32), f32::to_le_bytes)
+    } else {
+        le_bytes(places, f64::to_le_bytes)
+    };
+    let (float, integer) = if compact {
+        ("Float32", "Int32")
+    } else {
+        ("Float64", "Int64")
+    };
+    [
+        ("Points", float, 3, points),
+        (
+            "connectivity",
+            integer,
+            1,
+            integers(&mut grid.corners.iter().copied()),
+        ),
+        ("offsets", integer, 1, integers(&mut { ends })),
+        ("types", "UInt8", 1, vec![grid.kind; cells]),
+    ]
+    .map(|(name, kind, components, bytes)| DataArray {
         name,
-        values,
-        nodes,
+        kind,
+        components,
+        bytes,
     })
 }
 
-/// An array as its element in the XML names it, and its bytes behind the XML.
-struct DataArray {
-    kind: &'static str,
-    name: String,
-    components: usize,
-    bytes: Vec<u8>,
-}
-
-impl DataArray {
-    /// Length of its block: a byte count of eight bytes, then the bytes.
-    fn block_length(&self) -> usize {
-        8 + self.bytes.len()
-    }
-
-    fn element(&self, offset: usize) -> String {
+/// Returns everything before the bytes; the first `at_nodes` of the arrays are values at the nodes.
+fn xml(grid: &Grid, data: &[DataArray], at_nodes: usize) -> String {
+    let mut offset: usize = data.iter().map(DataArray::block_length).sum();
+    let mut elements = data.iter().map(|array| {
+        offset -= array.block_length();
         // Readers take an array without a count for a plain list, one with a count of 1 for a column.
-        let count = match self.components {
+        let count = match array.components {
             1 => String::new(),
             components => format!(" NumberOfComponents=\"{components}\""),
         };
         format!(
             "<DataArray type=\"{}\" Name=\"{}\"{count} format=\"appended\" offset=\"{offset}\"/>\n",
-            self.kind,
-            escaped(&self.name)
+            array.kind,
+            escaped(array.name)
         )
-    }
-}
-
-/// All arrays in the order of the XML: values at the nodes, points, cells.
-fn data_arrays(grid: &Grid, width: Width, arrays: &[PointArray]) -> Vec<DataArray> {
-    let array = |kind, name: &str, components, bytes| DataArray {
-        kind,
-        name: name.to_owned(),
-        components,
-        bytes,
-    };
-    let (float, integer) = width.kinds();
-    let cells = grid.cells();
-    let mut corners = grid.corners.iter().map(|&node| node.into());
-    let mut ends = (1..=cells).map(|cell| (grid.corners_of_cell * cell) as i64);
-    let at_nodes = arrays.iter().map(|given| {
-        let values = given.values;
-        array(
-            values.kind(),
-            given.name,
-            values.components(),
-            values.bytes(),
-        )
-    });
-    let of_mesh = [
-        array(float, "Points", 3, width.floats(grid.nodes)),
-        array(integer, "connectivity", 1, width.integers(&mut corners)),
-        array(integer, "offsets", 1, width.integers(&mut ends)),
-        array("UInt8", "types", 1, vec![grid.kind; cells]),
-    ];
-    at_nodes.chain(of_mesh).collect()
-}
-
-/// Everything before the bytes; the first `at_nodes` of the arrays are values at the nodes.
-fn xml(grid: &Grid, data: &[DataArray], at_nodes: usize) -> String {
-    let (node_count, cell_count) = (grid.nodes.len(), grid.cells());
-    let mut offset: usize = data.iter().map(DataArray::block_length).sum();
-    let mut elements = data.iter().map(|array| {
-        offset -= array.block_length();
-        array.element(offset)
     });
     let mut next = |count: usize| elements.by_ref().take(count).collect::<String>();
     let (point_data, points, cells) = (next(at_nodes), next(1), next(3));
+    let (node_count, cell_count) = (grid.nodes.len(), grid.corners.len() / grid.corners_of_cell);
     format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
          byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n\
@@ -246,32 +219,7 @@ fn xml(grid: &Grid, data: &[DataArray], at_nodes: usize) -> String {
     )
 }
 
-impl Width {
-    /// VTK's names of the kinds of floating numbers and integers.
-    fn kinds(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Whole => ("Float64", "Int64"),
-            Self::Compact => ("Float32", "Int32"),
-        }
-    }
-
-    fn floats(self, places: &[Vec3]) -> Vec<u8> {
-        let values = places.iter().flat_map(|place| [place.x, place.y, place.z]);
-        match self {
-            Self::Whole => values.flat_map(f64::to_le_bytes).collect(),
-            Self::Compact => values.flat_map(|v| (v as f32).to_le_bytes()).collect(),
-        }
-    }
-
-    fn integers(self, numbers: &mut dyn Iterator<Item = i64>) -> Vec<u8> {
-        match self {
-            Self::Whole => numbers.flat_map(i64::to_le_bytes).collect(),
-            Self::Compact => numbers.flat_map(|n| (n as i32).to_le_bytes()).collect(),
-        }
-    }
-}
-
-/// Text as the value of an XML attribute.
+/// Escapes text as the value of an XML attribute.
 pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
@@ -281,8 +229,8 @@ pub(super) fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::fixtures::{message, two_cubes};
-    use crate::formats::on_disk::{read_vtu_points, write_vtu};
+    use crate::formats::tests::{message, two_cubes};
+    use crate::formats::{read_vtu_points, write_vtu};
 
     #[test]
     fn a_file_is_written_and_read_back() {

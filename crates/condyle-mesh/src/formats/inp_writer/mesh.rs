@@ -195,9 +195,9 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::formats::fixtures::two_cubes;
     use crate::formats::inp;
     use crate::formats::inp_writer::writer::tests::written;
+    use crate::formats::tests::two_cubes;
 
     #[test]
     fn a_mesh_with_sets_and_surface_is_read_back() {
