@@ -89,7 +89,14 @@ impl ElasticSolid {
         for some in columns.chunks(AT_ONCE) {
             let solved = solved(&self.factor, some, &felt, &wanted);
             for (solved, some) in solved.iter().zip(some.chunks(Columns::COLUMNS)) {
-                compliance.take(solved, &rows, some);
+                for &(place, node) in &rows {
+                    for k in 0..3 {
+                        let row = &mut compliance.values[(3 * node + k) * forces.len()..];
+                        for (column, &(_, force)) in some.iter().enumerate() {
+                            row[force] = solved.at(3 * place as usize + k, column);
+                        }
+                    }
+                }
             }
         }
         compliance
@@ -116,20 +123,6 @@ fn solved(
     }
     factor.solve_some(&mut solved, &loaded, wanted);
     solved
-}
-
-impl Compliance {
-    /// Copies solved columns to their places.
-    fn take(&mut self, solved: &Columns, rows: &[(u32, usize)], columns: &[(u32, usize)]) {
-        for &(place, node) in rows {
-            for k in 0..3 {
-                let row = &mut self.values[(3 * node + k) * self.forces..][..self.forces];
-                for (column, &(_, force)) in columns.iter().enumerate() {
-                    row[force] = solved.at(3 * place as usize + k, column);
-                }
-            }
-        }
-    }
 }
 
 /// Four forces by all that go side by side: twelve sums stay in registers.
@@ -178,10 +171,17 @@ impl ElasticSolid {
             self.load(forces, &mut memory);
             factor.solve_half(&felt, &mut memory)
         });
+        let strips = strips.collect();
+        let mut end = 0;
+        let groups = felt.iter().map(|&group| {
+            let start = end;
+            end += factor.own_freedoms(group).len();
+            (group, start..end)
+        });
         HalfSolved {
             forces: forces.len(),
-            strips: strips.collect(),
-            groups: rows_of(factor, &felt),
+            groups: groups.collect(),
+            strips,
         }
     }
 
@@ -197,17 +197,6 @@ impl ElasticSolid {
             }
         }
     }
-}
-
-/// The rows of groups, one after the other.
-fn rows_of(factor: &Factor, groups: &[usize]) -> Vec<(usize, Range<usize>)> {
-    let mut end = 0;
-    let rows = groups.iter().map(|&group| {
-        let start = end;
-        end += factor.own_freedoms(group).len();
-        (group, start..end)
-    });
-    rows.collect()
 }
 
 impl HalfSolved {

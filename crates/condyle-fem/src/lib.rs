@@ -71,14 +71,12 @@ mod support;
 #[cfg(test)]
 mod tests;
 
-pub use compliance::Compliance;
-pub use compliance::HalfSolved;
+pub use compliance::{Compliance, HalfSolved};
 pub use eigenstrain::{ElementMean, YieldingElement};
 pub use elastic::{Elastic, ElasticError};
 pub use follow::InteriorFollower;
 pub use material::{Material, Response, Softening};
-pub use mesh::HexMesh;
-pub use mesh::{HEX_FACES, trilinear_volume, volume_below};
+pub use mesh::{HEX_FACES, HexMesh, trilinear_volume, volume_below};
 pub use plastic::{ElasticPlastic, Hardening, HardeningError, PlasticPoint};
 pub use plastic_solid::{PlasticError, PlasticSolid, PlasticSolution, PlasticState};
 pub use solid::{ElasticSolid, SolidError};

@@ -103,58 +103,14 @@ pub struct Hardening {
     kinematic_modulus: f64,
 }
 
-/// A hardening curve that is none.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum HardeningError {
-    /// The curve does not begin at yield.
-    #[error(
-        "the hardening curve must start at plastic strain 0 with the yield stress, but starts at {strain}; plastic strain is what is left of the strain after unloading"
-    )]
-    DoesNotStartAtYield {
-        /// Plastic strain of the first point.
-        strain: f64,
-    },
-    /// The curve has no point.
-    #[error(
-        "the hardening curve has no point; give at least the yield stress, at plastic strain 0"
-    )]
-    Empty,
-    /// The yield stress is not positive.
-    #[error("the yield stress is {stress}; it must be a positive number")]
-    Yield {
-        /// That stress.
-        stress: f64,
-    },
-    /// The plastic strain does not rise.
-    #[error(
-        "point {point} of the hardening curve has plastic strain {strain}, which is not above {before} of the point before"
-    )]
-    Order {
-        /// Number of the point, from 1.
-        point: usize,
-        /// Its plastic strain.
-        strain: f64,
-        /// The value of the point before.
-        before: f64,
-    },
-    /// The stress falls.
-    #[error(
-        "the hardening curve falls at point {point}, from {before} to {stress}; a material that softens has no unique answer on a mesh"
-    )]
-    Falls {
-        /// Number of the point, from 1.
-        point: usize,
-        /// Its stress.
-        stress: f64,
-        /// The value of the point before.
-        before: f64,
-    },
-    /// The kinematic modulus is negative or no number.
-    #[error("the kinematic hardening modulus is {modulus}; it must be 0 or positive")]
-    Kinematic {
-        /// That modulus.
-        modulus: f64,
-    },
+/// A hardening curve that no material has.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{problem}")]
+pub struct HardeningError {
+    /// Index of the point at fault, from 0; 0 if no single point is.
+    pub point: usize,
+    /// The problem and its remedy.
+    pub problem: String,
 }
 
 impl Hardening {
@@ -164,20 +120,51 @@ impl Hardening {
     /// If the table does not start at plastic strain 0, has a stress that is not positive or falls, or strains
     /// that do not rise; or if the modulus is negative.
     pub fn new(points: Vec<(f64, f64)>, kinematic_modulus: f64) -> Result<Self, HardeningError> {
-        let &(strain, stress) = points.first().ok_or(HardeningError::Empty)?;
+        let fault = |point, problem: String| Err(HardeningError { point, problem });
+        let Some(&(strain, stress)) = points.first() else {
+            let problem = "the hardening curve has no point; give at least the yield stress, at plastic strain 0";
+            return fault(0, problem.to_owned());
+        };
         if strain != 0.0 {
-            return Err(HardeningError::DoesNotStartAtYield { strain });
+            return fault(
+                0,
+                format!(
+                    "the hardening curve must start at plastic strain 0 with the yield stress, but starts at \
+                     {strain}; plastic strain is the strain that remains after unloading"
+                ),
+            );
         }
         if !(stress > 0.0 && stress.is_finite()) {
-            return Err(HardeningError::Yield { stress });
+            let problem = format!("the yield stress is {stress}; it must be a positive number");
+            return fault(0, problem);
         }
-        for (at, ends) in points.windows(2).enumerate() {
-            checked_piece(at + 2, ends[0], ends[1])?;
+        for (before, ends) in points.windows(2).enumerate() {
+            let [(strain0, stress0), (strain, stress)] = [ends[0], ends[1]];
+            let (point, number) = (before + 1, before + 2);
+            if strain.is_nan() || strain <= strain0 {
+                return fault(
+                    point,
+                    format!(
+                        "point {number} of the hardening curve has plastic strain {strain}, which is not above \
+                         {strain0} of the point before"
+                    ),
+                );
+            }
+            if stress.is_nan() || stress < stress0 {
+                return fault(
+                    point,
+                    format!(
+                        "the hardening curve falls at point {number}, from {stress0} to {stress}; a material that \
+                         softens has no unique answer on a mesh"
+                    ),
+                );
+            }
         }
         if !(kinematic_modulus >= 0.0 && kinematic_modulus.is_finite()) {
-            return Err(HardeningError::Kinematic {
-                modulus: kinematic_modulus,
-            });
+            let problem = format!(
+                "the kinematic hardening modulus is {kinematic_modulus}; it must be 0 or positive"
+            );
+            return fault(0, problem);
         }
         Ok(Self {
             points,
@@ -241,24 +228,6 @@ impl Hardening {
             .map_or(0.0, |next| (next.1 - stress) / (next.0 - strain));
         (strain, stress, slope)
     }
-}
-
-fn checked_piece(point: usize, before: (f64, f64), here: (f64, f64)) -> Result<(), HardeningError> {
-    if here.0.is_nan() || here.0 <= before.0 {
-        return Err(HardeningError::Order {
-            point,
-            strain: here.0,
-            before: before.0,
-        });
-    }
-    if here.1.is_nan() || here.1 < before.1 {
-        return Err(HardeningError::Falls {
-            point,
-            stress: here.1,
-            before: before.1,
-        });
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -48,7 +48,7 @@ impl<'a> CurvedMesh<'a> {
     /// beside. There the normals of the smooth vertices beside it are mirrored over the middle of the edge
     /// between, which is exact on a ball.
     pub fn corner_normals(&self) -> Vec<[Vec3; 3]> {
-        let around = self.triangles_around();
+        let around = self.mesh.triangles_around();
         let smooth: Vec<bool> = around.iter().map(|star| self.is_smooth(star)).collect();
         let corner = |triangle: usize, vertex: u32| {
             if smooth[vertex as usize] {
@@ -67,16 +67,6 @@ impl<'a> CurvedMesh<'a> {
         triangles
             .map(|(triangle, vertices)| vertices.map(|vertex| corner(triangle, vertex)))
             .collect()
-    }
-
-    fn triangles_around(&self) -> Vec<Vec<u32>> {
-        let mut around = vec![Vec::new(); self.mesh.vertices.len()];
-        for (triangle, vertices) in self.mesh.triangles.iter().enumerate() {
-            for &vertex in vertices {
-                around[vertex as usize].push(triangle as u32);
-            }
-        }
-        around
     }
 
     /// Whether no two of some triangles lean from one another.

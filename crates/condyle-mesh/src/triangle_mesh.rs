@@ -75,6 +75,17 @@ impl TriangleMesh {
             .collect()
     }
 
+    /// Returns the triangles around each vertex, rising.
+    pub(crate) fn triangles_around(&self) -> Vec<Vec<u32>> {
+        let mut around = vec![Vec::new(); self.vertices.len()];
+        for (triangle, vertices) in (0..).zip(&self.triangles) {
+            for &vertex in vertices {
+                around[vertex as usize].push(triangle);
+            }
+        }
+        around
+    }
+
     /// The mesh with every vertex moved by `map`, which keeps left and right.
     pub fn mapped(mut self, map: impl Fn(&Vec3) -> Vec3) -> Self {
         self.vertices

@@ -149,7 +149,7 @@ impl J2Plasticity {
     /// Which point is wrong, and why.
     fn checked(&self) -> Result<(), (usize, PlasticityReason)> {
         let curve = self.hardening();
-        curve.map_err(|error| (place_of(&error), PlasticityReason::Hardening(error)))?;
+        curve.map_err(|error| (error.point, PlasticityReason::Hardening(error)))?;
         let first = self.hardening.as_ref().and_then(|points| points.first());
         let yield_stress_mpa = self.first.yield_stress_mpa;
         match first {
@@ -162,17 +162,6 @@ impl J2Plasticity {
             }
             Some(_) | None => Ok(()),
         }
-    }
-}
-
-/// Which point an error is about, from 0.
-fn place_of(error: &HardeningError) -> usize {
-    match *error {
-        HardeningError::Order { point, .. } | HardeningError::Falls { point, .. } => point - 1,
-        HardeningError::DoesNotStartAtYield { .. }
-        | HardeningError::Yield { .. }
-        | HardeningError::Kinematic { .. }
-        | HardeningError::Empty => 0,
     }
 }
 

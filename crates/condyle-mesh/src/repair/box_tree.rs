@@ -185,7 +185,7 @@ fn size(node: &BoxNode) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::repair::fixtures::strip;
+    use crate::repair::tests::strip;
 
     #[test]
     fn every_close_pair_is_visited_once() {

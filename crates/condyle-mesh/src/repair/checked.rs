@@ -1,4 +1,4 @@
-//! A triangle mesh checked as a shell, and repaired.
+//! A triangle mesh checked as the surface of a body, and repaired.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use super::{
     holes::{close_holes, join},
     parts::{LeftOut, Parts, take_out_parts},
     touching::Touching,
-    weld::{collapse_slivers, drop_unused, make_single, weld, without_degenerate},
+    weld::{collapse_slivers, drop_unused, make_single, remove_degenerate, weld},
 };
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 
@@ -19,35 +19,35 @@ use crate::{Vec3, triangle_mesh::TriangleMesh};
 pub struct CheckedMesh {
     /// The mesh: no degenerate triangles, neighbours turned alike, facing outwards if closed.
     pub mesh: TriangleMesh,
-    /// No edge has only one triangle.
+    /// True if no edge has only one triangle.
     pub closed: bool,
-    /// The mesh came inside-out and was turned round. For an open surface it is not known which
-    /// side is out: this stays false, and the caller decides.
+    /// True if the mesh was inside-out and has been turned. An open surface has no known outside: this stays
+    /// false, and the caller decides.
     pub turned_round: bool,
-    /// Triangles turned to agree with the majority of their neighbours.
+    /// Number of triangles turned to agree with the majority of their neighbours.
     pub made_consistent: usize,
-    /// Triangles without area that were taken out.
+    /// Number of triangles without area that were removed.
     pub removed_degenerate: usize,
-    /// Pairs of neighbouring triangles that cross a little: a flaw to warn of, left as it is.
+    /// Number of pairs of neighbouring triangles that cross a little: a flaw to warn of, left as it is.
     pub wrinkles: usize,
-    /// What was put right, and what was left because nothing touches there.
+    /// Defects that were repaired, and those left because nothing touches there.
     pub defects: Vec<Defect>,
-    /// Parts of the file that are not of the body.
+    /// Parts of the file that do not belong to the body.
     pub left_out: Vec<LeftOut>,
 }
 
-/// How a triangle mesh is taken as the shell of a body.
+/// Settings of the check of a triangle mesh as the surface of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checks {
-    /// Where a defect matters.
+    /// The part of the surface on which defects matter.
     pub touching: Touching,
-    /// Which parts of the file are the body.
+    /// The parts of the file that are the body.
     pub parts: Parts,
     /// Height along y below which the mesh is cut away and closed flat, mm; all of it if none.
     pub clip_below_mm: Option<f64>,
 }
 
-/// [`Checks::check`] where every defect matters that is not put right.
+/// Runs [`Checks::check`] with every defect that is not repaired as an error.
 ///
 /// # Errors
 /// As [`Checks::check`].
@@ -61,30 +61,27 @@ pub fn checked_mesh(mesh: TriangleMesh) -> Result<CheckedMesh, RepairError> {
 }
 
 impl Checks {
-    /// Checks a triangle mesh as a shell and repairs what can be repaired for certain.
+    /// Checks a triangle mesh as the surface of a body and repairs what can be repaired for certain.
     ///
     /// Wherever they are, vertices of open edges are welded within 5e-5 of the diagonal of the mesh, triangles
     /// are split at vertices that lie on their open edges, slivers thinner than 1e-5 of the diagonal collapse
-    /// where the surface stays what it is, doubled faces become single, triangles without area go, triangles are
-    /// turned so that neighbours agree, with the majority, and a closed shell that is inside-out is turned.
+    /// where the surface keeps its shape, doubled faces become single, triangles without area are removed, triangles
+    /// are turned so that neighbours agree, with the majority, and a closed surface that is inside-out is turned.
     ///
-    /// Parts that are not of the body are taken out first; what is wrong with them does not matter.
+    /// Parts that do not belong to the body are removed first; their defects do not matter.
     ///
-    /// Away from where another body can touch, open pieces and inner walls beside a closed body are left out and
+    /// Away from where another body can touch, open pieces and inner walls next to a closed body are left out and
     /// holes are closed, flat from edge to edge; edges of three or more triangles and crossings are left.
     ///
-    /// What counts as a crossing, and what as a wrinkle that is let pass, is said at
-    /// [`crossings`](super::crossings).
+    /// Two triangles cross if only a shift of more than a thousandth of their edges parts them. Neighbours that
+    /// cross by less than 1/500 of the diagonal are a wrinkle, which is only counted.
     ///
     /// # Errors
     /// [`RepairError`]: no triangles, or defects where another body can touch.
     pub fn check(&self, mesh: TriangleMesh) -> Result<CheckedMesh, RepairError> {
         refuse_tangles(&mesh)?;
-        let Mended {
-            mut mesh,
-            defects,
-            removed_degenerate,
-        } = mended(mesh);
+        let mut mesh = mesh;
+        let (defects, removed_degenerate) = clean(&mut mesh);
         if let Some(height_mm) = self.clip_below_mm {
             mesh = clip_below(&mesh, height_mm);
             drop_unused(&mut mesh);
@@ -92,96 +89,104 @@ impl Checks {
         if mesh.triangles.is_empty() {
             return Err(RepairError::Empty);
         }
+        let mut uses = edge_uses(&mesh);
+        let mut oriented = orient(&mut mesh, &uses);
+        let left_out = match self.parts {
+            Parts::All => Vec::new(),
+            Parts::SeenFromAbove => take_out_parts(&mut mesh, &oriented.pieces),
+        };
+        if !left_out.is_empty() {
+            // The triangles have other numbers, and a hollow may have lost the body around it.
+            uses = edge_uses(&mesh);
+            let again = orient(&mut mesh, &uses);
+            oriented = Oriented {
+                turned_round: oriented.turned_round || again.turned_round,
+                made_consistent: oriented.made_consistent,
+                ..again
+            };
+        }
         let mut judge = Judge::new(self.touching, defects);
-        let Body {
-            uses,
-            oriented,
-            left_out,
-        } = Body::of(&mut mesh, self.parts);
         judge_edges(&mesh, &uses, &oriented.one_sided, &mut judge);
-        let Oriented {
-            turned_round,
-            made_consistent,
-            ..
-        } = oriented;
         let pieces = without_fragments(&mut mesh, oriented.pieces, &mut judge);
         close_holes(&mut mesh, &pieces, &mut judge);
-        let wrinkles = judge_crossings(&mesh, &mut judge);
+        let crossings = crossings(&mesh);
+        for &(_, at_mm) in &crossings.found {
+            judge.judge(&mesh, DefectKind::Crossing, at_mm, &[at_mm]);
+        }
+        if let Some(at_mm) = crossings.gave_up_at_mm {
+            judge.refuse(DefectKind::Tangle, at_mm);
+        }
         if !judge.that_matter.is_empty() {
             let defects = judge.that_matter;
             return Err(RepairError::Defects { defects });
         }
+        // Pieces that were closed before are still.
+        let was_closed = pieces.iter().all(|piece| !piece.is_open);
         Ok(CheckedMesh {
-            closed: is_closed(&mesh, &pieces),
+            closed: was_closed || by_edge(&edge_uses(&mesh)).all(|edge| edge.len() > 1),
             mesh,
-            turned_round,
-            made_consistent,
+            turned_round: oriented.turned_round,
+            made_consistent: oriented.made_consistent,
             removed_degenerate,
-            wrinkles,
+            wrinkles: crossings.wrinkles,
             defects: judge.others,
             left_out,
         })
     }
 }
 
-/// What is left of a file without parts that are not of the body, its triangles turned.
-struct Body {
-    uses: Vec<EdgeUse>,
-    oriented: Oriented,
-    left_out: Vec<LeftOut>,
-}
-
-impl Body {
-    fn of(mesh: &mut TriangleMesh, parts: Parts) -> Self {
-        let uses = edge_uses(mesh);
-        let oriented = orient(mesh, &uses);
-        let left_out = match parts {
-            Parts::All => Vec::new(),
-            Parts::SeenFromAbove => take_out_parts(mesh, &oriented.pieces),
-        };
-        if left_out.is_empty() {
-            return Self {
-                uses,
-                oriented,
-                left_out,
-            };
-        }
-        let uses = edge_uses(mesh);
-        let again = orient(mesh, &uses);
-        Self {
-            uses,
-            oriented: Oriented {
-                turned_round: oriented.turned_round || again.turned_round,
-                made_consistent: oriented.made_consistent,
-                ..again
-            },
-            left_out,
-        }
-    }
-}
-
-/// Triangles a vertex that are no surface with doubled faces any more: that has two, or some multiple.
-const MAX_TRIANGLES_A_VERTEX: usize = 16;
+/// Triangles per vertex beyond which they are no surface, not even one with doubled faces: a surface has two.
+const MAX_TRIANGLES_PER_VERTEX: usize = 16;
 /// So few triangles take no time, whatever they are.
 const FEW_TRIANGLES: usize = 1000;
 
-/// Refuses triangles so many times as many as vertices, before anything is done with them.
+/// Refuses a mesh of many times more triangles than vertices before any other step, since it would take for ever.
 fn refuse_tangles(mesh: &TriangleMesh) -> Result<(), RepairError> {
-    let most = FEW_TRIANGLES + MAX_TRIANGLES_A_VERTEX * mesh.vertices.len();
-    if mesh.triangles.len() <= most {
+    let max = FEW_TRIANGLES + MAX_TRIANGLES_PER_VERTEX * mesh.vertices.len();
+    if mesh.triangles.len() <= max {
         return Ok(());
     }
     let (low, high) = mesh.bounds();
-    let defect = Defect {
-        kind: DefectKind::Tangle,
-        count: 1,
-        places_mm: vec![(low + high) / 2.0],
-    };
-    let defects = vec![defect];
+    let mut defects = Vec::new();
+    add(&mut defects, DefectKind::Tangle, (low + high) / 2.0);
     Err(RepairError::Defects { defects })
 }
 
-/// Judges edges of three triangles or more, and those across which the surface comes back turned.
+/// Gap between vertices over the diagonal of the mesh that is welded: 0.005 mm for an implant, some of the
+/// roundings of a text file in metres, and an eighth of the shortest edge of the real meshes at hand.
+const WELDED: f64 = 5e-5;
+/// Thickness over the diagonal of the mesh below which a triangle is a sliver: 0.001 mm for an implant.
+const THIN: f64 = 1e-5;
+
+/// Welds open edges, removes triangles without area, slivers and doubled faces, and joins vertices to the
+/// edges that they lie on. Returns the defects repaired and the number of triangles without area.
+fn clean(mesh: &mut TriangleMesh) -> (Vec<Defect>, usize) {
+    let (low, high) = mesh.bounds();
+    let diagonal = (high - low).norm();
+    let mut defects = Vec::new();
+    let mut note = |kind, places: &[Vec3]| {
+        for &at in places {
+            add(&mut defects, kind, at);
+        }
+    };
+    let uses = edge_uses(mesh);
+    let is_open = by_edge(&uses).any(|edge| edge.len() == 1);
+    if is_open {
+        note(DefectKind::Unwelded, &weld(mesh, &uses, WELDED * diagonal));
+    }
+    let removed_degenerate = remove_degenerate(mesh);
+    note(DefectKind::Sliver, &collapse_slivers(mesh, THIN * diagonal));
+    note(DefectKind::Doubled, &make_single(mesh));
+    if is_open {
+        note(DefectKind::Joint, &join(mesh, WELDED * diagonal));
+    }
+    if !defects.is_empty() {
+        drop_unused(mesh);
+    }
+    (defects, removed_degenerate)
+}
+
+/// Judges edges of three triangles or more, and those across which the surface returns turned over.
 fn judge_edges(mesh: &TriangleMesh, uses: &[EdgeUse], one_sided: &[Vec3], judge: &mut Judge) {
     for edge in by_edge(uses).filter(|edge| edge.len() > 2) {
         let ends = edge[0].ends.map(|end| mesh.vertices[end as usize]);
@@ -193,112 +198,34 @@ fn judge_edges(mesh: &TriangleMesh, uses: &[EdgeUse], one_sided: &[Vec3], judge:
     }
 }
 
-/// Leaves out the open pieces beside a closed body where nothing touches; gives the pieces of what is left.
+/// Leaves out the open pieces next to a closed body, judges them, and returns the remaining pieces.
 fn without_fragments(mesh: &mut TriangleMesh, pieces: Vec<Piece>, judge: &mut Judge) -> Vec<Piece> {
-    let areas: Vec<f64> = pieces.iter().map(|piece| area(mesh, piece)).collect();
-    let largest = (0..pieces.len()).max_by(|&one, &other| areas[one].total_cmp(&areas[other]));
-    let body_is_open = largest.is_some_and(|body| pieces[body].is_open);
+    let area = |piece: &Piece| -> f64 {
+        let double = |&triangle: &u32| {
+            let [a, b, c] = mesh.corners(triangle as usize);
+            (b - a).cross(&(c - a)).norm()
+        };
+        piece.triangles.iter().map(double).sum()
+    };
+    let areas = pieces.iter().map(|piece| (area(piece), piece));
+    let body = areas.max_by(|(one, _), (other, _)| one.total_cmp(other));
+    let body_is_open = body.is_some_and(|(_, body)| body.is_open);
     if body_is_open || pieces.iter().all(|piece| !piece.is_open) {
         return pieces;
     }
     let (open, closed): (Vec<Piece>, Vec<Piece>) =
         pieces.into_iter().partition(|piece| piece.is_open);
     for piece in &open {
-        let corners = piece
-            .triangles
-            .iter()
-            .flat_map(|&triangle| mesh.corners(triangle as usize));
+        let corners = piece.vertices(mesh).map(|v| mesh.vertices[v as usize]);
         let corners: Vec<Vec3> = corners.collect();
         let middle = corners.iter().sum::<Vec3>() / corners.len() as f64;
         judge.judge(mesh, DefectKind::Fragment, middle, &corners);
     }
     let kept = closed.iter().flat_map(|piece| &piece.triangles);
-    mesh.triangles = kept
-        .map(|&triangle| mesh.triangles[triangle as usize])
-        .collect();
+    let kept = kept.map(|&triangle| mesh.triangles[triangle as usize]);
+    mesh.triangles = kept.collect();
     drop_unused(mesh);
     closed
-}
-
-fn area(mesh: &TriangleMesh, piece: &Piece) -> f64 {
-    let double = |&triangle: &u32| {
-        let [a, b, c] = mesh.corners(triangle as usize);
-        (b - a).cross(&(c - a)).norm()
-    };
-    piece.triangles.iter().map(double).sum()
-}
-
-/// Judges crossings; gives how many pairs only wrinkle.
-fn judge_crossings(mesh: &TriangleMesh, judge: &mut Judge) -> usize {
-    let crossings = crossings(mesh);
-    for crossing in &crossings.found {
-        judge.judge(
-            mesh,
-            DefectKind::Crossing,
-            crossing.at_mm,
-            &[crossing.at_mm],
-        );
-    }
-    if let Some(at_mm) = crossings.gave_up_at_mm {
-        judge.refuse(DefectKind::Tangle, at_mm);
-    }
-    crossings.wrinkles
-}
-
-/// Whether no edge is open; pieces that were closed before are still.
-fn is_closed(mesh: &TriangleMesh, pieces: &[Piece]) -> bool {
-    let was_closed = pieces.iter().all(|piece| !piece.is_open);
-    was_closed || by_edge(&edge_uses(mesh)).all(|edge| edge.len() > 1)
-}
-
-/// Gap between vertices over the diagonal of the mesh that is welded: 0.005 mm for an implant, some of the
-/// roundings of a text file in metres, and an eighth of the shortest edge of the real meshes at hand.
-const WELDED: f64 = 5e-5;
-/// Thickness over the diagonal of the mesh below which a triangle is a sliver: 0.001 mm for an implant.
-const THIN: f64 = 1e-5;
-
-/// A mesh that was mended, and what was done.
-pub(super) struct Mended {
-    pub(super) mesh: TriangleMesh,
-    pub(super) defects: Vec<Defect>,
-    pub(super) removed_degenerate: usize,
-}
-
-/// Welds open edges, takes out triangles without area, slivers and doubled faces, and joins vertices to the
-/// edges that they lie on.
-pub(super) fn mended(mesh: TriangleMesh) -> Mended {
-    let (low, high) = mesh.bounds();
-    let diagonal = (high - low).norm();
-    let mut defects = Vec::new();
-    let mut note =
-        |kind, places: Vec<Vec3>| places.iter().for_each(|&at| add(&mut defects, kind, at));
-    let mut mesh = mesh;
-    let uses = edge_uses(&mesh);
-    let is_open = by_edge(&uses).any(|edge| edge.len() == 1);
-    if is_open {
-        note(
-            DefectKind::Unwelded,
-            weld(&mut mesh, &uses, WELDED * diagonal),
-        );
-    }
-    let cleaned = without_degenerate(mesh);
-    mesh = cleaned.mesh;
-    note(
-        DefectKind::Sliver,
-        collapse_slivers(&mut mesh, THIN * diagonal),
-    );
-    note(DefectKind::Doubled, make_single(&mut mesh));
-    if is_open {
-        note(DefectKind::Joint, join(&mut mesh, WELDED * diagonal));
-    }
-    if !defects.is_empty() {
-        drop_unused(&mut mesh);
-    }
-    Mended {
-        mesh,
-        defects,
-        removed_degenerate: cleaned.removed,
-    }
 }
 
 #[cfg(test)]
@@ -306,7 +233,7 @@ mod tests {
     use super::*;
     use crate::{
         Vec3,
-        repair::fixtures::{self, joined, unit_block},
+        repair::tests::{self as fixtures, joined, unit_block},
     };
 
     fn inside_out(mut mesh: TriangleMesh) -> TriangleMesh {

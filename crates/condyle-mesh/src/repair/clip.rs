@@ -1,4 +1,4 @@
-//! What of a mesh lies above a height, closed flat there.
+//! Cuts a mesh at a height and closes it flat there.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 
-/// Vertices so near to the height lie on it, mm: a thousandth of what is worn in a test.
+/// Vertices this near to the height are moved onto it, mm: a thousandth of the wear of a test. Otherwise slivers remain.
 const ON_MM: f64 = 1e-4;
 
 /// Cuts away what lies below a height along y, and closes the cut with triangles that face down.
@@ -16,11 +16,16 @@ pub(super) fn clip_below(mesh: &TriangleMesh, height_mm: f64) -> TriangleMesh {
     let mut clip = Clip {
         height_mm,
         cut: TriangleMesh {
-            vertices: mesh.vertices.iter().map(|at| onto(at, height_mm)).collect(),
+            vertices: mesh.vertices.clone(),
             triangles: Vec::new(),
         },
         on_edge: BTreeMap::new(),
     };
+    for at in &mut clip.cut.vertices {
+        if (at.y - height_mm).abs() < ON_MM {
+            at.y = height_mm;
+        }
+    }
     mesh.triangles
         .iter()
         .for_each(|&triangle| clip.add(triangle));
@@ -28,14 +33,6 @@ pub(super) fn clip_below(mesh: &TriangleMesh, height_mm: f64) -> TriangleMesh {
     fill(&mut clip.cut, &loops, &-Vec3::y());
     join_filled(&mut clip.cut);
     clip.cut
-}
-
-fn onto(at: &Vec3, height_mm: f64) -> Vec3 {
-    if (at.y - height_mm).abs() < ON_MM {
-        Vec3::new(at.x, height_mm, at.z)
-    } else {
-        *at
-    }
 }
 
 struct Clip {
@@ -46,23 +43,19 @@ struct Clip {
 }
 
 impl Clip {
-    fn above(&self, vertex: u32) -> f64 {
-        self.cut.vertices[vertex as usize].y - self.height_mm
-    }
-
-    /// Adds what of a triangle lies above.
+    /// Adds the part of a triangle that lies above.
     fn add(&mut self, triangle: [u32; 3]) {
-        if triangle.iter().all(|&vertex| self.above(vertex) <= 0.0) {
+        let above = triangle.map(|v| self.cut.vertices[v as usize].y - self.height_mm);
+        if above.iter().all(|&height| height <= 0.0) {
             return;
         }
         let mut kept = Vec::with_capacity(4);
-        for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (triangle[i], triangle[j])) {
-            let (start, end) = (self.above(from), self.above(to));
-            if start >= 0.0 {
-                kept.push(from);
+        for (from, to) in [(0, 1), (1, 2), (2, 0)] {
+            if above[from] >= 0.0 {
+                kept.push(triangle[from]);
             }
-            if start * end < 0.0 {
-                kept.push(self.passing(from, to));
+            if above[from] * above[to] < 0.0 {
+                kept.push(self.crossing(triangle[from], triangle[to]));
             }
         }
         for ends in kept[1..].windows(2) {
@@ -70,7 +63,8 @@ impl Clip {
         }
     }
 
-    fn passing(&mut self, from: u32, to: u32) -> u32 {
+    /// Returns the vertex where an edge passes the height, the same for both triangles of the edge.
+    fn crossing(&mut self, from: u32, to: u32) -> u32 {
         let ends = [from.min(to), from.max(to)];
         let [a, b] = ends.map(|end| self.cut.vertices[end as usize]);
         let mut at = a + (b - a) * ((self.height_mm - a.y) / (b.y - a.y));
@@ -83,48 +77,43 @@ impl Clip {
     }
 }
 
-/// The loops of open edges that lie at a height.
+/// Returns the loops of open edges at a height. Triangles may not agree yet, so edges have no direction.
 fn loops_at(mesh: &TriangleMesh, height_mm: f64) -> Vec<Vec<u32>> {
     let lies_there = |vertex: u32| mesh.vertices[vertex as usize].y == height_mm;
-    let mut beside: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    let mut neighbours: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for edge in by_edge(&edge_uses(mesh)) {
         let [a, b] = edge[0].ends;
         if edge.len() == 1 && lies_there(a) && lies_there(b) {
-            beside.entry(a).or_default().push(b);
-            beside.entry(b).or_default().push(a);
+            neighbours.entry(a).or_default().push(b);
+            neighbours.entry(b).or_default().push(a);
         }
     }
     let mut loops = Vec::new();
-    while let Some((&start, ends)) = beside.first_key_value() {
+    while let Some((&start, ends)) = neighbours.first_key_value() {
         if ends.is_empty() {
-            beside.remove(&start);
+            neighbours.remove(&start);
             continue;
         }
-        let around = walk(&mut beside, start);
+        // Along edges, each once, until the way ends or returns to its start.
+        let mut around = vec![start];
+        let mut at = start;
+        while let Some(to) = neighbours.get_mut(&at).and_then(Vec::pop) {
+            if let Some(back) = neighbours.get_mut(&to)
+                && let Some(index) = back.iter().position(|&other| other == at)
+            {
+                back.swap_remove(index);
+            }
+            if to == start {
+                break;
+            }
+            around.push(to);
+            at = to;
+        }
         if around.len() > 2 {
             loops.push(around);
         }
     }
     loops
-}
-
-/// The vertices on the way from one along edges, each gone once, until it ends or comes back.
-fn walk(beside: &mut BTreeMap<u32, Vec<u32>>, start: u32) -> Vec<u32> {
-    let mut around = vec![start];
-    let mut at = start;
-    while let Some(to) = beside.get_mut(&at).and_then(Vec::pop) {
-        if let Some(back) = beside.get_mut(&to)
-            && let Some(index) = back.iter().position(|&other| other == at)
-        {
-            back.swap_remove(index);
-        }
-        if to == start {
-            break;
-        }
-        around.push(to);
-        at = to;
-    }
-    around
 }
 
 #[cfg(test)]
@@ -135,7 +124,7 @@ mod tests {
     use crate::repair::{
         checked_mesh,
         crossing::{Crossings, crossings},
-        fixtures::{fine_block, joined},
+        tests::{fine_block, joined},
     };
 
     #[test]

@@ -2,165 +2,126 @@
 
 use std::ops::ControlFlow;
 
-use super::{
-    box_tree::BoxTree,
-    edges::{EdgeUse, edge_uses},
-};
+use super::{box_tree::BoxTree, edges::edge_uses};
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 
-/// Two triangles that cut one another.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Crossing {
-    /// Numbers of the triangles, the lower first.
-    pub triangles: [usize; 2],
-    /// A point of the cut, in the unit of the mesh.
-    pub at_mm: Vec3,
-}
-
-/// How a mesh crosses itself.
+/// The crossings of a mesh with itself.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Crossings {
-    /// Crossings that are no wrinkle, by the numbers of their triangles.
-    pub found: Vec<Crossing>,
-    /// Where the search ended because too many triangles lie on one another, in the unit of the mesh.
-    pub gave_up_at_mm: Option<Vec3>,
-    /// Pairs of triangles that cross as part of a wrinkle.
-    pub wrinkles: usize,
+pub(super) struct Crossings {
+    /// Pairs of triangles whose cut is no wrinkle, rising, each with a point of the cut, mm.
+    pub(super) found: Vec<([usize; 2], Vec3)>,
+    /// The place where the search ended because too many triangles lie on one another.
+    pub(super) gave_up_at_mm: Option<Vec3>,
+    /// Number of pairs of triangles that cross as part of a wrinkle.
+    pub(super) wrinkles: usize,
 }
 
-impl Crossings {
-    /// Shift that parts two triangles, over the shorter of their longest edges, below which they
-    /// only touch.
-    ///
-    /// Single-precision coordinates of 100 mm are rounded to 8e-6 mm, which is 2e-4 of an edge of
-    /// 0.04 mm, the shortest of the real meshes at hand.
-    pub const MIN_DEPTH: f64 = 1e-3;
+/// Shift that parts two triangles, over the shorter of their longest edges, below which they only touch.
+///
+/// Single-precision coordinates of 100 mm are rounded to 8e-6 mm, which is 2e-4 of an edge of
+/// 0.04 mm, the shortest of the real meshes at hand.
+const MIN_DEPTH: f64 = 1e-3;
 
-    /// Depth over the diagonal of the mesh up to which neighbours that cross are a wrinkle.
-    ///
-    /// Remeshed scans have such knots of a few elements (up to 0.1 mm on an insert of 97 mm); the
-    /// surface around is sound, and a contact patch does not feel them.
-    pub const WRINKLE_DEPTH: f64 = 1.0 / 500.0;
+/// Depth over the diagonal of the mesh up to which neighbours that cross are a wrinkle.
+///
+/// Remeshed scans have such knots of a few elements (up to 0.1 mm on an insert of 97 mm); the
+/// surface around is sound, and a contact patch does not feel them.
+const WRINKLE_DEPTH: f64 = 1.0 / 500.0;
 
-    /// So many crossings are no flaw of a surface but no surface: no more are looked for.
-    const MANY: usize = 10_000;
+/// The search ends at this many crossings: they are no flaw of a surface but no surface.
+const MAX_CROSSINGS: usize = 10_000;
 
-    /// Part of a triangle left out at the corner that it shares with another: there they touch
-    /// as they should.
-    const LEFT_OUT: f64 = 0.05;
-}
+/// Part of a triangle left out at the corner that it shares with another, where the two touch rightly.
+const LEFT_OUT: f64 = 0.05;
 
 /// Finds where a triangle mesh passes through itself.
 ///
-/// Two triangles cross if only a shift of more than [`Crossings::MIN_DEPTH`] parts them. Those
-/// that share an edge or overlap in one plane do not; those that share a corner are compared
-/// without what lies next to that corner. A pair is a wrinkle if a corner of one is a corner of
-/// the other or joined to one by an edge, and it is no deeper than [`Crossings::WRINKLE_DEPTH`]:
+/// Two triangles cross if only a shift of more than [`MIN_DEPTH`] parts them. Those that share an edge or overlap in
+/// one plane do not; those that share a corner are compared without the region of that corner. A pair is a wrinkle if
+/// a corner of one is a corner of the other or joined to one by an edge, and it is no deeper than [`WRINKLE_DEPTH`]:
 /// two sheets that cross are never such neighbours all along.
-pub fn crossings(mesh: &TriangleMesh) -> Crossings {
-    let (low, high) = mesh.bounds();
-    let shallow = Crossings::WRINKLE_DEPTH * (high - low).norm();
-    let (pairs, gave_up) = crossing_pairs(mesh);
-    if pairs.is_empty() && gave_up.is_none() {
-        return Crossings::default();
-    }
-    let uses = edge_uses(mesh);
-    let is_wrinkle = |pair: &CrossingPair| {
-        pair.depth <= shallow && are_neighbours(&uses, pair.triangles.map(|t| mesh.triangles[t]))
-    };
-    let (wrinkles, deep): (Vec<_>, Vec<_>) = pairs.iter().partition(|pair| is_wrinkle(pair));
-    let mut found: Vec<Crossing> = deep
-        .iter()
-        .map(|pair| crossing(mesh, pair.triangles))
-        .collect();
-    found.sort_unstable_by_key(|crossing| crossing.triangles);
-    Crossings {
-        found,
-        gave_up_at_mm: gave_up.map(|[one, other]| crossing(mesh, [one, other]).at_mm),
-        wrinkles: wrinkles.len(),
-    }
-}
-
-fn crossing(mesh: &TriangleMesh, triangles: [usize; 2]) -> Crossing {
-    let [one, other] = triangles.map(|triangle| mesh.corners(triangle));
-    let at_mm = meeting_point(&one, &other);
-    Crossing { triangles, at_mm }
-}
-
-struct CrossingPair {
-    triangles: [usize; 2],
-    depth: f64,
-}
-
-/// The pairs that cross, until they are [`Crossings::MANY`], and where the search was given up.
-fn crossing_pairs(mesh: &TriangleMesh) -> (Vec<CrossingPair>, Option<[usize; 2]>) {
-    let mut pairs = Vec::new();
+pub(super) fn crossings(mesh: &TriangleMesh) -> Crossings {
+    let mut pairs: Vec<([usize; 2], f64)> = Vec::new();
     let gave_up = BoxTree::new(mesh).for_close_pairs(|one, other| {
         let triangles = [one.min(other), one.max(other)];
-        if let Some(depth) = crossing_depth(mesh, triangles) {
-            pairs.push(CrossingPair { triangles, depth });
-        }
-        if pairs.len() == Crossings::MANY {
+        pairs.extend(crossing_depth(mesh, triangles).map(|depth| (triangles, depth)));
+        if pairs.len() == MAX_CROSSINGS {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     });
-    (pairs, gave_up)
-}
-
-/// A corner of one is a corner of the other, or an edge joins the two.
-fn are_neighbours(uses: &[EdgeUse], [one, other]: [[u32; 3]; 2]) -> bool {
+    if pairs.is_empty() && gave_up.is_none() {
+        return Crossings::default();
+    }
+    let (low, high) = mesh.bounds();
+    let shallow = WRINKLE_DEPTH * (high - low).norm();
+    let uses = edge_uses(mesh);
     let is_edge = |a: u32, b: u32| {
         let ends = [a.min(b), a.max(b)];
         uses.binary_search_by_key(&ends, |edge| edge.ends).is_ok()
     };
-    one.iter()
-        .any(|&a| other.iter().any(|&b| a == b || is_edge(a, b)))
+    let are_neighbours = |triangles: [usize; 2]| {
+        let [one, other] = triangles.map(|triangle| mesh.triangles[triangle]);
+        let mut corners = one.iter().flat_map(|&a| other.map(|b| (a, b)));
+        corners.any(|(a, b)| a == b || is_edge(a, b))
+    };
+    let is_wrinkle = |&(triangles, depth)| depth <= shallow && are_neighbours(triangles);
+    let place = |triangles: [usize; 2]| {
+        let [one, other] = triangles.map(|triangle| mesh.corners(triangle));
+        meeting_point(&one, &other)
+    };
+    let deep = pairs.iter().filter(|pair| !is_wrinkle(*pair));
+    let mut found: Vec<_> = deep.map(|&(pair, _)| (pair, place(pair))).collect();
+    found.sort_unstable_by_key(|(triangles, _)| *triangles);
+    Crossings {
+        gave_up_at_mm: gave_up.map(place),
+        wrinkles: pairs.len() - found.len(),
+        found,
+    }
 }
 
-/// Depth of the cut of two triangles, if they cross.
+/// Returns the depth of the cut of two triangles, if they cross.
 fn crossing_depth(mesh: &TriangleMesh, pair: [usize; 2]) -> Option<f64> {
     let [one, other] = pair.map(|triangle| mesh.triangles[triangle]);
-    let shared = one.map(|vertex| other.contains(&vertex));
-    let corners = pair.map(|triangle| mesh.corners(triangle));
-    if are_parted_by_a_plane(&corners[0], &corners[1]) {
+    let [mut first, mut second] = pair.map(|triangle| mesh.corners(triangle));
+    if are_parted_by_a_plane(&first, &second) {
         return None;
     }
-    let least = Crossings::MIN_DEPTH * longest_edge(&corners[0]).min(longest_edge(&corners[1]));
-    let [first, second] = match shared.iter().filter(|&&is_shared| is_shared).count() {
-        0 => corners,
+    let [longest, other_longest] = [&first, &second].map(|corners| {
+        let [a, b, c] = edges(corners).map(|edge| edge.norm());
+        a.max(b).max(c)
+    });
+    let min_depth = MIN_DEPTH * longest.min(other_longest);
+    let is_shared = one.map(|vertex| other.contains(&vertex));
+    match is_shared.iter().filter(|&&is_shared| is_shared).count() {
+        0 => {}
         1 => {
-            let places = [
-                shared.iter().position(|&is_shared| is_shared),
-                other.iter().position(|vertex| one.contains(vertex)),
-            ];
-            [0, 1].map(|i| without_corner(corners[i], places[i].unwrap_or_default()))
+            let corner = is_shared.iter().position(|&is_shared| is_shared);
+            cut_corner(&mut first, corner.unwrap_or_default());
+            let corner = other.iter().position(|vertex| one.contains(vertex));
+            cut_corner(&mut second, corner.unwrap_or_default());
         }
         _ => return None,
-    };
-    depth_above(least, &first, &second)
+    }
+    depth_above(min_depth, &first, &second)
 }
 
-fn longest_edge([a, b, c]: &Corners) -> f64 {
-    (b - a).norm().max((c - b).norm()).max((a - c).norm())
-}
-
-fn without_corner(mut corners: Corners, corner: usize) -> Corners {
+/// Moves a corner a little towards the middle of the opposite edge.
+fn cut_corner(corners: &mut Corners, corner: usize) {
     let opposite = (corners[(corner + 1) % 3] + corners[(corner + 2) % 3]) / 2.0;
-    corners[corner] += Crossings::LEFT_OUT * (opposite - corners[corner]);
-    corners
+    corners[corner] += LEFT_OUT * (opposite - corners[corner]);
 }
 
 /// Corners of a triangle.
-pub(super) type Corners = [Vec3; 3];
+type Corners = [Vec3; 3];
 
-/// How far one of two triangles must be shifted for them to part, if that is more than `least`.
+/// Returns the shortest shift of one of two triangles that parts them, if it is more than `min_depth` >= 0.
 ///
 /// By the separating-axis theorem the shortest such shift is along the normal of one of the two or
 /// across an edge of each (eleven directions). It is 0 for triangles that touch or lie in one
 /// plane, so the test needs no exact arithmetic: rounding moves the depth by some 1e-16 of the
-/// coordinates. `least` must not be negative.
-pub(super) fn depth_above(least: f64, first: &Corners, second: &Corners) -> Option<f64> {
+/// coordinates.
+fn depth_above(min_depth: f64, first: &Corners, second: &Corners) -> Option<f64> {
     let origin = first[0];
     let [first, second] = [first, second].map(|corners| corners.map(|corner| corner - origin));
     let [along_first, along_second] = [edges(&first), edges(&second)];
@@ -178,8 +139,13 @@ pub(super) fn depth_above(least: f64, first: &Corners, second: &Corners) -> Opti
         if length_squared <= 1e-20 * scale {
             continue;
         }
-        let along = overlap(&axis, &first, &second);
-        if along <= 0.0 || along * along <= least * least * length_squared {
+        // Shift along the axis, times its length, that parts the shadows of the two triangles.
+        let [(low, high), (other_low, other_high)] = [&first, &second].map(|corners| {
+            let [a, b, c] = corners.each_ref().map(|corner| corner.dot(&axis));
+            (a.min(b).min(c), a.max(b).max(c))
+        });
+        let along = (high - other_low).min(other_high - low);
+        if along <= 0.0 || along * along <= min_depth * min_depth * length_squared {
             return None;
         }
         depth = depth.min(along / length_squared.sqrt());
@@ -187,8 +153,8 @@ pub(super) fn depth_above(least: f64, first: &Corners, second: &Corners) -> Opti
     Some(depth)
 }
 
-/// Whether the plane of the first triangle has the second on one side; most pairs end here.
-pub(super) fn are_parted_by_a_plane(first: &Corners, second: &Corners) -> bool {
+/// Returns whether the plane of the first triangle has the second on one side; most pairs end here.
+fn are_parted_by_a_plane(first: &Corners, second: &Corners) -> bool {
     let normal = (first[1] - first[0]).cross(&(first[2] - first[0]));
     let [a, b, c] = second.map(|corner| normal.dot(&(corner - first[0])));
     (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0)
@@ -198,19 +164,8 @@ fn edges([a, b, c]: &Corners) -> [Vec3; 3] {
     [b - a, c - b, a - c]
 }
 
-/// Shift along `axis`, times its length, that parts the shadows of the two triangles.
-fn overlap(axis: &Vec3, first: &Corners, second: &Corners) -> f64 {
-    let [(low, high), (other_low, other_high)] = [shadow(axis, first), shadow(axis, second)];
-    (high - other_low).min(other_high - low)
-}
-
-fn shadow(axis: &Vec3, corners: &Corners) -> (f64, f64) {
-    let [a, b, c] = corners.each_ref().map(|corner| corner.dot(axis));
-    (a.min(b).min(c), a.max(b).max(c))
-}
-
-/// A point that two crossing triangles share: where an edge of one pierces the other.
-pub(super) fn meeting_point(first: &Corners, second: &Corners) -> Vec3 {
+/// Returns a point that two crossing triangles share: an edge of one pierces the other there.
+fn meeting_point(first: &Corners, second: &Corners) -> Vec3 {
     let pierced = piercing(first, second).or_else(|| piercing(second, first));
     // Edges that just miss by rounding: the crossing is between the two.
     pierced.unwrap_or_else(|| (first.iter().sum::<Vec3>() + second.iter().sum::<Vec3>()) / 6.0)
@@ -218,25 +173,24 @@ pub(super) fn meeting_point(first: &Corners, second: &Corners) -> Vec3 {
 
 fn piercing(edges_of: &Corners, plate: &Corners) -> Option<Vec3> {
     let normal = (plate[1] - plate[0]).cross(&(plate[2] - plate[0]));
+    let is_within = |at: &Vec3| {
+        (0..3).all(|i| {
+            let (from, to) = (plate[i], plate[(i + 1) % 3]);
+            (to - from).cross(&(at - from)).dot(&normal) >= 0.0
+        })
+    };
     (0..3).find_map(|i| {
         let (from, to) = (edges_of[i], edges_of[(i + 1) % 3]);
         let [above, below] = [from, to].map(|end| normal.dot(&(end - plate[0])));
         let at = from + (to - from) * (above / (above - below));
-        (above * below < 0.0 && is_within(&at, plate, &normal)).then_some(at)
-    })
-}
-
-fn is_within(at: &Vec3, plate: &Corners, normal: &Vec3) -> bool {
-    (0..3).all(|i| {
-        let (from, to) = (plate[i], plate[(i + 1) % 3]);
-        (to - from).cross(&(at - from)).dot(normal) >= 0.0
+        (above * below < 0.0 && is_within(&at)).then_some(at)
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::repair::fixtures::{joined, strip, unit_block};
+    use crate::repair::tests::{joined, strip, unit_block};
 
     #[test]
     fn sound_shells_do_not_cross() {
@@ -281,8 +235,9 @@ mod tests {
             mesh.triangles
                 .extend([corners, corners.map(|corner| corner + 3)]);
         }
-        assert_eq!(crossing_pairs(&mesh).0.len(), Crossings::MANY);
-        assert!(!crossings(&mesh).found.is_empty());
+        let crossings = crossings(&mesh);
+        assert_eq!(crossings.found.len() + crossings.wrinkles, MAX_CROSSINGS);
+        assert!(!crossings.found.is_empty());
     }
 
     #[test]
@@ -313,9 +268,9 @@ mod tests {
             vertices: vertices.map(Vec3::from).to_vec(),
             triangles: vec![[0, 1, 2], [0, 3, 4]],
         };
-        let crossing = crossings(&mesh).found.remove(0);
-        assert_eq!(crossing.triangles, [0, 1]);
-        assert!(crossing.at_mm.z.abs() < 1e-14 && crossing.at_mm.y.abs() < 1e-14);
+        let (triangles, at_mm) = crossings(&mesh).found.remove(0);
+        assert_eq!(triangles, [0, 1]);
+        assert!(at_mm.z.abs() < 1e-14 && at_mm.y.abs() < 1e-14);
         let apart = mesh.clone().mapped(|v| {
             if v.z < 0.0 {
                 Vec3::new(2.0, 0.0, 0.5)
@@ -329,8 +284,8 @@ mod tests {
     #[test]
     fn crossings_come_by_the_numbers_of_their_triangles() {
         let wall = TriangleMesh::block(Vec3::new(-1.0, 0.4, -50.0), Vec3::new(30.5, 0.6, 50.0));
-        let crossing = crossings(&joined(strip(40, 0.1), wall)).found.remove(0);
-        assert_eq!(crossing.triangles[0], 0);
+        let (triangles, _) = crossings(&joined(strip(40, 0.1), wall)).found.remove(0);
+        assert_eq!(triangles[0], 0);
     }
 
     /// A sheet of squares of 1 mm, `steps` a side, with one vertex pulled through its neighbours.

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Vec3, triangle_mesh::TriangleMesh};
+use crate::{
+    Vec3,
+    triangle_mesh::{TriangleMesh, bounds},
+};
 
 /// One side of one triangle.
 #[derive(Clone, Copy)]
@@ -14,7 +17,7 @@ pub(super) struct EdgeUse {
     pub(super) rises: bool,
 }
 
-/// All sides of all triangles, those of one edge together.
+/// Returns all sides of all triangles, those of one edge together.
 pub(super) fn edge_uses(mesh: &TriangleMesh) -> Vec<EdgeUse> {
     let mut uses = Vec::with_capacity(3 * mesh.triangles.len());
     for (triangle, &[a, b, c]) in (0..).zip(&mesh.triangles) {
@@ -28,68 +31,71 @@ pub(super) fn edge_uses(mesh: &TriangleMesh) -> Vec<EdgeUse> {
     uses
 }
 
-/// The uses, edge by edge.
+/// Returns the uses of each edge.
 pub(super) fn by_edge(uses: &[EdgeUse]) -> impl Iterator<Item = &[EdgeUse]> {
     uses.chunk_by(|one, other| one.ends == other.ends)
 }
 
-/// How the triangles of a mesh hang together, without any repair.
+/// Connections of the triangles of a mesh, without any repair.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EdgeReport {
-    /// Edges with one triangle only.
+    /// Number of edges with one triangle only.
     pub open_edges: usize,
     /// Vertices round each hole or along each rim, in the sense of the triangles.
     pub boundary_loops: Vec<Vec<u32>>,
     /// Edges with three triangles or more.
     pub non_manifold_edges: Vec<[u32; 2]>,
-    /// Edges whose two triangles are turned against one another.
+    /// Number of edges whose two triangles are turned against one another.
     pub inconsistent_edges: usize,
 }
 
 impl EdgeReport {
-    /// Every edge has exactly two triangles.
+    /// Returns true if every edge has exactly two triangles.
     pub fn is_closed(&self) -> bool {
         self.open_edges == 0 && self.non_manifold_edges.is_empty()
     }
 }
 
 /// Reports open, non-manifold and inconsistent edges of a triangle mesh as it is.
+///
+/// ```
+/// use condyle_mesh::{TriangleMesh, Vec3, repair::edge_report};
+///
+/// let mut block = TriangleMesh::block(Vec3::zeros(), Vec3::repeat(1.0));
+/// assert!(edge_report(&block).is_closed());
+/// block.triangles.pop();
+/// assert_eq!(edge_report(&block).open_edges, 3);
+/// ```
 pub fn edge_report(mesh: &TriangleMesh) -> EdgeReport {
     let uses = edge_uses(mesh);
     let mut report = EdgeReport::default();
-    let mut next = BTreeMap::new();
+    let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for edge in by_edge(&uses) {
         match edge {
             [only] => {
                 let [low, high] = only.ends;
                 let (from, to) = if only.rises { (low, high) } else { (high, low) };
-                next.entry(from).or_insert_with(Vec::new).push(to);
+                next.entry(from).or_default().push(to);
                 report.open_edges += 1;
             }
             [one, other] => report.inconsistent_edges += usize::from(one.rises == other.rises),
             several => report.non_manifold_edges.push(several[0].ends),
         }
     }
-    report.boundary_loops = loops(next);
-    report
-}
-
-/// Follows the rim from vertex to vertex until it ends or comes back.
-fn loops(mut next: BTreeMap<u32, Vec<u32>>) -> Vec<Vec<u32>> {
-    let mut loops = Vec::new();
+    // Every rim is followed from vertex to vertex until it ends or returns to its start.
     while let Some((&start, _)) = next.first_key_value() {
         let mut around = vec![start];
         let mut at = start;
-        while let Some(to) = step(&mut next, at).filter(|&to| to != start) {
+        while let Some(to) = take_next(&mut next, at).filter(|&to| to != start) {
             around.push(to);
             at = to;
         }
-        loops.push(around);
+        report.boundary_loops.push(around);
     }
-    loops
+    report
 }
 
-fn step(next: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
+fn take_next(next: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
     let ends = next.get_mut(&from)?;
     let to = ends.pop();
     if ends.is_empty() {
@@ -98,47 +104,7 @@ fn step(next: &mut BTreeMap<u32, Vec<u32>>, from: u32) -> Option<u32> {
     to
 }
 
-/// What was found and done.
-pub(super) struct Oriented {
-    pub(super) pieces: Vec<Piece>,
-    pub(super) turned_round: bool,
-    pub(super) made_consistent: usize,
-    /// The middles of edges whose triangles cannot agree.
-    pub(super) one_sided: Vec<Vec3>,
-}
-
-/// Turns triangles in place.
-pub(super) fn orient(mesh: &mut TriangleMesh, uses: &[EdgeUse]) -> Oriented {
-    let Agreement { pieces, one_sided } = agreeing_pieces(mesh, uses);
-    let made_consistent = pieces.iter().map(|piece| piece.turned.len()).sum();
-    for &triangle in pieces.iter().flat_map(|piece| &piece.turned) {
-        turn(mesh, triangle);
-    }
-    let bodies: Vec<Body> = pieces
-        .iter()
-        .filter(|piece| !piece.is_open)
-        .map(|piece| Body::new(mesh, piece))
-        .collect();
-    let inside_out: Vec<&Body> = bodies
-        .iter()
-        .filter(|body| body.is_inside_out(&bodies))
-        .collect();
-    for &triangle in inside_out.iter().flat_map(|body| &body.piece.triangles) {
-        turn(mesh, triangle);
-    }
-    Oriented {
-        turned_round: !inside_out.is_empty(),
-        made_consistent,
-        one_sided,
-        pieces,
-    }
-}
-
-fn turn(mesh: &mut TriangleMesh, triangle: u32) {
-    mesh.triangles[triangle as usize].swap(1, 2);
-}
-
-/// Triangles that hang together by edges.
+/// Triangles that are connected by edges.
 pub(super) struct Piece {
     pub(super) triangles: Vec<u32>,
     /// Those of them to be turned for all to agree; never more than half.
@@ -146,16 +112,67 @@ pub(super) struct Piece {
     pub(super) is_open: bool,
 }
 
-/// The pieces, and the middles of edges where triangles cannot agree.
-struct Agreement {
-    pieces: Vec<Piece>,
-    one_sided: Vec<Vec3>,
+impl Piece {
+    /// Returns the vertices of all corners, repeated as the triangles share them.
+    pub(super) fn vertices(&self, mesh: &TriangleMesh) -> impl Iterator<Item = u32> {
+        self.triangles
+            .iter()
+            .flat_map(|&triangle| mesh.triangles[triangle as usize])
+    }
+
+    /// Returns the lowest and highest coordinate along each axis.
+    pub(super) fn bounds(&self, mesh: &TriangleMesh) -> (Vec3, Vec3) {
+        bounds(self.vertices(mesh).map(|v| &mesh.vertices[v as usize]))
+    }
+}
+
+/// Result of turning the triangles of a mesh.
+pub(super) struct Oriented {
+    pub(super) pieces: Vec<Piece>,
+    /// Some closed piece was inside-out.
+    pub(super) turned_round: bool,
+    /// Number of triangles turned to agree with their neighbours.
+    pub(super) made_consistent: usize,
+    /// Middles of edges whose triangles cannot agree.
+    pub(super) one_sided: Vec<Vec3>,
+}
+
+/// Turns triangles in place so that neighbours agree and closed pieces face outwards.
+pub(super) fn orient(mesh: &mut TriangleMesh, uses: &[EdgeUse]) -> Oriented {
+    let (pieces, one_sided) = agreeing_pieces(mesh, uses);
+    let turned = || pieces.iter().flat_map(|piece| &piece.turned);
+    for &triangle in turned() {
+        mesh.triangles[triangle as usize].swap(1, 2);
+    }
+    let closed = pieces.iter().filter(|piece| !piece.is_open);
+    let boxes: Vec<(&Piece, (Vec3, Vec3))> =
+        closed.map(|piece| (piece, piece.bounds(mesh))).collect();
+    // A closed piece that faces inwards is inside-out, unless it is the wall of a hollow within another one.
+    let is_within_another = |(low, high): &(Vec3, Vec3)| {
+        let mut others = boxes.iter().map(|(_, bounds)| bounds);
+        others.any(|(l, h)| (0..3).all(|i| l[i] < low[i] && h[i] > high[i]))
+    };
+    let inside_out = boxes.iter().filter(|(piece, bounds)| {
+        let triangles = piece.triangles.iter().map(|&triangle| triangle as usize);
+        mesh.volume_of(triangles) < 0.0 && !is_within_another(bounds)
+    });
+    let inside_out: Vec<&Piece> = inside_out.map(|(piece, _)| *piece).collect();
+    for &triangle in inside_out.iter().flat_map(|piece| &piece.triangles) {
+        mesh.triangles[triangle as usize].swap(1, 2);
+    }
+    Oriented {
+        turned_round: !inside_out.is_empty(),
+        made_consistent: turned().count(),
+        one_sided,
+        pieces,
+    }
 }
 
 /// The triangle across each side, and whether the two are turned against one another.
 type Neighbours = Vec<Vec<(u32, bool)>>;
 
-fn agreeing_pieces(mesh: &TriangleMesh, uses: &[EdgeUse]) -> Agreement {
+/// Returns the pieces, and the middles of edges where triangles cannot agree.
+fn agreeing_pieces(mesh: &TriangleMesh, uses: &[EdgeUse]) -> (Vec<Piece>, Vec<Vec3>) {
     let count = mesh.triangles.len();
     let mut neighbours: Neighbours = (0..count).map(|_| Vec::with_capacity(3)).collect();
     let mut join = |one: &EdgeUse, other: &EdgeUse| {
@@ -167,51 +184,49 @@ fn agreeing_pieces(mesh: &TriangleMesh, uses: &[EdgeUse]) -> Agreement {
         match edge {
             [one, other] => join(one, other),
             [_] => {}
-            several => outer_pairs(mesh, several)
-                .iter()
-                .for_each(|[one, other]| join(one, other)),
+            several => {
+                let pairs = outer_pairs(mesh, several);
+                pairs.iter().for_each(|[one, other]| join(one, other));
+            }
         }
     }
     let mut is_turned = vec![None; count];
-    let mut one_sided = Vec::new();
-    let mut pieces = Vec::new();
+    let (mut pieces, mut one_sided) = (Vec::new(), Vec::new());
     for seed in 0..count as u32 {
         if is_turned[seed as usize].is_none() {
             let mut clash = |pair| one_sided.push(middle_of_shared_edge(mesh, pair));
             pieces.push(flood(seed, &neighbours, &mut is_turned, &mut clash));
         }
     }
-    Agreement { pieces, one_sided }
+    (pieces, one_sided)
 }
 
-/// Of three triangles or more round an edge those that bound the space outside together: turning from the front of
-/// one, the other is met first, and from its front.
+/// Returns those of three or more triangles round an edge that bound the space outside together: turning from the
+/// front of one, the other is met first, and from its front.
 fn outer_pairs(mesh: &TriangleMesh, round: &[EdgeUse]) -> Vec<[EdgeUse; 2]> {
     let [low, high] = round[0].ends.map(|end| mesh.vertices[end as usize]);
     let axis = (high - low).try_normalize(0.0).unwrap_or_default();
     let aside = axis.cross(&Vec3::ith(axis.iamin(), 1.0));
     let angle = |edge: &EdgeUse| {
-        let corners = mesh.triangles[edge.triangle as usize];
-        let tip = corners
-            .into_iter()
-            .find(|corner| !edge.ends.contains(corner));
-        let way = tip
-            .map(|tip| mesh.vertices[tip as usize] - low)
-            .unwrap_or_default();
+        let corners = mesh.triangles[edge.triangle as usize].into_iter();
+        let tip = corners.clone().find(|corner| !edge.ends.contains(corner));
+        let way = tip.map(|tip| mesh.vertices[tip as usize] - low);
+        let way = way.unwrap_or_default();
         way.dot(&axis.cross(&aside)).atan2(way.dot(&aside))
     };
     let mut sorted: Vec<(f64, EdgeUse)> = round.iter().map(|edge| (angle(edge), *edge)).collect();
     sorted.sort_by(|one, other| one.0.total_cmp(&other.0));
     let next = sorted.iter().cycle().skip(1);
-    sorted
+    let pairs = sorted
         .iter()
         .zip(next)
-        .filter(|((_, one), (_, other))| one.rises && !other.rises)
-        .map(|((_, one), (_, other))| [*one, *other])
+        .map(|((_, one), (_, other))| [*one, *other]);
+    pairs
+        .filter(|[one, other]| one.rises && !other.rises)
         .collect()
 }
 
-/// Spreads the sense of turning from one triangle; `clash` hears of pairs that cannot agree.
+/// Spreads the sense of turning from one triangle; calls `clash` with pairs that cannot agree.
 fn flood(
     seed: u32,
     neighbours: &Neighbours,
@@ -225,89 +240,46 @@ fn flood(
         reached += 1;
         let own = is_turned[triangle as usize] == Some(true);
         for &(neighbour, against) in &neighbours[triangle as usize] {
-            let wanted = own != against;
+            let required = own != against;
             match is_turned[neighbour as usize] {
-                // Seen from the other side as well: one of the two says so.
-                Some(found) if found != wanted && triangle < neighbour => {
+                // The pair is met from its other side as well: one report is enough.
+                Some(found) if found != required && triangle < neighbour => {
                     clash([triangle, neighbour]);
                 }
                 Some(_) => {}
                 None => {
-                    is_turned[neighbour as usize] = Some(wanted);
+                    is_turned[neighbour as usize] = Some(required);
                     triangles.push(neighbour);
                 }
             }
         }
     }
-    let (turned, kept): (Vec<u32>, Vec<u32>) = triangles
-        .iter()
-        .partition(|&&triangle| is_turned[triangle as usize] == Some(true));
-    let is_open = triangles
-        .iter()
-        .any(|&triangle| neighbours[triangle as usize].len() < 3);
-    let turned = if turned.len() > kept.len() {
-        kept
-    } else {
-        turned
-    };
+    let is_turned = |triangle: &&u32| is_turned[**triangle as usize] == Some(true);
+    let (mut turned, kept): (Vec<u32>, Vec<u32>) = triangles.iter().partition(is_turned);
+    if turned.len() > kept.len() {
+        turned = kept;
+    }
+    let mut sides = triangles.iter().map(|&t| neighbours[t as usize].len());
     Piece {
-        triangles,
+        is_open: sides.any(|sides| sides < 3),
         turned,
-        is_open,
+        triangles,
     }
 }
 
-/// The middle of the edge that the two triangles share.
+/// Returns the middle of the edge that two triangles share.
 fn middle_of_shared_edge(mesh: &TriangleMesh, [one, other]: [u32; 2]) -> Vec3 {
     let other = mesh.triangles[other as usize];
-    let shared = mesh.triangles[one as usize]
-        .into_iter()
-        .filter(|vertex| other.contains(vertex));
-    let ends: Vec<Vec3> = shared
-        .map(|vertex| mesh.vertices[vertex as usize])
-        .collect();
+    let corners = mesh.triangles[one as usize].into_iter();
+    let shared = corners.filter(|vertex| other.contains(vertex));
+    let ends: Vec<Vec3> = shared.map(|v| mesh.vertices[v as usize]).collect();
     ends.iter().sum::<Vec3>() / ends.len() as f64
-}
-
-/// A closed piece with its box.
-struct Body<'p> {
-    piece: &'p Piece,
-    volume: f64,
-    low: Vec3,
-    high: Vec3,
-}
-
-impl<'p> Body<'p> {
-    fn new(mesh: &TriangleMesh, piece: &'p Piece) -> Self {
-        let corners = piece
-            .triangles
-            .iter()
-            .flat_map(|&t| mesh.corners(t as usize));
-        let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-        let (low, high) = corners.fold(none, |(low, high), at| (low.inf(&at), high.sup(&at)));
-        let volume = mesh.volume_of(piece.triangles.iter().map(|&t| t as usize));
-        Self {
-            piece,
-            volume,
-            low,
-            high,
-        }
-    }
-
-    /// Facing inwards, and not as the wall of a hollow within another body would.
-    fn is_inside_out(&self, bodies: &[Self]) -> bool {
-        self.volume < 0.0 && !bodies.iter().any(|other| other.encloses(self))
-    }
-
-    fn encloses(&self, inner: &Self) -> bool {
-        (0..3).all(|i| self.low[i] < inner.low[i] && self.high[i] > inner.high[i])
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::repair::fixtures::unit_block;
+    use crate::repair::tests::unit_block;
 
     #[test]
     fn a_closed_block_has_nothing_to_report() {

@@ -14,10 +14,11 @@ use crate::{
     triangle_mesh::{TriangleMesh, bounds},
 };
 
-/// The longest loop of a piece is its rim, and no hole, if it is longer than this share of the piece, corner to corner.
+/// Length of the longest loop of a piece over that of the piece, corner to corner, above which it is the rim of the
+/// piece and no hole.
 const RIM: f64 = 1.0 / 3.0;
 
-/// Closes the holes where nothing touches, flat from edge to edge, and judges all.
+/// Judges all holes, and closes those where nothing touches, flat from edge to edge.
 pub(super) fn close_holes(mesh: &mut TriangleMesh, pieces: &[Piece], judge: &mut Judge) {
     if pieces.iter().all(|piece| !piece.is_open) {
         return;
@@ -27,8 +28,12 @@ pub(super) fn close_holes(mesh: &mut TriangleMesh, pieces: &[Piece], judge: &mut
         let places: Vec<Vec3> = around.iter().map(|&v| mesh.vertices[v as usize]).collect();
         let middle = places.iter().sum::<Vec3>() / places.len() as f64;
         let matters = judge.judge(mesh, DefectKind::Hole, middle, &places);
-        let normal = area_vector(&places).try_normalize(0.0);
-        if let Some(normal) = normal.filter(|_| !matters) {
+        // Twice the area that the loop bounds, along its normal.
+        let spans = places.iter().zip(places.iter().cycle().skip(1));
+        let area: Vec3 = spans
+            .map(|(a, b)| (a - places[0]).cross(&(b - places[0])))
+            .sum();
+        if let Some(normal) = area.try_normalize(0.0).filter(|_| !matters) {
             fill(mesh, &[around], &-normal);
             filled = true;
         }
@@ -38,90 +43,56 @@ pub(super) fn close_holes(mesh: &mut TriangleMesh, pieces: &[Piece], judge: &mut
     }
 }
 
-/// The loops that are not the rim of an open piece.
+/// Returns the loops that are not the rim of an open piece.
 fn holes(mesh: &TriangleMesh, pieces: &[Piece]) -> Vec<Vec<u32>> {
     let mut piece_of = vec![0; mesh.vertices.len()];
     for (number, piece) in pieces.iter().enumerate() {
-        let corners = piece
-            .triangles
-            .iter()
-            .flat_map(|&t| mesh.triangles[t as usize]);
-        corners.for_each(|vertex| piece_of[vertex as usize] = number);
+        piece
+            .vertices(mesh)
+            .for_each(|vertex| piece_of[vertex as usize] = number);
     }
     let mut loops = vec![Vec::new(); pieces.len()];
     for around in edge_report(mesh).boundary_loops {
         loops[piece_of[around[0] as usize]].push(around);
     }
+    let diagonal = |(low, high): (Vec3, Vec3)| (high - low).norm();
     for (piece, loops) in pieces.iter().zip(&mut loops) {
-        let corners = piece
-            .triangles
-            .iter()
-            .flat_map(|&t| mesh.triangles[t as usize]);
-        let whole = extent(mesh, corners);
-        let sizes: Vec<f64> = loops
-            .iter()
-            .map(|around| extent(mesh, around.iter().copied()))
-            .collect();
-        let longest = (0..sizes.len()).max_by(|&one, &other| sizes[one].total_cmp(&sizes[other]));
-        if let Some(rim) = longest.filter(|&rim| sizes[rim] > RIM * whole) {
+        let size = |around: &Vec<u32>| {
+            let places = around.iter().map(|&vertex| &mesh.vertices[vertex as usize]);
+            diagonal(bounds(places))
+        };
+        let sizes = loops.iter().map(size).enumerate();
+        let longest = sizes.max_by(|one, other| one.1.total_cmp(&other.1));
+        let whole = diagonal(piece.bounds(mesh));
+        if let Some((rim, _)) = longest.filter(|(_, size)| *size > RIM * whole) {
             loops.remove(rim);
         }
     }
-    loops
-        .into_iter()
-        .flatten()
-        .filter(|around| around.len() > 2)
-        .collect()
+    let all = loops.into_iter().flatten();
+    all.filter(|around| around.len() > 2).collect()
 }
 
-/// Diagonal of the box around some vertices.
-fn extent(mesh: &TriangleMesh, vertices: impl Iterator<Item = u32>) -> f64 {
-    let (low, high) = bounds(vertices.map(|vertex| &mesh.vertices[vertex as usize]));
-    (high - low).norm()
-}
-
-/// Twice the area that a loop bounds, along its normal.
-fn area_vector(places: &[Vec3]) -> Vec3 {
-    let next = places.iter().cycle().skip(1);
-    let from = places[0];
-    places
-        .iter()
-        .zip(next)
-        .map(|(one, other)| (one - from).cross(&(other - from)))
-        .sum()
-}
-
-/// Adds the triangles inside the loops, of which those within others are holes, seen in a plane of this normal;
-/// the triangles face along it.
+/// Adds the triangles inside the loops, seen in a plane of this normal; loops within others are holes. The triangles
+/// face along the normal.
 pub(super) fn fill(mesh: &mut TriangleMesh, loops: &[Vec<u32>], normal: &Vec3) {
-    let axes = across(normal);
-    let rings: Vec<Ring> = loops
-        .iter()
-        .map(|around| Ring::new(mesh, around, &axes))
-        .collect();
-    let depths: Vec<usize> = rings.iter().map(|ring| ring.depth(&rings)).collect();
-    let of_depth = |depth: usize| {
-        rings
-            .iter()
-            .zip(&depths)
-            .filter(move |(_, own)| **own == depth)
-    };
-    for (outer, &depth) in rings
-        .iter()
-        .zip(&depths)
-        .filter(|(_, depth)| *depth % 2 == 0)
-    {
-        let holes = of_depth(depth + 1)
-            .map(|(ring, _)| ring)
-            .filter(|ring| outer.contains(ring));
-        add_polygon(mesh, outer, &holes.collect::<Vec<_>>());
-    }
-}
-
-/// Two directions across a normal, right-handed with it.
-fn across(normal: &Vec3) -> [Vec3; 2] {
     let first = normal.cross(&Vec3::ith(normal.iamin(), 1.0)).normalize();
-    [first, normal.cross(&first).normalize()]
+    let axes = [first, normal.cross(&first).normalize()];
+    let rings = loops.iter().map(|around| Ring::new(mesh, around, &axes));
+    let rings: Vec<Ring> = rings.collect();
+    let depth = |ring: &Ring| rings.iter().filter(|other| other.contains(ring)).count();
+    let depths: Vec<usize> = rings.iter().map(depth).collect();
+    for (outer, depth) in rings.iter().zip(&depths) {
+        if depth % 2 == 0 {
+            let within = rings
+                .iter()
+                .zip(&depths)
+                .filter(|(_, own)| **own == depth + 1);
+            let holes = within
+                .map(|(ring, _)| ring)
+                .filter(|ring| outer.contains(ring));
+            add_polygon(mesh, outer, holes);
+        }
+    }
 }
 
 /// A loop seen in the plane.
@@ -147,35 +118,22 @@ impl Ring {
         }
     }
 
-    /// In how many others it lies.
-    fn depth(&self, all: &[Self]) -> usize {
-        all.iter().filter(|other| other.contains(self)).count()
-    }
-
+    /// Returns whether another loop lies within: by the parity of the edges that a ray from one of its points crosses.
     fn contains(&self, other: &Self) -> bool {
-        !std::ptr::eq(self, other) && self.surrounds(other.places[0])
-    }
-
-    /// By the parity of the edges that a ray from the point crosses.
-    fn surrounds(&self, [x, y]: [f64; 2]) -> bool {
-        let is_beside = |axis: usize, at: f64| at < self.low[axis] || at > self.high[axis];
-        if is_beside(0, x) || is_beside(1, y) {
+        let [x, y] = other.places[0];
+        let is_beyond = |axis: usize, at: f64| at < self.low[axis] || at > self.high[axis];
+        if std::ptr::eq(self, other) || is_beyond(0, x) || is_beyond(1, y) {
             return false;
         }
-        let next = self.places.iter().cycle().skip(1);
-        let crosses = |[x1, y1]: [f64; 2], [x2, y2]: [f64; 2]| {
+        let edges = self.places.iter().zip(self.places.iter().cycle().skip(1));
+        let crossed = edges.filter(|&(&[x1, y1], &[x2, y2])| {
             (y1 > y) != (y2 > y) && x < x1 + (y - y1) / (y2 - y1) * (x2 - x1)
-        };
-        let crossed = self
-            .places
-            .iter()
-            .zip(next)
-            .filter(|&(&one, &other)| crosses(one, other));
+        });
         crossed.count() % 2 == 1
     }
 }
 
-fn add_polygon(mesh: &mut TriangleMesh, outer: &Ring, holes: &[&Ring]) {
+fn add_polygon<'r>(mesh: &mut TriangleMesh, outer: &Ring, holes: impl Iterator<Item = &'r Ring>) {
     let mut vertices = outer.vertices.clone();
     let mut places = outer.places.clone();
     let mut starts = Vec::new();
@@ -186,8 +144,7 @@ fn add_polygon(mesh: &mut TriangleMesh, outer: &Ring, holes: &[&Ring]) {
     }
     let mut corners: Vec<u32> = Vec::new();
     Earcut::new().earcut(places.iter().copied(), &starts, &mut corners);
-    for triangle in corners.chunks_exact(3) {
-        let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
+    for &[a, b, c] in corners.as_chunks().0 {
         let [p, q, r] = [a, b, c].map(|corner| places[corner as usize]);
         let twice_area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
         let facing = if twice_area > 0.0 {
@@ -200,33 +157,34 @@ fn add_polygon(mesh: &mut TriangleMesh, outer: &Ring, holes: &[&Ring]) {
     }
 }
 
-/// A split edge may leave triangles with another edge to split; more rounds than this help nobody.
-const ROUNDS: usize = 4;
+/// A split edge may leave triangles with another edge to split; more rounds than this do not help.
+const MAX_ROUNDS: usize = 4;
 
-/// Distance over the diagonal of the mesh within which vertices are on an edge but for rounding.
+/// Distance over the diagonal of the mesh within which vertices are on an edge except for rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Joins to their neighbours triangles that close a loop of edges: they pass over vertices that lie in line.
+/// Joins triangles that close a loop of edges to their neighbours: they pass over vertices that lie in line.
 pub(super) fn join_filled(mesh: &mut TriangleMesh) {
     let (low, high) = mesh.bounds();
     join(mesh, ROUNDING * (high - low).norm());
 }
 
-/// Splits triangles at vertices on their open edges, no farther off than `within`; gives where.
+/// Splits triangles at vertices on their open edges, no farther off than `within`; returns the places.
 pub(super) fn join(mesh: &mut TriangleMesh, within: f64) -> Vec<Vec3> {
     let mut places = Vec::new();
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let on_edges = vertices_on_edges(mesh, &edge_uses(mesh), within);
         if on_edges.is_empty() {
             break;
         }
-        for (triangle, ([from, to], between)) in on_edges {
+        for (triangle, (ends, between)) in on_edges {
+            let vertices = between.iter().map(|&(_, vertex)| vertex);
             places.extend(
-                between
-                    .iter()
-                    .map(|&(_, vertex)| mesh.vertices[vertex as usize]),
+                vertices
+                    .clone()
+                    .map(|vertex| mesh.vertices[vertex as usize]),
             );
-            split(mesh, triangle as usize, [from, to], &between);
+            split(mesh, triangle as usize, ends, vertices);
         }
     }
     places
@@ -235,40 +193,35 @@ pub(super) fn join(mesh: &mut TriangleMesh, within: f64) -> Vec<Vec3> {
 /// Vertices with their share of the way along the edge.
 type Between = Vec<(f64, u32)>;
 
-/// For each triangle one of its open edges with the vertices of other open edges between its ends.
+/// Returns for each triangle one of its open edges with the vertices of other open edges between its ends.
 fn vertices_on_edges(
     mesh: &TriangleMesh,
     uses: &[EdgeUse],
     within: f64,
 ) -> BTreeMap<u32, ([u32; 2], Between)> {
-    let open: Vec<EdgeUse> = by_edge(uses)
-        .filter(|edge| edge.len() == 1)
-        .map(|edge| edge[0])
-        .collect();
+    let mut found: BTreeMap<u32, ([u32; 2], Between)> = BTreeMap::new();
+    let open = by_edge(uses).filter(|edge| edge.len() == 1);
+    let open: Vec<EdgeUse> = open.map(|edge| edge[0]).collect();
     // Triangles that share no edges are no surface with a few joints.
     if open.len() > mesh.triangles.len() {
-        return BTreeMap::new();
+        return found;
     }
+    // Edges as flat triangles, for the tree of boxes.
+    let lines = open
+        .iter()
+        .map(|edge| [edge.ends[0], edge.ends[1], edge.ends[1]]);
     let lines = TriangleMesh {
         vertices: mesh.vertices.clone(),
-        triangles: open
-            .iter()
-            .map(|edge| [edge.ends[0], edge.ends[1], edge.ends[1]])
-            .collect(),
+        triangles: lines.collect(),
     };
-    let mut found: BTreeMap<u32, ([u32; 2], Between)> = BTreeMap::new();
     BoxTree::with_margin(&lines, within).for_close_pairs(|one, other| {
-        for (edge, ends) in [
-            (&open[one], open[other].ends),
-            (&open[other], open[one].ends),
-        ] {
+        for (edge, other) in [(&open[one], &open[other]), (&open[other], &open[one])] {
             let triangle = mesh.triangles[edge.triangle as usize];
-            let beside = ends.into_iter().filter(|end| !triangle.contains(end));
-            for vertex in beside {
+            let ends = other.ends.into_iter().filter(|end| !triangle.contains(end));
+            for vertex in ends {
                 if let Some(share) = share_along(mesh, edge.ends, vertex, within) {
-                    let (ends, between) = found
-                        .entry(edge.triangle)
-                        .or_insert((edge.ends, Vec::new()));
+                    let first = || (edge.ends, Vec::new());
+                    let (ends, between) = found.entry(edge.triangle).or_insert_with(first);
                     if *ends == edge.ends && !between.contains(&(share, vertex)) {
                         between.push((share, vertex));
                     }
@@ -283,7 +236,7 @@ fn vertices_on_edges(
     found
 }
 
-/// How far along an edge a vertex lies, if it lies on it and at none of its ends.
+/// Returns the share of the way along an edge at which a vertex lies, if it lies on it and at none of its ends.
 fn share_along(mesh: &TriangleMesh, ends: [u32; 2], vertex: u32, within: f64) -> Option<f64> {
     let [from, to] = ends.map(|end| mesh.vertices[end as usize]);
     let (way, at) = (to - from, mesh.vertices[vertex as usize] - from);
@@ -294,22 +247,19 @@ fn share_along(mesh: &TriangleMesh, ends: [u32; 2], vertex: u32, within: f64) ->
 }
 
 /// Puts vertices into the edge of a triangle, which becomes a fan.
-fn split(mesh: &mut TriangleMesh, triangle: usize, [from, to]: [u32; 2], between: &Between) {
+fn split(
+    mesh: &mut TriangleMesh,
+    triangle: usize,
+    [from, to]: [u32; 2],
+    between: impl Iterator<Item = u32>,
+) {
     let whole = mesh.triangles[triangle];
-    let chain = [from]
-        .into_iter()
-        .chain(between.iter().map(|&(_, vertex)| vertex))
-        .chain([to]);
-    let chain: Vec<u32> = chain.collect();
+    let chain: Vec<u32> = [from].into_iter().chain(between).chain([to]).collect();
     let mut parts = chain.windows(2).map(|ends| {
-        whole.map(|corner| {
-            if corner == from {
-                ends[0]
-            } else if corner == to {
-                ends[1]
-            } else {
-                corner
-            }
+        whole.map(|corner| match corner {
+            _ if corner == from => ends[0],
+            _ if corner == to => ends[1],
+            tip => tip,
         })
     });
     if let Some(first) = parts.next() {

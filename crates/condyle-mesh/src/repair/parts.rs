@@ -1,4 +1,4 @@
-//! Parts of a file that are not the body: the tray below an insert, and specks beside it.
+//! Parts of a file that are not the body: the tray below an insert, and specks next to it.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +9,20 @@ use crate::{Vec3, height_map::height_over, triangle_mesh::TriangleMesh};
 
 /// Distance between the lines of sight from above, mm ...
 const LINES_EVERY_MM: f64 = 0.5;
-/// ... and lines along one side of the file, at most.
+/// ... and maximum number of lines along one side of the file.
 const MAX_LINES: f64 = 400.0;
 /// Triangles that a line of sight may meet on average: the parts of a knee cover one another a few times. A file in
 /// which it meets more is left whole.
 const MAX_LAYERS: usize = 32;
 /// A part that is seen from above on less than this share of its own shadow lies below another.
 const HIDDEN_SHARE: f64 = 0.5;
-/// A part below with a smaller share of the body's shadow that reaches into it is a peg of it, and no tray.
+/// A part below with a smaller share of the body's shadow that reaches into the body is a peg of it, and no tray.
 const PEG_SHARE: f64 = 0.25;
-/// A part whose shadow is smaller than this share of the largest one is a speck: an insert of two parts, or one with
-/// a post by itself, has larger ones.
+/// A part whose shadow is smaller than this share of the largest one is a speck: the parts of an insert of two parts,
+/// or of one with a separate post, are larger.
 const SPECK_SHARE: f64 = 0.02;
 
-/// Which parts of a file are the body.
+/// The parts of a file that are the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parts {
     /// All.
@@ -31,20 +31,20 @@ pub enum Parts {
     SeenFromAbove,
 }
 
-/// A part of a file that is not of the body.
+/// A part of a file that does not belong to the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
-    /// How many triangles it has.
+    /// Number of triangles.
     pub triangles: usize,
-    /// Its middle, mm.
+    /// Middle of its box, mm.
     pub at_mm: Vec3,
-    /// Its extents along the axes, mm.
+    /// Extents along the axes, mm.
     pub size_mm: Vec3,
-    /// Why it is left out.
+    /// Reason for leaving it out.
     pub why: WhyLeftOut,
 }
 
-/// Why a part is not of the body.
+/// Reason why a part does not belong to the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WhyLeftOut {
     /// It is closed and lies below another part.
@@ -53,20 +53,26 @@ pub enum WhyLeftOut {
     Speck,
 }
 
-/// Takes out what is not of the body; gives what that was.
+/// Removes the parts that do not belong to the body, and returns them.
 pub(super) fn take_out_parts(mesh: &mut TriangleMesh, pieces: &[Piece]) -> Vec<LeftOut> {
     if pieces.len() < 2 {
         return Vec::new();
     }
-    let parts: Vec<Part<'_>> = pieces.iter().map(|piece| Part::new(mesh, piece)).collect();
-    let Some((seen, body)) = Seen::new(mesh, &parts).and_then(Seen::with_largest) else {
+    let Some(parts) = seen_parts(mesh, pieces) else {
         return Vec::new();
     };
-    let why = |n: usize| (n != body).then(|| seen.why(&parts, n, body)).flatten();
+    let Some(body) = parts.iter().max_by_key(|part| part.first) else {
+        return Vec::new();
+    };
     let (mut left_out, mut kept) = (Vec::new(), Vec::new());
-    for (n, part) in parts.iter().enumerate() {
-        match why(n) {
-            Some(why) => left_out.push(part.left_out(why)),
+    for part in &parts {
+        match part.why_left_out(body) {
+            Some(why) => left_out.push(LeftOut {
+                triangles: part.piece.triangles.len(),
+                at_mm: (part.low + part.high) / 2.0,
+                size_mm: part.high - part.low,
+                why,
+            }),
             None => kept.extend(part.piece.triangles.iter().copied()),
         }
     }
@@ -79,135 +85,87 @@ pub(super) fn take_out_parts(mesh: &mut TriangleMesh, pieces: &[Piece]) -> Vec<L
     left_out
 }
 
-/// Triangles that hang together, in their box.
+/// Connected triangles, in their box, seen from above by vertical lines on a square grid.
 struct Part<'a> {
     piece: &'a Piece,
     low: Vec3,
     high: Vec3,
+    /// Number of lines that meet it: its shadow.
+    shadow: usize,
+    /// Number of lines that meet it before any other part.
+    first: usize,
+    /// Number of lines that meet it and another part.
+    shared: usize,
 }
 
-impl<'a> Part<'a> {
-    fn new(mesh: &TriangleMesh, piece: &'a Piece) -> Self {
-        let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
-        let corners = piece
-            .triangles
-            .iter()
-            .flat_map(|&n| mesh.corners(n as usize));
-        let (low, high) = corners.fold(none, |(low, high), at| (low.inf(&at), high.sup(&at)));
-        Self { piece, low, high }
-    }
-
-    fn encloses(&self, other: &Self) -> bool {
-        (0..3).all(|axis| self.low[axis] <= other.low[axis] && self.high[axis] >= other.high[axis])
-    }
-
-    fn left_out(&self, why: WhyLeftOut) -> LeftOut {
-        LeftOut {
-            triangles: self.piece.triangles.len(),
-            at_mm: (self.low + self.high) / 2.0,
-            size_mm: self.high - self.low,
-            why,
-        }
-    }
-}
-
-/// Vertical lines on a square grid, and the highest point of every part that they meet.
-struct LinesOfSight {
-    step_mm: f64,
-    met: BTreeMap<[i64; 2], BTreeMap<usize, f64>>,
-    /// How many more may be tried.
-    left: usize,
-}
-
-impl LinesOfSight {
-    fn over(mesh: &TriangleMesh) -> Self {
-        let (low, high) = mesh.bounds();
-        let size = high - low;
-        let step_mm = LINES_EVERY_MM.max(size.x.max(size.z) / MAX_LINES);
-        let lines = (size.x / step_mm + 1.0) * (size.z / step_mm + 1.0);
-        Self {
-            step_mm,
-            met: BTreeMap::new(),
-            left: MAX_LAYERS * (lines as usize + mesh.triangles.len()),
-        }
-    }
-
-    /// Lets the lines through a triangle's box meet it; none if too many were tried.
-    fn meet(&mut self, part: usize, corners: &[Vec3; 3]) -> Option<()> {
-        let [a, b, c] = corners;
-        let (low, high) = (
-            a.inf(b).inf(c) / self.step_mm,
-            a.sup(b).sup(c) / self.step_mm,
-        );
-        let between = |from: f64, to: f64| from.ceil() as i64..=to.floor() as i64;
-        for i in between(low.x, high.x) {
-            for k in between(low.z, high.z) {
-                self.left = self.left.checked_sub(1)?;
-                let place = (i as f64 * self.step_mm, k as f64 * self.step_mm);
-                if let Some(height) = height_over(corners, place) {
-                    let met = self.met.entry([i, k]).or_default();
-                    let highest = met.entry(part).or_insert(height);
-                    *highest = highest.max(height);
+/// Returns the pieces as seen from above; none if they cover one another too often to be looked at.
+fn seen_parts<'a>(mesh: &TriangleMesh, pieces: &'a [Piece]) -> Option<Vec<Part<'a>>> {
+    let (low, high) = mesh.bounds();
+    let size = high - low;
+    let step_mm = LINES_EVERY_MM.max(size.x.max(size.z) / MAX_LINES);
+    let lines = (size.x / step_mm + 1.0) * (size.z / step_mm + 1.0);
+    let mut tries_left = MAX_LAYERS * (lines as usize + mesh.triangles.len());
+    // The highest point of every part on each line.
+    let mut met: BTreeMap<[i64; 2], BTreeMap<usize, f64>> = BTreeMap::new();
+    for (number, piece) in pieces.iter().enumerate() {
+        for &triangle in &piece.triangles {
+            let corners = mesh.corners(triangle as usize);
+            let [a, b, c] = corners;
+            let (low, high) = (a.inf(&b).inf(&c) / step_mm, a.sup(&b).sup(&c) / step_mm);
+            let between = |from: f64, to: f64| from.ceil() as i64..=to.floor() as i64;
+            for i in between(low.x, high.x) {
+                for k in between(low.z, high.z) {
+                    tries_left = tries_left.checked_sub(1)?;
+                    let place = (i as f64 * step_mm, k as f64 * step_mm);
+                    if let Some(height) = height_over(&corners, place) {
+                        let parts = met.entry([i, k]).or_default();
+                        let highest = parts.entry(number).or_insert(height);
+                        *highest = highest.max(height);
+                    }
                 }
             }
         }
-        Some(())
     }
+    let parts = pieces.iter().map(|piece| {
+        let (low, high) = piece.bounds(mesh);
+        Part {
+            piece,
+            low,
+            high,
+            shadow: 0,
+            first: 0,
+            shared: 0,
+        }
+    });
+    let mut parts: Vec<Part> = parts.collect();
+    for heights in met.values() {
+        if let Some((&highest, _)) = heights.iter().max_by(|a, b| a.1.total_cmp(b.1)) {
+            parts[highest].first += 1;
+        }
+        for &part in heights.keys() {
+            parts[part].shadow += 1;
+            parts[part].shared += usize::from(heights.len() > 1);
+        }
+    }
+    Some(parts)
 }
 
-/// How much of every part is seen from above.
-struct Seen {
-    /// Lines that meet a part, and those that meet it first.
-    shadows: Vec<usize>,
-    first: Vec<usize>,
-    /// Lines that meet both a part and another one.
-    shared: Vec<usize>,
-}
-
-impl Seen {
-    /// None where the parts cover one another too often to be looked at.
-    fn new(mesh: &TriangleMesh, parts: &[Part<'_>]) -> Option<Self> {
-        let mut lines = LinesOfSight::over(mesh);
-        for (number, part) in parts.iter().enumerate() {
-            for &triangle in &part.piece.triangles {
-                lines.meet(number, &mesh.corners(triangle as usize))?;
-            }
+impl Part<'_> {
+    /// Returns the reason why the part does not belong to a body, if it does not.
+    fn why_left_out(&self, body: &Self) -> Option<WhyLeftOut> {
+        if std::ptr::eq(self, body) {
+            return None;
         }
-        let mut seen = Self {
-            shadows: vec![0; parts.len()],
-            first: vec![0; parts.len()],
-            shared: vec![0; parts.len()],
-        };
-        for met in lines.met.values() {
-            let highest = met.iter().max_by(|a, b| a.1.total_cmp(b.1));
-            if let Some((&part, _)) = highest {
-                seen.first[part] += 1;
-            }
-            for &part in met.keys() {
-                seen.shadows[part] += 1;
-                seen.shared[part] += usize::from(met.len() > 1);
-            }
-        }
-        Some(seen)
-    }
-
-    /// The same and the part that is seen most.
-    fn with_largest(self) -> Option<(Self, usize)> {
-        let largest = (0..self.first.len()).max_by_key(|&n| self.first[n])?;
-        Some((self, largest))
-    }
-
-    /// Why a part is none of the body, if it is none.
-    fn why(&self, parts: &[Part<'_>], n: usize, body: usize) -> Option<WhyLeftOut> {
         let share = |of: usize, whole: usize| of as f64 / whole.max(1) as f64;
-        let (part, whole) = (&parts[n], &parts[body]);
-        let is_hidden = share(self.first[n], self.shadows[n]) < HIDDEN_SHARE;
-        let reaches_in = part.high.y > whole.low.y;
-        let is_peg = reaches_in && share(self.shadows[n], self.first[body]) < PEG_SHARE;
-        let is_beside = share(self.shared[n], self.shadows[n]) < HIDDEN_SHARE;
-        if share(self.shadows[n], self.first[body]) < SPECK_SHARE && is_beside {
+        let is_enclosed =
+            (0..3).all(|i| body.low[i] <= self.low[i] && body.high[i] >= self.high[i]);
+        let is_hidden = share(self.first, self.shadow) < HIDDEN_SHARE;
+        let reaches_in = self.high.y > body.low.y;
+        let is_peg = reaches_in && share(self.shadow, body.first) < PEG_SHARE;
+        let is_aside = share(self.shared, self.shadow) < HIDDEN_SHARE;
+        if share(self.shadow, body.first) < SPECK_SHARE && is_aside {
             Some(WhyLeftOut::Speck)
-        } else if is_hidden && !part.piece.is_open && !whole.encloses(part) && !is_peg {
+        } else if is_hidden && !self.piece.is_open && !is_enclosed && !is_peg {
             Some(WhyLeftOut::Below)
         } else {
             None
@@ -218,7 +176,7 @@ impl Seen {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::repair::{Checks, Touching, fixtures::joined};
+    use crate::repair::{Checks, Touching, tests::joined};
 
     const INSERT_TOP_MM: f64 = 9.0;
 

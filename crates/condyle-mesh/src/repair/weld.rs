@@ -5,57 +5,42 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use super::edges::{EdgeUse, by_edge};
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 
-/// Whether each vertex ends an edge that has one triangle only.
-pub(super) fn on_open_edges(mesh: &TriangleMesh, uses: &[EdgeUse]) -> Vec<bool> {
+/// Merges vertices of open edges that are no farther apart than `within`; returns their places.
+///
+/// Only open edges: a connected surface needs no welding.
+pub(super) fn weld(mesh: &mut TriangleMesh, uses: &[EdgeUse], within: f64) -> Vec<Vec3> {
     let mut is_open = vec![false; mesh.vertices.len()];
     for edge in by_edge(uses).filter(|edge| edge.len() == 1) {
-        edge[0]
-            .ends
-            .iter()
-            .for_each(|&end| is_open[end as usize] = true);
+        for end in edge[0].ends {
+            is_open[end as usize] = true;
+        }
     }
-    is_open
-}
-
-/// Makes vertices of open edges one that are no farther apart than `within`; gives where they were.
-///
-/// Only open edges: where a surface hangs together there is nothing to weld.
-pub(super) fn weld(mesh: &mut TriangleMesh, uses: &[EdgeUse], within: f64) -> Vec<Vec3> {
+    // Vertices by cubic cells of that size: those within reach are in the 27 cells around.
     let mut kept: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-    let mut stands_for: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+    let mut replacement: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
     let mut places = Vec::new();
-    let is_open = on_open_edges(mesh, uses);
     for vertex in (0..mesh.vertices.len()).filter(|&vertex| is_open[vertex]) {
         let at = mesh.vertices[vertex];
         let cell = [at.x, at.y, at.z].map(|coordinate| (coordinate / within).floor() as i64);
-        let near = around(cell).filter_map(|cell| kept.get(&cell)).flatten();
-        let is_near = |other: &&u32| (mesh.vertices[**other as usize] - at).norm() <= within;
-        if let Some(&other) = near.copied().collect::<Vec<_>>().iter().find(is_near) {
-            stands_for[vertex] = other;
+        let steps = (0..27).map(|n: i64| [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1]);
+        let around = steps.map(|step| [0, 1, 2].map(|i| cell[i].saturating_add(step[i])));
+        let mut near = around.filter_map(|cell| kept.get(&cell)).flatten().copied();
+        let is_near = |other: &u32| (mesh.vertices[*other as usize] - at).norm() <= within;
+        if let Some(other) = near.find(is_near) {
+            replacement[vertex] = other;
             places.push(at);
         } else {
             kept.entry(cell).or_default().push(vertex as u32);
         }
     }
-    rename(mesh, &stands_for);
+    rename(mesh, &replacement);
     places
 }
 
-fn around([x, y, z]: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {
-    let steps = (0..27).map(|n: i64| [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1]);
-    steps.map(move |[i, j, k]| {
-        [
-            x.saturating_add(i),
-            y.saturating_add(j),
-            z.saturating_add(k),
-        ]
-    })
-}
-
-/// Lets every triangle name the vertex that stands for its own.
-pub(super) fn rename(mesh: &mut TriangleMesh, stands_for: &[u32]) {
+/// Replaces the vertices of all triangles.
+fn rename(mesh: &mut TriangleMesh, replacement: &[u32]) {
     for triangle in &mut mesh.triangles {
-        *triangle = triangle.map(|vertex| stands_for[vertex as usize]);
+        *triangle = triangle.map(|vertex| replacement[vertex as usize]);
     }
 }
 
@@ -74,7 +59,7 @@ pub(super) fn drop_unused(mesh: &mut TriangleMesh) {
     rename(mesh, &new_number);
 }
 
-/// Keeps one triangle of each three corners; gives where the others were.
+/// Keeps one triangle of each three corners; returns the places of the others.
 pub(super) fn make_single(mesh: &mut TriangleMesh) -> Vec<Vec3> {
     let mut seen = HashSet::with_capacity(mesh.triangles.len());
     let mut places = Vec::new();
@@ -93,80 +78,81 @@ pub(super) fn make_single(mesh: &mut TriangleMesh) -> Vec<Vec3> {
 
 /// Height over longest edge below which a triangle has no area: rounding of double precision.
 const FLAT: f64 = 1e-12;
-/// Splitting a neighbour may leave it flat in turn; more rounds than this help nobody.
-const ROUNDS: usize = 8;
+/// Splitting a neighbour may leave it flat in turn; more rounds than this do not help.
+const MAX_ROUNDS: usize = 8;
 
-/// A mesh without degenerate triangles.
-pub(super) struct Cleaned {
-    pub(super) mesh: TriangleMesh,
-    pub(super) removed: usize,
-}
-
-/// Takes out triangles of two equal corners, and those of three corners in a line; the neighbour
-/// along the longest edge of the latter is split at the middle corner, so that the shell stays
-/// as closed as it was.
-pub(super) fn without_degenerate(mesh: TriangleMesh) -> Cleaned {
-    let mut cleaned = Cleaned { mesh, removed: 0 };
-    cleaned.drop_where(|mesh, index| {
-        let [a, b, c] = mesh.triangles[index];
-        a == b || b == c || c == a
-    });
+/// Removes triangles of two equal corners and those of three corners in a line; returns their number.
+///
+/// The neighbour along the longest edge of the latter is split at the middle corner, so that the
+/// surface stays as closed as it was.
+pub(super) fn remove_degenerate(mesh: &mut TriangleMesh) -> usize {
+    let before = mesh.triangles.len();
+    mesh.triangles.retain(has_three_corners);
+    let mut merged = 0;
     let mut on_edge = None;
-    for _ in 0..ROUNDS {
-        let flat: Vec<usize> = (0..cleaned.mesh.triangles.len())
-            .filter(|&index| is_flat(&cleaned.mesh, index))
-            .collect();
+    for _ in 0..MAX_ROUNDS {
+        let all = 0..mesh.triangles.len();
+        let flat: Vec<usize> = all.filter(|&t| is_flat(&mesh.corners(t))).collect();
         if flat.is_empty() {
             break;
         }
-        let on_edge = on_edge.get_or_insert_with(|| TrianglesOnEdges::new(&cleaned.mesh));
-        let merged = cleaned.merge(&flat, on_edge);
-        cleaned.removed += merged;
-        if merged == 0 {
+        let on_edge = on_edge.get_or_insert_with(|| TrianglesOnEdges::new(mesh));
+        let flat = flat.iter();
+        let merged_now = flat
+            .filter(|&&t| merge_into_neighbour(mesh, t, on_edge))
+            .count();
+        merged += merged_now;
+        if merged_now == 0 {
             break;
         }
     }
-    cleaned.drop_where(is_flat);
-    cleaned
+    let vertices = &mesh.vertices;
+    mesh.triangles
+        .retain(|triangle| !is_flat(&triangle.map(|vertex| vertices[vertex as usize])));
+    // A merged triangle takes half of its neighbour, so that the number of triangles stays.
+    before - mesh.triangles.len() + merged
 }
 
-impl Cleaned {
-    fn drop_where(&mut self, is_bad: impl Fn(&TriangleMesh, usize) -> bool) {
-        let kept: Vec<[u32; 3]> = (0..self.mesh.triangles.len())
-            .filter(|&index| !is_bad(&self.mesh, index))
-            .map(|index| self.mesh.triangles[index])
-            .collect();
-        self.removed += self.mesh.triangles.len() - kept.len();
-        self.mesh.triangles = kept;
-    }
+fn has_three_corners([a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
 
-    /// Merges flat triangles into their neighbours; gives how many.
-    fn merge(&mut self, flat: &[usize], on_edge: &mut TrianglesOnEdges) -> usize {
-        flat.iter()
-            .filter(|&&index| self.merge_one(index, on_edge))
-            .count()
-    }
+/// Twice the area over the longest edge squared is the height over the longest edge.
+fn is_flat([a, b, c]: &[Vec3; 3]) -> bool {
+    let [ab, bc, ca] = [b - a, c - b, a - c].map(|edge| edge.norm_squared());
+    (b - a).cross(&(c - a)).norm() <= FLAT * ab.max(bc).max(ca)
+}
 
-    /// Gives a flat triangle the half of its neighbour beyond its middle corner.
-    fn merge_one(&mut self, index: usize, on_edge: &mut TrianglesOnEdges) -> bool {
-        if !is_flat(&self.mesh, index) {
-            return false;
-        }
-        let [end, middle, other_end] = longest_edge_last(&self.mesh, index);
-        let Some(neighbour) = on_edge.first_other(&self.mesh, index, [end, other_end]) else {
-            return false;
-        };
-        let whole = self.mesh.triangles[neighbour];
-        if whole.contains(&middle) {
-            return false;
-        }
-        let with_middle_for = |old: u32| whole.map(|v| if v == old { middle } else { v });
-        self.mesh.triangles[neighbour] = with_middle_for(end);
-        self.mesh.triangles[index] = with_middle_for(other_end);
-        on_edge.add(&self.mesh, neighbour);
-        on_edge.add(&self.mesh, index);
-        true
+/// Gives a flat triangle the half of its neighbour beyond its middle corner; returns false if that is not possible.
+fn merge_into_neighbour(
+    mesh: &mut TriangleMesh,
+    index: usize,
+    on_edge: &mut TrianglesOnEdges,
+) -> bool {
+    // An earlier merge of the round may have changed it.
+    if !is_flat(&mesh.corners(index)) {
+        return false;
     }
+    let [a, b, c] = mesh.triangles[index];
+    let length = |[from, _, to]: &[u32; 3]| {
+        (mesh.vertices[*from as usize] - mesh.vertices[*to as usize]).norm_squared()
+    };
+    let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter();
+    let longest_edge_last = turned.max_by(|one, other| length(one).total_cmp(&length(other)));
+    let [end, middle, other_end] = longest_edge_last.unwrap_or([a, b, c]);
+    let Some(neighbour) = on_edge.first_other(mesh, index, [end, other_end]) else {
+        return false;
+    };
+    let whole = mesh.triangles[neighbour];
+    if whole.contains(&middle) {
+        return false;
+    }
+    let with_middle_for = |old: u32| whole.map(|v| if v == old { middle } else { v });
+    mesh.triangles[neighbour] = with_middle_for(end);
+    mesh.triangles[index] = with_middle_for(other_end);
+    on_edge.add(mesh, neighbour);
+    on_edge.add(mesh, index);
+    true
 }
 
 /// The triangles that have, or had before they were split, an edge.
@@ -180,64 +166,40 @@ impl TrianglesOnEdges {
     }
 
     fn add(&mut self, mesh: &TriangleMesh, index: usize) {
-        let [a, b, c] = mesh.triangles[index];
-        for ends in [[a, b], [b, c], [c, a]] {
-            self.0.entry(sorted(ends)).or_default().push(index);
+        for ends in sides(&mesh.triangles[index]) {
+            self.0.entry(ends).or_default().push(index);
         }
     }
 
-    /// The triangle of the lowest number that has an edge, but for one.
-    fn first_other(&self, mesh: &TriangleMesh, index: usize, ends: [u32; 2]) -> Option<usize> {
-        // An edge of more triangles is no surface's; they are not searched for a neighbour again and again.
-        const MOST: usize = 16;
-        let round = self
-            .0
-            .get(&sorted(ends))
-            .filter(|round| round.len() <= MOST)?;
-        let has_both = |t: &[u32; 3]| ends.iter().all(|end| t.contains(end));
+    /// Returns the triangle of the lowest number that has an edge, other than `index`.
+    fn first_other(&self, mesh: &TriangleMesh, index: usize, [a, b]: [u32; 2]) -> Option<usize> {
+        // An edge of more triangles belongs to no surface; it is not searched again and again.
+        const MAX_ROUND: usize = 16;
+        let round = self.0.get(&[a.min(b), a.max(b)])?;
+        let round = Some(round).filter(|round| round.len() <= MAX_ROUND)?;
         let others = round.iter().copied().filter(|&other| other != index);
+        let has_both = |t: &[u32; 3]| t.contains(&a) && t.contains(&b);
         others
             .filter(|&other| has_both(&mesh.triangles[other]))
             .min()
     }
 }
 
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
-}
-
-/// Twice the area against the longest edge squared is the height over the longest edge.
-fn is_flat(mesh: &TriangleMesh, triangle: usize) -> bool {
-    let [a, b, c] = mesh.corners(triangle);
-    let longest = (b - a)
-        .norm_squared()
-        .max((c - b).norm_squared())
-        .max((a - c).norm_squared());
-    (b - a).cross(&(c - a)).norm() <= FLAT * longest
-}
-
-/// The corners turned so that the longest edge runs from the last to the first.
-fn longest_edge_last(mesh: &TriangleMesh, triangle: usize) -> [u32; 3] {
-    let [a, b, c] = mesh.triangles[triangle];
-    let length = |[from, _, to]: &[u32; 3]| {
-        (mesh.vertices[*from as usize] - mesh.vertices[*to as usize]).norm_squared()
-    };
-    let turned = [[a, b, c], [b, c, a], [c, a, b]];
-    turned
-        .into_iter()
-        .max_by(|one, other| length(one).total_cmp(&length(other)))
-        .unwrap_or([a, b, c])
+/// Returns the sides of a triangle, the lower number first.
+fn sides(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
 }
 
 /// Vertices with more triangles around than this are left alone: the tip of a fan.
 const MAX_AROUND: usize = 64;
-/// A collapsed edge keeps those beside it from collapsing in the same round; more rounds help nobody.
-const COLLAPSE_ROUNDS: usize = 8;
+/// A collapsed edge keeps its neighbours from collapsing in the same round; more rounds do not help.
+const MAX_COLLAPSE_ROUNDS: usize = 8;
 
-/// Collapses edges shorter than `thinnest`, where the surface stays what it is; gives where triangles went.
+/// Collapses edges shorter than `thinnest` where the surface keeps its shape; returns the places of the
+/// triangles that vanish.
 pub(super) fn collapse_slivers(mesh: &mut TriangleMesh, thinnest: f64) -> Vec<Vec3> {
     let mut places = Vec::new();
-    for _ in 0..COLLAPSE_ROUNDS {
+    for _ in 0..MAX_COLLAPSE_ROUNDS {
         let collapsed = collapse_some(mesh, thinnest);
         if collapsed.is_empty() {
             break;
@@ -247,107 +209,57 @@ pub(super) fn collapse_slivers(mesh: &mut TriangleMesh, thinnest: f64) -> Vec<Ve
     places
 }
 
-/// Collapses short edges that are not beside one another; gives where triangles went.
+/// Collapses short edges that are not next to one another.
 fn collapse_some(mesh: &mut TriangleMesh, thinnest: f64) -> Vec<Vec3> {
-    let mut places = Vec::new();
-    let short = short_edges(mesh, thinnest);
-    if short.is_empty() {
-        return places;
-    }
-    let around = triangles_around(mesh);
-    let mut stands_for: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
-    let mut is_settled = vec![false; mesh.vertices.len()];
-    for [a, b] in short {
-        let stars = [a, b].map(|end| &around[end as usize]);
-        if stars.iter().any(|star| star.len() > MAX_AROUND) {
-            continue;
-        }
-        let [one, other] = stars.map(|star| neighbours(mesh, star));
-        let mut beside = one.union(&other);
-        let is_free = beside.all(|&vertex| !is_settled[vertex as usize]);
-        if is_free && keeps_the_surface(mesh, stars, [&one, &other], [a, b]) {
-            for &vertex in one.union(&other) {
-                is_settled[vertex as usize] = true;
-            }
-            stands_for[b as usize] = a;
-            places.extend(on_edge(mesh, stars[0], [a, b]).map(|_| mesh.vertices[a as usize]));
-        }
-    }
-    rename(mesh, &stands_for);
-    mesh.triangles
-        .retain(|[a, b, c]| a != b && b != c && c != a);
-    places
-}
-
-/// The lower number first, each once.
-fn short_edges(mesh: &TriangleMesh, thinnest: f64) -> BTreeSet<[u32; 2]> {
-    let sides = mesh
-        .triangles
-        .iter()
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let is_short = |[a, b]: &[u32; 2]| {
         let way = mesh.vertices[*b as usize] - mesh.vertices[*a as usize];
         way.norm_squared() < thinnest * thinnest
     };
-    sides
-        .filter(is_short)
-        .map(|[a, b]| [a.min(b), a.max(b)])
-        .collect()
-}
-
-/// The triangles of a star that have both ends.
-fn on_edge<'a>(
-    mesh: &'a TriangleMesh,
-    star: &'a [u32],
-    ends: [u32; 2],
-) -> impl Iterator<Item = [u32; 3]> + 'a {
-    let corners = star
-        .iter()
-        .map(|&triangle| mesh.triangles[triangle as usize]);
-    corners.filter(move |corners| ends.iter().all(|end| corners.contains(end)))
-}
-
-/// The vertices beside both ends are the tips of the triangles on the edge, and no others: then the surface
-/// hangs together after the collapse as before.
-fn keeps_the_surface(
-    mesh: &TriangleMesh,
-    [star, _]: [&Vec<u32>; 2],
-    [one, other]: [&BTreeSet<u32>; 2],
-    ends: [u32; 2],
-) -> bool {
-    let tips: BTreeSet<u32> = on_edge(mesh, star, ends)
-        .flatten()
-        .filter(|corner| !ends.contains(corner))
-        .collect();
-    let beside: BTreeSet<u32> = one
-        .intersection(other)
-        .copied()
-        .filter(|v| !ends.contains(v))
-        .collect();
-    tips == beside
-}
-
-fn neighbours(mesh: &TriangleMesh, star: &[u32]) -> BTreeSet<u32> {
-    star.iter()
-        .flat_map(|&t| mesh.triangles[t as usize])
-        .collect()
-}
-
-fn triangles_around(mesh: &TriangleMesh) -> Vec<Vec<u32>> {
-    let mut around = vec![Vec::new(); mesh.vertices.len()];
-    for (number, triangle) in (0..).zip(&mesh.triangles) {
-        triangle
-            .iter()
-            .for_each(|&vertex| around[vertex as usize].push(number));
+    let all = mesh.triangles.iter().flat_map(sides);
+    let short: BTreeSet<[u32; 2]> = all.filter(is_short).collect();
+    let mut places = Vec::new();
+    if short.is_empty() {
+        return places;
     }
-    around
+    let around = mesh.triangles_around();
+    let mut replacement: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+    let mut is_settled = vec![false; mesh.vertices.len()];
+    for ends in short {
+        let stars = ends.map(|end| &around[end as usize]);
+        if stars.iter().any(|star| star.len() > MAX_AROUND) {
+            continue;
+        }
+        let [one, other] = stars.map(|star| -> BTreeSet<u32> {
+            let corners = star.iter().map(|&t| mesh.triangles[t as usize]);
+            corners.flatten().collect()
+        });
+        let is_free = !one.union(&other).any(|&vertex| is_settled[vertex as usize]);
+        let star = stars[0].iter().map(|&t| mesh.triangles[t as usize]);
+        let on_edge = star.filter(|corners| ends.iter().all(|end| corners.contains(end)));
+        let on_edge: Vec<[u32; 3]> = on_edge.collect();
+        // The common neighbours of both ends must be the tips of the triangles on the edge, and no others: then
+        // the surface is connected after the collapse as before.
+        let is_tip = |vertex: &u32| !ends.contains(vertex);
+        let tips: BTreeSet<u32> = on_edge.iter().flatten().copied().filter(is_tip).collect();
+        let common = one.intersection(&other).copied().filter(is_tip);
+        if is_free && common.eq(tips) {
+            for &vertex in one.union(&other) {
+                is_settled[vertex as usize] = true;
+            }
+            replacement[ends[1] as usize] = ends[0];
+            places.extend(on_edge.iter().map(|_| mesh.vertices[ends[0] as usize]));
+        }
+    }
+    rename(mesh, &replacement);
+    mesh.triangles.retain(has_three_corners);
+    places
 }
 
 #[cfg(test)]
 mod tests {
     use crate::{
         Vec3,
-        repair::{checked_mesh, fixtures::unit_block},
+        repair::{checked_mesh, tests::unit_block},
     };
 
     #[test]
