@@ -105,7 +105,7 @@ fn insert(place: impl Fn(&Vec3) -> Vec3) -> Insert {
     let shape = GenericInsertShape::default();
     let grid = ColumnGrid::filling((-20.0, 6.0), (20.0, 40.0), 1.0, 1).expect("a grid");
     let column = |i, k| {
-        let (x, z) = grid.place_mm(i, k);
+        let [x, z] = grid.place_mm(i, k).into();
         (-shape.thickness_mm, shape.height_mm(x, z))
     };
     let points = (0..=grid.cells.0).flat_map(|i| (0..=grid.cells.1).map(move |k| (i, k)));

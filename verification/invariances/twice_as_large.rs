@@ -79,7 +79,7 @@ fn insert(factor: f64) -> Insert {
     let shape = GenericInsertShape::default();
     let grid = ColumnGrid::filling((-22.0, -34.0), (20.0, 34.0), 1.5, 1).expect("a grid");
     let column = |i, k| {
-        let (x, z) = grid.place_mm(i, k);
+        let [x, z] = grid.place_mm(i, k).into();
         (-factor * shape.thickness_mm, factor * shape.height_mm(x, z))
     };
     let points = (0..=grid.cells.0).flat_map(|i| (0..=grid.cells.1).map(move |k| (i, k)));
@@ -89,10 +89,9 @@ fn insert(factor: f64) -> Insert {
 }
 
 fn grown(grid: ColumnGrid, factor: f64) -> ColumnGrid {
-    let larger = |(x, z): (f64, f64)| (x * factor, z * factor);
     ColumnGrid {
-        origin_mm: larger(grid.origin_mm),
-        step_mm: larger(grid.step_mm),
+        origin_mm: grid.origin_mm * factor,
+        step_mm: grid.step_mm * factor,
         ..grid
     }
 }

@@ -24,7 +24,7 @@ pub struct CurvedMesh<'a> {
 }
 
 impl<'a> CurvedMesh<'a> {
-    /// The curved surface that `mesh` samples.
+    /// Returns the curved surface that `mesh` samples.
     pub fn new(mesh: &'a TriangleMesh) -> Self {
         let plane = |triangle| {
             let [a, b, c] = mesh.corners(triangle);
@@ -41,13 +41,13 @@ impl<'a> CurvedMesh<'a> {
         }
     }
 
-    /// Unit normals at the corners of every triangle, each that of the smooth surface the triangle is part of.
+    /// Returns the unit normals at the corners of every triangle, of the smooth surface that the triangle is part of.
     ///
-    /// Where all triangles around a vertex make one smooth surface that is the vertex normal. At a crease,
+    /// If all triangles around a vertex make one smooth surface, that is the vertex normal. At a crease,
     /// such as the rim of an insert, a mean over all of them would lean across it and raise a ridge
-    /// beside. There the normals of the smooth vertices beside it are mirrored over the middle of the edge
-    /// between, which is exact on a ball.
-    pub fn corner_normals(&self) -> Vec<[Vec3; 3]> {
+    /// next to it. There the normals of the neighbouring smooth vertices are mirrored over the middle of the edge
+    /// between, which is exact on a sphere.
+    pub(crate) fn corner_normals(&self) -> Vec<[Vec3; 3]> {
         let around = self.mesh.triangles_around();
         let smooth: Vec<bool> = around.iter().map(|star| self.is_smooth(star)).collect();
         let corner = |triangle: usize, vertex: u32| {
@@ -57,8 +57,8 @@ impl<'a> CurvedMesh<'a> {
             let own = self.planes[triangle].0;
             let same = |other: &&u32| self.planes[**other as usize].0.dot(&own) > MIN_COSINE;
             let fan = around[vertex as usize].iter().filter(same);
-            let beside = fan.flat_map(|&other| self.mesh.triangles[other as usize]);
-            let mirrored = beside
+            let neighbours = fan.flat_map(|&other| self.mesh.triangles[other as usize]);
+            let mirrored = neighbours
                 .filter(|&other| smooth[other as usize])
                 .map(|other| self.mirrored(other, vertex));
             mirrored.sum::<Vec3>().try_normalize(0.0).unwrap_or(own)
@@ -69,7 +69,7 @@ impl<'a> CurvedMesh<'a> {
             .collect()
     }
 
-    /// Whether no two of some triangles lean from one another.
+    /// Returns whether no two of some triangles make an edge.
     fn is_smooth(&self, triangles: &[u32]) -> bool {
         let normal = |triangle: &u32| self.planes[*triangle as usize].0;
         triangles.iter().enumerate().all(|(n, one)| {
@@ -78,7 +78,7 @@ impl<'a> CurvedMesh<'a> {
         })
     }
 
-    /// The normal at vertex `to` if the surface goes on from `from` as a circle.
+    /// Returns the normal at vertex `to` if the surface continues from `from` as a circle.
     fn mirrored(&self, from: u32, to: u32) -> Vec3 {
         let [from, to] = [from, to].map(|vertex| vertex as usize);
         let along = self.mesh.vertices[to] - self.mesh.vertices[from];
@@ -87,87 +87,79 @@ impl<'a> CurvedMesh<'a> {
         normal - along * (2.0 * normal.dot(&along))
     }
 
-    /// How many triangles the mesh has.
+    /// Returns the number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.mesh.triangles.len()
     }
 
-    /// Positions of the corners of a triangle.
+    /// Returns the positions of the corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.mesh.corners(triangle)
     }
 
-    /// Squared distance from a point to the triangle's plane: a cheap lower bound.
+    /// Returns the squared distance from a point to the triangle's plane, mm2: a cheap lower bound.
     pub fn plane_distance2(&self, triangle: usize, point: &Vec3) -> f64 {
         let (normal, offset) = self.planes[triangle];
         (normal.dot(point) - offset).powi(2)
     }
 
-    /// Squared distance from a point to the flat triangle.
+    /// Returns the squared distance from a point to the flat triangle, mm2.
     pub fn distance2(&self, triangle: usize, point: &Vec3) -> f64 {
         Self::distance2_to_triangle(&self.corners(triangle), point)
     }
 
-    /// Squared distance from a point to a flat triangle, mm2.
+    /// Returns the squared distance from a point to a flat triangle, mm2.
     pub fn distance2_to_triangle(corners: &[Vec3; 3], point: &Vec3) -> f64 {
         (weighted(corners, closest_point(corners, point)) - point).norm_squared()
     }
 
-    /// The curved surface over the triangle at a place (x, z), if the triangle covers it.
+    /// Returns the intersection of the vertical line at a place (x, z) with the curved surface over the triangle, if
+    /// the triangle covers it.
     ///
-    /// `normals` are those at its corners, as [`CurvedMesh::corner_normals`] gives them.
-    ///
-    /// At a sharp edge, where the vertex normals lean away from the triangle's, and on steep walls,
-    /// where a lift sideways has no height, it stays flat.
-    pub fn over(&self, triangle: usize, normals: &[Vec3; 3], (x, z): (f64, f64)) -> Option<Over> {
-        const COVERED: f64 = -1e-9;
-        let corners = self.corners(triangle);
-        let [a, b, c] = corners;
-        let twice_area = |p: (f64, f64), q: &Vec3, r: &Vec3| {
-            (q.x - p.0) * (r.z - p.1) - (q.z - p.1) * (r.x - p.0)
-        };
-        let all = twice_area((a.x, a.z), &b, &c);
-        let weights = [
-            twice_area((x, z), &b, &c),
-            twice_area((x, z), &c, &a),
-            twice_area((x, z), &a, &b),
-        ]
-        .map(|part| part / all);
-        if all == 0.0 || weights.iter().any(|&weight| weight < COVERED) {
-            return None;
-        }
-        Some(self.lifted(triangle, normals, &corners, weights))
-    }
-
-    fn lifted(
+    /// `normals`: at its corners, from [`CurvedMesh::corner_normals`].
+    pub(crate) fn over(
         &self,
         triangle: usize,
         normals: &[Vec3; 3],
-        corners: &[Vec3; 3],
-        weights: [f64; 3],
-    ) -> Over {
-        let flat = weighted(corners, weights);
+        [x, z]: [f64; 2],
+    ) -> Option<Over> {
+        // Places on an edge belong to both of its triangles in spite of rounding.
+        const COVERED: f64 = -1e-9;
+        let corners = self.corners(triangle);
+        let [a, b, c] = corners;
+        let twice_area = |p: [f64; 2], q: &Vec3, r: &Vec3| {
+            (q.x - p[0]) * (r.z - p[1]) - (q.z - p[1]) * (r.x - p[0])
+        };
+        let all = twice_area([a.x, a.z], &b, &c);
+        let parts = [(&b, &c), (&c, &a), (&a, &b)].map(|(q, r)| twice_area([x, z], q, r));
+        let weights = parts.map(|part| part / all);
+        if all == 0.0 || weights.iter().any(|&weight| weight < COVERED) {
+            return None;
+        }
+        let flat = weighted(&corners, weights);
         let facet = self.planes[triangle].0;
         let is_smooth_at = |normal: &Vec3| normal.dot(&facet) > MIN_COSINE;
         let own = normals.map(|normal| if is_smooth_at(&normal) { normal } else { facet });
         let normal = weighted(&own, weights);
         let upward = normal.y / normal.norm();
+        // At a sharp edge the vertex normals say nothing about the facet, and on a steep wall a sideways lift has no
+        // height: there the surface stays flat.
         let is_smooth = normals.iter().all(is_smooth_at);
         let height = if is_smooth && upward.abs() >= MIN_SLOPE_COSINE {
-            flat.y + lift(corners, normals, weights, &flat).dot(&normal) / normal.y
+            flat.y + lift(&corners, normals, weights, &flat).dot(&normal) / normal.y
         } else {
             flat.y
         };
-        Over { height, upward }
+        Some(Over { height, upward })
     }
 
-    /// Signed distance from a point to the curved surface over the triangle, mm; > 0 outside.
+    /// Returns the signed distance from a point to the curved surface over the triangle, mm; > 0 outside.
     pub fn curved_gap_mm(&self, triangle: usize, point: &Vec3) -> f64 {
         let foot = self.foot(triangle, point);
         (point - foot.point).dot(&foot.normal)
     }
 
-    /// The place of the curved surface over the triangle that belongs to a point.
+    /// Returns the place of the curved surface over the triangle that belongs to a point.
     pub fn foot(&self, triangle: usize, point: &Vec3) -> Foot {
         let corners = self.corners(triangle);
         let normals = self.mesh.triangles[triangle].map(|v| self.vertex_normals[v as usize]);
@@ -182,13 +174,13 @@ impl<'a> CurvedMesh<'a> {
     }
 }
 
-/// The curved surface where a vertical line meets it.
+/// The intersection of a vertical line with the curved surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Over {
+pub(crate) struct Over {
     /// Height, mm.
-    pub height: f64,
-    /// How far its unit normal looks up: the cosine of the slope; less than 0 where it looks down.
-    pub upward: f64,
+    pub(crate) height: f64,
+    /// Cosine of the slope: the component along y of the unit normal, less than 0 where it points down.
+    pub(crate) upward: f64,
 }
 
 /// A place on the curved surface over a triangle.
@@ -202,7 +194,7 @@ pub struct Foot {
     pub normal: Vec3,
 }
 
-/// From the flat triangle to the curved surface.
+/// Returns the vector from the flat triangle to the curved surface.
 fn lift(corners: &[Vec3; 3], normals: &[Vec3; 3], weights: [f64; 3], flat: &Vec3) -> Vec3 {
     let half = |i: usize| normals[i] * (weights[i] / 2.0 * (corners[i] - flat).dot(&normals[i]));
     half(0) + half(1) + half(2)

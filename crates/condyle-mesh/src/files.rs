@@ -1,4 +1,14 @@
-//! Files behind an interface: on a disk, or as bytes in memory, where a browser or another program has put them.
+//! Files behind an interface: on a disk, or as bytes in memory for a browser or another program.
+//!
+//! ```
+//! use std::path::Path;
+//! use condyle_mesh::files::{Files, MemoryFiles};
+//!
+//! let files = MemoryFiles::default().with("knees/femur.stl", *b"solid");
+//! let path = files.find("../knees/femur.stl", Path::new("cases")).unwrap();
+//! assert_eq!(files.read(&path)?, b"solid");
+//! # Ok::<(), std::io::Error>(())
+//! ```
 
 #[cfg(feature = "file-system")]
 use std::fs;
@@ -11,17 +21,17 @@ use std::{
 
 /// Files that can be found and read.
 pub trait Files: Debug + Send + Sync {
-    /// The bytes of the file at `path`.
+    /// Reads the bytes of the file at `path`.
     ///
     /// # Errors
-    /// A file that is not there ([`io::ErrorKind::NotFound`]) or cannot be read.
+    /// A file that does not exist ([`io::ErrorKind::NotFound`]) or cannot be read.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 
-    /// The path of the file `written`, counted from `folder`, under which it can be read from
+    /// Returns the path under which the file `written`, relative to `folder`, can be read from
     /// anywhere.
     ///
     /// # Errors
-    /// The path that was looked at, where there is no such file.
+    /// The path that was tried, if there is no such file.
     fn find(&self, written: &str, folder: &Path) -> Result<PathBuf, PathBuf>;
 }
 
@@ -32,7 +42,7 @@ pub struct MemoryFiles {
 }
 
 impl MemoryFiles {
-    /// The same with a file at `path`, in place of one that was there.
+    /// Adds or replaces the file at `path`.
     pub fn with(mut self, path: impl AsRef<Path>, bytes: impl Into<Vec<u8>>) -> Self {
         self.files.insert(plain(path.as_ref()), bytes.into());
         self
@@ -56,7 +66,7 @@ impl Files for MemoryFiles {
     }
 }
 
-/// A path without `.`, and without `..` but at its start.
+/// Returns a path without `.`, and with `..` at its start only.
 fn plain(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {
@@ -71,9 +81,11 @@ fn plain(path: &Path) -> PathBuf {
     plain
 }
 
+/// Files on the disk.
+///
+/// Paths found are absolute, in a folder without `..` or links. The last part of the path stays as written even
+/// if it is a link, since its extension gives the format.
 #[cfg(feature = "file-system")]
-/// Files on the disk; what is found is absolute, in a folder without `..` or links. Its own name is
-/// the one written, whatever that links to, since a name says of what format a file is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Disk;
 
@@ -85,52 +97,19 @@ impl Files for Disk {
 
     fn find(&self, written: &str, folder: &Path) -> Result<PathBuf, PathBuf> {
         let path = folder.join(written);
-        match in_true_folder(&path) {
-            Some(found) if found.is_file() => Ok(found),
-            Some(_) | None => Err(path),
-        }
+        let true_path = || {
+            let parent = path.parent()?;
+            let is_here = parent.as_os_str().is_empty();
+            let parent = if is_here { Path::new(".") } else { parent };
+            Some(parent.canonicalize().ok()?.join(path.file_name()?))
+        };
+        true_path().filter(|found| found.is_file()).ok_or(path)
     }
 }
 
-#[cfg(feature = "file-system")]
-/// The file of that name in the folder that its path leads to.
-fn in_true_folder(path: &Path) -> Option<PathBuf> {
-    let folder = match path.parent()? {
-        here if here.as_os_str().is_empty() => Path::new("."),
-        folder => folder,
-    };
-    Some(folder.canonicalize().ok()?.join(path.file_name()?))
-}
-
-#[cfg(all(test, unix, feature = "file-system"))]
-mod disk_tests {
-    use std::os::unix::fs::symlink;
-
-    use super::*;
-
-    #[test]
-    fn a_link_keeps_its_own_name_in_the_true_folder() {
-        let folder = tempfile::tempdir().unwrap();
-        let root = folder.path().canonicalize().unwrap();
-        fs::create_dir(root.join("store")).unwrap();
-        fs::write(root.join("store/0a1b2c"), "solid").unwrap();
-        symlink("store/0a1b2c", root.join("linked.stl")).unwrap();
-        symlink("store", root.join("meshes")).unwrap();
-        symlink("nowhere", root.join("broken.stl")).unwrap();
-        let found = Disk.find("store/../linked.stl", &root).unwrap();
-        assert_eq!(found, root.join("linked.stl"));
-        assert_eq!(Disk.read(&found).unwrap(), b"solid");
-        let inside = Disk.find("meshes/0a1b2c", &root).unwrap();
-        assert_eq!(inside, root.join("store/0a1b2c"));
-        for none in ["broken.stl", "store", ".."] {
-            assert_eq!(Disk.find(none, &root), Err(root.join(none)));
-        }
-    }
-}
-
-#[cfg(feature = "file-system")]
-/// The path of `file` counted from `folder`, both absolute and without `..` or links; none where
+/// Returns the path of `file` relative to `folder`, both absolute and without `..` or links; none if
 /// they have nothing in common, as on two drives.
+#[cfg(feature = "file-system")]
 pub fn path_from(folder: &Path, file: &Path) -> Option<PathBuf> {
     let both = folder.components().zip(file.components());
     let common = both.take_while(|(one, other)| one == other).count();
@@ -140,20 +119,6 @@ pub fn path_from(folder: &Path, file: &Path) -> Option<PathBuf> {
         .map(|_| Component::ParentDir);
     let down = file.components().skip(common);
     (common > 0).then(|| up.chain(down).collect())
-}
-
-#[cfg(all(test, unix, feature = "file-system"))]
-mod path_tests {
-    use super::*;
-
-    #[test]
-    fn up_to_what_is_common_and_down_again() {
-        let from = |folder, file| path_from(Path::new(folder), Path::new(file));
-        assert_eq!(from("/a/b", "/a/b/c.stl"), Some("c.stl".into()));
-        assert_eq!(from("/a/b/c", "/a/d/e.stl"), Some("../../d/e.stl".into()));
-        assert_eq!(from("/a", "/b.stl"), Some("../b.stl".into()));
-        assert_eq!(from("a", "b.stl"), None);
-    }
 }
 
 #[cfg(test)]
@@ -176,5 +141,36 @@ mod tests {
         assert_eq!(looked_at, Err(PathBuf::from("cases/a.stl")));
         let error = files.read(Path::new("a.stl")).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::NotFound);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_keeps_its_own_name_in_the_true_folder() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().canonicalize().unwrap();
+        fs::create_dir(root.join("store")).unwrap();
+        fs::write(root.join("store/0a1b2c"), "solid").unwrap();
+        symlink("store/0a1b2c", root.join("linked.stl")).unwrap();
+        symlink("store", root.join("meshes")).unwrap();
+        symlink("nowhere", root.join("broken.stl")).unwrap();
+        let found = Disk.find("store/../linked.stl", &root).unwrap();
+        assert_eq!(found, root.join("linked.stl"));
+        assert_eq!(Disk.read(&found).unwrap(), b"solid");
+        let inside = Disk.find("meshes/0a1b2c", &root).unwrap();
+        assert_eq!(inside, root.join("store/0a1b2c"));
+        for none in ["broken.stl", "store", ".."] {
+            assert_eq!(Disk.find(none, &root), Err(root.join(none)));
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn up_to_what_is_common_and_down_again() {
+        let from = |folder, file| path_from(Path::new(folder), Path::new(file));
+        assert_eq!(from("/a/b", "/a/b/c.stl"), Some("c.stl".into()));
+        assert_eq!(from("/a/b/c", "/a/d/e.stl"), Some("../../d/e.stl".into()));
+        assert_eq!(from("/a", "/b.stl"), Some("../b.stl".into()));
+        assert_eq!(from("a", "b.stl"), None);
     }
 }

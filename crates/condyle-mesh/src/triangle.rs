@@ -1,14 +1,14 @@
-//! One flat triangle: its point closest to another, and where a ray meets it.
+//! One flat triangle: its closest point, its height over a place, and its intersection with a ray.
 
 use super::Vec3;
 
-/// The vector with barycentric coordinates `weights` between those at the corners.
+/// Interpolates vectors at the corners with barycentric coordinates `weights`.
 #[inline]
 pub fn weighted(vectors: &[Vec3; 3], weights: [f64; 3]) -> Vec3 {
     vectors[0] * weights[0] + vectors[1] * weights[1] + vectors[2] * weights[2]
 }
 
-/// Barycentric coordinates of the point of a triangle closest to `point`.
+/// Returns the barycentric coordinates of the point of a triangle closest to `point`.
 ///
 /// By the regions of the triangle, as in Ericson, Real-Time Collision Detection, 5.1.5.
 pub fn closest_point(corners: &[Vec3; 3], point: &Vec3) -> [f64; 3] {
@@ -48,9 +48,18 @@ pub fn closest_point(corners: &[Vec3; 3], point: &Vec3) -> [f64; 3] {
     [va / all, vb / all, vc / all]
 }
 
-/// Distance along a ray to a triangle, if it hits (Moller & Trumbore 1997, a little generous at
-/// the edges so that no ray slips between two triangles).
+/// Returns the height of a triangle over a place (x, z), if it covers it.
+pub(crate) fn height_over([a, b, c]: &[Vec3; 3], (x, z): (f64, f64)) -> Option<f64> {
+    let twice_area = |p: &Vec3, q: &Vec3| (p.x - x) * (q.z - z) - (p.z - z) * (q.x - x);
+    let weights = [twice_area(b, c), twice_area(c, a), twice_area(a, b)];
+    let whole: f64 = weights.iter().sum();
+    let covers = whole != 0.0 && weights.iter().all(|weight| weight * whole >= 0.0);
+    covers.then(|| (weights[0] * a.y + weights[1] * b.y + weights[2] * c.y) / whole)
+}
+
+/// Returns the distance along a ray to a triangle, if it hits (Moller & Trumbore 1997).
 pub fn hit([a, b, c]: &[Vec3; 3], from: &Vec3, direction: &Vec3) -> Option<f64> {
+    // A little generous at the edges, so that no ray slips between two triangles.
     const EDGE: f64 = 1e-9;
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(&ac);
@@ -60,7 +69,7 @@ pub fn hit([a, b, c]: &[Vec3; 3], from: &Vec3, direction: &Vec3) -> Option<f64> 
     }
     let offset = from - a;
     let u = offset.dot(&across) / determinant;
-    // Most triangles asked are missed, and most of these seen to be here.
+    // Most rays miss, and most of these are rejected here.
     if !(-EDGE..=1.0 + EDGE).contains(&u) {
         return None;
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::Vec3;
+use crate::{Vec3, triangle::height_over};
 
 /// A surface of triangles, each anticlockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -16,7 +16,7 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// The surface of quads, each cut from its first corner to its third.
+    /// Returns the surface of quads, each cut from its first corner to its third.
     pub fn of_quads(vertices: Vec<Vec3>, quads: impl IntoIterator<Item = [u32; 4]>) -> Self {
         let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
         let triangles = quads.into_iter().flat_map(halves).collect();
@@ -26,17 +26,17 @@ impl TriangleMesh {
         }
     }
 
-    /// Positions of the three corners of triangle `triangle`.
+    /// Returns the positions of the three corners of a triangle.
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|vertex| self.vertices[vertex as usize])
     }
 
-    /// Volume inside a closed surface; negative where the triangles face inwards.
+    /// Returns the volume inside a closed surface; negative if the triangles face inwards.
     pub fn signed_volume(&self) -> f64 {
         self.volume_of(0..self.triangles.len())
     }
 
-    /// The same of some of its triangles.
+    /// Returns the volume inside some of its triangles.
     pub(crate) fn volume_of(&self, triangles: impl Iterator<Item = usize>) -> f64 {
         let origin = self.vertices.first().copied().unwrap_or_default();
         triangles
@@ -47,22 +47,19 @@ impl TriangleMesh {
             .sum()
     }
 
-    /// Lowest and highest coordinate along each axis.
+    /// Returns the lowest and highest coordinate along each axis.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         bounds(&self.vertices)
     }
 
-    /// Unit normal at each vertex: the sum over the triangles around of a x b / (a^2 b^2), with a
-    /// and b the two edges that leave the vertex; exact for vertices on a ball (Max 1999).
+    /// Returns the unit normal at each vertex: the sum over the triangles around of a x b / (a^2 b^2), with a
+    /// and b the two edges that leave the vertex; exact for vertices on a sphere (Max 1999).
     pub fn vertex_normals(&self) -> Vec<Vec3> {
         let mut normals = vec![Vec3::zeros(); self.vertices.len()];
         for (triangle, &numbers) in self.triangles.iter().enumerate() {
             let corners = self.corners(triangle);
             for i in 0..3 {
-                let (a, b) = (
-                    corners[(i + 1) % 3] - corners[i],
-                    corners[(i + 2) % 3] - corners[i],
-                );
+                let [a, b] = [1, 2].map(|step| corners[(i + step) % 3] - corners[i]);
                 let weight = a.norm_squared() * b.norm_squared();
                 if weight > 0.0 {
                     normals[numbers[i] as usize] += a.cross(&b) / weight;
@@ -86,7 +83,7 @@ impl TriangleMesh {
         around
     }
 
-    /// The mesh with every vertex moved by `map`, which keeps left and right.
+    /// Moves every vertex by `map`, which must not mirror.
     pub fn mapped(mut self, map: impl Fn(&Vec3) -> Vec3) -> Self {
         self.vertices
             .iter_mut()
@@ -94,7 +91,7 @@ impl TriangleMesh {
         self
     }
 
-    /// A closed block from `low` to `high` of twelve triangles.
+    /// Returns a closed block from `low` to `high` of twelve triangles.
     pub fn block(low: Vec3, high: Vec3) -> Self {
         let corner = |i: u32| {
             let pick = |axis: u32| if i >> axis & 1 == 0 { low } else { high }[axis as usize];
@@ -111,7 +108,7 @@ impl TriangleMesh {
         Self::of_quads((0..8).map(corner).collect(), quads)
     }
 
-    /// Both meshes in one, the vertices and triangles of `other` after its own.
+    /// Appends the vertices and triangles of `other`.
     pub fn joined(mut self, other: &Self) -> Self {
         let shift = self.vertices.len() as u32;
         self.vertices.extend(&other.vertices);
@@ -124,7 +121,7 @@ impl TriangleMesh {
     }
 }
 
-/// Lowest and highest coordinate of `points` along each axis; of none, infinity and minus infinity.
+/// Returns the lowest and highest coordinate of `points` along each axis; of none, infinity and minus infinity.
 pub fn bounds<'a>(points: impl IntoIterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
     let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
     let wider = |(low, high): (Vec3, Vec3), point: &Vec3| (low.inf(point), high.sup(point));
@@ -132,11 +129,43 @@ pub fn bounds<'a>(points: impl IntoIterator<Item = &'a Vec3>) -> (Vec3, Vec3) {
 }
 
 impl TriangleMesh {
-    /// The mesh with all vertices of a cubic cell put together in their mean; triangles that fall in less
+    /// Returns the highest point of the mesh over every place of a square grid of `step_mm` that begins at its
+    /// corner, as seen from above, mm.
+    pub fn seen_from_above(&self, step_mm: f64) -> Vec<Vec3> {
+        let (low, high) = self.bounds();
+        let count = |length: f64| (length.max(0.0) / step_mm).floor() as usize + 1;
+        let (rows, columns) = (count(high.x - low.x), count(high.z - low.z));
+        let place = |low: f64, number: usize| low + number as f64 * step_mm;
+        let lines = |from: f64, to: f64, low: f64, count: usize| {
+            let first = ((from - low) / step_mm).ceil().max(0.0) as usize;
+            let end = (((to - low) / step_mm).floor() as usize + 1).min(count);
+            first..end.max(first)
+        };
+        let mut heights = vec![f64::NEG_INFINITY; rows * columns];
+        for triangle in 0..self.triangles.len() {
+            let corners = self.corners(triangle);
+            let (least, most) = bounds(&corners);
+            for row in lines(least.x, most.x, low.x, rows) {
+                for column in lines(least.z, most.z, low.z, columns) {
+                    let at = (place(low.x, row), place(low.z, column));
+                    if let Some(above) = height_over(&corners, at) {
+                        let height = &mut heights[row * columns + column];
+                        *height = height.max(above);
+                    }
+                }
+            }
+        }
+        let seen = heights.iter().enumerate().filter(|(_, y)| y.is_finite());
+        let point = |(at, &y): (usize, &f64)| {
+            Vec3::new(place(low.x, at / columns), y, place(low.z, at % columns))
+        };
+        seen.map(point).collect()
+    }
+
+    /// Returns the mesh with all vertices of a cubic cell merged at their mean; triangles that fall in less
     /// than three cells are left out.
     ///
-    /// A surface moves by less than a cell, and a flat one not at all. For pictures: nothing is computed
-    /// from it.
+    /// A surface moves by less than a cell, and a flat one not at all. For pictures only.
     pub fn clustered(&self, cell_mm: f64) -> Self {
         let cell = |vertex: &Vec3| {
             let place = vertex / cell_mm;
@@ -164,5 +193,18 @@ impl TriangleMesh {
                 .filter(|[a, b, c]| a != b && b != c && c != a)
                 .collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_is_seen_from_above_by_its_top() {
+        let block = TriangleMesh::block(Vec3::new(-10.0, 0.0, -15.0), Vec3::new(10.0, 8.0, 15.0));
+        let seen = block.seen_from_above(1.0);
+        assert_eq!(seen.len(), 21 * 31);
+        assert!(seen.iter().all(|point| point.y == 8.0));
     }
 }

@@ -76,8 +76,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     ("condyle_mesh::triangle", &[]),
-    ("condyle_mesh::triangle_mesh", &[]),
-    ("condyle_mesh::height_map", &["condyle_mesh::triangle_mesh"]),
+    ("condyle_mesh::triangle_mesh", &["condyle_mesh::triangle"]),
     (
         "condyle_mesh::curved_mesh",
         &["condyle_mesh::triangle", "condyle_mesh::triangle_mesh"],
@@ -92,7 +91,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
     (
         "condyle_mesh::repair",
-        &["condyle_mesh::height_map", "condyle_mesh::triangle_mesh"],
+        &["condyle_mesh::triangle", "condyle_mesh::triangle_mesh"],
     ),
     ("condyle_mesh::files", &[]),
     (

@@ -1,12 +1,16 @@
 //! Hexahedra in columns below a surface over a rectangular grid.
 
 use condyle_fem::HexMesh;
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::Vec3;
 
-/// Nodes have numbers of 32 bits, of which the last says that a column has none.
+/// Largest number of nodes: they are numbered with 32 bits, and the last number marks a column without nodes.
 const MAX_NODES: u32 = u32::MAX - 1;
+
+/// A place (x, z) in the transverse plane, mm.
+pub type Place = Vector2<f64>;
 
 /// More nodes than can be numbered.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -14,18 +18,18 @@ const MAX_NODES: u32 = u32::MAX - 1;
     "the insert would have {nodes:.0} nodes, and more than {max} cannot be numbered; use a larger edge_mm or fewer layers"
 )]
 pub struct TooManyNodes {
-    /// The number of nodes.
+    /// Number of nodes that the grid would have.
     pub nodes: f64,
-    /// The largest number of nodes that can be numbered.
+    /// Largest number of nodes that can be numbered.
     pub max: u32,
 }
 
-/// How finely a body is meshed.
+/// Fineness of the mesh of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meshing {
     /// Length of an edge along the surface, mm.
     pub edge_mm: f64,
-    /// Hexahedra through the thickness.
+    /// Number of hexahedra through the thickness.
     pub layers: usize,
 }
 
@@ -41,22 +45,22 @@ impl Default for Meshing {
 /// A rectangular grid over the transverse plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColumnGrid {
-    /// Place (x, z) of grid point (0, 0), mm.
-    pub origin_mm: (f64, f64),
+    /// Place of grid point (0, 0), mm.
+    pub origin_mm: Place,
     /// Distance between grid points along x and z, mm.
-    pub step_mm: (f64, f64),
+    pub step_mm: Place,
     /// Cells along x and z.
     pub cells: (usize, usize),
 }
 
-/// What stands over a place: the heights of the backside and of the articulating surface, mm.
+/// Heights of the backside and of the articulating surface at a place, mm.
 pub type Column = (f64, f64);
 
-/// An insert seen from above: where its columns stand, and the quads between them.
+/// An insert seen from above: the places of its columns, and the quads between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Places (x, z) of the columns, mm.
-    pub places_mm: Vec<(f64, f64)>,
+    /// Places of the columns, mm.
+    pub places_mm: Vec<Place>,
     /// Columns at the corners of each quad, anticlockwise seen from above.
     pub quads: Vec<[u32; 4]>,
 }
@@ -76,91 +80,97 @@ impl ColumnGrid {
     /// `layers` hexahedra.
     ///
     /// # Errors
-    /// [`TooManyNodes`] where these cannot be numbered.
+    /// [`TooManyNodes`] if these cannot be numbered.
     pub fn filling(
-        low: (f64, f64),
-        high: (f64, f64),
+        low: impl Into<[f64; 2]>,
+        high: impl Into<[f64; 2]>,
         edge_mm: f64,
         layers: usize,
     ) -> Result<Self, TooManyNodes> {
-        let cells = |length: f64| (length / edge_mm).round().max(1.0);
-        let (width, depth) = (high.0 - low.0, high.1 - low.1);
-        let (nx, nz) = (cells(width), cells(depth));
+        let (low, high) = (low.into(), high.into());
+        let size = [high[0] - low[0], high[1] - low[1]];
+        let [nx, nz] = size.map(|length| (length / edge_mm).round().max(1.0));
         let nodes = (nx + 1.0) * (nz + 1.0) * (layers as f64 + 1.0);
         if nodes > f64::from(MAX_NODES) {
             let max = MAX_NODES;
             return Err(TooManyNodes { nodes, max });
         }
         Ok(Self {
-            origin_mm: low,
-            step_mm: (width / nx, depth / nz),
+            origin_mm: low.into(),
+            step_mm: Place::new(size[0] / nx, size[1] / nz),
             cells: (nx as usize, nz as usize),
         })
     }
 
-    /// Place (x, z) of grid point (i, k), mm.
-    pub fn place_mm(&self, i: usize, k: usize) -> (f64, f64) {
-        (
-            self.origin_mm.0 + self.step_mm.0 * i as f64,
-            self.origin_mm.1 + self.step_mm.1 * k as f64,
-        )
+    /// Returns the place of grid point (i, k), mm.
+    pub fn place_mm(&self, i: usize, k: usize) -> Place {
+        let steps = Place::new(i as f64, k as f64);
+        self.origin_mm + self.step_mm.component_mul(&steps)
     }
 
-    /// Place (x, z) of the grid point with a number, mm.
-    pub fn place_of_mm(&self, number: usize) -> (f64, f64) {
+    /// Returns the place of the grid point with a number, mm.
+    pub fn place_of_mm(&self, number: usize) -> Place {
         let per_row = self.cells.1 + 1;
         self.place_mm(number / per_row, number % per_row)
     }
 
-    /// Number of grid point (i, k); z runs fastest.
+    /// Returns the number of grid point (i, k); z runs fastest.
     pub fn number(&self, i: usize, k: usize) -> usize {
         i * (self.cells.1 + 1) + k
     }
 
-    /// How many grid points there are.
+    /// Returns the count of grid points.
     pub fn point_count(&self) -> usize {
         (self.cells.0 + 1) * (self.cells.1 + 1)
     }
 
-    /// Grid points beside the one with a number, in its row and its column.
-    pub fn around(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
-        let per_row = self.cells.1 + 1;
-        let (i, k) = (number / per_row, number % per_row);
-        let before = [
-            (i > 0).then(|| number - per_row),
-            (k > 0).then(|| number - 1),
-        ];
-        let after = [
-            (i < self.cells.0).then_some(number + per_row),
-            (k < self.cells.1).then_some(number + 1),
-        ];
-        before.into_iter().chain(after).flatten()
+    /// Returns the neighbours of a grid point in its row and its column.
+    pub(super) fn around(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
+        neighbours(number, self.cells.0 + 1, self.cells.1 + 1)
     }
 
-    /// Grid points of cell (i, k), anticlockwise seen from above.
-    pub fn corners(&self, i: usize, k: usize) -> [usize; 4] {
-        [
-            self.number(i, k),
-            self.number(i, k + 1),
-            self.number(i + 1, k + 1),
-            self.number(i + 1, k),
-        ]
+    /// Returns the grid points of cell (i, k), anticlockwise seen from above.
+    pub(super) fn corners(&self, i: usize, k: usize) -> [usize; 4] {
+        [(i, k), (i, k + 1), (i + 1, k + 1), (i + 1, k)].map(|(i, k)| self.number(i, k))
     }
 
-    /// The whole rectangle seen from above, its places in the order of [`ColumnGrid::number`].
-    pub fn plan(&self) -> Plan {
+    /// Returns the cells as (i, k), in the order of their numbers.
+    pub(super) fn all_cells(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let (nx, nz) = self.cells;
-        let places = (0..=nx).flat_map(|i| (0..=nz).map(move |k| self.place_mm(i, k)));
-        let cells = (0..nx).flat_map(|i| (0..nz).map(move |k| self.corners(i, k)));
+        (0..nx).flat_map(move |i| (0..nz).map(move |k| (i, k)))
+    }
+
+    /// Returns the whole rectangle seen from above, its places in the order of [`ColumnGrid::number`].
+    pub fn plan(&self) -> Plan {
+        let places = (0..self.point_count()).map(|number| self.place_of_mm(number));
+        let corners = self.all_cells().map(|(i, k)| self.corners(i, k));
         Plan {
             places_mm: places.collect(),
-            quads: cells.map(|cell| cell.map(|point| point as u32)).collect(),
+            quads: corners.map(|cell| cell.map(|point| point as u32)).collect(),
         }
     }
 }
 
+/// Returns the neighbours along both axes of an item of a grid of `rows` by `columns`.
+pub(super) fn neighbours(
+    number: usize,
+    rows: usize,
+    columns: usize,
+) -> impl Iterator<Item = usize> + use<> {
+    let (i, k) = (number / columns, number % columns);
+    let before = [
+        (i > 0).then(|| number - columns),
+        (k > 0).then(|| number - 1),
+    ];
+    let after = [
+        (i + 1 < rows).then_some(number + columns),
+        (k + 1 < columns).then_some(number + 1),
+    ];
+    before.into_iter().chain(after).flatten()
+}
+
 impl Plan {
-    /// Hexahedra in `layers` layers over every quad; `columns`: one a place.
+    /// Fills `layers` layers over every quad with hexahedra; `columns`: one per place.
     pub fn hexahedra(&self, columns: &[Column], layers: usize) -> ColumnMesh {
         let mut first_node = vec![u32::MAX; columns.len()];
         let mut nodes = Vec::new();
@@ -168,7 +178,11 @@ impl Plan {
             let column = column as usize;
             if first_node[column] == u32::MAX {
                 first_node[column] = nodes.len() as u32;
-                nodes.extend(stack(self.places_mm[column], columns[column], layers));
+                let (place, (low, high)) = (self.places_mm[column], columns[column]);
+                nodes.extend((0..=layers).map(|layer| {
+                    let height = low + (high - low) * layer as f64 / layers as f64;
+                    Vec3::new(place[0], height, place[1])
+                }));
             }
         }
         let quad = |corners: &[u32; 4], layer: usize| {
@@ -179,26 +193,19 @@ impl Plan {
             [a, b, c, d, e, f, g, h]
         };
         let quads = self.quads.iter();
-        let hexes = quads.flat_map(|corners| (0..layers).map(move |layer| hex(corners, layer)));
+        let hexes = quads.clone();
+        let hexes = hexes.flat_map(|corners| (0..layers).map(move |layer| hex(corners, layer)));
         let hexes = hexes.collect();
-        let quads = self.quads.iter();
-        let backside = quads.clone().map(|corners| reversed(quad(corners, 0)));
+        let backside = quads.clone().map(|corners| {
+            let [a, b, c, d] = quad(corners, 0);
+            [d, c, b, a]
+        });
         ColumnMesh {
             articulating: quads.map(|corners| quad(corners, layers)).collect(),
             backside: backside.collect(),
             mesh: HexMesh { hexes, nodes },
         }
     }
-}
-
-/// The nodes of one column, from the backside up.
-fn stack((x, z): (f64, f64), (low, high): Column, layers: usize) -> impl Iterator<Item = Vec3> {
-    (0..=layers)
-        .map(move |layer| Vec3::new(x, low + (high - low) * layer as f64 / layers as f64, z))
-}
-
-fn reversed([a, b, c, d]: [u32; 4]) -> [u32; 4] {
-    [d, c, b, a]
 }
 
 #[cfg(test)]

@@ -1,14 +1,9 @@
 //! The outline of an insert seen from above: closed lines around where columns may stand.
 
-use nalgebra::Vector2;
-
-use super::footprint::Footprint;
-
-/// A place (x, z) in the transverse plane, mm.
-pub type Place = Vector2<f64>;
+use super::{footprint::Footprint, grid::Place};
 
 /// Halvings of the distance between two samples that find the outline between them to a millionth of a
-/// millimetre: further than that a triangle counts as covering a place beside its edge.
+/// millimetre; closer than that, a triangle counts as covering a place next to its edge.
 const HALVINGS: usize = 20;
 /// Points of an outline closer than this are one, mm.
 const ONE_POINT_MM: f64 = 1e-3;
@@ -16,24 +11,24 @@ const ONE_POINT_MM: f64 = 1e-3;
 const CORNER_DEG: f64 = 50.0;
 /// An outline turns from one side of a corner to the other within this many edges either way.
 const CORNER_REACH: f64 = 1.5;
-/// What is narrower than this many edges either way is noise of the facets, and evened out.
-const EVENED_REACH: f64 = 1.0;
+/// Features narrower than this many edges either way are noise of the facets, and smoothed.
+const SMOOTHING_REACH: f64 = 1.0;
 
-/// A closed line, anticlockwise seen from above around what is inside: clockwise around a hole.
-pub struct Loop {
+/// A closed line, anticlockwise seen from above around its inside: clockwise around a hole.
+pub(super) struct Loop {
     points: Vec<Place>,
     /// Length along the line from the first point to each, and at last back to the first, mm.
     along_mm: Vec<f64>,
 }
 
-/// The sine of the angle between two directions, times their lengths; positive where the second is
+/// Returns the sine of the angle between two directions, times their lengths; positive if the second is
 /// to the left of the first seen from above.
-pub fn turn(a: &Place, b: &Place) -> f64 {
+pub(super) fn turn(a: &Place, b: &Place) -> f64 {
     a[1] * b[0] - a[0] * b[1]
 }
 
-/// The closed lines around the footprint, by marching squares over its samples.
-pub fn outline(footprint: &Footprint<'_>, edge_mm: f64) -> Vec<Loop> {
+/// Returns the closed lines around the footprint, by marching squares over its samples.
+pub(super) fn outline(footprint: &Footprint<'_>, edge_mm: f64) -> Vec<Loop> {
     let next = next_crossings(footprint);
     let mut is_done = vec![false; next.len()];
     let mut loops = Vec::new();
@@ -45,76 +40,68 @@ pub fn outline(footprint: &Footprint<'_>, edge_mm: f64) -> Vec<Loop> {
             points.push(crossing(footprint, at));
             at = next[at] as usize;
         }
-        loops.extend(Loop::through(points).and_then(|line| line.evened_out(edge_mm)));
+        loops.extend(Loop::through(points).and_then(|line| line.smoothed(edge_mm)));
     }
     loops
 }
 
 const NONE: u32 = u32::MAX;
 
-/// For every edge between samples that the outline crosses, the edge that it crosses next.
+/// Returns for every edge between samples that the outline crosses the edge that it crosses next.
 ///
 /// Edge 2 n goes from sample n along x, edge 2 n + 1 along z.
 fn next_crossings(footprint: &Footprint<'_>) -> Vec<u32> {
     let samples = &footprint.samples;
     let mut next = vec![NONE; 2 * samples.point_count()];
-    for i in 0..samples.cells.0 {
-        for k in 0..samples.cells.1 {
-            let corners = samples.corners(i, k);
-            let is_in = corners.map(|corner| footprint.holds_sample(corner));
-            // Anticlockwise: along z, along x, back along z, back along x.
-            let edges = [
-                2 * corners[0] + 1,
-                2 * corners[1],
-                2 * corners[3] + 1,
-                2 * corners[0],
-            ];
-            for side in 0..4 {
-                if is_in[side] && !is_in[(side + 1) % 4] {
-                    let enters = |&other: &usize| !is_in[other] && is_in[(other + 1) % 4];
-                    let other = [3, 2, 1].map(|back| (side + back) % 4);
-                    if let Some(other) = other.iter().find(|other| enters(other)) {
-                        next[edges[side]] = edges[*other] as u32;
-                    }
-                }
+    for (i, k) in samples.all_cells() {
+        let corners = samples.corners(i, k);
+        let is_in = corners.map(|corner| footprint.holds[corner]);
+        // Anticlockwise: along z, along x, back along z, back along x.
+        let edges = [
+            2 * corners[0] + 1,
+            2 * corners[1],
+            2 * corners[3] + 1,
+            2 * corners[0],
+        ];
+        for side in (0..4).filter(|&side| is_in[side] && !is_in[(side + 1) % 4]) {
+            let enters = |&other: &usize| !is_in[other] && is_in[(other + 1) % 4];
+            let mut others = [3, 2, 1].map(|back| (side + back) % 4).into_iter();
+            if let Some(other) = others.find(enters) {
+                next[edges[side]] = edges[other] as u32;
             }
         }
     }
     next
 }
 
-/// The last place inside on an edge between a sample inside and one outside.
+/// Returns the last place inside on an edge between a sample inside and one outside.
 fn crossing(footprint: &Footprint<'_>, edge: usize) -> Place {
     let samples = &footprint.samples;
-    let from = edge / 2;
-    let to = if edge.is_multiple_of(2) {
-        from + samples.cells.1 + 1
-    } else {
-        from + 1
-    };
-    let place = |number| samples.place_of_mm(number).into();
-    let (mut inside, mut outside): ([f64; 2], [f64; 2]) = if footprint.holds_sample(from) {
-        (place(from), place(to))
-    } else {
-        (place(to), place(from))
-    };
-    if !footprint.holds(inside.into()) || footprint.holds(outside.into()) {
-        return (Place::from(inside) + Place::from(outside)) / 2.0;
+    let is_along_x = edge.is_multiple_of(2);
+    let step = if is_along_x { samples.cells.1 + 1 } else { 1 };
+    let (mut inside, mut outside) = (edge / 2, edge / 2 + step);
+    if !footprint.holds[inside] {
+        std::mem::swap(&mut inside, &mut outside);
+    }
+    let [mut inside, mut outside] = [inside, outside].map(|n| samples.place_of_mm(n));
+    // Where details were removed, the shell itself does not change between the samples.
+    if !footprint.holds(inside) || footprint.holds(outside) {
+        return (inside + outside) / 2.0;
     }
     for _ in 0..HALVINGS {
-        let middle = [0, 1].map(|axis| (inside[axis] + outside[axis]) / 2.0);
-        if footprint.holds_exactly(middle.into()) {
+        let middle = (inside + outside) / 2.0;
+        if footprint.holds_exactly(middle) {
             inside = middle;
         } else {
             outside = middle;
         }
     }
-    inside.into()
+    inside
 }
 
 impl Loop {
-    /// The closed line through some points, if they are three or more.
-    pub fn through(mut points: Vec<Place>) -> Option<Self> {
+    /// Returns the closed line through some points, if they are three or more.
+    pub(super) fn through(mut points: Vec<Place>) -> Option<Self> {
         let is_one = |a: &Place, b: &Place| (a - b).norm() < ONE_POINT_MM;
         points.dedup_by(|a, b| is_one(a, b));
         // The line closes: its last point may be its first one again.
@@ -132,22 +119,21 @@ impl Loop {
         Some(Self { points, along_mm })
     }
 
-    /// The same line with every point in the mean of those around, which stops at corners.
-    fn evened_out(&self, edge_mm: f64) -> Option<Self> {
+    /// Returns the line with every point at the mean of its surroundings, which end at corners.
+    fn smoothed(&self, edge_mm: f64) -> Option<Self> {
         let corners = self.corners(edge_mm);
         let mean = |n: usize| {
             let here = self.along_mm[n];
-            let to_corner = |corner: &f64| self.signed_way(here, *corner).abs();
-            let reach = corners
+            let to_corners = corners
                 .iter()
-                .map(to_corner)
-                .fold(EVENED_REACH * edge_mm, f64::min);
+                .map(|&corner| self.signed_way(here, corner).abs());
+            let reach = to_corners.fold(SMOOTHING_REACH * edge_mm, f64::min);
             self.mean_around(n, reach)
         };
         Self::through((0..self.points.len()).map(mean).collect())
     }
 
-    /// The mean of the line within some reach of a point, weighted by 1 - (way / reach)^2.
+    /// Returns the mean of the line within some reach of a point, weighted by 1 - (way / reach)^2.
     fn mean_around(&self, n: usize, reach: f64) -> Place {
         let count = self.points.len();
         let (mut sum, mut whole) = (self.points[n] * 0.0, 0.0);
@@ -170,29 +156,27 @@ impl Loop {
         }
     }
 
-    /// Its points, (x, z), mm.
-    pub fn places_mm(&self) -> Vec<[f64; 2]> {
+    pub(super) fn places_mm(&self) -> Vec<[f64; 2]> {
         self.points.iter().map(|point| (*point).into()).collect()
     }
 
-    /// Its length, mm.
-    pub fn length_mm(&self) -> f64 {
+    pub(super) fn length_mm(&self) -> f64 {
         self.along_mm[self.points.len()]
     }
 
-    /// The area inside, mm2; less than 0 of a hole.
-    pub fn area_mm2(&self) -> f64 {
+    /// Returns the area inside, mm2; less than 0 of a hole.
+    pub(super) fn area_mm2(&self) -> f64 {
         let ends = (0..self.points.len()).map(|n| self.segment(n));
         ends.map(|(a, b)| turn(&a, &b) / 2.0).sum()
     }
 
-    /// The mean of its points.
-    pub fn middle(&self) -> Place {
+    /// Returns the mean of its points.
+    pub(super) fn middle(&self) -> Place {
         self.points.iter().sum::<Place>() / self.points.len() as f64
     }
 
-    /// Whether it goes round a place: how often a line from there along x crosses it tells.
-    pub fn goes_round(&self, place: &Place) -> bool {
+    /// Returns whether it goes round a place, by the parity of its crossings with a ray along x.
+    pub(super) fn goes_round(&self, place: &Place) -> bool {
         let crosses = |n: &usize| {
             let (a, b) = self.segment(*n);
             let share = (place[1] - a[1]) / (b[1] - a[1]);
@@ -201,8 +185,8 @@ impl Loop {
         (0..self.points.len()).filter(crosses).count() % 2 == 1
     }
 
-    /// The place after some length along the line, mm, counted round and round.
-    pub fn at(&self, along_mm: f64) -> Place {
+    /// Returns the place after some length along the line, mm, counted round and round.
+    pub(super) fn at(&self, along_mm: f64) -> Place {
         let along_mm = along_mm.rem_euclid(self.length_mm());
         let after = self.along_mm.partition_point(|&length| length <= along_mm);
         let n = (after - 1).min(self.points.len() - 1);
@@ -211,8 +195,8 @@ impl Loop {
         a + (b - a) * ((along_mm - self.along_mm[n]) / whole)
     }
 
-    /// How far along the line its nearest place to another lies, and how far that is, mm.
-    pub fn nearest(&self, place: &Place) -> (f64, f64) {
+    /// Returns the length along the line to its nearest place to another, and the distance, mm.
+    pub(super) fn nearest(&self, place: &Place) -> (f64, f64) {
         let mut nearest = (0.0, f64::INFINITY);
         for n in 0..self.points.len() {
             let (a, b) = self.segment(n);
@@ -227,12 +211,11 @@ impl Loop {
         nearest
     }
 
-    /// Where along the line it has corners, no two closer than `edge_mm`: the sharpest first.
-    pub fn corners(&self, edge_mm: f64) -> Vec<f64> {
-        let turned_by = |&along: &f64| self.turned_at(along, edge_mm).abs();
+    /// Returns the lengths along the line to its corners, no two closer than `edge_mm`, the sharpest first.
+    pub(super) fn corners(&self, edge_mm: f64) -> Vec<f64> {
         let candidates = self.along_mm[..self.points.len()].iter();
-        let mut sharp: Vec<(f64, f64)> = candidates
-            .map(|along| (turned_by(along), *along))
+        let turned = candidates.map(|&along| (self.turned_at(along, edge_mm).abs(), along));
+        let mut sharp: Vec<(f64, f64)> = turned
             .filter(|(angle, _)| *angle > CORNER_DEG.to_radians())
             .collect();
         sharp.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -246,21 +229,16 @@ impl Loop {
         corners
     }
 
-    /// Whether the outline sticks out after some length, mm.
-    pub fn sticks_out_at(&self, along_mm: f64, edge_mm: f64) -> bool {
-        self.turned_at(along_mm, edge_mm) > 0.0
-    }
-
-    /// By how much the line turns within the reach of a corner, rad; less than 0 to the right.
-    fn turned_at(&self, along_mm: f64, edge_mm: f64) -> f64 {
+    /// Returns the angle that the line turns by within the reach of a corner, rad; less than 0 to the right.
+    pub(super) fn turned_at(&self, along_mm: f64, edge_mm: f64) -> f64 {
         let reach = CORNER_REACH * edge_mm;
         let [before, here, after] = [-reach, 0.0, reach].map(|way| self.at(along_mm + way));
         let (before, after) = (here - before, after - here);
         turn(&before, &after).atan2(before.dot(&after))
     }
 
-    /// The shorter way along the line from one length to another, mm: less than 0 backwards.
-    pub fn signed_way(&self, from: f64, to: f64) -> f64 {
+    /// Returns the shorter way along the line from one length to another, mm: less than 0 backwards.
+    pub(super) fn signed_way(&self, from: f64, to: f64) -> f64 {
         let length = self.length_mm();
         (to - from + length / 2.0).rem_euclid(length) - length / 2.0
     }
@@ -268,110 +246,4 @@ impl Loop {
     fn segment(&self, n: usize) -> (Place, Place) {
         (self.points[n], self.points[(n + 1) % self.points.len()])
     }
-}
-
-/// Quads whose corners all have a larger sine than this are left as they are.
-const WELL_SHAPED: f64 = 0.6;
-/// How far a place is tried to be moved, in edges.
-const STEPS: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
-/// Rounds at most; a badly shaped quad takes some ten.
-const ROUNDS: usize = 40;
-
-/// The least sine of a corner of some quads; less than 0 where one is turned round.
-fn least_sine(places: &[Place], quads: &[[u32; 4]]) -> f64 {
-    let corners = |quad: &[u32; 4]| {
-        let quad = *quad;
-        (0..4).map(move |corner| (quad, corner))
-    };
-    let sines = quads.iter().flat_map(corners).map(|(quad, corner)| {
-        let [here, after, before] =
-            [0, 1, 3].map(|step| places[quad[(corner + step) % 4] as usize]);
-        let (along, back) = (after - here, before - here);
-        turn(&along, &back) / (along.norm() * back.norm()).max(f64::MIN_POSITIVE)
-    });
-    sines.fold(f64::INFINITY, f64::min)
-}
-
-/// Where a place may be moved to.
-#[derive(Clone, Copy)]
-pub enum Freedom<'a> {
-    /// Nowhere.
-    Held,
-    /// Along an outline that it is on.
-    Along(&'a Loop),
-    /// Anywhere inside an outline.
-    Within(&'a Loop),
-}
-
-impl Freedom<'_> {
-    /// Where a place may be tried that is moved by about a length, mm.
-    fn tried(self, place: &Place, length_mm: f64) -> Vec<Place> {
-        match self {
-            Self::Held => Vec::new(),
-            Self::Along(outline) => {
-                let here = outline.nearest(place).0;
-                let ends = [here - length_mm, here + length_mm];
-                ends.map(|along| outline.at(along)).to_vec()
-            }
-            Self::Within(outline) => (0..8)
-                .map(|eighth| {
-                    let (sine, cosine) =
-                        (f64::from(eighth) * std::f64::consts::FRAC_PI_4).sin_cos();
-                    place + Place::new(cosine, sine) * length_mm
-                })
-                .filter(|tried| outline.goes_round(tried))
-                .collect(),
-        }
-    }
-}
-
-/// Moves places one by one to where the worst corner beside them is best, while one is bad.
-pub fn shape(places: &mut [Place], quads: &[[u32; 4]], freedoms: &[Freedom<'_>], edge_mm: f64) {
-    let beside = quads_beside(places.len(), quads);
-    let is_bad = |sine: f64| sine < WELL_SHAPED;
-    for _ in 0..ROUNDS {
-        let mut has_moved = false;
-        for place in 0..places.len() {
-            let around: Vec<[u32; 4]> = beside[place].iter().map(|&n| quads[n as usize]).collect();
-            if is_bad(least_sine(places, &around)) {
-                has_moved |= improve(places, place, &around, freedoms[place], edge_mm);
-            }
-        }
-        if !has_moved {
-            return;
-        }
-    }
-}
-
-/// Moves one place to the best of those that are tried, and says whether it is better than where it was.
-fn improve(
-    places: &mut [Place],
-    place: usize,
-    around: &[[u32; 4]],
-    freedom: Freedom<'_>,
-    edge_mm: f64,
-) -> bool {
-    let start = places[place];
-    let mut best = (least_sine(places, around), start);
-    for step in STEPS {
-        for tried in freedom.tried(&start, step * edge_mm) {
-            places[place] = tried;
-            let sine = least_sine(places, around);
-            if sine > best.0 {
-                best = (sine, tried);
-            }
-        }
-    }
-    places[place] = best.1;
-    best.1 != start
-}
-
-fn quads_beside(place_count: usize, quads: &[[u32; 4]]) -> Vec<Vec<u32>> {
-    let mut beside = vec![Vec::new(); place_count];
-    for (number, quad) in quads.iter().enumerate() {
-        for &place in quad {
-            beside[place as usize].push(number as u32);
-        }
-    }
-    beside
 }

@@ -1,8 +1,8 @@
 //! The intersections of vertical lines with a surface, and the smooth surface that bridges its holes.
 
-use std::{collections::BTreeMap, ops::RangeInclusive};
+use std::collections::BTreeMap;
 
-use super::grid::ColumnGrid;
+use super::grid::{ColumnGrid, Place};
 use crate::{
     Vec3,
     curved_mesh::{CurvedMesh, Over},
@@ -11,148 +11,123 @@ use crate::{
 
 /// Edge of the bins that sort the triangles over the transverse plane, mm.
 const BIN_MM: f64 = 1.0;
-/// A line that slips between two triangles is tried this far beside, mm: much more than numbers
-/// are rounded by, and much less than a node's place needs to be known.
-const BESIDE_MM: f64 = 1e-4;
+/// A line that slips between two triangles is tried again this far away, mm: much more than numbers
+/// are rounded by, and much less than the accuracy of a node's place.
+const ASIDE_MM: f64 = 1e-4;
 
-/// The vertical lines through a shell, whose triangles are sorted into square bins.
-pub struct VerticalLines<'a> {
+/// The vertical lines through a surface, whose triangles are sorted into square bins.
+pub(super) struct VerticalLines<'a> {
     curved: CurvedMesh<'a>,
     corner_normals: Vec<[Vec3; 3]>,
     is_closed: bool,
-    low: (f64, f64),
-    counts: (usize, usize),
+    low: Place,
+    counts: [usize; 2],
     bins: Vec<Vec<u32>>,
 }
 
-/// Where a vertical line goes through a shell first and last.
+/// First and last intersection of a vertical line with a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Through {
+pub(super) struct Through {
     /// Lowest crossing, mm.
-    pub bottom: f64,
+    pub(super) bottom: f64,
     /// Highest crossing, mm.
-    pub top: f64,
+    pub(super) top: f64,
     /// Cosine of the slope at the highest.
-    pub upward: f64,
+    pub(super) upward: f64,
 }
 
 impl<'a> VerticalLines<'a> {
-    /// Those through `shell`; a line through a closed one goes in and out.
-    pub fn new(shell: &'a TriangleMesh, is_closed: bool) -> Self {
+    /// Sorts the triangles of a surface; a line through a closed one goes in and out.
+    pub(super) fn new(shell: &'a TriangleMesh, is_closed: bool) -> Self {
         let (low, high) = shell.bounds();
-        let count = |length: f64| (length / BIN_MM) as usize + 1;
-        let counts = (count(high.x - low.x), count(high.z - low.z));
+        let counts = [high.x - low.x, high.z - low.z].map(|length| (length / BIN_MM) as usize + 1);
         let curved = CurvedMesh::new(shell);
         let mut lines = Self {
             corner_normals: curved.corner_normals(),
             curved,
             is_closed,
-            low: (low.x, low.z),
+            low: Place::new(low.x, low.z),
             counts,
-            bins: vec![Vec::new(); counts.0 * counts.1],
+            bins: vec![Vec::new(); counts[0] * counts[1]],
         };
         for triangle in 0..shell.triangles.len() {
             let [a, b, c] = shell.corners(triangle);
             let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-            let (along_x, along_z) = lines.bins_between((low.x, low.z), (high.x, high.z));
-            for i in along_x {
-                for k in along_z.clone() {
-                    lines.bins[i * counts.1 + k].push(triangle as u32);
+            let first = lines.bin_of(Place::new(low.x - ASIDE_MM, low.z - ASIDE_MM));
+            let last = lines.bin_of(Place::new(high.x + ASIDE_MM, high.z + ASIDE_MM));
+            for i in first[0]..=last[0] {
+                for k in first[1]..=last[1] {
+                    lines.bins[i * counts[1] + k].push(triangle as u32);
                 }
             }
         }
         lines
     }
 
-    /// Where the line over a place (x, z) goes through the shell, if it does.
-    pub fn at(&self, (x, z): (f64, f64)) -> Option<Through> {
-        let beside = [
-            (x, z),
-            (x - BESIDE_MM, z),
-            (x + BESIDE_MM, z),
-            (x, z - BESIDE_MM),
-            (x, z + BESIDE_MM),
-        ];
-        beside.into_iter().find_map(|place| self.exactly_at(place))
+    /// Returns the intersections of the line over a place, if it meets the surface.
+    pub(super) fn at(&self, place: Place) -> Option<Through> {
+        let aside = [[0.0, 0.0], [-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]];
+        let tried = aside.map(|aside| place + Place::from(aside) * ASIDE_MM);
+        tried.into_iter().find_map(|place| self.exactly_at(place))
     }
 
-    /// The same without a try beside it.
-    pub fn exactly_at(&self, place: (f64, f64)) -> Option<Through> {
-        let (i, k) = self.bin_of(place);
-        let bin = &self.bins[i * self.counts.1 + k];
+    /// Returns the same without trying again next to the place.
+    pub(super) fn exactly_at(&self, place: Place) -> Option<Through> {
+        let [i, k] = self.bin_of(place);
         let over = |&triangle: &u32| {
             let triangle = triangle as usize;
-            self.curved
-                .over(triangle, &self.corner_normals[triangle], place)
+            let normals = &self.corner_normals[triangle];
+            self.curved.over(triangle, normals, place.into())
         };
-        let crossings = bin.iter().filter_map(over);
-        let through = crossings.fold(None, |through: Option<Through>, over| {
-            Some(through.map_or_else(|| Through::once(over), |all| all.and(over)))
+        let bin = self.bins[i * self.counts[1] + k].iter();
+        let through = bin.filter_map(over).fold(None, |through, over: Over| {
+            let Some(Through {
+                bottom,
+                top,
+                upward,
+            }) = through
+            else {
+                return Some(Through {
+                    bottom: over.height,
+                    top: over.height,
+                    upward: over.upward,
+                });
+            };
+            let is_higher = over.height > top;
+            Some(Through {
+                bottom: bottom.min(over.height),
+                top: top.max(over.height),
+                upward: if is_higher { over.upward } else { upward },
+            })
         });
         through.filter(|all| !self.is_closed || all.top > all.bottom)
     }
 
-    /// Numbers along x and z of the bins that cover a rectangle.
-    fn bins_between(
-        &self,
-        low: (f64, f64),
-        high: (f64, f64),
-    ) -> (RangeInclusive<usize>, RangeInclusive<usize>) {
-        let beyond = BESIDE_MM;
-        let first = self.bin_of((low.0 - beyond, low.1 - beyond));
-        let last = self.bin_of((high.0 + beyond, high.1 + beyond));
-        (first.0..=last.0, first.1..=last.1)
-    }
-
-    fn bin_of(&self, (x, z): (f64, f64)) -> (usize, usize) {
-        let number = |value: f64, low: f64, count: usize| {
-            (((value - low) / BIN_MM).floor().max(0.0) as usize).min(count - 1)
-        };
-        (
-            number(x, self.low.0, self.counts.0),
-            number(z, self.low.1, self.counts.1),
-        )
+    fn bin_of(&self, place: Place) -> [usize; 2] {
+        let bins = (place - self.low) / BIN_MM;
+        [0, 1].map(|axis| (bins[axis].floor().max(0.0) as usize).min(self.counts[axis] - 1))
     }
 }
 
-impl Through {
-    fn once(over: Over) -> Self {
-        Self {
-            bottom: over.height,
-            top: over.height,
-            upward: over.upward,
-        }
-    }
-
-    fn and(self, over: Over) -> Self {
-        let is_higher = over.height > self.top;
-        Self {
-            bottom: self.bottom.min(over.height),
-            top: self.top.max(over.height),
-            upward: if is_higher { over.upward } else { self.upward },
-        }
-    }
-}
-
-/// Rounds in which heights settle at the mean of those around, at most.
-const ROUNDS: usize = 1000;
-/// Heights that are settled in all, about: over a hole as large as an insert, rounds are fewer.
+/// Maximum number of rounds in which heights settle at the mean of their neighbours.
+const MAX_ROUNDS: usize = 1000;
+/// Approximate number of heights that are settled in all: over a hole as large as an insert, rounds are fewer.
 const MAX_SETTLED: usize = 2_000_000;
-/// So many times the way to the mean goes a height in a round: fewer rounds do.
+/// Factor on the way to the mean that a height goes in a round: over-relaxation takes fewer rounds.
 const OVER_RELAXED: f64 = 1.8;
 /// Heights that move less than this have settled, mm.
 const SETTLED_MM: f64 = 1e-6;
 
-/// Heights of backside and top at the samples of holes, and at those beside them.
+/// Heights of backside and top at the samples of holes, and at those next to them.
 #[derive(Default)]
-pub struct Bridges {
+pub(super) struct Bridges {
     heights_mm: BTreeMap<usize, [f64; 2]>,
 }
 
 impl Bridges {
-    /// Spans some samples: every height is the mean of those of the four samples around, where the shell's own `height`
-    /// holds for those beside.
-    pub fn add(
+    /// Spans some samples: every height is the mean of those of its four neighbours, and next to the hole the shell's
+    /// own `height` holds.
+    pub(super) fn add(
         &mut self,
         samples: &ColumnGrid,
         spanned: &[usize],
@@ -160,16 +135,16 @@ impl Bridges {
     ) {
         let mut heights = BTreeMap::new();
         for &sample in spanned {
-            for other in corners_around(samples, sample) {
-                let is_beside = spanned.binary_search(&other).is_err();
-                if let Some(own) = is_beside.then(|| height(other)).flatten() {
+            for other in samples_within_a_cell(samples, sample) {
+                let is_outside = spanned.binary_search(&other).is_err();
+                if let Some(own) = is_outside.then(|| height(other)).flatten() {
                     heights.insert(other, own);
                 }
             }
         }
         let mean = mean(heights.values());
         heights.extend(spanned.iter().map(|&sample| (sample, mean)));
-        for _ in 0..ROUNDS.min(MAX_SETTLED / spanned.len().max(1)) {
+        for _ in 0..MAX_ROUNDS.min(MAX_SETTLED / spanned.len().max(1)) {
             if settle(&mut heights, samples, spanned) < SETTLED_MM {
                 break;
             }
@@ -177,27 +152,23 @@ impl Bridges {
         self.heights_mm.extend(heights);
     }
 
-    /// What the vertical line over a place meets, if it is on a bridge.
-    pub fn at(&self, samples: &ColumnGrid, (x, z): (f64, f64)) -> Option<Through> {
-        let cell = |value: f64, low: f64, step: f64| {
-            let cells = (value - low) / step;
-            (cells.max(0.0).floor(), cells - cells.max(0.0).floor())
-        };
-        let (i, along) = cell(x, samples.origin_mm.0, samples.step_mm.0);
-        let (k, across) = cell(z, samples.origin_mm.1, samples.step_mm.1);
-        let (i, k) = (i as usize, k as usize);
+    /// Returns the intersections of the vertical line over a place with a bridge, if there is one.
+    pub(super) fn at(&self, samples: &ColumnGrid, place: Place) -> Option<Through> {
+        let cells = (place - samples.origin_mm).component_div(&samples.step_mm);
+        let whole = cells.map(|cell| cell.max(0.0).floor());
+        let (i, k) = (whole[0] as usize, whole[1] as usize);
         if i >= samples.cells.0 || k >= samples.cells.1 {
             return None;
         }
+        let [along, across]: [f64; 2] = (cells - whole).into();
         let weights = [
             (1.0 - along) * (1.0 - across),
             (1.0 - along) * across,
             along * across,
             along * (1.0 - across),
         ];
-        let corners = samples.corners(i, k).into_iter().zip(weights);
         let mut height = [0.0; 2];
-        for (corner, weight) in corners {
+        for (corner, weight) in samples.corners(i, k).into_iter().zip(weights) {
             let at = self.heights_mm.get(&corner)?;
             height = [0, 1].map(|end| height[end] + weight * at[end]);
         }
@@ -209,29 +180,31 @@ impl Bridges {
     }
 }
 
-/// Moves every spanned height to the mean of those around; gives how far one moves at most, mm.
+/// Moves every spanned height to the mean of its neighbours; returns the largest move, mm.
 fn settle(heights: &mut BTreeMap<usize, [f64; 2]>, samples: &ColumnGrid, spanned: &[usize]) -> f64 {
-    let mut most: f64 = 0.0;
+    let mut largest: f64 = 0.0;
     for &sample in spanned {
         let around = samples.around(sample);
         let known: Vec<[f64; 2]> = around.filter_map(|n| heights.get(&n).copied()).collect();
         let (mean, before) = (mean(known.iter()), heights[&sample]);
         let here = [0, 1].map(|end| before[end] + OVER_RELAXED * (mean[end] - before[end]));
         heights.insert(sample, here);
-        most = most
-            .max((here[0] - before[0]).abs())
-            .max((here[1] - before[1]).abs());
+        for end in [0, 1] {
+            largest = largest.max((here[end] - before[end]).abs());
+        }
     }
-    most
+    largest
 }
 
-/// The samples at the corners of the four cells around one.
-fn corners_around(samples: &ColumnGrid, sample: usize) -> impl Iterator<Item = usize> + use<'_> {
-    let along_z = |row: usize| {
-        let per_row = samples.cells.1 + 1;
-        samples
-            .around(row)
-            .filter(move |other| other / per_row == row / per_row)
+/// Returns the samples at the corners of the four cells around one, and the second ones along z.
+fn samples_within_a_cell(
+    samples: &ColumnGrid,
+    sample: usize,
+) -> impl Iterator<Item = usize> + use<'_> {
+    let per_row = samples.cells.1 + 1;
+    let along_z = move |row: usize| {
+        let around = samples.around(row);
+        around.filter(move |other| other / per_row == row / per_row)
     };
     let rows = samples.around(sample).chain([sample]);
     rows.flat_map(move |row| along_z(row).chain([row]))

@@ -2,79 +2,61 @@
 
 use std::ops::ControlFlow;
 
-use crate::{Vec3, triangle_mesh::TriangleMesh};
+use crate::{
+    Vec3,
+    triangle_mesh::{TriangleMesh, bounds},
+};
 
 /// Triangles in a leaf: fewer make the tree deep, more make the leaves slow.
 const LEAF: usize = 4;
 
-/// A box along the axes.
-#[derive(Clone, Copy)]
-struct Bounds {
-    low: Vec3,
-    high: Vec3,
-}
+/// A box along the axes: its lowest and its highest corner.
+type Bounds = (Vec3, Vec3);
 
-impl Bounds {
-    fn of(corners: &[Vec3; 3]) -> Self {
-        let [a, b, c] = corners;
-        Self {
-            low: a.inf(b).inf(c),
-            high: a.sup(b).sup(c),
-        }
-    }
-
-    fn wider_by(self, margin: f64) -> Self {
-        Self {
-            low: self.low.add_scalar(-margin),
-            high: self.high.add_scalar(margin),
-        }
-    }
-
-    fn joined(&self, other: &Self) -> Self {
-        Self {
-            low: self.low.inf(&other.low),
-            high: self.high.sup(&other.high),
-        }
-    }
-
-    fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
-    }
+fn meet(one: &Bounds, other: &Bounds) -> bool {
+    (0..3).all(|i| one.0[i] <= other.1[i] && other.0[i] <= one.1[i])
 }
 
 struct BoxNode {
     bounds: Bounds,
-    /// Range of the leaf's or branch's triangles in the tree's order.
+    /// Range of its triangles in the tree's order.
     start: u32,
     end: u32,
     /// The two nodes below; none for a leaf.
     below: Option<[u32; 2]>,
 }
 
-/// The boxes of a mesh's triangles, in boxes of boxes.
+impl BoxNode {
+    fn size(&self) -> u32 {
+        self.end - self.start
+    }
+}
+
+/// A hierarchy of boxes around the triangles of a mesh.
 pub(super) struct BoxTree {
     bounds: Vec<Bounds>,
     order: Vec<u32>,
     nodes: Vec<BoxNode>,
-    /// How many of the triangles a surface of so many vertices can have: about two a vertex.
+    /// Number of triangles that a surface of as many vertices may have; there are about two per vertex.
     surface_of: usize,
 }
 
 impl BoxTree {
-    /// The tree of a mesh's triangles.
+    /// Returns the tree of a mesh's triangles.
     pub(super) fn new(mesh: &TriangleMesh) -> Self {
         Self::with_margin(mesh, 0.0)
     }
 
-    /// The same with boxes that reach `margin` farther on every side.
+    /// Returns a tree whose boxes reach `margin` farther on every side.
     pub(super) fn with_margin(mesh: &TriangleMesh, margin: f64) -> Self {
         let count = mesh.triangles.len();
-        let bounds = (0..count).map(|t| Bounds::of(&mesh.corners(t)).wider_by(margin));
-        let bounds: Vec<Bounds> = bounds.collect();
-        let order = (0..count as u32).collect();
+        let wider = |t: usize| {
+            let (low, high) = bounds(&mesh.corners(t));
+            (low.add_scalar(-margin), high.add_scalar(margin))
+        };
         let mut tree = Self {
-            bounds,
-            order,
+            bounds: (0..count).map(wider).collect(),
+            order: (0..count as u32).collect(),
             nodes: Vec::with_capacity(count),
             surface_of: count.min(4 * mesh.vertices.len()),
         };
@@ -84,14 +66,12 @@ impl BoxTree {
         tree
     }
 
-    /// Splits at the median along the longest side, down to the leaves; gives the node's number.
+    /// Splits at the median along the longest side, down to the leaves; returns the node's number.
     fn build(&mut self, start: usize, end: usize) -> u32 {
-        let within = self.order[start..end]
-            .iter()
-            .map(|&t| self.bounds[t as usize]);
-        let bounds = within
-            .reduce(|one, other| one.joined(&other))
-            .unwrap_or(self.bounds[0]);
+        let within = self.order[start..end].iter();
+        let within = within.map(|&t| self.bounds[t as usize]);
+        let joined = |one: Bounds, other: Bounds| (one.0.inf(&other.0), one.1.sup(&other.1));
+        let bounds = within.reduce(joined).unwrap_or(self.bounds[0]);
         let number = self.nodes.len();
         self.nodes.push(BoxNode {
             bounds,
@@ -100,11 +80,11 @@ impl BoxTree {
             below: None,
         });
         if end - start > LEAF {
-            let axis = (bounds.high - bounds.low).imax();
+            let axis = (bounds.1 - bounds.0).imax();
             let middle = usize::midpoint(start, end);
             let place = |t: u32| {
-                let own = &self.bounds[t as usize];
-                own.low[axis] + own.high[axis]
+                let (low, high) = &self.bounds[t as usize];
+                low[axis] + high[axis]
             };
             let by_place = |a: &u32, b: &u32| place(*a).total_cmp(&place(*b)).then(a.cmp(b));
             self.order[start..end].select_nth_unstable_by(middle - start, by_place);
@@ -114,15 +94,15 @@ impl BoxTree {
         number as u32
     }
 
-    /// Pairs and boxes that are looked at, for each triangle and at least: the surface of a scanned implant has
-    /// some fifty a triangle, a flat bottom drawn across by the triangles of its 1500 vertices has 15 million, and a
-    /// file of 1 MB is looked through within a second.
+    /// Pairs and boxes that are compared, per triangle and at least: the surface of a scanned implant needs
+    /// some fifty per triangle, a flat bottom of long triangles between its 1500 vertices needs 15 million, and a
+    /// file of 1 MB takes less than a second.
     const MAX_LOOKS: (usize, usize) = (400, 20_000_000);
 
     /// Calls `visit` with each pair of different triangles whose boxes meet, once, until it breaks.
     ///
-    /// Triangles that all lie on one another are given up on. Of a search that did not come to its end, two
-    /// triangles are given where it ended.
+    /// Gives up on triangles that all lie on one another. Returns two triangles at the place where a search ended
+    /// before all pairs were visited.
     pub(super) fn for_close_pairs(
         &self,
         mut visit: impl FnMut(usize, usize) -> ControlFlow<()>,
@@ -132,15 +112,16 @@ impl BoxTree {
         let mut open = vec![[0, 0]];
         while let Some([one, other]) = open.pop().filter(|_| !self.nodes.is_empty()) {
             let (a, b) = (&self.nodes[one as usize], &self.nodes[other as usize]);
-            if one != other && !a.bounds.meets(&b.bounds) {
+            if one != other && !meet(&a.bounds, &b.bounds) {
                 left = left.saturating_sub(1);
                 continue;
             }
+            // The larger of the two boxes is opened.
             match (a.below, b.below) {
                 (Some([first, second]), _) if one == other => {
                     open.extend([[first, first], [second, second], [first, second]]);
                 }
-                (Some([first, second]), _) if b.below.is_none() || size(a) >= size(b) => {
+                (Some([first, second]), _) if b.below.is_none() || a.size() >= b.size() => {
                     open.extend([[first, other], [second, other]]);
                 }
                 (_, Some([first, second])) => open.extend([[one, first], [one, second]]),
@@ -169,17 +150,13 @@ impl BoxTree {
             let from = if same { i + 1 } else { b.start };
             for j in from..b.end {
                 let [one, other] = [i, j].map(|at| self.order[at as usize] as usize);
-                if self.bounds[one].meets(&self.bounds[other]) {
+                if meet(&self.bounds[one], &self.bounds[other]) {
                     visit(one, other)?;
                 }
             }
         }
         ControlFlow::Continue(())
     }
-}
-
-fn size(node: &BoxNode) -> u32 {
-    node.end - node.start
 }
 
 #[cfg(test)]
@@ -200,7 +177,7 @@ mod tests {
         let mut expected = Vec::new();
         for a in 0..mesh.triangles.len() {
             for b in a + 1..mesh.triangles.len() {
-                if tree.bounds[a].meets(&tree.bounds[b]) {
+                if meet(&tree.bounds[a], &tree.bounds[b]) {
                     expected.push((a, b));
                 }
             }

@@ -1,4 +1,4 @@
-//! Defects of a triangle mesh: kinds, counts and places, and those that matter because another body can touch there.
+//! Defects of a triangle mesh: kinds, counts and places. Those matter where another body can touch.
 
 use std::cell::OnceCell;
 
@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 use super::touching::{TouchMap, Touching};
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 
-/// What can be wrong with a triangle mesh.
+/// A kind of defect of a triangle mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum DefectKind {
     /// Vertices of open edges that rounding keeps apart.
     Unwelded,
-    /// Vertices that lie on the edge of a triangle which has no corner there.
+    /// Vertices on the edge of a triangle that has no corner there.
     Joint,
     /// Triangles with an edge shorter than rounding.
     Sliver,
@@ -20,20 +20,20 @@ pub enum DefectKind {
     Doubled,
     /// Edges of three or more triangles.
     NonManifoldEdge,
-    /// Edges across which the surface comes back turned, as on a Moebius strip.
+    /// Edges across which the surface returns turned over, as on a Moebius strip.
     OneSided,
     /// Pairs of triangles that pass through one another.
     Crossing,
-    /// Open pieces and inner walls beside a closed body.
+    /// Open pieces and inner walls next to a closed body.
     Fragment,
     /// Loops of open edges in a surface.
     Hole,
-    /// Triangles that lie on one another in such numbers that crossings were not looked for to the end.
+    /// So many triangles on one another that the search for crossings was ended.
     Tangle,
 }
 
 impl DefectKind {
-    /// What it is called, for one and for several, and what was done about it away from where bodies can touch.
+    /// Returns its name, for one and for several, and its treatment away from where bodies can touch.
     fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Unwelded => (
@@ -77,23 +77,23 @@ impl DefectKind {
 /// All defects of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Defect {
-    /// What it is.
+    /// Kind of the defects.
     pub kind: DefectKind,
-    /// How many there are.
+    /// Number of defects.
     pub count: usize,
-    /// Where the first [`Defect::MAX_PLACES`] are, mm in the frame of the mesh.
+    /// Places of the first [`Defect::MAX_PLACES`], mm in the frame of the mesh.
     pub places_mm: Vec<Vec3>,
 }
 
 impl Defect {
-    /// More places help nobody.
+    /// Number of places kept; a longer list is of no use.
     pub const MAX_PLACES: usize = 20;
 
-    /// Kind, count and the first `most` places: "2 holes at (1.00, 2.00, 3.00), ... mm".
-    pub fn listed(&self, most: usize) -> String {
+    /// Describes kind, count and the first `max` places: "2 holes at (1.00, 2.00, 3.00), ... mm".
+    pub fn listed(&self, max: usize) -> String {
         let (one, several, _) = self.kind.words();
         let name = if self.count == 1 { one } else { several };
-        let places = &self.places_mm[..self.places_mm.len().min(most)];
+        let places = &self.places_mm[..self.places_mm.len().min(max)];
         let shown: Vec<String> = places.iter().map(point).collect();
         let more = match self.count - places.len() {
             0 => String::new(),
@@ -102,11 +102,11 @@ impl Defect {
         format!("{} {name} at {} mm{more}", self.count, shown.join(", "))
     }
 
-    /// The same with what was done: "2 holes (closed) at ...".
-    pub fn listed_with_repair(&self, most: usize) -> String {
+    /// Describes the same with the treatment: "2 holes (closed) at ...".
+    pub fn listed_with_repair(&self, max: usize) -> String {
         let (one, several, done) = self.kind.words();
         let name = if self.count == 1 { one } else { several };
-        self.listed(most)
+        self.listed(max)
             .replacen(name, &format!("{name} ({done})"), 1)
     }
 }
@@ -135,10 +135,10 @@ pub(super) fn add(defects: &mut Vec<Defect>, kind: DefectKind, at_mm: Vec3) {
     }
 }
 
-/// Why a triangle mesh is not a shell.
+/// Reason why a triangle mesh is not the surface of a body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RepairError {
-    /// There is no triangle with an area.
+    /// No triangle has an area.
     #[error("the mesh has no triangle with an area; check the export")]
     Empty,
     /// Defects where bodies can touch.
@@ -152,24 +152,24 @@ pub enum RepairError {
     },
 }
 
-/// All kinds, with twenty places between them.
+/// Lists all kinds, with twenty places between them.
 fn listed(defects: &[Defect]) -> String {
     let mut left = Defect::MAX_PLACES;
-    let mut said = Vec::new();
+    let mut parts = Vec::new();
     for (index, defect) in defects.iter().enumerate() {
         let to_come = defects.len() - index - 1;
         // Every kind shows one place at least.
-        let most = left.saturating_sub(to_come).max(1);
-        said.push(defect.listed(most));
-        left = left.saturating_sub(defect.places_mm.len().min(most));
+        let max = left.saturating_sub(to_come).max(1);
+        parts.push(defect.listed(max));
+        left = left.saturating_sub(defect.places_mm.len().min(max));
     }
-    said.join("; ")
+    parts.join("; ")
 }
 
-/// Defects that were found, those that matter apart.
+/// Separates the defects that matter from the others.
 pub(super) struct Judge {
     touching: Touching,
-    /// Looked at when there is a defect.
+    /// Computed at the first defect.
     map: OnceCell<TouchMap>,
     pub(super) that_matter: Vec<Defect>,
     pub(super) others: Vec<Defect>,
@@ -185,7 +185,7 @@ impl Judge {
         }
     }
 
-    /// Counts a defect that reaches these places; says whether it matters.
+    /// Counts a defect that reaches these places; returns whether it matters.
     pub(super) fn judge(
         &mut self,
         mesh: &TriangleMesh,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::{edges::Piece, weld::drop_unused};
-use crate::{Vec3, height_map::height_over, triangle_mesh::TriangleMesh};
+use crate::{Vec3, triangle::height_over, triangle_mesh::TriangleMesh};
 
 /// Distance between the lines of sight from above, mm ...
 const LINES_EVERY_MM: f64 = 0.5;

@@ -1,53 +1,54 @@
-//! Where on a body another one can touch it.
+//! The part of a body that another one can touch.
 
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 
-/// Which part of a body can touch another one, by a plain rule that errs towards touching.
+/// The part of a body that can touch another one, by a plain rule that errs towards touching.
 ///
-/// A place belongs to it if it lies within 1 mm below the first surface that is met on the way
-/// to it along one of the directions of view.
+/// A place belongs to it if it lies at most 1 mm below the first surface on the line of sight to it
+/// along one of the directions of view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touching {
     /// All of it.
     Everywhere,
-    /// What is seen from above (+y): the articulating side of an insert.
+    /// The part seen from above (+y): the articulating side of an insert.
     FromAbove,
-    /// What is seen from 45 degrees in front of straight below, through straight behind (-x), to
-    /// 30 degrees above that, every 15 degrees: what a femur can turn to the insert between
+    /// The part seen from 45 degrees in front of straight below, through straight behind (-x), to
+    /// 30 degrees above that, every 15 degrees: the part that a femur can turn to the insert between
     /// hyperextension and deep flexion.
     FromBelowAndBehind,
 }
 
 impl Touching {
-    /// The directions of view, from the body to the eye.
+    /// Returns the directions of view, from the body to the eye.
     fn directions(self) -> Vec<Vec3> {
         match self {
             Self::Everywhere => Vec::new(),
             Self::FromAbove => vec![Vec3::y()],
-            Self::FromBelowAndBehind => (-3..=8).map(behind_straight_down).collect(),
+            Self::FromBelowAndBehind => {
+                let behind_straight_down = |steps: i32| {
+                    let (sine, cosine) = (f64::from(steps) * 15.0).to_radians().sin_cos();
+                    Vec3::new(-sine, -cosine, 0.0)
+                };
+                (-3..=8).map(behind_straight_down).collect()
+            }
         }
     }
 }
 
-fn behind_straight_down(steps: i32) -> Vec3 {
-    let (sine, cosine) = (f64::from(steps) * 15.0).to_radians().sin_cos();
-    Vec3::new(-sine, -cosine, 0.0)
-}
-
 /// Distance between lines of sight, mm: a tenth of the smallest contact.
 const CELL_MM: f64 = 0.5;
-/// Depth below what is seen first that still counts as seen, mm: the slope of a dish within a cell.
+/// Depth below the first surface that still counts as seen, mm: the slope of a dish within a cell.
 const DEPTH_MM: f64 = 1.0;
-/// Lines of sight along one side of a view, at most.
+/// Maximum number of lines of sight along one side of a view.
 const MAX_CELLS: f64 = 400.0;
-/// Lines through a triangle's box for each line or triangle of a view, at most: a shell of a body
+/// Maximum number of lines through triangles' boxes for each line or triangle of a view: the surface of a body
 /// covers its view a few times.
 const MAX_LAYERS: usize = 32;
 
-/// The touching part of one mesh.
+/// The part of one mesh that can be touched.
 pub(super) struct TouchMap {
     touching: Touching,
-    /// None where the mesh covers itself too often to be looked at.
+    /// None if the mesh covers itself too often to be looked at.
     views: Option<Vec<View>>,
 }
 
@@ -61,7 +62,7 @@ impl TouchMap {
         }
     }
 
-    /// Whether another body can touch a place of the mesh.
+    /// Returns whether another body can touch a place of the mesh.
     pub(super) fn contains(&self, at_mm: &Vec3) -> bool {
         let Some(views) = &self.views else {
             return true;
@@ -70,7 +71,7 @@ impl TouchMap {
     }
 }
 
-/// How far a mesh reaches along parallel lines of sight.
+/// The reach of a mesh along parallel lines of sight.
 struct View {
     /// Two directions across the view, and the one to the eye.
     axes: [Vec3; 3],
@@ -104,7 +105,7 @@ impl View {
         Some(view)
     }
 
-    /// Raises the reach over a triangle; gives what is left of the lines that may be tried.
+    /// Raises the reach over a triangle; returns the number of lines that may still be tried.
     fn draw(&mut self, corners: &[Vec3; 3], left: usize) -> Option<usize> {
         let [a, b, c] = corners.map(|corner| self.axes.map(|axis| axis.dot(&corner)));
         let range = |axis: usize| {
@@ -141,7 +142,7 @@ impl View {
         self.origin_mm[axis] + (cell as f64 + 0.5) * self.cell_mm
     }
 
-    /// Whether a place is not hidden: by the lowest reach of the lines around it, so that a slope hides nothing.
+    /// Returns whether a place is not hidden, by the lowest reach of the lines around it, so that a slope hides nothing.
     fn shows(&self, at_mm: &Vec3) -> bool {
         let around = |axis: usize| {
             let place = (at_mm.dot(&self.axes[axis]) - self.origin_mm[axis]) / self.cell_mm;

@@ -73,7 +73,7 @@ impl GenericInsertShape {
         let mut columns = vec![(0.0, 0.0); grid.point_count()];
         for i in 0..=grid.cells.0 {
             for k in 0..=grid.cells.1 {
-                let (x, z) = grid.place_mm(i, k);
+                let [x, z] = grid.place_mm(i, k).into();
                 columns[grid.number(i, k)] = (-self.thickness_mm, self.height_mm(x, z));
             }
         }

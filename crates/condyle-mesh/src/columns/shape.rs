@@ -1,0 +1,107 @@
+//! Moves places one by one until the quads between them are well shaped.
+
+use std::f64::consts::FRAC_PI_4;
+
+use super::{
+    grid::Place,
+    outline::{Loop, turn},
+};
+
+/// Quads whose corners all have a larger sine than this are left as they are.
+const WELL_SHAPED: f64 = 0.6;
+/// Lengths of the trial moves of a place, in edges.
+const STEPS: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
+/// Maximum number of rounds; a badly shaped quad takes some ten.
+const MAX_ROUNDS: usize = 40;
+
+/// The range in which a place may be moved.
+#[derive(Clone, Copy)]
+pub(super) enum Freedom<'a> {
+    /// Not at all.
+    Held,
+    /// Along an outline that it is on.
+    Along(&'a Loop),
+    /// Anywhere inside an outline.
+    Within(&'a Loop),
+}
+
+impl Freedom<'_> {
+    /// Returns trial places about `length_mm` away.
+    fn trials(self, place: &Place, length_mm: f64) -> Vec<Place> {
+        match self {
+            Self::Held => Vec::new(),
+            Self::Along(outline) => {
+                let here = outline.nearest(place).0;
+                let ends = [here - length_mm, here + length_mm];
+                ends.map(|along| outline.at(along)).to_vec()
+            }
+            Self::Within(outline) => {
+                let around = eight_directions().map(|way| place + way * length_mm);
+                around.filter(|tried| outline.goes_round(tried)).collect()
+            }
+        }
+    }
+}
+
+/// Returns the unit vectors every 45 degrees.
+pub(super) fn eight_directions() -> impl Iterator<Item = Place> + Clone {
+    (0..8).map(|eighth| {
+        let (sine, cosine) = (f64::from(eighth) * FRAC_PI_4).sin_cos();
+        Place::new(cosine, sine)
+    })
+}
+
+/// Moves places to where the worst corner next to them is best, while one is bad.
+pub(super) fn shape(
+    places: &mut [Place],
+    quads: &[[u32; 4]],
+    freedoms: &[Freedom<'_>],
+    edge_mm: f64,
+) {
+    let mut quads_of = vec![Vec::new(); places.len()];
+    for quad in quads {
+        for &place in quad {
+            quads_of[place as usize].push(*quad);
+        }
+    }
+    for _ in 0..MAX_ROUNDS {
+        let mut has_moved = false;
+        for place in 0..places.len() {
+            let around = &quads_of[place];
+            let worst = min_sine(places, around);
+            if worst >= WELL_SHAPED {
+                continue;
+            }
+            let start = places[place];
+            let mut best = (worst, start);
+            for step in STEPS {
+                for tried in freedoms[place].trials(&start, step * edge_mm) {
+                    places[place] = tried;
+                    let sine = min_sine(places, around);
+                    if sine > best.0 {
+                        best = (sine, tried);
+                    }
+                }
+            }
+            places[place] = best.1;
+            has_moved |= best.1 != start;
+        }
+        if !has_moved {
+            return;
+        }
+    }
+}
+
+/// Returns the smallest sine of a corner of some quads; less than 0 where one is turned round.
+fn min_sine(places: &[Place], quads: &[[u32; 4]]) -> f64 {
+    let corners = quads
+        .iter()
+        .flat_map(|quad| (0..4).map(move |corner| (quad, corner)));
+    let sines = corners.map(|(quad, corner)| {
+        let [here, after, before] =
+            [0, 1, 3].map(|step| places[quad[(corner + step) % 4] as usize]);
+        let (along, back) = (after - here, before - here);
+        turn(&along, &back) / (along.norm() * back.norm()).max(f64::MIN_POSITIVE)
+    });
+    sines.fold(f64::INFINITY, f64::min)
+}
