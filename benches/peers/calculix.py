@@ -17,7 +17,6 @@ import subprocess
 from pathlib import Path
 from typing import NamedTuple
 
-
 # The contact of the decks as CalculiX finds its balance with: the facet over a node is looked for once an increment, and
 # every node near the femur has its spring from the increment's beginning, so that none comes and goes between iterations.
 # Of a node's edge 0.5 is near; where a spring is open it pulls with 1e-6 MPa.
@@ -68,7 +67,7 @@ def highest_pressures(frd):
         elif line.startswith(" -3"):
             within = False
         elif within and line.startswith(" -1"):
-            highest[time] = max(highest.get(time, 0.0), float(line[13 + 36:13 + 48]))
+            highest[time] = max(highest.get(time, 0.0), float(line[13 + 36 : 13 + 48]))
     return highest
 
 
@@ -134,14 +133,20 @@ def show(name, row, theirs):
         print(f"{head} {own_n:9.2f} {theirs:>18} | {own_mpa:9.3f} {'':18} {peak_mpa:7.3f} | {own_s:8.4f}", flush=True)
         return
     step, seconds = theirs
-    print(f"{head} {beside(own_n, step.force_y_n, 2)} | {beside(own_mpa, step.pressure_mpa, 3)} {peak_mpa:7.3f} |"
-          f" {own_s:8.4f} {seconds:8.1f}", flush=True)
+    print(
+        f"{head} {beside(own_n, step.force_y_n, 2)} | {beside(own_mpa, step.pressure_mpa, 3)} {peak_mpa:7.3f} |"
+        f" {own_s:8.4f} {seconds:8.1f}",
+        flush=True,
+    )
     if row.get("step") == "SLID":
         print(f"{head} {beside(float(row['force_x_n']), -step.force_x_n, 2)} | N forward", flush=True)
     if row.get("plastic_strain"):
-        print(f"{head} {beside(1e4 * float(row['plastic_strain']), 1e4 * step.plastic_strain, 2)} | plastic strain, 1e-4,"
-              f" largest at a Gauss point; of an elastic insert {-float(row['elastic_force_y_n']):.2f} N"
-              f" and {float(row['elastic_node_mpa']):.3f} MPa", flush=True)
+        print(
+            f"{head} {beside(1e4 * float(row['plastic_strain']), 1e4 * step.plastic_strain, 2)} | plastic strain, 1e-4,"
+            f" largest at a Gauss point; of an elastic insert {-float(row['elastic_force_y_n']):.2f} N"
+            f" and {float(row['elastic_node_mpa']):.3f} MPa",
+            flush=True,
+        )
 
 
 def of_deck(rows, steps):
@@ -171,7 +176,9 @@ def main():
     for row in left:
         show(words.name, row, "not asked")
     if "since_start_s" in rows[-1]:
-        print(f"{words.name:8} condyle has all in {float(rows[-1]['since_start_s']):.2f} s, with the case read and its first cycle solved")
+        print(
+            f"{words.name:8} condyle has all in {float(rows[-1]['since_start_s']):.2f} s, with the case read and its first cycle solved"
+        )
 
 
 if __name__ == "__main__":

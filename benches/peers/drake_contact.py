@@ -6,8 +6,16 @@ import time
 import numpy as np
 from pydrake.common.value import AbstractValue
 from pydrake.geometry import (
-    AddCompliantHydroelasticProperties, AddRigidHydroelasticProperties, FramePoseVector, GeometryFrame,
-    GeometryInstance, HydroelasticContactRepresentation, Mesh, ProximityProperties, SceneGraph)
+    AddCompliantHydroelasticProperties,
+    AddRigidHydroelasticProperties,
+    FramePoseVector,
+    GeometryFrame,
+    GeometryInstance,
+    HydroelasticContactRepresentation,
+    Mesh,
+    ProximityProperties,
+    SceneGraph,
+)
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.systems.framework import DiagramBuilder
 

@@ -13,8 +13,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
-
 import opensim_contact
+
 from meshes import read_stl, write_obj
 
 ROUNDS = 11
@@ -24,9 +24,13 @@ def condyle(path):
     """Rows of condyle's own output, and those of the second look at the same pose."""
     with open(path, newline="", encoding="ascii") as file:
         rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
     def table(time):
-        return [(r["percent"], np.array([r["force_x_n"], r["force_y_n"], r["force_z_n"]]), r["area_mm2"], r[time] / 1e3)
-                for r in rows]
+        return [
+            (r["percent"], np.array([r["force_x_n"], r["force_y_n"], r["force_z_n"]]), r["area_mm2"], r[time] / 1e3)
+            for r in rows
+        ]
+
     return table("first_us"), table("again_us")
 
 
@@ -42,8 +46,10 @@ def drake(data, poses, insert_vtk):
         write_obj(femur, *read_stl(Path(data) / "femoral-component.stl"))
         tetrahedra = Path(folder) / "insert.vtk"
         tetrahedra.write_text(in_metres(Path(insert_vtk).read_text(encoding="ascii")), encoding="ascii")
-        placed = [(percent, rotation @ opensim_contact.TO_FILE, origin_mm / 1000.0)
-                  for percent, rotation, origin_mm in opensim_contact.read_poses(poses)]
+        placed = [
+            (percent, rotation @ opensim_contact.TO_FILE, origin_mm / 1000.0)
+            for percent, rotation, origin_mm in opensim_contact.read_poses(poses)
+        ]
         return list(drake_contact.measure(femur, tetrahedra, placed, opensim_contact.PA_PER_M, ROUNDS))
 
 
@@ -77,8 +83,7 @@ def main():
     print("axial force on the insert, N; contact area, mm2; time of one evaluation, ms")
     print("        |", " | ".join(f"{name:>25}" for name in programs))
     for number, (percent, *_) in enumerate(first):
-        cells = [f"{-rows[number][1][1]:8.1f} {rows[number][2]:6.1f} {rows[number][3]:9.4f}"
-                 for rows in programs.values()]
+        cells = [f"{-rows[number][1][1]:8.1f} {rows[number][2]:6.1f} {rows[number][3]:9.4f}" for rows in programs.values()]
         print(f"{percent:5.1f} % |", " | ".join(cells))
     for name, rows in programs.items():
         time_ms = statistics.median(row[3] for row in rows)

@@ -5,7 +5,7 @@
 >>> result.updates
 1
 
-Numbers have their unit in their names. What a case may say is in the book, and in ``Case.text`` of any.
+Names of numbers end with their unit. The book lists the keys of a case; ``Case.text`` shows them all.
 """
 
 from __future__ import annotations

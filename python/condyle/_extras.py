@@ -1,4 +1,4 @@
-"""Libraries that some calls need, and the package does not."""
+"""Optional libraries, imported by the calls that need them."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from typing import Any
 
 
 def extra(module: str, name: str) -> Any:
-    """The module, or an ImportError that says how it is installed: as the extra ``name``."""
+    """Imports a module; the ImportError names the extra that installs it."""
     try:
         return importlib.import_module(module)
     except ImportError as error:
         package = module.split(".")[0]
-        said = f"this needs {package}: pip install {package}, or install condyle with [{name}]"
-        raise ImportError(said) from error
+        raise ImportError(f"this needs {package}: pip install {package}, or install condyle with [{name}]") from error

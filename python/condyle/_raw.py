@@ -1,4 +1,4 @@
-"""What the compiled module gives, for the package itself."""
+"""Types of the data that the compiled module returns, for the package itself."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ class RawInsert(TypedDict):
 
 
 class RawRun(TypedDict):
-    """What is known of a run."""
+    """The data of a run; ``tables`` has the texts of its CSV files."""
 
     case: str
     summary: str | None
-    tables: dict[str, tuple[list[str], NDArray[np.float64]]]
+    tables: dict[str, str]
     insert: RawInsert
     femur_points_mm: NDArray[np.float32]
     femur_triangles: NDArray[np.uint32]
 
 
 class RawContact(TypedDict):
-    """How the femur presses."""
+    """The contact at a pose."""
 
     force_n: NDArray[np.float64]
     moment_nmm: NDArray[np.float64]

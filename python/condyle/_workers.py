@@ -1,4 +1,4 @@
-"""Tests of a study, sent to workers of an executor."""
+"""Running the tests of a study on the workers of an executor."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from .progress import StudyProgress
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
 
-# Tasks that are sent ahead: enough for a thousand workers, and few enough that memory does not grow with the study.
+# Tasks submitted at a time: enough for a thousand workers, and a limit to the memory for a large study.
 TASKS_AHEAD = 2000
-# A task has no more than this part of what is left.
+# A task is at most this part of the remaining tests, so that no worker waits long for the last task of another.
 LAST_TASKS = 32
-# A task whose worker died is sent so often; what kills every worker is then at fault itself.
+# Attempts at a task whose worker dies; if all fail, the task itself is the likely cause.
 MAX_TRIES = 10
 
 
 class Source(NamedTuple):
-    """What a worker makes a study of."""
+    """The data from which a worker creates the study."""
 
     path: str
     text: str
@@ -39,18 +39,20 @@ class _Task(NamedTuple):
 
 
 def run_rows(source: Source, rows: list[int]) -> list[tuple[int, list[float] | str]]:
-    """What the tests of ``rows`` find; called in the worker."""
+    """Runs the tests of ``rows``; called in the worker."""
     return _study_of(source).run_rows(rows)
 
 
 @lru_cache(maxsize=1)
 def _study_of(source: Source) -> _condyle.RawStudy:
-    """Kept from task to task, with the bodies that do not vary."""
+    """The study of the worker, cached from task to task together with the bodies that do not vary."""
     if source.version != _condyle.VERSION:
-        raise BadInput(f"a worker has condyle {_condyle.VERSION}, and the study is of {source.version}; install the same")
+        raise BadInput(
+            f"a worker has condyle {_condyle.VERSION}, and the study is of {source.version}; install the same version"
+        )
     study = _condyle.RawStudy(source.path, source.text, source.base, dict(source.files))
     if study.inputs_blake3 != source.inputs_blake3:
-        raise BadInput("a worker reads other meshes than the study was made of; put the same files where it runs")
+        raise BadInput("a worker reads other meshes than those of the study; copy the same files to its machine")
     return study
 
 
@@ -62,7 +64,7 @@ def run_on(
     tests_a_task: int,
     listener: Callable[[StudyProgress], Any] | None,
 ) -> None:
-    """Runs the tests that the folder ``out`` does not keep on an executor, and keeps them here as they come."""
+    """Runs the tests that the folder ``out`` does not hold on an executor, and stores them here as they finish."""
     held = study.hold(out)
     try:
         missing = held.missing(study)
@@ -85,7 +87,7 @@ def _run_all(
 
     sent: dict[Future[Any], _Task] = {}
     try:
-        _tell(listener, kept, study.tests)
+        _report(listener, kept, study.tests)
         while tasks or sent:
             while tasks and len(sent) < TASKS_AHEAD:
                 task = tasks.popleft()
@@ -98,14 +100,14 @@ def _run_all(
                     continue
                 held.keep(study, found)
                 kept += len(task.rows)
-            _tell(listener, kept, study.tests)
+            _report(listener, kept, study.tests)
     finally:
         for future in sent:
             future.cancel()
 
 
 def _found(future: Future[Any], task: _Task) -> list[tuple[int, list[float] | str]] | None:
-    """What a task found; none if its worker was lost, and it is to be sent again."""
+    """The results of a task; ``None`` if its worker died and the task is to be repeated."""
     from concurrent.futures import BrokenExecutor
 
     try:
@@ -118,13 +120,13 @@ def _found(future: Future[Any], task: _Task) -> list[tuple[int, list[float] | st
         return None
 
 
-def _tell(listener: Callable[[StudyProgress], Any] | None, kept: int, tests: int) -> None:
+def _report(listener: Callable[[StudyProgress], Any] | None, kept: int, tests: int) -> None:
     if listener is not None and listener(StudyProgress(kept, tests)) is False:
         raise StudyInterrupted(kept, tests)
 
 
 def _parts(rows: list[int], size: int) -> Iterator[list[int]]:
-    """Tasks of ``size`` tests, and smaller ones towards the end: a worker would wait for another's last task."""
+    """Divides rows into tasks of ``size`` tests, and smaller ones towards the end."""
     first = 0
     while first < len(rows):
         own = max(1, min(size, (len(rows) - first) // LAST_TASKS))

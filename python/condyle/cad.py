@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 __all__ = ["read_step"]
 
 
-# OpenCASCADE looks at the deflection along edges and at some places of a face, and leaves up to 2.1 times what it is
-# asked for on a ball.
+# OpenCASCADE samples the deflection along edges and at some points of a face, and exceeds the requested value up to 2.1
+# times on a sphere; the request is divided by this factor.
 _EXCEEDED = 2.5
 
 
@@ -25,18 +25,18 @@ def read_step(
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """The surface of all bodies in a STEP file as triangles, for ``Case.with_femur`` and ``with_insert``.
 
-    OpenCASCADE reads it (``pip install condyle[cad]``) and gives mm, whatever the unit of the file.
+    OpenCASCADE reads the file (``pip install condyle[cad]``) and converts its unit to mm.
 
     Args:
         path: a STEP file.
-        deflection_mm: how far a triangle may be from the surface that it stands for, mm.
-        angle_deg: how far the normals of neighbouring triangles may turn on a curved face, degrees.
+        deflection_mm: the largest distance of a triangle from its surface, mm.
+        angle_deg: the largest angle between the normals of neighbouring triangles on a curved face, degrees.
 
     Returns:
-        Vertices in mm, shape (n, 3), each once; vertex numbers from 0, shape (m, 3), anticlockwise seen from outside.
+        Vertices in mm without repetition, shape (n, 3); vertex numbers from 0, shape (m, 3), anticlockwise seen from outside.
 
     Raises:
-        BadInput: a file that cannot be read or has no surface.
+        BadInput: an unreadable file, or one without a surface.
     """
     import numpy as np
 
@@ -55,7 +55,7 @@ def _shape(path: str) -> Any:
     control = extra("OCP.STEPControl", "cad")
     reader = control.STEPControl_Reader()
     if reader.ReadFile(path) != extra("OCP.IFSelect", "cad").IFSelect_RetDone:
-        raise BadInput(f"{path}: this is not a STEP file that can be read; see that it is there, and exported as STEP")
+        raise BadInput(f"{path}: this is not a STEP file that can be read; check that it exists and was exported as STEP")
     reader.TransferRoots()
     shape = reader.OneShape()
     if shape is None or shape.IsNull():
@@ -75,7 +75,7 @@ def _faces(shape: Any) -> list[Any]:
 
 
 def _triangles_of(face: Any) -> NDArray[np.float64] | None:
-    """Corners of a face's triangles, mm: shape (m, 3, 3)."""
+    """The corners of a face's triangles, mm: shape (m, 3, 3)."""
     import numpy as np
 
     place = extra("OCP.TopLoc", "cad").TopLoc_Location()
@@ -85,14 +85,14 @@ def _triangles_of(face: Any) -> NDArray[np.float64] | None:
         return None
     moved = place.Transformation()
     nodes = [triangulation.Node(number + 1).Transformed(moved) for number in range(triangulation.NbNodes())]
-    places = np.array([(node.X(), node.Y(), node.Z()) for node in nodes])
+    positions = np.array([(node.X(), node.Y(), node.Z()) for node in nodes])
     corners = np.array([triangulation.Triangle(number + 1).Get() for number in range(triangulation.NbTriangles())]) - 1
     reversed_face = face.Orientation() == extra("OCP.TopAbs", "cad").TopAbs_REVERSED
-    return places[corners[:, ::-1] if reversed_face else corners]
+    return positions[corners[:, ::-1] if reversed_face else corners]
 
 
 def _joined(parts: list[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Triangles of all faces between vertices that are one where faces meet, and none without an area."""
+    """The triangles of all faces, with the vertices of adjacent faces merged and degenerate triangles removed."""
     import numpy as np
 
     corners = np.concatenate(parts).reshape(-1, 3)

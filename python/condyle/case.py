@@ -1,4 +1,4 @@
-"""Cases: what a wear test is made of."""
+"""Cases: the inputs of a wear test."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ __all__ = ["Case", "CaseLike"]
 
 
 class Case:
-    """A wear test as its file describes it, checked, with every default filled in.
+    """The checked inputs of a wear test, with all defaults.
 
-    It does not change: what looks like a change gives another case. Two cases are equal, and have equal hashes, if
-    they say the same and their meshes hold the same bytes, wherever those lie. Cases can be pickled.
+    A case is immutable; :meth:`replace` returns another. Two cases are equal, and have equal hashes, if their values and
+    the bytes of their meshes are equal, wherever the files are. Cases can be pickled.
 
     >>> case = Case.from_dict({"contact": {"friction": 0.05}})
     >>> lower = case.replace({"contact.friction": 0.04, "march.updates": 5})
@@ -54,16 +54,16 @@ class Case:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Case:
-        """Reads the case file at ``path``; paths in it count from its folder.
+        """Reads the case file at ``path``; paths in it are relative to its folder.
 
         Raises:
-            BadInput: with everything that is wrong, each thing at its place.
+            BadInput: all problems of the file, with their places.
         """
         return cls(os.fspath(path), _condyle.RawCase.read_text(path), os.getcwd())
 
     @classmethod
     def from_text(cls, text: str, *, folder: str | os.PathLike[str] = ".", name: str = "case") -> Case:
-        """Reads a case from TOML; paths in it count from ``folder``, and messages call it ``name``.
+        """Reads a case from TOML text; paths in it are relative to ``folder``, and messages call it ``name``.
 
         >>> Case.from_text("[march]\\nupdates = 5")["march.updates"]
         5
@@ -72,66 +72,65 @@ class Case:
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], *, folder: str | os.PathLike[str] = ".") -> Case:
-        """Makes a case of nested dictionaries, as :meth:`to_dict` gives them; what is ``None`` is left out."""
+        """Creates a case from nested dictionaries as returned by :meth:`to_dict`; entries that are ``None`` are omitted."""
         return cls.from_text(document(tables), folder=folder, name="dictionary")
 
     def replace(self, changes: Mapping[str, Any]) -> Case:
-        """The same with other values of some keys, as ``condyle run --set`` takes them.
+        """The case with other values of some keys, as ``condyle run --set`` accepts them.
 
         Args:
-            changes: a value for each key; a key is a dotted path such as ``"contact.friction"``, or the last word
-                of one where only one key has it. A wear law that is set takes the place of the case's with all of its
-                constants.
+            changes: a value for each key; a key is a dotted path such as ``"contact.friction"``, or its last word if
+                that is unique. A new wear law replaces the law of the case and all its constants.
 
         Raises:
-            BadInput: a key that the case does not have, or a value outside of its range.
+            BadInput: an unknown key, or a value outside its range.
         """
         written = tuple(f"{key}={value_text(value)}" for key, value in changes.items())
         return Case(self._path, self._text, self._base, self._files, self._changes + written)
 
     def with_femur(self, vertices: ArrayLike, triangles: ArrayLike, **keys: Any) -> Case:
-        """The same with a femoral component of triangles.
+        """The case with a femoral component of triangles.
 
         Args:
-            vertices: places, shape (n, 3), in the unit and axes that ``length_unit`` and ``axes`` say; by default mm,
-                x anterior, y superior, z to the right.
+            vertices: positions, shape (n, 3), in the unit and axes of the keys ``length_unit`` and ``axes``; by default
+                mm, x anterior, y superior, z to the right.
             triangles: vertex numbers from 0, shape (m, 3), anticlockwise seen from outside.
-            **keys: other keys of ``[femur]``, such as ``start_mm``; those of the case's own femur are left out.
+            **keys: other keys of ``[femur]``, such as ``start_mm``; those of the present femur are dropped.
         """
         return self._with_body("femur", vertices, triangles, keys)
 
     def with_insert(self, vertices: ArrayLike, triangles: ArrayLike, **keys: Any) -> Case:
-        """The same with an insert of triangles: closed, or an open articulating surface with ``thickness_mm``.
+        """The case with an insert of triangles: closed, or an open articulating surface with ``thickness_mm``.
 
         Args:
-            vertices: places, shape (n, 3), as for :meth:`with_femur`.
+            vertices: positions, shape (n, 3), as for :meth:`with_femur`.
             triangles: vertex numbers from 0, shape (m, 3), anticlockwise seen from outside.
-            **keys: other keys of ``[insert]``, such as ``edge_mm``; those of the case's own insert are left out.
+            **keys: other keys of ``[insert]``, such as ``edge_mm``; those of the present insert are dropped.
         """
         return self._with_body("insert", vertices, triangles, keys)
 
     def check(self, *, threads: int = 1) -> Check:
-        """Goes as far as a run goes before its first cycle: meshes, and that the femur settles on the insert.
+        """Prepares a run up to its first cycle: reads the meshes and settles the femur on the insert.
 
         >>> check = Case.from_text("").check()
         >>> check.facts["insert"]["hexahedra"]
         9108
 
         Raises:
-            BadInput: bodies that make no knee.
-            NotSolved: a femur that does not come to rest.
+            BadInput: unusable bodies.
+            NotSolved: a femur that does not settle.
         """
         facts, picture_svg = self._raw.preview(threads)
         return Check(json.loads(facts), picture_svg)
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes the case with every default to ``path``, and bodies that came as arrays as .ply files beside it."""
+        """Writes the case with all defaults to ``path``, and bodies given as arrays as .ply files next to it."""
         target = Path(path).absolute()
         text = self.written_in(target.parent)._raw.toml_in(target.parent)
         target.write_text(text, encoding="utf-8")
 
     def written_in(self, folder: str | os.PathLike[str]) -> Case:
-        """The same case with bodies that came as arrays written into ``folder``, as .ply files that it then names."""
+        """Writes bodies given as arrays into ``folder`` as .ply files, and returns the case that names these files."""
         if not self._files:
             return self
         text = self.text
@@ -143,7 +142,7 @@ class Case:
 
     @property
     def text(self) -> str:
-        """The case as run, as TOML: every default written out, waveforms as points."""
+        """The case as run, as TOML with all defaults and with waveforms as points."""
         return self._raw.toml()
 
     def to_dict(self) -> dict[str, Any]:
@@ -151,7 +150,7 @@ class Case:
         return json.loads(self._raw.json())
 
     def __getitem__(self, key: str) -> Any:
-        """The value of the key at a dotted path; its unit is in its name."""
+        """The value of the key at a dotted path; the unit is in the name."""
         value: Any = self.to_dict()
         for name in key.split("."):
             value = value[name]
@@ -159,7 +158,7 @@ class Case:
 
     @property
     def inputs_blake3(self) -> str:
-        """Hash of the case and of the bytes of its meshes, as in ``summary.json``."""
+        """The hash of the case and of the bytes of its meshes, as in ``summary.json``."""
         if self._hash is None:
             self._hash = self._raw.inputs_blake3()
         return self._hash
@@ -178,7 +177,7 @@ class Case:
 
     def _with_body(self, body: str, vertices: ArrayLike, triangles: ArrayLike, keys: dict[str, Any]) -> Case:
         data = ply_bytes(vertices, triangles, body)
-        # The same bytes have the same name, whichever folder they are written into; no folder of a disk is called so.
+        # Named by content, so that equal bodies give equal cases; no folder of a disk has this name.
         name = f"/arrays/{body}-{hashlib.blake2b(data, digest_size=6).hexdigest()}.ply"
         table = document({"shape": "mesh", "file": name, **keys})
         text = _condyle.with_table(self.text if self._changes else self._text, body, table)
@@ -187,29 +186,29 @@ class Case:
 
     @property
     def compiled(self) -> _condyle.RawCase:
-        """The compiled case, for the package itself."""
+        """The compiled case, for use in the package."""
         return self._raw
 
     @property
     def arrays(self) -> dict[str, bytes]:
-        """Bodies that came as arrays, as .ply files under the names that the case has for them, for the package itself."""
+        """Bodies given as arrays, as .ply files by their names in the case, for use in the package."""
         return dict(self._files)
 
     @property
     def has_arrays(self) -> bool:
-        """Whether a body of it came as arrays, and is in no file yet."""
+        """True if a body was given as arrays and is not in a file yet."""
         return bool(self._files)
 
 
 if TYPE_CHECKING:
     CaseLike: TypeAlias = Case | str | os.PathLike[str] | Mapping[str, Any]
-    """A case, the path of one, its text, or nested dictionaries."""
+    """A case, its path, its text, or nested dictionaries."""
 else:
     CaseLike = "CaseLike"
 
 
 def case_of(case: CaseLike) -> Case:
-    """``case`` as a :class:`Case`; text is TOML if it has lines, or a ``=`` and no file is called so, and else a path."""
+    """``case`` as a :class:`Case`. A string is TOML if it has line breaks, or a ``=`` and no file has this name; otherwise a path."""
     if isinstance(case, Case):
         return case
     if isinstance(case, Mapping):

@@ -1,4 +1,4 @@
-"""What a case comes to before it runs."""
+"""The facts about a case that are known before it runs."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ __all__ = ["Check"]
 
 
 class Check(NamedTuple):
-    """What a case comes to before it runs, as ``condyle check`` says it; in a notebook, a picture of both bodies."""
+    """The facts of ``condyle check``; a notebook displays the picture of both bodies."""
 
     facts: dict[str, Any]
-    """Bodies, where the femur settles, and what a run will need; units are in the names."""
+    """Bodies, the settled femur, and time and memory of a run; units are in the names."""
     picture_svg: str
-    """Both bodies from three sides."""
+    """A picture of both bodies from three sides."""
 
     @property
     def warnings(self) -> list[str]:
-        """What was put right or looks doubtful."""
+        """Repairs and doubtful settings."""
         return self.facts["warnings"]
 
     def _repr_svg_(self) -> str:

@@ -21,7 +21,7 @@ __all__ = ["data_set"]
 
 
 def data_set(result: Result) -> xr.Dataset:
-    """Everything that a run found."""
+    """Tables and fields of a run as one data set."""
     import numpy as np
 
     xarray = extra("xarray", "xarray")
@@ -55,12 +55,12 @@ def _at_nodes(result: Result) -> dict[str, Any]:
 
 
 def _apart(fields: dict[str, Any], prefix: str) -> dict[str, Any]:
-    """Fields whose name a table has too get a prefix."""
+    """Adds a prefix to fields whose name a table has too."""
     return {prefix + name if name == "peak_pressure_mpa" else name: values for name, values in fields.items()}
 
 
 def _by_update(table: Table) -> dict[str, Any]:
-    """The unworn insert, update 0, has no row in the table: it is NaN there."""
+    """The table with a first row of NaN for the unworn insert, update 0, which the file does not have."""
     import numpy as np
 
     def from_unworn(name: str) -> NDArray[np.float64]:

@@ -1,19 +1,20 @@
-"""What goes wrong, as exceptions with the command's text and their fields."""
+"""Exceptions with the messages of the command, and their fields."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 __all__ = ["BadInput", "CondyleError", "Interrupted", "NotSolved", "Problem", "StudyInterrupted"]
 
 
 class Problem(NamedTuple):
-    """One thing that is wrong, at its place."""
+    """One problem of the input, with its place."""
 
     reason: str
-    """What is wrong."""
+    """The cause."""
     advice: str | None
-    """What to do, where there is more to say."""
+    """The remedy, if it is known."""
     key: str | None
     """Dotted path of the key, such as ``contact.friction``."""
     file: str | None
@@ -25,15 +26,15 @@ class Problem(NamedTuple):
 
 
 class CondyleError(Exception):
-    """Whatever condyle refuses or cannot do; its text is that of the command."""
+    """The base class of all errors of condyle; the message is that of the command."""
 
 
 class _WithProblems(CondyleError):
     problems: tuple[Problem, ...]
 
-    def __init__(self, message: str, problems: tuple[Problem, ...] = ()) -> None:
+    def __init__(self, message: str, problems: Iterable[tuple[Any, ...]] = ()) -> None:
         super().__init__(message, problems)
-        self.problems = problems
+        self.problems = tuple(Problem(*problem) for problem in problems)
 
     def __str__(self) -> str:
         return self.args[0]
@@ -52,24 +53,24 @@ class BadInput(_WithProblems, ValueError):
     """
 
     problems: tuple[Problem, ...]
-    """Everything that is wrong, each thing with its place; empty where there is no file to point into."""
+    """All problems with their places; empty if the cause is not in a file."""
 
 
 class NotSolved(_WithProblems, ArithmeticError):
     """The physics could not be solved: exit code 3 of the command.
 
-    The text has the instant, the pose and what is out of balance.
+    The message states the instant, the pose and the residual.
     """
 
     problems: tuple[Problem, ...]
-    """The place in the case that is likely behind it, if there is one."""
+    """The place in the case that is the likely cause, if there is one."""
 
 
 class Interrupted(CondyleError):
-    """A run that its progress callback stopped by answering ``False``.
+    """A run whose progress callback returned ``False``.
 
-    Ctrl-C is a ``KeyboardInterrupt``, as everywhere in Python. After either, a run with ``out`` can be gone on
-    with: ``condyle.run(case, out=out, resume=True)``.
+    Ctrl-C raises ``KeyboardInterrupt``, as everywhere in Python. After either, ``condyle.run(case, out=out, resume=True)``
+    resumes a run with ``out``.
     """
 
     updates: int
@@ -88,16 +89,16 @@ class Interrupted(CondyleError):
 
 
 class StudyInterrupted(CondyleError):
-    """A study that its progress callback stopped by answering ``False``; the same call goes on with it."""
+    """A study whose progress callback returned ``False``; the same call resumes it."""
 
     kept: int
-    """Tests that are kept."""
+    """Tests in the folder."""
     tests: int
-    """Tests in all."""
+    """Number of tests."""
 
     def __init__(self, kept: int, tests: int) -> None:
         super().__init__(kept, tests)
         self.kept, self.tests = kept, tests
 
     def __str__(self) -> str:
-        return f"interrupted: {self.kept} of {self.tests} tests are kept; the same call goes on"
+        return f"interrupted: {self.kept} of {self.tests} tests are done; the same call resumes"

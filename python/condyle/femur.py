@@ -1,4 +1,4 @@
-"""Where the femur is through a cycle."""
+"""The position of the femur through a cycle."""
 
 from __future__ import annotations
 
@@ -14,16 +14,14 @@ __all__ = ["femur_points_at", "rows_of_cycle"]
 
 
 def rows_of_cycle(cycles: NDArray[np.float64], cycle: Literal["first", "last"]) -> NDArray[np.bool_]:
-    """Which rows of a column ``cycles`` are of that cycle."""
+    """Marks the rows of a column ``cycles`` that belong to a cycle."""
     return cycles == (cycles.min() if cycle == "first" else cycles.max())
 
 
-def femur_points_at(
-    result: Result, increment: int, cycle: Literal["first", "last"] = "first"
-) -> NDArray[np.float64]:
+def femur_points_at(result: Result, increment: int, cycle: Literal["first", "last"] = "first") -> NDArray[np.float64]:
     """Vertices of the femur at the end of an increment, from 0, of one of the two cycles, mm: shape (vertices, 3).
 
-    A point p of the femoral frame is at R p + t; what is kept of the femur is where it stands at neutral.
+    The result has the vertices at neutral; they are moved back to the femoral frame, and a point p of it to R p + t.
     """
     import numpy as np
 

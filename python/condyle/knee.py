@@ -1,4 +1,4 @@
-"""What lies below a run: the bodies of a case, how they press, and one cycle."""
+"""The parts of a run: the bodies of a case, their contact at a pose, and one cycle."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ __all__ = ["Contact", "Cycle", "Knee"]
 
 
 class Contact(NamedTuple):
-    """How the femur presses on the insert."""
+    """The contact of the femur with the insert."""
 
     force_n: NDArray[np.float64]
     """Force on the insert, in its frame, N: shape (3,)."""
     moment_nmm: NDArray[np.float64]
     """Moment on the insert about its origin, N mm: shape (3,)."""
     tangent: NDArray[np.float64]
-    """Derivative of moment and force, in this order, by a short motion of the femur in the insert frame, three of
-    turning about its axes (rad), then three of shifting (mm): shape (6, 6)."""
+    """Derivative of moment and force, in this order, with respect to a small motion of the femur in the insert frame: three
+    rotations about its axes (rad), then three translations (mm): shape (6, 6)."""
     pressure_mpa: NDArray[np.float64]
     """Mean pressure on the share of each node of the articulating surface, MPa: shape (nodes,)."""
     peak_pressure_mpa: float
-    """Highest pressure anywhere, between nodes too, MPa."""
+    """Highest pressure anywhere, including between nodes, MPa."""
     area_mm2: float
     """Area in contact, mm2."""
 
@@ -37,7 +37,7 @@ class Cycle(NamedTuple):
     """One gait cycle with its contact, increment by increment."""
 
     percent: NDArray[np.float64]
-    """Part of the cycle that is done, %: shape (increments,)."""
+    """Completed part of the cycle, %: shape (increments,)."""
     pressure_mpa: NDArray[np.float64]
     """Pressure at every node of the articulating surface, MPa: shape (increments, nodes)."""
     slip_mm: NDArray[np.float64]
@@ -52,8 +52,8 @@ class Cycle(NamedTuple):
 class Knee:
     """The bodies of a case with the femur settled on the unworn insert.
 
-    All of it is as the solver has it: a right knee, mm, N, rad; a left one is mirrored. A point p of the femoral
-    frame is at R p + t in the insert frame.
+    Everything is in the units and frames of the solver: a right knee, mm, N, rad; a left one is mirrored. A point p of the
+    femoral frame is at R p + t in the insert frame.
 
     >>> import numpy as np
     >>> knee = Knee({"insert": {"edge_mm": 2.0}})
@@ -64,11 +64,11 @@ class Knee:
     """
 
     def __init__(self, case: CaseLike, *, threads: int = 1) -> None:
-        """Builds the bodies and lets the femur settle.
+        """Builds the bodies and settles the femur.
 
         Raises:
-            BadInput: a case or bodies that cannot be used.
-            NotSolved: a femur that does not come to rest.
+            BadInput: an unusable case or unusable bodies.
+            NotSolved: a femur that does not settle.
         """
         self._raw = _condyle.RawKnee(case_of(case).compiled, threads)
 
@@ -79,8 +79,8 @@ class Knee:
             points_mm: shape (n, 3).
 
         Returns:
-            Gaps, > 0 apart, mm: shape (n,); unit normals: shape (n, 3). Of a femur that is a mesh, these are of its
-            smooth field.
+            Gaps, > 0 apart, mm: shape (n,); unit normals: shape (n, 3). For a mesh femur they are those of its smooth
+            field.
         """
         import numpy as np
 
@@ -100,30 +100,30 @@ class Knee:
         return self._raw.surface_points()
 
     def contact(self, rotation: ArrayLike, translation_mm: ArrayLike) -> Contact:
-        """How the femur presses, standing still at a pose.
+        """The contact of the femur at rest at a pose, on the unworn insert.
 
-        The insert is as it was before the first cycle: it yields, or comes to rest on its tray, under this load alone. The
-        tangent is that of the plastic strain and the backside as they are then.
+        A plastic insert yields, and a resting insert settles on its tray, under this load alone. The tangent holds for the
+        resulting plastic strain and state of the backside.
 
         Args:
             rotation: R, shape (3, 3).
             translation_mm: t, mm, shape (3,).
 
         Raises:
-            BadInput: an R that is no rotation.
-            NotSolved: a load that the insert does not bear.
+            BadInput: an R that is not a rotation.
+            NotSolved: a load that the insert cannot bear.
         """
         import numpy as np
 
-        turned, moved = np.asarray(rotation, dtype=np.float64), np.asarray(translation_mm, dtype=np.float64)
-        if turned.shape != (3, 3) or moved.shape != (3,) or not np.isfinite(moved).all():
-            raise BadInput(f"a pose has shapes {turned.shape} and {moved.shape}; give (3, 3) and (3,)")
-        if not np.allclose(turned @ turned.T, np.eye(3), atol=1e-9) or np.linalg.det(turned) < 0.0:
+        r, t = np.asarray(rotation, dtype=np.float64), np.asarray(translation_mm, dtype=np.float64)
+        if r.shape != (3, 3) or t.shape != (3,) or not np.isfinite(t).all():
+            raise BadInput(f"a pose has shapes {r.shape} and {t.shape}; give (3, 3) and (3,)")
+        if not np.allclose(r @ r.T, np.eye(3), atol=1e-9) or np.linalg.det(r) < 0.0:
             raise BadInput("this is no rotation: its rows are not perpendicular, of length 1 and right-handed")
-        return Contact(**self._raw.contact(turned.tolist(), moved.tolist()))
+        return Contact(**self._raw.contact(r.tolist(), t.tolist()))
 
     def first_cycle(self) -> Cycle:
-        """The first cycle of the first activity, on the unworn insert, once it repeats itself.
+        """The first periodic cycle of the first activity, on the unworn insert.
 
         Raises:
             NotSolved: a cycle that cannot be solved.

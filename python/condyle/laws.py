@@ -1,4 +1,4 @@
-"""Wear laws of one's own."""
+"""The input of wear laws written in Python."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ __all__ = ["NodeCycle"]
 
 
 class NodeCycle(NamedTuple):
-    """What one node of the articulating surface goes through in the mean cycle of all activities.
+    """The history of one node of the articulating surface in the mean cycle of all activities.
 
-    A wear law gives the depth that one such cycle wears, mm. Archard's, with Kw in mm3/(N m):
+    A wear law returns the depth worn by one such cycle, mm. Archard's, with Kw in mm3/(N m):
 
     >>> import condyle
     >>> def archard(cycle: condyle.NodeCycle) -> float:
@@ -31,12 +31,12 @@ class NodeCycle(NamedTuple):
     """Slip of the femur past the insert in each instant, along the surface's anterior and lateral directions, mm: shape
     (instants, 2)."""
     share: NDArray[np.float64]
-    """Part of all cycles that the instant's activity has: shape (instants,)."""
+    """Share of all cycles of the instant's activity: shape (instants,)."""
     peak_pressure_mpa: float
-    """Highest of the pressures, MPa."""
+    """The highest pressure, MPa."""
     sliding_distance_mm: float
     """Sum of share times slip, mm."""
     pressure_slip_mpa_mm: float
     """Sum of share times pressure times slip, MPa mm."""
     cross_shear: float
-    """What of pressure times slip goes across the principal direction, 0 to 0.5."""
+    """The part of pressure times slip across the principal direction, 0 to 0.5."""

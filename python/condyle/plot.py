@@ -29,22 +29,22 @@ _MOTIONS = {
 
 
 class Plots:
-    """Pictures of a result. Each draws into the axes it is given, or into new ones, and gives them back."""
+    """Pictures of a result. Each is drawn into the given or into new axes, which are returned."""
 
     def __init__(self, result: Result) -> None:
         """Use ``result.plot``."""
         self._result = result
 
     def wear_map(self, update: int = -1, ax: Axes | None = None) -> Axes:
-        """Depth worn over the articulating surface, seen from above; anterior is up, mm."""
+        """Wear depth on the articulating surface, from above with anterior up, mm."""
         return self._map("wear_depth_mm", "wear depth, mm", update, ax)
 
     def pressure(self, update: int = -1, ax: Axes | None = None) -> Axes:
-        """Highest pressure of the cycle at every node of the articulating surface, seen from above, MPa."""
+        """Highest pressure of the cycle at every node of the articulating surface, from above, MPa."""
         return self._map("peak_pressure_mpa", "peak pressure, MPa", update, ax)
 
     def wear_curve(self, ax: Axes | None = None) -> Axes:
-        """Mass worn over millions of cycles, mg, and its discretisation error where it was estimated."""
+        """Mass loss over the cycles, mg, with its discretisation error if that was estimated."""
         axes, wear = _axes(ax), self._result.wear
         millions, mass_mg = [0.0, *(wear["cycles"] / 1e6)], [0.0, *wear["mass_loss_mg"]]
         (line,) = axes.plot(millions, mass_mg, marker="o", markersize=4)
@@ -58,7 +58,7 @@ class Plots:
         return axes
 
     def kinematics(self) -> Figure:
-        """Motions and loads through the first and the last cycle."""
+        """Motions and loads in the first and the last cycle."""
         pyplot = extra("matplotlib.pyplot", "plot")
         figure, grid = pyplot.subplots(2, 3, figsize=(11, 5.5), sharex=True, layout="constrained")
         table = self._result.kinematics
@@ -80,10 +80,10 @@ class Plots:
         check_fields(result)
         triangulation = extra("matplotlib.tri", "plot").Triangulation
         triangles = _surface_triangles(result.hexes, result.articulating)
-        places = result.points_mm[update]
+        positions = result.points_mm[update]
         axes = _axes(ax)
-        seen = triangulation(places[:, 2], places[:, 0], triangles)
-        colours = axes.tripcolor(seen, result.fields[field][update], shading="gouraud", cmap="magma_r", vmin=0.0)
+        from_above = triangulation(positions[:, 2], positions[:, 0], triangles)
+        colours = axes.tripcolor(from_above, result.fields[field][update], shading="gouraud", cmap="magma_r", vmin=0.0)
         axes.get_figure().colorbar(colours, ax=axes, label=label, shrink=0.7)
         left, right = ("lateral", "medial") if result.case["side"] == "left" else ("medial", "lateral")
         axes.set(xlabel=f"{left}  <  z, mm  >  {right}", ylabel="x, anterior up, mm", aspect="equal")
@@ -96,13 +96,13 @@ def _axes(ax: Axes | None) -> Any:
 
 
 def _cycles(cycles: NDArray[np.float64]) -> list[tuple[Literal["first", "last"], str]]:
-    """Those that there are, with a style of line; a run of one update has one."""
+    """The recorded cycles with a line style; a run of one update has one cycle."""
     both = cycles.min() != cycles.max()
     return [("first", "-"), ("last", "--")] if both else [("first", "-")]
 
 
 def _surface_triangles(hexes: NDArray[np.uint32], articulating: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Two triangles of every outer face with four nodes on the articulating surface."""
+    """Two triangles for every outer face with four nodes on the articulating surface."""
     import numpy as np
 
     corners = [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]

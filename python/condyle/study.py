@@ -1,4 +1,4 @@
-"""Studies: a case run again and again with what varies of it."""
+"""Studies: many tests of one case with varied inputs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import _condyle
 from ._toml import document, value_text
 from ._workers import Source, run_on
 from .case import Case
-from .progress import Bar, StudyProgress
+from .progress import StudyProgress, listening
 from .study_result import StudyResult
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ TESTS_A_TASK = 64
 
 
 class Study:
-    """What varies of a case, which tests are done, and what is asked of them; the keys are those of a study file.
+    """Varied inputs of a case, a design of tests, and the requested answers, with the keys of a study file.
 
     >>> study = Study.from_dict({
     ...     "design": {"kind": "latin-hypercube", "size": 4},
@@ -47,24 +47,24 @@ class Study:
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Study:
-        """Reads the study file at ``path``; paths in it count from its folder.
+        """Reads the study file at ``path``; paths in it are relative to its folder.
 
         Raises:
-            BadInput: with everything that is wrong with it or with its case, each thing at its place.
+            BadInput: all problems of the study and its case, with their places.
         """
         return cls(os.path.abspath(path), _condyle.RawCase.read_text(path))
 
     @classmethod
     def from_text(cls, text: str, *, folder: str | os.PathLike[str] = ".", case: Case | None = None) -> Study:
-        """Reads a study from TOML.
+        """Reads a study from TOML text.
 
         Args:
-            text: what a study file says.
-            folder: paths in it count from here.
-            case: the case, where ``text`` names none; its bodies may be arrays.
+            text: the text of a study file.
+            folder: paths in it are relative to this folder.
+            case: the case, if ``text`` names none; its bodies may be arrays.
 
         Raises:
-            BadInput: with everything that is wrong with it or with its case, each thing at its place.
+            BadInput: all problems of the study and its case, with their places.
         """
         files: dict[str, bytes] = {}
         if case is not None:
@@ -75,37 +75,35 @@ class Study:
         return cls(os.path.join(os.path.abspath(folder), "study"), text, files)
 
     @classmethod
-    def from_dict(
-        cls, tables: Mapping[str, Any], *, folder: str | os.PathLike[str] = ".", case: Case | None = None
-    ) -> Study:
-        """Makes a study of nested dictionaries; ``vary``, ``alternative``, ``limit`` and ``correlation`` are lists of them.
+    def from_dict(cls, tables: Mapping[str, Any], *, folder: str | os.PathLike[str] = ".", case: Case | None = None) -> Study:
+        """Creates a study from nested dictionaries; ``vary``, ``alternative``, ``limit`` and ``correlation`` are lists of them.
 
-        What is ``None`` is left out; all else is as for :meth:`from_text`.
+        Entries that are ``None`` are omitted; otherwise as :meth:`from_text`.
         """
         return cls.from_text(document(tables), folder=folder, case=case)
 
     @property
     def tests(self) -> int:
-        """How many tests it has; of a search, at most."""
+        """The number of tests; for a search the maximum."""
         return self._raw.tests
 
     @property
     def design(self) -> str:
-        """How tests are chosen, such as ``"latin-hypercube"``."""
+        """The design of the tests, such as ``"latin-hypercube"``."""
         return self._raw.design
 
     @property
     def inputs(self) -> list[str]:
-        """Dotted paths of the keys that vary."""
+        """The dotted paths of the varied keys."""
         return self._raw.inputs
 
     @property
     def inputs_blake3(self) -> str:
-        """Hash of all that the tests follow from: the case, its meshes, what varies, and the design."""
+        """The hash of all inputs of the tests: the case, its meshes, the varied keys, and the design."""
         return self._raw.inputs_blake3
 
     def case(self, row: int, out: str | os.PathLike[str] | None = None) -> Case:
-        """The case of test ``row``, from 0, to be run by itself; of a search it is looked up in the study's folder ``out``."""
+        """The case of test ``row``, counted from 0; tests of a search are read from the study's folder ``out``."""
         source = self._source
         changes = self._raw.changes(row, None if out is None else os.fspath(out))
         path = os.fspath(self._raw.case_path)
@@ -123,48 +121,43 @@ class Study:
         client: Any = None,
         tests_a_task: int = TESTS_A_TASK,
     ) -> StudyResult:
-        """Runs every test that the folder ``out`` does not keep yet, and gives what all of them tell.
+        """Runs every test that the folder ``out`` does not hold yet, and evaluates all of them.
 
         The table has the same bytes on any number of threads, processes and machines, and after any interruption.
-        A test that fails is a row with its reason, and stops nothing.
+        A failed test is a row with its reason, and the study continues.
 
         Args:
             out: a folder for the database, the table, the answers and their page, as ``condyle study`` writes them. A
-                study that was stopped, or killed, goes on where it was.
-            progress: ``True`` for a bar, or what is called with a :class:`StudyProgress` as tests are kept; the study
-                stops where it answers ``False``, with :class:`StudyInterrupted`, and where it raises.
-            threads: tests at the same time in this process; all processors if not given.
-            executor: any of ``concurrent.futures``, or what has its ``submit``: tests run there in place of threads here.
-                Its workers need condyle, and the files that study and case name under the same paths.
-            client: a ``dask.distributed.Client``, for the same. A task whose worker dies is done again.
-            tests_a_task: tests that a worker is sent at once.
+                stopped or killed study resumes.
+            progress: ``True`` for a bar, or a function that is called with a :class:`StudyProgress` as tests are stored.
+                The study stops with :class:`StudyInterrupted` if it returns ``False``, and if it raises.
+            threads: parallel tests in this process; by default as many as processors.
+            executor: an executor of ``concurrent.futures``, or an object with the same ``submit``, that runs the tests
+                instead. Its workers need condyle, and the files of study and case under the same paths.
+            client: a ``dask.distributed.Client``, for the same purpose. A task is repeated if its worker dies.
+            tests_a_task: tests that are sent to a worker at once.
 
         Raises:
-            BadInput: a folder of another study or in use, or a search, whose tests depend on each other, on an executor.
+            BadInput: a folder of another study or in use, or a search on an executor, since its tests depend on each other.
         """
         if executor is not None and client is not None:
             raise ValueError("give an executor or a client, not both")
         if client is not None:
             executor = client.get_executor(pure=False)
-        bar = Bar() if progress is True else None
-        listener = bar or (progress if callable(progress) else None)
-        try:
+        with listening(progress) as listener:
             if executor is None:
                 self._raw.run(out, threads or os.cpu_count() or 1, listener)
             else:
                 run_on(executor, self._raw, self._source, os.fspath(out), tests_a_task, listener)
-        finally:
-            if bar:
-                bar.close()
         return self.answered(out)
 
     def merge(self, shards: Sequence[str | os.PathLike[str]], out: str | os.PathLike[str]) -> StudyResult:
-        """Puts the tests of several folders of this study, such as those of ``--shard``, into the folder ``out``."""
+        """Merges the tests of several folders of this study, such as those of ``--shard``, into the folder ``out``."""
         self._raw.merge([os.fspath(shard) for shard in shards], out)
         return self.answered(out)
 
     def answered(self, out: str | os.PathLike[str]) -> StudyResult:
-        """What the tests that the folder ``out`` keeps tell by now; writes table, answers and page anew."""
+        """Evaluates the tests that the folder ``out`` holds so far; rewrites table, answers and page."""
         return StudyResult(Path(out), json.loads(self._raw.answers(out)))
 
     def __repr__(self) -> str:

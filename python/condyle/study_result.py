@@ -1,4 +1,4 @@
-"""What the tests of a study found, and what they tell."""
+"""The results of a study."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["StudyResult", "open_study"]
 
 
 class StudyResult:
-    """The folder of a study: its table, and its answers."""
+    """The table and the answers in the folder of a study."""
 
     __slots__ = ("_answers", "_folder", "_table")
 
@@ -33,19 +33,19 @@ class StudyResult:
 
     @property
     def folder(self) -> Path:
-        """Where ``study.db``, ``table.csv``, ``answers.json``, ``study.html`` and the pictures are."""
+        """The folder with ``study.db``, ``table.csv``, ``answers.json``, ``study.html`` and the pictures."""
         return self._folder
 
     @property
     def answers(self) -> dict[str, Any]:
-        """All answers, as ``answers.json`` has them: scatter, sensitivity, ranking, Pareto front, the best."""
+        """The content of ``answers.json``: scatter, sensitivity, ranking, Pareto front, the best."""
         return self._answers
 
     @property
     def table(self) -> Mapping[str, NDArray[Any]]:
-        """A column an input and an output, and ``row``, ``status`` and ``reason``; a value a test that is kept.
+        """The columns: ``row``, ``status``, ``reason``, and every input and output, with one value per test.
 
-        Numbers are float64, not a number where a test failed; ``row`` is int64, and words are objects.
+        Numbers are float64, NaN where a test failed; ``row`` is int64, and words are objects.
         """
         if self._table is None:
             self._table = _read(self._folder)
@@ -58,7 +58,7 @@ class StudyResult:
         return self.table[column]
 
     def to_pandas(self) -> pd.DataFrame:
-        """The table as a data frame with the tests' numbers as its index; units are in ``.attrs["units"]``."""
+        """The table as a data frame with the rows as its index; units are in ``.attrs["units"]``."""
         frame = extra("pandas", "pandas").DataFrame(dict(self.table)).set_index("row")
         frame.attrs["units"] = {name: unit_of(name) for name in frame.columns}
         return frame
@@ -73,17 +73,18 @@ class StudyResult:
 
 
 def open_study(folder: str | os.PathLike[str]) -> StudyResult:
-    """The study in a folder that ``condyle study`` or :meth:`Study.run` wrote.
+    """Opens the study in a folder written by ``condyle study`` or :meth:`Study.run`.
 
     Raises:
-        BadInput: a folder without a study, or with one that was cut off before it was answered.
+        BadInput: a folder without a study, or with an unfinished one.
     """
     path = Path(folder)
     try:
         answers = json.loads((path / "answers.json").read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        said = "no study" if not (path / "study.db").is_file() else "a study that is not done; the same study goes on with it"
-        raise BadInput(f"{path}: the folder holds {said}") from error
+        is_begun = (path / "study.db").is_file()
+        content = "an unfinished study; run the same study to resume it" if is_begun else "no study"
+        raise BadInput(f"{path}: the folder holds {content}") from error
     return StudyResult(path, answers)
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from io import StringIO
 from typing import TYPE_CHECKING
 
 from ._extras import extra
+from .errors import BadInput
 from .units import unit_of
 
 if TYPE_CHECKING:
@@ -17,20 +19,44 @@ __all__ = ["Table"]
 
 
 class Table(Mapping[str, "NDArray[np.float64]"]):
-    """Columns of numbers under the names of a run's CSV files, each with its unit in the name.
+    """Columns of numbers by name, as in the CSV files of a run; each name ends with its unit.
 
-    A column is a view of :attr:`array`: nothing is copied.
+    A column is a view of :attr:`array`.
     """
 
     __slots__ = ("_array", "_columns")
 
     def __init__(self, columns: list[str], array: NDArray[np.float64]) -> None:
-        """``array`` has a row a row of the file, and a column a name."""
+        """``array`` has one row per row of the file and one column per name."""
         self._columns, self._array = tuple(columns), array
+
+    @classmethod
+    def from_csv(cls, text: str, name: str) -> Table:
+        """Reads the text of a CSV file that a run wrote; messages call it ``name``.
+
+        >>> Table.from_csv("percent,ap_mm\\n0,1.5\\n100,1.5\\n", "kinematics.csv")["ap_mm"].tolist()
+        [1.5, 1.5]
+
+        Raises:
+            BadInput: a row that does not fit the header, or a cell that is no number.
+        """
+        import numpy as np
+
+        header, _, rows = text.partition("\n")
+        columns = header.split(",")
+        array = np.empty((0, len(columns)))
+        try:
+            if rows:
+                array = np.loadtxt(StringIO(rows), delimiter=",", ndmin=2)
+            if array.shape[1] != len(columns):
+                raise ValueError(f"{array.shape[1]} columns under {len(columns)} names")
+        except ValueError as error:
+            raise BadInput(f"{name}: this is not a table that a run wrote ({error}); run the case again") from error
+        return cls(columns, array)
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the columns."""
+        """The names of the columns."""
         return self._columns
 
     @property
@@ -40,11 +66,11 @@ class Table(Mapping[str, "NDArray[np.float64]"]):
 
     @property
     def units(self) -> dict[str, str]:
-        """Unit of every column; empty for a pure number."""
+        """The unit of every column; empty for a pure number."""
         return {name: unit_of(name) for name in self._columns}
 
     def to_pandas(self) -> pd.DataFrame:
-        """As a data frame; units are in ``.attrs["units"]``."""
+        """The table as a data frame; units are in ``.attrs["units"]``."""
         frame = extra("pandas", "pandas").DataFrame(self._array, columns=list(self._columns))
         frame.attrs["units"] = self.units
         return frame

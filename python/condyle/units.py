@@ -1,4 +1,4 @@
-"""Units, which are in the names."""
+"""Units of quantities, from the ends of their names."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _UNITS = {
 
 
 def unit_of(name: str) -> str:
-    """The unit that a name ends with; empty for a pure number.
+    """The unit at the end of a name; empty for a pure number.
 
     >>> unit_of("mass_loss_mg"), unit_of("peak_pressure_mpa"), unit_of("cross_shear")
     ('mg', 'MPa', '')

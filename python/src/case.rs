@@ -1,17 +1,18 @@
-//! A case as Python holds it: what it was read from, and what that says.
+//! Cases for Python: read with files in memory over those on the disk, changed, written.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 
-use condyle_case::case::{Assignment, AssignmentError, Case, CaseReader, ChangeError};
+use condyle_case::case::{Assignment, Case, CaseReader, ChangeError};
 use condyle_lab::Preview;
+use condyle_mesh::files::{Disk, Files, MemoryFiles};
 use pyo3::prelude::*;
 use toml_edit::DocumentMut;
 
 use crate::errors;
-use crate::files::FilesOfCase;
 
-/// A case, checked.
+/// A checked case.
 #[pyclass(frozen, module = "condyle._condyle")]
 pub struct RawCase {
     pub case: Case,
@@ -19,8 +20,8 @@ pub struct RawCase {
 
 #[pymethods]
 impl RawCase {
-    /// Reads a case from `text`, as if it stood in the file `path`; what that names is looked for in `files` first,
-    /// and from the folder `base` on. `changes` are written as `key=value`.
+    /// Reads a case from `text` as if it stood in the file `path`. Files that it names are looked up in `files` first,
+    /// then from the folder `base`. `changes` are written as `key=value`.
     #[new]
     fn new(
         path: PathBuf,
@@ -29,13 +30,15 @@ impl RawCase {
         files: BTreeMap<PathBuf, Vec<u8>>,
         changes: Vec<String>,
     ) -> PyResult<Self> {
-        let changes = assignments(&changes).map_err(|error| errors::bad_input(&error))?;
-        let files = FilesOfCase::new(&path, text, base, files);
-        let reader = CaseReader::new(files);
+        let changes = changes.iter().map(|change| Assignment::parse(change));
+        let changes: Vec<_> = changes
+            .collect::<Result<_, _>>()
+            .map_err(errors::bad_input)?;
+        let reader = CaseReader::new(CaseFiles::new(&path, text, base, files));
         match reader.read_changed(&path, &changes) {
             Ok(case) => Ok(Self { case }),
-            Err(ChangeError::Case(problems)) => Err(errors::of_problems(&problems)),
-            Err(ChangeError::Assignment(error)) => Err(errors::bad_input(&error)),
+            Err(ChangeError::Case(problems)) => Err(errors::of_problems(problems)),
+            Err(ChangeError::Assignment(error)) => Err(errors::bad_input(error)),
         }
     }
 
@@ -43,20 +46,20 @@ impl RawCase {
     #[staticmethod]
     fn read_text(path: PathBuf) -> PyResult<String> {
         std::fs::read_to_string(&path).map_err(|_| {
-            // The reader of cases says it as the command does; a file that can be read by now is a case without text.
+            // The reader of cases has the command's message; if it succeeds, the file appeared meanwhile.
             match Case::read(&path) {
-                Err(problems) => errors::of_problems(&problems),
-                Ok(_) => errors::bad_input(&"the case file is changing while it is read"),
+                Err(problems) => errors::of_problems(problems),
+                Ok(_) => errors::bad_input("the case file is changing while it is read"),
             }
         })
     }
 
-    /// The case as run, every default written out.
+    /// The case as run, with all defaults.
     fn toml(&self) -> String {
         self.case.to_toml()
     }
 
-    /// The same, with its files named from `folder`.
+    /// The same, with paths relative to `folder`.
     fn toml_in(&self, folder: PathBuf) -> String {
         self.case.to_toml_in(&folder)
     }
@@ -72,28 +75,39 @@ impl RawCase {
 
     /// Hash of the case as run and of its meshes, in hexadecimal.
     fn inputs_blake3(&self) -> PyResult<String> {
-        let hash = self.case.inputs_blake3();
-        hash.map_err(|error| {
-            errors::bad_input(&format!("a mesh of the case cannot be read: {error}"))
+        self.case.inputs_blake3().map_err(|error| {
+            errors::bad_input(format!("a mesh of the case cannot be read: {error}"))
         })
     }
 
-    /// What the case comes to before it runs, as JSON, and a picture of both bodies, as SVG.
+    /// The facts known before a run, as JSON, and a picture of both bodies, as SVG.
     fn preview(&self, py: Python<'_>, threads: usize) -> PyResult<(String, String)> {
         let preview = py.detach(|| Preview::of_case(self.case.clone(), threads));
-        let preview = preview.map_err(|error| errors::of_run(&error))?;
+        let preview = preview.map_err(errors::of_run)?;
         let json = serde_json::to_string(&preview).expect("numbers and text always serialise");
         Ok((json, preview.picture_svg()))
     }
 }
 
-fn assignments(changes: &[String]) -> Result<Vec<Assignment>, AssignmentError> {
-    let changes = changes.iter();
-    changes.map(|change| Assignment::parse(change)).collect()
+/// Converts a JSON object to a TOML file, without the entries that are null.
+#[pyfunction]
+pub fn toml_document(json: &str) -> PyResult<String> {
+    let table: toml::Table = from_json(json)?;
+    toml::to_string(&table).map_err(errors::bad_input)
 }
 
-/// The text of a case with the table `table` replaced by one of `keys`, each written as TOML; a text that is not TOML
-/// stays as it is.
+/// Converts a JSON value to a TOML value on one line.
+#[pyfunction]
+pub fn toml_value(json: &str) -> PyResult<String> {
+    Ok(from_json::<toml::Value>(json)?.to_string())
+}
+
+fn from_json<T: for<'de> serde::Deserialize<'de>>(json: &str) -> PyResult<T> {
+    serde_json::from_str(json).map_err(errors::bad_input)
+}
+
+/// Replaces the table `table` in the text of a case by that of the TOML text `keys`. A text that is not TOML is
+/// returned unchanged, for the reader to report.
 #[pyfunction]
 pub fn with_table(text: &str, table: &str, keys: &str) -> String {
     let (Ok(mut document), Ok(keys)) = (text.parse::<DocumentMut>(), keys.parse::<DocumentMut>())
@@ -102,4 +116,33 @@ pub fn with_table(text: &str, table: &str, keys: &str) -> String {
     };
     document.insert(table, toml_edit::Item::Table(keys.as_table().clone()));
     document.to_string()
+}
+
+/// Files in memory over those on the disk. Relative paths count from `base`, whatever the working folder becomes.
+#[derive(Debug)]
+pub struct CaseFiles {
+    memory: MemoryFiles,
+    base: PathBuf,
+}
+
+impl CaseFiles {
+    /// `text` as the file at `path`, and `files` next to it.
+    pub fn new(path: &Path, text: &str, base: PathBuf, files: BTreeMap<PathBuf, Vec<u8>>) -> Self {
+        let memory = MemoryFiles::default().with(path, text);
+        let files = files.into_iter();
+        let memory = files.fold(memory, |memory, (path, bytes)| memory.with(path, bytes));
+        Self { memory, base }
+    }
+}
+
+impl Files for CaseFiles {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let in_memory = self.memory.read(path);
+        in_memory.or_else(|_| Disk.read(&self.base.join(path)))
+    }
+
+    fn find(&self, written: &str, folder: &Path) -> Result<PathBuf, PathBuf> {
+        let in_memory = self.memory.find(written, folder);
+        in_memory.or_else(|_| Disk.find(written, &self.base.join(folder)))
+    }
 }

@@ -1,36 +1,37 @@
-//! A run read from the folder that the command wrote.
+//! Reading a run from the folder that the command wrote.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use condyle_mesh::formats::{VtuFile, parse_vtu_triangles, read_pvd, read_vtu_points};
+use condyle_mesh::formats::{parse_vtu_triangles, read_pvd, read_vtu_points};
 use condyle_results::check_file;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::bad_input;
 use crate::record::{InsertRecord, Record};
-use crate::table::Table;
 
-/// The run in the folder `path`, as `run_in_memory` gives one.
+/// The name of the array that marks the articulating surface.
+const ARTICULATING: &str = "articulating";
+
+/// The run in the folder `path`, in the form of `run_in_memory`.
 #[pyfunction]
 pub fn read_folder(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
     py.detach(|| read(&path))?.into_python(py)
 }
 
-/// The run in `folder`.
+/// Reads the run in `folder`.
 pub fn read(folder: &Path) -> PyResult<Record> {
-    let case = text(&folder.join("case.toml"))?;
-    let Some(case) = case else {
-        let said = format!(
+    let Some(case) = text(&folder.join("case.toml"))? else {
+        return Err(bad_input(format!(
             "{}: the folder holds no run: there is no case.toml; give the folder of `condyle run --out`",
             folder.display()
-        );
-        return Err(bad_input(&said));
+        )));
     };
     let femur = folder.join("femur.vtu");
     let femur = match fs::read(&femur) {
-        Ok(bytes) => parse_vtu_triangles(&femur, &bytes).map_err(|error| bad_input(&error))?,
+        Ok(bytes) => parse_vtu_triangles(&femur, &bytes).map_err(bad_input)?,
         Err(_) => Default::default(),
     };
     Ok(Record {
@@ -44,70 +45,46 @@ pub fn read(folder: &Path) -> PyResult<Record> {
 
 fn insert(folder: &Path) -> PyResult<InsertRecord> {
     let mut insert = InsertRecord::default();
-    let series = read_pvd(folder.join("insert.pvd")).map_err(|error| bad_input(&error))?;
-    for (_, path) in series {
-        check_file(&path).map_err(|error| bad_input(&error))?;
-        let file = read_vtu_points(&path).map_err(|error| bad_input(&error))?;
-        push(&mut insert, &file);
+    for (_, path) in read_pvd(folder.join("insert.pvd")).map_err(bad_input)? {
+        check_file(&path).map_err(bad_input)?;
+        let file = read_vtu_points(&path).map_err(bad_input)?;
+        let marks = file.values(ARTICULATING).unwrap_or_default();
+        let articulating = marks.iter().map(|&mark| mark == 1.0).collect();
+        let scalars = file
+            .point_data
+            .iter()
+            .map(|(name, values)| (name.as_str(), values.as_slice()));
+        let scalars = scalars.filter(|(name, _)| *name != ARTICULATING);
+        let vectors = file.point_vectors.iter();
+        let vectors = vectors.map(|(name, values)| (name.as_str(), values.as_flattened()));
+        insert.push(&file.mesh, articulating, scalars.chain(vectors));
     }
     Ok(insert)
 }
 
-fn push(insert: &mut InsertRecord, file: &VtuFile) {
-    let marks = file.values(ARTICULATING).unwrap_or_default();
-    insert.articulating = marks.iter().map(|&mark| mark == 1.0).collect();
-    let scalars = file
-        .point_data
-        .iter()
-        .filter(|(name, _)| name != ARTICULATING);
-    insert.push(
-        &file.mesh,
-        scalars.map(|(name, values)| (name.as_str(), values.as_slice())),
-        file.point_vectors
-            .iter()
-            .map(|(name, values)| (name.as_str(), values.as_slice())),
-    );
-}
-
-/// The array that marks the articulating surface.
-const ARTICULATING: &str = "articulating";
-
-/// `wear.csv`, `femur_pose.csv`, and the motions of every activity.
-fn tables(folder: &Path) -> PyResult<Vec<(String, Table)>> {
-    let refused = |error| bad_input(&format!("{}: {error}", folder.display()));
-    let mut names = Vec::new();
-    for entry in fs::read_dir(folder).map_err(refused)? {
-        let name = entry
-            .map_err(refused)?
-            .file_name()
-            .to_string_lossy()
-            .into_owned();
-        if let Some(name) = name.strip_suffix(".csv") {
-            names.push(name.to_owned());
+/// The texts of `wear.csv`, `femur_pose.csv` and the kinematics of every activity.
+fn tables(folder: &Path) -> PyResult<BTreeMap<String, String>> {
+    let mut tables = BTreeMap::new();
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let unreadable = |error| bad_input(format!("{}: {error}", folder.display()));
+    for entry in entries.map_err(unreadable)? {
+        let file = entry.file_name().to_string_lossy().into_owned();
+        let Some(name) = file.strip_suffix(".csv") else {
+            continue;
+        };
+        if ["wear", "femur_pose"].contains(&name) || name.starts_with("kinematics") {
+            let text = text(&entry.path())?.unwrap_or_default();
+            tables.insert(name.to_owned(), text);
         }
     }
-    names.retain(|name| {
-        ["wear", "femur_pose"].contains(&name.as_str()) || name.starts_with("kinematics")
-    });
-    names.sort();
-    let table = |name: String| Ok((name.clone(), table(&folder.join(name + ".csv"))?));
-    names.into_iter().map(table).collect()
+    Ok(tables)
 }
 
-fn table(path: &Path) -> PyResult<Table> {
-    let text = text(path)?.unwrap_or_default();
-    Table::parse(&text).ok_or_else(|| {
-        bad_input(&format!(
-            "{}: this is not the table that a run writes; run the case anew",
-            path.display()
-        ))
-    })
-}
-
+/// The text of a file; none if it does not exist.
 fn text(path: &Path) -> PyResult<Option<String>> {
     match fs::read_to_string(path) {
         Ok(text) => Ok(Some(text)),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(bad_input(&format!("{}: {error}", path.display()))),
+        Err(error) => Err(bad_input(format!("{}: {error}", path.display()))),
     }
 }

@@ -1,22 +1,23 @@
-//! What lies below a run: the bodies of a case, how they press, and one cycle.
+//! The parts of a run: the bodies of a case, their contact at a pose, and one cycle.
 
-use condyle::contact::{ContactMemory, ContactModel, ContactResult, NotBorne, Settled};
+use condyle::contact::{ContactMemory, ContactModel, NotBorne, Settled};
 use condyle::evolve::{March, SolvedCycle};
 use condyle::spatial::{Pose, RelativeMotion};
 use condyle::{Mat3, Vec3};
 use condyle_case::cache::Cache;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::arrays::array;
 use crate::case::RawCase;
 use crate::errors;
+use crate::record::array;
 
-/// How often a contact is asked anew whose own state goes with the load: ten times what was seen.
+/// Evaluations of a contact whose state follows its load (creep, yield, a resting backside) until both agree; ten times
+/// the largest number seen.
 const MAX_TURNS: usize = 300;
 
-/// The bodies of a case with the femur settled on the insert, as the solver has them: a right knee.
+/// The bodies of a case with the femur settled on the insert, in the frame of the solver: a right knee.
 #[pyclass(frozen, module = "condyle._condyle")]
 pub struct RawKnee {
     march: March,
@@ -27,7 +28,7 @@ impl RawKnee {
     #[new]
     fn new(py: Python<'_>, case: &RawCase, threads: usize) -> PyResult<Self> {
         let march = py.detach(|| condyle_lab::settled(&case.case, threads, &Cache::of_user()));
-        let march = march.map_err(|error| errors::of_run(&error))?;
+        let march = march.map_err(errors::of_run)?;
         Ok(Self { march })
     }
 
@@ -55,21 +56,21 @@ impl RawKnee {
         py: Python<'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let pose = self.march.neutral_pose();
-        let translation = array(py, numbers(&pose.translation).to_vec(), [3])?;
+        let rotation = array(py, row_major(&pose.rotation), [3, 3])?;
         Ok((
-            array(py, rows(&pose.rotation).to_vec(), [3, 3])?,
-            translation,
+            rotation,
+            array(py, pose.translation.as_slice().to_vec(), [3])?,
         ))
     }
 
-    /// Places of the nodes of the articulating surface.
+    /// Positions of the nodes of the articulating surface.
     fn surface_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let places = self.march.insert().surface().positions;
-        let values: Vec<f64> = places.iter().flat_map(numbers).collect();
-        array(py, values, [places.len(), 3])
+        let positions = self.march.insert().surface().positions;
+        let values: Vec<f64> = positions.iter().flatten().copied().collect();
+        array(py, values, [positions.len(), 3])
     }
 
-    /// How the femur presses, standing still at a pose.
+    /// The contact of the femur at rest at a pose.
     fn contact<'py>(
         &self,
         py: Python<'py>,
@@ -79,53 +80,66 @@ impl RawKnee {
         let rotation = Mat3::from_row_slice(rotation.as_flattened());
         let motion = RelativeMotion::at_rest(Pose::new(rotation, Vec3::from(translation)));
         let surface = self.march.insert().surface();
-        let memory = ContactMemory::default();
         let law = &self.march.test().contact;
-        let mut contact = law.contact(self.march.bodies(&surface), memory);
-        come_to_rest(contact.as_mut(), &motion)?;
+        let mut contact = law.contact(self.march.bodies(&surface), ContactMemory::default());
+        settle(contact.as_mut(), &motion)?;
         let response = contact.respond(&motion);
         let (wrench, tangent) = (response.wrench, response.tangent().by_pose.matrix);
-        let landing = contact.evaluate(&motion);
-        let told = pressed(py, &landing, surface.positions.len())?;
-        told.set_item("force_n", array(py, numbers(&wrench.force).to_vec(), [3])?)?;
-        told.set_item(
-            "moment_nmm",
-            array(py, numbers(&wrench.moment).to_vec(), [3])?,
-        )?;
-        let tangent: Vec<f64> = tangent.transpose().iter().copied().collect();
-        told.set_item("tangent", array(py, tangent, [6, 6])?)?;
-        Ok(told)
+        let result = contact.evaluate(&motion);
+        let nodes = surface.positions.len();
+        let mut pressures = vec![0.0; nodes];
+        for node in &result.touched {
+            pressures[node.node as usize] = node.pressure_mpa;
+        }
+        let area_mm2: f64 = result.touched.iter().map(|node| node.covered_mm2).sum();
+        let peak_mpa = result.peak_pressure_mpa;
+        let entries = [
+            ("force_n", array(py, wrench.force.as_slice().to_vec(), [3])?),
+            (
+                "moment_nmm",
+                array(py, wrench.moment.as_slice().to_vec(), [3])?,
+            ),
+            (
+                "tangent",
+                array(py, tangent.transpose().as_slice().to_vec(), [6, 6])?,
+            ),
+            ("pressure_mpa", array(py, pressures, [nodes])?),
+            ("peak_pressure_mpa", peak_mpa.into_pyobject(py)?.into_any()),
+            ("area_mm2", area_mm2.into_pyobject(py)?.into_any()),
+        ];
+        entries.into_py_dict(py)
     }
 
-    /// The first cycle of the first activity.
+    /// The first cycle of the first activity, increment by increment.
     fn first_cycle<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (test, state) = (self.march.test().clone(), self.march.state().clone());
         let mut march = March::resume(test, state);
         let solved = py.detach(|| {
-            let mut go_on = |_| std::ops::ControlFlow::Continue(());
-            march.update(&mut go_on).map(|_| ())
+            march
+                .update(&mut |_| std::ops::ControlFlow::Continue(()))
+                .map(|_| ())
         });
-        solved.map_err(|error| errors::not_solved(&error))?;
+        solved.map_err(errors::not_solved)?;
         let cycle = march.last_cycle().expect("an update was made");
-        in_arrays(py, &cycle)
+        cycle_arrays(py, &cycle)
     }
 }
 
-/// Lets an insert flow, or come to rest on its tray, under what presses it at a motion.
-fn come_to_rest(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> PyResult<()> {
+/// Repeats the evaluation at a motion until load and state of the insert agree.
+fn settle(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> PyResult<()> {
     for _ in 0..MAX_TURNS {
         contact.respond(motion);
         let settled = contact.settle(motion);
-        if settled.map_err(|why| errors::not_solved(&said(why)))? == Settled::Yes {
+        if settled.map_err(|why| errors::not_solved(message(why)))? == Settled::Yes {
             return Ok(());
         }
     }
-    Err(errors::not_solved(&format!(
+    Err(errors::not_solved(format!(
         "load and insert did not settle together in {MAX_TURNS} turns at this pose; lift the femur"
     )))
 }
 
-fn said(why: NotBorne) -> String {
+fn message(why: NotBorne) -> String {
     match why {
         NotBorne::Flattened(flat) => format!(
             "the femur presses the insert flat at this pose: a plastic strain of {:.2} was reached; lift the femur, or see \
@@ -140,58 +154,36 @@ fn said(why: NotBorne) -> String {
     }
 }
 
-fn pressed<'py>(
-    py: Python<'py>,
-    landing: &ContactResult,
-    nodes: usize,
-) -> PyResult<Bound<'py, PyDict>> {
-    let mut pressures = vec![0.0; nodes];
-    for touched in &landing.touched {
-        pressures[touched.node as usize] = touched.pressure_mpa;
-    }
-    let told = PyDict::new(py);
-    told.set_item("pressure_mpa", array(py, pressures, [nodes])?)?;
-    told.set_item("peak_pressure_mpa", landing.peak_pressure_mpa)?;
-    let area = landing.touched.iter().map(|touched| touched.covered_mm2);
-    told.set_item("area_mm2", area.sum::<f64>())?;
-    Ok(told)
-}
-
-fn in_arrays<'py>(py: Python<'py>, cycle: &SolvedCycle<'_>) -> PyResult<Bound<'py, PyDict>> {
+fn cycle_arrays<'py>(py: Python<'py>, cycle: &SolvedCycle<'_>) -> PyResult<Bound<'py, PyDict>> {
     let (increments, nodes) = (cycle.rows.len(), cycle.surface.positions.len());
     let (mut pressures, mut slips) = (Vec::new(), vec![0.0; 2 * increments * nodes]);
     let (mut rotations, mut translations) = (Vec::new(), Vec::new());
     for increment in 0..increments {
-        let pressed = cycle.pressures_mpa(increment);
-        let touched = pressed
-            .iter()
-            .enumerate()
-            .filter(|(_, pressure)| **pressure > 0.0);
-        for (node, _) in touched {
-            if let Some(moment) = cycle.moment(increment, node) {
+        let pressures_mpa = cycle.pressures_mpa(increment);
+        for (node, &pressure_mpa) in pressures_mpa.iter().enumerate() {
+            if pressure_mpa > 0.0
+                && let Some(moment) = cycle.moment(increment, node)
+            {
                 let place = 2 * (increment * nodes + node);
                 slips[place..place + 2].copy_from_slice(&moment.slip_mm);
             }
         }
-        pressures.extend(pressed);
+        pressures.extend(pressures_mpa);
         let pose = cycle.pose(increment);
-        rotations.extend(rows(&pose.rotation));
-        translations.extend(numbers(&pose.translation));
+        rotations.extend(row_major(&pose.rotation));
+        translations.extend_from_slice(pose.translation.as_slice());
     }
-    let told = PyDict::new(py);
-    let percents: Vec<f64> = cycle.rows.iter().map(|row| row.percent).collect();
-    told.set_item("percent", array(py, percents, [increments])?)?;
-    told.set_item("pressure_mpa", array(py, pressures, [increments, nodes])?)?;
-    told.set_item("slip_mm", array(py, slips, [increments, nodes, 2])?)?;
-    told.set_item("rotation", array(py, rotations, [increments, 3, 3])?)?;
-    told.set_item("translation_mm", array(py, translations, [increments, 3])?)?;
-    Ok(told)
+    let percents = cycle.rows.iter().map(|row| row.percent).collect();
+    let entries = [
+        ("percent", array(py, percents, [increments])?),
+        ("pressure_mpa", array(py, pressures, [increments, nodes])?),
+        ("slip_mm", array(py, slips, [increments, nodes, 2])?),
+        ("rotation", array(py, rotations, [increments, 3, 3])?),
+        ("translation_mm", array(py, translations, [increments, 3])?),
+    ];
+    entries.into_py_dict(py)
 }
 
-fn numbers(vector: &Vec3) -> [f64; 3] {
-    [vector.x, vector.y, vector.z]
-}
-
-fn rows(matrix: &Mat3) -> [f64; 9] {
-    std::array::from_fn(|place| matrix[(place / 3, place % 3)])
+fn row_major(matrix: &Mat3) -> Vec<f64> {
+    matrix.transpose().as_slice().to_vec()
 }

@@ -1,16 +1,16 @@
-//! A wear law that is a function of Python: slow, since every node that slides is one call.
+//! A wear law that is a function of Python. It is slow: every sliding node is one call.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use condyle::wear::{MeanCycle, NamedLaw, NodeWear, WearLaw};
 use pyo3::prelude::*;
 
-use crate::arrays::array;
+use crate::record::array;
 
-/// The word for a law that Python gives.
+/// The name of such a law in results.
 const WORD: &str = "python";
 
-/// What a law raised, for whoever runs it: a law of wear itself cannot fail.
+/// The first exception of a law, for the caller of the run: a wear law itself cannot fail.
 pub type Raised = Arc<Mutex<Option<PyErr>>>;
 
 /// A wear law that is a function of Python.
@@ -20,18 +20,17 @@ struct LawOfPython {
     raised: Raised,
 }
 
-/// The law that calls `function` with a `condyle.NodeCycle`, and what it raises first.
+/// The law that calls `function` with a `condyle.NodeCycle`, and a handle to its first exception.
 pub fn law_of(function: Py<PyAny>) -> (NamedLaw, Raised) {
     let raised = Raised::default();
-    let law = LawOfPython {
+    let law = Arc::new(LawOfPython {
         function,
         raised: Arc::clone(&raised),
-    };
-    let law = Arc::new(law);
+    });
     (NamedLaw { word: WORD, law }, raised)
 }
 
-/// What a law has raised so far.
+/// Takes the exception that a law raised, if any.
 pub fn taken(raised: &Raised) -> Option<PyErr> {
     raised.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
@@ -58,7 +57,7 @@ impl LawOfPython {
         Err(pyo3::exceptions::PyValueError::new_err(said))
     }
 
-    /// Remembers the first error; the run is stopped at its next increment.
+    /// Keeps the first error; the run stops at its next increment.
     fn failed(&self, error: PyErr) -> f64 {
         let mut raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
         raised.get_or_insert(error);
@@ -66,7 +65,6 @@ impl LawOfPython {
     }
 }
 
-/// A `condyle.NodeCycle`.
 fn node_cycle<'py>(py: Python<'py>, cycle: &MeanCycle<'_>) -> PyResult<Bound<'py, PyAny>> {
     let (mut shares, mut pressures, mut slips) = (Vec::new(), Vec::new(), Vec::new());
     for (share, moment) in cycle.moments() {

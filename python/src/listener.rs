@@ -1,101 +1,116 @@
-//! What Python hears of a run, and how it stops one.
+//! Callbacks of Python during a run or a study, and how they stop it.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use condyle_lab::{Reached, RunEvent};
+use condyle_lab::RunEvent;
+use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 
 use crate::law::{Raised, taken};
 
-/// Between two looks at Ctrl-C and two calls of a callback: taking the interpreter's lock may wait for other threads.
+/// Pause between two checks for Ctrl-C and calls of the callback: taking the interpreter's lock may wait for other threads.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Tells a callback how far a run has come, and stops the run on Ctrl-C, on an exception of the callback's, and where
-/// it answers `False`.
+/// A callback of Python that is called with progress, and the first exception raised on the way.
+pub struct Callback {
+    function: Option<Py<PyAny>>,
+    raised: Option<PyErr>,
+}
+
+impl Callback {
+    pub fn new(function: Option<Py<PyAny>>) -> Self {
+        Self {
+            function,
+            raised: None,
+        }
+    }
+
+    /// Calls the function with an instance of `class` of `condyle.progress`. Stops on Ctrl-C, on an exception, and when
+    /// the function returns `False`.
+    pub fn call(&mut self, class: &str, fields: impl for<'py> PyCallArgs<'py>) -> ControlFlow<()> {
+        let goes_on = Python::attach(|py| {
+            py.check_signals()?;
+            let Some(function) = &self.function else {
+                return Ok(true);
+            };
+            let class = py.import("condyle.progress")?.getattr(class)?;
+            let answer = function.bind(py).call1((class.call1(fields)?,))?;
+            Ok(!answer.is(pyo3::types::PyBool::new(py, false).as_any()))
+        });
+        match goes_on {
+            Ok(true) => ControlFlow::Continue(()),
+            Ok(false) => ControlFlow::Break(()),
+            Err(raised) => self.stop(raised),
+        }
+    }
+
+    fn stop(&mut self, raised: PyErr) -> ControlFlow<()> {
+        self.raised = Some(raised);
+        ControlFlow::Break(())
+    }
+
+    /// The exception that stopped the run or study.
+    pub fn into_raised(self) -> Option<PyErr> {
+        self.raised
+    }
+}
+
+/// Reports a run to a callback, and stops it when the callback or a wear law of Python asks for it.
 pub struct Listener {
-    callback: Option<Py<PyAny>>,
+    callback: Callback,
     last: Instant,
     of_cycles: f64,
     cycles: f64,
     updates: usize,
-    /// What the callback or Ctrl-C raised.
-    raised: Option<PyErr>,
-    /// What a wear law raised.
     raised_by_law: Option<Raised>,
 }
 
 impl Listener {
-    pub fn new(callback: Option<Py<PyAny>>, raised_by_law: Option<Raised>) -> Self {
+    pub fn new(function: Option<Py<PyAny>>, raised_by_law: Option<Raised>) -> Self {
         Self {
-            callback,
+            callback: Callback::new(function),
             last: Instant::now(),
             of_cycles: 0.0,
             cycles: 0.0,
             updates: 0,
-            raised: None,
             raised_by_law,
         }
     }
 
-    /// What stopped the run, if anything was raised.
-    pub fn raised(self) -> Option<PyErr> {
+    /// The exception that stopped the run.
+    pub fn into_raised(self) -> Option<PyErr> {
         let by_law = self.raised_by_law.as_ref().and_then(taken);
-        by_law.or(self.raised)
+        by_law.or(self.callback.into_raised())
     }
 
-    /// Hears of an event of a run.
+    /// Notes an event of the run; calls the callback at once for a start or an update, and otherwise after the pause.
     pub fn hear(&mut self, event: &RunEvent<'_>) -> ControlFlow<()> {
-        if !self.note(event) && self.last.elapsed() < PAUSE {
+        let mut is_urgent = false;
+        match event {
+            RunEvent::Started(reached) => {
+                is_urgent = true;
+                (self.updates, self.cycles) = (reached.updates, reached.cycles);
+                self.of_cycles = reached.of_cycles;
+            }
+            RunEvent::Solved(progress) => self.cycles = progress.cycles,
+            RunEvent::Updated(update) => {
+                is_urgent = true;
+                (self.updates, self.cycles) = (self.updates + 1, update.cycles);
+            }
+            RunEvent::Warning(_) | RunEvent::Estimating => {}
+        }
+        if !is_urgent && self.last.elapsed() < PAUSE {
             return ControlFlow::Continue(());
         }
         self.last = Instant::now();
-        match Python::attach(|py| self.tell(py, event)) {
-            Ok(true) => ControlFlow::Continue(()),
-            Ok(false) => ControlFlow::Break(()),
-            Err(raised) => {
-                self.raised = Some(raised);
-                ControlFlow::Break(())
-            }
-        }
-    }
-
-    /// Remembers how far the run is; whether that is to be told at once.
-    fn note(&mut self, event: &RunEvent<'_>) -> bool {
-        match event {
-            RunEvent::Started(Reached {
-                updates,
-                cycles,
-                of_cycles,
-            }) => {
-                (self.updates, self.cycles, self.of_cycles) = (*updates, *cycles, *of_cycles);
-                true
-            }
-            RunEvent::Solved(progress) => {
-                self.cycles = progress.cycles;
-                false
-            }
-            RunEvent::Updated(update) => {
-                (self.updates, self.cycles) = (self.updates + 1, update.cycles);
-                true
-            }
-            RunEvent::Warning(_) | RunEvent::Estimating => false,
-        }
-    }
-
-    /// Tells the callback; whether the run is to go on.
-    fn tell(&self, py: Python<'_>, event: &RunEvent<'_>) -> PyResult<bool> {
-        py.check_signals()?;
         if let Some(raised) = self.raised_by_law.as_ref().and_then(taken) {
-            return Err(raised);
+            return self.callback.stop(raised);
         }
-        let Some(callback) = &self.callback else {
-            return Ok(true);
-        };
         let is_estimating = matches!(event, RunEvent::Estimating);
-        let class = py.import("condyle.progress")?.getattr("Progress")?;
-        let progress = class.call1((self.cycles, self.of_cycles, self.updates, is_estimating))?;
-        let answer = callback.bind(py).call1((progress,))?;
-        Ok(!answer.is(pyo3::types::PyBool::new(py, false).as_any()))
+        self.callback.call(
+            "Progress",
+            (self.cycles, self.of_cycles, self.updates, is_estimating),
+        )
     }
 }

@@ -1,8 +1,8 @@
-//! What this build asks of the processor, said before an instruction that it lacks ends the interpreter.
+//! The vector instructions that this build needs, checked before the first one would end the interpreter.
 
 use pyo3::prelude::*;
 
-/// An ImportError where this machine's processor lacks what the build asks for.
+/// Returns an ImportError if the processor lacks AVX2 or FMA.
 #[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
 #[inline(never)]
 pub fn check() -> PyResult<()> {
@@ -22,7 +22,7 @@ pub fn check() -> PyResult<()> {
     ))
 }
 
-/// Nothing is asked of other processors.
+/// Builds for other processors need nothing.
 #[cfg(not(all(target_arch = "x86_64", target_feature = "avx2")))]
 pub fn check() -> PyResult<()> {
     Ok(())

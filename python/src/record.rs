@@ -1,22 +1,28 @@
-//! What is known of a run, whether it was kept in memory or in a folder.
+//! The data of a run, recorded in memory or read from a folder.
 
-use condyle::{Vec3, geometry::TriangleMesh};
+use std::collections::BTreeMap;
+
+use condyle::evolve::March;
+use condyle::geometry::TriangleMesh;
+use condyle_case::case::{Case, Side};
 use condyle_fem::HexMesh;
+use condyle_lab::RunKeeper;
+use condyle_results::{
+    InsertFields, Summary, femur_on_side, femur_pose_csv, kinematics_csv, kinematics_file, wear_csv,
+};
+use numpy::{Element, IntoPyArray, PyArrayMethods, ndarray::IntoDimension};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::arrays::array;
-use crate::table::Table;
-
-/// What is known of a run.
+/// The data of a run.
 #[derive(Default)]
 pub struct Record {
-    /// `case.toml`.
+    /// The text of `case.toml`.
     pub case: String,
-    /// `summary.json`, of a run that is done.
+    /// The text of `summary.json`; none before the run is done.
     pub summary: Option<String>,
-    /// Each with the name of its file, without the ending.
-    pub tables: Vec<(String, Table)>,
+    /// The texts of the CSV files by their names without the ending.
+    pub tables: BTreeMap<String, String>,
     pub insert: InsertRecord,
     /// The femur at neutral, in the insert frame.
     pub femur: TriangleMesh,
@@ -25,35 +31,36 @@ pub struct Record {
 /// The insert at every update.
 #[derive(Default)]
 pub struct InsertRecord {
-    pub hexes: Vec<[u32; 8]>,
-    /// Nodes of the articulating surface.
-    pub articulating: Vec<bool>,
-    /// How many updates there are, the unworn insert with them.
-    pub updates: usize,
-    /// Places of the nodes, update after update, mm.
+    hexes: Vec<[u32; 8]>,
+    /// Marks the nodes of the articulating surface.
+    articulating: Vec<bool>,
+    /// Number of updates, the unworn insert included.
+    updates: usize,
+    /// Positions of the nodes, update after update, mm.
     points: Vec<f64>,
-    scalars: Vec<(String, Vec<f64>)>,
-    vectors: Vec<(String, Vec<f64>)>,
+    /// Scalars and vectors at the nodes, update after update, by name.
+    fields: BTreeMap<String, Vec<f64>>,
 }
 
 impl InsertRecord {
-    /// Keeps the insert of the next update.
+    /// Appends the insert of the next update.
     pub fn push<'a>(
         &mut self,
         mesh: &HexMesh,
-        scalars: impl Iterator<Item = (&'a str, &'a [f64])>,
-        vectors: impl Iterator<Item = (&'a str, &'a [[f64; 3]])>,
+        articulating: Vec<bool>,
+        fields: impl Iterator<Item = (&'a str, &'a [f64])>,
     ) {
         if self.updates == 0 {
             self.hexes = mesh.hexes.to_vec();
         }
-        let places = mesh.nodes.iter().flat_map(|node| [node.x, node.y, node.z]);
-        self.points.extend(places);
-        for (name, values) in scalars {
-            named(&mut self.scalars, name).extend_from_slice(values);
-        }
-        for (name, values) in vectors {
-            named(&mut self.vectors, name).extend_from_slice(values.as_flattened());
+        self.articulating = articulating;
+        let positions = mesh.nodes.iter().flat_map(|node| [node.x, node.y, node.z]);
+        self.points.extend(positions);
+        for (name, values) in fields {
+            self.fields
+                .entry(name.to_owned())
+                .or_default()
+                .extend_from_slice(values);
         }
         self.updates += 1;
     }
@@ -61,55 +68,135 @@ impl InsertRecord {
     fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let (updates, nodes) = (self.updates, self.articulating.len());
         let fields = PyDict::new(py);
-        for (name, values) in self.scalars {
-            fields.set_item(name, array(py, values, [updates, nodes])?)?;
+        for (name, values) in self.fields {
+            let is_scalar = values.len() == updates * nodes;
+            let values = if is_scalar {
+                array(py, values, [updates, nodes])?
+            } else {
+                array(py, values, [updates, nodes, 3])?
+            };
+            fields.set_item(name, values)?;
         }
-        for (name, values) in self.vectors {
-            fields.set_item(name, array(py, values, [updates, nodes, 3])?)?;
-        }
-        let insert = PyDict::new(py);
-        insert.set_item("points_mm", array(py, self.points, [updates, nodes, 3])?)?;
-        insert.set_item("hexes", rows(py, self.hexes)?)?;
-        insert.set_item("articulating", array(py, self.articulating, [nodes])?)?;
-        insert.set_item("fields", fields)?;
-        Ok(insert)
+        let entries = [
+            ("points_mm", array(py, self.points, [updates, nodes, 3])?),
+            ("hexes", rows(py, self.hexes)?),
+            ("articulating", array(py, self.articulating, [nodes])?),
+            ("fields", fields.into_any()),
+        ];
+        entries.into_py_dict(py)
     }
 }
 
-/// The array of that name, put there if it is not.
-fn named<'a>(arrays: &'a mut Vec<(String, Vec<f64>)>, name: &str) -> &'a mut Vec<f64> {
-    let place = arrays.iter().position(|(known, _)| known == name);
-    let place = place.unwrap_or_else(|| {
-        arrays.push((name.to_owned(), Vec::new()));
-        arrays.len() - 1
-    });
-    &mut arrays[place].1
+impl Record {
+    /// Converts the record to the dictionary `RawRun` of `_raw.py`.
+    pub fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        // In single precision as in femur.vtu, so that a run is the same from memory and from its folder.
+        let vertices = self.femur.vertices.iter();
+        let vertices: Vec<[f32; 3]> = vertices
+            .map(|vertex| vertex.map(|x| x as f32).into())
+            .collect();
+        let entries = [
+            ("case", self.case.into_pyobject(py)?.into_any()),
+            ("summary", self.summary.into_pyobject(py)?),
+            ("tables", self.tables.into_pyobject(py)?.into_any()),
+            ("insert", self.insert.into_python(py)?.into_any()),
+            ("femur_points_mm", rows(py, vertices)?),
+            ("femur_triangles", rows(py, self.femur.triangles)?),
+        ];
+        entries.into_py_dict(py)
+    }
 }
 
-fn rows<const N: usize>(py: Python<'_>, rows: Vec<[u32; N]>) -> PyResult<Bound<'_, PyAny>> {
+/// Moves a vector into an array of NumPy with the given shape, without a copy.
+pub fn array<T: Element>(
+    py: Python<'_>,
+    values: Vec<T>,
+    shape: impl IntoDimension,
+) -> PyResult<Bound<'_, PyAny>> {
+    let flat = values.into_pyarray(py);
+    Ok(flat.reshape(shape)?.into_any())
+}
+
+fn rows<T: Element, const N: usize>(
+    py: Python<'_>,
+    rows: Vec<[T; N]>,
+) -> PyResult<Bound<'_, PyAny>> {
     let shape = [rows.len(), N];
     array(py, rows.into_flattened(), shape)
 }
 
-impl Record {
-    /// As the dictionary that `_condyle.pyi` describes.
-    pub fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        let tables = PyDict::new(py);
-        for (name, table) in self.tables {
-            tables.set_item(name, table.into_python(py)?)?;
+/// Records in memory what the command writes into a folder.
+pub struct Recorder {
+    side: Side,
+    /// Also record the insert and its fields.
+    keeps_fields: bool,
+    record: Record,
+}
+
+impl Recorder {
+    pub fn new(case: &Case, keeps_fields: bool) -> Self {
+        let record = Record {
+            case: case.to_toml(),
+            ..Record::default()
+        };
+        Self {
+            side: case.heading.side,
+            keeps_fields,
+            record,
         }
-        let vertices = self.femur.vertices.iter();
-        // As femur.vtu has them, so that a run is the same from memory and from its folder.
-        let single = |place: &Vec3| [place.x as f32, place.y as f32, place.z as f32];
-        let vertices: Vec<f32> = vertices.flat_map(single).collect();
-        let shape = [vertices.len() / 3, 3];
-        let all = PyDict::new(py);
-        all.set_item("case", self.case)?;
-        all.set_item("summary", self.summary)?;
-        all.set_item("tables", tables)?;
-        all.set_item("insert", self.insert.into_python(py)?)?;
-        all.set_item("femur_points_mm", array(py, vertices, shape)?)?;
-        all.set_item("femur_triangles", rows(py, self.femur.triangles)?)?;
-        Ok(all)
+    }
+
+    /// The record with the summary of the finished run.
+    pub fn finish(mut self, summary: &Summary) -> Record {
+        let text = serde_json::to_string(summary).expect("numbers and text always serialise");
+        self.record.summary = Some(text);
+        self.record
+    }
+
+    fn push_insert(&mut self, march: &March) {
+        if !self.keeps_fields {
+            return;
+        }
+        let fields = InsertFields::of(march, self.side);
+        let articulating = fields.articulating.iter().map(|&mark| mark == 1).collect();
+        let scalars = fields
+            .scalars
+            .iter()
+            .map(|(name, values)| (*name, values.as_slice()));
+        let vectors = fields
+            .vectors
+            .iter()
+            .map(|(name, values)| (*name, values.as_flattened()));
+        self.record
+            .insert
+            .push(&fields.mesh, articulating, scalars.chain(vectors));
+    }
+}
+
+impl RunKeeper for Recorder {
+    fn settled(&mut self, march: &March, femur: &TriangleMesh) {
+        self.record.femur = femur_on_side(femur, &march.neutral_pose(), self.side);
+        self.push_insert(march);
+    }
+
+    fn updated(&mut self, march: &March) {
+        self.push_insert(march);
+        if !march.is_done() {
+            return;
+        }
+        let tables = &mut self.record.tables;
+        tables.insert("wear".into(), wear_csv(&march.state().updates));
+        tables.insert("femur_pose".into(), femur_pose_csv(march, self.side));
+        let activities = march
+            .test()
+            .activities
+            .iter()
+            .zip(&march.state().activities);
+        for (number, (activity, state)) in activities.enumerate() {
+            let cycles = state.first_and_last.as_ref();
+            let name = kinematics_file(number, &activity.name);
+            let text = kinematics_csv(activity.machine.mechanism, cycles);
+            tables.insert(name.trim_end_matches(".csv").to_owned(), text);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! Cases run, in memory or into a folder.
+//! Runs of a case, in memory or into a folder.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use crate::case::RawCase;
 use crate::law::law_of;
 use crate::listener::Listener;
-use crate::recorder::Recorder;
+use crate::record::Recorder;
 use crate::{errors, folder};
 
 /// Runs a case in memory; `progress` is called with a `condyle.Progress`, and `wear_law` with a `condyle.NodeCycle`.
@@ -26,7 +26,7 @@ pub fn run_in_memory<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let case = &case.case;
     let (wear_law, raised) = wear_law.map(law_of).unzip();
-    let how = InMemory {
+    let options = InMemory {
         threads,
         cache: Cache::of_user(),
         wear_law,
@@ -34,18 +34,19 @@ pub fn run_in_memory<'py>(
     let mut listener = Listener::new(progress, raised);
     let mut recorder = Recorder::new(case, keeps_fields);
     let outcome = py.detach(|| {
-        condyle_lab::run_in_memory(case, &how, &mut recorder, &mut |event| {
+        condyle_lab::run_in_memory(case, &options, &mut recorder, &mut |event| {
             listener.hear(&event)
         })
     });
-    let outcome = ended(outcome, listener)?;
-    let (Outcome::Done(summary) | Outcome::DoneBefore(summary)) = outcome else {
-        unreachable!("a run that was interrupted is an exception");
-    };
-    recorder.into_record(Some(&summary)).into_python(py)
+    match finished(outcome, listener)? {
+        Outcome::Done(summary) | Outcome::DoneBefore(summary) => {
+            recorder.finish(&summary).into_python(py)
+        }
+        Outcome::Interrupted(reached) => Err(errors::interrupted(&reached)),
+    }
 }
 
-/// Runs a case into the folder `out`, and reads that.
+/// Runs a case into the folder `out`, and reads the folder.
 #[pyfunction]
 #[pyo3(signature = (case, threads, out, resume, force, progress=None))]
 pub fn run_into_folder<'py>(
@@ -57,7 +58,6 @@ pub fn run_into_folder<'py>(
     force: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let case = &case.case;
     let options = RunOptions {
         out,
         resume,
@@ -66,18 +66,16 @@ pub fn run_into_folder<'py>(
         cache: Cache::of_user(),
     };
     let mut listener = Listener::new(progress, None);
-    let outcome =
-        py.detach(|| condyle_lab::run_case(case, &options, &mut |event| listener.hear(&event)));
-    ended(outcome, listener)?;
-    py.detach(|| folder::read(&options.out))?.into_python(py)
+    let outcome = py
+        .detach(|| condyle_lab::run_case(&case.case, &options, &mut |event| listener.hear(&event)));
+    match finished(outcome, listener)? {
+        Outcome::Interrupted(reached) => Err(errors::interrupted(&reached)),
+        _ => py.detach(|| folder::read(&options.out))?.into_python(py),
+    }
 }
 
-/// How a run ended; one that did not come to its end is an exception.
-fn ended(outcome: Result<Outcome, RunError>, listener: Listener) -> PyResult<Outcome> {
-    match (outcome, listener.raised()) {
-        (_, Some(raised)) => Err(raised),
-        (Err(error), None) => Err(errors::of_run(&error)),
-        (Ok(Outcome::Interrupted(reached)), None) => Err(errors::interrupted(&reached)),
-        (Ok(outcome), None) => Ok(outcome),
-    }
+/// The outcome of a run, or the exception that stopped it.
+fn finished(outcome: Result<Outcome, RunError>, listener: Listener) -> PyResult<Outcome> {
+    let outcome = outcome.map_err(errors::of_run);
+    listener.into_raised().map_or(outcome, Err)
 }

@@ -1,7 +1,6 @@
-//! Studies: many tests of one case, here, on all threads, or row by row wherever Python sends them.
+//! Studies: many tests of one case, in this process or row by row on the workers of an executor.
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Mutex;
 
@@ -14,17 +13,18 @@ use condyle_study::{
 };
 use pyo3::prelude::*;
 
+use crate::case::CaseFiles;
 use crate::errors;
-use crate::files::FilesOfCase;
+use crate::listener::Callback;
 
-/// What a test found: its outputs, or why it found nothing.
+/// The outputs of a test, or the reason of its failure.
 #[derive(FromPyObject, IntoPyObject)]
 pub enum Found {
     Reason(String),
     Outputs(Vec<f64>),
 }
 
-/// A study, checked, and what its tests are run with.
+/// A checked study, and the bodies and caches that its tests share.
 #[pyclass(frozen, module = "condyle._condyle")]
 pub struct RawStudy {
     plan: Plan,
@@ -33,8 +33,8 @@ pub struct RawStudy {
 
 #[pymethods]
 impl RawStudy {
-    /// Reads a study from `text`, as if it stood in the file `path`; what that names is looked for in `files` first,
-    /// and from the folder `base` on.
+    /// Reads a study from `text` as if it stood in the file `path`. Files that it names are looked up in `files` first,
+    /// then from the folder `base`.
     #[new]
     fn new(
         path: PathBuf,
@@ -42,48 +42,47 @@ impl RawStudy {
         base: PathBuf,
         files: BTreeMap<PathBuf, Vec<u8>>,
     ) -> PyResult<Self> {
-        let files = FilesOfCase::new(&path, text, base, files);
-        let study = Study::read_in(files, &path);
-        let study = study.map_err(|problems| errors::of_problems(&problems))?;
+        let study = Study::read_in(CaseFiles::new(&path, text, base, files), &path);
+        let study = study.map_err(errors::of_problems)?;
         Ok(Self {
-            plan: Plan::of(study).map_err(|error| errors::of_study(&error))?,
+            plan: Plan::of(study).map_err(errors::of_study)?,
             bench: TestBench::default(),
         })
     }
 
-    /// Tests in all; of a search, at most.
+    /// Number of tests; for a search the maximum.
     #[getter]
     fn tests(&self) -> u64 {
         self.plan.tests()
     }
 
-    /// Word of the design.
+    /// Name of the design.
     #[getter]
     fn design(&self) -> &'static str {
         use condyle_case::config::Variants;
         self.plan.study().design.word()
     }
 
-    /// Keys of the inputs.
+    /// Dotted keys of the inputs.
     #[getter]
     fn inputs(&self) -> Vec<String> {
         let inputs = self.plan.study().inputs.iter();
         inputs.map(|input| input.key.clone()).collect()
     }
 
-    /// Where the case is.
+    /// Path of the case file.
     #[getter]
     fn case_path(&self) -> PathBuf {
         self.plan.study().case_path.clone()
     }
 
-    /// Hash of all that the tests follow from, in hexadecimal.
+    /// Hash of all inputs of the tests, in hexadecimal.
     #[getter]
     fn inputs_blake3(&self) -> String {
         self.plan.inputs_blake3().to_owned()
     }
 
-    /// Runs every test that the folder `out` does not keep; `progress` is called with a `condyle.StudyProgress`.
+    /// Runs every test that the folder `out` does not hold; `progress` is called with a `condyle.StudyProgress`.
     #[pyo3(signature = (out, threads, progress=None))]
     fn run(
         &self,
@@ -97,31 +96,24 @@ impl RawStudy {
             threads,
             shard: Shard::WHOLE,
         };
-        let mut raised = None;
+        let mut callback = Callback::new(progress);
         let mut last = (0, 0);
         let ended = py.detach(|| {
             run_study(&self.plan, &options, &mut |now| {
                 last = (now.kept, now.tests);
-                match told(progress.as_ref(), now.kept, now.tests) {
-                    Ok(true) => ControlFlow::Continue(()),
-                    Ok(false) => ControlFlow::Break(()),
-                    Err(error) => {
-                        raised = Some(error);
-                        ControlFlow::Break(())
-                    }
-                }
+                callback.call("StudyProgress", last)
             })
         });
-        if let Some(raised) = raised {
+        if let Some(raised) = callback.into_raised() {
             return Err(raised);
         }
-        match ended.map_err(|error| errors::of_study(&error))? {
+        match ended.map_err(errors::of_study)? {
             StudyEnd::Done => Ok(()),
             StudyEnd::Interrupted => Err(errors::study_interrupted(last.0, last.1)),
         }
     }
 
-    /// What the tests of these rows find, one after the other; they are not kept.
+    /// Runs the tests of these rows one after the other, and returns their results without storing them.
     fn run_rows(&self, py: Python<'_>, rows: Vec<u64>) -> PyResult<Vec<(u64, Found)>> {
         let found = rows.into_iter().map(|row| {
             py.check_signals()?;
@@ -132,35 +124,34 @@ impl RawStudy {
         found.collect()
     }
 
-    /// Takes the folder `out`, so that what tests find elsewhere can be kept in it.
+    /// Locks the folder `out`, to store in it the results of tests that run elsewhere.
     fn hold(&self, out: PathBuf) -> PyResult<RawHeldStudy> {
-        let held = HeldFolder::take(&self.plan, &out);
-        let held = held.map_err(|error| errors::of_study(&error))?;
+        let held = HeldFolder::take(&self.plan, &out).map_err(errors::of_study)?;
         Ok(RawHeldStudy {
             held: Mutex::new(Some(held)),
         })
     }
 
-    /// Puts the tests of `shards` into the folder `out`; how many it then keeps.
+    /// Merges the tests of `shards` into the folder `out`; returns how many it then holds.
     fn merge(&self, shards: Vec<PathBuf>, out: PathBuf) -> PyResult<u64> {
-        let done = merge(&self.plan, &shards, &out);
-        Ok(done.map_err(|error| errors::of_study(&error))?.kept)
+        let done = merge(&self.plan, &shards, &out).map_err(errors::of_study)?;
+        Ok(done.kept)
     }
 
-    /// Writes tables, pictures and page of the study in `out`; its answers as JSON.
+    /// Writes tables, pictures and page of the study in `out`, and returns its answers as JSON.
     fn answers(&self, py: Python<'_>, out: PathBuf) -> PyResult<String> {
         let answers = py.detach(|| write_answers(&self.plan, &out));
-        let answers = answers.map_err(|error| errors::of_study(&error))?;
+        let answers = answers.map_err(errors::of_study)?;
         Ok(serde_json::to_string(&answers).expect("numbers and text always serialise"))
     }
 
-    /// What the test of a row sets of the case, as `key=value`; of a search it is looked up in the folder `out`.
+    /// The changes of the case in the test of a row, as `key=value`; those of a search are read from the folder `out`.
     fn changes(&self, row: u64, out: Option<PathBuf>) -> PyResult<Vec<String>> {
         let test = match out.filter(|_| self.plan.is_search()) {
             None => self.test(row)?,
             Some(out) => Store::existing(&out, &self.plan)
                 .and_then(|store| store.test(row, &self.plan))
-                .map_err(|error| errors::of_study(&error))?,
+                .map_err(errors::of_study)?,
         };
         let changes = self.plan.assignments(&test);
         Ok(changes.iter().map(Assignment::to_string).collect())
@@ -170,18 +161,15 @@ impl RawStudy {
 impl RawStudy {
     fn test(&self, row: u64) -> PyResult<Test> {
         let tests = self.plan.tests();
-        let error = if row >= tests {
-            StudyError::NoRow { row, tests }
-        } else {
-            StudyError::NotYet { row }
-        };
-        let test = Some(row).filter(|row| *row < tests);
-        test.and_then(|row| self.plan.test(row))
-            .ok_or_else(|| errors::of_study(&error))
+        if row >= tests {
+            return Err(errors::of_study(StudyError::NoRow { row, tests }));
+        }
+        let test = self.plan.test(row);
+        test.ok_or_else(|| errors::of_study(StudyError::NotYet { row }))
     }
 }
 
-/// The folder of a study while tests run elsewhere.
+/// The locked folder of a study whose tests run elsewhere.
 #[pyclass(frozen, module = "condyle._condyle")]
 pub struct RawHeldStudy {
     held: Mutex<Option<HeldFolder>>,
@@ -189,12 +177,12 @@ pub struct RawHeldStudy {
 
 #[pymethods]
 impl RawHeldStudy {
-    /// Numbers of the tests that are not kept.
+    /// Rows of the tests that the folder does not hold.
     fn missing(&self, study: &RawStudy) -> PyResult<Vec<u64>> {
         self.with(|held| held.missing(&study.plan))
     }
 
-    /// Keeps what tests found, all in one step.
+    /// Stores results of tests in one transaction.
     fn keep(&self, study: &RawStudy, found: Vec<(u64, Found)>) -> PyResult<()> {
         let tested = |(row, found): (u64, Found)| {
             let found: TestResult = match found {
@@ -203,19 +191,18 @@ impl RawHeldStudy {
                 }
                 Found::Outputs(_) => {
                     return Err(errors::bad_input(
-                        &"a worker found other numbers than a test has",
+                        "a worker returned another number of outputs than a test has",
                     ));
                 }
                 Found::Reason(reason) => Err(reason),
             };
             Ok((study.test(row)?, found))
         };
-        let found: PyResult<Vec<(Test, TestResult)>> = found.into_iter().map(tested).collect();
-        let found = found?;
+        let found: Vec<_> = found.into_iter().map(tested).collect::<PyResult<_>>()?;
         self.with(|held| held.keep(&study.plan, &found))
     }
 
-    /// Gives the folder back.
+    /// Unlocks the folder.
     fn close(&self) {
         self.held.lock().expect("no thread panics with it").take();
     }
@@ -224,23 +211,8 @@ impl RawHeldStudy {
 impl RawHeldStudy {
     fn with<T>(&self, work: impl FnOnce(&HeldFolder) -> Result<T, StudyError>) -> PyResult<T> {
         let held = self.held.lock().expect("no thread panics with it");
-        let held = held
-            .as_ref()
-            .ok_or_else(|| errors::bad_input(&"the study's folder was given back"))?;
-        work(held).map_err(|error| errors::of_study(&error))
+        let held = held.as_ref();
+        let held = held.ok_or_else(|| errors::bad_input("the study's folder was closed"))?;
+        work(held).map_err(errors::of_study)
     }
-}
-
-/// Tells a callback how far a study is; whether it is to go on.
-fn told(callback: Option<&Py<PyAny>>, kept: u64, tests: u64) -> PyResult<bool> {
-    Python::attach(|py| {
-        py.check_signals()?;
-        let Some(callback) = callback else {
-            return Ok(true);
-        };
-        let class = py.import("condyle.progress")?.getattr("StudyProgress")?;
-        let progress = class.call1((kept, tests))?;
-        let answer = callback.bind(py).call1((progress,))?;
-        Ok(!answer.is(pyo3::types::PyBool::new(py, false).as_any()))
-    })
 }

@@ -49,9 +49,7 @@ def test_a_ball_of_step_presses_like_the_ball(step: Path) -> None:
         "machine": {"freedoms": {"vv": {"drive": "locked"}, "ml": {"drive": "locked"}}},
     }
     ball = condyle.Case.from_dict({**on_flat, "femur": {"shape": "sphere", "radius_mm": RADIUS_MM}})
-    of_step = condyle.Case.from_dict(on_flat).with_femur(
-        vertices - [1.0, 30.0, -5.0], triangles, flexion_axis_mm=[0.0, 0.0]
-    )
+    of_step = condyle.Case.from_dict(on_flat).with_femur(vertices - [1.0, 30.0, -5.0], triangles, flexion_axis_mm=[0.0, 0.0])
     place = [0.0, RADIUS_MM - 0.2, 0.0]
     exact, meshed = (condyle.Knee(case).contact(np.eye(3), place) for case in (ball, of_step))
     assert meshed.force_n[1] == pytest.approx(exact.force_n[1], rel=0.01)

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, SMALL
 
 import condyle
+
+from conftest import ROOT, SMALL
 
 STANMORE = ROOT / "cases" / "stanmore-force.toml"
 

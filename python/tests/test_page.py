@@ -2,6 +2,7 @@
 
 import matplotlib
 import pytest
+
 from conftest import ROOT
 
 

@@ -77,7 +77,9 @@ def test_xarray(result: condyle.Result) -> None:
 def test_pyvista(result: condyle.Result) -> None:
     scene = result.to_pyvista()
     assert scene["insert"].n_cells == result.hexahedra
-    assert scene["insert"].volume == pytest.approx(result.to_pyvista(0)["insert"].volume - result.volume_loss_mesh_mm3, rel=1e-4)
+    assert scene["insert"].volume == pytest.approx(
+        result.to_pyvista(0)["insert"].volume - result.volume_loss_mesh_mm3, rel=1e-4
+    )
     assert np.array_equal(scene["femur"].points, result.femur_points_mm)
 
 

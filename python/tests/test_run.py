@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
 
 import condyle
+
+from conftest import ROOT
 
 
 def test_progress_is_told_to_the_end(small: condyle.Case) -> None:

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
 
 import condyle
+
+from conftest import ROOT
 
 CASES = ["stanmore-force", "stanmore-displacement", "gait-and-stairs", "creep"]
 

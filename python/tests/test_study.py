@@ -90,9 +90,7 @@ def test_the_command_writes_the_same(command: str, small: condyle.Case, done: co
     assert read.run(tmp_path / "out").answers == done.answers
 
 
-def test_half_of_the_workers_die_and_nothing_is_lost(
-    study: condyle.Study, done: condyle.StudyResult, tmp_path: Path
-) -> None:
+def test_half_of_the_workers_die_and_nothing_is_lost(study: condyle.Study, done: condyle.StudyResult, tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     with (
         distributed.LocalCluster(n_workers=4, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
@@ -116,14 +114,14 @@ def test_half_of_the_workers_die_and_nothing_is_lost(
 
 def test_a_study_that_was_stopped_goes_on(study: condyle.Study, done: condyle.StudyResult, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    with pytest.raises(condyle.StudyInterrupted, match="the same call goes on") as stopped:
+    with pytest.raises(condyle.StudyInterrupted, match="the same call resumes") as stopped:
         study.run(out, lambda progress: progress.kept < 4, threads=1)
     assert 4 <= stopped.value.kept < study.tests
     with ThreadPoolExecutor(1) as pool, pytest.raises(condyle.StudyInterrupted):
         study.run(out, lambda progress: progress.kept < 12, executor=pool, tests_a_task=3)
     with pytest.raises(RuntimeError, match="mine"):
         study.run(out, _raise, threads=1)
-    with pytest.raises(condyle.BadInput, match="a study that is not done"):
+    with pytest.raises(condyle.BadInput, match="an unfinished study"):
         condyle.open_study(out)
     told: list[float] = []
     result = study.run(out, lambda progress: told.append(progress.part), threads=2)
@@ -223,7 +221,9 @@ EXACT = {
 }
 
 
-def made_up(design: dict[str, Any], function: Any, case: condyle.Case, out: Path) -> tuple[np.ndarray, np.ndarray, dict[str, Any]]:
+def made_up(
+    design: dict[str, Any], function: Any, case: condyle.Case, out: Path
+) -> tuple[np.ndarray, np.ndarray, dict[str, Any]]:
     """A study whose tests are not run: places of its inputs in (0, 1), ``function`` of them, and what the study makes of it."""
     ranges = {"contact.friction": (0.02, 0.12), "material.poissons_ratio": (0.3, 0.46), "insert.thickness_mm": (8.0, 12.0)}
     vary = [{"key": key, "low": low, "high": high} for key, (low, high) in ranges.items()]

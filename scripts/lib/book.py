@@ -54,6 +54,7 @@ def run(page, commands, condyle):
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
+            check=False,
         )
     print(f"{page}: {'done' if done.returncode == 0 else 'FAILED'}")
     if done.returncode != 0:

@@ -16,16 +16,24 @@ BASE = 0x555555554000
 
 # Patterns fit "function file".
 PARTS = [
-    ("femur: its distance field, once", r"condyle-mesh/src/curved_mesh|(closest_point|weighted) .*condyle-mesh/src/triangle"
-     r"|(new|in_cell|with_cells_beside) .*geometry/smooth_field|geometry/smooth_field/(gaps|far_gaps|second_differences)"),
+    (
+        "femur: its distance field, once",
+        r"condyle-mesh/src/curved_mesh|(closest_point|weighted) .*condyle-mesh/src/triangle|(new|in_cell|with_cells_beside) .*geometry/smooth_field|geometry/smooth_field/(gaps|far_gaps|second_differences)",
+    ),
     ("contact: broad phase", r"contact/broad_phase"),
-    ("contact: samples of the femur", r"sample_candidates .*foundation/contact|foundation/cached_sample|geometry/(smooth_field|surface_sample|curvature_bounds|generic_femur|torus|femoral_surface)"),
+    (
+        "contact: samples of the femur",
+        r"sample_candidates .*foundation/contact|foundation/cached_sample|geometry/(smooth_field|surface_sample|curvature_bounds|generic_femur|torus|femoral_surface)",
+    ),
     ("contact: press", r"foundation/(active_block|mean_overclosure|traction|sums)"),
     ("contact: tangent", r"foundation/tangent_sum|tangent .*foundation/contact"),
     ("contact: pressure and sliding at the nodes", r"foundation/(landing|peak|quadratic)"),
     ("contact: shares of the new surface", r"contact/share_block|after .*foundation/contact"),
     ("contact: rest", r"contact/foundation"),
-    ("histories and wear", r"contact/history|condyle/src/wear/|evolve/(rates|interval|step|extrapolated_step|exponential_step|accumulated_error)|(gather|land) .*machine/simulator"),
+    (
+        "histories and wear",
+        r"contact/history|condyle/src/wear/|evolve/(rates|interval|step|extrapolated_step|exponential_step|accumulated_error)|(gather|land) .*machine/simulator",
+    ),
     ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|faces_around|node_blocks)"),
     ("mesh: the inside follows", r"condyle-fem/src/(follow|neighbours)"),
     ("mesh: quality and volume", r"condyle-fem/src/"),

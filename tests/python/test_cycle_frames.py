@@ -101,9 +101,7 @@ def test_every_frame_is_read_by_vtk_and_meshio_alike(folder, cycle):
 @pytest.mark.parametrize("cycle", CYCLES)
 def test_pressure_over_areas_is_the_axial_force(folder, cycle):
     kinematics = of_cycle(table(folder / "kinematics.csv"), cycle)
-    for (time, insert, _), percent, force in zip(
-        frames(folder, cycle), kinematics["percent"], kinematics["axial_force_n"]
-    ):
+    for (time, insert, _), percent, force in zip(frames(folder, cycle), kinematics["percent"], kinematics["axial_force_n"]):
         assert time == percent
         # Friction bears some of it where the surface is inclined.
         assert -force_n(meshio.read(insert))[1] == pytest.approx(force, rel=0.01, abs=2)

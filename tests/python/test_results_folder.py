@@ -59,17 +59,30 @@ def by_vtk(path):
     assert reader.GetErrorCode() == 0
     grid = reader.GetOutput()
     data = grid.GetPointData()
-    arrays = {
-        data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())
-    }
+    arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
     types = {grid.GetCellType(cell) for cell in range(grid.GetNumberOfCells())}
     return vtk_to_numpy(grid.GetPoints().GetData()), grid.GetNumberOfCells(), types, arrays
 
 
 def test_summary_has_every_key_of_the_contract(summary):
-    keys = """cycles mass_loss_mg volume_loss_mm3 volume_loss_mesh_mm3 max_depth_mm peak_pressure_mpa
-        peak_contact_area_mm2 ap_range_mm ie_range_deg medial_load_share updates increments
-        newton_iterations contact_evaluations wall_s version""".split()
+    keys = [
+        "cycles",
+        "mass_loss_mg",
+        "volume_loss_mm3",
+        "volume_loss_mesh_mm3",
+        "max_depth_mm",
+        "peak_pressure_mpa",
+        "peak_contact_area_mm2",
+        "ap_range_mm",
+        "ie_range_deg",
+        "medial_load_share",
+        "updates",
+        "increments",
+        "newton_iterations",
+        "contact_evaluations",
+        "wall_s",
+        "version",
+    ]
     assert [key for key in keys if key not in summary] == []
 
 
@@ -86,8 +99,21 @@ def test_wear_table_ends_with_the_summary(folder, summary):
 
 def test_kinematics_hold_the_first_and_the_last_cycle(folder, summary):
     kinematics = table(folder / "kinematics.csv")
-    columns = """cycles percent flexion_deg axial_force_n ap_mm ie_deg ml_mm vv_deg is_mm
-        contact_area_mm2 peak_pressure_mpa medial_force_n lateral_force_n""".split()
+    columns = [
+        "cycles",
+        "percent",
+        "flexion_deg",
+        "axial_force_n",
+        "ap_mm",
+        "ie_deg",
+        "ml_mm",
+        "vv_deg",
+        "is_mm",
+        "contact_area_mm2",
+        "peak_pressure_mpa",
+        "medial_force_n",
+        "lateral_force_n",
+    ]
     assert list(kinematics) == columns
     assert len(kinematics["percent"]) == 2 * summary["increments"]
     sides = kinematics["medial_force_n"] + kinematics["lateral_force_n"]

@@ -6,6 +6,7 @@ w(k) = 2 (1 - v^2) / E * M(k h) / k * p(k). Prints force, contact radius and hig
 Usage: transform.py THICKNESS_MM DEPTH_MM..., with numpy and scipy.
 """
 
+import itertools
 import sys
 
 import numpy as np
@@ -40,8 +41,8 @@ def influence(edges, middles, thickness):
     """How far unit pressure on each ring moves the middle of each."""
     k, weights = np.polynomial.legendre.leggauss(60)
     panels = np.linspace(0, 25 / thickness, 40)
-    k = np.concatenate([(b - a) / 2 * k + (a + b) / 2 for a, b in zip(panels, panels[1:])])
-    weights = np.concatenate([(b - a) / 2 * weights for a, b in zip(panels, panels[1:])])
+    k = np.concatenate([(b - a) / 2 * k + (a + b) / 2 for a, b in itertools.pairwise(panels)])
+    weights = np.concatenate([(b - a) / 2 * weights for a, b in itertools.pairwise(panels)])
     of_disc = edges[:, None] * j1(np.outer(edges, k)) / k
     weighted = COMPLIANCE * weights * of_layer_less_half_space(k * thickness)
     layer = (j0(np.outer(middles, k)) * weighted) @ of_disc.T

@@ -5,6 +5,7 @@ kill_and_resume.py CONDYLE [--kills N] [--seed N]
 
 Prints a table of kills a case. A run that differs from one that nobody stopped is kept, and the exit code is 1.
 """
+
 import argparse
 import json
 import math
@@ -24,6 +25,7 @@ TIMES = ("wall_s",)
 
 def sphere(radius, centre_z, steps=36):
     """Triangles of a ball about (0, 0, centre_z), facing outwards."""
+
     def place(i, j):
         polar, around = math.pi * i / steps, 2 * math.pi * (j % (2 * steps)) / (2 * steps)
         ring = radius * math.sin(polar) if 0 < i < steps else 0.0
@@ -48,13 +50,14 @@ def cases(folder):
     """Names and texts of cases that take some tenths of a second, each with its updates."""
     balls = [triangle for z in (-23.0, 23.0) for triangle in sphere(20.0, z)]
     write_stl(folder / "balls.stl", balls)
-    insert = '[insert]\nedge_mm = 2.0\n'
+    insert = "[insert]\nedge_mm = 2.0\n"
     return {
         "force": insert + "[march]\nupdates = 12\n",
         "displacement": '[machine]\npreset = "stanmore-displacement"\n' + insert + "[march]\nupdates = 12\n",
         "auto": insert + '[march]\nupdate = "auto"\n',
         "mesh, with cache": '[femur]\nshape = "mesh"\nfile = "balls.stl"\nflexion_axis_mm = [0.0, 0.0]\n'
-        + insert + "[march]\nupdates = 8\n",
+        + insert
+        + "[march]\nupdates = 8\n",
     }
 
 
@@ -84,8 +87,9 @@ class Case:
 
     def start(self, out, cache):
         command = [self.condyle, "run", str(self.file), "--out", str(out)] + (["--resume"] if out.exists() else [])
-        return subprocess.Popen(command, env=dict(os.environ, CONDYLE_CACHE=str(cache)),
-                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        return subprocess.Popen(
+            command, env=dict(os.environ, CONDYLE_CACHE=str(cache)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        )
 
     def kill_until_done(self, chance, kills):
         """One run, killed up to `kills` times."""

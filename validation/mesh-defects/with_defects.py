@@ -6,6 +6,7 @@ with_defects.py CONDYLE CASE [--seed N] [--set KEY=VALUE ...]
 Prints a table: what was put into which body, the exit code, the mass, its difference from that of the clean run, and what
 condyle said of it. Ends with 1 if a run ends well with a mass more than 0.5 % off.
 """
+
 import argparse
 import json
 import random
@@ -23,7 +24,7 @@ def read_stl(path):
     data = Path(path).read_bytes()
     count = struct.unpack_from("<I", data, 80)[0]
     rows = (struct.unpack_from("<12f", data, 84 + 50 * i) for i in range(count))
-    return [[tuple(row[3 + 3 * k:6 + 3 * k]) for k in range(3)] for row in rows]
+    return [[tuple(row[3 + 3 * k : 6 + 3 * k]) for k in range(3)] for row in rows]
 
 
 def write_stl(path, triangles):
@@ -135,14 +136,21 @@ class Defects:
 
     def hole_under_contact(self, triangles):
         low = min(corner[1] for t in triangles for corner in t)
-        facing = [i for i, t in enumerate(triangles) if (normal(t)[1] > 0.98) == self.is_insert and abs(normal(t)[1]) > 0.98
-                  and (middle(t)[1] > low + 4e-3 if self.is_insert else middle(t)[1] < low + 1e-3)]
+        facing = [
+            i
+            for i, t in enumerate(triangles)
+            if (normal(t)[1] > 0.98) == self.is_insert
+            and abs(normal(t)[1]) > 0.98
+            and (middle(t)[1] > low + 4e-3 if self.is_insert else middle(t)[1] < low + 1e-3)
+        ]
         corners = set(triangles[self.chance.choice(facing)])
         return [t for t in triangles if not corners & set(t)]
 
 
 def box(low, high):
-    corner = lambda i: tuple((low, high)[i >> axis & 1][axis] for axis in range(3))
+    def corner(i):
+        return tuple((low, high)[i >> axis & 1][axis] for axis in range(3))
+
     quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
     return [[corner(i) for i in t] for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
 
@@ -157,8 +165,17 @@ def on_a_tray(triangles):
     return triangles + tray + stem, (lows[1] + 1e-4) * 1e3
 
 
-KINDS = ["noise_1e_6_mm", "noise_1e_3_mm", "doubled_faces", "t_junctions", "slivers", "inner_walls",
-         "holes_away_from_contact", "crossing_away_from_contact", "hole_under_contact"]
+KINDS = [
+    "noise_1e_6_mm",
+    "noise_1e_3_mm",
+    "doubled_faces",
+    "t_junctions",
+    "slivers",
+    "inner_walls",
+    "holes_away_from_contact",
+    "crossing_away_from_contact",
+    "hole_under_contact",
+]
 
 
 class Runs:
@@ -182,8 +199,9 @@ class Runs:
         case, out = self.folder / "case.toml", self.folder / "out"
         case.write_text(text)
         sets = [word for one in (*self.sets, *more) for word in ("--set", one)]
-        done = subprocess.run([self.condyle, "run", str(case), "--force", "--out", str(out), *sets],
-                              capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [self.condyle, "run", str(case), "--force", "--out", str(out), *sets], capture_output=True, text=True, check=False
+        )
         if done.returncode != 0:
             return done.returncode, None, done.stderr
         summary = json.loads((out / "summary.json").read_text())

@@ -1,5 +1,7 @@
 """What is known of wear, and what each law says to it: a row each, with a rule that can say no."""
 
+import itertools
+
 import knees
 from closed_forms import LOAD_N, PIN_DIAMETERS_MM, RECTANGLES, area
 from tables import head, line
@@ -24,7 +26,7 @@ def yes(truth):
 
 def flattening(values):
     """Whether each is less than the one before, by more than no change."""
-    return all(a * (1.0 - NO_CHANGE) > b for a, b in zip(values, values[1:]))
+    return all(a * (1.0 - NO_CHANGE) > b for a, b in itertools.pairwise(values))
 
 
 def on_pins(laws, words):
@@ -47,8 +49,10 @@ def on_pins(laws, words):
 
 
 def on_given_motion(runs, words):
-    dishes = [runs.beside("stanmore-displacement", [
-        f"insert.coronal_radius_mm={across}", f"insert.sagittal_radius_mm={along}"]) for across, along in knees.DISHES_MM]
+    dishes = [
+        runs.beside("stanmore-displacement", [f"insert.coronal_radius_mm={across}", f"insert.sagittal_radius_mm={along}"])
+        for across, along in knees.DISHES_MM
+    ]
     falls = {word: [dish[word] for dish in dishes] for word in words}
     yield (
         "Less conforming inserts wear less under the area and cross-shear laws; fixed bearings of less area do [fisher2010]",

@@ -85,7 +85,6 @@ class Runs:
         """What every law says of the histories of Archard's."""
         return {law["law"]: law["mass_loss_mg_per_million_cycles"] for law in self.summary(case, changes)["wear_laws"]}
 
-
     def alone(self, case, changes):
         """Volume that a cycle of each activity wears on its own, in proportion."""
         activities = self.summary(case, changes)["activities"]

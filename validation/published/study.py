@@ -1,7 +1,7 @@
-"""Every wear law against measurements that anyone can read. Usage: study.py LAWS_ON_PATHS CONDYLE RUNS OUT
+"""Compares every wear law with published measurements.
 
-Writes table.md, findings.md, results.json and ratios.svg into OUT. Nothing is tuned: laws have the constants that a case
-has which names none, and what is calibrated is calibrated on the one source that is named.
+Usage: study.py LAWS_ON_PATHS CONDYLE RUNS OUT. Writes table.md, findings.md, results.json and ratios.svg into OUT. Nothing
+is tuned: laws have their default constants, and a calibrated law is calibrated on the one source that is named.
 """
 
 import csv

@@ -134,9 +134,9 @@ def _rim(unworn, worn):
     if volume[nodes[near]].sum() > MAX_AT_RIM * volume.sum():
         yield Finding("wear at the rim", RIM_CHECKS)
     pressed = worn.point_data["peak_pressure_mpa"].argmax()
-    if worn.point_data["peak_pressure_mpa"][pressed] > 0:
-        if _distance_to_rim(unworn, faces, [pressed])[0] < 0.9 * NEAR_RIM_MM:
-            yield Finding("highest pressure at the rim", RIM_CHECKS)
+    is_pressed = worn.point_data["peak_pressure_mpa"][pressed] > 0
+    if is_pressed and _distance_to_rim(unworn, faces, [pressed])[0] < 0.9 * NEAR_RIM_MM:
+        yield Finding("highest pressure at the rim", RIM_CHECKS)
 
 
 def _volume(mesh):

@@ -33,7 +33,11 @@ ENDS = {2: "error: bad input", 3: "error: the physics could not be solved"}
 
 # Checks that say of the stated error, or of the whole answer, that it is not to be believed.
 DOUBT_THE_ERROR = (
-    "single_update", "updates_too_few", "cycles_not_repeating", "wear_at_rim", "pressure_at_rim",
+    "single_update",
+    "updates_too_few",
+    "cycles_not_repeating",
+    "wear_at_rim",
+    "pressure_at_rim",
 )
 
 
@@ -86,9 +90,14 @@ def _judged(number, results):
     summary = json.loads((results / "summary.json").read_text())
     findings = judge(results)
     how = DOUBTFUL if summary["plausibility"] or summary["warnings"] else GOOD
-    return Ended(number, how, "", summary, [finding.what for finding in findings], [
-        finding.what for finding in silent(findings, summary)
-    ])
+    return Ended(
+        number,
+        how,
+        "",
+        summary,
+        [finding.what for finding in findings],
+        [finding.what for finding in silent(findings, summary)],
+    )
 
 
 def _hold_against_refined(ended, condyle, case, folder):
@@ -113,13 +122,24 @@ def _hold_against_refined(ended, condyle, case, folder):
 
 def _error(said):
     """What an error says is wrong: its first sentence, without the box that shows the place."""
-    found = re.search(r"^ *(?:error:|[x×]) (.*(?:\n +[|│] .*)*)", said, re.MULTILINE)
+    found = re.search(r"^ *(?:error:|[x\u00d7]) (.*(?:\n +[|│] .*)*)", said, re.MULTILINE)
     return re.sub(r"\s*\n +[|│] ", " ", found.group(1)).split("; what was computed")[0] if found else ""
 
 
 COLUMNS = [
-    "design", "ended", "mass_loss_mg", "max_depth_mm", "peak_pressure_mpa", "ap_range_mm", "ie_range_deg",
-    "told", "findings", "silently_wrong", "refined_mass_percent", "refined_depth_percent", "message",
+    "design",
+    "ended",
+    "mass_loss_mg",
+    "max_depth_mm",
+    "peak_pressure_mpa",
+    "ap_range_mm",
+    "ie_range_deg",
+    "told",
+    "findings",
+    "silently_wrong",
+    "refined_mass_percent",
+    "refined_depth_percent",
+    "message",
 ]
 
 
@@ -129,8 +149,14 @@ def row(ended):
     told = " ".join(warning["check"] for warning in ended.summary.get("plausibility", []))
     refined_percents = [ended.refined_mass_percent, ended.refined_depth_percent]
     return [
-        ended.number, ended.how, *map(_short, numbers), told, "; ".join(ended.findings), "; ".join(ended.silent),
-        *map(_short, refined_percents), ended.message,
+        ended.number,
+        ended.how,
+        *map(_short, numbers),
+        told,
+        "; ".join(ended.findings),
+        "; ".join(ended.silent),
+        *map(_short, refined_percents),
+        ended.message,
     ]
 
 

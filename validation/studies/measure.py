@@ -9,7 +9,6 @@ import subprocess
 import time
 from pathlib import Path
 
-
 WHOLE = 10_000
 
 

@@ -119,8 +119,12 @@ def main() -> None:
     print(f"| processors here | {os.cpu_count()} |")
     print(f"| a test | {1e3 * mean_s:.0f} ms |")
     print(f"| what a worker takes to begin | {1e3 * first_s:.0f} ms |")
-    print(f"| {given.tests} tests on two threads, and on two processes of Dask | {threads_s:.1f} s, {dask_s:.1f} s ({100 * (dask_s / threads_s - 1):+.1f} %) |")
-    print(f"| a task of {TESTS_A_TASK} tests costs the sender and Dask | {1e3 * cost_s:.1f} ms, {100 * cost_s / (TESTS_A_TASK * mean_s):.2f} % of what it does |")
+    print(
+        f"| {given.tests} tests on two threads, and on two processes of Dask | {threads_s:.1f} s, {dask_s:.1f} s ({100 * (dask_s / threads_s - 1):+.1f} %) |"
+    )
+    print(
+        f"| a task of {TESTS_A_TASK} tests costs the sender and Dask | {1e3 * cost_s:.1f} ms, {100 * cost_s / (TESTS_A_TASK * mean_s):.2f} % of what it does |"
+    )
     print("\n| workers, simulated | " + " | ".join(f"{tests:,} tests" for tests in STUDIES) + " |")
     print("| --- |" + " --- |" * len(STUDIES))
     for workers in WORKERS:

@@ -42,7 +42,10 @@ def rounded(vertices, triangles):
     ab, bc, ca = of_triangle.reshape(3, -1) + len(vertices)
     start, end = vertices[edges[:, 0]], vertices[edges[:, 1]]
     normal_at_start, normal_at_end = normals[edges[:, 0]], normals[edges[:, 1]]
-    along = lambda normal: ((end - start) * normal).sum(1)[:, None] * normal
+
+    def along(normal):
+        return ((end - start) * normal).sum(1)[:, None] * normal
+
     bulge = (along(normal_at_end) - along(normal_at_start)) / 8.0
     is_round = (normal_at_start * normal_at_end).sum(1) > MIN_COSINE_OF_A_ROUND_EDGE
     middles = (start + end) / 2.0 + np.where(is_round[:, None], bulge, 0.0)
@@ -54,5 +57,5 @@ def rounded(vertices, triangles):
 def write_obj(path, vertices, triangles):
     """Writes an OBJ file."""
     with open(path, "w", encoding="ascii") as file:
-        file.writelines("v %.12g %.12g %.12g\n" % tuple(vertex) for vertex in vertices)
-        file.writelines("f %d %d %d\n" % tuple(triangle) for triangle in triangles + 1)
+        file.writelines(f"v {x:.12g} {y:.12g} {z:.12g}\n" for x, y, z in vertices)
+        file.writelines(f"f {a} {b} {c}\n" for a, b, c in triangles + 1)

@@ -71,10 +71,15 @@ class Knee:
             files[name] = Path(folder) / f"{name}.obj"
             write_obj(files[name], *mesh)
         model_file = Path(folder) / "knee.osim"
-        model_file.write_text(MODEL.format(
-            insert=files["tibial-insert"], femur=files["femoral-component"],
-            insert_springs=SPRINGS.format(mesh="insert_mesh", stiffness=2.0 * PA_PER_M),
-            femur_springs=SPRINGS.format(mesh="femur_mesh", stiffness=0.0)), encoding="utf-8")
+        model_file.write_text(
+            MODEL.format(
+                insert=files["tibial-insert"],
+                femur=files["femoral-component"],
+                insert_springs=SPRINGS.format(mesh="insert_mesh", stiffness=2.0 * PA_PER_M),
+                femur_springs=SPRINGS.format(mesh="femur_mesh", stiffness=0.0),
+            ),
+            encoding="utf-8",
+        )
         self.model = opensim.Model(str(model_file))
         self.state = self.model.initSystem()
         self.contact = self.model.getForceSet().get(0)
@@ -90,8 +95,10 @@ class Knee:
         self.model.realizeVelocity(self.state)
 
     def force_n(self):
-        """Force on the insert (the ground) where the femur is, and the time that it took, s; reading it
-        back sums the springs once more and is not timed."""
+        """Force on the insert (the ground) at the present pose, N, and its computing time, s.
+
+        Reading the force back sums the springs again and is not timed.
+        """
         start = time.perf_counter()
         self.model.realizeDynamics(self.state)
         seconds = time.perf_counter() - start
@@ -99,8 +106,11 @@ class Knee:
         return np.array([record.get(i) for i in range(3)]), seconds
 
     def area_mm2(self, rotation, origin_m):
-        """Area of the triangles that press: of the springs' forces -k A d n on the insert, each gives
-        dF/dx = k A n n' for a motion x of the femur, whose trace is k A."""
+        """Area of the triangles in contact, mm2.
+
+        A spring's force -k A d n on the insert has the derivative dF/dx = k A n n' for a motion x of the femur, whose trace
+        is k A.
+        """
         slope = 0.0
         for step in STEP_M * np.eye(3):
             self.place(rotation, origin_m + step)
