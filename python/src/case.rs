@@ -89,20 +89,19 @@ impl RawCase {
     }
 }
 
-/// Converts a JSON object to a TOML file, without the entries that are null.
+/// Converts a JSON object to the text of a TOML file.
 #[pyfunction]
 pub fn toml_document(json: &str) -> PyResult<String> {
-    let table: toml::Table = from_json(json)?;
-    toml::to_string(&table).map_err(errors::bad_input)
+    toml::to_string(&value_from_json(json)?).map_err(errors::bad_input)
 }
 
 /// Converts a JSON value to a TOML value on one line.
 #[pyfunction]
 pub fn toml_value(json: &str) -> PyResult<String> {
-    Ok(from_json::<toml::Value>(json)?.to_string())
+    Ok(value_from_json(json)?.to_string())
 }
 
-fn from_json<T: for<'de> serde::Deserialize<'de>>(json: &str) -> PyResult<T> {
+fn value_from_json(json: &str) -> PyResult<toml::Value> {
     serde_json::from_str(json).map_err(errors::bad_input)
 }
 
