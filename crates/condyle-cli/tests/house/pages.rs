@@ -46,17 +46,45 @@ fn link_targets(page: &TextFile) -> Vec<String> {
 #[test]
 fn links_of_pages_lead_somewhere() {
     let mut broken = Vec::new();
+    let metadata = cargo_metadata();
+    let repositories = metadata["packages"].as_array().expect("are listed").iter();
+    let repository = repositories.filter_map(|package| package["repository"].as_str());
+    let published = format!("{}/blob/main/", repository.last().expect("one is named"));
     for page in text_files_ending(".md") {
         let folder = root().join(Path::new(&page.path).parent().unwrap_or(Path::new("")));
         for target in link_targets(&page) {
             let file = target.split('#').next().unwrap_or_default();
-            let is_elsewhere = target.contains("://") || file.is_empty();
+            // READMEs of crates and of the Python package are read outside of the repository.
+            let (folder, file) = match file.strip_prefix(&published) {
+                Some(file) => (root(), file),
+                None => (folder.clone(), file),
+            };
+            let is_elsewhere = file.contains("://") || file.is_empty();
             if !is_elsewhere && !folder.join(file).exists() {
                 broken.push(format!("{}: {target}", page.path));
             }
         }
     }
     assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn packages_have_a_readme_whose_links_work_anywhere() {
+    let metadata = cargo_metadata();
+    for package in metadata["packages"].as_array().expect("are listed") {
+        if package["publish"].is_array() {
+            continue;
+        }
+        let name = package["name"].as_str().expect("has a name");
+        for key in ["license", "repository", "documentation", "readme"] {
+            assert!(package[key].is_string(), "{name} has no {key}");
+        }
+        let path = format!("crates/{name}/README.md");
+        let text = read(&path);
+        for target in link_targets(&TextFile { path, text }) {
+            assert!(target.contains("://"), "README of {name}: {target}");
+        }
+    }
 }
 
 #[test]
