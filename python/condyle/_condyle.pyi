@@ -17,8 +17,7 @@ __all__ = [
     "RawKnee",
     "RawStudy",
     "read_folder",
-    "run_in_memory",
-    "run_into_folder",
+    "run",
     "toml_document",
     "toml_value",
     "with_table",
@@ -94,18 +93,14 @@ def toml_document(json: str) -> str: ...
 def toml_value(json: str) -> str: ...
 def with_table(text: str, table: str, keys: str) -> str: ...
 def read_folder(path: str | PathLike[str]) -> RawRun: ...
-def run_in_memory(
+def run(
     case: RawCase,
     threads: int,
+    *,
     keeps_fields: bool,
-    progress: Callable[[Progress], Any] | None = None,
-    wear_law: Callable[[NodeCycle], float] | None = None,
-) -> RawRun: ...
-def run_into_folder(
-    case: RawCase,
-    threads: int,
-    out: str | PathLike[str],
+    out: str | PathLike[str] | None,
     resume: bool,
     force: bool,
-    progress: Callable[[Progress], Any] | None = None,
+    progress: Callable[[Progress], Any] | None,
+    wear_law: Callable[[NodeCycle], float] | None,
 ) -> RawRun: ...

@@ -9,22 +9,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class RawInsert(TypedDict):
-    """The insert at every update."""
-
-    points_mm: NDArray[np.float64]
-    hexes: NDArray[np.uint32]
-    articulating: NDArray[np.bool_]
-    fields: dict[str, NDArray[np.float64]]
-
-
 class RawRun(TypedDict):
-    """The data of a run; ``tables`` has the texts of its CSV files."""
+    """The data of a run, with the texts of its CSV files and the insert at every update."""
 
     case: str
     summary: str | None
     tables: dict[str, str]
-    insert: RawInsert
+    points_mm: NDArray[np.float64]
+    hexes: NDArray[np.uint32]
+    articulating: NDArray[np.bool_]
+    fields: dict[str, NDArray[np.float64]]
     femur_points_mm: NDArray[np.float32]
     femur_triangles: NDArray[np.uint32]
 

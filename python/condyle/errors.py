@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 __all__ = ["BadInput", "CondyleError", "Interrupted", "NotSolved", "Problem", "StudyInterrupted"]
 
@@ -32,9 +32,9 @@ class CondyleError(Exception):
 class _WithProblems(CondyleError):
     problems: tuple[Problem, ...]
 
-    def __init__(self, message: str, problems: Iterable[tuple[Any, ...]] = ()) -> None:
+    def __init__(self, message: str, problems: Iterable[tuple[str, Sequence[str | None], tuple[int, int] | None]] = ()) -> None:
         super().__init__(message, problems)
-        self.problems = tuple(Problem(*problem) for problem in problems)
+        self.problems = tuple(Problem(cause, *texts, *(place or (None, None))) for cause, texts, place in problems)
 
     def __str__(self) -> str:
         return self.args[0]

@@ -175,17 +175,17 @@ class Result:
     @property
     def points_mm(self) -> NDArray[np.float64]:
         """Places of the insert's nodes at every update, the unworn first, mm: shape (updates + 1, nodes, 3)."""
-        return self._run["insert"]["points_mm"]
+        return self._run["points_mm"]
 
     @property
     def hexes(self) -> NDArray[np.uint32]:
         """Node numbers of the hexahedra, in VTK's order: shape (hexahedra, 8)."""
-        return self._run["insert"]["hexes"]
+        return self._run["hexes"]
 
     @property
     def articulating(self) -> NDArray[np.bool_]:
         """Which nodes are on the articulating surface: shape (nodes,)."""
-        return self._run["insert"]["articulating"]
+        return self._run["articulating"]
 
     @property
     def fields(self) -> dict[str, NDArray[np.float64]]:
@@ -194,7 +194,7 @@ class Result:
         ``wear_depth_mm``, ``depth_per_cycle_mm``, ``peak_pressure_mpa``, ``sliding_distance_mm``, ``cross_shear``,
         ``thickness_mm``, ``principal_direction``; 0 at nodes that are not on the articulating surface.
         """
-        return self._run["insert"]["fields"]
+        return self._run["fields"]
 
     @property
     def femur_points_mm(self) -> NDArray[np.float32]:

@@ -59,14 +59,22 @@ def run(
     if out is not None and wear_law is not None:
         raise ValueError("a run with a wear_law is kept in memory, since a results folder could not name the law: omit out")
     checked = case_of(case)
+    folder = None if out is None else Path(out)
+    if folder is not None and checked.has_arrays:
+        folder.mkdir(parents=True, exist_ok=True)
+        checked = checked.written_in(folder)
     with listening(progress) as listener:
-        if out is None:
-            return Result(_condyle.run_in_memory(checked.compiled, threads, fields, listener, wear_law))
-        folder = Path(out)
-        if checked.has_arrays:
-            folder.mkdir(parents=True, exist_ok=True)
-        compiled = checked.written_in(folder).compiled
-        return Result(_condyle.run_into_folder(compiled, threads, folder, resume, force, listener), folder)
+        raw = _condyle.run(
+            checked.compiled,
+            threads,
+            keeps_fields=fields,
+            out=folder,
+            resume=resume,
+            force=force,
+            progress=listener,
+            wear_law=wear_law,
+        )
+    return Result(raw, folder)
 
 
 def open(folder: str | os.PathLike[str]) -> Result:

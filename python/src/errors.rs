@@ -3,7 +3,7 @@
 use std::fmt::Display;
 
 use condyle_case::config::{Problem, Problems};
-use condyle_lab::{Reached, RunError};
+use condyle_lab::RunError;
 use condyle_study::StudyError;
 use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
@@ -45,21 +45,8 @@ pub fn not_solved(message: impl Display) -> PyErr {
     exception("NotSolved", (message.to_string(),))
 }
 
-/// A run that was asked to stop.
-pub fn interrupted(reached: &Reached) -> PyErr {
-    exception(
-        "Interrupted",
-        (reached.updates, reached.cycles, reached.of_cycles),
-    )
-}
-
-/// A study that was asked to stop.
-pub fn study_interrupted(kept: u64, tests: u64) -> PyErr {
-    exception("StudyInterrupted", (kept, tests))
-}
-
 /// An instance of the class of that name in `condyle.errors`; if it cannot be made, the reason.
-fn exception(class: &str, arguments: impl for<'py> PyCallArgs<'py>) -> PyErr {
+pub fn exception(class: &str, arguments: impl for<'py> PyCallArgs<'py>) -> PyErr {
     Python::attach(|py| {
         let class = py
             .import("condyle.errors")
@@ -70,24 +57,9 @@ fn exception(class: &str, arguments: impl for<'py> PyCallArgs<'py>) -> PyErr {
     })
 }
 
-/// The fields of `condyle.Problem`, in its order.
-type ProblemFields = (
-    String,
-    Option<String>,
-    Option<String>,
-    Option<String>,
-    Option<usize>,
-    Option<usize>,
-);
-
-fn fields(problem: &Problem) -> ProblemFields {
-    let (line, column) = problem.line_and_column().unzip();
-    (
-        problem.to_string(),
-        problem.reason.advice(),
-        problem.key().map(Into::into),
-        problem.file().map(Into::into),
-        line,
-        column,
-    )
+/// The cause, then remedy, key and file, then line and column of a problem.
+fn fields(problem: &Problem) -> (String, [Option<String>; 3], Option<(usize, usize)>) {
+    let file = problem.file().map(str::to_owned);
+    let texts = [problem.reason.advice(), problem.key(), file];
+    (problem.to_string(), texts, problem.line_and_column())
 }

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::bad_input;
-use crate::record::{InsertRecord, Record};
+use crate::record::Record;
 
 /// The name of the array that marks the articulating surface.
 const ARTICULATING: &str = "articulating";
@@ -29,37 +29,29 @@ pub fn read(folder: &Path) -> PyResult<Record> {
             folder.display()
         )));
     };
-    let femur = folder.join("femur.vtu");
-    let femur = match fs::read(&femur) {
-        Ok(bytes) => parse_vtu_triangles(&femur, &bytes).map_err(bad_input)?,
-        Err(_) => Default::default(),
-    };
-    Ok(Record {
+    let mut record = Record {
         case,
         summary: text(&folder.join("summary.json"))?,
         tables: tables(folder)?,
-        insert: insert(folder)?,
-        femur,
-    })
-}
-
-fn insert(folder: &Path) -> PyResult<InsertRecord> {
-    let mut insert = InsertRecord::default();
+        ..Record::default()
+    };
+    let femur = folder.join("femur.vtu");
+    if let Ok(bytes) = fs::read(&femur) {
+        record.femur = parse_vtu_triangles(&femur, &bytes).map_err(bad_input)?;
+    }
     for (_, path) in read_pvd(folder.join("insert.pvd")).map_err(bad_input)? {
         check_file(&path).map_err(bad_input)?;
         let file = read_vtu_points(&path).map_err(bad_input)?;
         let marks = file.values(ARTICULATING).unwrap_or_default();
         let articulating = marks.iter().map(|&mark| mark == 1.0).collect();
-        let scalars = file
-            .point_data
-            .iter()
-            .map(|(name, values)| (name.as_str(), values.as_slice()));
+        let scalars = file.point_data.iter();
+        let scalars = scalars.map(|(name, values)| (name.as_str(), values.as_slice()));
         let scalars = scalars.filter(|(name, _)| *name != ARTICULATING);
         let vectors = file.point_vectors.iter();
         let vectors = vectors.map(|(name, values)| (name.as_str(), values.as_flattened()));
-        insert.push(&file.mesh, articulating, scalars.chain(vectors));
+        record.push_insert(&file.mesh, articulating, scalars.chain(vectors));
     }
-    Ok(insert)
+    Ok(record)
 }
 
 /// The texts of `wear.csv`, `femur_pose.csv` and the kinematics of every activity.

@@ -1,6 +1,6 @@
 //! A wear law that is a function of Python. It is slow: every sliding node is one call.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, OnceLock};
 
 use condyle::wear::{MeanCycle, NamedLaw, NodeWear, WearLaw};
 use pyo3::prelude::*;
@@ -11,7 +11,7 @@ use crate::record::array;
 const WORD: &str = "python";
 
 /// The first exception of a law, for the caller of the run: a wear law itself cannot fail.
-pub type Raised = Arc<Mutex<Option<PyErr>>>;
+pub type Raised = Arc<OnceLock<PyErr>>;
 
 /// A wear law that is a function of Python.
 #[derive(Debug)]
@@ -30,18 +30,17 @@ pub fn law_of(function: Py<PyAny>) -> (NamedLaw, Raised) {
     (NamedLaw { word: WORD, law }, raised)
 }
 
-/// Takes the exception that a law raised, if any.
-pub fn taken(raised: &Raised) -> Option<PyErr> {
-    raised.lock().unwrap_or_else(PoisonError::into_inner).take()
-}
-
 impl WearLaw for LawOfPython {
     fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear {
         if cycle.pressure_slip_mpa_mm == 0.0 {
             return NodeWear::of_depth(0.0);
         }
         let depth_mm = Python::attach(|py| self.depth_mm(py, cycle));
-        NodeWear::of_depth(depth_mm.unwrap_or_else(|error| self.failed(error)))
+        NodeWear::of_depth(depth_mm.unwrap_or_else(|error| {
+            // The first exception stays; the listener stops the run at its next event.
+            self.raised.get_or_init(|| error);
+            0.0
+        }))
     }
 }
 
@@ -55,13 +54,6 @@ impl LawOfPython {
         let said =
             format!("a wear law gave {depth_mm} as the depth of a cycle; give mm, 0 or more");
         Err(pyo3::exceptions::PyValueError::new_err(said))
-    }
-
-    /// Keeps the first error; the run stops at its next increment.
-    fn failed(&self, error: PyErr) -> f64 {
-        let mut raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
-        raised.get_or_insert(error);
-        0.0
     }
 }
 

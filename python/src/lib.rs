@@ -32,7 +32,7 @@ mod _condyle {
     #[pymodule_export]
     use super::knee::RawKnee;
     #[pymodule_export]
-    use super::run::{run_in_memory, run_into_folder};
+    use super::run::run;
     #[pymodule_export]
     use super::study::{RawHeldStudy, RawStudy};
 

@@ -3,29 +3,22 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use condyle_lab::RunEvent;
+use condyle_lab::{Reached, RunEvent};
 use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 
-use crate::law::{Raised, taken};
+use crate::law::Raised;
 
 /// Pause between two checks for Ctrl-C and calls of the callback: taking the interpreter's lock may wait for other threads.
 const PAUSE: Duration = Duration::from_millis(50);
 
 /// A callback of Python that is called with progress, and the first exception raised on the way.
 pub struct Callback {
-    function: Option<Py<PyAny>>,
-    raised: Option<PyErr>,
+    pub function: Option<Py<PyAny>>,
+    pub raised: Option<PyErr>,
 }
 
 impl Callback {
-    pub fn new(function: Option<Py<PyAny>>) -> Self {
-        Self {
-            function,
-            raised: None,
-        }
-    }
-
     /// Calls the function with an instance of `class` of `condyle.progress`. Stops on Ctrl-C, on an exception, and when
     /// the function returns `False`.
     pub fn call(&mut self, class: &str, fields: impl for<'py> PyCallArgs<'py>) -> ControlFlow<()> {
@@ -41,18 +34,11 @@ impl Callback {
         match goes_on {
             Ok(true) => ControlFlow::Continue(()),
             Ok(false) => ControlFlow::Break(()),
-            Err(raised) => self.stop(raised),
+            Err(raised) => {
+                self.raised = Some(raised);
+                ControlFlow::Break(())
+            }
         }
-    }
-
-    fn stop(&mut self, raised: PyErr) -> ControlFlow<()> {
-        self.raised = Some(raised);
-        ControlFlow::Break(())
-    }
-
-    /// The exception that stopped the run or study.
-    pub fn into_raised(self) -> Option<PyErr> {
-        self.raised
     }
 }
 
@@ -60,57 +46,59 @@ impl Callback {
 pub struct Listener {
     callback: Callback,
     last: Instant,
-    of_cycles: f64,
-    cycles: f64,
-    updates: usize,
+    reached: Reached,
     raised_by_law: Option<Raised>,
 }
 
 impl Listener {
     pub fn new(function: Option<Py<PyAny>>, raised_by_law: Option<Raised>) -> Self {
         Self {
-            callback: Callback::new(function),
+            callback: Callback {
+                function,
+                raised: None,
+            },
             last: Instant::now(),
-            of_cycles: 0.0,
-            cycles: 0.0,
-            updates: 0,
+            reached: Reached {
+                updates: 0,
+                cycles: 0.0,
+                of_cycles: 0.0,
+            },
             raised_by_law,
         }
     }
 
     /// The exception that stopped the run.
-    pub fn into_raised(self) -> Option<PyErr> {
-        let by_law = self.raised_by_law.as_ref().and_then(taken);
-        by_law.or(self.callback.into_raised())
+    pub fn raised(self, py: Python<'_>) -> Option<PyErr> {
+        let by_law = self.raised_by_law.as_ref().and_then(|raised| raised.get());
+        by_law
+            .map(|error| error.clone_ref(py))
+            .or(self.callback.raised)
     }
 
     /// Notes an event of the run; calls the callback at once for a start or an update, and otherwise after the pause.
     pub fn hear(&mut self, event: &RunEvent<'_>) -> ControlFlow<()> {
-        let mut is_urgent = false;
         match event {
-            RunEvent::Started(reached) => {
-                is_urgent = true;
-                (self.updates, self.cycles) = (reached.updates, reached.cycles);
-                self.of_cycles = reached.of_cycles;
-            }
-            RunEvent::Solved(progress) => self.cycles = progress.cycles,
+            RunEvent::Started(reached) => self.reached = *reached,
+            RunEvent::Solved(progress) => self.reached.cycles = progress.cycles,
             RunEvent::Updated(update) => {
-                is_urgent = true;
-                (self.updates, self.cycles) = (self.updates + 1, update.cycles);
+                self.reached.updates += 1;
+                self.reached.cycles = update.cycles;
             }
             RunEvent::Warning(_) | RunEvent::Estimating => {}
         }
+        let is_urgent = matches!(event, RunEvent::Started(_) | RunEvent::Updated(_));
         if !is_urgent && self.last.elapsed() < PAUSE {
             return ControlFlow::Continue(());
         }
         self.last = Instant::now();
-        if let Some(raised) = self.raised_by_law.as_ref().and_then(taken) {
-            return self.callback.stop(raised);
+        let has_law_raised = |raised: &Raised| raised.get().is_some();
+        if self.raised_by_law.as_ref().is_some_and(has_law_raised) {
+            return ControlFlow::Break(());
         }
+        let reached = self.reached;
         let is_estimating = matches!(event, RunEvent::Estimating);
-        self.callback.call(
-            "Progress",
-            (self.cycles, self.of_cycles, self.updates, is_estimating),
-        )
+        let (cycles, of_cycles) = (reached.cycles, reached.of_cycles);
+        let fields = (cycles, of_cycles, reached.updates, is_estimating);
+        self.callback.call("Progress", fields)
     }
 }

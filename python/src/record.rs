@@ -2,19 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use condyle::Vec3;
 use condyle::evolve::March;
 use condyle::geometry::TriangleMesh;
-use condyle_case::case::{Case, Side};
+use condyle_case::case::Side;
 use condyle_fem::HexMesh;
 use condyle_lab::RunKeeper;
 use condyle_results::{
-    InsertFields, Summary, femur_on_side, femur_pose_csv, kinematics_csv, kinematics_file, wear_csv,
+    InsertFields, femur_on_side, femur_pose_csv, kinematics_csv, kinematics_file, wear_csv,
 };
 use numpy::{Element, IntoPyArray, PyArrayMethods, ndarray::IntoDimension};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
-/// The data of a run.
+/// The data of a run, with the insert at every update.
 #[derive(Default)]
 pub struct Record {
     /// The text of `case.toml`.
@@ -23,14 +24,8 @@ pub struct Record {
     pub summary: Option<String>,
     /// The texts of the CSV files by their names without the ending.
     pub tables: BTreeMap<String, String>,
-    pub insert: InsertRecord,
     /// The femur at neutral, in the insert frame.
     pub femur: TriangleMesh,
-}
-
-/// The insert at every update.
-#[derive(Default)]
-pub struct InsertRecord {
     hexes: Vec<[u32; 8]>,
     /// Marks the nodes of the articulating surface.
     articulating: Vec<bool>,
@@ -42,9 +37,9 @@ pub struct InsertRecord {
     fields: BTreeMap<String, Vec<f64>>,
 }
 
-impl InsertRecord {
+impl Record {
     /// Appends the insert of the next update.
-    pub fn push<'a>(
+    pub fn push_insert<'a>(
         &mut self,
         mesh: &HexMesh,
         articulating: Vec<bool>,
@@ -57,49 +52,35 @@ impl InsertRecord {
         let positions = mesh.nodes.iter().flat_map(|node| [node.x, node.y, node.z]);
         self.points.extend(positions);
         for (name, values) in fields {
-            self.fields
-                .entry(name.to_owned())
-                .or_default()
-                .extend_from_slice(values);
+            let all = self.fields.entry(name.to_owned()).or_default();
+            all.extend_from_slice(values);
         }
         self.updates += 1;
     }
 
-    fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    /// Converts the record to the dictionary `RawRun` of `_raw.py`.
+    pub fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let (updates, nodes) = (self.updates, self.articulating.len());
         let fields = PyDict::new(py);
         for (name, values) in self.fields {
-            let is_scalar = values.len() == updates * nodes;
-            let values = if is_scalar {
+            let values = if values.len() == updates * nodes {
                 array(py, values, [updates, nodes])?
             } else {
                 array(py, values, [updates, nodes, 3])?
             };
             fields.set_item(name, values)?;
         }
-        let entries = [
-            ("points_mm", array(py, self.points, [updates, nodes, 3])?),
-            ("hexes", rows(py, self.hexes)?),
-            ("articulating", array(py, self.articulating, [nodes])?),
-            ("fields", fields.into_any()),
-        ];
-        entries.into_py_dict(py)
-    }
-}
-
-impl Record {
-    /// Converts the record to the dictionary `RawRun` of `_raw.py`.
-    pub fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         // In single precision as in femur.vtu, so that a run is the same from memory and from its folder.
-        let vertices = self.femur.vertices.iter();
-        let vertices: Vec<[f32; 3]> = vertices
-            .map(|vertex| vertex.map(|x| x as f32).into())
-            .collect();
+        let single = |vertex: &Vec3| vertex.map(|x| x as f32).into();
+        let vertices: Vec<[f32; 3]> = self.femur.vertices.iter().map(single).collect();
         let entries = [
             ("case", self.case.into_pyobject(py)?.into_any()),
             ("summary", self.summary.into_pyobject(py)?),
             ("tables", self.tables.into_pyobject(py)?.into_any()),
-            ("insert", self.insert.into_python(py)?.into_any()),
+            ("points_mm", array(py, self.points, [updates, nodes, 3])?),
+            ("hexes", rows(py, self.hexes)?),
+            ("articulating", array(py, self.articulating, [nodes])?),
+            ("fields", fields.into_any()),
             ("femur_points_mm", rows(py, vertices)?),
             ("femur_triangles", rows(py, self.femur.triangles)?),
         ];
@@ -127,49 +108,25 @@ fn rows<T: Element, const N: usize>(
 
 /// Records in memory what the command writes into a folder.
 pub struct Recorder {
-    side: Side,
+    pub side: Side,
     /// Also record the insert and its fields.
-    keeps_fields: bool,
-    record: Record,
+    pub keeps_fields: bool,
+    pub record: Record,
 }
 
 impl Recorder {
-    pub fn new(case: &Case, keeps_fields: bool) -> Self {
-        let record = Record {
-            case: case.to_toml(),
-            ..Record::default()
-        };
-        Self {
-            side: case.heading.side,
-            keeps_fields,
-            record,
-        }
-    }
-
-    /// The record with the summary of the finished run.
-    pub fn finish(mut self, summary: &Summary) -> Record {
-        let text = serde_json::to_string(summary).expect("numbers and text always serialise");
-        self.record.summary = Some(text);
-        self.record
-    }
-
     fn push_insert(&mut self, march: &March) {
         if !self.keeps_fields {
             return;
         }
         let fields = InsertFields::of(march, self.side);
         let articulating = fields.articulating.iter().map(|&mark| mark == 1).collect();
-        let scalars = fields
-            .scalars
-            .iter()
-            .map(|(name, values)| (*name, values.as_slice()));
-        let vectors = fields
-            .vectors
-            .iter()
-            .map(|(name, values)| (*name, values.as_flattened()));
+        let scalars = fields.scalars.iter();
+        let scalars = scalars.map(|(name, values)| (*name, values.as_slice()));
+        let vectors = fields.vectors.iter();
+        let vectors = vectors.map(|(name, values)| (*name, values.as_flattened()));
         self.record
-            .insert
-            .push(&fields.mesh, articulating, scalars.chain(vectors));
+            .push_insert(&fields.mesh, articulating, scalars.chain(vectors));
     }
 }
 

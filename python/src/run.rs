@@ -3,79 +3,83 @@
 use std::path::PathBuf;
 
 use condyle_case::cache::Cache;
-use condyle_lab::{InMemory, Outcome, RunError, RunOptions};
+use condyle_lab::{InMemory, Outcome, RunOptions, run_case, run_in_memory};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::case::RawCase;
 use crate::law::law_of;
 use crate::listener::Listener;
-use crate::record::Recorder;
+use crate::record::{Record, Recorder};
 use crate::{errors, folder};
 
-/// Runs a case in memory; `progress` is called with a `condyle.Progress`, and `wear_law` with a `condyle.NodeCycle`.
+/// Runs a case in memory, or into the folder `out` and reads the folder. `progress` is called with a
+/// `condyle.Progress`, and `wear_law`, in memory only, with a `condyle.NodeCycle`.
 #[pyfunction]
-#[pyo3(signature = (case, threads, keeps_fields, progress=None, wear_law=None))]
-pub fn run_in_memory<'py>(
+#[pyo3(signature = (case, threads, *, keeps_fields, out, resume, force, progress, wear_law))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "they are keywords, as in the function that users call"
+)]
+pub fn run<'py>(
     py: Python<'py>,
     case: &RawCase,
     threads: usize,
     keeps_fields: bool,
-    progress: Option<Py<PyAny>>,
-    wear_law: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let case = &case.case;
-    let (wear_law, raised) = wear_law.map(law_of).unzip();
-    let options = InMemory {
-        threads,
-        cache: Cache::of_user(),
-        wear_law,
-    };
-    let mut listener = Listener::new(progress, raised);
-    let mut recorder = Recorder::new(case, keeps_fields);
-    let outcome = py.detach(|| {
-        condyle_lab::run_in_memory(case, &options, &mut recorder, &mut |event| {
-            listener.hear(&event)
-        })
-    });
-    match finished(outcome, listener)? {
-        Outcome::Done(summary) | Outcome::DoneBefore(summary) => {
-            recorder.finish(&summary).into_python(py)
-        }
-        Outcome::Interrupted(reached) => Err(errors::interrupted(&reached)),
-    }
-}
-
-/// Runs a case into the folder `out`, and reads the folder.
-#[pyfunction]
-#[pyo3(signature = (case, threads, out, resume, force, progress=None))]
-pub fn run_into_folder<'py>(
-    py: Python<'py>,
-    case: &RawCase,
-    threads: usize,
-    out: PathBuf,
+    out: Option<PathBuf>,
     resume: bool,
     force: bool,
     progress: Option<Py<PyAny>>,
+    wear_law: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let options = RunOptions {
-        out,
-        resume,
-        force,
-        threads,
-        cache: Cache::of_user(),
+    let (case, cache) = (&case.case, Cache::of_user());
+    let (wear_law, raised) = wear_law.map(law_of).unzip();
+    let mut listener = Listener::new(progress, raised);
+    let mut recorder = Recorder {
+        side: case.heading.side,
+        keeps_fields,
+        record: Record {
+            case: case.to_toml(),
+            ..Record::default()
+        },
     };
-    let mut listener = Listener::new(progress, None);
-    let outcome = py
-        .detach(|| condyle_lab::run_case(&case.case, &options, &mut |event| listener.hear(&event)));
-    match finished(outcome, listener)? {
-        Outcome::Interrupted(reached) => Err(errors::interrupted(&reached)),
-        _ => py.detach(|| folder::read(&options.out))?.into_python(py),
+    let outcome = py.detach(|| match &out {
+        Some(out) => {
+            let out = out.clone();
+            let options = RunOptions {
+                out,
+                resume,
+                force,
+                threads,
+                cache,
+            };
+            run_case(case, &options, &mut |event| listener.hear(&event))
+        }
+        None => {
+            let options = InMemory {
+                threads,
+                cache,
+                wear_law,
+            };
+            run_in_memory(case, &options, &mut recorder, &mut |event| {
+                listener.hear(&event)
+            })
+        }
+    });
+    if let Some(raised) = listener.raised(py) {
+        return Err(raised);
     }
-}
-
-/// The outcome of a run, or the exception that stopped it.
-fn finished(outcome: Result<Outcome, RunError>, listener: Listener) -> PyResult<Outcome> {
-    let outcome = outcome.map_err(errors::of_run);
-    listener.into_raised().map_or(outcome, Err)
+    let record = match (outcome.map_err(errors::of_run)?, out) {
+        (Outcome::Interrupted(reached), _) => {
+            let fields = (reached.updates, reached.cycles, reached.of_cycles);
+            return Err(errors::exception("Interrupted", fields));
+        }
+        (_, Some(out)) => py.detach(|| folder::read(&out))?,
+        (Outcome::Done(summary) | Outcome::DoneBefore(summary), None) => {
+            let text = serde_json::to_string(&summary).expect("numbers and text serialise");
+            recorder.record.summary = Some(text);
+            recorder.record
+        }
+    };
+    record.into_python(py)
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use condyle_case::case::Assignment;
+use condyle_case::config::Variants;
 use condyle_case::study::Study;
 use condyle_results::catalogue;
 use condyle_study::{
@@ -29,6 +30,20 @@ pub enum Found {
 pub struct RawStudy {
     plan: Plan,
     bench: TestBench,
+    /// The number of tests; for a search the maximum.
+    #[pyo3(get)]
+    tests: u64,
+    /// The name of the design.
+    #[pyo3(get)]
+    design: &'static str,
+    /// The dotted keys of the inputs.
+    #[pyo3(get)]
+    inputs: Vec<String>,
+    #[pyo3(get)]
+    case_path: PathBuf,
+    /// The hash of all inputs of the tests, in hexadecimal.
+    #[pyo3(get)]
+    inputs_blake3: String,
 }
 
 #[pymethods]
@@ -43,43 +58,17 @@ impl RawStudy {
         files: BTreeMap<PathBuf, Vec<u8>>,
     ) -> PyResult<Self> {
         let study = Study::read_in(CaseFiles::new(&path, text, base, files), &path);
-        let study = study.map_err(errors::of_problems)?;
+        let plan = Plan::of(study.map_err(errors::of_problems)?).map_err(errors::of_study)?;
+        let study = plan.study();
         Ok(Self {
-            plan: Plan::of(study).map_err(errors::of_study)?,
+            tests: plan.tests(),
+            design: study.design.word(),
+            inputs: study.inputs.iter().map(|input| input.key.clone()).collect(),
+            case_path: study.case_path.clone(),
+            inputs_blake3: plan.inputs_blake3().to_owned(),
+            plan,
             bench: TestBench::default(),
         })
-    }
-
-    /// Number of tests; for a search the maximum.
-    #[getter]
-    fn tests(&self) -> u64 {
-        self.plan.tests()
-    }
-
-    /// Name of the design.
-    #[getter]
-    fn design(&self) -> &'static str {
-        use condyle_case::config::Variants;
-        self.plan.study().design.word()
-    }
-
-    /// Dotted keys of the inputs.
-    #[getter]
-    fn inputs(&self) -> Vec<String> {
-        let inputs = self.plan.study().inputs.iter();
-        inputs.map(|input| input.key.clone()).collect()
-    }
-
-    /// Path of the case file.
-    #[getter]
-    fn case_path(&self) -> PathBuf {
-        self.plan.study().case_path.clone()
-    }
-
-    /// Hash of all inputs of the tests, in hexadecimal.
-    #[getter]
-    fn inputs_blake3(&self) -> String {
-        self.plan.inputs_blake3().to_owned()
     }
 
     /// Runs every test that the folder `out` does not hold; `progress` is called with a `condyle.StudyProgress`.
@@ -96,7 +85,10 @@ impl RawStudy {
             threads,
             shard: Shard::WHOLE,
         };
-        let mut callback = Callback::new(progress);
+        let mut callback = Callback {
+            function: progress,
+            raised: None,
+        };
         let mut last = (0, 0);
         let ended = py.detach(|| {
             run_study(&self.plan, &options, &mut |now| {
@@ -104,12 +96,12 @@ impl RawStudy {
                 callback.call("StudyProgress", last)
             })
         });
-        if let Some(raised) = callback.into_raised() {
+        if let Some(raised) = callback.raised {
             return Err(raised);
         }
         match ended.map_err(errors::of_study)? {
             StudyEnd::Done => Ok(()),
-            StudyEnd::Interrupted => Err(errors::study_interrupted(last.0, last.1)),
+            StudyEnd::Interrupted => Err(errors::exception("StudyInterrupted", last)),
         }
     }
 
