@@ -1,4 +1,4 @@
-"""The tables of docs/src/activities-and-creep.md. Usage: activities.py FOLDER, which has the runs of scripts/evidence.d/58-activities."""
+"""The tables of docs/src/activities-and-creep.md. Usage: activities.py FOLDER, which holds the runs of scripts/evidence.d/58-activities."""
 
 import csv
 import json
@@ -7,7 +7,7 @@ from pathlib import Path
 
 LAWS = ["archard", "kang", "contact-area", "unified", "directional"]
 SHARES = {"gait": 0.85, "stairs": 0.15}
-# A change of volume or depth that is told from the discretisation error of a run, %.
+# The smallest change of volume or depth that is significant relative to the discretisation error of a run, %.
 TOLD = 1.0
 
 

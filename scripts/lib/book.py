@@ -32,7 +32,7 @@ def blocks(page):
 
 
 def copy_of_the_repository(folder):
-    """Copies what is committed, as it stands in the work tree."""
+    """Copies the committed files as they are in the work tree."""
     listed = subprocess.run(["git", "ls-files", "-z"], check=True, capture_output=True).stdout
     for name in filter(None, listed.decode().split("\0")):
         if Path(name).is_file():
@@ -42,7 +42,7 @@ def copy_of_the_repository(folder):
 
 
 def run(page, commands, condyle):
-    """Whether the commands of a page all succeed; prints what they say if one does not."""
+    """Runs the commands of a page; prints their output and returns False if one fails."""
     with tempfile.TemporaryDirectory() as name:
         copy_of_the_repository(Path(name))
         path = f"{condyle.parent}{os.pathsep}{os.environ['PATH']}"

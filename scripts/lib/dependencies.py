@@ -1,9 +1,8 @@
-"""Holds every dependency against deny.toml, and against the Rust version of Cargo.toml.
+"""Checks every dependency against deny.toml, and against the Rust version of Cargo.toml.
 
-deny.toml is a file of cargo-deny, which whoever has it can run: `cargo deny check licenses bans sources`.
-It takes minutes to build, so this reads the same lists and asks `cargo metadata` the same questions:
-licences, versions beside each other, sources. It knows no advisories, and of the keys of deny.toml
-those that stand there.
+deny.toml is the file of cargo-deny: `cargo deny check licenses bans sources`. As cargo-deny takes minutes to build, this script
+reads the same lists and checks licences, duplicate versions and sources with `cargo metadata`. It has no advisories, and
+supports only the keys that deny.toml contains.
 """
 
 import json
@@ -20,24 +19,24 @@ LICENCE = re.compile(r"[^\s()/]+(?: WITH [^\s()/]+)?")
 
 
 def used_packages():
-    """Every package that some build of the workspace takes, on any platform, tests included.
+    """Every package that a build of the workspace uses, on any platform, including tests.
 
-    `cargo metadata` knows the licences, and lists what no feature asks for; `cargo tree` does not.
+    `cargo metadata` has the licences, but also lists unused optional packages, which `cargo tree` omits.
     """
-    told = json.loads(said_by("metadata", "--all-features", "--format-version", "1"))
+    metadata = json.loads(cargo("metadata", "--all-features", "--format-version", "1"))
     of_all = ["--workspace", "--all-features", "--target", "all"]
-    lines = said_by("tree", *of_all, "--prefix", "none", "--format", "{p}")
+    lines = cargo("tree", *of_all, "--prefix", "none", "--format", "{p}")
     used = {tuple(line.split()[:2]) for line in lines.splitlines()}
-    return [p for p in told["packages"] if (p["name"], f"v{p['version']}") in used]
+    return [p for p in metadata["packages"] if (p["name"], f"v{p['version']}") in used]
 
 
-def said_by(*arguments):
+def cargo(*arguments):
     command = ["cargo", *arguments, "--locked"]
     return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
 def is_allowed(licence, allow):
-    """Whether a licence expression can be met by licences of `allow`.
+    """Returns whether the licences of `allow` satisfy a licence expression.
 
     >>> allow = {"MIT", "ISC"}
     >>> [is_allowed(text, allow) for text in ("MIT", "Zlib", "Zlib/MIT", "ISC AND (GPL-3.0 OR MIT)")]
@@ -83,10 +82,10 @@ def wrong_licences(packages, rules):
             yield f"{name(package)}: {licence} is not among the licences that deny.toml allows"
     needed = {word for p in packages for word in LICENCE.findall(p["license"] or "")}
     for licence in sorted(allow - needed):
-        yield f"deny.toml allows {licence}, which nothing has: remove it"
+        yield f"deny.toml allows {licence}, which no dependency has: remove it"
 
 
-def versions_beside_each_other(packages, rules):
+def duplicate_versions(packages, rules):
     skipped = {entry["crate"] for entry in rules["skip"]}
     versions = defaultdict(list)
     for package in packages:
@@ -94,16 +93,16 @@ def versions_beside_each_other(packages, rules):
     twice = [each for each in versions.values() if len(each) > 1]
     for each in twice:
         if len(left := [one for one in each if one not in skipped]) > 1:
-            yield f"{' and '.join(left)} are built beside each other: use one, or say why in deny.toml"
+            yield f"{' and '.join(left)} are both built: use one version, or give the reason in deny.toml"
     for entry in sorted(skipped - {one for each in twice for one in each}):
-        yield f"deny.toml skips {entry}, of which there is no second version: remove it"
+        yield f"deny.toml skips {entry}, which has no second version: remove it"
 
 
 def wildcards(packages):
     for package in packages:
         for needed in package["dependencies"]:
             if not package["source"] and needed["req"] == "*" and "path" not in needed:
-                yield f"{package['name']} takes any version of {needed['name']}: name one"
+                yield f"{package['name']} accepts any version of {needed['name']}: name one"
 
 
 def strange_sources(packages):
@@ -135,13 +134,13 @@ def main():
     rust = ours["workspace"]["package"]["rust-version"]
     problems = [
         *wrong_licences(packages, rules["licenses"]),
-        *versions_beside_each_other(others, rules["bans"]),
+        *duplicate_versions(others, rules["bans"]),
         *wildcards(packages),
         *strange_sources(packages),
         *too_new_for(others, rust),
     ]
     silent = sum(package["rust_version"] is None for package in others)
-    print(f"{len(others)} dependencies; {silent} do not say which Rust they need")
+    print(f"{len(others)} dependencies; {silent} do not name the Rust version that they need")
     for problem in problems:
         print(problem)
     sys.exit(bool(problems))

@@ -1,8 +1,8 @@
-# Sourced by scripts that store evidence: what it was made from, and where it goes.
+# Date, commit and output of stored evidence. Sourced by the parts of scripts/evidence.
 
 date=$(date -u +%Y-%m-%d)
 commit=$(git rev-parse --short HEAD)
-# The pages and stored results are what a study writes; anything else changed is another program.
+# A change of pages and stored results, which studies write, does not change the program.
 if ! git diff --quiet HEAD -- crates cases Cargo.toml Cargo.lock; then
     commit="$commit, with changes"
 fi

@@ -1,9 +1,9 @@
 """Holds `condyle check` and `condyle run` against every pairing of the 24 orientations of two bodies.
 
-Usage: orientations.py CONDYLE FOLDER, where FOLDER holds femur.stl and insert.stl of the generic pair.
-A body is judged by its own shape alone, so each is checked in its 24 orientations beside the other in its
-right one: a pairing is told if `condyle check` says the `axes` line to write for one of its two bodies. Those
-that are wrong and not told are run, and their mass is held against that of the right pairing.
+Usage: orientations.py CONDYLE FOLDER, where FOLDER contains femur.stl and insert.stl of the generic pair.
+Each body is judged by its own shape, so it is checked in its 24 orientations with the other one in its right orientation. A pairing
+is detected if `condyle check` names the `axes` line to write for one of its bodies. Wrong pairings that are not detected are run,
+and their mass is compared with that of the right pairing.
 """
 
 import itertools
@@ -44,7 +44,7 @@ IMPLANTS = [
     ),
     ("generic", None, None, "mm", ("anterior", "superior", "right"), [-7.3, 0.0]),
 ]
-# A coarser insert: what is told does not depend on it, and a check takes half the time.
+# A coarser insert, which halves the time of a check and does not affect the detection.
 CHECKED = "edge_mm = 3.0\nlayers = 1\n"
 
 
@@ -68,29 +68,29 @@ def case(implant, femur_axes, insert_axes, mesh):
 
 
 def checked(condyle, folder, implant, pairing):
-    """How a pairing is told: error, warning, or not."""
+    """The detection of a pairing: error, warning, or not."""
     path = folder / f"{implant[0]}-{'-'.join(pairing[0] + pairing[1])}.toml"
     path.write_text(case(implant, *pairing, CHECKED))
     done = subprocess.run([condyle, "check", path], capture_output=True, text=True, check=False)
     path.unlink()
-    # A line that is broken goes on behind a bar.
+    # A wrapped line continues behind a bar.
     said = " ".join(done.stderr.replace("|", " ").split())
     if "write axes =" not in said:
         return "not"
     return "error" if done.returncode != 0 else "warning"
 
 
-def told_of_bodies(condyle, folder, implant):
-    """How each body is told in each orientation, femur and insert."""
+def detection_of_bodies(condyle, folder, implant):
+    """The detection of each body in each orientation, femur and insert."""
     right = implant[4]
     femurs = [(axes, right) for axes in orientations()]
     inserts = [(right, axes) for axes in orientations()]
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        told = list(threads.map(lambda p: checked(condyle, folder, implant, p), femurs + inserts))
-    return dict(zip(orientations(), told[:24])), dict(zip(orientations(), told[24:]))
+        detected = list(threads.map(lambda p: checked(condyle, folder, implant, p), femurs + inserts))
+    return dict(zip(orientations(), detected[:24])), dict(zip(orientations(), detected[24:]))
 
 
-def told_of_pairing(of_femur, of_insert):
+def detection_of_pairing(of_femur, of_insert):
     return next(how for how in ("error", "warning", "not") if how in (of_femur, of_insert))
 
 
@@ -104,18 +104,18 @@ def mass_mg(condyle, folder, implant, pairing):
 
 def row(condyle, folder, implant):
     right = (implant[4], implant[4])
-    femur, insert = told_of_bodies(condyle, folder, implant)
-    told = {(f, i): told_of_pairing(femur[f], insert[i]) for f in femur for i in insert}
-    wrong = [how for pairing, how in told.items() if pairing != right]
-    untold = [p for p, how in told.items() if how == "not" and p != right]
+    femur, insert = detection_of_bodies(condyle, folder, implant)
+    detected = {(f, i): detection_of_pairing(femur[f], insert[i]) for f in femur for i in insert}
+    wrong = [how for pairing, how in detected.items() if pairing != right]
+    undetected = [p for p, how in detected.items() if how == "not" and p != right]
     changes = []
-    if untold:
+    if undetected:
         true_mg = mass_mg(condyle, folder, implant, right)
-        masses = [mass_mg(condyle, folder, implant, pairing) for pairing in untold]
+        masses = [mass_mg(condyle, folder, implant, pairing) for pairing in undetected]
         changes = [100 * (mass / true_mg - 1) for mass in masses if mass is not None]
     largest = max(changes, key=abs, default=None)
     change = "" if largest is None else f"{largest:+.2f} %"
-    accused = "no" if told[right] == "not" else f"yes, {told[right]}"
+    accused = "no" if detected[right] == "not" else f"yes, {detected[right]}"
     counts = [wrong.count(how) for how in ("error", "warning", "not")]
     cells = [implant[0], len(wrong), *counts, change, accused]
     return "| " + " | ".join(map(str, cells)) + " |"

@@ -1,7 +1,7 @@
-"""Where the time of a whole test goes, by parts of the program: a table in Markdown.
+"""The distribution of the computing time of a test over the parts of the program, as a table in Markdown.
 
-`perf` samples the program; `addr2line` says which functions were inlined where it was, and the first
-part whose pattern fits one of them gets the sample.
+`perf` samples the program, `addr2line` lists the functions inlined at each address, and the first part whose pattern matches one
+of them gets the sample.
 """
 
 import collections
@@ -11,10 +11,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-# Where the kernel puts a program whose addresses are not randomised.
+# The load address of a program without address randomisation.
 BASE = 0x555555554000
 
-# Patterns fit "function file".
+# Patterns match "function file".
 PARTS = [
     (
         "femur: its distance field, once",
@@ -46,21 +46,21 @@ TIMES = 12
 
 
 def sampled(program, case, folder):
-    """How often the program was seen at each address."""
+    """The number of samples at each address."""
     data = folder / "perf.data"
     run = ["setarch", "-R", "perf", "record", "-q", "-F", "4000", "-o", data, program, "solve", case, str(TIMES)]
     subprocess.run(run, check=True, stdout=subprocess.DEVNULL)
-    told = subprocess.run(["perf", "script", "-i", data, "-F", "ip"], check=True, capture_output=True, text=True)
-    return collections.Counter(int(line, 16) - BASE for line in told.stdout.split())
+    script = subprocess.run(["perf", "script", "-i", data, "-F", "ip"], check=True, capture_output=True, text=True)
+    return collections.Counter(int(line, 16) - BASE for line in script.stdout.split())
 
 
 def frames(program, addresses):
-    """Of every address, the functions inlined there, each with its file."""
-    asked = "\n".join(hex(address) for address in addresses)
+    """The functions inlined at every address, each with its file."""
+    queries = "\n".join(hex(address) for address in addresses)
     command = ["addr2line", "-a", "-f", "-i", "-C", "-e", program]
-    told = subprocess.run(command, input=asked, check=True, capture_output=True, text=True).stdout
+    output = subprocess.run(command, input=queries, check=True, capture_output=True, text=True).stdout
     found = {}
-    lines = iter(told.splitlines())
+    lines = iter(output.splitlines())
     for line in lines:
         if line.startswith("0x"):
             here = found.setdefault(int(line, 16), [])

@@ -1,13 +1,13 @@
-"""Follows the pages that say how to add something, to the letter, in a copy of the committed files.
+"""Follows the recipes of the book literally, in a copy of the committed files.
 
-A page says what to do in three forms, and every block of it is in one of them:
+A page has steps of three forms, and every block of it belongs to one:
 
 - "Create `FILE`:" and a block, the whole text of the file;
 - "In `FILE`, after the line `LINE`, add" and a block, which goes below the one line that reads so;
 - a block of `sh`, the commands, and where it matters a line that ends in "prints" and a block of `text`.
 
-What is printed must hold the lines of the text in their order; `...` stands for anything, and blanks
-count as one. All pages are followed first and their commands run afterwards, so that one build does.
+The output must contain the lines of the text in their order; `...` matches anything, and runs of blanks are equal. All pages are
+followed first and their commands run afterwards, so that one build is enough.
 """
 
 import argparse
@@ -25,12 +25,12 @@ STEP = re.compile(
     rf"|^```sh\n(?P<commands>.*?)^```$(?:\n\n[^\n]*prints\n\n```text\n(?P<printed>.*?)^```$)?",
     re.MULTILINE | re.DOTALL,
 )
-# Files to create and lines to add below crates/ for what a page adds, where that is promised.
+# Files and lines that a page adds below crates/, where the page promises a number.
 PROMISED = {"add-a-wear-law.md": (1, 1)}
 
 
 def steps(page):
-    """What a page says to do, in its order."""
+    """The steps of a page in their order."""
     text = page.read_text(encoding="utf-8")
     found = list(STEP.finditer(text))
     followed = sum(step[0].count("\n```") + step[0].startswith("```") for step in found)
@@ -57,7 +57,7 @@ def with_lines_below(text, line, added):
 
 
 def follow(page, step, copy):
-    """Does one step in the copy, unless it is a command; how many (files, lines) that made of the crates."""
+    """Performs one step in the copy, unless it is a command; returns the numbers of files and lines added to the crates."""
     name = step["created"] or step["changed"]
     if name is None:
         return 0, 0
@@ -76,15 +76,15 @@ def follow(page, step, copy):
     return 0, step["added"].count("\n") * of_crates
 
 
-def first_missing(printed, said):
-    """The first line of a page's text that is not said in its turn, or None.
+def first_missing(printed, output):
+    """The first line of a page's text that is missing from the output, or out of order, or None.
 
-    >>> said = "mass loss    10.91 mg\\nresults in out"
-    >>> first_missing("mass loss 10.9... mg\\n...\\nresults in out\\n", said)
-    >>> first_missing("results in out\\nmass loss 10.91 mg\\n", said)
+    >>> output = "mass loss    10.91 mg\\nresults in out"
+    >>> first_missing("mass loss 10.9... mg\\n...\\nresults in out\\n", output)
+    >>> first_missing("results in out\\nmass loss 10.91 mg\\n", output)
     'mass loss 10.91 mg'
     """
-    rest = iter(" ".join(line.split()) for line in said.splitlines())
+    rest = iter(" ".join(line.split()) for line in output.splitlines())
     for line in filter(None, (" ".join(line.split()) for line in printed.splitlines())):
         pattern = ".*".join(map(re.escape, line.split("...")))
         if line != "..." and not any(re.fullmatch(pattern, each) for each in rest):
@@ -93,7 +93,7 @@ def first_missing(printed, said):
 
 
 def run(page, step, copy):
-    """Whether commands succeed and print what the page shows; prints what they say if not."""
+    """Runs commands; prints their output and returns False if they fail or do not print the text of the page."""
     done = subprocess.run(
         ["bash", "-c", "set -euo pipefail\n" + step["commands"]],
         cwd=copy,
@@ -107,7 +107,7 @@ def run(page, step, copy):
     if done.returncode == 0 and missing is None:
         return True
     print(f"{page}: FAILED", step["commands"], done.stdout, sep="\n---\n")
-    print(f"code {done.returncode}" if missing is None else f"nowhere in its turn: {missing}")
+    print(f"code {done.returncode}" if missing is None else f"missing or out of order: {missing}")
     return False
 
 

@@ -1,4 +1,4 @@
-"""Holds `condyle schema` against the shipped cases, against wrong ones, and against what the command says of both."""
+"""Compares `condyle schema` with the shipped cases, with wrong ones, and with the messages of the command."""
 
 import argparse
 import json
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from jsonschema import Draft202012Validator
 
-# What is wrong in a case, and what an editor underlines: a path to the value, or to the table of the key.
+# Wrong cases, and the place that an editor underlines: the path of the value, or of the table of the key.
 WRONG = [
     ("[contact]\nfrictoin = 0.05", "contact"),
     ("[contact]\nmu = 0.05", "contact"),
@@ -51,7 +51,7 @@ WRONG = [
     ("[geometry]\na = 1", ""),
 ]
 
-# What a reader takes though it looks unusual.
+# Unusual cases that are valid.
 RIGHT = [
     "",
     "[contact]\nfriction = 0",
@@ -68,19 +68,19 @@ RIGHT = [
 
 
 def wrong_places(validator: Draft202012Validator, text: str) -> list[str]:
-    """Paths of what the schema refuses in a case."""
+    """The paths that the schema rejects in a case."""
     errors = validator.iter_errors(tomllib.loads(text))
     return [".".join(str(step) for step in error.absolute_path) for error in errors]
 
 
 def checked(condyle: str, arguments: list[str]) -> tuple[int, str]:
-    """How `condyle check` ends, and what it says."""
+    """The exit code and the messages of `condyle check`."""
     done = subprocess.run([condyle, "check", *arguments], capture_output=True, text=True, check=False)
     return done.returncode, done.stderr
 
 
 def numbers(schema: dict, path: str = "") -> list[tuple[str, dict]]:
-    """Every key of a schema that takes a number with a range, by its dotted path."""
+    """Every key of a schema with a numeric range, by its dotted path."""
     found = []
     for name, value in schema.get("properties", {}).items():
         found += numbers(value, f"{path}{name}.")
@@ -90,7 +90,7 @@ def numbers(schema: dict, path: str = "") -> list[tuple[str, dict]]:
 
 
 def beyond(condyle: str, case: str, path: str, kind: dict) -> bool:
-    """Whether `--set` refuses what is above the range of the schema, by the range."""
+    """Returns whether `--set` rejects a value above the range of the schema because of the range."""
     words = [word.strip() for word in kind.get("title", "").split(",") if word]
     table = path.rsplit(".", 1)[0]
     chosen = [f"--set={table}." + words[0].replace(" ", "")] if words else []
@@ -99,8 +99,8 @@ def beyond(condyle: str, case: str, path: str, kind: dict) -> bool:
     if any(word.startswith(("--set=contact.plasticity", "--set=contact.backside")) for word in chosen):
         chosen.append("--set=contact.model=deformable")
     value = int(kind["maximum"]) + 1 if kind["type"] == "integer" else kind["maximum"] * 1.01 + 1e-9
-    code, said = checked(condyle, [case, *chosen, f"--set={path}={value}"])
-    return code == 2 and "outside its range" in said
+    code, message = checked(condyle, [case, *chosen, f"--set={path}={value}"])
+    return code == 2 and "outside its range" in message
 
 
 def main() -> None:
@@ -115,7 +115,7 @@ def main() -> None:
     failures = []
     for path in arguments.cases:
         text = path.read_text()
-        failures += [f"{path}: the schema refuses {place or 'the top'}" for place in wrong_places(validator, text)]
+        failures += [f"{path}: the schema rejects {place or 'the top'}" for place in wrong_places(validator, text)]
         if not text.startswith("#:schema "):
             failures.append(f"{path}: its first line does not name the schema")
     with tempfile.TemporaryDirectory() as folder:
@@ -125,17 +125,17 @@ def main() -> None:
             if place not in wrong_places(validator, text):
                 failures.append(f"{text!r}: {place or 'the top'} is not underlined: {wrong_places(validator, text)}")
             if checked(condyle, [case])[0] != 2:
-                failures.append(f"{text!r}: the command takes it")
+                failures.append(f"{text!r}: the command accepts it")
         for text in RIGHT:
             Path(case).write_text(text)
             if wrong_places(validator, text):
-                failures.append(f"{text!r}: the schema refuses it at {wrong_places(validator, text)}")
+                failures.append(f"{text!r}: the schema rejects it at {wrong_places(validator, text)}")
             if checked(condyle, [case])[0] != 0:
-                failures.append(f"{text!r}: the command refuses it")
+                failures.append(f"{text!r}: the command rejects it")
         Path(case).write_text("")
         ranges = numbers(schema)
         failures += [
-            f"--set {path}: taken above the range of the schema"
+            f"--set {path}: accepted above the range of the schema"
             for path, kind in ranges
             if not beyond(condyle, case, path, kind)
         ]

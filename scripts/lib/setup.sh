@@ -1,7 +1,7 @@
-# What the parts of the tests share. Sourced by them, from the root of the repository.
+# Functions that the parts of the tests share. Sourced by them, from the root of the repository.
 # shellcheck shell=bash
 
-# Ends a part that this machine cannot run, and says why.
+# Ends a part that this machine cannot run, with the reason.
 skip() {
     printf 'skipped: %s: %s\n' "$(basename "$0")" "$1" >&2
     exit 77
@@ -74,7 +74,7 @@ need_condyle() {
     [[ -x $condyle ]] || { echo "cargo built no $condyle" >&2; return 1; }
 }
 
-# A results folder of the default case, made once for the parts that read it; sets $results.
+# A new results folder of the default case; sets $results.
 need_results() {
     need_condyle
     results=${CARGO_TARGET_DIR:-$PWD/target}/test-results/stanmore-force
@@ -94,7 +94,7 @@ for line in map(json.loads, sys.stdin):
     [[ -x $figures ]] || { echo "cargo built no program called figures" >&2; return 1; }
 }
 
-# Runs a command before others that are running, where the system allows it.
+# Runs a command with real-time priority, where the system allows it.
 first() {
     if chrt -f 50 true 2>/dev/null; then chrt -f 50 "$@"; else "$@"; fi
 }

@@ -2,8 +2,8 @@
 
 Usage: three_models.py implants NAME=FOLDER..., dishes NAME=FOLDER..., layers NAME=FOLDER..., or pictures OUT FOLDER.
 
-An implant's folder has the runs `foundation`, `deformable` and `plastic`, and `NAME.seconds` beside each with the processor time of
-the command; that of a dish or a layer has the first two.
+An implant's folder contains the runs `foundation`, `deformable` and `plastic`, each with its processor time in `NAME.seconds`; that of
+a dish or a layer contains the first two.
 """
 
 import csv
@@ -51,16 +51,16 @@ def implants(folders):
     for name, folder in folders:
         exact = first_cycle(folder / "deformable")
         for model in MODELS:
-            said, rows = summary(folder / model), first_cycle(folder / model)
-            permanent = said.get("max_permanent_set_mm")
+            numbers, rows = summary(folder / model), first_cycle(folder / model)
+            permanent = numbers.get("max_permanent_set_mm")
             print_row(
                 [
                     f"`{name}`",
                     WORDS[model],
-                    f"{said['first_cycle_peak_pressure_mpa']:.1f}, {said['last_cycle_peak_pressure_mpa']:.1f}",
-                    f"{said['first_cycle_contact_area_mm2']:.0f}, {said['last_cycle_contact_area_mm2']:.0f}",
-                    f"{said['mass_loss_mg']:.2f}",
-                    f"{said['max_depth_mm']:.3f}",
+                    f"{numbers['first_cycle_peak_pressure_mpa']:.1f}, {numbers['last_cycle_peak_pressure_mpa']:.1f}",
+                    f"{numbers['first_cycle_contact_area_mm2']:.0f}, {numbers['last_cycle_contact_area_mm2']:.0f}",
+                    f"{numbers['mass_loss_mg']:.2f}",
+                    f"{numbers['max_depth_mm']:.3f}",
                     f"{rms(rows, exact, 'ap_mm'):.3f}; {rms(rows, exact, 'ie_deg'):.3f}",
                     f"{permanent:.4f}" if model == "plastic" and permanent is not None else "",
                     f"{float((folder / f'{model}.seconds').read_text()):.1f}",
@@ -68,16 +68,16 @@ def implants(folders):
             )
 
 
-def beside(folder):
+def both_models(folder):
     """First cycle's peak, MPa, and area, mm2, of both models."""
-    said = [summary(folder / model) for model in MODELS[:2]]
-    return [(one["first_cycle_peak_pressure_mpa"], one["first_cycle_contact_area_mm2"]) for one in said]
+    numbers = [summary(folder / model) for model in MODELS[:2]]
+    return [(one["first_cycle_peak_pressure_mpa"], one["first_cycle_contact_area_mm2"]) for one in numbers]
 
 
 def changed(what, folders):
     print_head([what, "peak, MPa: foundation, deformable", "over", "area, mm2", "over"])
     for name, folder in folders:
-        (peak, area), (exact_peak, exact_area) = beside(folder)
+        (peak, area), (exact_peak, exact_area) = both_models(folder)
         row = [name, f"{peak:.1f}, {exact_peak:.1f}", f"{peak / exact_peak:.2f}"]
         print_row([*row, f"{area:.0f}, {exact_area:.0f}", f"{area / exact_area:.2f}"])
 
@@ -129,7 +129,7 @@ def pictures(out, folder):
 
     figure, all_axes = plt.subplots(1, 2, figsize=(9.2, 3.2), sharey=True)
     for axes, what, label in zip(all_axes, ("dishes", "layers"), ("radius of the dish from the front, mm", "thickness, mm")):
-        runs = sorted((float(run.name.split(",")[0]), beside(run)) for run in (folder / what).iterdir() if run.is_dir())
+        runs = sorted((float(run.name.split(",")[0]), both_models(run)) for run in (folder / what).iterdir() if run.is_dir())
         radii_or_mm = [number for number, _ in runs]
         at = list(range(len(runs))) if what == "dishes" else radii_or_mm
         over = [[found[i] / exact[i] for _, (found, exact) in runs] for i in range(2)]

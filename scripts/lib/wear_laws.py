@@ -1,7 +1,7 @@
 """The tables of docs/src/wear-laws.md. Usage: wear_laws.py by-law NAME=FOLDER..., or wear_laws.py by-design NAME=FOLDER...
 
-By law, FOLDER has a run a law, each in a folder of the law's name; that of `archard` tells what the others would have worn beside
-it. By design, FOLDER is one run.
+By law, FOLDER contains a run for each law in a folder of its name; that of `archard` also reports the wear by the other laws. By
+design, FOLDER is one run.
 """
 
 import json
@@ -32,13 +32,13 @@ def print_head(cells):
 
 
 def by_law(folders):
-    """A row a law: beside Archard's, and where it moved the surface itself."""
+    """One row per law: evaluated on the histories of Archard's law, and in a run of its own."""
     print_head(["case", "law", "on Archard's scar, mg/Mc", "on its own, mg/Mc", "deepest, mm", "outside of its fit"])
     for name, folder in folders:
-        for beside in laws(folder / "archard"):
-            own = laws(folder / beside["law"])[0]
-            word = f"`{beside['law']}`" + (" (approximate)" if beside["approximate"] else "")
-            print_row([f"`{name}`", word, rate(beside), rate(own), f"{own['max_depth_mm']:.3f}", outside(own)])
+        for compared in laws(folder / "archard"):
+            own = laws(folder / compared["law"])[0]
+            word = f"`{compared['law']}`" + (" (approximate)" if compared["approximate"] else "")
+            print_row([f"`{name}`", word, rate(compared), rate(own), f"{own['max_depth_mm']:.3f}", outside(own)])
 
 
 def by_design(folders):
