@@ -1,4 +1,4 @@
-//! The table of Knight et al. 2007 (`knight2007`), run on a case of one's own.
+//! The table of Knight et al. 2007 (`knight2007`), computed for a given case.
 //!
 //! A case in force control runs over 1, 2, 5, 10, 20 and 40 updates; its first cycle becomes the
 //! waveforms of a case in displacement control; and the table sets the results next to the figures of the paper.
@@ -51,12 +51,12 @@ struct File<'a> {
     rows: &'a [PaperFigure],
 }
 
-/// Runs everything, writes the tables and the pictures, and gives the Markdown of the table.
+/// Runs everything, writes the tables and the pictures, and returns the table in Markdown.
 ///
 /// `listener` is called on every event of every run, and stops the study by breaking.
 ///
 /// # Errors
-/// A bad case, physics that cannot be solved, or files that cannot be written.
+/// Returns an error for a bad case, unsolved physics, and files that cannot be written.
 pub fn study(
     files: &StudyFiles,
     stamp: &Stamp,

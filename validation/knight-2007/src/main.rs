@@ -1,4 +1,4 @@
-//! The table of Knight et al. 2007; `validation/knight-2007/run` is how to run it.
+//! The table of Knight et al. 2007, run by `validation/knight-2007/run`.
 
 use condyle_results::catalogue;
 use std::{env, ops::ControlFlow, path::PathBuf, process::ExitCode};
@@ -22,7 +22,7 @@ fn main() -> ExitCode {
         runs: PathBuf::from(runs),
         out: PathBuf::from(out),
     };
-    match study(&files, &Stamp { commit, date }, &tell) {
+    match study(&files, &Stamp { commit, date }, &report) {
         Ok(table) => {
             print!("{table}");
             ExitCode::SUCCESS
@@ -34,7 +34,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn tell(on_event: &ConvergeHappening<'_>) -> ControlFlow<()> {
+fn report(on_event: &ConvergeHappening<'_>) -> ControlFlow<()> {
     if let ConvergeHappening::Ran(run, summary) = on_event {
         let (path, text) = (run.number.path(), run.number.text());
         eprintln!(

@@ -64,9 +64,9 @@ fn volume(found: &Findings) -> PaperFigure {
             found.force_intervals.volume_1_against_10_percent,
         ),
         verdict: Verdict::of(difference.abs() < 3.0),
-        why: "With the motion held, shape alone changes the volume by little, as in the paper. In force control \
-              our motion changes as the insert wears, and the wear rate with it; one update never sees that. \
-              The paper did not try its intervals there.",
+        why: "With prescribed motion the shape alone changes the volume little, as in the paper. In force control \
+              the motion changes as the insert wears, and the wear rate with it, which a single update does not \
+              see. The paper did not try its intervals there.",
     }
 }
 
@@ -85,9 +85,9 @@ fn pressure_and_area(found: &Findings) -> PaperFigure {
             found.force_intervals.area_5_against_40_percent,
         ),
         verdict: Verdict::of(pressure.abs() <= 0.5 && area.abs() <= 3.0),
-        why: "Compared in the last cycle that 5 x 1M solves; the highest pressure of the whole \
-              test is that of the first cycle, the same in all. Peak pressure hangs on the shape at one \
-              place, and the steps of a scar dug a million cycles at a time are such places.",
+        why: "Compared in the last cycle that 5 x 1M solves; the highest pressure of the test is that of the first \
+              cycle and equal in all. The peak pressure depends on the shape at one place, such as the steps of a \
+              scar worn a million cycles at a time.",
     }
 }
 
@@ -103,8 +103,7 @@ fn depth(found: &Findings) -> PaperFigure {
             found.force_intervals.depth_10_against_40_percent,
         ),
         verdict: Verdict::of(difference.abs() < 2.75),
-        why: "At the end of the test. Early on, with few updates behind it, 10 x 500k is further off: see the \
-              next row.",
+        why: "At the end of the test. Early, after few updates, 10 x 500k deviates more: see the next row.",
     }
 }
 
@@ -119,9 +118,9 @@ fn oscillation(found: &Findings) -> PaperFigure {
             excesses(&found.force_intervals)
         ),
         verdict: Verdict::of(oscillates(held)),
-        why: "The rule: 5 x 1M lies by more than 1 % below the fine run at one time and by more than 1 % above it \
-              at another. A march of first order digs too deep in every interval; that it also comes out too \
-              shallow is what the paper puts down to motion and pressure changing with the shape.",
+        why: "The rule: 5 x 1M is more than 1 % below the fine run at one time and more than 1 % above it at \
+              another. A first-order march wears too deep in every interval; that it is also too shallow at times, \
+              the paper attributes to motion and pressure changing with the shape.",
     }
 }
 
@@ -153,8 +152,8 @@ fn kinematics(found: &Findings) -> PaperFigure {
             found.ap_range_mm, found.ie_range_deg
         ),
         verdict: Verdict::CannotBeJudged,
-        why: "We have no measured motion of the paper's machine, and ours is another implant under loads that \
-              are partly remembered.",
+        why: "No measured motion of the paper's machine is available, and the implant and the loads (partly quoted \
+              from memory) are others.",
     }
 }
 
@@ -176,9 +175,9 @@ fn change_of_rotation(found: &Findings) -> PaperFigure {
             (1.0..=2.0).contains(&found.ie_stance_largest_fall_deg)
                 && found.ie_stance_range_last_deg < found.ie_stance_range_first_deg,
         ),
-        why: "The rule: it falls by as much as the paper's somewhere in stance, and its range gets smaller. Our \
-              torque is remembered, its direction is disputed between laboratories, and the generic dishes \
-              restrain rotation otherwise than the paper's insert.",
+        why: "The rule: it falls by as much as the paper's somewhere in stance, and its range becomes smaller. Our \
+              torque is quoted from memory, its direction is disputed between laboratories, and the generic dishes \
+              restrain rotation differently from the paper's insert.",
     }
 }
 
@@ -190,8 +189,8 @@ fn posterior_shift(found: &Findings) -> PaperFigure {
         paper: "the insert's AP shifts by some 2.3 mm posteriorly in the experiment; the paper's model does not show it",
         ours: format!("mean AP of the cycle shifts by {shift:+.2} mm, + posterior"),
         verdict: Verdict::of((shift - measured).abs() <= error),
-        why: "Compared with the experiment, within the paper's mean error of AP. The paper puts it down to what \
-              neither model has: creep, plasticity, and friction that changes.",
+        why: "Compared with the experiment, within the paper's mean error of AP. The paper attributes the shift to \
+              effects that neither model has: creep, plasticity, and changing friction.",
     }
 }
 
@@ -209,9 +208,9 @@ fn linearity(found: &Findings) -> PaperFigure {
             found.volume_r_squared, found.volume_rate_mm3_per_million_cycles,
         ),
         verdict: Verdict::of(free.abs() <= STRAIGHT_PERCENT && held.abs() <= STRAIGHT_PERCENT),
-        why: "The rule: the rate changes by no more than 5 % in either control; R2 is near 1 for any curve that \
-              rises steadily, and judges nothing. With the motion held the rate hardly grows, so in force control \
-              the growth comes from the motion.",
+        why: "The rule: the rate changes by no more than 5 % in either control. R2 is near 1 for any steadily \
+              rising curve and is no criterion. With prescribed motion the rate hardly grows, so the growth in \
+              force control is due to the motion.",
     }
 }
 
@@ -225,9 +224,9 @@ fn control(found: &Findings) -> PaperFigure {
             found.mass_force_mg, found.mass_displacement_mg
         ),
         verdict: Verdict::CannotBeJudged,
-        why: "Our displacement control is driven by the first cycle of our own force control: both begin at the \
-              same rate, whatever that is, and part only as the motion changes. The paper's 13 % is the error of \
-              its motion, of which this says nothing.",
+        why: "Our displacement control follows the first cycle of our own force control: both begin at the same \
+              rate and differ only as the motion changes. The paper's 13 % is the error of its motion, which this \
+              comparison does not contain.",
     }
 }
 
@@ -255,7 +254,7 @@ fn depth_over_time(found: &Findings) -> PaperFigure {
             found.depth_force_against_displacement_percent,
         ),
         verdict: Verdict::CannotBeJudged,
-        why: "As for the mass: our displacement control repeats our own first cycle.",
+        why: "As for the mass: our displacement control repeats the first cycle of force control.",
     }
 }
 
@@ -268,10 +267,10 @@ fn scars(found: &Findings) -> PaperFigure {
         verdict: Verdict::of(
             medial.max_depth_mm > lateral.max_depth_mm && lateral.area_mm2 > medial.area_mm2,
         ),
-        why: "x is anterior, z lateral of the middle between the dishes, whose lowest points are at x = 0, \
-              z = -23 and 23 mm; area is deeper than a twentieth of the deepest. Ours is deep medially near the \
-              middle of the dish, shallower and longer but not larger laterally: the medial side carries about \
-              three fifths of the load, and the two dishes of the generic insert are alike.",
+        why: "x is anterior, z lateral of the middle between the dishes, whose lowest points are at x = 0, z = -23 \
+              and 23 mm; the area is that deeper than a twentieth of the deepest wear. Ours is deep medially near \
+              the middle of the dish, and shallower and longer but not larger laterally: the medial side carries \
+              about three fifths of the load, and the two dishes of the generic insert are equal.",
     }
 }
 
@@ -282,8 +281,8 @@ fn lateral_scar(found: &Findings) -> PaperFigure {
         paper: "reaches the posterior edge, measured and in force control",
         ours: format!("ends {left:.1} mm before it in force control"),
         verdict: Verdict::of(left <= AT_THE_EDGE_MM),
-        why: "The scar is what is deeper than a twentieth of the deepest wear. Our generic dishes rise behind \
-              as they do in front; the shape of the paper's insert is not given.",
+        why: "The scar is the surface deeper than a twentieth of the deepest wear. Our generic dishes rise behind \
+              as in front; the shape of the paper's insert is not published.",
     }
 }
 
@@ -298,8 +297,8 @@ fn cost(found: &Findings) -> PaperFigure {
             rounded(PAPER_S / found.wall_s)
         ),
         verdict: Verdict::CannotBeJudged,
-        why: "A newer machine, and no finite elements: bodies are rigid on a foundation, steps are implicit, and \
-              contact is not searched again. Not a benchmark: other work may run at the same time.",
+        why: "A newer processor and no finite elements: rigid bodies on a foundation, implicit steps, and a \
+              contact search that reuses earlier results. Not a benchmark: other work may run at the same time.",
     }
 }
 
