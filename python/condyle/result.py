@@ -1,4 +1,4 @@
-"""What a run found."""
+"""The results of a run."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ __all__ = ["Result"]
 
 
 class Result:
-    """What a run found: the same whether it was run from Python or read from a folder of the command.
+    """The results of a run, whether it was run from Python or read from a folder of the command.
 
-    The numbers of ``summary.json`` are attributes with their unit in the name; those of a run that is not done are not
-    there. Places are in the insert frame of the case's own knee: x anterior, y superior, z to the right, mm.
+    The numbers of ``summary.json`` are attributes with their unit in the name; an unfinished run has none of them.
+    Positions are in the insert frame of the knee of the case: x anterior, y superior, z to the right, mm.
 
     >>> import condyle
     >>> result = condyle.run("[march]\\nupdates = 1\\n[accuracy]\\nestimate = false")
@@ -38,106 +38,107 @@ class Result:
     """
 
     cycles: float
-    """Gait cycles."""
+    """Number of gait cycles."""
     mass_loss_mg: float
-    """Mass worn, mg."""
+    """Mass loss, mg."""
     volume_loss_mm3: float
-    """Volume worn, from depth times area, mm3."""
+    """Volume loss from depth times area, mm3."""
     volume_loss_mesh_mm3: float
-    """Volume worn, from the change of the mesh less the volume of creep, mm3."""
+    """Volume loss from the change of the mesh, without creep, mm3."""
     max_depth_mm: float
     """Deepest wear, mm."""
     peak_pressure_mpa: float
-    """Highest pressure anywhere, between nodes too, in any cycle, MPa."""
+    """Highest pressure of any cycle, including between nodes, MPa."""
     peak_pressure_cycle: float
-    """Cycles done before the cycle that has it."""
+    """Number of cycles before the cycle with this value."""
     first_cycle_peak_pressure_mpa: float
     """Highest pressure of the first cycle, MPa."""
     last_cycle_peak_pressure_mpa: float
-    """Highest pressure of the last cycle solved, MPa."""
+    """Highest pressure of the last solved cycle, MPa."""
     peak_contact_area_mm2: float
     """Largest contact area in any cycle, mm2."""
     peak_contact_area_cycle: float
-    """Cycles done before the cycle that has it."""
+    """Number of cycles before the cycle with this value."""
     first_cycle_contact_area_mm2: float
     """Largest contact area of the first cycle, mm2."""
     last_cycle_contact_area_mm2: float
-    """Largest contact area of the last cycle solved, mm2."""
+    """Largest contact area of the last solved cycle, mm2."""
     last_cycle: float
-    """Cycles done before the last cycle solved."""
+    """Number of cycles before the last solved cycle."""
     ap_range_mm: float
     """Range of AP in the first cycle, mm."""
     ie_range_deg: float
     """Range of IE in the first cycle, degrees."""
     medial_load_share: float
-    """Medial part of the axial force, averaged over the first cycle, weighted by force."""
+    """Medial part of the axial force in the first cycle, weighted by force."""
     updates: int
-    """Updates of the geometry."""
+    """Number of updates of the geometry."""
     increments: int
-    """Increments a cycle."""
+    """Increments per cycle."""
     cycles_solved: float
-    """Cycles solved in all."""
+    """Number of solved cycles."""
     cycles_not_repeating: int
-    """Updates whose cycle did not repeat itself within the tolerance."""
+    """Updates without a periodic cycle within the tolerance."""
     newton_iterations: int
-    """Newton iterations in all."""
+    """Number of Newton iterations."""
     contact_evaluations: int
-    """Contact evaluations in all."""
+    """Number of contact evaluations."""
     newton_iterations_per_cycle: float
-    """Newton iterations of a cycle solved, on average."""
+    """Newton iterations per solved cycle."""
     contact_evaluations_per_cycle: float
-    """Contact evaluations of a cycle solved, on average."""
+    """Contact evaluations per solved cycle."""
     step_halvings: int
-    """Steps that were halved."""
+    """Number of halved steps."""
     hexahedra: int
-    """Hexahedra of the insert."""
+    """Number of hexahedra of the insert."""
     articulating_nodes: int
-    """Nodes of its articulating surface."""
+    """Number of nodes of its articulating surface."""
     worst_quality: float
     """Smallest scaled Jacobian of any update's mesh."""
     wall_s: float
-    """Seconds spent on the solver."""
+    """Time of the solver, s."""
     version: str
     """Version of condyle."""
     inputs_blake3: str
     """Hash of case and meshes."""
     warnings: list[str]
-    """What was put right or looks doubtful in the input."""
+    """Repairs and doubtful settings of the input."""
     plausibility: list[dict[str, Any]]
-    """What makes the numbers doubtful, the worst first, each with ``message`` and ``advice``."""
+    """Reasons to doubt the numbers, the most serious first, each with ``message`` and ``advice``."""
     error: dict[str, Any] | None
-    """Estimated discretisation errors, in % of each quantity, with their parts; none if the case asks for none."""
+    """Estimated discretisation errors, in % of each quantity, with their parts; ``None`` if the case disables the estimate."""
     wear_laws: list[dict[str, Any]]
-    """What every law of wear says of the same histories, that of the run first."""
+    """The wear by every law on the same histories, that of the run first."""
     neutral_pose: dict[str, Any]
-    """Where the femur settled, in the insert frame: there AP, ML and IS read zero."""
+    """The pose of the settled femur in the insert frame, where AP, ML and IS are zero."""
 
     def __init__(self, run: RawRun, folder: Path | None = None) -> None:
         """Use :func:`condyle.run` or :func:`condyle.open`."""
         self._run, self._folder = run, folder
         summary = run["summary"]
         self.summary: dict[str, Any] = json.loads(summary) if summary else {}
-        """All of ``summary.json``."""
-        self.tables: dict[str, Table] = {name: Table(*table) for name, table in run["tables"].items()}
+        """The content of ``summary.json``."""
+        self.tables: dict[str, Table] = {}
         """All tables of the run, by the names of their files without the ending."""
+        for name, text in run["tables"].items():
+            self.tables[name] = Table.from_csv(text, f"{folder or 'the run'}: {name}.csv")
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        try:
-            return self.summary[name]
-        except KeyError:
-            why = "" if self.summary else "; the run is not done, so that it has no summary yet"
-            raise AttributeError(f"a result has no {name}{why}") from None
+    if not TYPE_CHECKING:  # A type checker knows the attributes by their annotations, and no others.
+
+        def __getattr__(self, name: str) -> Any:
+            if name in self.__dict__.get("summary", {}):
+                return self.summary[name]
+            reason = "; the run is not done and has no summary yet" if name in Result.__annotations__ else ""
+            raise AttributeError(f"a result has no {name}{reason}")
 
     @property
     def is_done(self) -> bool:
-        """Whether the run came to its end."""
+        """True if the run is finished."""
         return bool(self.summary)
 
     @property
     def folder(self) -> Path | None:
-        """Where the results lie, if in a folder."""
+        """The results folder, if there is one."""
         return self._folder
 
     @property
@@ -147,26 +148,26 @@ class Result:
 
     @property
     def wear(self) -> Table:
-        """A row an update: ``cycles``, ``mass_loss_mg``, ``volume_loss_mm3``, ``max_depth_mm`` and more."""
+        """One row per update: ``cycles``, ``mass_loss_mg``, ``volume_loss_mm3``, ``max_depth_mm`` and more."""
         return self.tables["wear"]
 
     @property
     def kinematics(self) -> Table:
-        """Motions and loads of the first activity: a row an increment of the first and of the last cycle.
+        """Motions and loads of the first activity: one row per increment of the first and of the last cycle.
 
-        ``cycles`` says how many were done before: 0 for the first one. Other activities are in :attr:`tables`, as
+        ``cycles`` is the number of cycles before, 0 for the first one. Other activities are in :attr:`tables`, as
         ``kinematics_NAME``.
         """
         return self.tables["kinematics"]
 
     @property
     def femur_pose(self) -> Table:
-        """Where the femur is at the rows of :attr:`kinematics`: its origin, and its rotation row by row."""
+        """Pose of the femur at the rows of :attr:`kinematics`: its origin, and its rotation row by row."""
         return self.tables["femur_pose"]
 
     @property
     def update_cycles(self) -> NDArray[np.float64]:
-        """Cycles done at every update of :attr:`fields`, that of the unworn insert first: shape (updates + 1,)."""
+        """Number of cycles at every update of :attr:`fields`, 0 for the unworn insert: shape (updates + 1,)."""
         import numpy as np
 
         cycles = np.concatenate([[0.0], self.wear["cycles"]])
@@ -174,7 +175,7 @@ class Result:
 
     @property
     def points_mm(self) -> NDArray[np.float64]:
-        """Places of the insert's nodes at every update, the unworn first, mm: shape (updates + 1, nodes, 3)."""
+        """Positions of the insert's nodes at every update, unworn first, mm: shape (updates + 1, nodes, 3)."""
         return self._run["points_mm"]
 
     @property
@@ -184,21 +185,21 @@ class Result:
 
     @property
     def articulating(self) -> NDArray[np.bool_]:
-        """Which nodes are on the articulating surface: shape (nodes,)."""
+        """Marks the nodes of the articulating surface: shape (nodes,)."""
         return self._run["articulating"]
 
     @property
     def fields(self) -> dict[str, NDArray[np.float64]]:
-        """Results at the nodes at every update, the unworn first: shape (updates + 1, nodes), directions with 3 more.
+        """Results at the nodes at every update, unworn first: shape (updates + 1, nodes), for directions (updates + 1, nodes, 3).
 
         ``wear_depth_mm``, ``depth_per_cycle_mm``, ``peak_pressure_mpa``, ``sliding_distance_mm``, ``cross_shear``,
-        ``thickness_mm``, ``principal_direction``; 0 at nodes that are not on the articulating surface.
+        ``thickness_mm``, ``principal_direction``; 0 at nodes outside of the articulating surface.
         """
         return self._run["fields"]
 
     @property
     def femur_points_mm(self) -> NDArray[np.float32]:
-        """Vertices of the femur as it stands at neutral, mm: shape (vertices, 3)."""
+        """Vertices of the femur at neutral, mm: shape (vertices, 3)."""
         return self._run["femur_points_mm"]
 
     @property
@@ -207,7 +208,7 @@ class Result:
         return self._run["femur_triangles"]
 
     def femur_points_at(self, increment: int, cycle: Literal["first", "last"] = "first") -> NDArray[np.float64]:
-        """Vertices of the femur at the end of an increment, from 0, of one of the two cycles, mm: shape (vertices, 3)."""
+        """Vertices of the femur at the end of an increment, from 0, of the first or last cycle, mm: shape (vertices, 3)."""
         from .femur import femur_points_at
 
         return femur_points_at(self, increment, cycle)
@@ -220,11 +221,11 @@ class Result:
         return Plots(self)
 
     def to_pandas(self) -> pd.DataFrame:
-        """:attr:`wear` as a data frame; the other tables have a ``to_pandas`` of their own."""
+        """The table :attr:`wear` as a data frame; other tables have a ``to_pandas`` too."""
         return self.wear.to_pandas()
 
     def to_xarray(self) -> xr.Dataset:
-        """Everything as a data set.
+        """Tables and fields as one data set.
 
         Dimensions are ``update`` (the unworn insert is 0), ``node``, ``component``, ``cycle`` (first and last) and
         ``increment``; units are attributes.
@@ -236,12 +237,12 @@ class Result:
     def to_pyvista(
         self, update: int = -1, increment: int | None = None, cycle: Literal["first", "last"] = "last"
     ) -> pv.MultiBlock:
-        """The insert with its fields at an update, and the femur beside it.
+        """The insert with its fields at an update, and the femur.
 
         Args:
-            update: which update, 0 for the unworn insert, -1 for the last.
-            increment: where the femur stands, from 0; at neutral if not given.
-            cycle: of which cycle that increment is.
+            update: the update, 0 for the unworn insert, -1 for the last.
+            increment: the increment at whose end the femur is shown, from 0; by default at neutral.
+            cycle: the cycle of that increment.
         """
         from .scene import scene
 
@@ -264,6 +265,6 @@ class Result:
 
 
 def check_fields(result: Result) -> None:
-    """Refuses a result without fields, of a run that was asked to keep none."""
+    """Raises an error for a result of a run with ``fields=False``."""
     if not result.fields:
         raise CondyleError("this result has no fields at the nodes: run the case with fields=True")

@@ -22,6 +22,12 @@ def test_a_column_is_a_view(result: condyle.Result) -> None:
         result.wear["mass"]
 
 
+@pytest.mark.parametrize("text", ["a,b\n1\n", "a,b\n1,x\n", "a\n1,2\n"])
+def test_a_table_that_no_run_wrote_is_refused(text: str) -> None:
+    with pytest.raises(condyle.BadInput, match=r"wear\.csv: this is not a table that a run wrote"):
+        condyle.Table.from_csv(text, "wear.csv")
+
+
 def test_fields_agree_with_the_table(result: condyle.Result) -> None:
     assert np.array_equal(result.fields["wear_depth_mm"].max(axis=1)[1:], result.wear["max_depth_mm"])
     assert result.update_cycles.tolist() == [0.0, *result.wear["cycles"]]

@@ -1,4 +1,4 @@
-"""Runs: told of, stopped, gone on with, side by side."""
+"""Runs: their progress, interruption, continuation and parallel execution."""
 
 import signal
 import subprocess
