@@ -11,7 +11,7 @@ import condyle
 WRONG = "[contact]\nfrictoin = 0.04\n[march]\nupdates = 0\n"
 
 
-def test_a_wrong_case_is_told_with_its_places() -> None:
+def test_a_wrong_case_names_its_places() -> None:
     with pytest.raises(condyle.BadInput) as raised:
         condyle.Case.from_text(WRONG)
     first, second = raised.value.problems
@@ -48,7 +48,7 @@ def test_every_refusal_says_why(case: object, kind: type, said: str) -> None:
     assert said in str(raised.value)
 
 
-def test_physics_that_cannot_be_solved_is_told_apart() -> None:
+def test_physics_that_cannot_be_solved_has_its_own_exception() -> None:
     # As much wear as goes through any insert.
     worn = {"wear": {"wear_factor_mm3_per_nm": 1e-5}, "march": {"updates": 3}, "insert": {"edge_mm": 3.0}}
     with pytest.raises(condyle.NotSolved) as raised:

@@ -1,4 +1,4 @@
-"""What lies below a run, held against closed forms and finite differences."""
+"""The parts of a run compared with closed forms and finite differences."""
 
 import numpy as np
 import pytest

@@ -72,14 +72,14 @@ def test_all_that_is_public_is_documented() -> None:
 def test_stubs_are_those_of_the_compiled_module() -> None:
     tests = ROOT / "python" / "tests"
     command = [sys.executable, "-m", "mypy.stubtest", "condyle._condyle", "--mypy-config-file", tests / "stubtest.ini"]
-    told = subprocess.run(command, capture_output=True, text=True, cwd=tests, check=False)
-    assert told.returncode == 0, told.stdout + told.stderr
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tests, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_pyright_is_content_with_the_examples() -> None:
     command = [sys.executable, "-m", "pyright", "--pythonpath", sys.executable]
-    told = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "python", check=False)
-    assert told.returncode == 0, told.stdout + told.stderr
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "python", check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 @pytest.mark.parametrize("example", sorted((ROOT / "python" / "examples").glob("*.py")), ids=lambda path: path.stem)

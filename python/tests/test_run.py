@@ -16,11 +16,11 @@ import condyle
 from conftest import ROOT
 
 
-def test_progress_is_told_to_the_end(small: condyle.Case) -> None:
-    told: list[condyle.Progress] = []
-    condyle.run(small, progress=told.append)
-    assert [progress.updates for progress in told if not progress.is_estimating][-1] == 3
-    assert told[-1].part == 1.0 and told[0].part == 0.0
+def test_progress_reaches_the_end(small: condyle.Case) -> None:
+    reported: list[condyle.Progress] = []
+    condyle.run(small, progress=reported.append)
+    assert [progress.updates for progress in reported if not progress.is_estimating][-1] == 3
+    assert reported[-1].part == 1.0 and reported[0].part == 0.0
 
 
 def test_a_bar_is_drawn_and_taken_away(small: condyle.Case, capsys: pytest.CaptureFixture[str]) -> None:

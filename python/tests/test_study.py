@@ -97,10 +97,10 @@ def test_half_of_the_workers_die_and_nothing_is_lost(study: condyle.Study, done:
         distributed.Client(cluster) as client,
     ):
         pids = sorted(client.run(os.getpid).values())
-        told: list[int] = []
+        reported: list[int] = []
 
         def kill_half(progress: condyle.StudyProgress) -> None:
-            told.append(progress.kept)
+            reported.append(progress.kept)
             if 0 < progress.kept < study.tests and pids:
                 for pid in pids[:2]:
                     os.kill(pid, signal.SIGKILL)
@@ -108,7 +108,7 @@ def test_half_of_the_workers_die_and_nothing_is_lost(study: condyle.Study, done:
 
         other = study.run(tmp_path / "other", kill_half, client=client, tests_a_task=2)
     assert not pids, "no worker was killed"
-    assert told[0] == 0 and told[-1] == study.tests
+    assert reported[0] == 0 and reported[-1] == study.tests
     assert table(other) == table(done) and other.answers == done.answers
 
 
@@ -123,9 +123,9 @@ def test_a_study_that_was_stopped_goes_on(study: condyle.Study, done: condyle.St
         study.run(out, _raise, threads=1)
     with pytest.raises(condyle.BadInput, match="an unfinished study"):
         condyle.open_study(out)
-    told: list[float] = []
-    result = study.run(out, lambda progress: told.append(progress.part), threads=2)
-    assert told[0] >= 0.5 and told[-1] == 1.0
+    reported: list[float] = []
+    result = study.run(out, lambda progress: reported.append(progress.part), threads=2)
+    assert reported[0] >= 0.5 and reported[-1] == 1.0
     assert table(result) == table(done)
 
 
@@ -191,7 +191,7 @@ def test_bad_input_says_where(small: condyle.Case, study: condyle.Study, done: c
         study.run(tmp_path / "both", executor=pool, client=object())
 
 
-def test_a_worker_with_other_files_is_told(small: condyle.Case, result: condyle.Result, tmp_path: Path) -> None:
+def test_a_worker_with_other_files_is_refused(small: condyle.Case, result: condyle.Result, tmp_path: Path) -> None:
     from condyle._workers import Source, run_rows
 
     study = condyle.Study.from_dict(TABLES, case=small)
