@@ -1,4 +1,6 @@
-"""Lists the tests that skipped themselves for missing files, as a filter of nextest. Usage: skipped.py JUNIT.XML
+"""Lists the tests that skipped themselves for missing files, as a filter of nextest.
+
+Usage: skipped.py JUNIT.XML
 
 Such a test prints a line that begins with "skipped: ".
 """
