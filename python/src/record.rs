@@ -26,15 +26,15 @@ pub struct Record {
     pub tables: BTreeMap<String, String>,
     /// The femur at neutral, in the insert frame.
     pub femur: TriangleMesh,
-    hexes: Vec<[u32; 8]>,
+    pub hexes: Vec<[u32; 8]>,
     /// Marks the nodes of the articulating surface.
-    articulating: Vec<bool>,
+    pub articulating: Vec<bool>,
     /// Number of updates, the unworn insert included.
-    updates: usize,
+    pub updates: usize,
     /// Positions of the nodes, update after update, mm.
-    points: Vec<f64>,
+    pub points: Vec<f64>,
     /// Scalars and vectors at the nodes, update after update, by name.
-    fields: BTreeMap<String, Vec<f64>>,
+    pub fields: BTreeMap<String, Vec<f64>>,
 }
 
 impl Record {
