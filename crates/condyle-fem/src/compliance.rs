@@ -68,7 +68,7 @@ impl ElasticSolid {
     ///
     /// By reciprocity it is also what forces on `nodes`, such as those of an eigenstrain
     /// ([`YieldingElement::forces`](crate::YieldingElement::forces)), move along the other forces by. A force along a direction that is held moves
-    /// nothing. A column has the same bytes whatever stands beside it, on every run.
+    /// nothing. A column has the same bytes whatever the other columns are, on every run.
     ///
     /// # Panics
     /// If there is no such node.
@@ -80,6 +80,7 @@ impl ElasticSolid {
         let place = |node: u32| self.factor.dissection.place(node);
         let free = |(i, node)| Some((place(node)?, i));
         let rows: Vec<(u32, usize)> = nodes.iter().copied().enumerate().filter_map(free).collect();
+        // Back substitution goes only to the groups of these rows.
         let wanted = self.factor.paths(rows.iter().map(|&(place, _)| place));
         // Forces that are near in the order of elimination load the same fronts.
         let loaded = forces.iter().map(|&(node, _)| node).enumerate();
@@ -155,8 +156,7 @@ impl ElasticSolid {
         self.half_solved_sums(&alone)
     }
 
-    /// The same of sums of forces: each of `forces` is one, of forces on some nodes. What a node is compared with it does
-    /// not feel.
+    /// Solves sums of forces half way: each of `forces` is one, of forces on some nodes.
     ///
     /// # Panics
     /// If there is no such node.
@@ -205,8 +205,8 @@ impl HalfSolved {
         self.forces
     }
 
-    /// Returns how far each force here moves the place of each of the others along it, row-major, a row for each force
-    /// here; as far as those move the places of these, so the same bytes come the other way round.
+    /// Returns the displacement by each force here at each of the others and along it, row-major, a row for each force
+    /// here. By reciprocity the transpose has the same bytes the other way round.
     pub fn moved_along(&self, others: &Self) -> Vec<f64> {
         let common = self.common_rows(others);
         let mut moved = vec![0.0; self.forces * others.forces];

@@ -80,6 +80,7 @@ impl Elastic {
     pub(crate) fn stress(&self, strain: &Strain) -> Stress {
         let (g, mean) = (self.shear_modulus(), strain.trace() / 3.0);
         let pressure = 3.0 * self.bulk_modulus() * mean;
+        // Deviator and pressure apart: near incompressibility the second Lame constant would swamp the first.
         let normal = |strain: f64| 2.0 * g * (strain - mean) + pressure;
         let e = &strain.0;
         Stress([

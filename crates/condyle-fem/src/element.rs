@@ -21,7 +21,7 @@ use crate::{
 
 /// Gauss points of an element.
 pub(crate) const POINTS: usize = 8;
-/// Incompatible functions beside the eight of the nodes.
+/// Incompatible functions besides the eight of the nodes.
 const MODES: usize = 3;
 const FUNCTIONS: usize = 8 + MODES;
 
@@ -52,7 +52,7 @@ pub(crate) struct Element {
     points: [Point; POINTS],
 }
 
-/// Those at one Gauss point.
+/// Strains at one Gauss point by displacements.
 struct Point {
     /// Gradient of every function.
     gradients: [Vec3; FUNCTIONS],
@@ -93,7 +93,7 @@ impl Stiffness {
 }
 
 impl Point {
-    /// Takes away what yielding loses along the flow.
+    /// Subtracts the stiffness that yielding loses along the flow.
     fn soften(&self, softening: &Softening, all: &mut SMatrix<f64, 33, 33>) {
         let along = self
             .gradients
@@ -145,6 +145,8 @@ impl Element {
         let mut points = Vec::with_capacity(POINTS);
         for at in gauss_points() {
             let (volume, inverse) = inverted(&jacobian(corners, at))?;
+            // With the Jacobian of the centre, and over the volume here, the gradients of the modes have no mean: they
+            // do no work on uniform stress, and the element passes the patch test however distorted it is.
             let mode = |k: usize| {
                 centre_inverse.row(k).transpose() * (-2.0 * at[k] * centre_volume / volume)
             };
@@ -168,6 +170,7 @@ impl Element {
         for (point, base) in self.points.iter().zip(&base) {
             gram += base * base.transpose() * point.volume;
         }
+        // Four independent functions at eight points of positive volume: the inverse always exists.
         let inverse = gram.try_inverse().unwrap_or_default();
         for function in 0..FUNCTIONS {
             let mut moments = SMatrix::<f64, 4, 3>::zeros();
@@ -200,6 +203,7 @@ impl Element {
             }
         }
         all.fill_upper_triangle_with_lower_triangle();
+        // The stiffness of the modes is positive definite for any element with a volume: no check is needed.
         Stiffness {
             nodal: all.fixed_view::<24, 24>(0, 0).into_owned(),
             coupling: all.fixed_view::<9, 24>(24, 0).into_owned(),
@@ -220,6 +224,7 @@ impl Element {
         let lost = softenings.map(|s| s.map_or(0.0, |softening| 0.5 * softening.deviatoric));
         let shear = Side::from_fn(|p| (elastic.shear_modulus() - lost[p]) * self.points[p].volume);
         let bulk = Side::from_fn(|p| elastic.bulk_modulus() * self.points[p].volume);
+        // This loop takes most of the time of an assembly: all eight points go side by side through the lanes.
         let gradients = self.sides(|point, f, k| point.gradients[f][k]);
         let dilatations = self.sides(|point, f, k| point.dilatations[f][k]);
         for b in 0..FUNCTIONS {
@@ -252,6 +257,7 @@ impl Element {
     pub(crate) fn forces(&self, stresses: &[Stress; POINTS]) -> ([Vec3; 8], Modes) {
         let mut forces = [Vec3::zeros(); FUNCTIONS];
         for (point, stress) in self.points.iter().zip(stresses) {
+            // The mean stress works on the projected divergence, as in the stiffness.
             let (mean, deviator) = (stress.mean(), stress.deviator());
             for (f, force) in forces.iter_mut().enumerate() {
                 let work = deviator.times(&point.gradients[f]) + point.dilatations[f] * mean;
@@ -321,6 +327,7 @@ fn gauss_points() -> [[f64; 3]; POINTS] {
 
 /// Determinant and inverse of a Jacobian, if it does not fold over.
 fn inverted(jacobian: &Matrix3<f64>) -> Option<(f64, Matrix3<f64>)> {
+    // The determinant is the volume per natural volume; negative means folded over.
     let volume = jacobian.determinant();
     let inverse = jacobian.try_inverse().filter(|_| volume > 0.0);
     Some((volume, inverse?))

@@ -1,4 +1,4 @@
-//! The inside of a mesh follows its moved surface.
+//! Moves the inside of a mesh with its surface.
 
 use crate::{
     Vec3,
@@ -27,7 +27,7 @@ impl InteriorFollower {
     /// A follower of `mesh` whose `held` nodes take a given displacement, and the rest follow.
     ///
     /// # Panics
-    /// If the mesh has not as many nodes as `held` or an element says.
+    /// If `held` or an element names a node that the mesh does not have.
     pub fn new(mesh: &HexMesh, held: impl IntoIterator<Item = u32>) -> Self {
         let mut is_held = vec![false; mesh.nodes.len()];
         for node in held {
@@ -55,12 +55,14 @@ impl InteriorFollower {
     /// # Panics
     /// If there are fewer displacements than the mesh has nodes.
     pub fn follow(&self, displacement: &mut [Vec3]) {
+        // Relative to the pull of the held nodes, not to the first residual: a good starting guess then ends at once.
         let enough2 = (RELATIVE_RESIDUAL * self.pull_of_held(displacement)).powi(2);
         let mut residual: Vec<Vec3> = self.pulls(displacement).collect();
         let (mut length2, mut scaled2) = self.size(&residual);
         let mut direction = vec![Vec3::zeros(); displacement.len()];
         self.turn(&mut direction, &residual, 0.0);
         let mut image = vec![Vec3::zeros(); residual.len()];
+        // In exact arithmetic the method ends after at most as many steps as there are unknowns.
         for _ in 0..self.free.len() {
             if length2 <= enough2 {
                 break;
@@ -113,7 +115,7 @@ impl InteriorFollower {
         })
     }
 
-    /// Length of what the held nodes alone pull by.
+    /// Returns the length of the pull of the held nodes alone.
     fn pull_of_held(&self, displacement: &[Vec3]) -> f64 {
         let mut held = displacement.to_vec();
         for &node in &self.free {
@@ -171,12 +173,12 @@ impl Neighbours {
     }
 }
 
-/// Tells every edge of every hexahedron both ways.
-fn both_ways(mesh: &HexMesh, mut tell: impl FnMut(u32, u32)) {
+/// Calls `visit` with every edge of every hexahedron both ways.
+fn both_ways(mesh: &HexMesh, mut visit: impl FnMut(u32, u32)) {
     for hex in mesh.hexes.iter() {
         for &[a, b] in &HEX_EDGES {
-            tell(hex[a], hex[b]);
-            tell(hex[b], hex[a]);
+            visit(hex[a], hex[b]);
+            visit(hex[b], hex[a]);
         }
     }
 }

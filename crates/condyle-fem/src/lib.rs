@@ -1,4 +1,4 @@
-//! Hexahedral meshes and elements; knows nothing of knees.
+//! Hexahedral meshes and finite elements, independent of knees.
 //!
 //! Lengths are in whatever unit the mesh is in, and forces and moduli in units that go with it; condyle uses
 //! millimetre, newton and MPa.

@@ -70,6 +70,7 @@ impl Material for ElasticPlastic {
                 softening: None,
             };
         };
+        // The return is along the radius, so the trial stress has the final direction.
         let flow = Stress::default().plus(1.0 / relative.norm(), &relative);
         let length = 1.5f64.sqrt() * step;
         let removed = shear3 * step / q;
@@ -92,7 +93,7 @@ impl Material for ElasticPlastic {
     }
 }
 
-/// Isotropic hardening by a table, and linear kinematic hardening beside it.
+/// Isotropic hardening by a table, combined with linear kinematic hardening.
 ///
 /// The yield stress is linear between the points of the table and constant after the last.
 #[derive(Clone, Debug, PartialEq)]

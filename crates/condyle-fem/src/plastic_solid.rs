@@ -21,15 +21,15 @@ use crate::{
 /// Force left over, as part of the forces of loads, elements and plastic strains on nodes, at which there is balance.
 const BALANCED: f64 = 1e-9;
 
-/// Iterations of Newton's method; it doubles its digits once it is near, so more are of no use.
-const ITERATIONS: usize = 40;
+/// Maximum number of Newton iterations; the method doubles its digits once it is near, so more are of no use.
+const MAX_ITERATIONS: usize = 40;
 
 /// Part of the energy of what is left over at which the equations of a Newton step are solved: Newton's
 /// method then gains four digits a step, once near.
 const SOLVED: f64 = 1e-8;
 
-/// Steps of conjugate gradients for a Newton step.
-const GRADIENT_STEPS: usize = 200;
+/// Maximum number of steps of conjugate gradients for a Newton step.
+const MAX_GRADIENT_STEPS: usize = 200;
 
 /// A solid whose material yields; by default that of von Mises.
 pub struct PlasticSolid<M = ElasticPlastic> {
@@ -172,11 +172,13 @@ impl<M: Material> PlasticSolid<M> {
     ) -> Result<PlasticSolution<M::Point>, PlasticError> {
         let (mut displacements, mut modes, size2) = self.predicted(external, before);
         let (mut solves, mut left) = (1, f64::INFINITY);
-        for iterations in 0..ITERATIONS {
+        for iterations in 0..MAX_ITERATIONS {
             let balance = self.balance(&displacements, &modes, before);
             let residual = self.residual(external, &balance);
+            // The larger scale: at rest no stress is left, but rounding of the plastic forces is.
             let size = balance.size2.max(size2).sqrt();
-            left = length(&residual).max(modal_length(&balance.modal)) / size;
+            let modal2: f64 = balance.modal.iter().map(Modes::norm_squared).sum();
+            left = dot(&residual, &residual).sqrt().max(modal2.sqrt()) / size;
             if size == 0.0 || left <= BALANCED {
                 return Ok(solution(displacements, &balance, iterations, solves));
             }
@@ -188,7 +190,7 @@ impl<M: Material> PlasticSolid<M> {
             }
         }
         Err(PlasticError::NoBalance {
-            iterations: ITERATIONS,
+            iterations: MAX_ITERATIONS,
             left,
         })
     }
@@ -295,9 +297,10 @@ impl<M: Material> PlasticSolid<M> {
         let mut energy = dot(&residual, &direction);
         let enough = SOLVED * energy;
         let mut step = vec![Vec3::zeros(); residual.len()];
-        for solves in 1..=GRADIENT_STEPS {
+        for solves in 1..=MAX_GRADIENT_STEPS {
             let forces = self.tangent_forces(&direction, &elastic_forces, yielding);
             let length = energy / dot(&direction, &forces);
+            // Beyond the limit load the tangent is singular: the step so far is the best there is.
             if !(length > 0.0 && length.is_finite()) {
                 return (step, solves);
             }
@@ -312,7 +315,7 @@ impl<M: Material> PlasticSolid<M> {
             turn(&mut elastic_forces, next / energy, &residual);
             energy = next;
         }
-        (step, GRADIENT_STEPS + 1)
+        (step, MAX_GRADIENT_STEPS + 1)
     }
 
     /// Forces of a direction with the tangent: the elastic ones less what yielding elements lose.
@@ -368,14 +371,6 @@ fn solution<P: Copy>(
 
 fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.dot(b)).sum()
-}
-
-fn length(a: &[Vec3]) -> f64 {
-    dot(a, a).sqrt()
-}
-
-fn modal_length(modes: &[Modes]) -> f64 {
-    modes.iter().map(Modes::norm_squared).sum::<f64>().sqrt()
 }
 
 fn add(to: &mut [Vec3], factor: f64, from: &[Vec3]) {

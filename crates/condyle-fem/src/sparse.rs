@@ -108,6 +108,7 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
         layout: &Layout,
         left: &mut [Option<Remainder>],
     ) -> Triangle {
+        // Thousands of fronts of changing size: their memory goes round.
         let memory = self.spare.pop().unwrap_or_default();
         let mut triangle = Triangle::zeros(layout.rows, memory);
         for (i, place) in group.own.clone().enumerate() {
@@ -116,6 +117,7 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
         for (i, &place) in group.boundary.iter().enumerate() {
             self.rows[place as usize] = layout.columns + 3 * i;
         }
+        // A unit pivot keeps such a row out of all others.
         for row in self.untouched(group, layout) {
             *triangle.at_mut(row, row) = 1.0;
         }
@@ -149,6 +151,7 @@ impl<S: FnMut(usize) -> NodalStiffness> Assembly<'_, S> {
                 continue;
             };
             let place = place as usize;
+            // The pivots are compared with the stiffness as assembled, before elimination reduces them.
             for i in (0..3).filter(|&i| !self.held[node as usize][i]) {
                 freedoms.push((self.rows[place] + i, 3 * corner + i));
                 self.diagonal[3 * place + i] += stiffness[(3 * corner + i, 3 * corner + i)];

@@ -1,7 +1,7 @@
-//! Supports that move: what they do to a solid that they hold.
+//! Supports that move: their effect on a solid that they hold.
 //!
 //! With the stiffness K parted into free nodes f and held nodes h, a motion u of what is held takes the free nodes
-//! along as forces -K_fh u would, and needs the forces K_hh u beside what those push back.
+//! along as forces -K_fh u would, and needs the forces K_hh u besides the reaction to those.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::{Vec3, compliance::HalfSolved, solid::ElasticSolid};
 /// Displacements of some held nodes.
 type Motion = [(u32, Vec3)];
 
-/// Motions of the supports of a solid, each alone: as forces on its free nodes, solved half way, and what they need.
+/// Motions of the supports of a solid, each alone: as forces on its free nodes, solved half way, and their stiffness.
 ///
 /// With forces b on the solid and its supports moved by $u = \sum_j q_j u_j$ the supports push with the forces R along the
 /// motions,
@@ -51,8 +51,32 @@ impl ElasticSolid {
                 self.half_solved_sums(&pushed.iter().map(Vec::as_slice).collect::<Vec<_>>())
             })
             .collect();
-        let mut stiffness = direct(&motions, &forces);
-        take_what_gives_way(&solved, motions.len(), &mut stiffness);
+        // Work of the forces of each motion on every other, with the free nodes fixed ...
+        let count = motions.len();
+        let mut stiffness = Vec::with_capacity(count * count);
+        for moved in &motions {
+            for forces in &forces {
+                let works = moved.iter();
+                let works = works.filter_map(|(node, by)| Some(forces.get(node)?.dot(by)));
+                stiffness.push(works.sum::<f64>());
+            }
+        }
+        // ... less the products of the half-solved forces, since the free nodes deflect.
+        let mut first_row = 0;
+        for one in &solved {
+            let mut first_column = 0;
+            for other in &solved {
+                let products = one.moved_along(other);
+                for (row, products) in products.chunks_exact(other.forces()).enumerate() {
+                    let own = &mut stiffness[(first_row + row) * count + first_column..];
+                    for (own, product) in own.iter_mut().zip(products) {
+                        *own -= product;
+                    }
+                }
+                first_column += other.forces();
+            }
+            first_row += one.forces();
+        }
         MovedSupports { solved, stiffness }
     }
 
@@ -107,37 +131,6 @@ impl ElasticSolid {
             }
         }
         forces
-    }
-}
-
-/// Work of the forces of each motion on every other, the free nodes where they were.
-fn direct(motions: &[&Motion], forces: &[BTreeMap<u32, Vec3>]) -> Vec<f64> {
-    let work = |moved: &Motion, forces: &BTreeMap<u32, Vec3>| -> f64 {
-        let own = moved.iter();
-        own.filter_map(|(node, by)| Some(forces.get(node)?.dot(by)))
-            .sum()
-    };
-    let rows = motions.iter();
-    rows.flat_map(|moved| forces.iter().map(|forces| work(moved, forces)))
-        .collect()
-}
-
-/// Subtracts the products of half-solved forces: what the free nodes deflect by.
-fn take_what_gives_way(solved: &[HalfSolved], count: usize, stiffness: &mut [f64]) {
-    let mut first_row = 0;
-    for one in solved {
-        let mut first_column = 0;
-        for other in solved {
-            let products = one.moved_along(other);
-            for (row, products) in products.chunks_exact(other.forces()).enumerate() {
-                let own = &mut stiffness[(first_row + row) * count + first_column..];
-                for (own, product) in own.iter_mut().zip(products) {
-                    *own -= product;
-                }
-            }
-            first_column += other.forces();
-        }
-        first_row += one.forces();
     }
 }
 

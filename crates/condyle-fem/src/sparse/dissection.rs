@@ -11,7 +11,7 @@ use crate::{Vec3, mesh::HexMesh};
 /// A set of so few nodes is not cut again.
 const SMALL: usize = 8;
 
-/// Stands for a node that is held, and so is not eliminated.
+/// Place of a node that is held, and so is not eliminated.
 const HELD: u32 = u32::MAX;
 
 /// Nodes that are eliminated at once, and those that they still touch.
@@ -131,24 +131,21 @@ impl Cutter<'_> {
         }
         let axis = longest_side(self.mesh.positions(&nodes));
         let along = |node: &u32| self.mesh.nodes[*node as usize][axis];
+        // Ties by number, so that the order does not depend on the sort.
         nodes.sort_by(|a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
         let upper = nodes.split_off(nodes.len() / 2);
         self.cuts += 1;
         for &node in &nodes {
             self.side[node as usize] = self.cuts;
         }
-        let (between, upper) = upper
-            .into_iter()
-            .partition(|&node| self.touches_lower(node));
+        let (between, upper) = upper.into_iter().partition(|&node: &u32| {
+            let elements = self.around[node as usize].iter();
+            let mut near = elements.flat_map(|&element| self.mesh.hexes[element as usize]);
+            near.any(|node| self.side[node as usize] == self.cuts)
+        });
         let mut last = self.cut(nodes);
         last.extend(self.cut(upper));
         self.close(between, last)
-    }
-
-    fn touches_lower(&self, node: u32) -> bool {
-        let elements = self.around[node as usize].iter();
-        let mut near = elements.flat_map(|&element| self.mesh.hexes[element as usize]);
-        near.any(|node| self.side[node as usize] == self.cuts)
     }
 
     /// Makes a group of some nodes, in the order of their numbers.

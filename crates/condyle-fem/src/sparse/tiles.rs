@@ -71,6 +71,7 @@ impl Triangle {
     /// The first column whose pivot is too small.
     pub(crate) fn eliminate(&mut self, columns: usize, least: &[f64]) -> Result<(), usize> {
         let rows = self.size / TILE;
+        // Right-looking by panels, left-looking within one: each number is loaded once per panel.
         for start in (0..columns).step_by(PANEL) {
             let end = (start + PANEL).min(columns);
             for column in (start..end).step_by(TILE) {
@@ -134,6 +135,7 @@ impl Triangle {
             if pivot.is_nan() || pivot <= least[j - start] {
                 return Err(j);
             }
+            // The inverse is stored, so that all solves multiply instead of dividing.
             let inverse = 1.0 / pivot.sqrt();
             *self.at_mut(j, j) = inverse;
             for i in j + 1..start + TILE {

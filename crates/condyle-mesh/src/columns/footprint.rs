@@ -33,9 +33,7 @@ pub(super) struct Footprint<'a> {
     thinnest_mm: f64,
     /// Points at which it is sampled, with a margin around the shell.
     pub(super) samples: ColumnGrid,
-    /// Samples whose vertical line meets the shell.
     pub(super) meets_shell: Vec<bool>,
-    /// Samples on which a column may stand.
     pub(super) holds: Vec<bool>,
     bridges: Bridges,
 }

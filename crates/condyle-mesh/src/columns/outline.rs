@@ -170,7 +170,6 @@ impl Loop {
         ends.map(|(a, b)| turn(&a, &b) / 2.0).sum()
     }
 
-    /// Returns the mean of its points.
     pub(super) fn middle(&self) -> Place {
         self.points.iter().sum::<Place>() / self.points.len() as f64
     }

@@ -15,7 +15,6 @@ const ROUNDS: usize = 40;
 /// A plan whose rim lies on the outline, while it is smoothed.
 pub(super) struct Ring<'a> {
     places: Vec<Place>,
-    /// The outline around each place.
     outlines: Vec<&'a Loop>,
     quads: Vec<[u32; 4]>,
     rims: Vec<Rim<'a>>,
@@ -26,7 +25,6 @@ struct Rim<'a> {
     outline: &'a Loop,
     /// Places on the outline, in the order of the line.
     outer: Vec<u32>,
-    /// Places of the line.
     inner: Vec<u32>,
     /// Length along the outline to each outer place, mm; it grows, and so beyond one time round.
     along_mm: Vec<f64>,

@@ -17,11 +17,8 @@ const MAX_ROUNDS: usize = 40;
 /// The range in which a place may be moved.
 #[derive(Clone, Copy)]
 pub(super) enum Freedom<'a> {
-    /// Not at all.
     Held,
-    /// Along an outline that it is on.
     Along(&'a Loop),
-    /// Anywhere inside an outline.
     Within(&'a Loop),
 }
 

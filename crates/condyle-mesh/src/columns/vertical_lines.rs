@@ -28,9 +28,7 @@ pub(super) struct VerticalLines<'a> {
 /// First and last intersection of a vertical line with a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Through {
-    /// Lowest crossing, mm.
     pub(super) bottom: f64,
-    /// Highest crossing, mm.
     pub(super) top: f64,
     /// Cosine of the slope at the highest.
     pub(super) upward: f64,

@@ -132,7 +132,6 @@ impl<'a> HexDraft<'a> {
         self.surfaces.entry(surface).push((at.line, nodes));
     }
 
-    /// Adds nodes to the set of that name.
     pub(crate) fn set_nodes(&mut self, set: &str, nodes: impl IntoIterator<Item = u64>) {
         self.node_sets.entry(set).extend(nodes);
     }
@@ -163,8 +162,8 @@ impl<'a> HexDraft<'a> {
             let problem = "holds no hexahedra; export the volume mesh with 8-node hexahedra";
             return Err(At::file(self.path).error(problem));
         }
-        let all = self.all_nodes()?;
-        for (hex, quality) in self.hexes.iter().zip(all.qualities()) {
+        let (mesh, kept) = self.mesh()?;
+        for (hex, quality) in self.hexes.iter().zip(mesh.qualities()) {
             if quality <= 0.0 {
                 return Err(self.at(hex.line).error(format!(
                     "hexahedron {} is inverted or flat (scaled Jacobian {quality:.3}); \
@@ -173,7 +172,6 @@ impl<'a> HexDraft<'a> {
                 )));
             }
         }
-        let (mesh, kept) = without_unused_nodes(&all);
         let number = |label: &u64| kept[*self.node_of_label.get(label)?];
         let node_sets = self.node_sets.lists.iter().map(|(name, members)| {
             let mut nodes: Vec<u32> = members.iter().filter_map(number).collect();
@@ -191,24 +189,32 @@ impl<'a> HexDraft<'a> {
         })
     }
 
-    fn all_nodes(&self) -> Result<HexMesh, MeshFileError> {
+    /// Returns the mesh without nodes that no hexahedron uses, and the number in it of each node of the file.
+    fn mesh(&self) -> Result<(HexMesh, Vec<Option<u32>>), MeshFileError> {
+        let mut used = vec![false; self.nodes.len()];
         let mut hexes = Vec::with_capacity(self.hexes.len());
         for hex in &self.hexes {
             let mut numbers = [0; 8];
             for (number, &label) in numbers.iter_mut().zip(&hex.nodes) {
-                let node = self.node_of_label.get(&label).ok_or_else(|| {
+                *number = *self.node_of_label.get(&label).ok_or_else(|| {
                     let element = format_args!("element {}", hex.label);
                     self.at(hex.line)
                         .no_such_vertex(element, label.cast_signed(), "otherwise")
                 })?;
-                *number = *node as u32;
+                used[*number] = true;
             }
             hexes.push(numbers);
         }
-        Ok(HexMesh {
-            nodes: self.nodes.clone(),
-            hexes: hexes.into(),
-        })
+        let mut nodes = Vec::new();
+        let mut kept = vec![None; self.nodes.len()];
+        for (index, position) in self.nodes.iter().enumerate().filter(|&(i, _)| used[i]) {
+            kept[index] = Some(nodes.len() as u32);
+            nodes.push(*position);
+        }
+        let hexes = hexes.iter();
+        let hexes = hexes.map(|hex| hex.map(|node| kept[node].unwrap_or_default()));
+        let hexes = hexes.collect();
+        Ok((HexMesh { nodes, hexes }, kept))
     }
 
     /// Returns the surfaces with each quad once, as the mesh's boundary has it.
@@ -241,23 +247,6 @@ impl<'a> HexDraft<'a> {
         };
         self.surfaces.lists.iter().map(surface).collect()
     }
-}
-
-/// Returns the mesh without nodes that no hexahedron uses, and the new number of each old node.
-fn without_unused_nodes(all: &HexMesh) -> (HexMesh, Vec<Option<u32>>) {
-    let mut used = vec![false; all.nodes.len()];
-    for &node in all.hexes.as_flattened() {
-        used[node as usize] = true;
-    }
-    let mut nodes = Vec::new();
-    let mut kept = vec![None; all.nodes.len()];
-    for (index, position) in all.nodes.iter().enumerate().filter(|&(i, _)| used[i]) {
-        kept[index] = Some(nodes.len() as u32);
-        nodes.push(*position);
-    }
-    let renumber = |node: u32| kept[node as usize].unwrap_or_default();
-    let hexes = all.hexes.iter().map(|hex| hex.map(renumber)).collect();
-    (HexMesh { nodes, hexes }, kept)
 }
 
 fn sorted<T: Ord>(mut quad: [T; 4]) -> [T; 4] {

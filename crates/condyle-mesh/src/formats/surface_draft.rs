@@ -37,7 +37,6 @@ impl<'a> SurfaceDraft<'a> {
         self.points.len()
     }
 
-    /// Adds the next vertex.
     pub(crate) fn point(&mut self, at: At, point: [f64; 3]) -> Result<(), MeshFileError> {
         let number = self.points.len() as i64 + self.first_vertex;
         let position = at.position(format_args!("vertex {number}"), point)?;
@@ -67,7 +66,6 @@ impl<'a> SurfaceDraft<'a> {
         Ok(())
     }
 
-    /// Adds a triangle between the last three points.
     pub(crate) fn triangle_of_last_points(&mut self, at: At) -> Result<(), MeshFileError> {
         let end = self.points.len() as i64 + self.first_vertex;
         self.polygon(at, &[end - 3, end - 2, end - 1])

@@ -119,7 +119,6 @@ impl<'p> Piece<'p> {
         Ok(read)
     }
 
-    /// Returns the arrays of a group.
     pub(crate) fn arrays(&self, group: &str) -> &[DataArray] {
         let found = self.groups.iter().find(|(name, _)| *name == group);
         found.map_or(&[], |(_, arrays)| arrays)

@@ -19,7 +19,6 @@ fn meet(one: &Bounds, other: &Bounds) -> bool {
 
 struct BoxNode {
     bounds: Bounds,
-    /// Range of its triangles in the tree's order.
     start: u32,
     end: u32,
     /// The two nodes below; none for a leaf.
@@ -42,7 +41,6 @@ pub(super) struct BoxTree {
 }
 
 impl BoxTree {
-    /// Returns the tree of a mesh's triangles.
     pub(super) fn new(mesh: &TriangleMesh) -> Self {
         Self::with_margin(mesh, 0.0)
     }

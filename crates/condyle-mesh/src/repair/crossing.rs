@@ -5,14 +5,12 @@ use std::ops::ControlFlow;
 use super::{box_tree::BoxTree, edges::edge_uses};
 use crate::{Vec3, triangle_mesh::TriangleMesh};
 
-/// The crossings of a mesh with itself.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Crossings {
     /// Pairs of triangles whose cut is no wrinkle, rising, each with a point of the cut, mm.
     pub(super) found: Vec<([usize; 2], Vec3)>,
     /// The place where the search ended because too many triangles lie on one another.
     pub(super) gave_up_at_mm: Option<Vec3>,
-    /// Number of pairs of triangles that cross as part of a wrinkle.
     pub(super) wrinkles: usize,
 }
 
@@ -112,7 +110,6 @@ fn cut_corner(corners: &mut Corners, corner: usize) {
     corners[corner] += LEFT_OUT * (opposite - corners[corner]);
 }
 
-/// Corners of a triangle.
 type Corners = [Vec3; 3];
 
 /// Returns the shortest shift of one of two triangles that parts them, if it is more than `min_depth` >= 0.

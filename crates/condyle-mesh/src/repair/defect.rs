@@ -33,43 +33,25 @@ pub enum DefectKind {
 }
 
 impl DefectKind {
-    /// Returns its name, for one and for several, and its treatment away from where bodies can touch.
-    fn words(self) -> (&'static str, &'static str, &'static str) {
+    /// Returns its noun for one and for several, the rest of its name, and its treatment away from where bodies can
+    /// touch.
+    fn words(self) -> (&'static str, &'static str, &'static str, &'static str) {
         match self {
-            Self::Unwelded => (
-                "vertex apart by rounding",
-                "vertices apart by rounding",
-                "welded",
-            ),
-            Self::Joint => (
-                "vertex on another's edge",
-                "vertices on others' edges",
-                "joined",
-            ),
-            Self::Sliver => ("sliver", "slivers", "taken out"),
-            Self::Doubled => ("doubled face", "doubled faces", "made single"),
-            Self::NonManifoldEdge => (
-                "edge of three or more triangles",
-                "edges of three or more triangles",
-                "left",
-            ),
-            Self::OneSided => (
-                "edge of a one-sided surface",
-                "edges of a one-sided surface",
-                "left",
-            ),
-            Self::Crossing => (
-                "pair of triangles that cross",
-                "pairs of triangles that cross",
-                "left",
-            ),
+            Self::Unwelded => ("vertex", "vertices", " apart by rounding", "welded"),
+            Self::Joint => ("vertex", "vertices", " inside an edge", "joined"),
+            Self::Sliver => ("sliver", "slivers", "", "removed"),
+            Self::Doubled => ("doubled face", "doubled faces", "", "made single"),
+            Self::NonManifoldEdge => ("edge", "edges", " of three or more triangles", "left"),
+            Self::OneSided => ("edge", "edges", " of a one-sided surface", "left"),
+            Self::Crossing => ("pair", "pairs", " of triangles that cross", "left"),
             Self::Fragment => (
-                "open piece or inner wall",
-                "open pieces or inner walls",
+                "open or inner piece",
+                "open or inner pieces",
+                "",
                 "left out",
             ),
-            Self::Hole => ("hole", "holes", "closed"),
-            Self::Tangle => ("tangle of triangles", "tangles of triangles", "left"),
+            Self::Hole => ("hole", "holes", "", "closed"),
+            Self::Tangle => ("tangle", "tangles", " of triangles", "left"),
         }
     }
 }
@@ -91,33 +73,33 @@ impl Defect {
 
     /// Describes kind, count and the first `max` places: "2 holes at (1.00, 2.00, 3.00), ... mm".
     pub fn listed(&self, max: usize) -> String {
-        let (one, several, _) = self.kind.words();
-        let name = if self.count == 1 { one } else { several };
-        let places = &self.places_mm[..self.places_mm.len().min(max)];
-        let shown: Vec<String> = places.iter().map(point).collect();
-        let more = match self.count - places.len() {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        format!("{} {name} at {} mm{more}", self.count, shown.join(", "))
+        self.described("", max)
     }
 
     /// Describes the same with the treatment: "2 holes (closed) at ...".
     pub fn listed_with_repair(&self, max: usize) -> String {
-        let (one, several, done) = self.kind.words();
-        let name = if self.count == 1 { one } else { several };
-        self.listed(max)
-            .replacen(name, &format!("{name} ({done})"), 1)
+        let (.., treatment) = self.kind.words();
+        self.described(&format!(" ({treatment})"), max)
+    }
+
+    fn described(&self, treatment: &str, max: usize) -> String {
+        let (one, several, rest, _) = self.kind.words();
+        let noun = if self.count == 1 { one } else { several };
+        let places = &self.places_mm[..self.places_mm.len().min(max)];
+        let shown = places.iter().map(|at| {
+            // Adding zero turns -0 into 0.
+            let [x, y, z] = [at.x, at.y, at.z].map(|one| (one * 100.0).round() / 100.0 + 0.0);
+            format!("({x:.2}, {y:.2}, {z:.2})")
+        });
+        let shown = shown.collect::<Vec<_>>().join(", ");
+        let more = match self.count - places.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        format!("{} {noun}{rest}{treatment} at {shown} mm{more}", self.count)
     }
 }
 
-fn point(at: &Vec3) -> String {
-    // Adding zero turns -0 into 0.
-    let [x, y, z] = [at.x, at.y, at.z].map(|one| (one * 100.0).round() / 100.0 + 0.0);
-    format!("({x:.2}, {y:.2}, {z:.2})")
-}
-
-/// Counts one more defect at a place.
 pub(super) fn add(defects: &mut Vec<Defect>, kind: DefectKind, at_mm: Vec3) {
     let index = defects.iter().position(|defect| defect.kind == kind);
     let index = index.unwrap_or_else(|| {

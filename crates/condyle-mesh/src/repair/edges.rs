@@ -31,7 +31,6 @@ pub(super) fn edge_uses(mesh: &TriangleMesh) -> Vec<EdgeUse> {
     uses
 }
 
-/// Returns the uses of each edge.
 pub(super) fn by_edge(uses: &[EdgeUse]) -> impl Iterator<Item = &[EdgeUse]> {
     uses.chunk_by(|one, other| one.ends == other.ends)
 }
@@ -120,13 +119,11 @@ impl Piece {
             .flat_map(|&triangle| mesh.triangles[triangle as usize])
     }
 
-    /// Returns the lowest and highest coordinate along each axis.
     pub(super) fn bounds(&self, mesh: &TriangleMesh) -> (Vec3, Vec3) {
         bounds(self.vertices(mesh).map(|v| &mesh.vertices[v as usize]))
     }
 }
 
-/// Result of turning the triangles of a mesh.
 pub(super) struct Oriented {
     pub(super) pieces: Vec<Piece>,
     /// Some closed piece was inside-out.

@@ -45,7 +45,6 @@ const MAX_CELLS: f64 = 400.0;
 /// covers its view a few times.
 const MAX_LAYERS: usize = 32;
 
-/// The part of one mesh that can be touched.
 pub(super) struct TouchMap {
     touching: Touching,
     /// None if the mesh covers itself too often to be looked at.
@@ -62,7 +61,6 @@ impl TouchMap {
         }
     }
 
-    /// Returns whether another body can touch a place of the mesh.
     pub(super) fn contains(&self, at_mm: &Vec3) -> bool {
         let Some(views) = &self.views else {
             return true;

@@ -37,7 +37,6 @@ pub(super) fn weld(mesh: &mut TriangleMesh, uses: &[EdgeUse], within: f64) -> Ve
     places
 }
 
-/// Replaces the vertices of all triangles.
 fn rename(mesh: &mut TriangleMesh, replacement: &[u32]) {
     for triangle in &mut mesh.triangles {
         *triangle = triangle.map(|vertex| replacement[vertex as usize]);
@@ -96,7 +95,11 @@ pub(super) fn remove_degenerate(mesh: &mut TriangleMesh) -> usize {
         if flat.is_empty() {
             break;
         }
-        let on_edge = on_edge.get_or_insert_with(|| TrianglesOnEdges::new(mesh));
+        let on_edge = on_edge.get_or_insert_with(|| {
+            let mut on_edge = TrianglesOnEdges::with_capacity(2 * mesh.triangles.len());
+            (0..mesh.triangles.len()).for_each(|index| add_edges(&mut on_edge, mesh, index));
+            on_edge
+        });
         let flat = flat.iter();
         let merged_now = flat
             .filter(|&&t| merge_into_neighbour(mesh, t, on_edge))
@@ -140,7 +143,16 @@ fn merge_into_neighbour(
     let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter();
     let longest_edge_last = turned.max_by(|one, other| length(one).total_cmp(&length(other)));
     let [end, middle, other_end] = longest_edge_last.unwrap_or([a, b, c]);
-    let Some(neighbour) = on_edge.first_other(mesh, index, [end, other_end]) else {
+    // An edge of more triangles belongs to no surface; it is not searched again and again.
+    const MAX_ROUND: usize = 16;
+    let round = on_edge.get(&[end.min(other_end), end.max(other_end)]);
+    let round = round.filter(|round| round.len() <= MAX_ROUND).into_iter();
+    let others = round.flatten().copied().filter(|&other| other != index);
+    let has_both = |t: &[u32; 3]| t.contains(&end) && t.contains(&other_end);
+    let neighbour = others
+        .filter(|&other| has_both(&mesh.triangles[other]))
+        .min();
+    let Some(neighbour) = neighbour else {
         return false;
     };
     let whole = mesh.triangles[neighbour];
@@ -150,38 +162,17 @@ fn merge_into_neighbour(
     let with_middle_for = |old: u32| whole.map(|v| if v == old { middle } else { v });
     mesh.triangles[neighbour] = with_middle_for(end);
     mesh.triangles[index] = with_middle_for(other_end);
-    on_edge.add(mesh, neighbour);
-    on_edge.add(mesh, index);
+    add_edges(on_edge, mesh, neighbour);
+    add_edges(on_edge, mesh, index);
     true
 }
 
 /// The triangles that have, or had before they were split, an edge.
-struct TrianglesOnEdges(HashMap<[u32; 2], Vec<usize>>);
+type TrianglesOnEdges = HashMap<[u32; 2], Vec<usize>>;
 
-impl TrianglesOnEdges {
-    fn new(mesh: &TriangleMesh) -> Self {
-        let mut on_edge = Self(HashMap::with_capacity(2 * mesh.triangles.len()));
-        (0..mesh.triangles.len()).for_each(|index| on_edge.add(mesh, index));
-        on_edge
-    }
-
-    fn add(&mut self, mesh: &TriangleMesh, index: usize) {
-        for ends in sides(&mesh.triangles[index]) {
-            self.0.entry(ends).or_default().push(index);
-        }
-    }
-
-    /// Returns the triangle of the lowest number that has an edge, other than `index`.
-    fn first_other(&self, mesh: &TriangleMesh, index: usize, [a, b]: [u32; 2]) -> Option<usize> {
-        // An edge of more triangles belongs to no surface; it is not searched again and again.
-        const MAX_ROUND: usize = 16;
-        let round = self.0.get(&[a.min(b), a.max(b)])?;
-        let round = Some(round).filter(|round| round.len() <= MAX_ROUND)?;
-        let others = round.iter().copied().filter(|&other| other != index);
-        let has_both = |t: &[u32; 3]| t.contains(&a) && t.contains(&b);
-        others
-            .filter(|&other| has_both(&mesh.triangles[other]))
-            .min()
+fn add_edges(on_edge: &mut TrianglesOnEdges, mesh: &TriangleMesh, index: usize) {
+    for ends in sides(&mesh.triangles[index]) {
+        on_edge.entry(ends).or_default().push(index);
     }
 }
 
