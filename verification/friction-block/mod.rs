@@ -156,7 +156,7 @@ fn working() -> Row {
     let shares = insert.surface().shares;
     let mut work_nmm = 0.0;
     for (node, share) in shares.iter().enumerate() {
-        for moment in cycle.history.node(node).moments() {
+        for moment in cycle.history.moments(node) {
             let slip_mm = moment.slip_mm[0].hypot(moment.slip_mm[1]);
             let part = friction_n(slip_mm / step_s) / LOAD_N;
             work_nmm += part * moment.pressure_mpa * share.area_mm2 * slip_mm;

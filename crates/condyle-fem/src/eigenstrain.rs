@@ -11,7 +11,7 @@ use crate::{
     Vec3,
     elastic::Elastic,
     element::{Modes, POINTS, Stiffness},
-    material::Material,
+    material::{Material, MaterialPoint},
     solid::{ElasticSolid, moved},
     stress::{Strain, Stress},
 };
@@ -137,7 +137,7 @@ impl YieldingElement {
         nodes: &[Vec3; 8],
         [trial, before]: [&[M::Point; POINTS]; 2],
     ) -> [M::Point; POINTS] {
-        let strains = self.strains(solid, nodes, &trial.map(|point| M::eigenstrain(&point)));
+        let strains = self.strains(solid, nodes, &trial.map(|point| point.eigenstrain()));
         std::array::from_fn(|p| material.respond(&strains[p], &before[p]).point)
     }
 
@@ -150,7 +150,7 @@ impl YieldingElement {
         nodes: &[Vec3; 8],
         before: &[M::Point; POINTS],
     ) -> f64 {
-        let strains = self.strains(solid, nodes, &before.map(|point| M::eigenstrain(&point)));
+        let strains = self.strains(solid, nodes, &before.map(|point| point.eigenstrain()));
         let used = strains.iter().zip(before);
         used.map(|(strain, before)| material.use_of_yield(strain, before))
             .fold(0.0, f64::max)

@@ -75,7 +75,7 @@ pub use compliance::{Compliance, HalfSolved};
 pub use eigenstrain::{ElementMean, YieldingElement};
 pub use elastic::{Elastic, ElasticError};
 pub use follow::InteriorFollower;
-pub use material::{Material, Response, Softening};
+pub use material::{Material, MaterialPoint, Response, Softening};
 pub use mesh::{HEX_FACES, HexMesh, trilinear_volume, volume_below};
 pub use plastic::{ElasticPlastic, Hardening, HardeningError, PlasticPoint};
 pub use plastic_solid::{PlasticError, PlasticSolid, PlasticSolution, PlasticState};

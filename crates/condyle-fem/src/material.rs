@@ -1,5 +1,7 @@
 //! Materials: the response of a point to strain.
 
+use std::fmt::Debug;
+
 use crate::{
     elastic::Elastic,
     stress::{Strain, Stress},
@@ -8,16 +10,17 @@ use crate::{
 /// A material of small strains, of which elastic stiffness is a bound: what yields is softer.
 ///
 /// The elements ask every Gauss point for its response; a new material is one file with an implementation of this
-/// trait. The solvers factor the elastic stiffness once and correct it where the response is softer.
+/// trait and of [`MaterialPoint`]. The solvers factor the elastic stiffness once and correct it where the response is
+/// softer.
 pub trait Material {
-    /// The internal variables of a point, from load to load; the default is the virgin material.
-    type Point: Copy + Default + PartialEq;
+    /// The internal variables of a point.
+    type Point: MaterialPoint;
 
     /// Returns the elastic constants.
     fn elastic(&self) -> Elastic;
 
-    /// Returns the part of the strain that needs no stress.
-    fn eigenstrain(point: &Self::Point) -> Strain;
+    /// Returns the equivalent stress at which the virgin material yields, infinite if it never does.
+    fn initial_yield_stress(&self) -> f64;
 
     /// Returns the response to a strain, from the internal variables before the load.
     fn respond(&self, strain: &Strain, before: &Self::Point) -> Response<Self::Point>;
@@ -25,6 +28,32 @@ pub trait Material {
     /// Returns the equivalent stress over the yield stress that an elastic step to a strain would cause; more than 1
     /// where the material yields, and 0 if it never does.
     fn use_of_yield(&self, strain: &Strain, before: &Self::Point) -> f64;
+}
+
+/// The internal variables of a material point, from load to load; the default is the virgin material.
+pub trait MaterialPoint: Copy + Debug + Default + PartialEq {
+    /// The name of the field in which a checkpoint stores them.
+    const FIELD: &'static str;
+    /// The count of their numbers there.
+    const NUMBERS: usize;
+
+    /// Returns the part of the strain that needs no stress.
+    fn eigenstrain(&self) -> Strain;
+
+    /// Tries another such strain, with all else as it is.
+    fn set_eigenstrain(&mut self, strain: Strain);
+
+    /// Returns the accumulated equivalent plastic strain, which never falls.
+    fn accumulated(&self) -> f64;
+
+    /// Returns the numbers for the checkpoint.
+    fn numbers(&self) -> Vec<f64>;
+
+    /// Returns the point with these numbers.
+    ///
+    /// # Panics
+    /// If there are fewer than [`MaterialPoint::NUMBERS`].
+    fn from_numbers(numbers: &[f64]) -> Self;
 }
 
 /// The response of a material point to a strain.
@@ -56,8 +85,8 @@ impl Material for Elastic {
         *self
     }
 
-    fn eigenstrain((): &()) -> Strain {
-        Strain::default()
+    fn initial_yield_stress(&self) -> f64 {
+        f64::INFINITY
     }
 
     fn respond(&self, strain: &Strain, (): &()) -> Response<()> {
@@ -71,4 +100,26 @@ impl Material for Elastic {
     fn use_of_yield(&self, _: &Strain, (): &()) -> f64 {
         0.0
     }
+}
+
+/// An elastic point has no internal variables.
+impl MaterialPoint for () {
+    const FIELD: &'static str = "";
+    const NUMBERS: usize = 0;
+
+    fn eigenstrain(&self) -> Strain {
+        Strain::default()
+    }
+
+    fn set_eigenstrain(&mut self, _: Strain) {}
+
+    fn accumulated(&self) -> f64 {
+        0.0
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn from_numbers(_: &[f64]) -> Self {}
 }

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::{
     elastic::Elastic,
-    material::{Material, Response, Softening},
+    material::{Material, MaterialPoint, Response, Softening},
     stress::{Strain, Stress},
 };
 
@@ -40,8 +40,8 @@ impl Material for ElasticPlastic {
         self.elastic
     }
 
-    fn eigenstrain(point: &PlasticPoint) -> Strain {
-        point.strain
+    fn initial_yield_stress(&self) -> f64 {
+        self.hardening.yield_stress(0.0)
     }
 
     fn use_of_yield(&self, strain: &Strain, before: &PlasticPoint) -> f64 {
@@ -89,6 +89,36 @@ impl Material for ElasticPlastic {
                 along_flow: shear2 * (shear3 / (shear3 + kinematic + slope) - removed),
                 flow,
             }),
+        }
+    }
+}
+
+/// Six numbers of strain, six of backstress, and the accumulated strain.
+impl MaterialPoint for PlasticPoint {
+    const FIELD: &'static str = "plastic_strain_and_backstress_mpa";
+    const NUMBERS: usize = 13;
+
+    fn eigenstrain(&self) -> Strain {
+        self.strain
+    }
+
+    fn set_eigenstrain(&mut self, strain: Strain) {
+        self.strain = strain;
+    }
+
+    fn accumulated(&self) -> f64 {
+        self.accumulated
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        [&self.strain.0[..], &self.backstress.0, &[self.accumulated]].concat()
+    }
+
+    fn from_numbers(numbers: &[f64]) -> Self {
+        Self {
+            strain: Strain(std::array::from_fn(|i| numbers[i])),
+            backstress: Stress(std::array::from_fn(|i| numbers[6 + i])),
+            accumulated: numbers[12],
         }
     }
 }

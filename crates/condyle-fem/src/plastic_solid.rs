@@ -12,7 +12,7 @@ use thiserror::Error;
 use crate::{
     Vec3,
     element::{Modes, NodalStiffness, POINTS, Stiffness, flat},
-    material::{Material, Response},
+    material::{Material, MaterialPoint, Response},
     plastic::{ElasticPlastic, Hardening, PlasticPoint},
     solid::{ElasticSolid, moved},
     stress::Stress,
@@ -207,7 +207,7 @@ impl<M: Material> PlasticSolid<M> {
         let mut size2 = dot(external, external);
         let mut pulls = Vec::with_capacity(self.stiffnesses.len());
         for (e, points) in before.elements.iter().enumerate() {
-            let stresses = points.map(|point| elastic.stress(&M::eigenstrain(&point)));
+            let stresses = points.map(|point| elastic.stress(&point.eigenstrain()));
             let (nodes, pull) = self.solid.elements()[e].forces(&stresses);
             let passed_on = self.stiffnesses[e].passed_on(&pull);
             for (corner, &node) in self.solid.mesh().hexes[e].iter().enumerate() {

@@ -209,8 +209,7 @@ fn cycle(machine: &Machine, place_mm: Vec3, time: &TimeSettings) -> Result<Cycle
 
 /// Work of friction over a cycle, N mm, from what the disc went through.
 fn work_nmm(cycle: &Cycle) -> f64 {
-    let history = cycle.history.node(0);
-    let work = history.moments().map(|moment| {
+    let work = cycle.history.moments(0).map(|moment| {
         let slip_mm = moment.slip_mm[0].hypot(moment.slip_mm[1]);
         FRICTION * moment.pressure_mpa * FACE_MM2 * slip_mm
     });

@@ -14,7 +14,7 @@ use condyle::{
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     spatial::{Pose, RelativeMotion},
 };
-use condyle_fem::{Elastic, Hardening};
+use condyle_fem::{Elastic, ElasticPlastic, Hardening};
 use half_space::half_space;
 use rolling::Rolling;
 
@@ -35,7 +35,9 @@ impl Pair {
         let insert = half_space(EDGE_MM, 13);
         let elastic = Elastic::new(MODULUS_MPA, ratio).unwrap();
         let mut law = Deformable::new(elastic, 0.0, 1.0, &insert).unwrap();
-        law.hardening = hardening;
+        if let Some(hardening) = hardening {
+            law = law.with_material(ElasticPlastic { elastic, hardening });
+        }
         Self {
             femur: FemoralSurface::sphere(RADIUS_MM),
             surface: insert.surface(),

@@ -124,7 +124,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "condyle::contact::broad_phase",
         &[
-            "condyle::contact::share_block",
+            "condyle::contact::model",
             "condyle::number",
             "condyle::spatial",
             "condyle::geometry",

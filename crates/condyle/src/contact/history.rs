@@ -32,12 +32,9 @@ pub struct Record {
     pub moment: Moment,
 }
 
-/// All instants at which one node was in contact, and their sums.
-#[derive(Clone, Copy, Debug)]
-pub struct NodeHistory<'a> {
-    records: &'a [Record],
-    /// The node's own records, in the order of time.
-    own: &'a [u32],
+/// Sums over the instants at which one node was in contact.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NodeSums {
     /// Highest mean pressure on the node's share in the cycle, MPa.
     pub peak_pressure_mpa: f64,
     /// Sum of the mean pressure on the node's share over the instants, MPa.
@@ -53,18 +50,7 @@ pub struct NodeHistory<'a> {
     pub slip_work: SlipWork,
 }
 
-/// The sums over a node's moments.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    peak_pressure_mpa: f64,
-    summed_pressure_mpa: f64,
-    sliding_distance_mm: f64,
-    pressed_area_slip_mm3: f64,
-    pressure_slip_mpa_mm: f64,
-    slip_work: SlipWork,
-}
-
-impl Sums {
+impl NodeSums {
     #[inline(always)]
     fn add(&mut self, record: &Record) {
         let moment = &record.moment;
@@ -76,16 +62,6 @@ impl Sums {
         self.pressure_slip_mpa_mm += moment.pressure_mpa * distance_mm;
         self.slip_work
             .add(moment.pressure_mpa, moment.slip_mm, distance_mm);
-    }
-}
-
-impl<'a> NodeHistory<'a> {
-    /// The instants in the order of time; none where the node was never touched.
-    pub fn moments(&self) -> impl Iterator<Item = &'a Moment> + use<'a> {
-        let records = self.records;
-        self.own
-            .iter()
-            .map(|&record| &records[record as usize].moment)
     }
 }
 
@@ -104,7 +80,7 @@ pub struct CycleHistory {
     first: Vec<usize>,
     sorted: Vec<u32>,
     /// One a node: made as the records are sorted, when they are at hand.
-    sums: Vec<Sums>,
+    sums: Vec<NodeSums>,
 }
 
 impl CycleHistory {
@@ -139,7 +115,7 @@ impl CycleHistory {
             ..
         } = self;
         sums.clear();
-        sums.resize(node_count, Sums::default());
+        sums.resize(node_count, NodeSums::default());
         let records = || {
             let counting = instants.iter().flat_map(Range::clone);
             counting.map(|number| (number as u32, &records[number]))
@@ -174,26 +150,16 @@ impl CycleHistory {
         self.first.len().saturating_sub(1)
     }
 
-    /// The history of node `node` of the articulating surface.
-    pub fn node(&self, node: usize) -> NodeHistory<'_> {
-        let Sums {
-            peak_pressure_mpa,
-            summed_pressure_mpa,
-            sliding_distance_mm,
-            pressed_area_slip_mm3,
-            pressure_slip_mpa_mm,
-            slip_work,
-        } = self.sums[node];
-        NodeHistory {
-            records: &self.records,
-            own: &self.sorted[self.first[node]..self.first[node + 1]],
-            peak_pressure_mpa,
-            summed_pressure_mpa,
-            sliding_distance_mm,
-            pressed_area_slip_mm3,
-            pressure_slip_mpa_mm,
-            slip_work,
-        }
+    /// Returns the instants at which a node was in contact, in the order of time.
+    pub fn moments(&self, node: usize) -> impl Iterator<Item = &Moment> {
+        let own = &self.sorted[self.first[node]..self.first[node + 1]];
+        own.iter()
+            .map(|&record| &self.records[record as usize].moment)
+    }
+
+    /// Returns the sums over those instants.
+    pub fn sums(&self, node: usize) -> &NodeSums {
+        &self.sums[node]
     }
 }
 
@@ -301,14 +267,14 @@ mod tests {
         history.sort(3, &[early, late]);
         assert_eq!(history.node_count(), 3);
         let moments = |history: &CycleHistory, node| -> Vec<Moment> {
-            history.node(node).moments().copied().collect()
+            history.moments(node).copied().collect()
         };
         assert_eq!(moments(&history, 2), [moment(1.0), moment(3.0)]);
         assert!(moments(&history, 1).is_empty() && !forgotten.is_empty());
-        assert_eq!(history.node(2).peak_pressure_mpa, 3.0);
-        assert_eq!(history.node(2).summed_pressure_mpa, 4.0);
-        assert_eq!(history.node(2).sliding_distance_mm, 2.0);
-        assert_eq!(history.node(2).pressed_area_slip_mm3, 0.5);
+        assert_eq!(history.sums(2).peak_pressure_mpa, 3.0);
+        assert_eq!(history.sums(2).summed_pressure_mpa, 4.0);
+        assert_eq!(history.sums(2).sliding_distance_mm, 2.0);
+        assert_eq!(history.sums(2).pressed_area_slip_mm3, 0.5);
 
         history.clear(1);
         let only = history.record([at(1, 2.0)].into_iter());

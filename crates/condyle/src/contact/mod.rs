@@ -19,19 +19,17 @@ mod history;
 mod law;
 mod model;
 mod pressure_law;
-mod share_block;
 
 pub use broad_phase::Search;
 pub use deformable::{Backside, Deformable, FrictionModel};
 pub use foundation::Foundation;
-pub use history::{CycleHistory, Moment, NodeHistory, Record, SlipWork};
+pub use history::{CycleHistory, Moment, NodeSums, Record, SlipWork};
 pub use law::{
     BacksideAtRest, Bodies, ContactLaw, KnownCompliance, PlasticUnderSurface, Regime, UnderSurface,
 };
 pub use model::{
-    ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Flattened,
-    Linearization, MAX_REGIONS, NotBorne, Response, Settled, StateField, Tangent, Tipped,
-    TouchedNode,
+    ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Linearization,
+    MAX_REGIONS, NotBorne, Response, Settled, StateField, Tangent, TouchedNode,
 };
 pub use pressure_law::{
     PressureLaw, PressureTable, PressureTableError, confined_modulus, softening_modulus,

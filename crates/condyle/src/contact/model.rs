@@ -107,39 +107,19 @@ pub enum Settled {
     RespondAgain,
 }
 
-/// A load that the material of the insert does not carry.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flattened {
-    /// The largest plastic strain when the search for a balance was given up.
-    pub plastic_strain: f64,
-}
-
-/// A load under which an insert that rests on its tray finds no rest there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tipped {
-    /// Farthest that a point of the backside had moved when the search was given up, mm.
-    pub moved_mm: f64,
-}
-
 /// A load that the insert does not bear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotBorne {
-    /// Its material does not carry it.
-    Flattened(Flattened),
-    /// It tips off its tray.
-    Tipped(Tipped),
-}
-
-impl From<Flattened> for NotBorne {
-    fn from(flattened: Flattened) -> Self {
-        Self::Flattened(flattened)
-    }
-}
-
-impl From<Tipped> for NotBorne {
-    fn from(tipped: Tipped) -> Self {
-        Self::Tipped(tipped)
-    }
+    /// The material yields without finding a balance.
+    Flattened {
+        /// The largest plastic strain when the search was given up.
+        plastic_strain: f64,
+    },
+    /// The insert rests on its tray and tips off it.
+    Tipped {
+        /// The largest displacement of the backside when the search was given up, mm.
+        moved_mm: f64,
+    },
 }
 
 /// A contact between femur and insert: the machine sees this, never a mesh.

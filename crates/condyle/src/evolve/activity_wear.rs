@@ -49,7 +49,7 @@ pub(super) fn wear_of_each(
 fn part_mm3(interval: &SolvedStep<'_>, (share, history): SharedCycle<'_>) -> f64 {
     let part = |node: usize| {
         let all = interval.mean[node].pressure_slip_mpa_mm;
-        let own = share * history.node(node).pressure_slip_mpa_mm;
+        let own = share * history.sums(node).pressure_slip_mpa_mm;
         interval.step.depth_mm[node] * own / all.max(f64::MIN_POSITIVE)
     };
     let depth_mm: Vec<f64> = (0..interval.mean.len()).map(part).collect();

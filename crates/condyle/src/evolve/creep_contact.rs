@@ -197,7 +197,7 @@ impl ByTime {
 /// Pressure at a node, the mean over the time of all activities, MPa.
 fn mean_pressure_mpa(cycles: &[Cycle], parts_of_time: &[f64], node: usize) -> f64 {
     let each = cycles.iter().zip(parts_of_time).map(|(cycle, part)| {
-        part * cycle.history.node(node).summed_pressure_mpa / cycle.instants.len() as f64
+        part * cycle.history.sums(node).summed_pressure_mpa / cycle.instants.len() as f64
     });
     each.sum()
 }

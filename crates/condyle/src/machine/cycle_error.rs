@@ -92,14 +92,11 @@ impl CycleError {
     pub(super) fn not_borne(phase: f64, why: NotBorne) -> Self {
         let percent = 100.0 * phase;
         match why {
-            NotBorne::Flattened(flattened) => Self::Flattened {
+            NotBorne::Flattened { plastic_strain } => Self::Flattened {
                 percent,
-                plastic_strain: flattened.plastic_strain,
+                plastic_strain,
             },
-            NotBorne::Tipped(tipped) => Self::Tipped {
-                percent,
-                moved_mm: tipped.moved_mm,
-            },
+            NotBorne::Tipped { moved_mm } => Self::Tipped { percent, moved_mm },
         }
     }
 
@@ -121,11 +118,10 @@ impl CycleError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Tipped;
 
     #[test]
     fn an_insert_that_tips_says_where_and_what_to_do() {
-        let tipped = NotBorne::Tipped(Tipped { moved_mm: 12.0 });
+        let tipped = NotBorne::Tipped { moved_mm: 12.0 };
         let said = CycleError::not_borne(0.25, tipped).to_string();
         for words in [
             "tips the insert off its tray at 25.00 %",

@@ -39,7 +39,7 @@ impl<'a> MeanCycle<'a> {
             slip_work: SlipWork::default(),
         };
         for (share, cycle) in activities {
-            let own = cycle.node(node);
+            let own = cycle.sums(node);
             mean.peak_pressure_mpa = mean.peak_pressure_mpa.max(own.peak_pressure_mpa);
             mean.sliding_distance_mm += share * own.sliding_distance_mm;
             mean.pressed_distance_mm += share * own.pressed_area_slip_mm3 / area_mm2;
@@ -53,7 +53,7 @@ impl<'a> MeanCycle<'a> {
     pub fn moments(&self) -> impl Iterator<Item = (f64, &'a Moment)> + use<'a> {
         let (activities, node) = (self.activities, self.node);
         activities.iter().flat_map(move |(share, cycle)| {
-            let moments = cycle.node(node).moments();
+            let moments = cycle.moments(node);
             moments.map(move |moment| (*share, moment))
         })
     }

@@ -8,7 +8,7 @@ use condyle::{
     geometry::{ArticulatingSurface, Cylinder, FemoralSurface, Insert, Meshing, flat_insert},
     spatial::{Pose, RelativeMotion},
 };
-use condyle_fem::{Elastic, Hardening};
+use condyle_fem::{Elastic, ElasticPlastic, Hardening};
 
 use crate::half_space::{grown_beyond, moved};
 
@@ -72,7 +72,10 @@ impl Rolling {
     /// what accumulates of plastic strain in each pass, at most, in the middle of the way.
     pub fn flows(&mut self, peak_over_shear_yield: f64, passes: usize) -> Vec<f64> {
         let yield_mpa = 3.0_f64.sqrt() * self.peak_mpa / peak_over_shear_yield;
-        self.law.hardening = Some(Hardening::perfectly_plastic(yield_mpa).unwrap());
+        self.law = self.law.clone().with_material(ElasticPlastic {
+            elastic: Elastic::new(MODULUS_MPA, POISSON).unwrap(),
+            hardening: Hardening::perfectly_plastic(yield_mpa).unwrap(),
+        });
         let mut state = ContactState::default();
         let mut before = vec![0.0; self.insert.mesh().hexes.len()];
         let mut pass = || {

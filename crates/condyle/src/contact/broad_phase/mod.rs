@@ -1,4 +1,4 @@
-//! The broad phase: the blocks of nodes that may touch, under which alone the contact samples the femur.
+//! The broad phase: the blocks of nodes that may touch. Only under these does the contact sample the femur.
 
 mod separations;
 #[cfg(test)]
@@ -6,81 +6,111 @@ mod tests;
 
 pub(crate) use separations::SeparationBound;
 
-use std::any::Any;
-
-use super::share_block::ShareBlock;
-use crate::spatial::Pose;
+use super::model::MAX_REGIONS;
+use crate::{
+    Vec3, Vector,
+    geometry::{ArticulatingSurface, Insert, NodeBlock, Share},
+    number::{F64x4, LANES, Number, vector_from_lanes},
+    spatial::Pose,
+};
 use separations::{BlockPlaces, BlockWear, LastWear, Separations};
+
+/// The shares of a block of four nodes, side by side; unused lanes repeat the last node with no area.
+pub(crate) struct ShareBlock {
+    pub nodes: [u32; LANES],
+    pub regions: [u8; LANES],
+    /// For each region, 1 in the lanes of its nodes and 0 in the others.
+    pub in_region: [F64x4; MAX_REGIONS],
+    pub centre: Vector<F64x4>,
+    pub edge_a: Vector<F64x4>,
+    pub edge_b: Vector<F64x4>,
+    pub area_mm2: F64x4,
+    pub spread_mm2: F64x4,
+    /// One over the thickness below, 1/mm.
+    pub per_thickness: F64x4,
+    /// The largest distance of a corner from the centre of its share, mm.
+    pub half_mm: f64,
+}
+
+impl ShareBlock {
+    /// Returns all shares of an insert's surface, in its blocks of nodes.
+    pub fn from_shares(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
+        let blocks = insert.node_blocks().iter();
+        blocks
+            .map(|block| Self::new(block, surface, insert))
+            .collect()
+    }
+
+    /// Returns the same with each share shrunk to its node: the centre lies there, and the spread is 0.
+    pub fn from_nodes(insert: &Insert, surface: &ArticulatingSurface) -> Vec<Self> {
+        let at_nodes = |block: Self| Self {
+            centre: vector_from_lanes(|lane| &surface.positions[block.nodes[lane] as usize]),
+            spread_mm2: F64x4::splat(0.0),
+            ..block
+        };
+        Self::from_shares(insert, surface)
+            .into_iter()
+            .map(at_nodes)
+            .collect()
+    }
+
+    fn new(block: &NodeBlock, surface: &ArticulatingSurface, insert: &Insert) -> Self {
+        let NodeBlock { nodes, count } = *block;
+        let share = |lane: usize| &surface.shares[nodes[lane] as usize];
+        // Loads are summed for MAX_REGIONS regions; further regions count as the last of these.
+        let region = |node: u32| insert.regions().of_node(node as usize).min(MAX_REGIONS - 1);
+        let regions = nodes.map(|node| region(node) as u8);
+        let is_in = |region: usize, lane: usize| usize::from(regions[lane]) == region;
+        let half_mm = |share: &Share| {
+            let half_of = |diagonal: Vec3| diagonal.norm() / 2.0;
+            half_of(share.edge_a + share.edge_b).max(half_of(share.edge_a - share.edge_b))
+        };
+        Self {
+            nodes,
+            regions,
+            in_region: std::array::from_fn(|region| {
+                F64x4::from_lanes(|lane| f64::from(u8::from(is_in(region, lane))))
+            }),
+            centre: vector_from_lanes(|lane| &share(lane).centre),
+            edge_a: vector_from_lanes(|lane| &share(lane).edge_a),
+            edge_b: vector_from_lanes(|lane| &share(lane).edge_b),
+            area_mm2: F64x4::from_lanes(|lane| {
+                if lane < count {
+                    share(lane).area_mm2
+                } else {
+                    0.0
+                }
+            }),
+            spread_mm2: F64x4::from_lanes(|lane| share(lane).spread_mm2),
+            per_thickness: F64x4::from_lanes(|lane| {
+                1.0 / insert.thickness_mm()[nodes[lane] as usize]
+            }),
+            half_mm: F64x4::from_lanes(|lane| half_mm(share(lane))).greatest(),
+        }
+    }
+}
 
 /// The search for the blocks of nodes that may touch. The results are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Search {
-    /// Every block is a candidate, every time: the plain path, and the reference.
+    /// Every block is always a candidate: the plain path, and the reference.
     BruteForce,
-    /// A block is a candidate once the femur can have come near it, by bounds that are carried along.
+    /// A block is a candidate once the femur can have come near it, by bounds that are carried from pose to pose.
     #[default]
     Coherent,
 }
 
 /// Finds the blocks that may touch under a femur at a pose.
 ///
-/// It may name blocks that do not touch, and leaves out none that does. The contact samples the femur
-/// under what it names and says what it found, block by block; a broad phase may remember that.
-pub(crate) trait BroadPhase: Any + Send + Sync + Sized {
-    /// One that knows nothing of these blocks yet.
-    fn new(blocks: &[ShareBlock]) -> Self;
-
-    /// One that goes on from what this one knew, now that the blocks have worn from what they were.
-    fn worn(self, before: &[ShareBlock], after: &[ShareBlock]) -> Self;
-
-    /// The next poses are of this increment of the cycle, near those of the same increment a cycle
-    /// before.
-    fn begin_increment(&mut self, increment: usize);
-
-    /// The blocks that may touch, ascending.
-    fn candidates(&mut self, pose: &Pose) -> &[u32];
-
-    /// A candidate touches.
-    fn touches(&mut self, block: u32);
-
-    /// A candidate is apart, by no less than `bound` says.
-    fn is_apart(&mut self, block: u32, bound: impl FnOnce() -> SeparationBound);
-}
-
-/// Names every block.
-pub(crate) struct BruteForce {
-    all: Vec<u32>,
-}
-
-impl BroadPhase for BruteForce {
-    fn new(blocks: &[ShareBlock]) -> Self {
-        let all = (0..blocks.len() as u32).collect();
-        Self { all }
-    }
-
-    fn worn(self, _: &[ShareBlock], after: &[ShareBlock]) -> Self {
-        Self::new(after)
-    }
-
-    fn begin_increment(&mut self, _: usize) {}
-
-    fn candidates(&mut self, _: &Pose) -> &[u32] {
-        &self.all
-    }
-
-    fn touches(&mut self, _: u32) {}
-
-    fn is_apart(&mut self, _: u32, _: impl FnOnce() -> SeparationBound) {}
-}
-
-/// Lower bounds on the separation of every block at every increment of the cycle.
+/// The candidates may include blocks that do not touch, and leave out none that does. The contact samples the femur
+/// under every candidate and reports whether it touches or is apart.
 ///
-/// A block that was found apart is no candidate before the femur can have come near enough. What touches
-/// is exactly what brute force would find. A cycle after, and with a little wear, the femur
-/// is within tenths of a millimetre of where it was, and so every increment goes on from what was known
-/// there; where that does not tell, from what the increment before has just found. Hardly any block is a
-/// candidate but those that touch.
-pub(crate) struct Coherent {
+/// By brute force every block is a candidate. The coherent search keeps a lower bound on the separation of every block
+/// at every increment of the cycle. One cycle later, and with a little wear, the femur is within tenths of a millimetre
+/// of where it was, so every increment starts from the bounds found there before; where these do not suffice, from those
+/// of the increment before. Hardly any block is then a candidate but those that touch.
+pub(crate) struct BroadPhase {
+    search: Search,
     /// The bounds at the increments so far, but for the present one.
     kept: Vec<Option<Separations>>,
     increment: usize,
@@ -92,31 +122,27 @@ pub(crate) struct Coherent {
     candidates: Vec<u32>,
 }
 
-impl Coherent {
-    /// Takes the bounds at an increment; none if they are older than the last wear but one.
-    fn take_kept(&mut self, increment: usize) -> Option<Separations> {
-        let kept = self.kept[increment].take()?;
-        (kept.worn() + 1 >= self.last_wear.number).then_some(kept)
-    }
-}
-
-impl BroadPhase for Coherent {
-    fn new(blocks: &[ShareBlock]) -> Self {
+impl BroadPhase {
+    /// Starts a search with no bounds: every block is a candidate.
+    pub fn new(search: Search, blocks: &[ShareBlock]) -> Self {
         Self {
+            search,
             kept: Vec::new(),
             increment: 0,
             neighbour: None,
             now: Separations::new(blocks.len()),
             places: BlockPlaces::from_blocks(blocks),
             last_wear: LastWear::default(),
-            candidates: Vec::new(),
+            candidates: (0..blocks.len() as u32).collect(),
         }
     }
 
-    fn worn(mut self, before: &[ShareBlock], after: &[ShareBlock]) -> Self {
-        if before.len() != after.len() {
-            return Self::new(after);
+    /// Resumes the search after the blocks have worn, reusing its bounds where that is possible.
+    pub fn worn(mut self, before: &[ShareBlock], after: &[ShareBlock]) -> Self {
+        if before.len() != after.len() || self.search == Search::BruteForce {
+            return Self::new(self.search, after);
         }
+        // Only the last wear is kept: bounds that are older than it cannot be carried to the new surface.
         if self.now.worn() < self.last_wear.number {
             self.now = Separations::new(after.len());
         }
@@ -128,15 +154,17 @@ impl BroadPhase for Coherent {
         self
     }
 
-    fn begin_increment(&mut self, increment: usize) {
-        if increment == self.increment {
+    /// Announces poses of an increment of the cycle, near those of the same increment a cycle before.
+    pub fn begin_increment(&mut self, increment: usize) {
+        if increment == self.increment || self.search == Search::BruteForce {
             return;
         }
         let most = increment.max(self.increment);
         if most >= self.kept.len() {
             self.kept.resize(most + 1, None);
         }
-        let kept = self.take_kept(increment);
+        let kept = self.kept[increment].take();
+        let kept = kept.filter(|kept| kept.worn() + 1 >= self.last_wear.number);
         self.neighbour = kept.is_some().then_some(self.increment);
         let next = kept.unwrap_or_else(|| self.now.clone());
         let left = std::mem::replace(&mut self.now, next);
@@ -144,25 +172,32 @@ impl BroadPhase for Coherent {
         self.increment = increment;
     }
 
-    fn candidates(&mut self, pose: &Pose) -> &[u32] {
-        let neighbour = self.neighbour.take();
-        self.now.follow(
-            pose,
-            &self.places,
-            &self.last_wear,
-            neighbour.and_then(|increment| self.kept[increment].as_ref()),
-            &mut self.candidates,
-        );
+    /// Returns the blocks that may touch, ascending.
+    pub fn candidates(&mut self, pose: &Pose) -> &[u32] {
+        if self.search == Search::Coherent {
+            let neighbour = self.neighbour.take();
+            self.now.follow(
+                pose,
+                &self.places,
+                &self.last_wear,
+                neighbour.and_then(|increment| self.kept[increment].as_ref()),
+                &mut self.candidates,
+            );
+        }
         &self.candidates
     }
 
+    /// Reports that a candidate touches.
     #[inline(always)]
-    fn touches(&mut self, block: u32) {
+    pub fn touches(&mut self, block: u32) {
         self.now.touches(block);
     }
 
+    /// Reports that a candidate is apart, by no less than `bound`.
     #[inline(always)]
-    fn is_apart(&mut self, block: u32, bound: impl FnOnce() -> SeparationBound) {
-        self.now.set(block, &bound());
+    pub fn is_apart(&mut self, block: u32, bound: impl FnOnce() -> SeparationBound) {
+        if self.search == Search::Coherent {
+            self.now.set(block, &bound());
+        }
     }
 }

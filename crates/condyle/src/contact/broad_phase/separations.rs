@@ -2,29 +2,28 @@
 
 use crate::{
     Mat3, Vec3, Vector,
-    contact::share_block::ShareBlock,
+    contact::broad_phase::ShareBlock,
     geometry::{CurvatureBounds, MAX_GAP_SLOPE, SurfaceSample},
     number::{F32x8, F64x4, LANES, LANES_F32, Number, dot},
     spatial::Pose,
 };
 
-/// More than is rounded off in a step, mm.
+/// Rounding of one step in single precision at most, mm: every step subtracts it from the bounds.
 const ROUNDED_OFF_MM: f64 = 2e-6;
 
-/// A larger separation counts as this much, mm: single precision then rounds less off than
+/// Larger separations are stored as this much, mm: numbers of this size are rounded in single precision by less than
 /// [`ROUNDED_OFF_MM`].
 const FARTHEST_MM: f64 = 16.0;
 
-/// Eight numbers as they lie in memory.
 type Numbers = [f32; LANES_F32];
 
-/// Lower bounds on the separation of every block at a pose of the femur.
+/// Lower bounds on the separation of every block at a pose of the femur, in single precision, eight blocks at a time.
 #[derive(Clone)]
 pub(crate) struct Separations {
     at: Option<Pose>,
     eights: Vec<Eight>,
     count: usize,
-    /// The number of updates of the worn blocks.
+    /// The number of the wear that the bounds are for.
     worn: u32,
 }
 
@@ -45,25 +44,6 @@ struct FemurStep {
     turn_rad: F32x8,
 }
 
-/// The bounds at another increment, and the step from there.
-struct Neighbour<'a> {
-    eights: &'a [Eight],
-    step: FemurStep,
-}
-
-impl Neighbour<'_> {
-    /// Gives eight blocks the bounds of those that may touch by theirs, and are apart by its own; a bit for
-    /// each that still may touch.
-    #[inline(always)]
-    fn help(&self, number: usize, places: &BlockPlaces, bounds: &mut Eight, may_touch: u32) -> u32 {
-        let mut known = self.eights[number].clone();
-        let motion = self.step.motion(&places.middles);
-        let apart = may_touch & !known.carry(&motion, self.step.lost_mm(places));
-        bounds.take_over(apart, &known);
-        may_touch & !apart
-    }
-}
-
 impl FemurStep {
     fn between(from: &Pose, to: &Pose) -> Self {
         let turn: Mat3 = (to.rotation - from.rotation).transpose();
@@ -75,14 +55,13 @@ impl FemurStep {
         }
     }
 
-    /// Returns the loss of separation of eight blocks besides their motion, mm.
+    /// Returns the loss of separation of eight blocks besides that by the motion of their middles, mm.
     #[inline(always)]
     fn lost_mm(&self, places: &BlockPlaces) -> F32x8 {
         let rounded_off_mm = F32x8::splat(ROUNDED_OFF_MM);
         places.levers_mm.mul_add(self.turn_rad, rounded_off_mm)
     }
 
-    /// The motion of places.
     #[inline(always)]
     fn motion(&self, place: &Vector<F32x8>) -> Vector<F32x8> {
         let [x, y, z] = &self.turn;
@@ -99,7 +78,7 @@ fn columns(matrix: &Mat3) -> [Vector<F32x8>; 3] {
 }
 
 impl Eight {
-    /// Of blocks that touch.
+    /// Blocks that touch: they stay candidates wherever the femur moves.
     const TOUCHING: Self = Self {
         clear_mm: [f32::NEG_INFINITY; LANES_F32],
         slope: [[0.0; LANES_F32]; 3],
@@ -107,8 +86,8 @@ impl Eight {
         radius_mm: [f32::INFINITY; LANES_F32],
     };
 
-    /// Carries the bounds along a motion of the blocks' middles in the femoral frame that may bring them
-    /// nearer by `lost_mm` besides; a bit for each block that may touch after it.
+    /// Carries the bounds along a motion of the blocks' middles in the femoral frame that may bring them nearer by
+    /// `lost_mm` besides, and returns a bit for each block that may touch after it.
     #[inline(always)]
     fn carry(&mut self, motion: &Vector<F32x8>, lost_mm: F32x8) -> u32 {
         // The separation changes by slope . d, and by no more than loss |d| besides. A bound holds within a
@@ -125,7 +104,7 @@ impl Eight {
         clear_mm.not_above_zero() | radius_mm.not_above_zero()
     }
 
-    /// Takes over those bounds of others that have a bit.
+    /// Copies the bounds of the blocks with a bit in `which`.
     fn take_over(&mut self, mut which: u32, others: &Self) {
         while which != 0 {
             let i = which.trailing_zeros() as usize;
@@ -141,7 +120,7 @@ impl Eight {
 }
 
 impl Separations {
-    /// All of `count` blocks may touch, however often they have worn.
+    /// Starts without bounds: all of `count` blocks may touch.
     pub fn new(count: usize) -> Self {
         Self {
             at: None,
@@ -151,16 +130,16 @@ impl Separations {
         }
     }
 
-    /// The number of updates of the worn blocks.
+    /// Returns the number of the wear that the bounds are for.
     pub fn worn(&self) -> u32 {
         self.worn
     }
 
-    /// The femur moves on, and the blocks have worn to `places` if they had not yet; lists the blocks
-    /// that may touch now, ascending.
+    /// Carries the bounds to another pose of the femur and to the last wear, and lists the blocks that may touch then,
+    /// ascending.
     ///
-    /// Blocks that another increment knows to be apart, from where the femur was then, take over its bounds,
-    /// if it is of the blocks as they have worn.
+    /// A block that may touch by these bounds and is apart by those of another increment takes these over, provided that
+    /// they are for the same wear.
     pub fn follow(
         &mut self,
         to: &Pose,
@@ -169,7 +148,11 @@ impl Separations {
         other: Option<&Self>,
         candidates: &mut Vec<u32>,
     ) {
-        let neighbour = other.and_then(|other| other.neighbour(to, last));
+        let neighbour = other.filter(|other| other.worn == last.number);
+        let neighbour = neighbour.and_then(|other| {
+            let at = other.at.as_ref()?;
+            Some((&other.eights, FemurStep::between(at, to)))
+        });
         let from = self.at.replace(*to).unwrap_or(*to);
         let step = FemurStep::between(&from, to);
         let axes = columns(&from.rotation);
@@ -184,10 +167,14 @@ impl Separations {
                 lost_mm += wear.lost_mm;
             }
             let mut may_touch = bounds.carry(&motion, lost_mm);
-            if let Some(neighbour) = &neighbour
+            if let Some((eights, step)) = &neighbour
                 && may_touch != 0
             {
-                may_touch = neighbour.help(number, places, bounds, may_touch);
+                let mut known = eights[number].clone();
+                let motion = step.motion(&places.middles);
+                let apart = may_touch & !known.carry(&motion, step.lost_mm(places));
+                bounds.take_over(apart, &known);
+                may_touch &= !apart;
             }
             while may_touch != 0 {
                 candidates.push((number * LANES_F32) as u32 + may_touch.trailing_zeros());
@@ -198,16 +185,7 @@ impl Separations {
         candidates.truncate(candidates.partition_point(|&block| (block as usize) < self.count));
     }
 
-    /// Returns the bounds carried to another pose, if they are for the blocks as last worn.
-    fn neighbour(&self, to: &Pose, last: &LastWear) -> Option<Neighbour<'_>> {
-        let at = self.at.as_ref().filter(|_| self.worn == last.number)?;
-        Some(Neighbour {
-            eights: &self.eights,
-            step: FemurStep::between(at, to),
-        })
-    }
-
-    /// A block was sampled where the femur is now, and is apart.
+    /// Sets the bound of a block that was sampled at the present pose and is apart.
     #[inline(always)]
     pub fn set(&mut self, block: u32, bound: &SeparationBound) {
         let (eight, i) = self.place_of(block);
@@ -219,7 +197,7 @@ impl Separations {
         eight.radius_mm[i] = bound.radius_mm as f32;
     }
 
-    /// A block touches: it may go on touching wherever the femur moves.
+    /// Marks a block as touching: it stays a candidate wherever the femur moves.
     #[inline(always)]
     pub fn touches(&mut self, block: u32) {
         let (eight, i) = self.place_of(block);
@@ -234,12 +212,12 @@ impl Separations {
     }
 }
 
-/// Eight blocks: where they are, as far as a separation from the femur changes with its motion.
+/// The places of eight blocks, as far as the change of their separation with a motion of the femur depends on them.
 pub(crate) struct BlockPlaces {
     /// The means of each block's four centres, mm.
     pub middles: Vector<F32x8>,
-    /// The loss of separation by a turn of the femur, mm/rad: the distance of a centre
-    /// from the middle, and the half edges.
+    /// The loss of separation by a turn of the femur, mm/rad: the distance of a centre from the middle and the half
+    /// edges.
     pub levers_mm: F32x8,
 }
 
@@ -247,21 +225,19 @@ pub(crate) struct BlockPlaces {
 pub(crate) struct BlockWear {
     /// Motion of their middles, mm.
     pub moved: Vector<F32x8>,
-    /// Loss of separation besides, mm.
+    /// Loss of separation besides that by the motion, mm.
     pub lost_mm: F32x8,
 }
 
 /// The last change of all blocks by wear.
 #[derive(Default)]
 pub(crate) struct LastWear {
-    /// The number of changes so far.
+    /// The number of the change, from 1; 0 before the first.
     pub number: u32,
-    /// The last time, eight blocks at a time.
     pub eights: Vec<BlockWear>,
 }
 
 impl BlockPlaces {
-    /// All blocks of a surface.
     pub fn from_blocks(blocks: &[ShareBlock]) -> Vec<Self> {
         blocks.chunks(LANES_F32).map(Self::new).collect()
     }
@@ -269,6 +245,10 @@ impl BlockPlaces {
     fn new(blocks: &[ShareBlock]) -> Self {
         let at = |i: usize| &blocks[i.min(blocks.len() - 1)];
         let axis = |axis: usize| F32x8::from_lanes(|i| middle(at(i))[axis]);
+        let lever_mm = |block: &ShareBlock| {
+            let from_middle = block.centre - middle(block).map(F64x4::splat);
+            block.half_mm + MAX_GAP_SLOPE * longest_mm(&from_middle)
+        };
         Self {
             middles: Vector::new(axis(0), axis(1), axis(2)),
             levers_mm: F32x8::from_lanes(|i| lever_mm(at(i))),
@@ -284,7 +264,6 @@ impl BlockWear {
         Vector::new(dot(x, moved), dot(y, moved), dot(z, moved))
     }
 
-    /// All blocks of a surface, from those before.
     pub fn between(before: &[ShareBlock], after: &[ShareBlock]) -> Vec<Self> {
         let eights = before.chunks(LANES_F32).zip(after.chunks(LANES_F32));
         eights
@@ -315,16 +294,11 @@ fn middle(block: &ShareBlock) -> Vec3 {
     block.centre.map(|lanes| lanes.sum() / LANES as f64)
 }
 
-fn lever_mm(block: &ShareBlock) -> f64 {
-    let from_middle = block.centre - middle(block).map(F64x4::splat);
-    block.half_mm + MAX_GAP_SLOPE * longest_mm(&from_middle)
-}
-
 /// Returns the loss of separation by wear of a block, besides the motion `moved` of its middle, mm.
 ///
-/// Each centre may move otherwise than the middle. The reach of a share changes by no more than half
-/// of what its edges do. A fifth of that again is more than the mean over the share changes, and than
-/// longer edges gain through a turn of the normal.
+/// Each centre may move otherwise than the middle. The reach of a share changes by no more than half of the change of its
+/// edges. A fifth of that again covers the change of the mean over the share, and the reach that longer edges gain as the
+/// normal turns.
 fn lost_mm(before: &ShareBlock, after: &ShareBlock, moved: &Vec3) -> f64 {
     let astray = after.centre - before.centre - moved.map(F64x4::splat);
     let [by_a, by_b] = [after.edge_a - before.edge_a, after.edge_b - before.edge_b];
@@ -335,13 +309,10 @@ fn longest_mm(vectors: &Vector<F64x4>) -> f64 {
     dot(vectors, vectors).greatest().sqrt()
 }
 
-/// The gap below which the curvature of the femur is known, mm; see [`CurvatureBounds`].
-const KNOWN_MM: f64 = 1.5;
-
-/// Those bounds hold at least this far around, mm.
+/// Bounds on the curvature hold at least this far around a point, mm.
 const HOLDS_MM: f64 = 1.0;
 
-/// More than an extrapolated sample errs in gap and reach, mm.
+/// Error bound of an extrapolated sample, for gap and reach together, mm.
 const EXTRAPOLATED_MM: f64 = 1e-4;
 
 /// A bound on how far a block of shares is from touching, as a function of how the femur moves on.
@@ -385,12 +356,22 @@ impl SeparationBound {
         if gap_mm.least() - shares.half_mm > radius_mm {
             // Where the curvature of one lane is not known, what all may lose is bounded by slopes
             // alone. A lane whose gap is small is known itself, and its own reach counts.
-            let known_mm = if radius_mm < 0.0 { KNOWN_MM } else { 0.0 };
+            let known_mm = if radius_mm < 0.0 {
+                CurvatureBounds::KNOWN_GAP_MM
+            } else {
+                0.0
+            };
             let is_known = gap_mm - F64x4::splat(known_mm);
             let far_mm = gap_mm - F64x4::splat(shares.half_mm);
             let near_mm = -Number::max(-clear_mm, F64x4::splat(-HOLDS_MM));
             let clear_mm = is_known.below_zero(near_mm, far_mm).least();
-            return Self::far(clear_mm - EXTRAPOLATED_MM, MAX_GAP_SLOPE + by_turn);
+            // No gap changes faster than its point moves.
+            return Self {
+                clear_mm: clear_mm - EXTRAPOLATED_MM,
+                slope: Vec3::zeros(),
+                loss: MAX_GAP_SLOPE + by_turn,
+                radius_mm: f64::INFINITY,
+            };
         }
         let gradient = &sample.gap_gradient;
         let slope = gradient.map(|lanes| lanes.sum() / LANES as f64);
@@ -401,17 +382,6 @@ impl SeparationBound {
             slope,
             loss: leaning + by_turn + 0.5 * concavity_per_mm * radius_mm,
             radius_mm,
-        }
-    }
-
-    /// Far off, or where little is known: no gap changes faster than its point moves, and where
-    /// nothing is known no reach is longer than half of both edges.
-    fn far(clear_mm: f64, loss: f64) -> Self {
-        Self {
-            clear_mm,
-            slope: Vec3::zeros(),
-            loss,
-            radius_mm: f64::INFINITY,
         }
     }
 }

@@ -4,7 +4,7 @@
 use super::separations::{BlockPlaces, BlockWear, LastWear, SeparationBound, Separations};
 use crate::{
     Mat3, Vec3, Vector,
-    contact::{contact_patch::CachedSample, foundation::EdgeSlopes, share_block::ShareBlock},
+    contact::{broad_phase::ShareBlock, contact_patch::CachedSample, foundation::EdgeSlopes},
     geometry::{
         FemoralSurface, GenericFemur, GenericFemurShape, GenericInsertShape, Insert, Meshing,
         SmoothField, TriangleMesh, flat_insert,
@@ -137,7 +137,7 @@ fn searched(femur: &FemoralSurface, blocks: &[ShareBlock], pose: &Pose) -> Separ
 }
 
 /// Steps the femur at random from about `height_mm` over the insert, which wears or is restored at
-/// two of three steps, and holds what is no candidate then against a search, with the help of another increment
+/// two of three steps, and compares what is no candidate then with a search, with the help of another increment
 /// near by. Gives how many blocks were no candidates.
 fn check(femur: &FemoralSurface, insert: impl Fn() -> Insert, height_mm: f64) -> usize {
     let shares = |insert: &Insert| ShareBlock::from_shares(insert, &insert.surface());

@@ -1,15 +1,17 @@
-//! Forces of a block of shares under pressure.
+//! Tractions on a block of shares, and the sum of their derivatives.
+
+use std::array::from_fn;
 
 use super::near_blocks::CachedSample;
 use crate::{
-    Vec3, Vector,
-    contact::model::MAX_REGIONS,
+    Vector,
     geometry::Curvature,
     number::{F32x8, F64x4, Number, cross, dot, scale_add, zero_vector},
-    spatial::{Mat6, Twist4, Wrench, body},
+    spatial::{Mat6, Twist4},
 };
 
-/// A speed that leans the direction of sliding where nothing slides, mm/s; far below any slip.
+/// A speed added to every velocity, mm/s; far below any slip. It gives a direction of sliding where nothing slides, which
+/// the tangent needs.
 const STANDSTILL_MM_PER_S: f64 = 1e-9;
 
 /// Coulomb's law of friction, regularised.
@@ -21,7 +23,7 @@ pub(crate) struct Coulomb {
     pub slip_tolerance_mm_per_s: f64,
 }
 
-/// Four shares of nodes under pressure and rubbed; all vectors in the femoral frame.
+/// The tractions on a block of four shares; all vectors in the femoral frame.
 ///
 /// The force on the insert is f = L (n + mu s t1), L the area times the pressure, t1 the direction
 /// of sliding, s = v_t/w and w = sqrt(v_t^2 + v0^2).
@@ -40,8 +42,7 @@ pub(crate) struct Tractions4 {
 
 /// The motion of the femur's material past a share.
 pub(crate) struct Sliding {
-    /// Velocity along the surface, mm/s; where nothing slides, a lean so slight that it only gives
-    /// a direction.
+    /// Velocity along the surface, mm/s; never exactly zero.
     pub velocity_mm_per_s: Vector<F64x4>,
     /// Velocity of the femur's material out of the femur, c = n . v, mm/s.
     pub closing_mm_per_s: F64x4,
@@ -50,7 +51,7 @@ pub(crate) struct Sliding {
 }
 
 impl Sliding {
-    /// Takes a velocity apart along a surface with normal `normal`.
+    /// Decomposes a velocity along and across the surface.
     #[inline(always)]
     pub fn new(velocity: &Vector<F64x4>, normal: &Vector<F64x4>, tolerance_mm_per_s: f64) -> Self {
         let closing = dot(normal, velocity);
@@ -68,7 +69,7 @@ impl Sliding {
 }
 
 impl Tractions4 {
-    /// Shares that nothing presses.
+    /// No traction.
     pub fn none() -> Self {
         let zero = F64x4::splat(0.0);
         Self {
@@ -93,7 +94,7 @@ impl Tractions4 {
             + dot(&self.load_by_turn, motion.angular())
     }
 
-    /// Forces on the insert under a femur with `normal`, N.
+    /// Returns the forces on the insert under a femur with `normal`, N.
     #[inline(always)]
     pub fn force_n(&self, normal: &Vector<F64x4>, friction: f64) -> Vector<F64x4> {
         let rub = F64x4::splat(friction) * self.sliding.per_regular;
@@ -102,87 +103,35 @@ impl Tractions4 {
     }
 }
 
-/// The wrench of many forces.
-pub(crate) struct WrenchSum([F64x4; 6]);
-
-impl WrenchSum {
-    pub fn new() -> Self {
-        Self([F64x4::splat(0.0); 6])
-    }
-
-    /// Adds forces at places, about the origin.
-    #[inline(always)]
-    pub fn add(&mut self, place: &Vector<F64x4>, force: &Vector<F64x4>) {
-        let moment = cross(place, force);
-        let wrench = [moment.x, moment.y, moment.z, force.x, force.y, force.z];
-        for (sum, part) in self.0.iter_mut().zip(&wrench) {
-            *sum += *part;
-        }
-    }
-
-    /// The sum.
-    pub fn total(&self) -> Wrench<body::Insert, body::Femur> {
-        let [mx, my, mz, fx, fy, fz] = self.0.map(F64x4::sum);
-        Wrench::new(Vec3::new(mx, my, mz), Vec3::new(fx, fy, fz))
-    }
-}
-
-/// Slip of many shares weighted by their loads, in every region.
-pub(crate) struct RegionSlips([(F64x4, Vector<F64x4>); MAX_REGIONS]);
-
-impl RegionSlips {
-    pub fn new() -> Self {
-        Self([(F64x4::splat(0.0), zero_vector()); MAX_REGIONS])
-    }
-
-    /// Adds shares, of which `in_region` says which belong to each region.
-    #[inline(always)]
-    pub fn add(&mut self, in_region: &[F64x4; MAX_REGIONS], pressed: &Tractions4) {
-        let load = pressed.pressure_mpa * pressed.area_mm2;
-        let velocity = &pressed.sliding.velocity_mm_per_s;
-        for ((loads, slips), is_in) in self.0.iter_mut().zip(in_region) {
-            let own = load * *is_in;
-            *loads += own;
-            *slips = scale_add(velocity, own, slips);
-        }
-    }
-
-    /// The mean of each region, mm/s; none where nothing is loaded.
-    pub fn means(&self) -> [Vec3; MAX_REGIONS] {
-        self.0
-            .map(|(loads, slips)| slips.map(F64x4::sum) / loads.sum().max(f64::MIN_POSITIVE))
-    }
-}
-
-/// Square of the least speed of sliding that gives a direction, mm2/s2; below any that occurs.
+/// Square of the smallest speed of sliding that is divided by, mm2/s2: below any that occurs.
 const MIN_SPEED2: f64 = 1e-30;
 
 type Six<T> = [T; 6];
 
-/// The tangent of many shares: its columns are added up in lanes.
+/// The tangent of many shares, summed in lanes, column by column.
 ///
-/// In single precision, eight shares at a time: a correction of Newton's method that is right to
-/// six digits leaves a millionth of the residual, and halves what is the dearest part of the sum.
+/// It is summed in single precision, eight shares at a time: a Newton correction that is right to six digits leaves a
+/// millionth of the residual, and single precision halves the cost of the most expensive part of the sum.
 pub(crate) struct TangentSum {
     by_pose: [Six<F32x8>; 6],
     by_twist: [Six<F32x8>; 6],
 }
 
-/// The quantities of shares under pressure that enter the tangent; see [`Tractions4`].
-struct Facets<T> {
-    place: Vector<T>,
-    normal: Vector<T>,
-    curvature: Curvature<T>,
-    load_n: T,
-    load_by_motion: Vector<T>,
-    load_by_turn: Vector<T>,
-    velocity: Vector<T>,
-    closing: T,
-    per_regular: T,
+/// The quantities of eight shares that enter the tangent; see [`Tractions4`].
+struct Facets {
+    place: Vector<F32x8>,
+    normal: Vector<F32x8>,
+    curvature: Curvature<F32x8>,
+    load_n: F32x8,
+    load_by_motion: Vector<F32x8>,
+    load_by_turn: Vector<F32x8>,
+    velocity: Vector<F32x8>,
+    closing: F32x8,
+    per_regular: F32x8,
 }
 
-impl Facets<F32x8> {
-    /// Two blocks of shares.
+impl Facets {
+    /// Converts two blocks of shares to single precision.
     #[inline(always)]
     fn pair(one: (&CachedSample, &Tractions4), other: (&CachedSample, &Tractions4)) -> Self {
         let of = |value: fn(&CachedSample, &Tractions4) -> F64x4| {
@@ -221,19 +170,8 @@ impl TangentSum {
         }
     }
 
-    /// Adds two blocks of shares; the derivatives of the wrench at the femur's origin by pose and by
-    /// twist.
-    // Inlined, the entries of the sum would go to and fro between two places in memory at every call.
-    #[inline(never)]
-    pub fn add(
-        &mut self,
-        one: (&CachedSample, &Tractions4),
-        other: (&CachedSample, &Tractions4),
-        friction: f64,
-    ) {
-        self.add_facets(&Facets::pair(one, other), F32x8::splat(friction));
-    }
-
+    /// Adds the derivatives of two blocks of shares: of the wrench about the femur's origin, by pose and by twist.
+    ///
     /// A motion xi = (w, v) of the femur moves its material at the share by a = v + w x p and turns
     /// the normal by dn = w x n - K a, which lies in the plane of t1 and t2 = n x t1. With the
     /// wrenches N, T1, T2 of unit forces along n, t1, t2, and the rows R_i xi = -t_i . dn:
@@ -242,14 +180,21 @@ impl TangentSum {
     /// q1 = 1 - mu c (1 - s^2)/w, q2 = 1 - mu c/w;
     ///
     /// and a change of twist tau: dW = L mu/w ((1 - s^2) T1 T1' + T2 T2') tau.
-    #[inline(always)]
-    fn add_facets(&mut self, facets: &Facets<F32x8>, friction: F32x8) {
+    // Inlined, the entries of the sum would go to and fro between two places in memory at every call.
+    #[inline(never)]
+    pub fn add(
+        &mut self,
+        one: (&CachedSample, &Tractions4),
+        other: (&CachedSample, &Tractions4),
+        friction: f64,
+    ) {
+        let (facets, friction) = (Facets::pair(one, other), F32x8::splat(friction));
         let Facets {
             place: p,
             normal: n,
             load_n: load,
             ..
-        } = facets;
+        } = &facets;
         let one = F32x8::splat(1.0);
         let speed2 = dot(&facets.velocity, &facets.velocity);
         let speed = Number::max(speed2, F32x8::splat(MIN_SPEED2)).sqrt();
@@ -273,9 +218,9 @@ impl TangentSum {
         let per_speed = friction * facets.per_regular;
         let turn = facets.closing * per_speed;
         let (q1, q2) = (*load * (one - turn * stuck), *load * (one - turn));
-        let whole = six(|i| rub.mul_add(wrench_1[i], wrench_n[i]));
-        let first = six(|i| (*load * rub).mul_sub(wrench_n[i], q1 * wrench_1[i]));
-        let second = six(|i| -(q2 * wrench_2[i]));
+        let whole: Six<F32x8> = from_fn(|i| rub.mul_add(wrench_1[i], wrench_n[i]));
+        let first: Six<F32x8> = from_fn(|i| (*load * rub).mul_sub(wrench_n[i], q1 * wrench_1[i]));
+        let second: Six<F32x8> = from_fn(|i| -(q2 * wrench_2[i]));
         for (column, entries) in self.by_pose.iter_mut().enumerate() {
             for (i, entry) in entries.iter_mut().enumerate() {
                 let by_load = whole[i].mul_add(load_row[column], *entry);
@@ -294,17 +239,12 @@ impl TangentSum {
         }
     }
 
-    /// The sums by pose and by twist.
+    /// Returns the sums by pose and by twist.
     pub fn total(&self) -> (Mat6, Mat6) {
         let by_pose = Mat6::from_fn(|i, column| self.by_pose[column][i].sum());
         let by_twist = Mat6::from_fn(|i, column| self.by_twist[column.max(i)][column.min(i)].sum());
         (by_pose, by_twist)
     }
-}
-
-#[inline(always)]
-fn six<T>(of: impl FnMut(usize) -> T) -> Six<T> {
-    std::array::from_fn(of)
 }
 
 #[inline(always)]

@@ -1,4 +1,4 @@
-//! The compliance of a surface under loads on its nodes, tile by tile.
+//! The compliance of a surface under loads on its nodes, computed tile by tile when it is first needed.
 
 use std::{
     fmt::{self, Debug},
@@ -15,29 +15,29 @@ use crate::{
     number::{F64x4, LANES, Number},
 };
 
-/// The normal compliance of a surface: how far its nodes deflect to loads on them, both along the inward normals.
+/// The source of a compliance: displacements of a surface's nodes by unit loads on them, along the same directions.
 ///
-/// It is symmetric and positive definite, and given for two tiles of nodes at a time, as they are asked for: of most
-/// nodes no caller ever asks. What it says depends on nothing that was asked before.
+/// It is symmetric and positive definite. It is computed for two tiles of nodes at a time and on demand, since most nodes
+/// are never in contact; the result does not depend on what was computed before.
 pub(crate) trait SurfaceCompliance: Debug + Send + Sync {
-    /// All nodes of the surface, in tiles that lie together.
+    /// Returns all nodes of the surface, in tiles of neighbours.
     fn tiles(&self) -> &[Vec<u32>];
 
     /// Returns the displacements of the nodes of one tile by unit loads on another, mm/N: row-major, a row for each of `one`.
     fn between(&self, one: usize, other: usize) -> Vec<f64>;
 }
 
-/// The compliance of a surface, and of the nodes that any contact has come near what was asked so far.
+/// The compliance of a surface, with the part that was needed so far.
 #[derive(Debug)]
-pub(crate) struct Compliance<S: ?Sized = dyn SurfaceCompliance> {
+pub(crate) struct Compliance {
     tile_of: Vec<u32>,
     near: RwLock<NearMatrix>,
-    pub source: S,
+    source: Arc<dyn SurfaceCompliance>,
 }
 
-impl<S: SurfaceCompliance> Compliance<S> {
-    /// The compliance of a surface, nothing of it computed yet.
-    pub fn new(source: S) -> Self {
+impl Compliance {
+    /// Prepares the compliance of a surface and computes nothing yet.
+    pub fn new(source: Arc<dyn SurfaceCompliance>) -> Self {
         let nodes = source.tiles().iter().map(Vec::len).sum();
         let mut tile_of = vec![0; nodes];
         for (number, tile) in source.tiles().iter().enumerate() {
@@ -51,9 +51,7 @@ impl<S: SurfaceCompliance> Compliance<S> {
             source,
         }
     }
-}
 
-impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
     /// Returns the number of nodes of the surface.
     pub fn node_count(&self) -> usize {
         self.tile_of.len()
@@ -61,16 +59,16 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
 
     /// Returns the number of nodes whose compliance is computed.
     pub fn known_count(&self) -> usize {
-        self.read().row_count()
+        self.read().rows.len()
     }
 
     /// Returns the number of pairs of tiles whose compliance is computed.
-    pub fn asked_pairs(&self) -> usize {
+    pub fn known_pairs(&self) -> usize {
         self.read().pairs().count()
     }
 
-    /// Adds what was asked so far to what is `known` of other tiles.
-    pub fn known_with(&self, mut known: KnownCompliance) -> KnownCompliance {
+    /// Adds the compliance computed so far to `known`.
+    pub fn add_to(&self, mut known: KnownCompliance) -> KnownCompliance {
         let near = self.read();
         for [one, other] in near.pairs() {
             let tiles = [one, other].map(|tile| &self.source.tiles()[tile][..]);
@@ -79,62 +77,58 @@ impl<S: SurfaceCompliance + ?Sized> Compliance<S> {
         known
     }
 
-    /// The tile of a node.
+    /// Returns the tile of a node.
     pub fn tile_of(&self, node: u32) -> u32 {
         self.tile_of[node as usize]
     }
 
-    /// The compliance of some nodes, and of others.
+    /// Returns the compliance of some nodes and of others, computing what is missing.
     pub fn near(&self, nodes: impl Iterator<Item = u32>) -> RwLockReadGuard<'_, NearMatrix> {
         let near = self.read();
         let unknown = nodes.filter(|&node| !near.knows(node));
-        let mut tiles: Vec<u32> = unknown.map(|node| self.tile_of[node as usize]).collect();
+        let mut tiles: Vec<usize> = unknown.map(|node| self.tile_of(node) as usize).collect();
         if tiles.is_empty() {
             return near;
         }
         drop(near);
         tiles.sort_unstable();
         tiles.dedup();
-        self.add(&tiles);
+        let mut near = self.near.write().unwrap_or_else(PoisonError::into_inner);
+        let all = self.source.tiles();
+        // Between the two locks another thread may have added some of them.
+        tiles.retain(|&tile| !near.knows(all[tile][0]));
+        near.make_room(tiles.iter().map(|&tile| all[tile].len()));
+        for tile in tiles {
+            near.add(tile, all, |one, other| self.source.between(one, other));
+        }
+        drop(near);
         self.read()
     }
 
     fn read(&self) -> RwLockReadGuard<'_, NearMatrix> {
         self.near.read().unwrap_or_else(PoisonError::into_inner)
     }
-
-    fn add(&self, tiles: &[u32]) {
-        let mut near = self.near.write().unwrap_or_else(PoisonError::into_inner);
-        let all = self.source.tiles();
-        // Another thread may have added some.
-        let new = tiles.iter().map(|&tile| tile as usize);
-        let new: Vec<usize> = new.filter(|&tile| !near.knows(all[tile][0])).collect();
-        near.make_room(new.iter().map(|&tile| all[tile].len()));
-        for tile in new {
-            near.add(tile, all, |one, other| self.source.between(one, other));
-        }
-    }
 }
 
-/// A node of which nothing is known.
+/// The row of a node whose compliance is not computed.
 const UNKNOWN: u32 = u32::MAX;
 
 /// The compliance between the nodes of some tiles of a surface.
 ///
-/// A row says how far loads on all nodes move its node, those of eight nodes, a panel, side by side. A tile is filled up
-/// to whole panels by nodes that nothing moves.
+/// A row holds the displacements of its node by loads on all nodes, those of eight nodes, a panel, side by side. A tile is
+/// padded to whole panels by nodes that do not move.
 #[derive(Debug)]
 pub(crate) struct NearMatrix {
     /// Tiles in the order in which they were added, and the first row of each.
     tiles: Vec<(usize, usize)>,
     row_of: Vec<u32>,
-    /// Places of all nodes, tile by tile: the same whichever tile was added first.
+    /// Places of all nodes, tile by tile; they do not depend on the order in which tiles were added, so that sums over nodes
+    /// in this order are always the same.
     places: Vec<u32>,
     rows: Vec<Vec<Eight>>,
     /// Panels that a row has room for.
     room: usize,
-    /// The place of every node's tile among those that were added, and what loads on one tile move another by at
-    /// most.
+    /// The place of every node's tile among those that were added, and the largest displacements between any two of these.
     slots: Vec<u32>,
     reaches: Vec<Vec<Reach>>,
 }
@@ -147,8 +141,7 @@ pub(crate) struct Reach {
 }
 
 impl NearMatrix {
-    /// Nothing is known of a surface of these tiles.
-    pub fn new(tiles: &[Vec<u32>]) -> Self {
+    fn new(tiles: &[Vec<u32>]) -> Self {
         let nodes = || tiles.iter().flatten();
         let mut places = vec![0; nodes().count()];
         for (place, &node) in nodes().enumerate() {
@@ -165,22 +158,17 @@ impl NearMatrix {
         }
     }
 
-    pub fn knows(&self, node: u32) -> bool {
+    fn knows(&self, node: u32) -> bool {
         self.row_of[node as usize] != UNKNOWN
     }
 
-    /// Returns the number of rows.
-    pub fn row_count(&self) -> usize {
-        self.rows.len()
-    }
-
-    /// The row, and the column, of a node that is known.
+    /// Returns the row, which is also the column, of a node whose compliance is computed.
     #[inline(always)]
     pub fn row(&self, node: u32) -> u32 {
         self.row_of[node as usize]
     }
 
-    /// A number by its row and its column, or the other way round.
+    /// Returns the number in a row and a column; the matrix is symmetric.
     #[inline(always)]
     pub fn at(&self, row: u32, column: u32) -> f64 {
         let numbers = &self.rows[column as usize][row as usize / ROWS];
@@ -193,7 +181,7 @@ impl NearMatrix {
         self.places[node as usize]
     }
 
-    /// The place of a node's tile among those that were added.
+    /// Returns the place of a node's tile among those that were added.
     pub fn slot(&self, node: u32) -> usize {
         self.slots[node as usize] as usize
     }
@@ -203,15 +191,15 @@ impl NearMatrix {
         &self.reaches
     }
 
-    /// The pairs of the tiles that were added, the lower number first.
-    pub fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+    /// Returns the pairs of the tiles that were added, the lower number first.
+    fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
         let all = || self.tiles.iter().map(|&(tile, _)| tile);
         let pairs = all().flat_map(move |one| all().map(move |other| [one, other]));
         pairs.filter(|[one, other]| one <= other)
     }
 
     /// Returns the compliance between two added tiles, mm/N: row-major.
-    pub fn between(&self, tiles: [&[u32]; 2]) -> Vec<f64> {
+    fn between(&self, tiles: [&[u32]; 2]) -> Vec<f64> {
         let [rows, columns] = tiles;
         let rows = rows.iter().map(|&node| self.row(node));
         let of_row = |row| {
@@ -224,7 +212,7 @@ impl NearMatrix {
 
     /// Returns the displacement of a row's node by loads, given as panels, each with its number.
     pub fn moved(&self, row: u32, loads: &[(usize, Eight)]) -> f64 {
-        // Four sums, so that no addition waits for the one before.
+        // Four independent sums, so that no addition waits for the one before.
         let mut sums = [F64x4::splat(0.0); 4];
         let row = &self.rows[row as usize];
         for two in loads.chunks(2) {
@@ -256,8 +244,9 @@ impl NearMatrix {
         }
     }
 
-    /// Makes room for tiles of so many nodes that are about to be added: rows that grow by themselves take twice the room.
-    pub fn make_room(&mut self, nodes: impl Iterator<Item = usize>) {
+    /// Reserves room for tiles of so many nodes that are about to be added: rows that grow by themselves take twice the
+    /// memory.
+    fn make_room(&mut self, nodes: impl Iterator<Item = usize>) {
         let more: usize = nodes.map(|nodes| nodes.next_multiple_of(ROWS)).sum();
         self.room = (self.rows.len() + more) / ROWS;
         for row in &mut self.rows {
@@ -265,8 +254,8 @@ impl NearMatrix {
         }
     }
 
-    /// Adds tile number `new` of `tiles`, with what is `between` two of them.
-    pub fn add(
+    /// Adds tile number `new` of `tiles`, with the compliance `between` it and those added before.
+    fn add(
         &mut self,
         new: usize,
         tiles: &[Vec<u32>],
@@ -301,16 +290,11 @@ impl NearMatrix {
                     }
                 }
             }
-            self.reach(place, reach);
-        }
-    }
-
-    /// Records the largest displacements between the tile that was added last and another.
-    fn reach(&mut self, other: usize, reach: Reach) {
-        let last = self.reaches.len() - 1;
-        self.reaches[last][other] = reach;
-        if other < last {
-            self.reaches[other].push(reach);
+            let last = self.reaches.len() - 1;
+            self.reaches[last][place] = reach;
+            if place < last {
+                self.reaches[place].push(reach);
+            }
         }
     }
 
@@ -322,17 +306,17 @@ impl NearMatrix {
     }
 }
 
-/// Unit loads on places of a solid, each along a direction of its own: the compliance between them.
+/// Unit loads on nodes of a solid, each along a direction of its own, and the compliance between them.
 ///
-/// The loads of a tile are solved half way when they are first asked for, and kept.
+/// The loads of a tile are half-solved when they are first needed, and kept. A load of one tile moves that of another by
+/// the product of their half-solutions.
 pub(crate) struct UnitLoads {
     solid: Arc<ElasticSolid>,
     /// The mesh node of every load, and its direction.
     forces: Vec<(u32, Vec3)>,
-    /// Loads that lie together, and of every tile what they do.
     tiles: Vec<Vec<u32>>,
     solved: Mutex<Vec<Option<Arc<HalfSolved>>>>,
-    /// The results of another run between them that no caller has asked for yet.
+    /// Results of another run that were not needed yet.
     known: Mutex<KnownCompliance>,
 }
 
@@ -345,8 +329,8 @@ impl Debug for UnitLoads {
 }
 
 impl UnitLoads {
-    /// Loads on a solid, of which the numbers of those that lie together are in `tiles`.
-    pub fn on(solid: Arc<ElasticSolid>, forces: Vec<(u32, Vec3)>, tiles: Vec<Vec<u32>>) -> Self {
+    /// Prepares loads on a solid; `tiles` groups the numbers of loads that lie together.
+    pub fn new(solid: Arc<ElasticSolid>, forces: Vec<(u32, Vec3)>, tiles: Vec<Vec<u32>>) -> Self {
         Self {
             solid,
             forces,
@@ -356,30 +340,31 @@ impl UnitLoads {
         }
     }
 
-    /// Returns the results of another run that no caller has asked for yet.
+    /// Returns the results of another run that were not needed yet.
     pub fn known(&self) -> MutexGuard<'_, KnownCompliance> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The mesh node of a load, and its direction.
+    /// Returns the mesh node of a load, and its direction.
     pub fn force(&self, load: u32) -> (u32, Vec3) {
         self.forces[load as usize]
     }
 
-    /// Unit loads of a tile, solved half way.
+    /// Returns the mesh nodes and directions of the loads of a tile.
+    pub fn forces_of(&self, tile: usize) -> Vec<(u32, Vec3)> {
+        self.tiles[tile]
+            .iter()
+            .map(|&load| self.force(load))
+            .collect()
+    }
+
+    /// Returns the half-solved unit loads of a tile.
     pub fn solved(&self, tile: usize) -> Arc<HalfSolved> {
         let mut solved = self.solved.lock().unwrap_or_else(PoisonError::into_inner);
-        let own = solved[tile].get_or_insert_with(|| {
-            let forces = self.tiles[tile].iter().map(|&load| self.force(load));
-            Arc::new(self.solid.half_solved(&forces.collect::<Vec<_>>()))
-        });
+        let own = solved[tile]
+            .get_or_insert_with(|| Arc::new(self.solid.half_solved(&self.forces_of(tile))));
         Arc::clone(own)
     }
-}
-
-/// The numbers of a node's loads along the surface: along its own directions there, anterior and lateral.
-pub(crate) fn along_surface(node: u32) -> [u32; 2] {
-    [2 * node, 2 * node + 1]
 }
 
 impl SurfaceCompliance for UnitLoads {
@@ -394,7 +379,12 @@ impl SurfaceCompliance for UnitLoads {
     }
 }
 
-/// Nodes shared out into tiles of so many at most: the larger extent halved until few are left.
+/// Returns the numbers of a node's loads along the surface: anterior and lateral.
+pub(crate) fn along_surface(node: u32) -> [u32; 2] {
+    [2 * node, 2 * node + 1]
+}
+
+/// Divides nodes into tiles of so many at most, halving the largest extent until they are small enough.
 pub(crate) fn tiles(positions: &[Vec3], most: usize) -> Vec<Vec<u32>> {
     let mut open = vec![(0..positions.len() as u32).collect::<Vec<u32>>()];
     let mut tiles = Vec::new();

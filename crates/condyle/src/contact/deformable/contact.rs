@@ -1,73 +1,75 @@
-//! The contact of a rigid femur with a deformable insert.
+//! The contact of a rigid femur with a deformable insert: one evaluation for elastic, yielding, sticking and resting inserts.
+//!
+//! To follow an evaluation, start at `respond` of [`DeformableContact`]: candidates and their gaps along the insert's normals,
+//! the loads that keep the bodies just in touch (`complementarity`), and the wrench of these. `settle`, `accept` and
+//! `evaluate` pass the loads on to the histories.
 
 use std::sync::Arc;
 
 use super::{
-    backside::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD},
     cholesky::Eight,
     complementarity::{Candidate, Pressing},
     compliance::Compliance,
-    edge_and_peak::{EdgeOfContact, PeakSearch, squares, squares_everywhere},
-    friction::FRICTION_FIELD,
+    edge_and_peak::{EdgeOfContact, PeakSearch},
     history::{LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads},
-    plastic::PLASTIC_FIELD,
 };
 use crate::{
     Vector,
     contact::{
-        broad_phase::BroadPhase,
+        broad_phase::{Search, ShareBlock},
         contact_patch::{ContactPatch, Coulomb, NearBlock, NearBlocks, Sliding, Tractions4},
         law::Bodies,
         model::{
-            ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Linearization,
-            NotBorne, Response, Settled, Tangent,
+            ContactCache, ContactMemory, ContactModel, ContactResult, Linearization, NotBorne,
+            Response, Settled, StateField, Tangent,
         },
-        share_block::ShareBlock,
     },
     number::{F64x4, LANES, Number, cross, dot, vector_from_lanes},
     spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist4, WrenchByTwist},
 };
 
-/// A node may touch where the bodies at rest are nearer than this, mm: beside a contact a thin layer bulges,
-/// by a few hundredths of what it deflects.
+/// A node may touch where the bodies at rest are nearer than this, mm: next to a contact a thin layer bulges by a few
+/// hundredths of its deflection.
 const MAX_BULGE_MM: f64 = 0.1;
 
-/// The settings of a deformable contact besides the compliance.
+/// The settings of a deformable contact.
 #[derive(Clone, Copy)]
 pub(crate) struct FrictionSettings {
+    /// Regularised friction; its coefficient is 0 if a history adds friction.
     pub friction: Coulomb,
+    pub search: Search,
     /// Motion up to which a sample of the femur is extrapolated, mm.
     pub sample_reuse_mm: f64,
 }
 
-/// The contact of a femur with an elastic insert as it is now, with a broad phase `B`.
+/// The contact of a femur with an elastic insert as it is now.
 ///
-/// Invariant: a response depends on the motion alone, but for samples that are extrapolated and for what
-/// the complementarity is satisfied to. The tangent is the derivative of the response where no node begins or
-/// ceases to press, right to six digits.
-pub(crate) struct DeformableContact<'a, B> {
+/// Invariant: a response depends on the motion alone, but for samples that are extrapolated and for the tolerance of the
+/// complementarity. The tangent is the derivative of the response as long as no node comes into contact or leaves it,
+/// right to six digits.
+pub(crate) struct DeformableContact<'a> {
     bodies: Bodies<'a>,
-    rubbing: FrictionSettings,
-    nearby: NearBlocks<'a, B>,
+    friction: Coulomb,
+    nearby: NearBlocks<'a>,
     patch: ContactPatch,
     compliance: Arc<Compliance>,
     pressing: Pressing,
-    /// The blocks near the femur, the nodes that may touch, and where each of these is: number among the
-    /// blocks, and lane.
+    /// The blocks near the femur, the nodes that may touch, and the place of each of these: number among the blocks, and
+    /// lane.
     near: Vec<NearBlock>,
     candidates: Vec<Candidate>,
     lanes: Vec<(usize, usize)>,
     /// The inward normals of the nodes of every block; for blocks near the femur the change of the gaps along them.
     inward: Vec<Vector<F64x4>>,
     along: Vec<AlongNormal>,
-    /// The state that the next contact resumes from.
-    state: ContactState,
-    /// The loads of the last response, and the parts of the state that depend on what came before.
+    /// Fields of the state that are not of a history, for the next contact.
+    fields: Vec<StateField>,
+    /// The loads of the last response, and the parts of the state that depend on the load history.
     node_loads: Vec<NodeLoad>,
     histories: Vec<Box<dyn LoadHistory + 'a>>,
 }
 
-/// Loads of a block of shares, and their derivatives by six motions.
+/// The loads on a block of nodes along the inward normals, N, and their derivatives by six motions.
 #[derive(Clone, Copy)]
 struct Loads4 {
     load_n: [f64; LANES],
@@ -97,12 +99,14 @@ impl Loads4 {
         let (force_n, by_motion) = along.forces_n(F64x4::new(self.load_n), &by_motion);
         let [ax, ay, az, x, y, z] = by_motion;
         let load_by_motion = Vector::new(x, y, z);
+        // Unused lanes have no area.
         let area = Number::max(area_mm2, F64x4::splat(f64::MIN_POSITIVE));
         Tractions4 {
             pressure_mpa: force_n / area,
             area_mm2,
             covered_mm2: area_mm2,
-            // What a turn adds beyond that of its motion at the share: the whole load moves.
+            // The derivative by a turn about the origin, less that by the motion of the material which the turn causes at
+            // the share.
             load_by_turn: Vector::new(ax, ay, az) - cross(place, &load_by_motion),
             load_by_motion,
             sliding: Sliding::new(
@@ -114,26 +118,27 @@ impl Loads4 {
     }
 }
 
-impl<'a, B: BroadPhase> DeformableContact<'a, B> {
-    /// The contact of bodies, of which the insert deflects as `compliance` says; quicker where another left
-    /// its cache. The state of `memory` is handed on.
-    pub fn after(
+impl<'a> DeformableContact<'a> {
+    /// Creates the contact of bodies, faster with the cache of another. Histories resume from their own part of the state;
+    /// `memory` holds the other fields, which are passed on.
+    pub fn new(
         memory: ContactMemory,
         bodies: Bodies<'a>,
-        rubbing: FrictionSettings,
+        settings: FrictionSettings,
         compliance: Arc<Compliance>,
+        histories: Vec<Box<dyn LoadHistory + 'a>>,
     ) -> Self {
-        let nearby = NearBlocks::after(
+        let nearby = NearBlocks::new(
             memory.cache.into_inner(),
             bodies.femur,
             ShareBlock::from_nodes(bodies.insert, bodies.surface),
-            rubbing.sample_reuse_mm,
+            (settings.search, settings.sample_reuse_mm),
         );
         let inward = |block: &ShareBlock| {
             -vector_from_lanes(|lane| &bodies.surface.normals[block.nodes[lane] as usize])
         };
         Self {
-            patch: ContactPatch::new(bodies.surface, &nearby.blocks, rubbing.friction),
+            patch: ContactPatch::new(bodies.surface, &nearby.blocks, settings.friction),
             pressing: Pressing::new(compliance.node_count()),
             compliance,
             near: Vec::new(),
@@ -141,26 +146,18 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
             lanes: Vec::new(),
             inward: nearby.blocks.iter().map(inward).collect(),
             along: Vec::new(),
-            state: memory.state,
+            fields: memory.state.fields,
             node_loads: Vec::new(),
-            histories: Vec::new(),
+            histories,
             bodies,
-            rubbing,
+            friction: settings.friction,
             nearby,
         }
     }
 
-    /// Adds a part of the state that depends on what came before; with one for friction, `rubbing` has none.
-    pub fn with_history(mut self, history: Option<impl LoadHistory + 'a>) -> Self {
-        if let Some(history) = history {
-            self.histories.push(Box::new(history));
-        }
-        self
-    }
-
     /// Lists the nodes that may touch.
     fn find_candidates(&mut self, pose: &Pose, pose4: &Pose4) {
-        // Where the backside lifts, the surface comes nearer by as much.
+        // If the backside lifts, the surface comes nearer by as much.
         let lifts_mm = self.histories.iter().map(|history| history.lift_mm());
         let most_mm = MAX_BULGE_MM + lifts_mm.fold(0.0, f64::max);
         let (near, most) = (&mut self.near, F64x4::splat(most_mm));
@@ -197,7 +194,7 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
         }
     }
 
-    /// Finds the loads of all that touch, and keeps those blocks.
+    /// Finds the loads on the candidates, and keeps the blocks that carry one.
     fn find_loads(&mut self) -> Vec<Loads4> {
         let mut loads = vec![Loads4::NONE; self.near.len()];
         let candidates = self.candidates.iter();
@@ -227,14 +224,11 @@ impl<'a, B: BroadPhase> DeformableContact<'a, B> {
     }
 }
 
-impl<B: BroadPhase> Linearization for DeformableContact<'_, B> {
+impl Linearization for DeformableContact<'_> {
     fn tangent(&self) -> Tangent {
         let mut tangent = self.patch.tangent();
-        for along_surface in self
-            .histories
-            .iter()
-            .filter_map(|history| history.tangent())
-        {
+        let histories = self.histories.iter();
+        for along_surface in histories.filter_map(|history| history.tangent()) {
             let change = FrameChange::to_femur(&self.patch.pose);
             let by_pose = change.derivative_back(&WrenchByTwist::new(along_surface));
             tangent.by_pose.matrix += by_pose.matrix;
@@ -243,15 +237,15 @@ impl<B: BroadPhase> Linearization for DeformableContact<'_, B> {
     }
 }
 
-impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
+impl ContactModel for DeformableContact<'_> {
     fn node_count(&self) -> usize {
         self.bodies.surface.positions.len()
     }
 
     fn begin_cycle(&mut self) {
-        self.histories
-            .iter_mut()
-            .for_each(|history| history.begin_cycle());
+        for history in &mut self.histories {
+            history.begin_cycle();
+        }
     }
 
     fn begin_increment(&mut self, increment: usize) {
@@ -267,7 +261,7 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
         self.find_candidates(&motion.pose, &pose);
-        let (loads, friction) = (self.find_loads(), self.rubbing.friction);
+        let (loads, friction) = (self.find_loads(), self.friction);
         let along = &self.along;
         let (mut wrench, mean_slip) =
             self.patch
@@ -314,17 +308,16 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
     }
 
     fn reject(&mut self) {
-        self.histories
-            .iter_mut()
-            .for_each(|history| history.reject());
+        for history in &mut self.histories {
+            history.reject();
+        }
     }
 
     fn moved_in_a_cycle_mm(&self) -> f64 {
-        let moved_mm = self
-            .histories
-            .iter()
-            .map(|history| history.moved_in_a_cycle_mm());
-        moved_mm.fold(0.0, f64::max)
+        let histories = self.histories.iter();
+        histories
+            .map(|history| history.moved_in_a_cycle_mm())
+            .fold(0.0, f64::max)
     }
 
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
@@ -333,11 +326,14 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
             history.evaluate(&mut touched);
         }
         let (surface, faces) = (self.bodies.surface, self.bodies.insert.faces_around());
-        let pressure2 = squares(&touched);
+        let mut pressure2 = vec![0.0; self.node_count()];
+        for node in &touched {
+            pressure2[node.node as usize] = node.pressure_mpa * node.pressure_mpa;
+        }
         let edge = EdgeOfContact {
             surface,
             faces,
-            pressure2: &squares_everywhere(self.node_count(), &touched),
+            pressure2: &pressure2,
         };
         for node in &mut touched {
             node.covered_mm2 = edge.part(node.node) * surface.shares[node.node as usize].area_mm2;
@@ -354,42 +350,34 @@ impl<B: BroadPhase> ContactModel for DeformableContact<'_, B> {
     }
 
     fn into_memory(self: Box<Self>) -> ContactMemory {
-        let mut state = self.state;
-        let own = [
-            PLASTIC_FIELD,
-            FRICTION_FIELD,
-            BACKSIDE_FIELD,
-            BACKSIDE_CYCLE_FIELD,
-        ];
-        state.fields.retain(|field| !own.contains(&&*field.name));
+        let mut memory = ContactMemory::default();
+        memory.state.fields = self.fields;
         let histories = self.histories.into_iter();
-        state
-            .fields
-            .extend(histories.flat_map(LoadHistory::into_fields));
-        ContactMemory {
-            state,
-            cache: ContactCache::new(self.nearby.into_cache()),
-        }
+        let own = histories.flat_map(LoadHistory::into_fields);
+        memory.state.fields.extend(own);
+        memory.cache = ContactCache::new(self.nearby.into_cache());
+        memory
     }
 }
 
-/// Below this part of its size a gap's slope does not count as one along the normal: the femur stands on edge there.
+/// Smaller slopes of the gap along the normal are replaced by this one: the femur stands on edge there, and a division by a
+/// slope near zero would exaggerate the gap.
 const MIN_SLOPE: f64 = 0.3;
 
 /// The change of the gaps of a block of nodes along the insert's normals.
 ///
 /// A node that deflects by w along its inward normal m opens the gap g of the bodies at rest to g + s w, with
-/// s = G . m and G the gradient of the gap. So the bodies touch where the overclosure -g/s is deflected by, and a load
-/// N along m is the part there of a force N/s along the femur's normal: both do the same work.
-pub(crate) struct AlongNormal {
+/// s = G . m and G the gradient of the gap. So the bodies touch if the node deflects by the overclosure -g/s, and a load
+/// N along m is the component of a force N/s along the femur's normal: both do the same work.
+struct AlongNormal {
     slope: F64x4,
     /// Derivatives of the slope by a turn and a shift of the femur.
     by_motion: [F64x4; 6],
 }
 
 impl AlongNormal {
-    /// With the inward normals of the nodes, in the femoral frame.
-    pub fn new(near: &NearBlock, inward: &Vector<F64x4>) -> Self {
+    /// From the inward normals of the nodes, in the femoral frame.
+    fn new(near: &NearBlock, inward: &Vector<F64x4>) -> Self {
         let sample = &near.cached.sample;
         let gradient = &sample.gap_gradient;
         let slope = dot(gradient, inward);
@@ -405,9 +393,9 @@ impl AlongNormal {
         }
     }
 
-    /// Overclosure of every node, and its derivatives by a turn and a shift of the femur: a motion a + w x p of its
-    /// material changes the gap by -G . (a + w x p).
-    pub fn overclosures_mm(&self, near: &NearBlock, gap_mm: F64x4) -> [Eight; LANES] {
+    /// Returns the overclosure of every node, and its derivatives by a turn and a shift of the femur: a motion a + w x p of
+    /// its material changes the gap by -G . (a + w x p).
+    fn overclosures_mm(&self, near: &NearBlock, gap_mm: F64x4) -> [Eight; LANES] {
         let gradient = &near.cached.sample.gap_gradient;
         let turn = cross(&near.cached.place, gradient);
         let per_slope = F64x4::splat(1.0) / self.slope;
@@ -429,8 +417,8 @@ impl AlongNormal {
         std::array::from_fn(|lane| [first[lane], second[lane]])
     }
 
-    /// Force along the femur's normal that loads along the insert's are part of, and its derivatives by motion.
-    pub fn forces_n(&self, load_n: F64x4, by_motion: &[F64x4; 6]) -> (F64x4, [F64x4; 6]) {
+    /// Returns the forces along the femur's normal that belong to loads along the insert's, and their derivatives by motion.
+    fn forces_n(&self, load_n: F64x4, by_motion: &[F64x4; 6]) -> (F64x4, [F64x4; 6]) {
         let per_slope = F64x4::splat(1.0) / self.slope;
         let force_n = load_n * per_slope;
         let by = |motion: usize| (by_motion[motion] - force_n * self.by_motion[motion]) * per_slope;

@@ -1,6 +1,7 @@
 //! The part of a node's share that is in contact, and the peak pressure, both from the pressures at the nodes.
-
-use std::collections::BTreeMap;
+//!
+//! Under smooth bodies the square of the pressure is smooth up to the edge of contact (in Hertz's contact a quadratic), and
+//! the pressure itself is not. So both are found from the square.
 
 use crate::{
     Vec3,
@@ -11,9 +12,9 @@ use crate::{
     geometry::{ArticulatingSurface, FacesAround, Share},
 };
 
-/// The reach of the contact beyond a node, in steps between nodes, by the ratio of its pressure to that of the
-/// next node inside, and what is taken off. With these the radius of a ball's contact errs by 3 % at most on hexahedra
-/// of half of that radius, and by 1 % on those of a fifth.
+/// The reach of the contact beyond a node, in steps between nodes: [`STEPS_BY_RATIO`] times the ratio of its pressure to
+/// that of the next node inside, less [`STEPS_LESS`]. Fitted: with these the radius of a ball's contact errs by 3 % at most
+/// on hexahedra of half of that radius, and by 1 % on those of a fifth.
 const STEPS_BY_RATIO: f64 = 2.3;
 const STEPS_LESS: f64 = 0.77;
 
@@ -25,33 +26,20 @@ pub(crate) struct EdgeOfContact<'a> {
     pub pressure2: &'a [f64],
 }
 
-/// Squares of the pressures at nodes, MPa2.
-pub(crate) fn squares(touched: &[TouchedNode]) -> BTreeMap<u32, f64> {
-    let square = |node: &TouchedNode| (node.node, node.pressure_mpa * node.pressure_mpa);
-    touched.iter().map(square).collect()
-}
-
-/// The same at every node of a surface, 0 where it does not press.
-pub(crate) fn squares_everywhere(node_count: usize, touched: &[TouchedNode]) -> Vec<f64> {
-    let mut pressure2 = vec![0.0; node_count];
-    for node in touched {
-        pressure2[node.node as usize] = node.pressure_mpa * node.pressure_mpa;
-    }
-    pressure2
-}
-
 impl EdgeOfContact<'_> {
-    /// Part of a pressing node's share that presses; more than all of it where the contact reaches past.
+    /// Returns the part of a node's share that is in contact; more than 1 if the contact reaches past the share.
     ///
-    /// Smooth bodies press with p = c sqrt(s) at a distance s from the edge of contact. So the ratio of a node's
-    /// pressure to that of the next one inside tells how far beyond the node the edge is: nearly [`STEPS_BY_RATIO`]
-    /// times the ratio, less [`STEPS_LESS`], in steps between nodes. The node stands for half a step more than that.
+    /// Under smooth bodies p = c sqrt(s) at a distance s from the edge of contact. So the ratio of a node's pressure to that
+    /// of the next node inside determines the distance of the edge beyond the node. The share begins half a step before the
+    /// node.
     pub fn part(&self, node: u32) -> f64 {
         let outside = || {
-            let beside = self.beside(node);
-            beside.filter(|&other| self.pressure2[other as usize] == 0.0)
+            // The nodes along the edges of the faces around, some of them twice.
+            let faces = self.faces.of(node as usize).iter();
+            let next = faces.flat_map(|&[next, _, before]| [next, before]);
+            next.filter(|&other| self.pressure2[other as usize] == 0.0)
         };
-        // Most nodes press with all around them.
+        // All around most nodes are in contact, too.
         let at_edge = outside().next().and_then(|_| self.slope(node));
         let Some(slope) = at_edge else {
             return 1.0;
@@ -65,14 +53,8 @@ impl EdgeOfContact<'_> {
         })
     }
 
-    /// Nodes along the edges from a node; some twice.
-    fn beside(&self, node: u32) -> impl Iterator<Item = u32> {
-        let faces = self.faces.of(node as usize).iter();
-        faces.flat_map(|&[next, _, before]| [next, before])
-    }
-
-    /// Slope of the square of the pressure at a node, the least-squares fit to those that press around it;
-    /// none where they do not tell it.
+    /// Returns the slope of the square of the pressure at a node, a least-squares fit to the nodes in contact around it; none
+    /// where these do not determine it.
     fn slope(&self, node: u32) -> Option<Vec3> {
         let at = node as usize;
         let (own, place) = (self.pressure2[at], self.surface.positions[at]);
@@ -93,41 +75,38 @@ impl EdgeOfContact<'_> {
     }
 }
 
-/// A quadratic that misses the square of the pressure under the top by more than this part does not follow it.
+/// A fit is rejected if it misses the square of the pressure at its node by more than this part.
 const MAX_MISSED: f64 = 0.1;
 
-/// Looks for the highest pressure.
+/// The search for the highest pressure.
 ///
-/// Under smooth bodies the square of the pressure is smooth up to the edge of contact (in Hertz's contact a
-/// quadratic), so it is this that is fitted, over the node that presses most and those around it, if all of them
-/// press; at the edge of a worn scar, where they do not, there is nothing smooth to fit. The peak is not below the
-/// highest mean over a share, and is that where the fit does not follow.
+/// A quadratic is fitted to the square of the pressure over the node with the highest pressure and those around it, if all
+/// of these are in contact; at the edge of a worn scar, where they are not, nothing smooth can be fitted. The peak is not
+/// below the highest mean over a share, and equal to that if the fit is rejected.
 pub(crate) struct PeakSearch<'a> {
     pub shares: &'a [Share],
     pub faces: &'a FacesAround,
-    /// Square of the pressure at every node that presses, MPa2.
-    pub pressure2: &'a BTreeMap<u32, f64>,
+    /// Square of the pressure at every node, MPa2; 0 where there is no contact.
+    pub pressure2: &'a [f64],
 }
 
 impl PeakSearch<'_> {
-    /// Highest pressure at or around the nodes that touch, MPa; any region may have it.
+    /// Returns the highest pressure at or around the nodes in contact, MPa; any region may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
-        highest_mpa(touched, |node, _| self.highest_around(node))
-    }
-
-    /// Highest pressure within the share of a node, MPa.
-    fn highest_around(&self, node: u32) -> f64 {
-        let patch = self.faces.patch(node, MIN_NODES);
-        let Some(own) = self.pressure2.get(&node) else {
-            return 0.0;
-        };
-        if !patch.iter().all(|node| self.pressure2.contains_key(node)) {
-            return 0.0;
-        }
-        let pressing = |node: &u32| (&self.shares[*node as usize], self.pressure2[node]);
-        let fit = Quadratic::fit(&self.shares[node as usize], patch.iter().map(pressing));
-        let follows = |fit: &Quadratic| (fit.mean() - own).abs() <= MAX_MISSED * own;
-        fit.filter(follows)
-            .map_or(0.0, |fit| fit.highest().max(0.0).sqrt())
+        highest_mpa(touched, |node, _| {
+            let patch = self.faces.patch(node, MIN_NODES);
+            let pressure2 = |node: &u32| self.pressure2[*node as usize];
+            let own = pressure2(&node);
+            if own == 0.0 || patch.iter().any(|node| pressure2(node) == 0.0) {
+                return 0.0;
+            }
+            let means = patch
+                .iter()
+                .map(|node| (&self.shares[*node as usize], pressure2(node)));
+            let fit = Quadratic::fit(&self.shares[node as usize], means);
+            let follows = |fit: &Quadratic| (fit.mean() - own).abs() <= MAX_MISSED * own;
+            fit.filter(follows)
+                .map_or(0.0, |fit| fit.highest().max(0.0).sqrt())
+        })
     }
 }

@@ -1,10 +1,10 @@
-//! The compliance of an insert's surface by finite elements.
+//! The articulating surface of an elastic insert: its compliance and the influence of loads, by finite elements.
 
 use std::{
     collections::BTreeMap,
     fmt,
     sync::{
-        Arc, Mutex, MutexGuard, OnceLock, PoisonError,
+        Arc, Mutex, OnceLock, PoisonError,
         atomic::{AtomicUsize, Ordering},
     },
 };
@@ -15,6 +15,7 @@ use nalgebra::DVector;
 use super::{
     backside::{Floor, Tray},
     compliance::{Compliance, SurfaceCompliance, UnitLoads, along_surface, tiles},
+    history::NodeLoad,
     plastic::Influence,
 };
 use crate::{
@@ -23,45 +24,44 @@ use crate::{
     geometry::{Insert, bounds},
 };
 
-/// So many nodes at most are solved for together: forces on nodes that are near load the same part of the factor.
+/// Nodes of a tile at most: neighbouring loads use the same part of the factor and are solved together.
 const TILE_NODES: usize = 48;
 
-/// The freedoms that feel a load, over the root of all: those on the cuts around it, which go through a plate of three
-/// layers of nodes.
+/// The number of freedoms in the half-solution of a load, over the root of the number of all: those on the cuts around the
+/// load, through a plate of three layers of nodes. Used for estimates of memory only.
 const FELT_PER_ROOT: f64 = 6.0;
 
-/// Nodes that hold an insert while its loads are half-solved.
+/// The nodes at which an insert is held while its loads are half-solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HeldBy {
-    /// The nodes of its backside: it is bonded.
+    /// The backside: it is bonded.
     Backside,
-    /// The nodes of the flat part of it, which rests; walls and recesses hang free.
+    /// The flat part of the backside, which rests; walls and recesses are free.
     Floor,
 }
 
-/// The articulating surface of an elastic insert, held by its backside or by the floor of that.
+/// The articulating surface of an elastic insert, held at its backside or at the floor of that.
 ///
-/// The stiffness is factored once; unit loads on a tile of nodes are solved half way when they are first asked for,
-/// and kept.
+/// The stiffness is factored once. Everything else is computed when it is first needed, and kept.
 pub(crate) struct ElasticSurface {
     solid: Arc<ElasticSolid>,
     /// Mesh nodes of the surface.
     nodes: Vec<u32>,
     /// The surface's own directions at its nodes, anterior and lateral.
     tangents: Vec<[Vec3; 2]>,
-    /// Unit loads along the inward normals.
-    normal: UnitLoads,
+    /// Unit loads along the inward normals, and the compliance between them.
+    loads: Arc<UnitLoads>,
+    normal: Arc<Compliance>,
     known_at_first: AtomicUsize,
-    /// Those along the surface, of an insert that sticks and slips.
-    tangential: OnceLock<Arc<Compliance<UnitLoads>>>,
-    /// The influence of loads inside an insert that yields.
+    /// The compliance along the surface, if nodes stick and slip.
+    tangential: OnceLock<Arc<Compliance>>,
+    /// The influence of loads inside the insert, if it yields.
     influence: OnceLock<Influence>,
-    /// The nodes that hold it.
     held_by: HeldBy,
-    /// The flat part of the backside, of an insert that rests on it.
-    floor: OnceLock<Floor>,
     backside: Vec<u32>,
-    /// The tray, of an insert that rests on it, and the spacing of its points, mm.
+    /// The flat part of the backside, if it rests on that.
+    floor: OnceLock<Floor>,
+    /// The tray, if the insert rests on it, and the spacing of its points, mm.
     tray: Mutex<Option<(f64, Arc<Tray>)>>,
 }
 
@@ -99,8 +99,11 @@ impl ElasticSurface {
         let nodes = insert.surface_nodes();
         let inward = surface.normals.iter().map(|normal| -normal);
         let forces = nodes.iter().copied().zip(inward).collect();
+        let loads = Arc::new(UnitLoads::new(Arc::clone(&solid), forces, tiles));
+        let source: Arc<dyn SurfaceCompliance> = Arc::clone(&loads) as _;
         Ok(Self {
-            normal: UnitLoads::on(Arc::clone(&solid), forces, tiles),
+            normal: Arc::new(Compliance::new(source)),
+            loads,
             known_at_first: AtomicUsize::new(0),
             solid,
             tangents: (0..nodes.len())
@@ -116,20 +119,32 @@ impl ElasticSurface {
         })
     }
 
-    /// Takes what another run has found of its normal compliance.
+    /// Returns the compliance along the inward normals.
+    pub fn normal(&self) -> &Arc<Compliance> {
+        &self.normal
+    }
+
+    /// Takes the normal compliance that another run has computed.
     pub fn know(&self, known: KnownCompliance) {
         self.known_at_first.store(known.pairs(), Ordering::Relaxed);
-        *self.normal.known() = known;
+        *self.loads.known() = known;
     }
 
-    /// Returns the results of another run that no caller has asked for yet.
-    pub fn known(&self) -> MutexGuard<'_, KnownCompliance> {
-        self.normal.known()
+    /// Returns whether any of the normal compliance is known.
+    pub fn knows(&self) -> bool {
+        self.normal.known_count() > 0 || self.known_at_first.load(Ordering::Relaxed) > 0
     }
 
-    /// Returns the number of pairs of tiles known from another run.
-    pub fn known_at_first(&self) -> usize {
-        self.known_at_first.load(Ordering::Relaxed)
+    /// Returns the known normal compliance, for another run; none if it has no more pairs of tiles than at first, or than
+    /// `more_than_pairs`.
+    pub fn known(&self, more_than_pairs: usize) -> Option<KnownCompliance> {
+        let unused_pairs = self.loads.known().pairs();
+        let at_first = self.known_at_first.load(Ordering::Relaxed);
+        if unused_pairs + self.normal.known_pairs() <= more_than_pairs.max(at_first) {
+            return None;
+        }
+        let unused = self.loads.known().clone();
+        Some(self.normal.add_to(unused))
     }
 
     fn floor(&self) -> &Floor {
@@ -138,7 +153,7 @@ impl ElasticSurface {
             .get_or_init(|| Floor::from_backside(mesh, &self.backside))
     }
 
-    /// The tray, with points at some spacing: that asked for last, or recomputed.
+    /// Returns the tray with points at some spacing, which is kept while the spacing stays.
     pub fn tray(&self, spacing_mm: f64) -> Arc<Tray> {
         let mut tray = self.tray.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((known_mm, known)) = &*tray
@@ -146,19 +161,20 @@ impl ElasticSurface {
         {
             return Arc::clone(known);
         }
-        let made = Tray::new(&self.solid, self.floor(), spacing_mm, self.tiles().len());
-        let made = Arc::new(made);
+        let tiles = self.loads.tiles().len();
+        let made = Arc::new(Tray::new(&self.solid, self.floor(), spacing_mm, tiles));
         *tray = Some((spacing_mm, Arc::clone(&made)));
         made
     }
 
-    /// Returns how far the motion of the backside moves the nodes of a tile along their inward normals: a row a node.
+    /// Returns the displacements of the nodes of a tile along their inward normals by each number of the backside's motion:
+    /// a row for each node.
     pub fn by_tray<'a>(&self, tray: &'a Tray, tile: usize) -> &'a [f64] {
-        tray.of_tile(&self.normal, tile)
+        tray.of_tile(&self.loads, tile)
     }
 
     /// Returns the forces at the points of the backside by loads along the inward normals of nodes, N.
-    pub fn forces_on_tray(&self, tray: &Tray, loads: &[(u32, f64)]) -> DVector<f64> {
+    pub fn forces_on_tray(&self, tray: &Tray, loads: &[NodeLoad]) -> DVector<f64> {
         let mut forces_n = DVector::zeros(tray.freedoms());
         for (tile, loads) in self.by_tile(loads) {
             let rows = self
@@ -173,27 +189,28 @@ impl ElasticSurface {
         forces_n
     }
 
-    /// The compliance along the surface: load 2 i + k is on node i along its direction k, anterior and lateral.
-    pub fn tangential(&self) -> &Arc<Compliance<UnitLoads>> {
+    /// Returns the compliance along the surface: load 2 i + k is on node i along its direction k, anterior and lateral.
+    pub fn tangential(&self) -> &Arc<Compliance> {
         self.tangential.get_or_init(|| {
             let nodes = self.nodes.iter().zip(&self.tangents);
             let forces = nodes.flat_map(|(&node, along)| along.map(|along| (node, along)));
-            let tiles = self.tiles().iter();
+            let tiles = self.loads.tiles().iter();
             let tiles =
                 tiles.map(|tile| tile.iter().flat_map(|&node| along_surface(node)).collect());
-            let loads = UnitLoads::on(Arc::clone(&self.solid), forces.collect(), tiles.collect());
-            Arc::new(Compliance::new(loads))
+            let solid = Arc::clone(&self.solid);
+            let loads = UnitLoads::new(solid, forces.collect(), tiles.collect());
+            Arc::new(Compliance::new(Arc::new(loads)))
         })
     }
 
-    /// Bytes of the solid, and of so many loads on each of some nodes and the compliance between them.
+    /// Estimates the memory of the solid, and of so many loads on each of some nodes with the compliance between them, bytes.
     pub fn bytes(&self, nodes: f64, loads_a_node: [f64; 2]) -> f64 {
         let nodes = nodes.min(self.nodes.len() as f64);
         let of_loads = loads_a_node.map(|each| each * nodes * (each * nodes + self.felt()));
         self.solid.bytes() as f64 + size_of::<f64>() as f64 * (of_loads[0] + of_loads[1])
     }
 
-    /// Bytes of a tray with points at some spacing, and of its influence on some nodes.
+    /// Estimates the memory of a tray with points at some spacing, and of its influence on some nodes, bytes.
     pub fn bytes_of_tray(&self, spacing_mm: f64, nodes: f64) -> f64 {
         let mesh = self.solid.mesh();
         let places: Vec<Vec3> = mesh.positions(&self.floor().nodes).collect();
@@ -207,7 +224,7 @@ impl ElasticSurface {
         FELT_PER_ROOT * (3.0 * self.solid.mesh().nodes.len() as f64).sqrt()
     }
 
-    /// Bytes of what loads on some nodes move inside an insert that yields.
+    /// Estimates the memory of the influence of loads on some nodes inside an insert that yields, bytes.
     pub fn bytes_below(&self, nodes: f64) -> f64 {
         let rows = 3.0 * self.solid.mesh().nodes.len() as f64;
         size_of::<f32>() as f64 * rows * nodes.min(self.nodes.len() as f64)
@@ -222,41 +239,35 @@ impl ElasticSurface {
             && self.nodes == insert.surface_nodes()
     }
 
-    /// The insert as a solid.
-    pub fn solid(&self) -> &ElasticSolid {
+    /// Returns the insert as a solid.
+    pub fn solid(&self) -> &Arc<ElasticSolid> {
         &self.solid
     }
 
     /// Returns the influence of loads inside the insert.
     pub fn influence(&self) -> &Influence {
         self.influence.get_or_init(|| {
-            let nodes = self.nodes.iter();
-            let places: Vec<Vec3> = nodes
-                .map(|&node| self.solid.mesh().nodes[node as usize])
-                .collect();
-            Influence::new(&self.solid, &places, self.tiles().len())
+            let places = self.solid.mesh().positions(&self.nodes).collect::<Vec<_>>();
+            Influence::new(&self.solid, &places, self.loads.tiles().len())
         })
     }
 
-    /// Nodes of the surface that lie together.
+    /// Returns the nodes of a tile.
     pub fn nodes_of_tile(&self, tile: usize) -> &[u32] {
-        &self.tiles()[tile]
+        &self.loads.tiles()[tile]
     }
 
     /// Returns the displacements of all mesh nodes by unit loads on a tile, mm/N: a row for every axis of every mesh node.
     pub fn moved_below(&self, tile: usize) -> &[f32] {
-        let loads: Vec<(u32, Vec3)> = self.tiles()[tile]
-            .iter()
-            .map(|&node| self.unit(node))
-            .collect();
-        self.influence().by_surface(&self.solid, tile, &loads)
+        let influence = self.influence();
+        influence.by_surface(&self.solid, tile, &self.loads.forces_of(tile))
     }
 
-    /// Loads on nodes of the surface by their tiles.
-    pub fn by_tile(&self, loads: &[(u32, f64)]) -> BTreeMap<u32, Vec<f64>> {
+    /// Groups loads on nodes by tiles, in the order of the nodes of each.
+    pub fn by_tile(&self, loads: &[NodeLoad]) -> BTreeMap<u32, Vec<f64>> {
         let load_of: BTreeMap<u32, f64> = loads.iter().copied().collect();
         let mut by_tile = BTreeMap::new();
-        for (number, tile) in self.tiles().iter().enumerate() {
+        for (number, tile) in self.loads.tiles().iter().enumerate() {
             let of = |node: &u32| load_of.get(node).copied();
             if tile.iter().any(|node| of(node).is_some()) {
                 let loads = tile.iter().map(|node| of(node).unwrap_or(0.0));
@@ -269,14 +280,10 @@ impl ElasticSurface {
     /// Returns the displacements of all mesh nodes by loads along the inward normals and eigenstrains of elements, mm.
     pub fn moved_by(
         &self,
-        loads: &[(u32, f64)],
+        loads: &[NodeLoad],
         eigenstrains: &BTreeMap<usize, [Strain; 8]>,
     ) -> Vec<Vec3> {
-        let mut forces: Vec<(u32, Vec3)> = Vec::new();
-        for &(node, load_n) in loads {
-            let (node, along) = self.unit(node);
-            forces.push((node, along * load_n));
-        }
+        let mut forces = self.forces(loads);
         for (&element, strains) in eigenstrains {
             let own = self.influence().element(&self.solid, element as u32);
             let own = own.forces(&self.solid, strains);
@@ -287,41 +294,25 @@ impl ElasticSurface {
     }
 
     /// Returns the displacements of all mesh nodes by loads along the inward normals and a motion of the backside, mm.
-    pub fn moved_with_tray(
-        &self,
-        loads: &[(u32, f64)],
-        tray: &Tray,
-        moved_mm: &[f64],
-    ) -> Vec<Vec3> {
-        let forces = loads.iter().map(|&(node, load_n)| {
-            let (node, along) = self.unit(node);
-            (node, along * load_n)
-        });
-        let forces: Vec<(u32, Vec3)> = forces.collect();
+    pub fn moved_with_tray(&self, loads: &[NodeLoad], tray: &Tray, moved_mm: &[f64]) -> Vec<Vec3> {
+        let moved = tray.moved_nodes(moved_mm);
         self.solid
-            .displacements_with_supports(&forces, &tray.moved_nodes(moved_mm))
+            .displacements_with_supports(&self.forces(loads), &moved)
     }
 
-    /// Returns the displacements of the surface's mesh nodes along the inward normals, mm.
+    /// Returns the components of displacements of mesh nodes along the inward normals of the surface, mm.
     pub fn along_normals(&self, moved_mm: &[Vec3]) -> Vec<f64> {
         (0..self.nodes.len() as u32)
-            .map(|node| self.unit(node))
+            .map(|node| self.loads.force(node))
             .map(|(node, along)| moved_mm[node as usize].dot(&along))
             .collect()
     }
 
-    /// The mesh node of a node of the surface, and the inward normal there.
-    fn unit(&self, node: u32) -> (u32, Vec3) {
-        self.normal.force(node)
-    }
-}
-
-impl SurfaceCompliance for ElasticSurface {
-    fn tiles(&self) -> &[Vec<u32>] {
-        self.normal.tiles()
-    }
-
-    fn between(&self, one: usize, other: usize) -> Vec<f64> {
-        self.normal.between(one, other)
+    fn forces(&self, loads: &[NodeLoad]) -> Vec<(u32, Vec3)> {
+        let force = |&(node, load_n): &NodeLoad| {
+            let (node, along) = self.loads.force(node);
+            (node, along * load_n)
+        };
+        loads.iter().map(force).collect()
     }
 }

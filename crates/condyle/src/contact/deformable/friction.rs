@@ -1,4 +1,7 @@
-//! Friction on a surface that deflects along itself.
+//! The friction history of a deformable insert: a surface that deflects along itself, where each node sticks or slips.
+//!
+//! To follow an increment, read `respond` (the loads at a trial pose), `tangent`, `accept` (the loads become the start of
+//! the next step) and `evaluate` of [`ElasticFriction`]. The solver for the loads is `stick_slip`.
 
 use std::{cell::RefCell, collections::BTreeMap, sync::Arc};
 
@@ -6,8 +9,8 @@ use super::{
     cholesky::{Eight, get, set, zero},
     complementarity::by_panel,
     compliance::{Compliance, NearMatrix, along_surface},
-    history::{ContactNode, LoadHistory, LoadedPatch},
-    stick_slip::{ByMotion, Pair, Rubbed, StickSlip},
+    history::{ByActivity, ByIncrement, ContactNode, LoadHistory, LoadedPatch, field},
+    stick_slip::{ByMotion, FrictionNode, Pair, StickSlip},
 };
 use crate::{
     Mat3, Vec3,
@@ -16,33 +19,34 @@ use crate::{
     spatial::{FrameChange, Mat6, Pose, RelativeMotion, Twist, Vec6, Wrench, body},
 };
 
-/// Coulomb's friction on an elastic surface that sticks and slips.
+/// Coulomb friction with stick and slip on an elastic surface.
 ///
-/// A node that presses with F carries a load T along the surface, |T| <= mu F. While an increment moves the femur's
-/// material past it by D, the surface moves along itself by the change of C T, with the compliance C along it; D less that is
-/// slip. Where there is slip, T has its limit and points the way of it. So T depends on that with which the increment
-/// began: it is tried in an increment, and counts once that is accepted.
+/// A node under the normal load F carries a load T along the surface, |T| <= mu F. While an increment moves the femur's
+/// material past it by D, the surface moves along itself by the change of C T, with the compliance C along it; D less that
+/// is slip. Where there is slip, T has its limit and the direction of the slip. So T depends on the loads at the start of
+/// the increment. The loads of an increment are a trial state, committed once a step is accepted.
 ///
-/// Normal and tangential loads are found one after the other: what loads along the surface move along its normal, and the
-/// other way round, is left out.
+/// Normal and tangential loads are found one after the other: the displacement along the normal by tangential loads, and
+/// the reverse, are neglected.
 pub(crate) struct ElasticFriction<'a> {
-    /// Coulomb's coefficient, mu.
     coefficient: f64,
     compliance: Arc<Compliance>,
     surface: &'a ArticulatingSurface,
-    memory: FrictionMemory,
+    activities: ByActivity<Held>,
+    /// The loads at the end of each increment.
+    ends: ByIncrement<LoadsAlong>,
     /// The state at the start of the increment, and the displacements of some nodes by its loads, mm, by unit load;
     /// NaN where not computed yet.
     start: Held,
     start_mm: Vec<f64>,
-    /// The loads when the increment before landed.
-    landed: LoadsAlong,
-    /// The last response: the femur's pose, what pressed, and the loads along the surface.
+    /// The loads at the end of the increment before.
+    last_end: LoadsAlong,
+    /// The last response: the femur's pose, the nodes in contact, and the loads along the surface.
     pose: Pose,
     pressed: Vec<ContactNode>,
-    rubbed_nodes: Vec<u32>,
+    loaded_nodes: Vec<u32>,
     loads: StickSlip,
-    /// The derivatives of those loads by a motion of the femur in its frame, once they were asked for.
+    /// The derivatives of those loads by a motion of the femur in its frame, once the tangent was asked for.
     by_motion: RefCell<Vec<[Eight; 2]>>,
     /// The loads of every node of the surface, and whether it sticks.
     loads_n: Vec<Pair>,
@@ -51,22 +55,29 @@ pub(crate) struct ElasticFriction<'a> {
 }
 
 impl<'a> ElasticFriction<'a> {
-    /// Friction that goes on from what is remembered.
-    pub fn after(
-        memory: FrictionMemory,
+    /// Resumes friction from the stored `state`.
+    pub fn new(
+        state: &ContactState,
         coefficient: f64,
         surface: &'a ArticulatingSurface,
         compliance: Arc<Compliance>,
     ) -> Self {
         let nodes = surface.positions.len();
+        let fields = state.fields.iter();
+        let fields = fields.filter(|field| field.name == FRICTION_FIELD);
+        let left = fields.map(|field| Held::from_values(&field.values).unwrap_or_default());
+        let activities = ByActivity::new(left.collect());
+        let start = activities.start_of(0);
         let mut friction = Self {
             coefficient,
+            activities,
+            ends: ByIncrement::new(),
             start: Held::default(),
             start_mm: vec![f64::NAN; compliance.node_count()],
-            landed: LoadsAlong::new(),
+            last_end: LoadsAlong::new(),
             pose: Pose::identity(),
             pressed: Vec::new(),
-            rubbed_nodes: Vec::new(),
+            loaded_nodes: Vec::new(),
             loads: StickSlip::default(),
             by_motion: RefCell::default(),
             loads_n: vec![[0.0; 2]; nodes],
@@ -74,16 +85,15 @@ impl<'a> ElasticFriction<'a> {
             moved_in_a_cycle_mm: 0.0,
             compliance,
             surface,
-            memory,
         };
-        friction.go_on();
+        friction.resume(start);
         friction
     }
 
-    /// Goes on from where the activity was left.
-    fn go_on(&mut self) {
-        self.start = self.memory.start();
-        self.landed.clone_from(&self.start.loads);
+    /// Resumes from the state in which an activity was left.
+    fn resume(&mut self, start: Held) {
+        self.start = start;
+        self.last_end.clone_from(&self.start.loads);
         self.start_mm.fill(f64::NAN);
         self.loads_n.fill([0.0; 2]);
         for &(node, load_n) in &self.start.loads {
@@ -91,38 +101,37 @@ impl<'a> ElasticFriction<'a> {
         }
     }
 
-    /// Finds the loads along the surface under what presses with the femur at a pose; none before the femur was anywhere.
-    fn rub(&mut self, pose: &Pose, pressed: Vec<ContactNode>) {
+    /// Solves for the loads along the surface with the femur at a pose.
+    fn solve(&mut self, pose: &Pose, pressed: Vec<ContactNode>) {
         self.by_motion.get_mut().clear();
-        self.press(pose, pressed);
+        self.set_contact(pose, pressed);
         let compliance = Arc::clone(&self.compliance);
         let compliance = compliance.near(self.asked());
-        let rubbed = self.rubbed(&compliance);
-        self.loads.solve(&rubbed, &compliance);
-        self.rubbed_nodes.clear();
-        self.rubbed_nodes
-            .extend(rubbed.iter().map(|rubbed| rubbed.node));
+        let nodes = self.friction_nodes(&compliance);
+        self.loads.solve(&nodes, &compliance);
+        self.loaded_nodes.clear();
+        self.loaded_nodes.extend(nodes.iter().map(|node| node.node));
         self.spread();
     }
 
-    /// Takes a pose and what presses there.
-    fn press(&mut self, pose: &Pose, pressed: Vec<ContactNode>) {
+    /// Sets the pose and the nodes in contact there.
+    fn set_contact(&mut self, pose: &Pose, pressed: Vec<ContactNode>) {
         for before in std::mem::replace(&mut self.pressed, pressed) {
             self.sticks[before.node as usize] = false;
         }
         self.pose = *pose;
     }
 
-    /// Spreads the loads found to the nodes of the surface.
+    /// Copies the loads found to the nodes of the surface.
     fn spread(&mut self) {
         self.loads_n.fill([0.0; 2]);
-        for (place, &node) in self.rubbed_nodes.iter().enumerate() {
+        for (place, &node) in self.loaded_nodes.iter().enumerate() {
             self.loads_n[node as usize] = self.loads.loads_n()[place];
             self.sticks[node as usize] = self.loads.sticks(place);
         }
     }
 
-    /// The loads of the last response on nodes that carry one.
+    /// Returns the loads of the last response, without nodes that carry none.
     fn loads_now(&self) -> LoadsAlong {
         let nodes = self.pressed.iter().map(|pressed| pressed.node);
         let loads = nodes.map(|node| (node, self.loads_n[node as usize]));
@@ -131,17 +140,17 @@ impl<'a> ElasticFriction<'a> {
         loads
     }
 
-    /// The unit loads whose compliance is asked for.
+    /// Returns the unit loads whose compliance is needed.
     fn asked(&self) -> impl Iterator<Item = u32> {
         let pressed = self.pressed.iter().map(|pressed| pressed.node);
-        let held = self.start.loads.iter().chain(&self.landed);
+        let held = self.start.loads.iter().chain(&self.last_end);
         let held = held.map(|&(node, _)| node);
         pressed.chain(held).flat_map(along_surface)
     }
 
-    /// The nodes that press, with how far the femur has gone past each since it carried nothing; none before the femur was
-    /// anywhere.
-    fn rubbed(&mut self, compliance: &NearMatrix) -> Vec<Rubbed> {
+    /// Returns the nodes in contact, each with its limit and the motion of the femur past it since it carried no load;
+    /// none before the first accepted step, since there is no motion yet.
+    fn friction_nodes(&mut self, compliance: &NearMatrix) -> Vec<FrictionNode> {
         let Some(start) = self.start.pose else {
             return Vec::new();
         };
@@ -154,24 +163,27 @@ impl<'a> ElasticFriction<'a> {
             }
             *known
         };
-        let rubbed = |pressed: &ContactNode| {
+        let friction_node = |pressed: &ContactNode| {
             let node = pressed.node as usize;
             let place = &self.surface.positions[node];
             let moved = place - start.to_insert(&self.pose.to_femur(place));
             let along = self.surface.directions(node).map(|along| along.dot(&moved));
             let before = along_surface(pressed.node).map(&mut start_mm);
-            Rubbed {
+            FrictionNode {
                 node: pressed.node,
                 limit_n: self.coefficient * pressed.force_n,
                 reach_mm: [along[0] + before[0], along[1] + before[1]],
                 load_n: self.loads_n[node],
             }
         };
-        self.pressed.iter().map(rubbed).collect()
+        self.pressed.iter().map(friction_node).collect()
     }
 
-    /// The screws of the two directions of a node as seen from the femur, the directions turned there by the transpose of
-    /// `rotation`: the wrench of a unit load along each, and how a motion of the femur moves its material there along each.
+    /// Returns the screws of the two directions of a node in the femoral frame, the directions turned there by the transpose
+    /// of `rotation`.
+    ///
+    /// A screw is the wrench of a unit load along its direction; its product with a motion of the femur is the motion of the
+    /// femur's material along that direction.
     fn screws(&self, node: usize, rotation: &Mat3) -> [Vec6; 2] {
         let place = self.pose.to_femur(&self.surface.positions[node]);
         self.surface.directions(node).map(|along| {
@@ -184,19 +196,20 @@ impl<'a> ElasticFriction<'a> {
 
 impl LoadHistory for ElasticFriction<'_> {
     fn begin_cycle(&mut self) {
-        self.memory.begin_cycle(std::mem::take(&mut self.start));
-        self.go_on();
+        let start = self.activities.begin_cycle(std::mem::take(&mut self.start));
+        self.ends.begin_cycle();
+        self.resume(start);
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.memory.increment = increment;
+        self.ends.begin_increment(increment);
     }
 
     fn respond(&mut self, patch: &LoadedPatch<'_>) -> Option<Wrench<body::Insert, body::Femur>> {
         let pose = &patch.patch.pose;
-        self.rub(pose, patch.nodes(&Twist::zero()));
+        self.solve(pose, patch.nodes(&Twist::zero()));
         let mut total = Wrench::zero();
-        for &node in &self.rubbed_nodes {
+        for &node in &self.loaded_nodes {
             let screws = self.screws(node as usize, &pose.rotation);
             let [x, y] = self.loads_n[node as usize];
             total = total + Wrench::from_numbers(&(screws[0] * x + screws[1] * y));
@@ -229,32 +242,34 @@ impl LoadHistory for ElasticFriction<'_> {
         Some(tangent)
     }
 
-    /// The loads are taken along by their derivatives where these were asked for there, else found again.
+    /// The accepted motion differs slightly from that of the last response. The loads follow by their derivatives if the
+    /// tangent was asked for there; otherwise they are solved again.
     fn accept(&mut self, motion: &RelativeMotion, patch: &LoadedPatch<'_>) {
         let (from, pose) = (&patch.patch.pose, &motion.pose);
         let moved = FrameChange::to_femur(from).twist(&Twist::between(from, pose));
         let pressed = patch.nodes(&moved);
         let by_motion = self.by_motion.take();
         if by_motion.is_empty() {
-            self.rub(pose, pressed);
+            self.solve(pose, pressed);
         } else {
             let changes = by_motion.iter();
             let changes_n: Vec<Pair> = changes
                 .map(|loads| [0, 1].map(|k| six(&loads[k]).dot(&moved.numbers())))
                 .collect();
-            self.press(pose, pressed);
+            self.set_contact(pose, pressed);
             let compliance = Arc::clone(&self.compliance);
             let compliance = compliance.near(self.asked());
-            let rubbed = self.rubbed(&compliance);
-            self.loads.take_along(&rubbed, &changes_n, &compliance);
+            let nodes = self.friction_nodes(&compliance);
+            self.loads.extrapolate(&nodes, &changes_n, &compliance);
             self.spread();
         }
         self.start = Held {
             pose: Some(*pose),
             loads: self.loads_now(),
         };
+        // The displacements under the new start are known at the loaded nodes; at others they are computed on demand.
         self.start_mm.fill(f64::NAN);
-        for (place, node) in self.rubbed_nodes.iter().enumerate() {
+        for (place, node) in self.loaded_nodes.iter().enumerate() {
             let moved_mm = self.loads.moved_mm(place);
             for (load, moved_mm) in along_surface(*node).into_iter().zip(moved_mm) {
                 self.start_mm[load as usize] = moved_mm;
@@ -266,7 +281,7 @@ impl LoadHistory for ElasticFriction<'_> {
         let now = self.loads_now();
         let compliance = Arc::clone(&self.compliance);
         let compliance = compliance.near(self.asked());
-        let changes = differences(&now, &self.landed);
+        let changes = differences(&now, &self.last_end);
         let change = panels(&changes, &compliance);
         for node in touched {
             let at = node.node as usize;
@@ -288,12 +303,12 @@ impl LoadHistory for ElasticFriction<'_> {
             let [x, y] = own.map(|row| compliance.at(row, row));
             (x * by_n[0]).hypot(y * by_n[1])
         };
-        let before = self.memory.end_increment(now.clone());
+        let before = self.ends.end(now.clone());
         self.moved_in_a_cycle_mm = before.map_or(f64::INFINITY, |before| {
             let changes = differences(&now, &before);
             changes.iter().map(moved_mm).fold(0.0, f64::max)
         });
-        self.landed = now;
+        self.last_end = now;
     }
 
     fn moved_in_a_cycle_mm(&self) -> f64 {
@@ -301,11 +316,13 @@ impl LoadHistory for ElasticFriction<'_> {
     }
 
     fn into_fields(self: Box<Self>) -> Vec<StateField> {
-        self.memory.into_fields(self.start).collect()
+        let left = self.activities.finish(self.start).into_iter();
+        left.map(|held| field(FRICTION_FIELD, held.values()))
+            .collect()
     }
 }
 
-/// Loads along the surface by the panels of the compliance.
+/// Arranges loads along the surface by the panels of the compliance.
 fn panels(loads: &LoadsAlong, compliance: &NearMatrix) -> Vec<(usize, Eight)> {
     let numbers = loads.iter().flat_map(|&(node, _)| along_surface(node));
     let loads_n = loads.iter().flat_map(|&(_, load_n)| load_n);
@@ -313,7 +330,7 @@ fn panels(loads: &LoadsAlong, compliance: &NearMatrix) -> Vec<(usize, Eight)> {
     by_panel(&numbers, &loads_n, compliance)
 }
 
-/// By how much loads differ from others.
+/// Returns the changes of loads from `before` to `now`.
 fn differences(now: &LoadsAlong, before: &LoadsAlong) -> LoadsAlong {
     let mut changes: BTreeMap<u32, Pair> = now.iter().copied().collect();
     for &(node, [x, y]) in before {
@@ -323,12 +340,11 @@ fn differences(now: &LoadsAlong, before: &LoadsAlong) -> LoadsAlong {
     changes.into_iter().collect()
 }
 
-/// The first six of eight numbers.
 fn six(numbers: &Eight) -> Vec6 {
     Vec6::from_fn(|motion, _| get(numbers, motion))
 }
 
-/// Six numbers, and two that are nothing.
+/// Pads six numbers with zeros.
 fn eight(six: &Vec6) -> Eight {
     let mut numbers = zero();
     six.iter()
@@ -339,31 +355,20 @@ fn eight(six: &Vec6) -> Eight {
 
 /// The fields of the contact's state with what each activity left: the femur's pose, rotation by columns and then
 /// translation in mm, and of every node that carries a load along the surface its number and that load.
-pub(crate) const FRICTION_FIELD: &str = "femur_pose_and_loads_along_surface_n";
+const FRICTION_FIELD: &str = "femur_pose_and_loads_along_surface_n";
 
-/// Numbers of a pose.
+/// Numbers of a pose in that field.
 const OF_POSE: usize = 12;
 
 /// Loads along the surface on some nodes, ascending, N.
-pub(crate) type LoadsAlong = Vec<(u32, Pair)>;
+type LoadsAlong = Vec<(u32, Pair)>;
 
 /// The state at the start of an increment.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Held {
+struct Held {
     /// The pose of the femur; none before the first step.
-    pub pose: Option<Pose>,
-    pub loads: LoadsAlong,
-}
-
-/// The state left by every activity, and the loads of the cycle that is being solved.
-#[derive(Default)]
-pub(crate) struct FrictionMemory {
-    activities: Vec<Held>,
-    /// The number of the activity, once a cycle has begun.
-    activity: Option<usize>,
-    increment: usize,
-    /// The loads at the end of each increment when it was solved last.
-    landed: BTreeMap<usize, LoadsAlong>,
+    pose: Option<Pose>,
+    loads: LoadsAlong,
 }
 
 impl Held {
@@ -386,54 +391,5 @@ impl Held {
         let loads = self.loads.iter();
         let loads = loads.flat_map(|&(node, [x, y])| [f64::from(node), x, y]);
         pose.chain(loads).collect()
-    }
-}
-
-impl FrictionMemory {
-    /// Reads the fields of a contact's state.
-    pub fn from_state(state: &ContactState) -> Self {
-        let fields = state.fields.iter();
-        let fields = fields.filter(|field| field.name == FRICTION_FIELD);
-        Self {
-            activities: fields
-                .map(|field| Held::from_values(&field.values).unwrap_or_default())
-                .collect(),
-            ..Self::default()
-        }
-    }
-
-    /// Returns the state at the start of the present activity.
-    pub fn start(&self) -> Held {
-        let held = self.activities.get(self.activity.unwrap_or(0));
-        held.cloned().unwrap_or_default()
-    }
-
-    /// The next increments are of the next activity; the one before has got to `held`.
-    pub fn begin_cycle(&mut self, held: Held) {
-        self.activity = Some(self.activity.map_or(0, |activity| {
-            self.keep(activity, held);
-            activity + 1
-        }));
-        self.landed.clear();
-    }
-
-    /// An increment ends with loads; those with which it did so a cycle before.
-    pub fn end_increment(&mut self, loads: LoadsAlong) -> Option<LoadsAlong> {
-        self.landed.insert(self.increment, loads)
-    }
-
-    /// The fields of the state, once the last activity has got to `held`.
-    pub fn into_fields(mut self, held: Held) -> impl Iterator<Item = StateField> {
-        self.keep(self.activity.unwrap_or(0), held);
-        self.activities.into_iter().map(|held| StateField {
-            name: FRICTION_FIELD.to_owned(),
-            values: held.values(),
-        })
-    }
-
-    fn keep(&mut self, activity: usize, held: Held) {
-        let count = self.activities.len().max(activity + 1);
-        self.activities.resize_with(count, Held::default);
-        self.activities[activity] = held;
     }
 }

@@ -1,11 +1,13 @@
 //! The states of a deformable insert that depend on the load history: one interface for yield, friction and backside.
 
+use std::collections::BTreeMap;
+
 use crate::{
     contact::{
+        broad_phase::ShareBlock,
         contact_patch::ContactPatch,
         law::Bodies,
         model::{NotBorne, StateField, TouchedNode},
-        share_block::ShareBlock,
     },
     number::{F64x4, Number, cross},
     spatial::{
@@ -19,7 +21,8 @@ use super::complementarity::Candidate;
 /// A load on a node of the surface along the inward normal, N.
 pub(crate) type NodeLoad = (u32, f64);
 
-/// A change of the surface of less than this counts as settled, mm: some 1e-5 of its deflection under load.
+/// Loads and histories agree once they move the surface by no more than this, mm: some 1e-5 of its deflection under load,
+/// and far below what changes a wear depth. A smaller value only costs turns.
 pub(crate) const SETTLED_MM: f64 = 1e-5;
 
 /// A part of the insert's state that depends on the load history: plastic strain, friction that sticks, the position of
@@ -74,12 +77,110 @@ pub(crate) trait LoadHistory {
     /// Ends an increment, and adds to the nodes in contact what the history contributes.
     fn evaluate(&mut self, touched: &mut [TouchedNode]);
 
-    /// Returns how far the surface at rest lies from where it lay at the same increment a cycle before, mm, times the
-    /// factor by which it is to repeat itself more exactly than a motion.
+    /// See [`ContactModel::moved_in_a_cycle_mm`](crate::contact::ContactModel::moved_in_a_cycle_mm).
     fn moved_in_a_cycle_mm(&self) -> f64;
 
     /// Returns the fields of the contact's state from which the next contact resumes.
     fn into_fields(self: Box<Self>) -> Vec<StateField>;
+}
+
+/// A field of a history's stored state.
+pub(crate) fn field(name: &str, values: Vec<f64>) -> StateField {
+    StateField {
+        name: name.to_owned(),
+        values,
+    }
+}
+
+/// The state that every activity left: the cycles of an activity resume where its last cycle ended.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct ByActivity<S> {
+    left: Vec<S>,
+    /// The number of the present activity, once a cycle has begun.
+    present: Option<usize>,
+}
+
+impl<S: Clone + Default> ByActivity<S> {
+    pub fn new(left: Vec<S>) -> Self {
+        Self {
+            left,
+            present: None,
+        }
+    }
+
+    /// Returns the state at the start of an activity: the default where it has not begun yet.
+    pub fn start_of(&self, activity: usize) -> S {
+        self.left.get(activity).cloned().unwrap_or_default()
+    }
+
+    /// Begins the cycle of the next activity and returns the state at its start; the activity before ends in `state`.
+    pub fn begin_cycle(&mut self, state: S) -> S {
+        let next = self.present.map_or(0, |activity| activity + 1);
+        if self.present.is_some() {
+            self.keep(state);
+        }
+        self.present = Some(next);
+        self.start_of(next)
+    }
+
+    /// Returns the states of all activities, of which the present one ends in `state`.
+    pub fn finish(mut self, state: S) -> Vec<S> {
+        self.keep(state);
+        self.left
+    }
+
+    fn keep(&mut self, state: S) {
+        let activity = self.present.unwrap_or(0);
+        let count = self.left.len().max(activity + 1);
+        self.left.resize_with(count, S::default);
+        self.left[activity] = state;
+    }
+}
+
+/// A record of each increment of the present activity's cycle, kept until the same increment of the next cycle.
+pub(crate) struct ByIncrement<T> {
+    records: BTreeMap<usize, T>,
+    present: usize,
+}
+
+impl<T> ByIncrement<T> {
+    pub fn new() -> Self {
+        Self {
+            records: BTreeMap::new(),
+            present: 0,
+        }
+    }
+
+    pub fn begin_cycle(&mut self) {
+        self.records.clear();
+    }
+
+    pub fn begin_increment(&mut self, increment: usize) {
+        self.present = increment;
+    }
+
+    /// Records the end of the present increment, and returns the record of a cycle before.
+    pub fn end(&mut self, record: T) -> Option<T> {
+        self.records.insert(self.present, record)
+    }
+
+    /// Returns the records in the order of the increments.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> {
+        self.records.values()
+    }
+}
+
+impl<T: Default> ByIncrement<T> {
+    /// Returns the record of the present increment, to be changed.
+    pub fn present(&mut self) -> &mut T {
+        self.records.entry(self.present).or_default()
+    }
+}
+
+/// Returns the largest distance between two surfaces, mm.
+pub(crate) fn farthest_mm(one_mm: &[f64], other_mm: &[f64]) -> f64 {
+    let apart = one_mm.iter().zip(other_mm).map(|(a, b)| (a - b).abs());
+    apart.fold(0.0, f64::max)
 }
 
 /// The loads of the last response along the inward normals.

@@ -1,14 +1,19 @@
 //! The deformable insert: a rigid femur on an elastic body, without penalty.
 //!
-//! [`Deformable`] is the law; it makes a `DeformableContact` (`contact`). That takes the gaps of the bodies at rest along
-//! the insert's normals and finds the loads under which the bodies just touch (`complementarity`, by the factor of
-//! `cholesky` and its updates in `changed_factor`). The deflection of the surface is its `compliance`, computed by finite
-//! elements (`elastic_surface`) for the nodes that come near. At the end of an increment `edge_and_peak` finds the part of
-//! every share that presses, and the peak pressure.
+//! | file | content |
+//! | --- | --- |
+//! | `mod` | the law [`Deformable`]: material, friction, backside; compliances that are kept; stress below the surface |
+//! | `contact` | one evaluation: gaps, loads, wrench; the same for every material, friction and backside |
+//! | `complementarity` | the loads that keep the bodies just in touch |
+//! | `changed_factor`, `cholesky` | the factor of the compliance of the nodes in contact, and its updates as few of them change |
+//! | `compliance`, `elastic_surface` | the compliance of the surface, by finite elements, of the nodes that come near |
+//! | `edge_and_peak` | the part of every share that is in contact, and the peak pressure |
+//! | `history` | the interface of state that depends on the load history |
+//! | `plastic` | yield below the surface, for any [`Material`] |
+//! | `friction`, `stick_slip` | stick and slip along the surface, and the solver for its loads |
+//! | `backside` | a backside that rests on its tray |
 //!
-//! State that depends on what came before is a load history (`history`): the insert may yield below its surface
-//! (`plastic`), stick and slip along it (`friction`, `stick_slip`), and rest on its tray (`backside`). Loads and histories
-//! are solved in turns, accelerated by Anderson's mixing.
+//! Loads and histories are solved in turns, accelerated by Anderson's mixing, until they agree.
 
 mod backside;
 mod changed_factor;
@@ -26,57 +31,54 @@ mod stick_slip;
 mod tests;
 
 use std::{
-    collections::BTreeMap,
-    sync::{Arc, Mutex, PoisonError},
+    fmt::Debug,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
-use condyle_fem::{Elastic, Hardening, PlasticPoint, SolidError, Stress};
+use condyle_fem::{Elastic, Material, SolidError, Stress};
 
 use super::{
-    broad_phase::{BroadPhase, BruteForce, Coherent, Search},
+    broad_phase::Search,
     contact_patch::Coulomb,
     foundation::Foundation,
-    law::{
-        BacksideAtRest, Bodies, ContactLaw, KnownCompliance, PlasticUnderSurface, Regime,
-        UnderSurface,
-    },
-    model::{ContactMemory, ContactModel, ContactState, StateField},
+    law::{Bodies, ContactLaw, KnownCompliance, UnderSurface},
+    model::{ContactMemory, ContactModel, ContactState},
 };
 use crate::{Vec3, geometry::Insert};
-use backside::{BacksideMemory, Floor, RestingInsert, Tray, rest};
-use compliance::Compliance;
+use backside::{Floor, RestingInsert};
 use contact::{DeformableContact, FrictionSettings};
 use elastic_surface::{ElasticSurface, HeldBy};
-use friction::{ElasticFriction, FrictionMemory};
-use plastic::{PlasticInsert, PlasticMemory, strains_of};
+use friction::ElasticFriction;
+use history::{LoadHistory, field};
+use plastic::InsertMaterial;
 
-/// So much of the compliances of inserts is remembered, bytes: of a knee that of the insert and of its coarser twin,
+/// Memory for the compliances of inserts that are kept, bytes: enough for those of a knee insert and its coarser twin,
 /// unworn and worn.
-pub(crate) const MAX_REMEMBERED_BYTES: f64 = 3e8;
+const MAX_KEPT_BYTES: f64 = 3e8;
 
 /// Coulomb's friction on a deformable insert.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FrictionModel {
-    /// It goes with the sliding speed, mu N v / sqrt(v^2 + v0^2), and does not move the surface along itself.
+    /// Friction mu N v / sqrt(v^2 + v0^2) at the sliding speed v; it does not displace the surface along itself.
     #[default]
     Regularised,
-    /// The surface deflects along itself, and each node sticks or slides: what carries less than mu N does not slide. What
-    /// each carries is remembered from increment to increment.
+    /// The surface deflects along itself, and each node sticks or slides: a node that carries less than mu N does not slide.
+    /// The loads along the surface are carried from increment to increment.
     StickSlip,
 }
 
 /// The support of the backside of a deformable insert on its tray.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Backside {
-    /// It is bonded: it neither lifts nor slips.
+    /// Bonded: it neither lifts nor slips.
     #[default]
     Bonded,
-    /// It rests: where it presses it sticks or slips with Coulomb's friction, elsewhere it lifts. The rim that locks it
-    /// carries the net force and moment along the tray.
+    /// Resting: in contact it sticks or slips with Coulomb friction, elsewhere it lifts. The rim that locks it carries the
+    /// net force and moment along the tray.
     Resting {
         /// Coulomb's coefficient of friction.
         friction: f64,
-        /// Spacing of the points at which its motion is told, mm.
+        /// Spacing of the points that carry the motion of the backside, mm.
         spacing_mm: f64,
     },
 }
@@ -84,53 +86,38 @@ pub enum Backside {
 /// The law of an elastic insert under a rigid femur.
 ///
 /// Small displacements: the surface deflects along its inward normals by the normal compliance C of the insert,
-/// computed by finite elements. The loads N at the nodes hold the bodies just in touch where they press,
+/// computed by finite elements. The loads N at the nodes hold the bodies just in touch where they are in contact,
 ///
 /// $$ N \ge 0, \quad g + C N \ge 0, \quad N \cdot (g + C N) = 0, $$
 ///
-/// with the gaps g of the bodies at rest: nothing is tuned. Every node's share of the surface presses along the
-/// femur's normal and rubs with Coulomb friction, regularised or with stick and slip. Wear goes into the gap; C is that of the insert
-/// unworn, and recomputed where an insert has become thinner by more than a twentieth. With a yield stress the insert flows below
-/// its surface (von Mises, small strains), and what that leaves of a dent goes into the gap; the stiffness stays.
-/// Limits: loads along the surface do not move it along its normal, nor do normal loads along it; a tray that does not give.
-/// An insert that rests on its tray neither yields nor sticks and slips on its surface.
-#[derive(Debug)]
+/// with the gaps g of the bodies at rest: nothing is tuned. Every node's share of the surface is under a pressure along the
+/// femur's normal and under Coulomb friction, regularised or with stick and slip. Wear goes into the gap; C is that of the
+/// unworn insert, and recomputed once an insert has become thinner by more than a twentieth. An insert of a material that
+/// yields flows below its surface, and the permanent set of that goes into the gap; the stiffness stays.
+///
+/// Limits: loads along the surface do not move it along its normal, nor do normal loads move it along itself; the tray is
+/// rigid. An insert that rests on its tray neither yields nor sticks and slips on its surface.
+#[derive(Clone, Debug)]
 pub struct Deformable {
-    /// The elastic material, MPa.
-    pub elastic: Elastic,
+    elastic: Elastic,
+    material: Arc<dyn InsertMaterial>,
     /// Coulomb's coefficient of friction, mu.
     pub friction: f64,
     /// The model of friction: with or without elastic deflection along the surface.
     pub friction_model: FrictionModel,
-    /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0; of regularised friction.
+    /// Speed at which regularised friction has reached 71 % of its full value, v0, mm/s, > 0.
     pub slip_tolerance_mm_per_s: f64,
     /// The search for the nodes that may touch; no result depends on it.
     pub search: Search,
-    /// Motion up to which a sample of the femur is extrapolated, mm; 0 takes every sample anew.
+    /// Motion up to which a sample of the femur is extrapolated, mm; with 0 every sample is recomputed.
     pub sample_reuse_mm: f64,
-    /// The yield stress of the insert, MPa, if it yields.
-    pub hardening: Option<Hardening>,
-    /// The support of the backside.
-    pub(crate) backside: Backside,
-    remembered: Arc<KnownSurfaces>,
-}
-
-/// Compliances of inserts, the one that was used last at the end; clones of a law share them.
-#[derive(Debug, Default)]
-struct KnownSurfaces(Mutex<Vec<Arc<Compliance<ElasticSurface>>>>);
-
-impl Clone for Deformable {
-    fn clone(&self) -> Self {
-        Self {
-            remembered: Arc::clone(&self.remembered),
-            hardening: self.hardening.clone(),
-            ..*self
-        }
-    }
+    backside: Backside,
+    /// Compliances of inserts, the one that was used last at the end; clones of a law share them.
+    kept: Arc<Mutex<Vec<Arc<ElasticSurface>>>>,
 }
 
 impl Deformable {
-    /// The law of an insert that is bonded to its tray, whose stiffness is factored here.
+    /// Creates the law of an insert that is bonded to its tray, and factors its stiffness.
     ///
     /// # Errors
     /// A material or a mesh that is no elastic solid: a part of it is not held by the backside, for instance.
@@ -144,7 +131,7 @@ impl Deformable {
         Self::held(elastic, friction, slip_tolerance_mm_per_s, backside, insert)
     }
 
-    /// The law of an insert whose backside is held so.
+    /// Creates the law of an insert whose backside is supported as given.
     ///
     /// # Errors
     /// As [`Deformable::new`].
@@ -157,21 +144,20 @@ impl Deformable {
     ) -> Result<Self, SolidError> {
         let law = Self {
             elastic,
+            material: Arc::new(elastic),
             friction,
             friction_model: FrictionModel::default(),
             slip_tolerance_mm_per_s,
             search: Search::default(),
             sample_reuse_mm: Foundation::SAMPLE_REUSE_MM,
-            hardening: None,
-            backside,
-            remembered: Arc::default(),
+            backside: Backside::default(),
+            kept: Arc::default(),
         };
-        law.surface(insert, insert.unworn_nodes())?;
-        Ok(law)
+        law.with_backside(backside, insert)
     }
 
-    /// The same law of an insert whose backside is held so; where it rests on its flat part the stiffness is factored again if
-    /// there is more than that.
+    /// Returns the same law with another support of the backside. The stiffness is factored again if other nodes hold the
+    /// insert.
     ///
     /// # Errors
     /// An insert of which a part is not held by that.
@@ -185,68 +171,40 @@ impl Deformable {
         Ok(self)
     }
 
+    /// Returns the same law for an insert of another material. Its compliance is recomputed if the elastic constants differ.
+    #[must_use]
+    pub fn with_material<M>(mut self, material: M) -> Self
+    where
+        M: Material + Clone + Debug + Send + Sync + 'static,
+    {
+        if material.elastic() != self.elastic {
+            self.elastic = material.elastic();
+            self.kept = Arc::default();
+        }
+        self.material = Arc::new(material);
+        self
+    }
+
     /// Returns the part of an insert's backside, projected onto the tray, that is flat and can rest.
     ///
-    /// Faces that lean by less than 15 degrees from straight down, within a quarter of a millimetre of their middle height.
+    /// Faces that lean by less than 15 degrees from straight down, within a quarter of a millimetre of their median height.
     pub fn flat_part_of_backside(insert: &Insert) -> f64 {
         Floor::from_backside(insert.mesh(), insert.backside_nodes()).part
     }
 
-    /// The surface of an insert with its mesh nodes there: remembered, or recomputed.
-    pub(crate) fn surface(
-        &self,
-        insert: &Insert,
-        mesh_nodes: &[Vec3],
-    ) -> Result<Arc<Compliance<ElasticSurface>>, SolidError> {
-        let held_by = self.held_by();
-        let mut remembered = self
-            .remembered
-            .0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        let place = place_of(&remembered, insert, mesh_nodes, held_by);
-        let surface = if let Some(place) = place {
-            remembered.remove(place)
-        } else {
-            // Before, so that what goes and what comes are not there at once.
-            forget_the_oldest(&mut remembered);
-            let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic, held_by)?;
-            Arc::new(Compliance::new(surface))
-        };
-        remembered.push(Arc::clone(&surface));
-        Ok(surface)
-    }
-
-    /// The surface of an insert with its mesh nodes there, if it is remembered.
-    pub(crate) fn remembered(
-        &self,
-        insert: &Insert,
-        mesh_nodes: &[Vec3],
-    ) -> Option<Arc<Compliance<ElasticSurface>>> {
-        let remembered = self
-            .remembered
-            .0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        let place = place_of(&remembered, insert, mesh_nodes, self.held_by())?;
-        Some(Arc::clone(&remembered[place]))
-    }
-
     /// Returns whether anything is known of the compliance of an unworn insert.
     pub fn knows(&self, insert: &Insert) -> bool {
-        let surface = self.remembered(insert, insert.unworn_nodes());
-        surface
-            .is_some_and(|surface| surface.known_count() > 0 || surface.source.known_at_first() > 0)
+        let surface = self.find_kept(insert, insert.unworn_nodes());
+        surface.is_some_and(|surface| surface.knows())
     }
 
-    /// Takes what another run has found of the compliance of an unworn insert with these elastic constants and this hold of
-    /// its backside: it need not be computed again, and no answer depends on it.
+    /// Takes the compliance of an unworn insert that another run has computed, with the same elastic constants and the same
+    /// support of the backside: it is not computed again, and no result depends on it.
     ///
     /// # Errors
     /// A mesh that is no elastic solid.
     pub fn know(&self, insert: &Insert, known: KnownCompliance) -> Result<(), SolidError> {
-        let surface = self.surface(insert, insert.unworn_nodes())?;
-        surface.source.know(known);
+        self.surface(insert, insert.unworn_nodes())?.know(known);
         Ok(())
     }
 
@@ -257,52 +215,92 @@ impl Deformable {
         }
     }
 
-    pub(crate) fn coulomb(&self) -> Coulomb {
-        Coulomb {
-            coefficient: self.friction,
-            slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
+    fn kept(&self) -> MutexGuard<'_, Vec<Arc<ElasticSurface>>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Returns the surface of an insert with the given mesh nodes, if it is kept.
+    fn find_kept(&self, insert: &Insert, mesh_nodes: &[Vec3]) -> Option<Arc<ElasticSurface>> {
+        let held_by = self.held_by();
+        let kept = self.kept();
+        let mut kept = kept.iter();
+        kept.find(|surface| surface.is_of(insert, mesh_nodes, held_by))
+            .map(Arc::clone)
+    }
+
+    /// Returns the surface of an insert with the given mesh nodes: kept, or computed now.
+    fn surface(
+        &self,
+        insert: &Insert,
+        mesh_nodes: &[Vec3],
+    ) -> Result<Arc<ElasticSurface>, SolidError> {
+        let held_by = self.held_by();
+        // The lock is held while a surface is computed, so that no other thread computes the same.
+        let mut kept = self.kept();
+        let place = kept
+            .iter()
+            .position(|surface| surface.is_of(insert, mesh_nodes, held_by));
+        let surface = if let Some(place) = place {
+            kept.remove(place)
+        } else {
+            // Room for one as large as the newest is made before, so that old and new are not in memory at once.
+            let bytes = |surface: &Arc<ElasticSurface>| {
+                surface.bytes(surface.normal().known_count() as f64, [1.0, 0.0])
+            };
+            while let Some(newest) = kept.last()
+                && kept.iter().map(bytes).sum::<f64>() + bytes(newest) > MAX_KEPT_BYTES
+            {
+                kept.remove(0);
+            }
+            let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic, held_by)?;
+            Arc::new(surface)
+        };
+        kept.push(Arc::clone(&surface));
+        Ok(surface)
+    }
+
+    /// Returns the surface to use for an insert after a contact has left `state`, and the field of the state that tells
+    /// the next contact which one that is; none for the unworn insert.
+    fn surface_after(
+        &self,
+        insert: &Insert,
+        state: &ContactState,
+    ) -> (Arc<ElasticSurface>, Option<Vec<f64>>) {
+        let stored = state.fields.iter().find(|field| field.name == NODES_FIELD);
+        let stored = stored.map(|field| field.values.clone());
+        let used = match &stored {
+            Some(numbers) => numbers
+                .chunks_exact(3)
+                .map(Vec3::from_column_slice)
+                .collect(),
+            None => insert.unworn_nodes().to_vec(),
+        };
+        let now = &insert.mesh().nodes;
+        let nodes = insert.surface_nodes().iter().zip(insert.thickness_mm());
+        let thinner = |(&node, thickness_mm): (&u32, &f64)| {
+            (now[node as usize] - used[node as usize]).norm() / thickness_mm
+        };
+        if nodes.map(thinner).fold(0.0, f64::max) > MAX_THINNER
+            && let Ok(renewed) = self.surface(insert, now)
+        {
+            return (renewed, Some(now.iter().flatten().copied().collect()));
         }
+        let surface = self.surface(insert, &used);
+        // A case checks its insert as it is built.
+        (surface.expect("the insert is an elastic solid"), stored)
     }
 }
 
-/// Returns the place of the surface of an insert with the given mesh nodes.
-fn place_of(
-    remembered: &[Arc<Compliance<ElasticSurface>>],
-    insert: &Insert,
-    mesh_nodes: &[Vec3],
-    held_by: HeldBy,
-) -> Option<usize> {
-    let mut remembered = remembered.iter();
-    remembered.position(|surface| surface.source.is_of(insert, mesh_nodes, held_by))
-}
-
-/// Makes room for one as large as the newest.
-fn forget_the_oldest(remembered: &mut Vec<Arc<Compliance<ElasticSurface>>>) {
-    let bytes = |surface: &Arc<Compliance<ElasticSurface>>| {
-        surface
-            .source
-            .bytes(surface.known_count() as f64, [1.0, 0.0])
-    };
-    while let Some(newest) = remembered.last()
-        && remembered.iter().map(bytes).sum::<f64>() + bytes(newest) > MAX_REMEMBERED_BYTES
-    {
-        remembered.remove(0);
-    }
-}
-
-/// An insert that has become thinner by more than this part somewhere since its compliance was computed gets a
-/// new one.
-///
-/// Wear is in the gap; what the compliance of an insert thinner by 4 % differs by changes the peak pressure by
-/// half a percent.
+/// An insert that has become thinner by more than this part somewhere gets a new compliance. Wear is in the gap; an insert
+/// thinner by 4 % has a compliance that changes the peak pressure by half a percent.
 const MAX_THINNER: f64 = 0.05;
 
 /// The field of the contact's state that holds the mesh nodes whose compliance is used, x, y and z of each.
 const NODES_FIELD: &str = "compliance_nodes_mm";
 
-/// The fall of the pressure at a node as the node alone recedes, times edge over contact modulus: 1.2 on a
-/// half-space where pressure is even over squares, and 1.7 for squares that deflect by turns; more where elements
-/// are stiffer than the body.
+/// The fall of the pressure at a node as the node alone recedes, times edge over contact modulus: 1.2 on a half-space if
+/// pressure is even over squares, and 1.7 for squares that deflect by turns; more where elements are stiffer than the
+/// body.
 const ALONE: f64 = 1.9;
 
 /// The memory of an insert and its coarser twin over that of the insert.
@@ -316,10 +314,48 @@ impl ContactLaw for Deformable {
         bodies: Bodies<'a>,
         memory: ContactMemory,
     ) -> Box<dyn ContactModel + 'a> {
-        match self.search {
-            Search::Coherent => Box::new(self.contact_by::<Coherent>(bodies, memory)),
-            Search::BruteForce => Box::new(self.contact_by::<BruteForce>(bodies, memory)),
+        let ContactMemory { state, cache } = memory;
+        let (surface, nodes) = self.surface_after(bodies.insert, &state);
+        let mut friction = Coulomb {
+            coefficient: self.friction,
+            slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
+        };
+        let mut histories: Vec<Box<dyn LoadHistory + 'a>> = Vec::new();
+        if self.material.yields() {
+            let plastic = self.material.history(Arc::clone(&surface), &state);
+            histories.push(plastic);
         }
+        if self.friction_model == FrictionModel::StickSlip {
+            let along = Arc::clone(surface.tangential());
+            let history = ElasticFriction::new(&state, self.friction, bodies.surface, along);
+            histories.push(Box::new(history));
+            friction.coefficient = 0.0;
+        }
+        if let Backside::Resting {
+            friction,
+            spacing_mm,
+        } = self.backside
+        {
+            let (tray, surface) = (surface.tray(spacing_mm), Arc::clone(&surface));
+            histories.push(Box::new(RestingInsert::new(
+                &state, surface, tray, friction,
+            )));
+        }
+        let fields = nodes.map(|nodes| field(NODES_FIELD, nodes));
+        let memory = ContactMemory {
+            state: ContactState {
+                fields: fields.into_iter().collect(),
+            },
+            cache,
+        };
+        let settings = FrictionSettings {
+            friction,
+            search: self.search,
+            sample_reuse_mm: self.sample_reuse_mm,
+        };
+        let compliance = Arc::clone(surface.normal());
+        let contact = DeformableContact::new(memory, bodies, settings, compliance, histories);
+        Box::new(contact)
     }
 
     /// The stiffness of a node of an elastic half-space: what deflects along with a node alone is no deeper than its
@@ -331,27 +367,28 @@ impl ContactLaw for Deformable {
     }
 
     fn memory_bytes(&self, insert: &Insert, nodes_near: f64) -> f64 {
+        let Ok(surface) = self.surface(insert, insert.unworn_nodes()) else {
+            return 0.0;
+        };
         let along_surface = match self.friction_model {
             FrictionModel::Regularised => 0.0,
             FrictionModel::StickSlip => 2.0,
         };
-        let surface = self.surface(insert, insert.unworn_nodes());
-        surface.map_or(0.0, |surface| {
-            let bytes = surface.source.bytes(nodes_near, [1.0, along_surface]);
-            // The coarser twin of the insert, and the insert as it has worn, are kept besides.
-            let beside = bytes.min(MAX_REMEMBERED_BYTES);
-            let below = self
-                .hardening
-                .as_ref()
-                .map_or(0.0, |_| WITH_TWIN * surface.source.bytes_below(nodes_near));
-            let at_backside = match self.backside {
-                Backside::Bonded => 0.0,
-                Backside::Resting { spacing_mm, .. } => {
-                    WITH_TWIN * surface.source.bytes_of_tray(spacing_mm, nodes_near)
-                }
-            };
-            bytes + beside + below + at_backside
-        })
+        let bytes = surface.bytes(nodes_near, [1.0, along_surface]);
+        // The coarser twin of the insert and the worn insert are kept besides.
+        let kept = bytes.min(MAX_KEPT_BYTES);
+        let below = if self.material.yields() {
+            WITH_TWIN * surface.bytes_below(nodes_near)
+        } else {
+            0.0
+        };
+        let at_backside = match self.backside {
+            Backside::Bonded => 0.0,
+            Backside::Resting { spacing_mm, .. } => {
+                WITH_TWIN * surface.bytes_of_tray(spacing_mm, nodes_near)
+            }
+        };
+        bytes + kept + below + at_backside
     }
 
     fn under_surface(
@@ -361,236 +398,46 @@ impl ContactLaw for Deformable {
         activity: usize,
         loads: &[(u32, f64)],
     ) -> Option<UnderSurface> {
-        let (compliance, state) = self.compliance(insert, state);
-        let surface = &compliance.source;
-        Some(match self.backside {
+        let (surface, _) = self.surface_after(insert, state);
+        let mut under = UnderSurface::default();
+        let stresses = match self.backside {
             Backside::Bonded => {
-                let remembered = self
-                    .hardening
-                    .as_ref()
-                    .map(|_| PlasticMemory::from_state(&state));
-                under_surface(surface, remembered, loads)
+                let plastic = self.material.yields();
+                let plastic = plastic.then(|| self.material.under_surface(&surface, state));
+                let (strains, plastic) = plastic.unzip();
+                under.plastic = plastic;
+                let strains = strains.unwrap_or_default();
+                let moved_mm = surface.moved_by(loads, &strains);
+                surface.solid().stresses_with(&moved_mm, &strains)
             }
             Backside::Resting {
                 friction,
                 spacing_mm,
             } => {
-                let (tray, memory) = (surface.tray(spacing_mm), BacksideMemory::from_state(&state));
-                above_tray(surface, &tray, friction, &memory, (activity, loads))
+                let tray = surface.tray(spacing_mm);
+                let (left_mm, last_cycles) = backside::stored(state, activity, &tray);
+                under.backside = Some(last_cycles);
+                // In equilibrium from where the activity left it; if it tips off, as if it stayed there.
+                let forces_n = surface.forces_on_tray(&tray, loads);
+                let found = tray.rest(friction, &left_mm, &forces_n, &left_mm.clone().into());
+                let moved_mm = found.map_or(left_mm, |rest| rest.moved_mm);
+                let moved_mm = surface.moved_with_tray(loads, &tray, &moved_mm);
+                surface.solid().stresses(&moved_mm)
             }
-        })
+        };
+        under.von_mises_mpa = stresses.iter().map(Stress::von_mises).collect();
+        under.max_shear_mpa = stresses.iter().map(Stress::max_shear).collect();
+        Some(under)
     }
 
     fn known_compliance(&self, insert: &Insert, more_than_pairs: usize) -> Option<KnownCompliance> {
-        let surface = self.remembered(insert, insert.unworn_nodes())?;
-        let left_pairs = surface.source.known().pairs();
-        let more_than_pairs = more_than_pairs.max(surface.source.known_at_first());
-        if left_pairs + surface.asked_pairs() <= more_than_pairs {
-            return None;
-        }
-        let left = surface.source.known().clone();
-        Some(surface.known_with(left))
+        let surface = self.find_kept(insert, insert.unworn_nodes())?;
+        surface.known(more_than_pairs)
     }
 
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw> {
         let mut law = self.clone();
         law.slip_tolerance_mm_per_s *= factor;
         Arc::new(law)
-    }
-}
-
-impl Deformable {
-    /// The compliance to use for an insert after a contact has left `state`, and the state to leave.
-    fn compliance(
-        &self,
-        insert: &Insert,
-        state: &ContactState,
-    ) -> (Arc<Compliance<ElasticSurface>>, ContactState) {
-        let used = used_nodes(insert, state);
-        let now = &insert.mesh().nodes;
-        if is_much_thinner(insert, &used)
-            && let Ok(renewed) = self.surface(insert, now)
-        {
-            return (renewed, state_of(now, state));
-        }
-        let surface = self.surface(insert, &used);
-        // A case checks its insert as it is built.
-        let surface = surface.expect("the insert is an elastic solid");
-        (surface, state.clone())
-    }
-}
-
-impl Deformable {
-    /// The contact of bodies, with a broad phase `B`.
-    fn contact_by<'a, B: BroadPhase>(
-        &self,
-        bodies: Bodies<'a>,
-        memory: ContactMemory,
-    ) -> DeformableContact<'a, B> {
-        let (compliance, state) = self.compliance(bodies.insert, &memory.state);
-        let plastic = self.plastic(&state, &compliance);
-        let resting = self.resting(&state, &compliance);
-        let (friction, coulomb) = match self.friction_model {
-            FrictionModel::Regularised => (None, self.coulomb()),
-            FrictionModel::StickSlip => {
-                let tangential = Arc::clone(compliance.source.tangential());
-                let memory = FrictionMemory::from_state(&state);
-                let friction =
-                    ElasticFriction::after(memory, self.friction, bodies.surface, tangential);
-                let without = Coulomb {
-                    coefficient: 0.0,
-                    ..self.coulomb()
-                };
-                (Some(friction), without)
-            }
-        };
-        let rubbing = FrictionSettings {
-            friction: coulomb,
-            sample_reuse_mm: self.sample_reuse_mm,
-        };
-        let memory = ContactMemory { state, ..memory };
-        DeformableContact::after(memory, bodies, rubbing, compliance)
-            .with_history(plastic)
-            .with_history(friction)
-            .with_history(resting)
-    }
-
-    /// Returns the resting backside, if the insert rests, from the stored state.
-    fn resting(
-        &self,
-        state: &ContactState,
-        compliance: &Arc<Compliance<ElasticSurface>>,
-    ) -> Option<RestingInsert> {
-        let Backside::Resting {
-            friction,
-            spacing_mm,
-        } = self.backside
-        else {
-            return None;
-        };
-        let memory = BacksideMemory::from_state(state);
-        let tray = compliance.source.tray(spacing_mm);
-        let compliance = Arc::clone(compliance);
-        Some(RestingInsert::after(memory, compliance, tray, friction))
-    }
-
-    /// Returns the yielding insert, if it yields, from the stored state.
-    fn plastic(
-        &self,
-        state: &ContactState,
-        compliance: &Arc<Compliance<ElasticSurface>>,
-    ) -> Option<PlasticInsert> {
-        let hardening = self.hardening.clone()?;
-        let remembered = PlasticMemory::from_state(state);
-        Some(PlasticInsert::after(
-            remembered,
-            Arc::clone(compliance),
-            hardening,
-        ))
-    }
-}
-
-/// The mesh nodes whose compliance was used, mm: unworn, unless the state says others.
-fn used_nodes(insert: &Insert, state: &ContactState) -> Vec<Vec3> {
-    let field = state.fields.iter().find(|field| field.name == NODES_FIELD);
-    match field {
-        Some(field) => field
-            .values
-            .chunks_exact(3)
-            .map(Vec3::from_column_slice)
-            .collect(),
-        None => insert.unworn_nodes().to_vec(),
-    }
-}
-
-/// The state with the nodes whose compliance is used, and all else that it had.
-fn state_of(nodes: &[Vec3], before: &ContactState) -> ContactState {
-    let kept = before.fields.iter();
-    let kept = kept.filter(|field| field.name != NODES_FIELD);
-    let field = StateField {
-        name: NODES_FIELD.to_owned(),
-        values: nodes.iter().flatten().copied().collect(),
-    };
-    ContactState {
-        fields: [field].into_iter().chain(kept.cloned()).collect(),
-    }
-}
-
-fn is_much_thinner(insert: &Insert, used: &[Vec3]) -> bool {
-    let nodes = insert.surface_nodes().iter().zip(insert.thickness_mm());
-    let thinner = |(&node, thickness_mm): (&u32, &f64)| {
-        let node = node as usize;
-        (insert.mesh().nodes[node] - used[node]).norm() / thickness_mm
-    };
-    nodes.map(thinner).fold(0.0, f64::max) > MAX_THINNER
-}
-
-/// Stress under loads on nodes of the surface along the inward normals, N, and what has yielded, if the insert does.
-pub(crate) fn under_surface(
-    surface: &ElasticSurface,
-    remembered: Option<PlasticMemory>,
-    loads: &[(u32, f64)],
-) -> UnderSurface {
-    let points = remembered.as_ref().map(|remembered| &remembered.points);
-    let strains = points.map_or_else(BTreeMap::new, strains_of);
-    let moved_mm = surface.moved_by(loads, &strains);
-    let stresses = surface.solid().stresses_with(&moved_mm, &strains);
-    UnderSurface {
-        von_mises_mpa: stresses.iter().map(Stress::von_mises).collect(),
-        max_shear_mpa: stresses.iter().map(Stress::max_shear).collect(),
-        plastic: remembered.map(|remembered| plastic(surface, &remembered)),
-        backside: None,
-    }
-}
-
-/// The same of an insert that rests on its tray, its backside at rest under the loads from where the activity of that
-/// number left it; where it tips off, as if the backside stayed there.
-pub(crate) fn above_tray(
-    surface: &ElasticSurface,
-    tray: &Tray,
-    friction: f64,
-    memory: &BacksideMemory,
-    (activity, loads): (usize, &[(u32, f64)]),
-) -> UnderSurface {
-    let left_mm = memory.start(activity, tray.freedoms());
-    let forces_n = surface.forces_on_tray(tray, loads);
-    let found = rest(tray, friction, &left_mm, &forces_n, &left_mm.clone().into());
-    let moved_mm = found.map_or(left_mm, |rest| rest.moved_mm);
-    let moved_mm = surface.moved_with_tray(loads, tray, &moved_mm);
-    let stresses = surface.solid().stresses(&moved_mm);
-    let cycle = &memory.last_cycles;
-    UnderSurface {
-        von_mises_mpa: stresses.iter().map(Stress::von_mises).collect(),
-        max_shear_mpa: stresses.iter().map(Stress::max_shear).collect(),
-        plastic: None,
-        backside: Some(BacksideAtRest {
-            lift_mm: cycle.lift_mm,
-            lifted_part: cycle.lifted_part,
-            slip_mm: cycle.slip_mm,
-            lock_force_n: cycle.lock.force_n,
-            lock_moment_nmm: cycle.lock.moment_nmm,
-        }),
-    }
-}
-
-fn plastic(surface: &ElasticSurface, remembered: &PlasticMemory) -> PlasticUnderSurface {
-    let elements = surface.solid().mesh().hexes.len();
-    let mut plastic_strain = vec![0.0; elements];
-    let mut regime = vec![Regime::Elastic; elements];
-    for (&element, points) in &remembered.points {
-        let largest = |largest: f64, point: &PlasticPoint| largest.max(point.accumulated);
-        plastic_strain[element as usize] = points.iter().fold(0.0, largest);
-        let flow = remembered.flow_in_cycle.get(&element).copied();
-        regime[element as usize] = Regime::from_flow(flow.unwrap_or_default());
-    }
-    let set_mm = if remembered.points.is_empty() {
-        vec![0.0; surface.along_normals(&surface.solid().mesh().nodes).len()]
-    } else {
-        surface.along_normals(&surface.moved_by(&[], &strains_of(&remembered.points)))
-    };
-    PlasticUnderSurface {
-        permanent_set_mm: set_mm,
-        plastic_strain,
-        regime,
     }
 }

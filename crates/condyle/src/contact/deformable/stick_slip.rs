@@ -1,4 +1,4 @@
-//! Stick, slip and the loads along a surface: Coulomb's law on an elastic body.
+//! The solver for the loads along a surface: Coulomb's law with stick and slip on an elastic body.
 
 use super::{
     cholesky::{Cholesky, Eight, ROWS, get, product, set, subtract, zero},
@@ -8,41 +8,43 @@ use super::{
 /// Numbers along the two directions of a surface.
 pub(crate) type Pair = [f64; 2];
 
-/// Loads are found once a sweep changes none by more than this, N.
+/// The loads are found once no sweep would change one of them by more than this, N: some 1e-8 of the loads in contact.
 const FOUND_N: f64 = 1e-7;
-/// A load is at its limit from this part of it on.
+/// A node slides if its load is at least this part of its limit; the rest is rounding.
 const AT_LIMIT: f64 = 1.0 - 1e-9;
-/// Limits below this are none, N.
+/// Smaller limits count as zero, N: such a node carries no load.
 const MIN_LIMIT_N: f64 = 1e-12;
-/// If a load is to change by more than this part of its limit, a sweep goes before a step of Newton's method, which would
-/// begin with the wrong nodes sticking.
+/// Nodes whose load is to change by more than this part of their limit are updated before a Newton step, which would
+/// otherwise start with the wrong nodes sticking.
 const FAR: f64 = 0.5;
-/// If no more than one in so many nodes has changed, only their contributions are recomputed.
+/// If at most one in so many nodes has changed, only the contributions of these are updated; otherwise everything is
+/// recomputed, which then costs no more.
 const FEW: usize = 8;
-/// A step of Newton's method counts if it leaves at most this part.
-const LEAPS: f64 = 0.5;
-/// Sweeps after a step of Newton's method that did not count.
+/// A Newton step is kept if it reduces the residual to at most this part; sweeps do that, too, but slowly.
+const KEPT: f64 = 0.5;
+/// Sweeps after a rejected Newton step.
 const SWEEPS_BETWEEN: u32 = 3;
-/// Steps after which what is left is round-off.
+/// Steps after which the residual is round-off.
 const MAX_STEPS: u32 = 500;
 
 /// The loads along a surface under a femur that moves past it.
 ///
-/// The node i that presses may carry a load T_i along the surface up to its limit g_i = mu F_i. Its place there has
-/// moved past the femur, but for what the surface deflects, by b_i, and deflects by the compliance C along the surface:
-/// it slips by s_i = b_i - sum_j C_ij T_j. It sticks, or slides the way its load points,
+/// A node i in contact may carry a load T_i along the surface up to its limit g_i = mu F_i. Without deflection the femur
+/// would have moved past it by b_i; the surface deflects by its compliance C along itself, so that the node slips by
+/// s_i = b_i - sum_j C_ij T_j. It sticks, or slips in the direction of its load,
 ///
 /// $$ s_i = 0, \enspace |T_i| \le g_i \qquad \text{or} \qquad s_i = \lambda_i T_i, \enspace \lambda_i > 0, \enspace |T_i| = g_i , $$
 ///
-/// which is the least of T' C T / 2 - b' T with |T_i| <= g_i: C is positive definite, so there is one. It is found by
-/// sweeps from node to node, each to its own least, which lead there from everywhere; and by steps of Newton's
-/// method, which are quick in the end: the nodes that stick are free in them, the others turn on their circles.
+/// which is the minimum of T' C T / 2 - b' T with |T_i| <= g_i; C is positive definite, so there is one. Two methods
+/// alternate: sweeps over the nodes, each of which goes to its own minimum, converge from everywhere, but slowly; Newton
+/// steps converge quickly near the solution. In these, loads of sticking nodes are free, and those of sliding nodes turn
+/// on the circles of their limits.
 #[derive(Default)]
 pub(crate) struct StickSlip {
-    /// The nodes, in an order that is always the same, and each with its place there, ascending.
+    /// The nodes, in an order that is always the same; and each with its place in that order, ascending.
     nodes: Vec<u32>,
     places: Vec<(u32, usize)>,
-    /// The rows of the compliance of every node that presses, and the places of its loads among `by_panel`.
+    /// The rows of the compliance of every node, and the places of its loads among `by_panel`.
     rows: Vec<[u32; 2]>,
     slots: Vec<[usize; 2]>,
     limits_n: Vec<f64>,
@@ -52,56 +54,55 @@ pub(crate) struct StickSlip {
     stiffness_n_per_mm: Vec<f64>,
     /// The loads by the panels of the compliance.
     by_panel: Vec<(usize, Eight)>,
-    /// The slip of each node under the loads.
     slips_mm: Vec<Pair>,
 }
 
 /// A node that may carry a load along the surface.
 #[derive(Clone, Copy)]
-pub(crate) struct Rubbed {
+pub(crate) struct FrictionNode {
     pub node: u32,
     /// Its limit g, N.
     pub limit_n: f64,
-    /// The motion of its place past the femur since it carried nothing, b, mm.
+    /// The motion of the femur past it since it carried no load, b, mm.
     pub reach_mm: Pair,
-    /// The load to begin with, N.
+    /// The load with which the search starts, N.
     pub load_n: Pair,
 }
 
-/// A load that may change: that of a node, along one direction.
+/// An unknown of a Newton step: the change of a node's load along one direction.
 struct Freedom {
     node: usize,
     along: Pair,
-    /// Beside the compliance, mm/N: what a load on a circle is turned against.
+    /// Added to the diagonal of the compliance, mm/N: the resistance to turning a load on its circle.
     more: f64,
 }
 
 impl StickSlip {
-    /// The loads on nodes, in an order that is always the same.
-    pub fn solve(&mut self, rubbed: &[Rubbed], compliance: &NearMatrix) {
-        self.take(rubbed, compliance);
+    /// Solves for the loads on nodes, given in an order that is always the same.
+    pub fn solve(&mut self, nodes: &[FrictionNode], compliance: &NearMatrix) {
+        self.start(nodes, compliance);
         self.approach(compliance);
-        // What slides has its limit to the last digit.
+        // Sliding loads get their limit to the last digit.
         for place in 0..self.rows.len() {
             self.load(place, self.better_n(place, self.slips_mm[place]));
         }
     }
 
-    /// Goes to the loads until what is left is small.
+    /// Alternates Newton steps and sweeps until the residual is small.
     fn approach(&mut self, compliance: &NearMatrix) {
-        let mut left_n = self.left_n();
+        let mut residual_n = self.residual_n();
         for _ in 0..MAX_STEPS {
-            if left_n <= FOUND_N {
+            if residual_n <= FOUND_N {
                 return;
             }
-            if self.change_what_is_far(compliance) {
-                left_n = self.left_n();
+            if self.update_far_nodes(compliance) {
+                residual_n = self.residual_n();
             }
             let before = (self.loads_n.clone(), self.slips_mm.clone());
-            self.leap(compliance);
-            let now_n = self.left_n();
-            if now_n <= LEAPS * left_n {
-                left_n = now_n;
+            self.newton_step(compliance);
+            let now_n = self.residual_n();
+            if now_n <= KEPT * residual_n {
+                residual_n = now_n;
                 continue;
             }
             let (loads_n, slips_mm) = before;
@@ -109,11 +110,10 @@ impl StickSlip {
             self.slips_mm = slips_mm;
             (0..SWEEPS_BETWEEN).for_each(|_| self.sweep(compliance));
             self.find_slips(compliance);
-            left_n = self.left_n();
+            residual_n = self.residual_n();
         }
     }
 
-    /// The loads on the nodes, N.
     pub fn loads_n(&self) -> &[Pair] {
         &self.loads_n
     }
@@ -123,19 +123,19 @@ impl StickSlip {
         length(self.loads_n[place]) < AT_LIMIT * self.limits_n[place]
     }
 
-    /// Takes the loads along with a short motion of the femur, by their derivatives, to other limits and reaches.
-    pub fn take_along(&mut self, rubbed: &[Rubbed], changes_n: &[Pair], compliance: &NearMatrix) {
-        for (place, (rubbed, change_n)) in rubbed.iter().zip(changes_n).enumerate() {
+    /// Extrapolates the loads over a short motion of the femur by their changes, to other limits and motions past the nodes.
+    pub fn extrapolate(
+        &mut self,
+        nodes: &[FrictionNode],
+        changes_n: &[Pair],
+        compliance: &NearMatrix,
+    ) {
+        for (place, (node, change_n)) in nodes.iter().zip(changes_n).enumerate() {
             let slides = self.slides(place);
-            self.reach_mm[place] = rubbed.reach_mm;
-            self.limits_n[place] = rubbed.limit_n;
+            self.reach_mm[place] = node.reach_mm;
+            self.limits_n[place] = node.limit_n;
             let load_n = [0, 1].map(|k| self.loads_n[place][k] + change_n[k]);
-            let load_n = if slides {
-                to_length(load_n, rubbed.limit_n)
-            } else {
-                within(load_n, rubbed.limit_n)
-            };
-            self.load(place, load_n);
+            self.load(place, admissible(load_n, node.limit_n, slides));
         }
         self.find_slips(compliance);
     }
@@ -145,31 +145,31 @@ impl StickSlip {
         [0, 1].map(|k| self.reach_mm[place][k] - self.slips_mm[place][k])
     }
 
-    /// Takes nodes, with the loads that were found for them before, which may be beyond the new limits.
-    fn take(&mut self, rubbed: &[Rubbed], compliance: &NearMatrix) {
+    /// Starts the search with other nodes, and the loads that were found for them before; these may exceed the new limits.
+    fn start(&mut self, nodes: &[FrictionNode], compliance: &NearMatrix) {
         let before = std::mem::take(self);
-        self.nodes = rubbed.iter().map(|rubbed| rubbed.node).collect();
+        self.nodes = nodes.iter().map(|node| node.node).collect();
         self.places = self.nodes.iter().copied().zip(0..).collect();
         self.places.sort_unstable();
         let rows = |node: &u32| along_surface(*node).map(|load| compliance.row(load));
         self.rows = self.nodes.iter().map(rows).collect();
-        self.limits_n = rubbed.iter().map(|rubbed| rubbed.limit_n).collect();
-        self.reach_mm = rubbed.iter().map(|rubbed| rubbed.reach_mm).collect();
+        self.limits_n = nodes.iter().map(|node| node.limit_n).collect();
+        self.reach_mm = nodes.iter().map(|node| node.reach_mm).collect();
         let stiffness = |&[a, b]: &[u32; 2]| {
             let [aa, ab, bb] = [(a, a), (a, b), (b, b)].map(|(i, j)| compliance.at(i, j));
             2.0 / (aa + bb + (aa - bb).hypot(2.0 * ab))
         };
         self.stiffness_n_per_mm = self.rows.iter().map(stiffness).collect();
         self.find_slots(compliance);
-        self.loads_n = vec![[0.0; 2]; rubbed.len()];
-        for (place, rubbed) in rubbed.iter().enumerate() {
-            self.load(place, rubbed.load_n);
+        self.loads_n = vec![[0.0; 2]; nodes.len()];
+        for (place, node) in nodes.iter().enumerate() {
+            self.load(place, node.load_n);
         }
-        self.go_on_from(&before, compliance);
+        self.update_slips(&before, compliance);
     }
 
-    /// Finds slips from how far the loads of before moved the nodes.
-    fn go_on_from(&mut self, before: &Self, compliance: &NearMatrix) {
+    /// Computes the slips from those of the search before, if few loads have changed since.
+    fn update_slips(&mut self, before: &Self, compliance: &NearMatrix) {
         let stays = |(place, node): (usize, &u32)| {
             let was = before.place_of(*node)?;
             (before.loads_n[was] == self.loads_n[place]).then_some(was)
@@ -205,7 +205,7 @@ impl StickSlip {
         found.ok().map(|found| self.places[found].1)
     }
 
-    /// Finds the panels of the nodes, and where in them each is.
+    /// Finds the panels of the nodes, and the place of each node in them.
     fn find_slots(&mut self, compliance: &NearMatrix) {
         let loads = self.nodes.iter().flat_map(|&node| along_surface(node));
         let mut places: Vec<(u32, usize)> = loads
@@ -253,31 +253,30 @@ impl StickSlip {
             .collect();
     }
 
-    /// A better load on a node that slips, if the others stay.
+    /// Returns the load on a node that is better for its slip while the others stay.
     fn better_n(&self, place: usize, slip_mm: Pair) -> Pair {
         within(self.unlimited_n(place, slip_mm), self.limits_n[place])
     }
 
-    /// The same without its limit.
     fn unlimited_n(&self, place: usize, slip_mm: Pair) -> Pair {
         let (load_n, stiffness) = (self.loads_n[place], self.stiffness_n_per_mm[place]);
         [0, 1].map(|k| load_n[k] + stiffness * slip_mm[k])
     }
 
-    /// By how much a load is off a better one, N.
+    /// Returns how much a load differs from a better one, N.
     fn off_n(&self, place: usize) -> f64 {
         let better_n = self.better_n(place, self.slips_mm[place]);
         length([0, 1].map(|k| better_n[k] - self.loads_n[place][k]))
     }
 
-    fn left_n(&self) -> f64 {
+    fn residual_n(&self) -> f64 {
         let places = 0..self.rows.len();
         places.map(|place| self.off_n(place)).fold(0.0, f64::max)
     }
 
-    /// Puts better loads on the nodes whose loads are far off, as of those that have just begun to press; whether there are
-    /// such.
-    fn change_what_is_far(&mut self, compliance: &NearMatrix) -> bool {
+    /// Puts better loads on the nodes whose loads are far off, such as those that have just come into contact, and returns
+    /// whether there are any.
+    fn update_far_nodes(&mut self, compliance: &NearMatrix) -> bool {
         let is_far = |&place: &usize| self.off_n(place) > FAR * self.limits_n[place];
         let far: Vec<usize> = (0..self.rows.len()).filter(is_far).collect();
         if far.len() > self.rows.len() / FEW {
@@ -301,7 +300,7 @@ impl StickSlip {
         !far.is_empty()
     }
 
-    /// Goes from node to node, each to a better load.
+    /// Puts a better load on each node in turn.
     fn sweep(&mut self, compliance: &NearMatrix) {
         for place in 0..self.rows.len() {
             let slip_mm = self.slip_mm(place, compliance);
@@ -309,8 +308,8 @@ impl StickSlip {
         }
     }
 
-    /// A step of Newton's method for the loads that may change, those that slide put to their limits first.
-    fn leap(&mut self, compliance: &NearMatrix) {
+    /// Takes a Newton step. Sliding loads are put to their limits first.
+    fn newton_step(&mut self, compliance: &NearMatrix) {
         let freedoms = self.freedoms();
         let slides: Vec<bool> = (0..self.rows.len())
             .map(|place| self.slides(place))
@@ -339,21 +338,31 @@ impl StickSlip {
             *load_n = [0, 1].map(|k| load_n[k] + more_n * freedom.along[k]);
         }
         for (place, load_n) in loads_n.into_iter().enumerate() {
-            let limit_n = self.limits_n[place];
-            let load_n = if slides[place] {
-                to_length(load_n, limit_n)
-            } else {
-                within(load_n, limit_n)
-            };
-            self.load(place, load_n);
+            self.load(
+                place,
+                admissible(load_n, self.limits_n[place], slides[place]),
+            );
         }
         self.find_slips(compliance);
     }
 
-    /// Derivatives of the loads by six motions, from those of reach and limit.
+    /// Returns the derivatives of the loads by six motions, from those of the motions past the nodes and of the limits.
     pub fn by_motion(&self, changes: &[ByMotion], compliance: &NearMatrix) -> Vec<[Eight; 2]> {
         let freedoms = self.freedoms();
-        let mut loads = self.loads_by_limit(changes);
+        // First the derivatives of sliding loads through their limits, then those of all through the freedoms.
+        let by_limit = |(place, change): (usize, &ByMotion)| {
+            let part = if self.slides(place) {
+                1.0 / self.limits_n[place]
+            } else {
+                0.0
+            };
+            self.loads_n[place].map(|load_n| {
+                let mut by = zero();
+                subtract(&mut by, &change.limit_n, -(part * load_n));
+                by
+            })
+        };
+        let mut loads: Vec<[Eight; 2]> = changes.iter().enumerate().map(by_limit).collect();
         let mut by_slot = vec![zero(); self.width()];
         for (slots, loads) in self.slots.iter().zip(&loads) {
             for (slot, load) in slots.iter().zip(loads) {
@@ -381,32 +390,17 @@ impl StickSlip {
         loads
     }
 
-    /// Returns the derivatives of the loads of sliding nodes through their limits.
-    fn loads_by_limit(&self, changes: &[ByMotion]) -> Vec<[Eight; 2]> {
-        let of_node = |(place, change): (usize, &ByMotion)| {
-            let slides = self.slides(place);
-            let part = if slides {
-                1.0 / self.limits_n[place]
-            } else {
-                0.0
-            };
-            self.loads_n[place].map(|load_n| times(&change.limit_n, part * load_n))
-        };
-        changes.iter().enumerate().map(of_node).collect()
-    }
-
-    /// Numbers of a line: those of the panels.
     fn width(&self) -> usize {
         ROWS * self.by_panel.len()
     }
 
-    /// Returns whether a node is taken to slide: a better load for it is one at its limit.
+    /// Returns whether a node counts as sliding: a better load for it would exceed its limit.
     fn slides(&self, place: usize) -> bool {
         let better = self.unlimited_n(place, self.slips_mm[place]);
         length(better) > self.limits_n[place]
     }
 
-    /// The loads that may change: of a node that slides along its circle, of others any way.
+    /// Returns the unknowns of a Newton step: a sliding load turns on its circle, others change in any direction.
     fn freedoms(&self) -> Vec<Freedom> {
         let mut freedoms = Vec::with_capacity(2 * self.rows.len());
         for (node, &slip_mm) in self.slips_mm.iter().enumerate() {
@@ -426,8 +420,8 @@ impl StickSlip {
         freedoms
     }
 
-    /// The factor of how far loads that may change move each other. `visit` is told of each of them its line: how far every
-    /// load of the panels moves its node along it.
+    /// Factors the compliance between the freedoms. `visit` receives of each freedom its line: the displacements of its node
+    /// along it by every load of the panels.
     fn factor(
         &self,
         freedoms: &[Freedom],
@@ -475,7 +469,15 @@ pub(crate) struct ByMotion {
     pub limit_n: Eight,
 }
 
-/// A load cut to its limit.
+/// Puts a sliding load to its limit, and cuts any other to it.
+fn admissible(load_n: Pair, limit_n: f64, slides: bool) -> Pair {
+    if slides {
+        to_length(load_n, limit_n)
+    } else {
+        within(load_n, limit_n)
+    }
+}
+
 fn within(load_n: Pair, limit_n: f64) -> Pair {
     let length_n = length(load_n);
     if length_n > limit_n {
@@ -485,7 +487,6 @@ fn within(load_n: Pair, limit_n: f64) -> Pair {
     }
 }
 
-/// A load of the same way and that length.
 fn to_length(load_n: Pair, length_n: f64) -> Pair {
     let part = length_n / length(load_n).max(f64::MIN_POSITIVE);
     load_n.map(|part_n| part * part_n)
@@ -497,10 +498,4 @@ fn dot(a: Pair, b: Pair) -> f64 {
 
 fn length(of: Pair) -> f64 {
     dot(of, of).sqrt()
-}
-
-fn times(numbers: &Eight, factor: f64) -> Eight {
-    let mut product = zero();
-    subtract(&mut product, numbers, -factor);
-    product
 }

@@ -1,8 +1,9 @@
 //! The elastic foundation: rigid bodies, and pressure from local overclosure.
 //!
-//! [`Foundation`] is the law; it makes a `FoundationContact`, which finds the blocks that touch, presses them
-//! (`press`, `mean_overclosure`), and adds up what they do, all as in `contact_patch`. Where an
-//! increment ends it says what the highest pressure is (`peak`).
+//! [`Foundation`] is the law; it creates a `FoundationContact`. To follow an evaluation, start at `respond` there: it finds
+//! the blocks that touch (`contact_patch::NearBlocks`), computes the tractions on each (`tractions`, from the
+//! `mean_overclosure` of its shares) and sums these to the wrench (`contact_patch::ContactPatch`). At the end of an
+//! increment `peak` finds the highest pressure.
 
 mod mean_overclosure;
 mod peak;
@@ -10,7 +11,7 @@ mod peak;
 use std::sync::Arc;
 
 use super::{
-    broad_phase::{BroadPhase, BruteForce, Coherent, Search},
+    broad_phase::{Search, ShareBlock},
     contact_patch::{CachedSample, ContactPatch, Coulomb, NearBlocks, Sliding, Tractions4},
     law::{Bodies, ContactLaw},
     model::{
@@ -18,12 +19,11 @@ use super::{
         Response, Tangent,
     },
     pressure_law::PressureLaw,
-    share_block::ShareBlock,
 };
 use crate::{
     geometry::Insert,
     number::{F64x4, cross, dot, scale_add, tangential_part, zero_vector},
-    spatial::{FrameChange, Pose, Pose4, RelativeMotion, Twist4},
+    spatial::{FrameChange, Pose4, RelativeMotion, Twist4},
 };
 pub(crate) use mean_overclosure::EdgeSlopes;
 use mean_overclosure::mean_overclosure;
@@ -31,14 +31,13 @@ use peak::PeakSearch;
 
 /// The law of an elastic layer on a rigid base under a rigid femur.
 ///
-/// Every node's share of the articulating surface presses with the law's pressure at its mean
-/// overclosure, along the femur's normal there, and rubs with regularised Coulomb friction,
+/// Every node's share of the articulating surface is under the law's pressure at its mean overclosure, along the
+/// femur's normal there, and under regularised Coulomb friction,
 ///
 /// $$ \mathbf f = p A \left( \mathbf n + \mu \frac{\mathbf v_t}{\sqrt{v_t^2 + v_0^2}} \right). $$
 ///
-/// Shares at the edge of contact count with the part of them that presses. Limits: neighbours do not
-/// feel each other, so a foundation does not match Hertz, and edge loading is over-estimated
-/// (Halloran 2005).
+/// Shares at the edge of contact count with the part of them that is in contact. Limits: neighbours do not
+/// interact, so a foundation does not match Hertz, and edge loading is over-estimated (Halloran 2005).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foundation {
     /// Pressure from overclosure.
@@ -47,26 +46,26 @@ pub struct Foundation {
     pub friction: f64,
     /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0.
     ///
-    /// Smaller is nearer to Coulomb's stick and slip; larger lets parts that should stick creep, and
-    /// is easier to solve.
+    /// A smaller value is closer to stick and slip; a larger one lets parts that should stick creep, and is easier to
+    /// solve.
     pub slip_tolerance_mm_per_s: f64,
     /// The search for the nodes that may touch; no result depends on it.
     pub search: Search,
-    /// Motion up to which a sample of the femur is extrapolated to second order rather than recomputed,
-    /// mm; 0 takes every sample anew.
+    /// Motion up to which a sample of the femur is extrapolated to second order rather than recomputed, mm; with 0 every
+    /// sample is recomputed.
     ///
-    /// This is the one approximation of the search. The second derivatives of a mesh's field vary by
-    /// some 0.003/mm from cell to cell: at 0.02 mm the gap errs by less than a millionth of a
-    /// millimetre, and the force by a hundred-thousandth.
+    /// This is the only approximation of the search. The second derivatives of a mesh's field vary by some 0.003/mm from
+    /// cell to cell: at 0.02 mm the gap errs by less than a millionth of a millimetre, and the force by a
+    /// hundred-thousandth.
     pub sample_reuse_mm: f64,
 }
 
 impl Foundation {
-    /// The motion up to which samples are extrapolated unless said otherwise, mm: most of Newton's
-    /// corrections are shorter, so that a mesh's field is mostly sampled once an increment.
+    /// The default motion up to which samples are extrapolated, mm. Most Newton corrections are shorter, so a mesh's field
+    /// is mostly sampled once per increment.
     pub const SAMPLE_REUSE_MM: f64 = 0.02;
 
-    /// A foundation that is computed the quick way.
+    /// Creates a foundation with the fast search.
     pub fn new(pressure: PressureLaw, friction: f64, slip_tolerance_mm_per_s: f64) -> Self {
         Self {
             pressure,
@@ -74,14 +73,6 @@ impl Foundation {
             slip_tolerance_mm_per_s,
             search: Search::default(),
             sample_reuse_mm: Self::SAMPLE_REUSE_MM,
-        }
-    }
-
-    /// Its friction.
-    pub(crate) fn coulomb(&self) -> Coulomb {
-        Coulomb {
-            coefficient: self.friction,
-            slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
         }
     }
 }
@@ -92,13 +83,23 @@ impl ContactLaw for Foundation {
         bodies: Bodies<'a>,
         memory: ContactMemory,
     ) -> Box<dyn ContactModel + 'a> {
-        let cache = memory.cache;
-        match self.search {
-            Search::Coherent => Box::new(FoundationContact::<Coherent>::after(cache, self, bodies)),
-            Search::BruteForce => {
-                Box::new(FoundationContact::<BruteForce>::after(cache, self, bodies))
-            }
-        }
+        let nearby = NearBlocks::new(
+            memory.cache.into_inner(),
+            bodies.femur,
+            ShareBlock::from_shares(bodies.insert, bodies.surface),
+            (self.search, self.sample_reuse_mm),
+        );
+        let friction = Coulomb {
+            coefficient: self.friction,
+            slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
+        };
+        Box::new(FoundationContact {
+            law: self,
+            bodies,
+            patch: ContactPatch::new(bodies.surface, &nearby.blocks, friction),
+            nearby,
+            slopes: Vec::new(),
+        })
     }
 
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64 {
@@ -112,91 +113,28 @@ impl ContactLaw for Foundation {
     }
 }
 
-/// The contact of a femur with an insert as it is now, by a [`Foundation`], with a broad phase `B`.
+/// The contact of a femur with an insert as it is now, by a [`Foundation`].
 ///
 /// Invariant: a response depends on the motion alone, but for samples that are extrapolated
 /// ([`Foundation::sample_reuse_mm`]), which change the force by less than a hundred-thousandth. The tangent is the
-/// derivative of the response, summed up in single precision: right to six digits.
-pub(crate) struct FoundationContact<'a, B> {
+/// derivative of the response, summed in single precision: right to six digits.
+struct FoundationContact<'a> {
     law: &'a Foundation,
     bodies: Bodies<'a>,
-    nearby: NearBlocks<'a, B>,
+    nearby: NearBlocks<'a>,
     /// The blocks that touched at the last response.
     patch: ContactPatch,
     /// The edge slopes of their shares.
     slopes: Vec<EdgeSlopes<F64x4>>,
 }
 
-impl<'a, B: BroadPhase> FoundationContact<'a, B> {
-    /// The contact of bodies, quicker where another left its cache for the insert less worn, under the
-    /// same femur.
-    pub fn after(cache: ContactCache, law: &'a Foundation, bodies: Bodies<'a>) -> Self {
-        let nearby = NearBlocks::after(
-            cache.into_inner(),
-            bodies.femur,
-            ShareBlock::from_shares(bodies.insert, bodies.surface),
-            law.sample_reuse_mm,
-        );
-        let patch = ContactPatch::new(bodies.surface, &nearby.blocks, law.coulomb());
-        Self {
-            law,
-            bodies,
-            nearby,
-            patch,
-            slopes: Vec::new(),
-        }
-    }
-
-    /// Finds the blocks that touch: those with a share of which a corner is overclosed.
-    fn find_touching(&mut self, pose: &Pose, pose4: &Pose4) {
-        let Self {
-            nearby,
-            patch,
-            slopes,
-            ..
-        } = self;
-        patch.near.clear();
-        slopes.clear();
-        nearby.find(
-            pose,
-            pose4,
-            |cached, shares| {
-                let normal = pose4.turn_to_insert(&cached.sample.normal);
-                let slopes =
-                    EdgeSlopes::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
-                (slopes.reach_mm(), slopes)
-            },
-            |near, edges| {
-                patch.near.push(near);
-                slopes.push(edges);
-            },
-        );
-    }
-
-    fn peak_search(&self, pose: &Pose) -> PeakSearch<'_> {
-        let Bodies {
-            femur,
-            insert,
-            surface,
-        } = self.bodies;
-        PeakSearch {
-            law: &self.law.pressure,
-            femur,
-            shares: &surface.shares,
-            thickness_mm: insert.thickness_mm(),
-            faces: insert.faces_around(),
-            pose: Pose4::new(pose),
-        }
-    }
-}
-
-impl<B: BroadPhase> Linearization for FoundationContact<'_, B> {
+impl Linearization for FoundationContact<'_> {
     fn tangent(&self) -> Tangent {
         self.patch.tangent()
     }
 }
 
-impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
+impl ContactModel for FoundationContact<'_> {
     fn node_count(&self) -> usize {
         self.bodies.surface.positions.len()
     }
@@ -210,20 +148,48 @@ impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
         let change = FrameChange::to_femur(&motion.pose);
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
-        self.find_touching(&motion.pose, &pose);
-        let (law, slopes) = (self.law, &self.slopes);
-        let (wrench, mean_slip) = self
-            .patch
-            .press(&self.nearby.blocks, |place, near, shares| {
-                law.press(&near.cached, &slopes[place], shares, &pose, &twist)
-            });
+        let (patch, slopes) = (&mut self.patch, &mut self.slopes);
+        patch.near.clear();
+        slopes.clear();
+        // A block touches if a corner of one of its shares is overclosed.
+        self.nearby.find(
+            &motion.pose,
+            &pose,
+            |cached, shares| {
+                let normal = pose.turn_to_insert(&cached.sample.normal);
+                let edges =
+                    EdgeSlopes::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
+                (edges.reach_mm(), edges)
+            },
+            |near, edges| {
+                patch.near.push(near);
+                slopes.push(edges);
+            },
+        );
+        let law = self.law;
+        let (wrench, mean_slip) = patch.press(&self.nearby.blocks, |place, near, shares| {
+            law.tractions(&near.cached, &slopes[place], shares, &pose, &twist)
+        });
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
         let touched = self.patch.touched(&self.nearby.blocks, motion);
+        let Bodies {
+            femur,
+            insert,
+            surface,
+        } = self.bodies;
+        let peak = PeakSearch {
+            law: &self.law.pressure,
+            femur,
+            shares: &surface.shares,
+            thickness_mm: insert.thickness_mm(),
+            faces: insert.faces_around(),
+            pose: Pose4::new(&motion.pose),
+        };
         ContactResult {
-            peak_pressure_mpa: self.peak_search(&motion.pose).highest_mpa(&touched),
+            peak_pressure_mpa: peak.highest_mpa(&touched),
             touched,
         }
     }
@@ -237,13 +203,13 @@ impl<B: BroadPhase> ContactModel for FoundationContact<'_, B> {
 }
 
 impl Foundation {
-    /// Pressure and rubbing on the shares.
+    /// Returns the tractions on a block of shares.
     ///
     /// With n the femur's normal, K its curvature, G the gradient of the gap, e_k the share's edges and W
     /// the mean overclosure of the share, a motion a and a turn w of the femur change the middle's
     /// overclosure by G . a, the normal by w x n - K a, and each edge slope n . e_k with the normal.
     #[inline(always)]
-    pub(crate) fn press(
+    fn tractions(
         &self,
         cached: &CachedSample,
         slopes: &EdgeSlopes<F64x4>,

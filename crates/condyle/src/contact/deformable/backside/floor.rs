@@ -6,9 +6,9 @@ use condyle_fem::HexMesh;
 
 use crate::{Vec3, geometry::bounds};
 
-/// A face of the backside that leans from straight down by more than this cosine tells, 15 degrees, is a wall.
+/// Cosine of 15 degrees: a face of the backside that leans further from straight down is a wall.
 const MIN_COSINE: f64 = 0.966;
-/// Flat faces farther than this off the middle height of all are recesses or pegs, mm.
+/// Flat faces farther than this from the median height are recesses or pegs, mm.
 const MAX_OFF_MM: f64 = 0.25;
 
 /// The flat part of a backside.
@@ -37,10 +37,22 @@ impl Floor {
         let mut quads = mesh.boundary_quads();
         quads.retain(|quad| quad.iter().all(is_own));
         let faces: Vec<Face> = quads.iter().map(|quad| Face::new(mesh, *quad)).collect();
-        let level = level_faces(&faces);
+        let is_level = |face: &&Face| face.inward.y > MIN_COSINE * face.inward.norm();
+        let mut level: Vec<&Face> = faces.iter().filter(is_level).collect();
         let inward: Vec3 = level.iter().map(|face| face.inward).sum();
         let normal = inward.try_normalize(0.0).unwrap_or_else(Vec3::y);
-        let flat = at_middle_height(level, &normal);
+        // The median height by area: half of the level faces lie below it.
+        let height_mm = |face: &Face| face.middle.dot(&normal);
+        level.sort_by(|a, b| height_mm(a).total_cmp(&height_mm(b)));
+        let half_mm2 = level.iter().map(|face| face.inward.norm()).sum::<f64>() / 2.0;
+        let mut below_mm2 = 0.0;
+        let middle = level.iter().find(|face| {
+            below_mm2 += face.inward.norm();
+            below_mm2 >= half_mm2
+        });
+        let middle_mm = middle.map_or(0.0, |face| height_mm(face));
+        let is_flat = |face: &&&Face| (height_mm(face) - middle_mm).abs() <= MAX_OFF_MM;
+        let flat: Vec<[u32; 4]> = level.iter().filter(is_flat).map(|face| face.quad).collect();
         let mut shares = BTreeMap::<u32, f64>::new();
         for (node, share) in mesh.traction_forces(&flat, |_, outward| -outward) {
             *shares.entry(node).or_default() += share.dot(&normal);
@@ -67,32 +79,10 @@ impl Face {
     }
 }
 
-/// The faces that hardly lean.
-fn level_faces(faces: &[Face]) -> Vec<&Face> {
-    let is_level = |face: &&Face| face.inward.y > MIN_COSINE * face.inward.norm();
-    faces.iter().filter(is_level).collect()
-}
-
-/// Those near the height that halves their area.
-fn at_middle_height(mut level: Vec<&Face>, normal: &Vec3) -> Vec<[u32; 4]> {
-    let height_mm = |face: &Face| face.middle.dot(normal);
-    level.sort_by(|a, b| height_mm(a).total_cmp(&height_mm(b)));
-    let half_mm2 = level.iter().map(|face| face.inward.norm()).sum::<f64>() / 2.0;
-    let mut below_mm2 = 0.0;
-    let middle = level.iter().find(|face| {
-        below_mm2 += face.inward.norm();
-        below_mm2 >= half_mm2
-    });
-    let middle_mm = middle.map_or(0.0, |face| height_mm(face));
-    let flat = level.iter();
-    let flat = flat.filter(|face| (height_mm(face) - middle_mm).abs() <= MAX_OFF_MM);
-    flat.map(|face| face.quad).collect()
-}
-
-/// A point that has less than this part of a cell around it lies outside: a corner of a rectangle has a quarter.
+/// A point with less than this part of a cell around it lies outside: a corner of a rectangle has a quarter.
 const MIN_PART: f64 = 0.2;
 
-/// Nodes that go along with a point, by their places in a list, and how far.
+/// Nodes that follow the motion of a point, by their places in a list, each with its weight.
 pub(crate) type Around = Vec<(usize, f64)>;
 
 /// A grid of points, anterior fastest.
@@ -132,7 +122,7 @@ impl Grid {
         self.low + Vec3::new(i * self.step_mm[0], 0.0, k * self.step_mm[1])
     }
 
-    /// The corners of a cell, and the bilinear weights there of a place in it or beside it.
+    /// Returns the corners of a cell, and the bilinear weights there of a place in it or next to it.
     fn weights(&self, [i, k]: [usize; 2], place: &Vec3) -> [(usize, f64); 4] {
         let first = i + self.columns() * k;
         let from = place - self.place(first);
@@ -162,8 +152,8 @@ impl Grid {
         around
     }
 
-    /// The same without the points outside: nodes around these go along with the nearest cell that has none. Where there is
-    /// no such cell all stay.
+    /// Removes the points outside: nodes around these follow the nearest cell whose corners all lie within. If there is no
+    /// such cell, all points stay.
     pub fn led_from_within(&self, around: Vec<Around>, share_mm2: &[f64]) -> Vec<Around> {
         let is_within: Vec<bool> = around
             .iter()
@@ -196,7 +186,6 @@ impl Grid {
         sums.map(|sums| sums.into_iter().collect()).collect()
     }
 
-    /// The cell whose middle is nearest to a point.
     fn nearest(&self, cells: &[[usize; 2]], point: usize) -> Option<[usize; 2]> {
         let middle = Vec3::new(self.step_mm[0], 0.0, self.step_mm[1]) / 2.0;
         let place = self.place(point);

@@ -1,18 +1,15 @@
-//! A backside that rests on its tray: each place of it presses and sticks there or slips, or lifts.
+//! The history of a backside that rests on its tray: each place of it is in contact and sticks or slips, or lifts off.
 //!
-//! Its flat part rests (`floor`). Where it moves is told at points (`tray_points`) of a `grid`, whose motions give stiffness and compliance as those of a solid with
-//! moved supports (`tray`). Under the loads on the surface it comes to rest by Signorini's and Coulomb's conditions
-//! (`rest`). How it gets there from increment to increment is `insert`; what stays is `memory`, and what a cycle came to
-//! `cycle`.
+//! The flat part of the backside rests (`floor`). Its motion is that of points on a grid; their stiffness, and the
+//! equilibrium under given loads by Signorini's and Coulomb's conditions, are in `tray`. To follow an increment, read
+//! `settle`, `accept` and `evaluate` of [`RestingInsert`].
 
 mod floor;
-mod rest;
 #[cfg(test)]
 mod tests;
 mod tray;
 
 pub(crate) use floor::Floor;
-pub(crate) use rest::{BACKSIDE_CYCLE_FIELD, BACKSIDE_FIELD, BacksideMemory, rest};
 pub(crate) use tray::Tray;
 
 use std::sync::Arc;
@@ -21,101 +18,117 @@ use nalgebra::DVector;
 
 use super::{
     complementarity::Candidate,
-    compliance::Compliance,
     elastic_surface::ElasticSurface,
-    history::{LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads},
+    history::{
+        ByActivity, ByIncrement, LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads,
+        farthest_mm, field,
+    },
 };
 use crate::{
-    contact::model::{NotBorne, StateField, Tipped, TouchedNode},
+    contact::{
+        law::BacksideAtRest,
+        model::{ContactState, NotBorne, StateField, TouchedNode},
+    },
     number::Turns,
     spatial::RelativeMotion,
 };
-use rest::{CycleOfRest, Rest};
+use tray::Rest;
+
+/// The fields of the contact's state with the motion of the backside's points in which each activity left them, three
+/// numbers a point: along their own directions, anterior, lateral, off the tray.
+const MOVED_FIELD: &str = "backside_moved_mm";
+
+/// The field with the extremes of the last cycles, the numbers of [`BacksideAtRest`].
+const CYCLE_FIELD: &str = "backside_lift_mm_lifted_part_slip_mm_lock_n_lock_nmm";
 
 /// An elastic insert whose backside rests on its tray with friction.
 ///
-/// The loads of an increment and the rest of the backside under them depend on each other: the loads are those with the
-/// backside as it was tried last, the rest is that under the loads found last, in turns until the surface stays. The
-/// first try goes on from the two increments before.
+/// The loads of an increment and the equilibrium of the backside depend on each other. They are found in turns until the
+/// surface stays: the loads with the backside in its trial position, then the equilibrium under these loads. The first
+/// trial extrapolates the two increments before.
 pub(crate) struct RestingInsert {
-    surface: Arc<Compliance<ElasticSurface>>,
+    surface: Arc<ElasticSurface>,
     tray: Arc<Tray>,
     friction: f64,
-    /// The position of the backside after the last accepted increment, and its last step.
+    /// The position of the backside after the last accepted step, and the change by that step.
     left_mm: Vec<f64>,
     went_mm: Option<Vec<f64>>,
-    /// The trial position, and the displacement of each node of the surface under it, as far as was asked.
+    /// The trial position, and the displacement of each node of the surface under it, as far as it was needed.
     tried_mm: Vec<f64>,
     set_mm: Vec<Option<f64>>,
-    /// The equilibrium under the loads found last, if any.
+    /// The equilibrium under the loads found last, if any, and the start of the search for the next.
     found: Option<Rest>,
     searched_mm: DVector<f64>,
     turns: Turns,
-    cycle: CycleOfRest,
-    memory: BacksideMemory,
-    /// The number of the activity, once a cycle has begun.
-    activity: Option<usize>,
+    activities: ByActivity<Vec<f64>>,
+    ends: ByIncrement<IncrementEnd>,
+    /// The extremes of the cycles of the activities before.
+    before: BacksideAtRest,
+    moved_in_a_cycle_mm: f64,
+}
+
+/// The backside at the end of an increment.
+struct IncrementEnd {
+    moved_mm: Vec<f64>,
+    in_contact: Vec<bool>,
+    /// All but the slip.
+    most: BacksideAtRest,
 }
 
 impl RestingInsert {
-    /// An insert that goes on from what is remembered.
-    pub fn after(
-        memory: BacksideMemory,
-        surface: Arc<Compliance<ElasticSurface>>,
+    /// Resumes from the stored `state`.
+    pub fn new(
+        state: &ContactState,
+        surface: Arc<ElasticSurface>,
         tray: Arc<Tray>,
         friction: f64,
     ) -> Self {
-        let left_mm = memory.start(0, tray.freedoms());
+        let activities = stored_positions(state);
+        let left_mm = of_points(activities.start_of(0), &tray);
         Self {
-            set_mm: vec![None; surface.node_count()],
+            set_mm: vec![None; surface.normal().node_count()],
             searched_mm: left_mm.clone().into(),
             tried_mm: left_mm.clone(),
             left_mm,
             went_mm: None,
             found: None,
             turns: Turns::default(),
-            cycle: CycleOfRest::default(),
-            activity: None,
-            memory,
+            activities,
+            ends: ByIncrement::new(),
+            before: BacksideAtRest::default(),
+            moved_in_a_cycle_mm: 0.0,
             surface,
             tray,
             friction,
         }
     }
 
-    /// Returns the displacement of a node of the surface by the backside, mm.
-    pub fn set_mm(&mut self, node: u32) -> f64 {
+    /// Returns the displacement of a node of the surface by the backside in its trial position, mm.
+    fn set_mm(&mut self, node: u32) -> f64 {
         if let Some(set_mm) = self.set_mm[node as usize] {
             return set_mm;
         }
-        let tile = self.surface.tile_of(node);
-        let rows = self.surface.source.by_tray(&self.tray, tile as usize);
-        let nodes = self.surface.source.nodes_of_tile(tile as usize);
+        let tile = self.surface.normal().tile_of(node) as usize;
+        let rows = self.surface.by_tray(&self.tray, tile);
         let rows = rows.chunks_exact(self.tried_mm.len());
-        for (&node, row) in nodes.iter().zip(rows) {
-            self.set_mm[node as usize] = Some(product(row, &self.tried_mm));
+        for (&node, row) in self.surface.nodes_of_tile(tile).iter().zip(rows) {
+            let products = row.iter().zip(&self.tried_mm).map(|(a, b)| a * b);
+            self.set_mm[node as usize] = Some(products.sum());
         }
         self.set_mm[node as usize].unwrap_or_default()
     }
 
-    /// Finds the rest under loads; how far that moves nodes of the surface from where they were tried to be, mm.
-    ///
-    /// # Errors
-    /// Loads under which the insert tips off its tray.
-    pub fn rest(
+    /// Finds the equilibrium under loads, and returns how far that moves nodes of the surface from the trial, mm.
+    fn settle_under(
         &mut self,
         loads: &[NodeLoad],
         near: impl Iterator<Item = u32>,
-    ) -> Result<f64, Tipped> {
-        let forces_n = self.surface.source.forces_on_tray(&self.tray, loads);
-        let stuck_mm = &self.left_mm;
-        let found = rest(
-            &self.tray,
-            self.friction,
-            stuck_mm,
-            &forces_n,
-            &self.searched_mm,
-        )?;
+    ) -> Result<f64, NotBorne> {
+        let forces_n = self.surface.forces_on_tray(&self.tray, loads);
+        let (stuck_mm, from_mm) = (&self.left_mm, &self.searched_mm);
+        let found = self
+            .tray
+            .rest(self.friction, stuck_mm, &forces_n, from_mm)?;
         let tried: Vec<(u32, f64)> = near.map(|node| (node, self.set_mm(node))).collect();
         let tried_mm = std::mem::replace(&mut self.tried_mm, found.moved_mm.clone());
         self.set_mm.fill(None);
@@ -132,8 +145,8 @@ impl RestingInsert {
         Ok(moved_mm)
     }
 
-    /// Tries the backside where it was left, or as much farther as it went.
-    fn try_anew(&mut self, way_mm: Option<&[f64]>) {
+    /// Resets the trial to the position in which the backside was left, displaced by `way_mm`.
+    fn reset_trial(&mut self, way_mm: Option<&[f64]>) {
         self.tried_mm.clone_from(&self.left_mm);
         for (tried, way) in self.tried_mm.iter_mut().zip(way_mm.unwrap_or_default()) {
             *tried += way;
@@ -141,23 +154,52 @@ impl RestingInsert {
         self.set_mm.fill(None);
         self.turns = Turns::default();
     }
+
+    /// Returns the extremes over the last cycle of every activity.
+    fn most(&self) -> BacksideAtRest {
+        let most = self.ends.iter().map(|end| &end.most);
+        let most = most.fold(self.before, or_more);
+        let slip_mm = self.slip_mm();
+        let slip = BacksideAtRest {
+            slip_mm,
+            ..BacksideAtRest::default()
+        };
+        or_more(most, &slip)
+    }
+
+    /// Returns the longest slip of a point along the tray in the present activity's cycle, there and back.
+    fn slip_mm(&self) -> f64 {
+        let mut slips_mm: Vec<f64> = Vec::new();
+        // The cycle is closed: the first increment follows the last.
+        let before = self.ends.iter().next_back().into_iter();
+        for (before, end) in before.chain(self.ends.iter()).zip(self.ends.iter()) {
+            slips_mm.resize(end.in_contact.len(), 0.0);
+            let from = before.moved_mm.as_chunks::<3>().0.iter();
+            let to = end.moved_mm.as_chunks::<3>().0;
+            for ((slip_mm, in_contact), (from, to)) in
+                slips_mm.iter_mut().zip(&end.in_contact).zip(from.zip(to))
+            {
+                if *in_contact {
+                    *slip_mm += (to[0] - from[0]).hypot(to[1] - from[1]);
+                }
+            }
+        }
+        slips_mm.into_iter().fold(0.0, f64::max)
+    }
 }
 
 impl LoadHistory for RestingInsert {
     fn begin_cycle(&mut self) {
-        let next = self.activity.map_or(0, |activity| {
-            self.memory.keep(activity, self.left_mm.clone());
-            activity + 1
-        });
-        self.activity = Some(next);
-        self.cycle.begin();
-        self.left_mm = self.memory.start(next, self.tray.freedoms());
+        let left_mm = std::mem::take(&mut self.left_mm);
+        self.left_mm = of_points(self.activities.begin_cycle(left_mm), &self.tray);
+        self.before = self.most();
+        self.ends.begin_cycle();
         self.searched_mm = self.left_mm.clone().into();
         self.reject();
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.cycle.begin_increment(increment);
+        self.ends.begin_increment(increment);
     }
 
     fn displace(&mut self, candidates: &mut [Candidate]) {
@@ -172,7 +214,7 @@ impl LoadHistory for RestingInsert {
     }
 
     fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<f64, NotBorne> {
-        Ok(self.rest(under.loads, under.near())?)
+        self.settle_under(under.loads, under.near())
     }
 
     fn accept(&mut self, _: &RelativeMotion, _: &LoadedPatch<'_>) {
@@ -180,9 +222,9 @@ impl LoadHistory for RestingInsert {
             let way = found.moved_mm.iter().zip(&self.left_mm);
             let way: Vec<f64> = way.map(|(to, from)| to - from).collect();
             self.left_mm.clone_from(&found.moved_mm);
-            // A first way has nothing to go on from: it may begin anywhere.
-            let goes_on = self.went_mm.is_some();
-            self.try_anew(goes_on.then_some(way.as_slice()));
+            // The first step is not extrapolated: it may have started far from equilibrium.
+            let extrapolates = self.went_mm.is_some();
+            self.reset_trial(extrapolates.then_some(way.as_slice()));
             self.went_mm = Some(way);
         }
     }
@@ -190,27 +232,107 @@ impl LoadHistory for RestingInsert {
     fn reject(&mut self) {
         self.found = None;
         self.went_mm = None;
-        self.try_anew(None);
+        self.reset_trial(None);
     }
 
     fn evaluate(&mut self, _: &mut [TouchedNode]) {
-        if let Some(found) = &self.found {
-            self.cycle.end_increment(&self.tray, found);
-        }
+        let Some(rest) = &self.found else {
+            return;
+        };
+        let pushes = rest.pushes_n.as_chunks::<3>().0.iter();
+        let in_contact: Vec<bool> = pushes.map(|push| push[2] > 0.0).collect();
+        let area = |lifted: bool| -> f64 {
+            let points = self.tray.points.iter().zip(&in_contact);
+            let counted = points.filter(|(_, in_contact)| !(lifted && **in_contact));
+            counted.map(|(point, _)| point.area_mm2).sum()
+        };
+        let [lock_force_n, lock_moment_nmm] = self.tray.lock_load(&rest.moved_mm.clone().into());
+        let points = rest.moved_mm.as_chunks::<3>().0.iter();
+        let most = BacksideAtRest {
+            lift_mm: points.map(|point| point[2]).fold(0.0, f64::max),
+            lifted_part: area(true) / area(false),
+            slip_mm: 0.0,
+            lock_force_n,
+            lock_moment_nmm,
+        };
+        let moved_mm = rest.moved_mm.clone();
+        let before = self.ends.end(IncrementEnd {
+            moved_mm,
+            in_contact,
+            most,
+        });
+        // In the first cycle nothing has repeated itself yet.
+        self.moved_in_a_cycle_mm = before.map_or(f64::INFINITY, |before| {
+            farthest_mm(&before.moved_mm, &rest.moved_mm)
+        });
     }
 
     fn moved_in_a_cycle_mm(&self) -> f64 {
-        self.cycle.moved_mm
+        self.moved_in_a_cycle_mm
     }
 
-    fn into_fields(mut self: Box<Self>) -> Vec<StateField> {
-        let left_mm = std::mem::take(&mut self.left_mm);
-        self.memory.keep(self.activity.unwrap_or(0), left_mm);
-        self.memory.last_cycles = self.cycle.most();
-        self.memory.into_fields().collect()
+    fn into_fields(self: Box<Self>) -> Vec<StateField> {
+        let cycle = field(CYCLE_FIELD, numbers(&self.most()).to_vec());
+        let left = self.activities.finish(self.left_mm).into_iter();
+        let left = left.map(|moved_mm| field(MOVED_FIELD, moved_mm));
+        left.chain([cycle]).collect()
     }
 }
 
-fn product(row: &[f64], numbers: &[f64]) -> f64 {
-    row.iter().zip(numbers).map(|(a, b)| a * b).sum()
+/// Reads the positions in which activities left the backside from a contact's state.
+fn stored_positions(state: &ContactState) -> ByActivity<Vec<f64>> {
+    let fields = state.fields.iter();
+    let fields = fields.filter(|field| field.name == MOVED_FIELD);
+    ByActivity::new(fields.map(|field| field.values.clone()).collect())
+}
+
+/// Returns the position of the points of a tray: as stored, or on the tray as made if that is of other points or of none.
+fn of_points(stored_mm: Vec<f64>, tray: &Tray) -> Vec<f64> {
+    if stored_mm.len() == tray.freedoms() {
+        stored_mm
+    } else {
+        vec![0.0; tray.freedoms()]
+    }
+}
+
+/// Returns the stored position of the backside at the end of an activity, and the stored extremes of the last cycles.
+pub(crate) fn stored(
+    state: &ContactState,
+    activity: usize,
+    tray: &Tray,
+) -> (Vec<f64>, BacksideAtRest) {
+    let mut fields = state.fields.iter();
+    let cycle = fields.find(|field| field.name == CYCLE_FIELD);
+    let cycle = cycle.and_then(|field| field.values.first_chunk());
+    let left_mm = of_points(stored_positions(state).start_of(activity), tray);
+    (
+        left_mm,
+        cycle.map_or_else(BacksideAtRest::default, from_numbers),
+    )
+}
+
+fn or_more(one: BacksideAtRest, other: &BacksideAtRest) -> BacksideAtRest {
+    let (own, others) = (numbers(&one), numbers(other));
+    from_numbers(&std::array::from_fn(|i| own[i].max(others[i])))
+}
+
+fn numbers(most: &BacksideAtRest) -> [f64; 5] {
+    [
+        most.lift_mm,
+        most.lifted_part,
+        most.slip_mm,
+        most.lock_force_n,
+        most.lock_moment_nmm,
+    ]
+}
+
+fn from_numbers(numbers: &[f64; 5]) -> BacksideAtRest {
+    let [lift_mm, lifted_part, slip_mm, lock_force_n, lock_moment_nmm] = *numbers;
+    BacksideAtRest {
+        lift_mm,
+        lifted_part,
+        slip_mm,
+        lock_force_n,
+        lock_moment_nmm,
+    }
 }

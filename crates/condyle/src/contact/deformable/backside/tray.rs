@@ -1,6 +1,6 @@
-//! The tray under an insert: condensed stiffness of the backside, the lock, and the points that carry the motion.
+//! The tray under an insert: points that carry the motion of the backside, their stiffness, the lock, and the equilibrium.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use condyle_fem::{ElasticSolid, HalfSolved, HexMesh};
 use nalgebra::{DMatrix, DVector};
@@ -8,31 +8,35 @@ use nalgebra::{DMatrix, DVector};
 use super::floor::{Floor, Grid};
 use crate::{
     Vec3,
-    contact::deformable::compliance::{UnitLoads, tiles},
+    contact::{
+        deformable::compliance::{UnitLoads, tiles},
+        model::NotBorne,
+    },
+    number::Mixing,
 };
 
 /// Stiffness of the rim that locks the insert into its tray, against its mean slip, N/mm: a micrometre under a hundred
-/// newtons, far less than a load makes the insert slip within the rim.
+/// newtons, far less than a load makes the insert slip within the rim. The rim carries the net force only.
 const LOCK_N_PER_MM: f64 = 1e5;
 
-/// The stiffness of the search over that of a point alone: the search is quickest so for the inserts of the cases.
-const STIFFER: f64 = 0.5;
+/// The stiffness of the search over that of a single point; with this value the search took the fewest steps for the
+/// inserts of the cases. It changes the way to the equilibrium, and not the equilibrium.
+const SEARCH_STIFFNESS: f64 = 0.5;
 
-/// The load on the lock.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct LockLoad {
-    /// Force along the tray, N.
-    pub force_n: f64,
-    /// Moment about the vertical axis through the middle of the backside, N mm.
-    pub moment_nmm: f64,
-}
+/// The equilibrium is found once the motion under the forces and the admissible motion agree within this, mm: a hundredth
+/// of the agreement that is required of loads and backside.
+const AT_REST_MM: f64 = 1e-7;
+/// Steps after which there is no equilibrium: ten times what was seen where there is one.
+const MAX_STEPS: usize = 5000;
+/// A backside that is this far off its tray is held by nothing, mm.
+const TIPPED_MM: f64 = 10.0;
 
-/// The tray under an insert, as its points feel it.
+/// The tray under an insert, condensed to the points of its backside.
 ///
-/// Three numbers a point, its motion along its own directions: q. Under the forces b along them, which loads on the surface
-/// are there, the tray pushes with R = S q - b, and the surface deflects by B q besides what it does with its backside
-/// held ([`condyle_fem::MovedSupports`]). S holds the rim that locks the insert sideways: a spring against the mean slip and
-/// the mean turn of the backside.
+/// The motion q has three numbers a point, along the point's own directions. With the forces b that loads on the surface
+/// exert along them, the tray pushes with R = S q - b; and the surface deflects by B q in addition to its deflection with
+/// the backside held ([`condyle_fem::MovedSupports`]). S includes the rim that locks the insert sideways: a spring against
+/// the mean slip and the mean turn of the backside.
 pub(crate) struct Tray {
     pub points: Vec<TrayPoint>,
     /// The stiffness of the search for every number of q, N/mm, and the inverse of S with those.
@@ -50,6 +54,14 @@ impl Tray {
     /// The tray of a solid that is held by the floor of its backside and whose surface has `tiles` tiles.
     pub fn new(solid: &ElasticSolid, floor: &Floor, spacing_mm: f64, tiles: usize) -> Self {
         let groups = tray_points(solid.mesh(), floor, spacing_mm);
+        let motions_of = |point: &TrayPoint| {
+            point.frame.map(|along| {
+                let nodes = point.weights.iter();
+                nodes
+                    .map(|&(node, weight)| (node, along * weight))
+                    .collect()
+            })
+        };
         let motions = |group: &Vec<TrayPoint>| group.iter().flat_map(motions_of).collect();
         let motions: Vec<Vec<Vec<(u32, Vec3)>>> = groups.iter().map(motions).collect();
         let supports = solid.moved_supports(&motions);
@@ -60,11 +72,14 @@ impl Tray {
         for mean in &lock {
             stiffness.ger(LOCK_N_PER_MM, mean, mean, 1.0);
         }
-        let searched = stiffness_of_search(size, &supports.stiffness);
+        // The same for the three numbers of a point, so that the search prefers no direction.
+        let own = |i: usize| supports.stiffness[i * size + i];
+        let of_point = |i| [SEARCH_STIFFNESS * (own(i) + own(i + 1) + own(i + 2)) / 3.0; 3];
+        let searched: Vec<f64> = (0..size).step_by(3).flat_map(of_point).collect();
         for (i, own) in searched.iter().enumerate() {
             stiffness[(i, i)] += own;
         }
-        // A stiffness is positive, so there is an inverse; without one nothing moves.
+        // A stiffness is positive definite, so there is an inverse; without one, by rounding, nothing moves.
         let inverse = stiffness.cholesky().map(|factor| factor.inverse());
         Self {
             points,
@@ -82,19 +97,19 @@ impl Tray {
         self.stiffness_of_search.len()
     }
 
-    /// Motion under forces, N, with each number pulled to `to_mm` by the stiffness of the search.
-    pub fn pulled(&self, forces_n: &DVector<f64>, to_mm: &DVector<f64>) -> DVector<f64> {
+    /// Returns the motion under forces, N, with each number pulled to `to_mm` by the stiffness of the search.
+    fn pulled(&self, forces_n: &DVector<f64>, to_mm: &DVector<f64>) -> DVector<f64> {
         let stiffness = self.stiffness_of_search.iter();
         let pull = stiffness.zip(to_mm.iter()).map(|(own, to)| own * to);
         let pulled = forces_n + DVector::from_iterator(to_mm.len(), pull);
         &self.inverse * pulled
     }
 
-    /// Returns how far each number of q moves the nodes of a tile of the surface along their inward normals: row-major, a row a
-    /// node.
+    /// Returns the displacements of the nodes of a tile of the surface along their inward normals by each number of q: a row
+    /// for each node.
     pub fn of_tile(&self, loads: &UnitLoads, tile: usize) -> &[f64] {
         self.by_tile[tile].get_or_init(|| {
-            let own: Arc<HalfSolved> = loads.solved(tile);
+            let own = loads.solved(tile);
             let size = self.freedoms();
             let mut rows = vec![0.0; own.forces() * size];
             let mut first = 0;
@@ -110,7 +125,7 @@ impl Tray {
         })
     }
 
-    /// Displacements of mesh nodes of the backside by a motion.
+    /// Returns the displacements of mesh nodes of the backside by a motion.
     pub fn moved_nodes(&self, moved_mm: &[f64]) -> Vec<(u32, Vec3)> {
         let points = self.points.iter().zip(moved_mm.as_chunks::<3>().0);
         let moved = points.flat_map(|(point, own)| {
@@ -123,44 +138,106 @@ impl Tray {
         moved.collect()
     }
 
-    /// Returns the load on the lock for a motion of the backside.
-    pub fn lock_load(&self, moved_mm: &DVector<f64>) -> LockLoad {
+    /// Returns the load on the lock for a motion of the backside: the force along the tray, N, and the moment about the
+    /// vertical axis through the middle of the backside, N mm.
+    pub fn lock_load(&self, moved_mm: &DVector<f64>) -> [f64; 2] {
         let [x, z, turn] = self
             .lock
             .each_ref()
             .map(|mean| LOCK_N_PER_MM * mean.dot(moved_mm));
-        LockLoad {
-            force_n: x.hypot(z),
-            moment_nmm: (turn * self.gyration_mm).abs(),
-        }
+        [x.hypot(z), (turn * self.gyration_mm).abs()]
     }
 
-    /// Bytes that a tray of so many numbers takes, with its influence on some nodes of the surface.
+    /// Estimates the memory of a tray of so many numbers, with its influence on some nodes of the surface, bytes.
     pub fn bytes(freedoms: f64, nodes: f64, felt: f64) -> f64 {
         size_of::<f64>() as f64 * freedoms * (2.0 * freedoms + nodes + felt)
     }
+
+    /// Finds the equilibrium of the backside under forces b of the surface on its points, N; `stuck_mm` is the motion at which
+    /// each stuck last, and `searched_mm` the start of the search.
+    ///
+    /// Every point lifts without force or is in contact, and sticks or slips against its friction:
+    ///
+    /// $$ q_n \ge 0, \quad R_n \ge 0, \quad q_n R_n = 0, \qquad |R_t| \le \mu R_n, \quad
+    /// R_t = -\mu R_n \frac{q_t - q_t^0}{|q_t - q_t^0|} \quad \text{where it slips}, \qquad R = S q - b. $$
+    ///
+    /// Douglas-Rachford splitting [eckstein-bertsekas1992]: the projection of each point alone, pulled by a spring, onto
+    /// its conditions, and the motion of the whole with the springs of all points, in turns, accelerated by Anderson's
+    /// mixing.
+    ///
+    /// # Errors
+    /// A load under which the insert tips off its tray.
+    pub fn rest(
+        &self,
+        friction: f64,
+        stuck_mm: &[f64],
+        forces_n: &DVector<f64>,
+        searched_mm: &DVector<f64>,
+    ) -> Result<Rest, NotBorne> {
+        let mut searched = searched_mm.clone();
+        let mut mixing = Mixing::default();
+        for _ in 0..MAX_STEPS {
+            let admissible = admissible(friction, stuck_mm, &searched);
+            let mirrored = &admissible * 2.0 - &searched;
+            let apart = self.pulled(forces_n, &mirrored) - &admissible;
+            if apart.amax() <= AT_REST_MM {
+                let ends = admissible.iter().zip(searched.iter());
+                let pulls = self.stiffness_of_search.iter().zip(ends);
+                return Ok(Rest {
+                    pushes_n: pulls.map(|(own, (at, from))| own * (at - from)).collect(),
+                    moved_mm: admissible.as_slice().to_vec(),
+                    searched_mm: searched,
+                });
+            }
+            if !admissible.amax().is_finite() || admissible.amax() > TIPPED_MM {
+                break;
+            }
+            let image = &searched + apart;
+            searched = mixing
+                .next(searched.as_slice(), image.as_slice(), 1.0)
+                .into();
+        }
+        let moved_mm = admissible(friction, stuck_mm, &searched).amax();
+        Err(NotBorne::Tipped { moved_mm })
+    }
 }
 
-/// The motions of the nodes around a point by each of its three numbers.
-fn motions_of(point: &TrayPoint) -> impl Iterator<Item = Vec<(u32, Vec3)>> {
-    point.frame.into_iter().map(|along| {
-        let nodes = point.weights.iter();
-        nodes
-            .map(|&(node, weight)| (node, along * weight))
-            .collect()
-    })
+/// A backside in equilibrium.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rest {
+    /// Motion of every point along its own directions, anterior, lateral, off the tray, mm.
+    pub moved_mm: Vec<f64>,
+    /// The force of the tray on each, N.
+    pub pushes_n: Vec<f64>,
+    /// The start of the search for the next equilibrium.
+    pub searched_mm: DVector<f64>,
 }
 
-/// The same for the three numbers of a point, so that the search knows no direction.
-fn stiffness_of_search(size: usize, stiffness: &[f64]) -> Vec<f64> {
-    let own = |i: usize| stiffness[i * size + i];
-    let points = (0..size).step_by(3);
-    points
-        .flat_map(|i| [STIFFER * (own(i) + own(i + 1) + own(i + 2)) / 3.0; 3])
-        .collect()
+/// Projects every point, pulled to a place by the stiffness of the search, onto its contact conditions.
+fn admissible(friction: f64, stuck_mm: &[f64], pulled_to: &DVector<f64>) -> DVector<f64> {
+    let points = pulled_to.as_slice().as_chunks::<3>().0;
+    let points = points.iter().zip(stuck_mm.as_chunks::<3>().0);
+    let project = |(to, stuck): (&[f64; 3], &[f64; 3])| {
+        let [x, z, off] = *to;
+        if off > 0.0 {
+            return *to;
+        }
+        // In contact: the spring presses by -off, and friction holds a slip of up to -mu off against it.
+        let slip = [x - stuck[0], z - stuck[1]];
+        let pulled = slip[0].hypot(slip[1]);
+        let held = -friction * off;
+        let part = if pulled <= held {
+            0.0
+        } else {
+            1.0 - held / pulled
+        };
+        [stuck[0] + part * slip[0], stuck[1] + part * slip[1], 0.0]
+    };
+    DVector::from_iterator(pulled_to.len(), points.flat_map(project))
 }
 
-/// Mean slips along x and z, and the mean turn about y times the radius of gyration of the backside; and that radius.
+/// Returns the mean slips along x and z and the mean turn about y times the radius of gyration of the backside, as products
+/// with the motion; and that radius.
 fn lock_of(points: &[TrayPoint]) -> ([DVector<f64>; 3], f64) {
     let area_mm2: f64 = points.iter().map(|point| point.area_mm2).sum();
     let part = |point: &TrayPoint| point.area_mm2 / area_mm2;
@@ -192,7 +269,7 @@ fn lock_of(points: &[TrayPoint]) -> ([DVector<f64>; 3], f64) {
     (lock, gyration_mm)
 }
 
-/// So many points at most are solved for together.
+/// Points that are solved for together at most.
 const TOGETHER: usize = 16;
 
 /// A point of the backside, for the mesh nodes around it.
@@ -208,14 +285,18 @@ pub(crate) struct TrayPoint {
     pub area_mm2: f64,
 }
 
-/// Points on a grid of some `spacing_mm` over the transverse plane, in groups that lie together.
+/// Returns points on a grid of some `spacing_mm` over the transverse plane, in groups that lie together.
 ///
-/// The floor moves by bilinear interpolation between them, and beyond its outermost points by extrapolation, so that a
-/// motion as a rigid body is among its motions. All points have its directions.
-pub(crate) fn tray_points(mesh: &HexMesh, floor: &Floor, spacing_mm: f64) -> Vec<Vec<TrayPoint>> {
+/// The floor moves by bilinear interpolation between them, and beyond its outermost points by extrapolation, so that
+/// rigid-body motions are among its motions. All points have the directions of the floor.
+fn tray_points(mesh: &HexMesh, floor: &Floor, spacing_mm: f64) -> Vec<Vec<TrayPoint>> {
     let grid = Grid::over(mesh, &floor.nodes, spacing_mm);
     let around = grid.led_from_within(grid.around(mesh, &floor.nodes), &floor.share_mm2);
-    let frame = frame_of(&floor.normal);
+    let up = floor.normal.try_normalize(0.0).unwrap_or_else(Vec3::y);
+    let anterior = Vec3::x() - up * up.x;
+    // If the backside is upright and faces along x, anterior is down.
+    let anterior = anterior.try_normalize(1e-6).unwrap_or_else(|| -Vec3::y());
+    let frame = [anterior, anterior.cross(&up), up];
     let mut points: Vec<TrayPoint> = Vec::new();
     for (at, weights) in around.into_iter().enumerate() {
         if weights.is_empty() {
@@ -242,13 +323,4 @@ pub(crate) fn tray_points(mesh: &HexMesh, floor: &Floor, spacing_mm: f64) -> Vec
             .collect()
     };
     groups.map(group).collect()
-}
-
-/// The directions of a point with that normal: anterior and lateral along the tray, then the normal.
-fn frame_of(inward: &Vec3) -> [Vec3; 3] {
-    let up = inward.try_normalize(0.0).unwrap_or_else(Vec3::y);
-    let anterior = Vec3::x() - up * up.x;
-    // Where the backside stands upright across x, anterior is down.
-    let anterior = anterior.try_normalize(1e-6).unwrap_or_else(|| -Vec3::y());
-    [anterior, anterior.cross(&up), up]
 }

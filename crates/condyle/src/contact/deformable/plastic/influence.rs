@@ -1,44 +1,49 @@
-//! What loads on the surface and plastic strains below it move inside an insert.
+//! The influence of surface loads and plastic strains inside an insert.
 
 use std::{
     collections::BTreeMap,
     sync::{Arc, Mutex, OnceLock, PoisonError},
 };
 
-use condyle_fem::{ElasticSolid, ElementMean, HalfSolved, YieldingElement};
+use condyle_fem::{ElasticSolid, ElementMean, YieldingElement};
 
-use crate::{Vec3, contact::deformable::compliance::tiles};
+use crate::{
+    Vec3,
+    contact::deformable::compliance::{SurfaceCompliance, UnitLoads, tiles},
+};
 
-/// So many mesh nodes at most are solved for together.
+/// Mesh nodes of a tile at most. Plastic strains spread over few elements, so tiles are small.
 const TILE_NODES: usize = 8;
 
-/// What loads on the surface and plastic strains below it move inside an insert: computed when it is first asked
-/// for, and kept. It depends on nothing that was asked before.
+/// The influence of loads on the surface and plastic strains below it inside an insert.
+///
+/// Everything is computed when it is first needed, and kept; it does not depend on what was computed before.
 pub(crate) struct Influence {
-    /// Of every tile of the surface what unit loads on its nodes move all mesh nodes by, mm/N: a row for every axis of
-    /// every mesh node. Seven digits are enough where yield is looked for.
+    /// For every tile of the surface, the displacements of all mesh nodes by unit loads on its nodes, mm/N: a row for every
+    /// axis of every mesh node. Single precision is enough to look for yield.
     by_surface: Vec<OnceLock<Box<[f32]>>>,
-    /// Mesh nodes that lie together, and of every node its tile and its place there.
+    /// Tiles of mesh nodes, and of every node its tile and its place there.
     node_tiles: Vec<Vec<u32>>,
     place_of: Vec<(u32, u32)>,
-    half_solved: Vec<OnceLock<HalfSolved>>,
+    /// Unit forces on the mesh nodes, three for each, in the same tiles.
+    forces: UnitLoads,
     blocks: Mutex<Blocks>,
     elements: Vec<OnceLock<Box<YieldingElement>>>,
-    /// What makes the mean stress of every element.
+    /// The operator of the mean stress of every element.
     pub means: Vec<ElementMean>,
-    /// Of every node of the surface the elements that it is nearest to.
+    /// For every node of the surface, the elements to which it is nearest.
     pub stacks: Vec<Vec<u32>>,
 }
 
-/// What unit forces on the nodes of a tile move those of another by, by both tiles.
+/// The displacements of one tile of nodes by unit forces on another, by both tiles.
 type Blocks = BTreeMap<(u32, u32), Arc<[f64]>>;
 
 /// Forces on mesh nodes, or displacements of these, by the tiles of the nodes.
 pub(crate) type ByTile = BTreeMap<u32, Vec<f64>>;
 
 impl Influence {
-    /// Nothing is known of a solid whose surface has nodes there, in so many tiles.
-    pub fn new(solid: &ElasticSolid, surface: &[Vec3], surface_tiles: usize) -> Self {
+    /// Prepares the influence in a solid whose surface has nodes at `surface`, in so many tiles.
+    pub fn new(solid: &Arc<ElasticSolid>, surface: &[Vec3], surface_tiles: usize) -> Self {
         let mesh = solid.mesh();
         let node_tiles = tiles(&mesh.nodes, TILE_NODES);
         let mut place_of = vec![(0, 0); mesh.nodes.len()];
@@ -47,10 +52,20 @@ impl Influence {
                 place_of[node as usize] = (number as u32, place as u32);
             }
         }
+        let nodes = 0..mesh.nodes.len() as u32;
+        let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
+        let forces = nodes.flat_map(|node| axes.map(|axis| (node, axis)));
+        let numbers = |tile: &Vec<u32>| {
+            let nodes = tile.iter();
+            nodes
+                .flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2])
+                .collect()
+        };
+        let tiles = node_tiles.iter().map(numbers).collect();
         let elements = mesh.hexes.len();
         Self {
             by_surface: empty(surface_tiles),
-            half_solved: empty(node_tiles.len()),
+            forces: UnitLoads::new(Arc::clone(solid), forces.collect(), tiles),
             blocks: Mutex::default(),
             elements: empty(elements),
             means: (0..elements).map(|e| solid.element_mean(e)).collect(),
@@ -60,13 +75,13 @@ impl Influence {
         }
     }
 
-    /// Element number `element` by itself.
+    /// Returns an element with its own stiffness.
     pub fn element(&self, solid: &ElasticSolid, element: u32) -> &YieldingElement {
         let element = element as usize;
         self.elements[element].get_or_init(|| Box::new(solid.yielding_element(element)))
     }
 
-    /// What unit loads on a tile of the surface move all mesh nodes by, a row for every axis of every node.
+    /// Returns the displacements of all mesh nodes by unit loads on a tile of the surface: a row for every axis of every node.
     pub fn by_surface(&self, solid: &ElasticSolid, tile: usize, loads: &[(u32, Vec3)]) -> &[f32] {
         self.by_surface[tile].get_or_init(|| {
             let nodes: Vec<u32> = (0..solid.mesh().nodes.len() as u32).collect();
@@ -86,12 +101,12 @@ impl Influence {
         }
     }
 
-    /// What forces on mesh nodes move the nodes of some tiles by.
-    pub fn moved(&self, solid: &ElasticSolid, forces: &ByTile, tiles: &[u32]) -> ByTile {
+    /// Returns the displacements of the nodes of some tiles by forces on mesh nodes.
+    pub fn moved(&self, forces: &ByTile, tiles: &[u32]) -> ByTile {
         let moved = tiles.iter().map(|&tile| {
             let mut moved = vec![0.0; 3 * self.node_tiles[tile as usize].len()];
             for (&other, forces) in forces {
-                let block = self.block(solid, tile, other);
+                let block = self.block(tile, other);
                 let rows = moved.iter_mut().zip(block.chunks_exact(forces.len()));
                 for (moved, row) in rows {
                     *moved += product(row, forces);
@@ -102,7 +117,7 @@ impl Influence {
         moved.collect()
     }
 
-    /// What is said of a mesh node.
+    /// Returns the force or the displacement of a mesh node; zero if its tile has none.
     pub fn of_node(&self, values: &ByTile, node: u32) -> Vec3 {
         let (tile, place) = self.place_of[node as usize];
         let values = values.get(&tile);
@@ -111,39 +126,30 @@ impl Influence {
         })
     }
 
-    /// The mesh nodes of a tile.
+    /// Returns the mesh nodes of a tile.
     pub fn nodes(&self, tile: u32) -> &[u32] {
         &self.node_tiles[tile as usize]
     }
 
-    /// The tile of a mesh node.
+    /// Returns the tile of a mesh node.
     pub fn tile_of(&self, node: u32) -> u32 {
         self.place_of[node as usize].0
     }
 
-    /// What unit forces on the nodes of a tile move those of another by, a row for every axis of the former.
-    fn block(&self, solid: &ElasticSolid, tile: u32, other: u32) -> Arc<[f64]> {
+    /// Returns the displacements of the nodes of a tile by unit forces on another: a row for every axis of every node.
+    fn block(&self, tile: u32, other: u32) -> Arc<[f64]> {
         let lock = || self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(block) = lock().get(&(tile, other)) {
             return Arc::clone(block);
         }
-        let [own, others] = [tile, other].map(|tile| self.half_solved(solid, tile));
-        let block: Arc<[f64]> = own.moved_along(others).into();
+        // Not under the lock: another thread may compute the same block, to the same bytes.
+        let block: Arc<[f64]> = self.forces.between(tile as usize, other as usize).into();
         lock().insert((tile, other), Arc::clone(&block));
         block
     }
-
-    fn half_solved(&self, solid: &ElasticSolid, tile: u32) -> &HalfSolved {
-        self.half_solved[tile as usize].get_or_init(|| {
-            let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
-            let nodes = self.node_tiles[tile as usize].iter();
-            let forces = nodes.flat_map(|&node| axes.map(|axis| (node, axis)));
-            solid.half_solved(&forces.collect::<Vec<_>>())
-        })
-    }
 }
 
-/// Product of a row with loads: four sums, so that no addition waits for the one before.
+/// Returns the product of a row with loads, in four independent sums, so that no addition waits for the one before.
 pub(crate) fn product<T: Copy + Into<f64>>(row: &[T], loads: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (fours, four_loads) = (row.chunks_exact(4), loads.chunks_exact(4));
@@ -162,7 +168,7 @@ fn empty<T>(count: usize) -> Vec<OnceLock<T>> {
     (0..count).map(|_| OnceLock::new()).collect()
 }
 
-/// Of every node of a surface the elements that it is nearest to.
+/// Returns for every node of a surface the elements to which it is nearest.
 fn stacks(solid: &ElasticSolid, surface: &[Vec3]) -> Vec<Vec<u32>> {
     let mut stacks = vec![Vec::new(); surface.len()];
     let mesh = solid.mesh();

@@ -1,125 +1,211 @@
-//! The insert that yields below its surface.
+//! The history of an insert that yields below its surface, for any [`Material`].
 //!
-//! Plastic strain is an eigenstrain of the elastic insert: its forces on the nodes move the surface (the permanent
-//! set, which goes into the gap) and leave stress. Stiffness and compliance stay. `influence` keeps what loads and
-//! plastic strains move below the surface, `insert` finds the flow under the loads of an increment (led by Anderson's mixing), `cycle` tells
-//! what flows in a cycle that repeats, and `memory` is what the next contact goes on from.
+//! Plastic strain is an eigenstrain of the elastic insert: its forces on the nodes move the surface (the permanent set,
+//! which goes into the gap) and leave stress. Stiffness and compliance stay. To follow an increment, read `flow` and
+//! `commit` of [`PlasticInsert`]; `influence` holds the displacements of the interior that these need.
 
-mod cycle;
 mod influence;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use cycle::{CycleOfFlow, PLASTIC_FIELD, PlasticMemory, farthest_mm};
 pub(crate) use influence::Influence;
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{collections::BTreeMap, fmt::Debug, sync::Arc};
 
-use condyle_fem::{ElasticPlastic, ElasticSolid, Hardening, PlasticPoint, Strain};
+use condyle_fem::{ElasticSolid, Material, MaterialPoint, Strain};
 
 use super::{
     complementarity::Candidate,
-    compliance::Compliance,
     elastic_surface::ElasticSurface,
-    history::{LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads},
+    history::{
+        ByIncrement, LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads, farthest_mm,
+        field,
+    },
 };
 use crate::{
     Vec3,
-    contact::model::{Flattened, NotBorne, StateField, TouchedNode},
+    contact::{
+        law::{PlasticUnderSurface, Regime},
+        model::{ContactState, NotBorne, StateField, TouchedNode},
+    },
     geometry::FacesAround,
     number::{Mixing, Turns},
     spatial::RelativeMotion,
 };
-use cycle::{POINTS, Points};
 use influence::{ByTile, product};
 
-/// Gauss points are looked at in elements whose mean stress uses up this part of the yield stress: within an element
-/// stress varies by a tenth or so, and by more at the edge of contact.
-const LOOKED_AT: f64 = 0.5;
-/// Elements whose Gauss points use up this part of the yield stress are taken along in the search for the flow.
-const TAKEN_ALONG: f64 = 0.8;
-/// No pressure causes more than this part of its peak as von Mises stress: 0.577 where a half-space keeps its volume
-/// and the pressure is symmetric about an axis, with what other shapes may add.
+/// Gauss points are evaluated in elements whose mean stress uses up this part of the yield stress: within an element stress
+/// varies by a tenth or so, and by more at the edge of contact.
+const EVALUATED_FROM: f64 = 0.5;
+/// Elements whose Gauss points use up this part of the yield stress join the search for the flow: flow nearby can make them
+/// yield.
+const SEARCHED_FROM: f64 = 0.8;
+/// The von Mises stress under a pressure is at most this part of its peak: 0.577 for an axisymmetric pressure on an
+/// incompressible half-space, with a margin for other shapes.
 const MAX_OF_PRESSURE: f64 = 0.8;
 /// The flow is found once stress lies on the yield surface within this part of the yield stress.
 const ON_SURFACE: f64 = 1e-4;
-/// Sweeps after which there is no balance: ten times what was seen where there is.
+/// Sweeps after which there is no balance: ten times what was seen where there is one.
 const MAX_SWEEPS: usize = 600;
-/// Plastic strain beyond which small strains say nothing any more.
+/// Plastic strain beyond which a small-strain solution means nothing.
 const MAX_STRAIN: f64 = 0.5;
+/// The permanent set is to repeat itself this much more exactly than a motion: an error in it stays for all cycles of an
+/// interval.
+const MORE_EXACTLY: f64 = 20.0;
 
-/// An elastic insert whose material yields (von Mises).
+/// Gauss points of an element.
+const POINTS: usize = 8;
+
+/// The internal variables at the Gauss points of elements that have yielded, by the number of the element.
+type Points<P> = BTreeMap<u32, [P; POINTS]>;
+
+/// Accumulated plastic strain at the Gauss points of an element.
+type Flow = [f64; POINTS];
+
+/// The eigenstrains at the Gauss points of elements.
+pub(crate) type Eigenstrains = BTreeMap<usize, [Strain; POINTS]>;
+
+/// The material of an insert as its law holds it: any [`Material`], without the type of its internal variables.
+pub(crate) trait InsertMaterial: Debug + Send + Sync {
+    /// Returns whether it can yield.
+    fn yields(&self) -> bool;
+
+    /// Creates the history of an insert of this material, resumed from the stored `state`.
+    fn history(&self, surface: Arc<ElasticSurface>, state: &ContactState) -> Box<dyn LoadHistory>;
+
+    /// Returns the plastic strains in a stored state, and their description for results.
+    fn under_surface(
+        &self,
+        surface: &ElasticSurface,
+        state: &ContactState,
+    ) -> (Eigenstrains, PlasticUnderSurface);
+}
+
+impl<M: Material + Clone + Debug + Send + Sync + 'static> InsertMaterial for M {
+    fn yields(&self) -> bool {
+        self.initial_yield_stress().is_finite()
+    }
+
+    fn history(&self, surface: Arc<ElasticSurface>, state: &ContactState) -> Box<dyn LoadHistory> {
+        let stored = StoredPlasticity::from_stored(state);
+        Box::new(PlasticInsert::new(stored, surface, self.clone()))
+    }
+
+    fn under_surface(
+        &self,
+        surface: &ElasticSurface,
+        state: &ContactState,
+    ) -> (Eigenstrains, PlasticUnderSurface) {
+        let StoredPlasticity {
+            points,
+            flow_in_cycle,
+        } = StoredPlasticity::<M::Point>::from_stored(state);
+        let elements = surface.solid().mesh().hexes.len();
+        let mut under = PlasticUnderSurface {
+            permanent_set_mm: vec![0.0; surface.normal().node_count()],
+            plastic_strain: vec![0.0; elements],
+            regime: vec![Regime::Elastic; elements],
+        };
+        for (&element, points) in &points {
+            under.plastic_strain[element as usize] = largest_strain(points);
+            let flow = flow_in_cycle.get(&element).copied();
+            under.regime[element as usize] = Regime::from_flow(flow.unwrap_or_default());
+        }
+        let strains = eigenstrains(&points);
+        if !strains.is_empty() {
+            under.permanent_set_mm = surface.along_normals(&surface.moved_by(&[], &strains));
+        }
+        (strains, under)
+    }
+}
+
+/// An elastic insert whose material yields.
 ///
-/// The loads of an increment and the flow under them depend on each other: the loads are those with the permanent set
-/// of the flow found last, the flow is that under the loads found last, in turns until the set stays. The loads on the
-/// surface are normal ones; friction counts as little in the flow as it does in the gap.
-pub(crate) struct PlasticInsert {
-    surface: Arc<Compliance<ElasticSurface>>,
-    material: ElasticPlastic,
+/// The loads of an increment and the flow under them depend on each other. They are found in turns until the permanent set
+/// stays: the loads with the set of the flow found last, then the flow under these loads. The loads on the surface are
+/// normal ones; friction is neglected in the flow as it is in the gap.
+struct PlasticInsert<M: Material> {
+    surface: Arc<ElasticSurface>,
+    material: M,
     /// The committed state, of all accepted increments.
-    committed: Points,
-    /// The displacements of all mesh nodes by it, mm, and of those of the surface along the inward normals.
+    committed: Points<M::Point>,
+    /// Its displacements of all mesh nodes, mm, and of those of the surface along the inward normals.
     moved_mm: Vec<Vec3>,
     committed_set_mm: Arc<Vec<f64>>,
     /// The trial state of some elements in the present increment, and the set of the surface with it.
-    trial: Points,
+    trial: Points<M::Point>,
     set_mm: Vec<f64>,
     turns: Turns,
-    pub cycle: CycleOfFlow,
-    /// The largest part of the yield stress that stress without load uses up.
+    /// The flow of each increment, and the permanent set at its end.
+    increments: ByIncrement<Increment>,
+    /// The flow in the cycles of the activities before.
+    before: BTreeMap<u32, Flow>,
+    moved_in_a_cycle_mm: f64,
+    /// The largest part of the yield stress that the residual stress uses up.
     residual_use: f64,
-    /// The displacements of mesh nodes by loads and the committed state, mm.
+    /// The displacements of mesh nodes by loads and the committed state, mm; current for the elements that are evaluated.
     loaded_mm: Vec<Vec3>,
 }
 
-impl PlasticInsert {
-    /// An insert that goes on from what is remembered.
-    pub fn after(
-        remembered: PlasticMemory,
-        surface: Arc<Compliance<ElasticSurface>>,
-        hardening: Hardening,
-    ) -> Self {
-        let elastic = surface.source.solid().elastic();
-        let nodes = surface.source.solid().mesh().nodes.len();
+#[derive(Default)]
+struct Increment {
+    flows: Vec<(u32, Flow)>,
+    set_mm: Option<Arc<Vec<f64>>>,
+}
+
+impl<M: Material> PlasticInsert<M> {
+    /// Resumes from a stored state.
+    fn new(stored: StoredPlasticity<M::Point>, surface: Arc<ElasticSurface>, material: M) -> Self {
+        let nodes = surface.solid().mesh().nodes.len();
+        let surface_nodes = surface.normal().node_count();
         let mut insert = Self {
-            material: ElasticPlastic { elastic, hardening },
+            material,
             moved_mm: vec![Vec3::zeros(); nodes],
-            committed_set_mm: Arc::new(vec![0.0; surface.node_count()]),
-            set_mm: vec![0.0; surface.node_count()],
+            committed_set_mm: Arc::new(vec![0.0; surface_nodes]),
+            set_mm: vec![0.0; surface_nodes],
             turns: Turns::default(),
-            committed: remembered.points,
+            committed: stored.points,
             trial: Points::new(),
-            cycle: CycleOfFlow::default(),
+            increments: ByIncrement::new(),
+            before: BTreeMap::new(),
+            moved_in_a_cycle_mm: 0.0,
             residual_use: 0.0,
             loaded_mm: vec![Vec3::zeros(); nodes],
             surface,
         };
-        insert.move_by_committed();
+        insert.update_residual();
         insert
     }
 
-    /// Finds the flow under loads; how far that moves the surface from where it was, mm.
+    /// Finds the flow under loads, and returns how far that moves the surface from the trial, mm.
     ///
-    /// `peak_mpa` is the highest pressure of the loads, `near` are the nodes of the surface that are asked for.
-    pub fn flow(
+    /// `peak_mpa` is the highest pressure of the loads, `near` are the nodes of the surface whose displacement is needed.
+    fn flow(
         &mut self,
         loads: &[NodeLoad],
         peak_mpa: f64,
         near: impl Iterator<Item = u32>,
         around: &FacesAround,
-    ) -> Result<f64, Flattened> {
-        if self.trial.is_empty() && !self.may_flow(peak_mpa) {
+    ) -> Result<f64, NotBorne> {
+        // The von Mises stress of a sum is at most the sum of the von Mises stresses: most increments end here.
+        let by_load = MAX_OF_PRESSURE * peak_mpa / self.material.initial_yield_stress();
+        if self.trial.is_empty() && self.residual_use + by_load <= 1.0 {
             return Ok(0.0);
         }
-        let looked_at = self.looked_at(loads, around);
-        let taken = self.taken_along(&looked_at);
-        self.trial.retain(|element, _| taken.contains(element));
-        if taken.is_empty() && self.set_mm == *self.committed_set_mm {
+        let evaluated = self.evaluated(loads, around);
+        let searched = self.searched(&evaluated);
+        self.trial.retain(|element, _| searched.contains(element));
+        if searched.is_empty() && self.set_mm == *self.committed_set_mm {
             return Ok(0.0);
         }
-        let forces = match self.sweep(&taken) {
+        let forces = match self.sweep(&searched) {
             Ok(forces) => forces,
-            Err(flattened) => return self.turn_back().ok_or(flattened),
+            Err(not_borne) => {
+                // Too large a turn: try a set nearer to the last one under whose loads there was a balance, if any.
+                self.set_mm = self.turns.nearer().ok_or(not_borne)?;
+                self.trial.clear();
+                return Ok(f64::INFINITY);
+            }
         };
         let mut found_mm = Vec::clone(&self.committed_set_mm);
         self.add_set(&forces, near, &mut found_mm);
@@ -132,122 +218,95 @@ impl PlasticInsert {
         Ok(changed_mm)
     }
 
-    /// Tries a set nearer to that of the turns before, under whose loads there was a balance; none where there was none.
-    fn turn_back(&mut self) -> Option<f64> {
-        self.set_mm = self.turns.nearer()?;
-        self.trial.clear();
-        Some(f64::INFINITY)
-    }
-
     /// Commits the trial state.
     fn commit(&mut self) {
-        let before = |element: &u32| self.committed.get(element).copied().unwrap_or_default();
         let mut changed = false;
-        for (element, points) in &self.trial {
-            let before = before(element);
-            if *points != before {
-                let flow = |p: usize| points[p].accumulated - before[p].accumulated;
-                self.cycle.add(*element, std::array::from_fn(flow));
+        for (element, points) in std::mem::take(&mut self.trial) {
+            let before = self.committed_points(element);
+            if points != before {
+                let flow = |p: usize| points[p].accumulated() - before[p].accumulated();
+                let flow = (element, std::array::from_fn(flow));
+                self.increments.present().flows.push(flow);
                 changed = true;
             }
+            if points.iter().any(|point| point.accumulated() > 0.0) {
+                self.committed.insert(element, points);
+            }
         }
-        let trial = std::mem::take(&mut self.trial);
-        let flowed = |points: &[PlasticPoint; POINTS]| points.iter().any(|p| p.accumulated > 0.0);
-        self.committed
-            .extend(trial.into_iter().filter(|(_, points)| flowed(points)));
         if changed {
-            self.move_by_committed();
+            self.update_residual();
         }
         self.reject();
     }
 
     /// Returns the state from which the next contact resumes.
-    pub fn into_memory(self) -> PlasticMemory {
-        let most = |flow: [f64; POINTS]| flow.into_iter().fold(0.0, f64::max);
-        let flows = self.cycle.flow().into_iter();
-        PlasticMemory {
-            points: self.committed,
+    fn into_stored(self) -> StoredPlasticity<M::Point> {
+        let most = |flow: Flow| flow.into_iter().fold(0.0, f64::max);
+        let flows = self.flow_in_cycle().into_iter();
+        StoredPlasticity {
             flow_in_cycle: flows.map(|(element, flow)| (element, most(flow))).collect(),
+            points: self.committed,
         }
     }
 
-    /// Returns whether a pressure can cause flow: the von Mises stress of a sum is at most the sum of the von Mises stresses.
-    fn may_flow(&self, peak_mpa: f64) -> bool {
-        let by_load = MAX_OF_PRESSURE * peak_mpa / self.material.hardening.yield_stress(0.0);
-        self.residual_use + by_load > 1.0
+    /// Returns the plastic strain accumulated in the last cycle of every activity, by elements.
+    fn flow_in_cycle(&self) -> BTreeMap<u32, Flow> {
+        let mut sums = self.before.clone();
+        let increments = self.increments.iter();
+        for (element, flow) in increments.flat_map(|increment| &increment.flows) {
+            let sum = sums.entry(*element).or_default();
+            for (sum, flow) in sum.iter_mut().zip(flow) {
+                *sum += flow;
+            }
+        }
+        sums
     }
 
     fn solid(&self) -> &ElasticSolid {
-        self.surface.source.solid()
+        self.surface.solid()
     }
 
     fn influence(&self) -> &Influence {
-        self.surface.source.influence()
+        self.surface.influence()
     }
 
-    fn before(&self, element: u32) -> [PlasticPoint; POINTS] {
+    fn committed_points(&self, element: u32) -> [M::Point; POINTS] {
         self.committed.get(&element).copied().unwrap_or_default()
     }
 
-    /// Moves nodes and surface by the plastic strains that count.
-    fn move_by_committed(&mut self) {
+    /// Updates the displacements by the committed plastic strains, and the residual stress.
+    fn update_residual(&mut self) {
         if self.committed.is_empty() {
             return;
         }
-        self.moved_mm = self
-            .surface
-            .source
-            .moved_by(&[], &strains_of(&self.committed));
-        let set_mm = self.surface.source.along_normals(&self.moved_mm);
+        let strains = eigenstrains(&self.committed);
+        self.moved_mm = self.surface.moved_by(&[], &strains);
+        let set_mm = self.surface.along_normals(&self.moved_mm);
         self.set_mm.clone_from(&set_mm);
         self.committed_set_mm = Arc::new(set_mm);
-        self.residual_use = self.residual_use();
-    }
-
-    /// The largest part of the yield stress that the stress left by plastic strains uses up.
-    fn residual_use(&self) -> f64 {
         let (solid, influence) = (self.solid(), self.influence());
-        let yield_mpa = self.material.hardening.yield_stress(0.0);
+        let yield_mpa = self.material.initial_yield_stress();
         let use_of = |element: usize| {
             let nodes = solid.mesh().hexes[element].map(|node| self.moved_mm[node as usize]);
-            let before = self.committed.get(&(element as u32));
-            before.map_or_else(
+            let committed = self.committed.get(&(element as u32));
+            committed.map_or_else(
                 || {
                     let mean = influence.means[element].stress(&nodes, &Strain::default());
-                    mean.von_mises() / (LOOKED_AT * yield_mpa)
+                    mean.von_mises() / (EVALUATED_FROM * yield_mpa)
                 },
-                |before| {
+                |committed| {
                     let own = influence.element(solid, element as u32);
-                    own.use_of_yield(solid, &self.material, &nodes, before)
+                    own.use_of_yield(solid, &self.material, &nodes, committed)
                 },
             )
         };
-        (0..influence.means.len()).map(use_of).fold(0.0, f64::max)
+        let uses = (0..influence.means.len()).map(use_of);
+        self.residual_use = uses.fold(0.0, f64::max);
     }
 
-    /// The elements that have yielded, wherever they are, and those below the nodes that press and those around them
-    /// whose mean stress is near yield.
-    ///
-    /// Takes along how far their nodes are moved.
-    fn looked_at(&mut self, loads: &[NodeLoad], around: &FacesAround) -> Vec<u32> {
-        let mut below = self.below(loads, around);
-        below.extend(self.committed.keys());
-        below.sort_unstable();
-        below.dedup();
-        self.load_nodes(loads, &below);
-        let influence = self.influence();
-        let yield_mpa = self.material.hardening.yield_stress(0.0);
-        let is_near_yield = |element: &u32| {
-            let mean = &influence.means[*element as usize];
-            let nodes = self.nodes_of(*element, &ByTile::new());
-            self.committed.contains_key(element)
-                || mean.stress(&nodes, &Strain::default()).von_mises() > LOOKED_AT * yield_mpa
-        };
-        below.into_iter().filter(is_near_yield).collect()
-    }
-
-    /// The elements below nodes and those around them.
-    fn below(&self, loads: &[NodeLoad], around: &FacesAround) -> Vec<u32> {
+    /// Returns the elements whose Gauss points are to be evaluated, and moves their nodes by the loads: those that have
+    /// yielded, wherever they are, and those below the contact and around it whose mean stress is near yield.
+    fn evaluated(&mut self, loads: &[NodeLoad], around: &FacesAround) -> Vec<u32> {
         let mut is_near = vec![false; self.set_mm.len()];
         for &(node, _) in loads {
             is_near[node as usize] = true;
@@ -257,71 +316,94 @@ impl PlasticInsert {
         }
         let stacks = self.influence().stacks.iter().zip(&is_near);
         let below = stacks.filter(|(_, is_near)| **is_near);
-        below.flat_map(|(stack, _)| stack).copied().collect()
+        let mut below: Vec<u32> = below.flat_map(|(stack, _)| stack).copied().collect();
+        below.extend(self.committed.keys());
+        below.sort_unstable();
+        below.dedup();
+        self.load_nodes(loads, &below);
+        let influence = self.influence();
+        let yield_mpa = self.material.initial_yield_stress();
+        let is_near_yield = |element: &u32| {
+            let mean = &influence.means[*element as usize];
+            let nodes = self.nodes_of(*element, &ByTile::new());
+            self.committed.contains_key(element)
+                || mean.stress(&nodes, &Strain::default()).von_mises() > EVALUATED_FROM * yield_mpa
+        };
+        below.into_iter().filter(is_near_yield).collect()
     }
 
     /// Computes the displacements of the nodes of elements by loads and the committed state.
     fn load_nodes(&mut self, loads: &[NodeLoad], elements: &[u32]) {
-        let hexes = Arc::clone(&self.solid().mesh().hexes);
-        let mut is_asked = vec![false; self.loaded_mm.len()];
+        let surface = Arc::clone(&self.surface);
+        let mut is_needed = vec![false; self.loaded_mm.len()];
         for &element in elements {
-            for node in hexes[element as usize] {
-                is_asked[node as usize] = true;
+            for node in surface.solid().mesh().hexes[element as usize] {
+                is_needed[node as usize] = true;
             }
         }
-        let by_tile = self.surface.source.by_tile(loads);
+        let by_tile = surface.by_tile(loads);
         let tiles = by_tile.iter();
         let rows: Vec<(&[f32], &Vec<f64>)> = tiles
-            .map(|(&tile, loads)| (self.surface.source.moved_below(tile as usize), loads))
+            .map(|(&tile, loads)| (surface.moved_below(tile as usize), loads))
             .collect();
-        let asked = (0..is_asked.len()).filter(|&node| is_asked[node]);
-        let loaded: Vec<(usize, Vec3)> = asked
-            .map(|node| (node, self.moved_mm[node] + moved(node, &rows)))
-            .collect();
-        for (node, loaded_mm) in loaded {
-            self.loaded_mm[node] = loaded_mm;
+        for node in (0..is_needed.len()).filter(|&node| is_needed[node]) {
+            let mut moved = Vec3::zeros();
+            for (rows, loads) in &rows {
+                let own = &rows[3 * node * loads.len()..][..3 * loads.len()];
+                for (moved, row) in moved.iter_mut().zip(own.chunks_exact(loads.len())) {
+                    *moved += product(row, loads);
+                }
+            }
+            self.loaded_mm[node] = self.moved_mm[node] + moved;
         }
     }
 
-    /// Displacements of the nodes of an element, with more of some.
+    /// Returns the displacements of the nodes of an element, with `more_mm` of some.
     fn nodes_of(&self, element: u32, more_mm: &ByTile) -> [Vec3; 8] {
         let hex = self.solid().mesh().hexes[element as usize];
         let influence = self.influence();
         hex.map(|node| self.loaded_mm[node as usize] + influence.of_node(more_mm, node))
     }
 
-    /// Elements that flow, did so in what was tried, or are near it; nothing where none flows.
-    fn taken_along(&self, looked_at: &[u32]) -> Vec<u32> {
+    /// Returns the elements that flow, flowed in the trial state, or are near it; none if none flows.
+    fn searched(&self, evaluated: &[u32]) -> Vec<u32> {
         let (solid, influence) = (self.solid(), self.influence());
         let mut flows = !self.trial.is_empty();
-        let mut taken = Vec::new();
-        for &element in looked_at {
-            let (nodes, before) = (self.nodes_of(element, &ByTile::new()), self.before(element));
+        let mut searched = Vec::new();
+        for &element in evaluated {
+            let nodes = self.nodes_of(element, &ByTile::new());
+            let before = self.committed_points(element);
             let own = influence.element(solid, element);
             let used = own.use_of_yield(solid, &self.material, &nodes, &before);
             flows |= used > 1.0;
-            if used > TAKEN_ALONG || self.trial.contains_key(&element) {
-                taken.push(element);
+            if used > SEARCHED_FROM || self.trial.contains_key(&element) {
+                searched.push(element);
             }
         }
-        if flows { taken } else { Vec::new() }
+        if flows { searched } else { Vec::new() }
     }
 
-    /// Finds the flow of elements; the forces of what flows, by the tiles of mesh nodes.
-    fn sweep(&mut self, taken: &[u32]) -> Result<ByTile, Flattened> {
-        let tiles = self.tiles_of(taken);
-        let allowed = ON_SURFACE * self.material.hardening.yield_stress(0.0)
-            / (3.0 * self.material.elastic.shear_modulus());
-        for &element in taken {
-            let before = self.before(element);
+    /// Finds the flow of elements, and returns its forces by the tiles of mesh nodes.
+    ///
+    /// The displacements under the flow and the flow under the displacements are found in turns, accelerated by Anderson's
+    /// mixing of the plastic strains.
+    fn sweep(&mut self, elements: &[u32]) -> Result<ByTile, NotBorne> {
+        let hexes = &self.solid().mesh().hexes;
+        let nodes = elements.iter().flat_map(|&element| hexes[element as usize]);
+        let mut tiles: Vec<u32> = nodes.map(|node| self.influence().tile_of(node)).collect();
+        tiles.sort_unstable();
+        tiles.dedup();
+        let shear_modulus = self.material.elastic().shear_modulus();
+        let allowed = ON_SURFACE * self.material.initial_yield_stress() / (3.0 * shear_modulus);
+        for &element in elements {
+            let before = self.committed_points(element);
             self.trial.entry(element).or_insert(before);
         }
-        let (mut mixing, mut tried) = (Mixing::default(), self.strains(taken));
+        let (mut mixing, mut tried) = (Mixing::default(), self.strains(elements));
         for _ in 0..MAX_SWEEPS {
-            let forces = self.forces();
-            let moved_mm = self.influence().moved(self.solid(), &forces, &tiles);
+            let moved_mm = self.influence().moved(&self.forces(), &tiles);
             let mut changed: f64 = 0.0;
-            for &element in taken {
+            for &element in elements {
                 changed = changed.max(self.flow_element(element, &moved_mm));
             }
             if changed <= allowed {
@@ -330,57 +412,56 @@ impl PlasticInsert {
             if !changed.is_finite() || self.largest_strain() > MAX_STRAIN {
                 break;
             }
-            tried = mixing.next(&tried, &self.strains(taken), 1.0);
-            self.try_strains(taken, &tried);
+            tried = mixing.next(&tried, &self.strains(elements), 1.0);
+            let mut strains = tried.as_chunks().0.iter();
+            for element in elements {
+                let points = self.trial.get_mut(element).into_iter().flatten();
+                for (point, strain) in points.zip(&mut strains) {
+                    point.set_eigenstrain(Strain(*strain));
+                }
+            }
         }
-        Err(Flattened {
+        Err(NotBorne::Flattened {
             plastic_strain: self.largest_strain(),
         })
     }
 
-    /// Plastic strains that are tried in elements, one after the other.
+    /// Returns the plastic strains of elements in the trial state, one after the other.
     fn strains(&self, elements: &[u32]) -> Vec<f64> {
         let points = elements.iter().flat_map(|element| &self.trial[element]);
-        points.flat_map(|point| point.strain.0).collect()
+        points.flat_map(|point| point.eigenstrain().0).collect()
     }
 
-    /// Tries plastic strains in elements.
-    fn try_strains(&mut self, elements: &[u32], strains: &[f64]) {
-        let mut strains = strains.as_chunks().0.iter();
-        for element in elements {
-            let points = self.trial.get_mut(element).into_iter().flatten();
-            for (point, strain) in points.zip(&mut strains) {
-                point.strain = Strain(*strain);
-            }
-        }
-    }
-
-    /// Lets an element flow with its nodes moved by what flows around it; how far that is from the plastic strain tried.
+    /// Updates the flow of an element whose nodes are displaced by the flow around it, and returns how far that is from the
+    /// plastic strain tried.
     fn flow_element(&mut self, element: u32, moved_mm: &ByTile) -> f64 {
-        let (solid, before) = (self.solid(), self.before(element));
+        let (solid, before) = (self.solid(), self.committed_points(element));
         let trial = self.trial[&element];
         let nodes = self.nodes_of(element, moved_mm);
         let own = self.influence().element(solid, element);
         let flowed = own.flow(solid, &self.material, &nodes, [&trial, &before]);
         let apart = flowed.iter().zip(&trial);
         let apart = apart
-            .map(|(flowed, trial)| flowed.strain.less(&trial.strain).equivalent())
+            .map(|(flowed, trial)| {
+                let change = flowed.eigenstrain().less(&trial.eigenstrain());
+                change.equivalent()
+            })
             .fold(0.0, f64::max);
         self.trial.insert(element, flowed);
         apart
     }
 
-    /// Forces of what flows in the present increment.
+    /// Returns the forces of the flow in the present increment.
     fn forces(&self) -> ByTile {
         let (solid, influence) = (self.solid(), self.influence());
         let mut forces = ByTile::new();
         for (&element, points) in &self.trial {
-            let before = self.before(element);
+            let before = self.committed_points(element);
             if *points == before {
                 continue;
             }
             let flow: [Strain; POINTS] =
-                std::array::from_fn(|p| points[p].strain.less(&before[p].strain));
+                std::array::from_fn(|p| points[p].eigenstrain().less(&before[p].eigenstrain()));
             let own = influence.element(solid, element).forces(solid, &flow);
             for (&node, force) in solid.mesh().hexes[element as usize].iter().zip(&own) {
                 influence.add_force(&mut forces, node, force);
@@ -389,20 +470,13 @@ impl PlasticInsert {
         forces
     }
 
-    /// Tiles of the mesh nodes of elements, ascending.
-    fn tiles_of(&self, elements: &[u32]) -> Vec<u32> {
-        let hexes = &self.solid().mesh().hexes;
-        let nodes = elements.iter().flat_map(|&element| hexes[element as usize]);
-        let mut tiles: Vec<u32> = nodes.map(|node| self.influence().tile_of(node)).collect();
-        tiles.sort_unstable();
-        tiles.dedup();
-        tiles
-    }
-
-    /// Adds how far forces inside move nodes of the surface along their inward normals.
+    /// Adds the displacements of surface nodes along their inward normals by forces inside, by reciprocity: a force moves a
+    /// surface node as far as a unit load there moves the node of the force.
     fn add_set(&self, forces: &ByTile, near: impl Iterator<Item = u32>, set_mm: &mut [f64]) {
-        let (source, influence) = (&self.surface.source, self.influence());
-        let mut tiles: Vec<u32> = near.map(|node| self.surface.tile_of(node)).collect();
+        let influence = self.influence();
+        let mut tiles: Vec<u32> = near
+            .map(|node| self.surface.normal().tile_of(node))
+            .collect();
         tiles.sort_unstable();
         tiles.dedup();
         let mut loaded: BTreeMap<u32, Vec3> = BTreeMap::new();
@@ -410,8 +484,8 @@ impl PlasticInsert {
             loaded.insert(node, influence.of_node(forces, node));
         }
         for tile in tiles {
-            let nodes = source.nodes_of_tile(tile as usize);
-            let rows = source.moved_below(tile as usize);
+            let nodes = self.surface.nodes_of_tile(tile as usize);
+            let rows = self.surface.moved_below(tile as usize);
             for (&node, force) in &loaded {
                 let own = &rows[3 * node as usize * nodes.len()..][..3 * nodes.len()];
                 for (row, force) in own.chunks_exact(nodes.len()).zip(force) {
@@ -424,18 +498,22 @@ impl PlasticInsert {
     }
 
     fn largest_strain(&self) -> f64 {
-        let points = self.trial.values().flatten();
-        points.map(|point| point.accumulated).fold(0.0, f64::max)
+        self.trial
+            .values()
+            .map(|points| largest_strain(points))
+            .fold(0.0, f64::max)
     }
 }
 
-impl LoadHistory for PlasticInsert {
+impl<M: Material> LoadHistory for PlasticInsert<M> {
     fn begin_cycle(&mut self) {
-        self.cycle.begin();
+        self.before = self.flow_in_cycle();
+        self.increments.begin_cycle();
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.cycle.begin_increment(increment);
+        self.increments.begin_increment(increment);
+        self.increments.present().flows.clear();
     }
 
     fn displace(&mut self, candidates: &mut [Candidate]) {
@@ -446,7 +524,7 @@ impl LoadHistory for PlasticInsert {
 
     fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<f64, NotBorne> {
         let around = under.bodies.insert.faces_around();
-        Ok(self.flow(under.loads, under.peak_mpa(), under.near(), around)?)
+        self.flow(under.loads, under.peak_mpa(), under.near(), around)
     }
 
     fn accept(&mut self, _: &RelativeMotion, _: &LoadedPatch<'_>) {
@@ -460,34 +538,74 @@ impl LoadHistory for PlasticInsert {
     }
 
     fn evaluate(&mut self, _: &mut [TouchedNode]) {
-        self.cycle.end_increment(&self.committed_set_mm);
+        let set_mm = &self.committed_set_mm;
+        let end = self.increments.present();
+        let moved_mm = match end.set_mm.replace(Arc::clone(set_mm)) {
+            // In the first cycle nothing has repeated itself yet.
+            None => f64::INFINITY,
+            Some(before) if Arc::ptr_eq(&before, set_mm) => 0.0,
+            Some(before) => farthest_mm(&before, set_mm),
+        };
+        self.moved_in_a_cycle_mm = MORE_EXACTLY * moved_mm;
     }
 
     fn moved_in_a_cycle_mm(&self) -> f64 {
-        self.cycle.moved_mm()
+        self.moved_in_a_cycle_mm
     }
 
     fn into_fields(self: Box<Self>) -> Vec<StateField> {
-        self.into_memory().field().into_iter().collect()
+        self.into_stored().field().into_iter().collect()
     }
 }
 
-/// Plastic strains of elements.
-pub(crate) fn strains_of(points: &Points) -> BTreeMap<usize, [Strain; POINTS]> {
-    let strains = points.iter();
-    strains
-        .map(|(&element, points)| (element as usize, points.map(|point| point.strain)))
+fn eigenstrains<P: MaterialPoint>(points: &Points<P>) -> Eigenstrains {
+    let strains = |points: &[P; POINTS]| points.map(|point| point.eigenstrain());
+    points
+        .iter()
+        .map(|(&element, points)| (element as usize, strains(points)))
         .collect()
 }
 
-/// Returns the displacement of a mesh node by loads on tiles of the surface, mm.
-fn moved(node: usize, rows: &[(&[f32], &Vec<f64>)]) -> Vec3 {
-    let mut moved = Vec3::zeros();
-    for (rows, loads) in rows {
-        let own = &rows[3 * node * loads.len()..][..3 * loads.len()];
-        for (moved, row) in moved.iter_mut().zip(own.chunks_exact(loads.len())) {
-            *moved += product(row, loads);
+fn largest_strain<P: MaterialPoint>(points: &[P; POINTS]) -> f64 {
+    points.iter().map(P::accumulated).fold(0.0, f64::max)
+}
+
+/// The plastic state that is stored: internal variables, and the flow in the last cycle.
+///
+/// Its field has of every element that has yielded its number, the largest flow of its Gauss points in the last cycle, and
+/// of each point the numbers of its internal variables.
+#[derive(Clone, Debug, PartialEq)]
+struct StoredPlasticity<P: MaterialPoint> {
+    points: Points<P>,
+    /// The largest strain that accumulated at a Gauss point of each element in the last cycle.
+    flow_in_cycle: BTreeMap<u32, f64>,
+}
+
+impl<P: MaterialPoint> StoredPlasticity<P> {
+    /// Reads the field of a contact's state; empty if there is none.
+    fn from_stored(state: &ContactState) -> Self {
+        let (mut points, mut flow_in_cycle) = (Points::new(), BTreeMap::new());
+        let field = state.fields.iter().find(|field| field.name == P::FIELD);
+        let values = field.map_or(&[][..], |field| &field.values);
+        for numbers in values.chunks_exact(2 + POINTS * P::NUMBERS) {
+            let element = numbers[0] as u32;
+            let point = |p: usize| P::from_numbers(&numbers[2 + p * P::NUMBERS..][..P::NUMBERS]);
+            points.insert(element, std::array::from_fn(point));
+            flow_in_cycle.insert(element, numbers[1]);
+        }
+        Self {
+            points,
+            flow_in_cycle,
         }
     }
-    moved
+
+    /// Returns the field; none if nothing has yielded.
+    fn field(&self) -> Option<StateField> {
+        let values = self.points.iter().flat_map(|(element, points)| {
+            let flow = self.flow_in_cycle.get(element).copied().unwrap_or_default();
+            let own = [f64::from(*element), flow];
+            own.into_iter().chain(points.iter().flat_map(P::numbers))
+        });
+        (!self.points.is_empty()).then(|| field(P::FIELD, values.collect()))
+    }
 }

@@ -2,13 +2,9 @@
 
 use std::sync::Arc;
 
-use condyle_fem::{Elastic, ElasticSolid, Hardening, PlasticSolid, PlasticState};
+use condyle_fem::{Elastic, ElasticPlastic, Hardening, PlasticPoint, PlasticSolid};
 
-use super::{
-    super::compliance::Compliance,
-    super::elastic_surface::{ElasticSurface, HeldBy},
-    *,
-};
+use super::{super::elastic_surface::HeldBy, *};
 use crate::{
     Vec3,
     geometry::{Insert, Meshing, flat_insert},
@@ -19,9 +15,18 @@ fn hardening() -> Hardening {
     Hardening::new(points, 30.0).unwrap()
 }
 
+fn material(hardening: Hardening) -> ElasticPlastic {
+    let elastic = Elastic::new(463.0, 0.46).unwrap();
+    ElasticPlastic { elastic, hardening }
+}
+
+fn nothing_stored() -> StoredPlasticity<PlasticPoint> {
+    StoredPlasticity::from_stored(&ContactState::default())
+}
+
 struct Block {
     insert: Insert,
-    surface: Arc<Compliance<ElasticSurface>>,
+    surface: Arc<ElasticSurface>,
     whole: PlasticSolid,
 }
 
@@ -38,14 +43,14 @@ impl Block {
         let held = insert.backside_nodes().iter().copied();
         let solid = ElasticSolid::new(insert.mesh(), elastic, held).unwrap();
         Self {
-            surface: Arc::new(Compliance::new(surface)),
+            surface: Arc::new(surface),
             whole: PlasticSolid::new(solid, hardening()),
             insert,
         }
     }
 
-    fn plastic(&self, remembered: PlasticMemory) -> PlasticInsert {
-        PlasticInsert::after(remembered, Arc::clone(&self.surface), hardening())
+    fn plastic(&self, stored: StoredPlasticity<PlasticPoint>) -> PlasticInsert<ElasticPlastic> {
+        PlasticInsert::new(stored, Arc::clone(&self.surface), material(hardening()))
     }
 
     /// Loads of a pressure of Hertz about a place.
@@ -73,17 +78,17 @@ impl Block {
 #[test]
 fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
     let block = Block::new();
-    let mut insert = block.plastic(PlasticMemory::default());
+    let mut insert = block.plastic(nothing_stored());
     let elements = block.insert.mesh().hexes.len();
-    let mut state = PlasticState::unloaded(elements);
+    let mut state = condyle_fem::PlasticState::unloaded(elements);
     // Pressed, let go, and pressed beside.
     for (peak_mpa, x) in [(38.0, 0.0), (0.1, 0.0), (42.0, 1.5), (0.1, 1.5)] {
         let loads = block.loads(peak_mpa, x);
-        let all = 0..block.surface.node_count() as u32;
+        let all = 0..block.surface.normal().node_count() as u32;
         insert
             .flow(&loads, f64::INFINITY, all, block.insert.faces_around())
             .unwrap();
-        let tried_mm: Vec<f64> = (0..block.surface.node_count() as u32)
+        let tried_mm: Vec<f64> = (0..block.surface.normal().node_count() as u32)
             .map(|node| insert.set_mm[node as usize])
             .collect();
         insert.commit();
@@ -94,7 +99,7 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
                 .map(|element| (element, state.elements[element].map(|point| point.strain)))
                 .collect::<Vec<_>>(),
         );
-        let exact_mm = block.surface.source.along_normals(&unloaded.0);
+        let exact_mm = block.surface.along_normals(&unloaded.0);
         let deepest = exact_mm.iter().copied().fold(0.0, f64::max);
         let set_mm: Vec<f64> = (0..exact_mm.len())
             .map(|node| insert.set_mm[node])
@@ -108,7 +113,7 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
             assert!((set - tried).abs() < 1e-6, "{set} {tried}");
         }
     }
-    let remembered = insert.into_memory();
+    let remembered = insert.into_stored();
     let most = remembered.points.values().flatten();
     let most = most.map(|point| point.accumulated).fold(0.0, f64::max);
     let exact = state.elements.iter().flatten();
@@ -119,23 +124,23 @@ fn verify_flow_and_permanent_set_against_newton_on_all_elements() {
 #[test]
 fn what_is_remembered_goes_through_the_state_to_the_same_bytes() {
     let block = Block::new();
-    let mut insert = block.plastic(PlasticMemory::default());
+    let mut insert = block.plastic(nothing_stored());
     let loads = block.loads(38.0, 0.0);
     let around = block.insert.faces_around();
-    insert.cycle.begin_increment(0);
+    insert.begin_increment(0);
     insert.flow(&loads, f64::INFINITY, 0..1, around).unwrap();
     insert.commit();
-    let remembered = insert.into_memory();
+    let remembered = insert.into_stored();
     assert!(remembered.flow_in_cycle.values().any(|flow| *flow > 1e-4));
-    let state = crate::contact::ContactState {
+    let state = ContactState {
         fields: remembered.field().into_iter().collect(),
     };
-    assert_eq!(PlasticMemory::from_state(&state), remembered);
+    assert_eq!(StoredPlasticity::from_stored(&state), remembered);
     // The same load again is elastic: it is what is already there.
     let mut insert = block.plastic(remembered.clone());
     insert.flow(&loads, f64::INFINITY, 0..1, around).unwrap();
     insert.commit();
-    let again = insert.into_memory();
+    let again = insert.into_stored();
     let flow = again.flow_in_cycle.values().copied().fold(0.0, f64::max);
     assert!(flow < 1e-4, "{flow}");
 }
@@ -144,11 +149,8 @@ fn what_is_remembered_goes_through_the_state_to_the_same_bytes() {
 fn a_load_that_presses_the_insert_flat_is_an_error() {
     let block = Block::new();
     let hardening = Hardening::perfectly_plastic(14.0).unwrap();
-    let mut insert = PlasticInsert::after(
-        PlasticMemory::default(),
-        Arc::clone(&block.surface),
-        hardening,
-    );
+    let surface = Arc::clone(&block.surface);
+    let mut insert = PlasticInsert::new(nothing_stored(), surface, material(hardening));
     let around = block.insert.faces_around();
     let loads = block.loads(200.0, 0.0);
     assert!(insert.flow(&loads, f64::INFINITY, 0..1, around).is_err());

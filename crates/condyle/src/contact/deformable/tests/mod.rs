@@ -6,13 +6,14 @@ mod stick_slip;
 use std::{f64::consts::PI, sync::Arc};
 
 use super::{
-    compliance::Compliance,
+    compliance::{Compliance, SurfaceCompliance},
     contact::{DeformableContact, FrictionSettings},
+    history::LoadHistory,
 };
 use crate::{
     Mat3, Vec3,
     contact::{
-        broad_phase::{BroadPhase, BruteForce, Coherent},
+        broad_phase::Search,
         contact_patch::Coulomb,
         law::Bodies,
         model::{ContactMemory, ContactModel, TouchedNode},
@@ -35,22 +36,22 @@ struct Plane {
     femur: FemoralSurface,
     insert: Insert,
     surface: ArticulatingSurface,
-    compliance: Arc<Compliance<HalfSpace>>,
+    half_space: Arc<HalfSpace>,
+    compliance: Arc<Compliance>,
 }
 
 impl Plane {
     fn new(femur: FemoralSurface, size_mm: (f64, f64), edge_mm: f64) -> Self {
         let insert = flat_insert(size_mm, 10.0, Meshing { edge_mm, layers: 1 }).unwrap();
         let surface = insert.surface();
-        let compliance = Arc::new(Compliance::new(HalfSpace::under(
-            &surface,
-            contact_modulus_mpa(),
-        )));
+        let half_space = Arc::new(HalfSpace::under(&surface, contact_modulus_mpa()));
+        let source: Arc<dyn SurfaceCompliance> = Arc::clone(&half_space) as _;
         Self {
+            half_space,
+            compliance: Arc::new(Compliance::new(source)),
             femur,
             insert,
             surface,
-            compliance,
         }
     }
 
@@ -58,32 +59,37 @@ impl Plane {
         Self::new(FemoralSurface::sphere(RADIUS_MM), (12.0, 12.0), edge_mm)
     }
 
-    fn contact(&self, friction: f64) -> DeformableContact<'_, BruteForce> {
-        self.contact_by(friction)
+    fn contact(&self, friction: f64) -> DeformableContact<'_> {
+        self.contact_by(Search::BruteForce, friction, Vec::new())
     }
 
-    fn contact_by<B: BroadPhase>(&self, friction: f64) -> DeformableContact<'_, B> {
+    fn contact_by<'a>(
+        &'a self,
+        search: Search,
+        friction: f64,
+        histories: Vec<Box<dyn LoadHistory + 'a>>,
+    ) -> DeformableContact<'a> {
         let bodies = Bodies {
             femur: &self.femur,
             insert: &self.insert,
             surface: &self.surface,
         };
-        DeformableContact::after(
+        let settings = FrictionSettings {
+            friction: Coulomb {
+                coefficient: friction,
+                slip_tolerance_mm_per_s: 1.0,
+            },
+            search,
+            sample_reuse_mm: 0.0,
+        };
+        let compliance = Arc::clone(&self.compliance);
+        DeformableContact::new(
             ContactMemory::default(),
             bodies,
-            rubbing(friction),
-            self.compliance.clone(),
+            settings,
+            compliance,
+            histories,
         )
-    }
-}
-
-fn rubbing(friction: f64) -> FrictionSettings {
-    FrictionSettings {
-        friction: Coulomb {
-            coefficient: friction,
-            slip_tolerance_mm_per_s: 1.0,
-        },
-        sample_reuse_mm: 0.0,
     }
 }
 
@@ -212,8 +218,7 @@ fn elastic_energy(plane: &Plane, touched: &[TouchedNode]) -> f64 {
     let share = |node: &TouchedNode| &plane.surface.shares[node.node as usize];
     let pair = |one: &TouchedNode, other: &TouchedNode| {
         let deflection = plane
-            .compliance
-            .source
+            .half_space
             .deflection(share(one), &share(other).centre);
         0.5 * load_n(one) * load_n(other) * deflection
     };
@@ -263,7 +268,7 @@ fn what_presses_is_not_above_the_plane_and_does_not_pull() {
     for (node, position) in plane.surface.positions.iter().enumerate() {
         let deflection = |on: &TouchedNode| {
             let share = share(on.node);
-            load_n(on) * plane.compliance.source.deflection(share, position)
+            load_n(on) * plane.half_space.deflection(share, position)
         };
         let down_mm: f64 = touched.iter().map(deflection).sum();
         // The gap at rest, along the normal of the plane.
@@ -283,7 +288,7 @@ fn an_answer_does_not_depend_on_those_before() {
     let plane = Plane::under_sphere(0.7);
     let motion = sliding();
     let fresh = plane.contact(0.07).respond(&motion).wrench;
-    let mut contact = plane.contact_by::<Coherent>(0.07);
+    let mut contact = plane.contact_by(Search::Coherent, 0.07, Vec::new());
     for (depth_mm, x) in [(0.5, 1.0), (0.02, -0.5), (-1.0, 0.0), (0.3, 0.4)] {
         contact.respond(&pressed(depth_mm, x, 0.1));
         let again = contact.respond(&motion).wrench;

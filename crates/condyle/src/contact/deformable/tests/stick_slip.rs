@@ -1,10 +1,7 @@
 //! Stick and slip of a ball on an elastic half-space, against Cattaneo and Mindlin.
 
 use super::{half_space::AlongHalfSpace, *};
-use crate::contact::{
-    deformable::friction::{ElasticFriction, FrictionMemory},
-    model::ContactState,
-};
+use crate::contact::{deformable::friction::ElasticFriction, model::ContactState};
 
 const MU: f64 = 0.07;
 const DEPTH_MM: f64 = 0.408;
@@ -14,12 +11,11 @@ fn shear_modulus_mpa() -> f64 {
 }
 
 /// A ball on a half-space that sticks and slips, from what a contact before left.
-fn sticking<'a>(plane: &'a Plane, state: &ContactState) -> DeformableContact<'a, BruteForce> {
+fn sticking<'a>(plane: &'a Plane, state: &ContactState) -> DeformableContact<'a> {
     let along = AlongHalfSpace::under(&plane.surface, shear_modulus_mpa(), POISSON);
-    let along = Arc::new(Compliance::new(along));
-    let memory = FrictionMemory::from_state(state);
-    let friction = ElasticFriction::after(memory, MU, &plane.surface, along);
-    plane.contact(0.0).with_history(Some(friction))
+    let along = Arc::new(Compliance::new(Arc::new(along)));
+    let friction = ElasticFriction::new(state, MU, &plane.surface, along);
+    plane.contact_by(Search::BruteForce, 0.0, vec![Box::new(friction)])
 }
 
 /// A ball that is pressed, its middle shifted along x and on its way further.
@@ -31,7 +27,7 @@ fn shifted(x: f64) -> RelativeMotion {
 }
 
 /// A ball that was pressed.
-fn pressed_ball(plane: &Plane) -> DeformableContact<'_, BruteForce> {
+fn pressed_ball(plane: &Plane) -> DeformableContact<'_> {
     let mut contact = sticking(plane, &ContactState::default());
     contact.respond(&shifted(0.0));
     contact.accept(&shifted(0.0));
@@ -40,7 +36,7 @@ fn pressed_ball(plane: &Plane) -> DeformableContact<'_, BruteForce> {
 }
 
 /// Moves a ball on; the tangential force over that at which all slides, and where it landed.
-fn moved_to(contact: &mut DeformableContact<'_, BruteForce>, x: f64) -> (f64, Vec<TouchedNode>) {
+fn moved_to(contact: &mut DeformableContact<'_>, x: f64) -> (f64, Vec<TouchedNode>) {
     let force = contact.respond(&shifted(x)).wrench.force;
     contact.accept(&shifted(x));
     (
