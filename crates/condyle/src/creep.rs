@@ -1,30 +1,30 @@
-//! Creep: polyethylene under load grows thinner with time, without losing mass.
+//! Creep: polyethylene under load becomes thinner with time, without losing mass.
 
 use crate::parameter::{Known, Parameter};
 
-/// Time at which the first constant of the law is the compliance, min.
+/// Time at which the compliance is the first constant of the law, min.
 const REFERENCE_MIN: f64 = 1e4;
 
-/// Creep of UHMWPE in compression: a strain of $J(t) = A + B (\log_{10} t - 4)$ for each MPa, $t$ the minutes
-/// under load; 0 before the time at which that becomes positive, 25 s with the defaults.
+/// Creep of UHMWPE in compression: a strain of $J(t) = A + B (\log_{10} t - 4)$ per MPa, $t$ the minutes under load; 0
+/// before the time at which that becomes positive, 25 s with the defaults.
 ///
-/// Source: Lee and Pienkowski 1998, as knee models took it; the constants are remembered, not read. They hold for
-/// constant stress of 2 to 8 MPa. For stress that changes, steps of stress are superposed (Boltzmann), and a part
-/// of the deepest strain so far stays for good:
+/// Source: Lee and Pienkowski 1998, as used in knee models; the constants are quoted from memory, not checked at the
+/// source. They hold for constant stress of 2 to 8 MPa. For varying stress, steps of stress are superposed (Boltzmann), and
+/// a part of the largest strain so far is permanent:
 ///
-/// strain = r e + (1 - r) max e, e = sum of J(t - t_i) times the step of stress at t_i, r what recovers.
+/// strain = r e + (1 - r) max e, e = sum of J(t - t_i) times the step of stress at t_i, r the recovering fraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeePienkowski {
     /// A, strain after 10,000 min under 1 MPa, 1/MPa.
     pub strain_at_10000_min_per_mpa: f64,
-    /// B, strain that each tenfold of time adds under 1 MPa, 1/MPa.
+    /// B, strain added by each decade of time under 1 MPa, 1/MPa.
     pub strain_per_decade_per_mpa: f64,
-    /// r, what part of creep recovers once the load is gone, 0 to 1.
+    /// r, the part of creep that recovers after unloading, 0 to 1.
     pub recovering_fraction: f64,
 }
 
 impl LeePienkowski {
-    /// A.
+    /// The parameter A.
     pub const STRAIN_AT_10000_MIN: Parameter = Parameter {
         name: "strain_at_10000_min_per_mpa",
         about: "Strain by creep after 10,000 min under 1 MPa.",
@@ -34,7 +34,7 @@ impl LeePienkowski {
         source: "lee-pienkowski1998",
         known: Known::Approximate,
     };
-    /// B.
+    /// The parameter B.
     pub const STRAIN_PER_DECADE: Parameter = Parameter {
         name: "strain_per_decade_per_mpa",
         about: "Strain by creep that each tenfold of time adds under 1 MPa.",
@@ -44,7 +44,7 @@ impl LeePienkowski {
         source: "lee-pienkowski1998",
         known: Known::Approximate,
     };
-    /// r.
+    /// The parameter r.
     pub const RECOVERING: Parameter = Parameter {
         name: "recovering_fraction",
         about: "Part of the creep that recovers once the load is gone.",
@@ -55,7 +55,7 @@ impl LeePienkowski {
         known: Known::Read,
     };
 
-    /// J, strain for each MPa after so many minutes under load, 1/MPa.
+    /// Returns J, the strain per MPa after so many minutes under load, 1/MPa.
     pub fn compliance_per_mpa(&self, minutes: f64) -> f64 {
         if minutes <= 0.0 {
             return 0.0;
@@ -65,13 +65,14 @@ impl LeePienkowski {
         strain.max(0.0)
     }
 
-    /// Depth of creep where it would be `recoverable` if all of it recovered, and was at most `deepest` so.
+    /// Returns the depth of creep, mm, with `recoverable_mm` the depth if all of it recovered, and `deepest_mm` the largest
+    /// such depth so far.
     pub fn depth_mm(&self, recoverable_mm: f64, deepest_mm: f64) -> f64 {
         let recovers = self.recovering_fraction;
         recovers * recoverable_mm + (1.0 - recovers) * deepest_mm.max(recoverable_mm)
     }
 
-    /// Returns the part of the deepest creep that remains on an insert long without load, mm.
+    /// Returns the part of the deepest creep that remains long after unloading, mm.
     pub fn left_mm(&self, deepest_mm: f64) -> f64 {
         (1.0 - self.recovering_fraction) * deepest_mm
     }

@@ -7,8 +7,8 @@ use std::ops::Range;
 pub struct Moment {
     /// Mean pressure on the node's share of the surface, MPa.
     pub pressure_mpa: f64,
-    /// Slip of the femur past the insert that this instant stands for, mm, in the surface's own
-    /// directions: anterior along the surface, then lateral.
+    /// Slip of the femur past the insert over the increment, mm, in the surface's own directions: anterior along the
+    /// surface, then lateral.
     pub slip_mm: [f64; 2],
 }
 
@@ -21,12 +21,12 @@ impl Moment {
     }
 }
 
-/// An instant of contact as it is recorded.
+/// An instant of contact at a node, as it is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record {
     /// The node of the articulating surface.
     pub node: u32,
-    /// Area of the node's share that presses, mm2; in 32 bits it takes no room of its own.
+    /// Area of the node's share that is in contact, mm2; in 32 bits it fills the padding of the struct.
     pub pressed_mm2: f32,
     /// Pressure and slip at the node.
     pub moment: Moment,
@@ -39,14 +39,14 @@ pub struct NodeSums {
     pub peak_pressure_mpa: f64,
     /// Sum of the mean pressure on the node's share over the instants, MPa.
     pub summed_pressure_mpa: f64,
-    /// Distance slid while any of the node's share presses, sum of |ds|, mm.
+    /// Distance slid while any of the node's share is in contact, sum of |ds|, mm.
     pub sliding_distance_mm: f64,
-    /// Area that presses times distance slid, sum of A' |ds|, mm3. Over the area of the share it is how
-    /// far a place of the share slides under pressure, on the mean.
+    /// Area in contact times distance slid, sum of A' |ds|, mm3; over the area of the share, the mean distance that a place
+    /// of the share slides under pressure.
     pub pressed_area_slip_mm3: f64,
     /// Pressure times slip, sum of p |ds|, MPa mm.
     pub pressure_slip_mpa_mm: f64,
-    /// The same by direction.
+    /// Pressure times slip by direction.
     pub slip_work: SlipWork,
 }
 
@@ -67,24 +67,22 @@ impl NodeSums {
 
 /// The contact history of all nodes of an articulating surface over one cycle.
 ///
-/// It is recorded instant by instant, and then sorted by node: moments stay where they are, and
-/// every node knows which are its own. A history takes a megabyte or more, and new memory costs more
-/// than to fill it: one that is cleared keeps its own.
+/// It is recorded instant by instant and then sorted by node: the records stay in place, and every node gets the numbers of
+/// its own. A history takes a megabyte or more, and allocating that costs more than filling it: clearing keeps the memory.
 #[derive(Clone, Debug, Default)]
 pub struct CycleHistory {
     /// The expected number of instants.
     expected: usize,
-    /// As they were recorded.
     records: Vec<Record>,
-    /// Records of node i are those numbered `sorted[first[i]..first[i + 1]]`.
+    /// The records of node i are those numbered `sorted[first[i]..first[i + 1]]`.
     first: Vec<usize>,
     sorted: Vec<u32>,
-    /// One a node: made as the records are sorted, when they are at hand.
+    /// The sums of each node, computed as the records are sorted.
     sums: Vec<NodeSums>,
 }
 
 impl CycleHistory {
-    /// Nothing happened yet; about so many instants are to come.
+    /// Removes all records; about so many instants are to come.
     pub fn clear(&mut self, expected: usize) {
         self.expected = expected;
         self.records.clear();
@@ -93,19 +91,19 @@ impl CycleHistory {
         self.sums.clear();
     }
 
-    /// Records an instant: the nodes in contact then. Where it is kept, for
-    /// [`CycleHistory::sort`].
+    /// Records the nodes in contact at an instant, and returns the range of their records, for [`CycleHistory::sort`].
     pub fn record(&mut self, instant: impl Iterator<Item = Record>) -> Range<usize> {
         let start = self.records.len();
         self.records.extend(instant);
         if start == 0 {
-            // To grow would be to copy, and room that is never used costs nothing.
+            // Growing would copy the records; address space that is never touched costs nothing.
             self.records.reserve(2 * self.expected * self.records.len());
         }
         start..self.records.len()
     }
 
-    /// Sorts what was recorded by node; of all instants those that count, in the order of time.
+    /// Sorts the records of the given instants by node, each node's in the order of time. Instants of rejected steps are left
+    /// out.
     pub fn sort(&mut self, node_count: usize, instants: &[Range<usize>]) {
         let Self {
             records,
@@ -120,7 +118,7 @@ impl CycleHistory {
             let counting = instants.iter().flat_map(Range::clone);
             counting.map(|number| (number as u32, &records[number]))
         };
-        // Counted two places on: filling then moves every node's end on to where the next begins.
+        // A counting sort. Counts are stored two places ahead: filling then moves every node's end to the next one's start.
         first.clear();
         first.resize(node_count + 2, 0);
         for (_, record) in records() {
@@ -140,7 +138,7 @@ impl CycleHistory {
         first.truncate(node_count + 1);
     }
 
-    /// The nodes in contact at one instant, as [`CycleHistory::record`] kept them.
+    /// Returns the nodes in contact at an instant, in the order in which they were recorded.
     pub fn instant(&self, at: &Range<usize>) -> &[Record] {
         &self.records[at.clone()]
     }
@@ -163,18 +161,18 @@ impl CycleHistory {
     }
 }
 
-/// Less difference than this between along and across, as a part of the whole, has no direction: on a
-/// circle it is all rounding.
+/// A node whose work along and across differs by less than this part of the whole has no principal direction: on a circle
+/// the difference is rounding.
 const ISOTROPIC: f64 = 1e-6;
 
-/// No slip is shorter than this but that of length 0, mm.
+/// Shorter than any slip but that of length 0, mm.
 const MIN_MM: f64 = 1e-200;
 
 /// Pressure times slip of a node by direction: the sum of $p |\Delta s| \thinspace t t^T$ over the instants of a
 /// cycle, $t$ the direction of the slip, MPa mm.
 ///
-/// The part along a direction $d$ is $d^T T d$, the sum of $p |\Delta s| \cos^2$ of the angle between. The
-/// principal direction is the $d$ of the largest: there the molecules of the surface come to lie.
+/// The part along a direction $d$ is $d^T T d$, the sum of $p |\Delta s| \cos^2$ of the angle between. The principal
+/// direction is the $d$ with the largest part: the molecules of the surface align with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SlipWork {
     anterior: f64,
@@ -187,36 +185,36 @@ impl SlipWork {
     #[inline(always)]
     pub fn add(&mut self, pressure_mpa: f64, slip_mm: [f64; 2], distance_mm: f64) {
         let [anterior, lateral] = slip_mm;
-        // A slip of length 0 has parts of 0: any divisor will do by which the quotient is a number.
+        // A slip of length 0 has components of 0; the bound only keeps the quotient finite.
         let per_mm = pressure_mpa / distance_mm.max(MIN_MM);
         self.anterior += per_mm * anterior * anterior;
         self.mixed += per_mm * anterior * lateral;
         self.lateral += per_mm * lateral * lateral;
     }
 
-    /// Adds a part of another's.
+    /// Adds a part of another.
     pub fn add_part(&mut self, part: f64, other: &Self) {
         self.anterior += part * other.anterior;
         self.mixed += part * other.mixed;
         self.lateral += part * other.lateral;
     }
 
-    /// All of it, sum of p |ds|, MPa mm.
+    /// Returns the sum over all directions, sum of p |ds|, MPa mm.
     pub fn total_mpa_mm(&self) -> f64 {
         self.anterior + self.lateral
     }
 
-    /// Along the principal direction, MPa mm.
+    /// Returns the part along the principal direction, MPa mm.
     pub fn along_mpa_mm(&self) -> f64 {
         self.total_mpa_mm() - self.across_mpa_mm()
     }
 
-    /// Across the principal direction, MPa mm.
+    /// Returns the part across the principal direction, MPa mm.
     pub fn across_mpa_mm(&self) -> f64 {
         (0.5 * self.total_mpa_mm() - self.half_difference()).max(0.0)
     }
 
-    /// Cross-shear ratio: across over all, 0 for a straight path to 0.5 for a circle; 0 where nothing slid.
+    /// Returns the cross-shear ratio: the part across over the sum, 0 for a straight path to 0.5 for a circle; 0 without slip.
     pub fn cross_shear(&self) -> f64 {
         let total = self.total_mpa_mm();
         if total > 0.0 {
@@ -226,8 +224,8 @@ impl SlipWork {
         }
     }
 
-    /// The principal direction, a unit vector: anterior along the surface, then lateral, the first not
-    /// negative. None where nothing slid, or as much in every direction.
+    /// Returns the principal direction, a unit vector: anterior along the surface, then lateral, the first not negative. None
+    /// without slip, or if the work is the same in every direction.
     pub fn principal_direction(&self) -> Option<[f64; 2]> {
         if self.half_difference() <= 0.5 * ISOTROPIC * self.total_mpa_mm() {
             return None;
@@ -237,7 +235,7 @@ impl SlipWork {
         Some([cosine, sine])
     }
 
-    /// Half of what is more along than across: half the difference of the eigenvalues.
+    /// Returns half the difference of the eigenvalues.
     fn half_difference(&self) -> f64 {
         let skew = 0.5 * (self.anterior - self.lateral);
         (skew * skew + self.mixed * self.mixed).sqrt()

@@ -18,27 +18,27 @@ pub struct Bodies<'a> {
     pub surface: &'a ArticulatingSurface,
 }
 
-/// A law of contact: it belongs to a test, and makes the contact of its bodies.
+/// A law of contact. It belongs to a test and creates the contact of its bodies.
 pub trait ContactLaw: Debug + Send + Sync {
-    /// The contact of bodies that goes on from what the contact before left; from nothing, with the
-    /// default memory.
+    /// Creates the contact of bodies. It resumes from the memory of the contact before; the default memory starts without history.
     fn contact<'a>(
         &'a self,
         bodies: Bodies<'a>,
         memory: ContactMemory,
     ) -> Box<dyn ContactModel + 'a>;
 
-    /// By how much the pressure at a surface node falls as the node alone is worn by a millimetre,
-    /// MPa/mm: how fast wear flattens the pressure follows from it.
+    /// Returns the fall of the pressure at a surface node as that node alone is worn, MPa/mm. It determines how fast wear
+    /// flattens the pressure.
     fn stiffness_mpa_per_mm(&self, insert: &Insert, node: usize) -> f64;
 
-    /// Bytes that the law keeps of an insert, beside what a contact takes, if the femur comes near so many nodes.
+    /// Estimates the memory that the law keeps of an insert, besides that of a contact, if the femur comes near so many
+    /// nodes, bytes.
     fn memory_bytes(&self, _insert: &Insert, _nodes_near: f64) -> f64 {
         0.0
     }
 
-    /// Returns the state below the surface of an insert under loads on surface nodes along the inward normals, N, of the activity
-    /// of that number, after a contact has left `state`; none of an insert that is no solid.
+    /// Returns the state below the surface of an insert under loads on surface nodes along the inward normals, N, of the
+    /// activity with that number, after a contact has left `state`; none for a law that does not model the interior.
     fn under_surface(
         &self,
         _insert: &Insert,
@@ -49,8 +49,8 @@ pub trait ContactLaw: Debug + Send + Sync {
         None
     }
 
-    /// Returns what is known of the compliance of an unworn insert, for another run; none where that is about no more than so
-    /// many pairs of tiles, or no more than was known at first.
+    /// Returns the known compliance of an unworn insert, for another run; none if it has no more than so many pairs of
+    /// tiles, or no more than were known at first.
     fn known_compliance(
         &self,
         _insert: &Insert,
@@ -59,15 +59,15 @@ pub trait ContactLaw: Debug + Send + Sync {
         None
     }
 
-    /// The same law with `factor` times the slip tolerance, for the estimate of what that costs in accuracy.
+    /// Returns the same law with `factor` times the slip tolerance, to estimate its effect on the results.
     fn with_slip_tolerance_times(&self, factor: f64) -> Arc<dyn ContactLaw>;
 }
 
-/// The known part of the normal compliance of an insert's surface, mm/N: how far unit loads on the nodes of one tile move
-/// those of another, for the pairs of tiles that were asked for.
+/// The known part of the normal compliance of an insert's surface, mm/N: the displacements of the nodes of one tile by unit
+/// loads on another, for the pairs of tiles that were needed.
 ///
-/// It follows from the mesh, its backside, its articulating surface and the elastic constants, and from nothing else; and
-/// it is known to the bit, so that a run that begins with it has the bytes of one that does not.
+/// It depends on the mesh, its backside, its articulating surface and the elastic constants only, and is exact to the bit:
+/// a run that starts with it has the same bytes as one that does not.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KnownCompliance {
     /// By the numbers of two tiles, the lower first; row-major, a row for each node of the first.
@@ -80,13 +80,13 @@ impl KnownCompliance {
         self.between.len()
     }
 
-    /// About how many bytes it takes.
+    /// Estimates its memory, bytes.
     pub fn bytes(&self) -> usize {
         let numbers: usize = self.between.values().map(Vec::len).sum();
         size_of::<f64>() * (numbers + 2 * self.pairs())
     }
 
-    /// Hands over what is known of two tiles of so many nodes: row-major, a row for each node of `one`.
+    /// Removes and returns the compliance between two tiles of so many nodes: row-major, a row for each node of `one`.
     pub(crate) fn take(&mut self, one: usize, other: usize, nodes: [usize; 2]) -> Option<Vec<f64>> {
         let [rows, columns] = nodes;
         let key = [one.min(other), one.max(other)].map(|tile| tile as u32);
@@ -106,14 +106,14 @@ impl KnownCompliance {
         )
     }
 
-    /// Adds what loads on one tile move another by, of which the number is not lower.
+    /// Adds the compliance between a tile and another whose number is not lower.
     pub(crate) fn add(&mut self, one: usize, other: usize, moved: Vec<f64>) {
         self.between.insert((one as u32, other as u32), moved);
     }
 }
 
-/// Plastic strain that accumulates at a place in a cycle below which the place counts as shaken down: the flow of an
-/// increment is found to some 3e-6.
+/// A place counts as shaken down if less plastic strain than this accumulates in a cycle: the flow of an increment is found
+/// to some 3e-6.
 const SHAKEN_DOWN: f64 = 1e-5;
 
 /// The state below the surface of an insert that is a solid.
@@ -132,11 +132,11 @@ pub struct UnderSurface {
 /// The extremes of a resting backside in the last cycle of any activity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BacksideAtRest {
-    /// Farthest that a place of it lifts off the tray, mm.
+    /// Largest lift of a place of it off the tray, mm.
     pub lift_mm: f64,
     /// Largest part of it that lifts at once.
     pub lifted_part: f64,
-    /// Longest way that a place of it slips along the tray while it presses, there and back, mm.
+    /// Largest slip of a place of it along the tray while in contact, there and back, mm.
     pub slip_mm: f64,
     /// Largest force along the tray that the lock carries, N.
     pub lock_force_n: f64,
@@ -158,17 +158,17 @@ pub struct PlasticUnderSurface {
 /// The regime of a place of an insert in a cycle that repeats itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Regime {
-    /// It has never yielded.
+    /// The place has never yielded.
     #[default]
     Elastic,
-    /// It has, and does so no more.
+    /// It has yielded, and is elastic in the present cycle.
     ShakenDown,
-    /// It yields in every cycle: its strain grows, or goes to and fro.
+    /// It yields in every cycle: its strain grows or alternates.
     Ratcheting,
 }
 
 impl Regime {
-    /// Returns the regime of a place that has yielded, by the plastic strain that accumulates in a cycle.
+    /// Returns the regime of a place that has yielded, from the plastic strain that accumulates in a cycle.
     pub fn from_flow(plastic_strain: f64) -> Self {
         if plastic_strain > SHAKEN_DOWN {
             Self::Ratcheting
@@ -177,7 +177,7 @@ impl Regime {
         }
     }
 
-    /// The number of it in files: 0 elastic, 1 shaken down, 2 ratcheting.
+    /// Returns its number in files: 0 elastic, 1 shaken down, 2 ratcheting.
     pub fn number(self) -> u8 {
         self as u8
     }

@@ -1,14 +1,17 @@
 //! Contact between femur and insert: one interface, several laws.
 //!
-//! | file or folder | what |
+//! A [`ContactLaw`] belongs to a test and creates a [`ContactModel`] of the bodies as they are now. The machine sees only
+//! that.
+//!
+//! | file or folder | content |
 //! | --- | --- |
-//! | [`ContactModel`] (`model`) | the interface between machine and contact, and the memory that one contact leaves to the next |
-//! | [`ContactLaw`] (`law`) | the law of a test, which makes the contact of two bodies, and its further results |
+//! | `model` | the interface [`ContactModel`], and the memory that one contact leaves to the next |
+//! | `law` | the interface [`ContactLaw`], and its further results: compliance, state below the surface |
 //! | `history` | pressure and slip of every surface node over a cycle, and their work by direction |
-//! | `foundation` | the elastic foundation: rigid bodies, and pressure from local overclosure |
-//! | `deformable` | the deformable insert: pressure under which an elastic body just touches the femur |
-//! | `contact_patch` | the shares under pressure and their sums, common to all laws |
 //! | `pressure_law` | pressure from overclosure of an elastic layer |
+//! | `foundation` | the elastic foundation: rigid bodies, and pressure from local overclosure |
+//! | `deformable` | the deformable insert: the pressure under which an elastic body just touches the femur |
+//! | `contact_patch` | the shares under pressure, their tractions and sums, for all laws |
 //! | `broad_phase` | the blocks of nodes that may touch, by brute force or coherently |
 
 mod broad_phase;

@@ -9,7 +9,7 @@ use crate::{
     spatial::{RelativeMotion, Wrench, WrenchByTwist},
 };
 
-/// The number of regions of an articulating surface with loads and slips of their own: the two sides of a knee.
+/// The largest number of regions of an articulating surface with separate loads and slips: the two sides of a knee.
 pub const MAX_REGIONS: usize = 2;
 
 /// The derivatives of the wrench of the contact.
@@ -21,9 +21,9 @@ pub struct Tangent {
     pub by_twist: WrenchByTwist,
 }
 
-/// Gives the derivatives of a response, which are dear and not always asked for.
+/// Computes the derivatives of a response, which are expensive and not always needed.
 pub trait Linearization {
-    /// The derivatives of the wrench at the response.
+    /// Returns the derivatives of the wrench at the response.
     fn tangent(&self) -> Tangent;
 }
 
@@ -31,14 +31,13 @@ pub trait Linearization {
 pub struct Response<'a> {
     /// Wrench on the insert about its origin, in the insert frame.
     pub wrench: Wrench,
-    /// Velocity of the femur's surface past the insert's in each region, the mean weighted by load,
-    /// mm/s; in the femoral frame.
+    /// Load-weighted mean velocity of the femur's surface past the insert's in each region, mm/s; in the femoral frame.
     pub mean_slip: [Vec3; MAX_REGIONS],
     linearization: &'a dyn Linearization,
 }
 
 impl<'a> Response<'a> {
-    /// A response whose derivatives `linearization` gives when they are asked for.
+    /// Creates a response; `linearization` computes its derivatives on demand.
     pub fn new(
         wrench: Wrench,
         mean_slip: [Vec3; MAX_REGIONS],
@@ -71,20 +70,19 @@ impl fmt::Debug for Response<'_> {
 pub struct TouchedNode {
     /// Number of the surface node.
     pub node: u32,
-    /// The region of the surface that it belongs to.
+    /// The region of the surface to which it belongs.
     pub region: u8,
     /// Mean pressure on the node's share of the surface, MPa.
     pub pressure_mpa: f64,
-    /// Area of the part of the share that presses, mm2.
+    /// Area of the part of the share that is in contact, mm2.
     pub covered_mm2: f64,
     /// Force on the insert there, N.
     pub force_n: Vec3,
-    /// Velocity of the femur's surface past the insert's in the surface's own directions, anterior
-    /// along the surface, then lateral, mm/s; 0 where they stick.
+    /// Velocity of the femur's surface past the insert's in the surface's own directions, anterior along the surface, then
+    /// lateral, mm/s; 0 where they stick.
     pub sliding_mm_per_s: [f64; 2],
-    /// The displacement of the insert's surface along itself with the femur since the increment before, in the same
-    /// directions, mm: the part of the sliding that is no slip. 0 where they stick, and in a contact that does not deflect along
-    /// its surface.
+    /// Displacement of the insert's surface along itself since the increment before, in the same directions, mm: the part of
+    /// the sliding that is no slip. 0 where they stick, and in a contact without deflection along the surface.
     pub along_mm: [f64; 2],
 }
 
@@ -98,12 +96,12 @@ pub struct ContactResult {
     pub peak_pressure_mpa: f64,
 }
 
-/// The state of a contact's search for its history variables at a motion.
+/// The outcome of [`ContactModel::settle`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Settled {
-    /// Found: the step may be accepted.
+    /// Loads and history agree: the step may be accepted.
     Yes,
-    /// Changed since the last response: the step is to be solved again.
+    /// The history has changed since the last response: the step is to be solved again.
     RespondAgain,
 }
 
@@ -122,32 +120,31 @@ pub enum NotBorne {
     },
 }
 
-/// A contact between femur and insert: the machine sees this, never a mesh.
+/// A contact between femur and insert, as the machine sees it: without meshes.
 ///
-/// The machine asks [`respond`](Self::respond) as often as it needs to find an increment's end, says
-/// [`accept`](Self::accept) once for every step that it goes on from, and [`evaluate`](Self::evaluate) where an
-/// increment ends.
+/// The machine calls [`respond`](Self::respond) as often as it needs to find the end of an increment,
+/// [`accept`](Self::accept) once for every step from which it continues, and [`evaluate`](Self::evaluate) at the end of
+/// an increment. A model with a history, such as plastic strain, is settled before a step is accepted.
 pub trait ContactModel {
     /// Returns the number of surface nodes.
     fn node_count(&self) -> usize;
 
-    /// The next increments are of another cycle than those before, that of another activity for instance.
+    /// Begins the cycle of another activity.
     fn begin_cycle(&mut self) {}
 
-    /// The next motions are of this increment of the cycle, much like those of the same increment a
-    /// cycle before.
+    /// Begins an increment of the cycle, whose motions are near those of the same increment a cycle before.
     ///
-    /// A hint that makes a model quicker, and changes none of its answers.
+    /// A hint that makes a model faster and changes none of its results.
     fn begin_increment(&mut self, _increment: usize) {}
 
     /// Returns the response to a relative motion.
     ///
-    /// The answer depends on the motion and on what was accepted, not on the responses before, but
-    /// for what a model says it rounds.
+    /// It depends on the motion and on the accepted history, not on the responses before, except for a model's documented
+    /// round-off.
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_>;
 
-    /// A step is to end at a motion, that of the last response or one as near: a model with a history finds what
-    /// the step adds to it, in trial, and the responses after that are with it.
+    /// Updates the trial history for a step that ends at a motion, that of the last response or very near it; further
+    /// responses are with that history.
     ///
     /// # Errors
     /// A load that the insert does not bear.
@@ -155,22 +152,21 @@ pub trait ContactModel {
         Ok(Settled::Yes)
     }
 
-    /// The step that settled last is not gone on from: what it would have added is dropped.
+    /// Drops the trial history: the step is not continued from.
     fn reject(&mut self) {}
 
-    /// Returns the distance of the surface at rest from its place at the same increment a cycle before, mm, times how
-    /// much more exactly than a motion it is to repeat itself; a cycle does not before that has become small.
+    /// Returns the distance of the surface at rest from its place at the same increment a cycle before, mm, times the
+    /// factor by which it is to repeat itself more exactly than a motion. A cycle repeats itself once this is small.
     fn moved_in_a_cycle_mm(&self) -> f64 {
         0.0
     }
 
-    /// A step has ended at a motion, and the machine goes on from there: a model with a history adds
-    /// the step to it. The motion is that of the last response, or so near that the model may take the
-    /// difference to first order.
+    /// Accepts a step that ends at a motion: a model with a history commits it. The motion is that of the last response, or
+    /// so near that the model may extrapolate to first order.
     fn accept(&mut self, _motion: &RelativeMotion) {}
 
-    /// The nodes in contact and the highest pressure at a motion: that of the last response, or one so
-    /// near that loads and speeds may be taken along to first order.
+    /// Returns the nodes in contact and the highest pressure at a motion: that of the last response, or so near that loads
+    /// and speeds may be extrapolated to first order.
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult;
 
     /// Returns the memory from which the next contact resumes.
@@ -182,30 +178,29 @@ pub trait ContactModel {
 /// The memory that a contact leaves to the next one.
 #[derive(Debug, Default)]
 pub struct ContactMemory {
-    /// The part that results depend on.
+    /// The part on which results depend.
     pub state: ContactState,
-    /// The part that makes the next contact quicker and changes none of its results.
+    /// The part that makes the next contact faster and changes none of its results.
     pub cache: ContactCache,
 }
 
-/// The history of a contact whose answers depend on it: plastic strains, for instance. A march keeps
-/// it in its checkpoint.
+/// The history on which a contact's results depend, such as plastic strains. It is part of a checkpoint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
-    /// The fields, in an order of the law's own.
+    /// The fields, in an order that the law defines.
     pub fields: Vec<StateField>,
 }
 
 /// A field of a contact's history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StateField {
-    /// Its name, which ends in its unit.
+    /// The name, which ends in the unit.
     pub name: String,
-    /// Its numbers, in an order of the law's own.
+    /// The numbers, in an order that the law defines.
     pub values: Vec<f64>,
 }
 
-/// Whatever a contact likes to keep for the next one; each law knows its own.
+/// Data of any type that a contact keeps for the next one of the same law.
 #[derive(Debug, Default)]
 pub struct ContactCache(Option<Box<dyn Any + Send + Sync>>);
 
@@ -215,7 +210,7 @@ impl ContactCache {
         Self(Some(Box::new(value)))
     }
 
-    /// The value that was kept, if it is of this type.
+    /// Returns the value that was kept, if it is of this type.
     pub fn into_inner<T: Any>(self) -> Option<T> {
         let value = self.0?.downcast::<T>().ok()?;
         Some(*value)

@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use crate::number::Number;
 
-/// The pressure of an elastic layer on a rigid base by overclosure: $d$ is the overclosure, $h$ the
-/// thickness, and $K$ the modulus of the layer where it cannot spread sideways.
+/// The pressure of an elastic layer on a rigid base as a function of overclosure: $d$ is the overclosure, $h$ the
+/// thickness, and $K$ the modulus of the layer confined sideways.
 ///
 /// A tenth of a millimetre into 8 mm of polyethylene:
 ///
@@ -24,7 +24,7 @@ pub enum PressureLaw {
         /// Modulus K of the confined layer, MPa: see [`confined_modulus`].
         modulus_mpa: f64,
     },
-    /// $p = -K \ln(1 - d/h)$: stiffens as the layer is used up.
+    /// $p = -K \ln(1 - d/h)$: stiffens as the layer is compressed.
     Logarithmic {
         /// Modulus K of the confined layer, MPa: see [`confined_modulus`].
         modulus_mpa: f64,
@@ -33,21 +33,20 @@ pub enum PressureLaw {
     Softening {
         /// Modulus K of the confined layer at no pressure, MPa: see [`softening_modulus`].
         modulus_mpa: f64,
-        /// Pressure s at which the layer has given twice what its first modulus gives, MPa.
+        /// Pressure s at which the strain is twice that of the initial modulus, MPa.
         softening_stress_mpa: f64,
     },
-    /// Pressure against overclosure whatever the thickness, as Abaqus tabulates it.
+    /// Pressure against overclosure, independent of the thickness, as Abaqus tabulates it.
     Tabulated(PressureTable),
-    /// Pressure against the strain d/h: the table is that of a layer 1 mm thick.
+    /// Pressure against the strain d/h: the table of a layer 1 mm thick.
     TabulatedStrain(PressureTable),
 }
 
-/// Share of the layer's thickness at which the logarithmic law goes on as a straight line, so
-/// that an iterate of Newton's method beyond the layer still finds its way back.
+/// Part of the layer's thickness from which on the logarithmic law continues as a straight line, so that a Newton iterate
+/// beyond the layer, where the logarithm is undefined, still finds its way back.
 const LOGARITHM_ENDS_AT: f64 = 0.9;
 
-/// Modulus of an elastic layer that cannot spread sideways,
-/// $K = (1 - \nu) E/((1 + \nu)(1 - 2 \nu))$, MPa.
+/// Returns the modulus of an elastic layer confined sideways, $K = (1 - \nu) E/((1 + \nu)(1 - 2 \nu))$, MPa.
 ///
 /// Source: the elastic foundation of Bei & Fregly 2004; `youngs_modulus_mpa` > 0,
 /// `poissons_ratio` in \[0, 0.5).
@@ -56,8 +55,8 @@ pub fn confined_modulus(youngs_modulus_mpa: f64, poissons_ratio: f64) -> f64 {
     (1.0 - v) * youngs_modulus_mpa / ((1.0 + v) * (1.0 - 2.0 * v))
 }
 
-/// Modulus at no pressure, MPa, of a confined layer whose material follows the curve
-/// $\epsilon = \tfrac{1}{2} \epsilon_0 (\sigma/\sigma_0 + (\sigma/\sigma_0)^3)$ under one stress:
+/// Returns the modulus at zero pressure, MPa, of a confined layer whose material follows the uniaxial curve
+/// $\epsilon = \tfrac{1}{2} \epsilon_0 (\sigma/\sigma_0 + (\sigma/\sigma_0)^3)$:
 /// [`confined_modulus`] of $E = 2 \sigma_0/\epsilon_0$.
 ///
 /// Source: the form of the curve Fregly, Bei and Sylvester 2003; `softening_strain` is
@@ -74,8 +73,8 @@ pub fn softening_modulus(
 }
 
 impl PressureLaw {
-    /// Pressure, MPa, and its derivative by the overclosure, MPa/mm, for an `overclosure_mm` >= 0
-    /// of a layer of thickness 1/`per_thickness`, in every lane.
+    /// Returns the pressure, MPa, and its derivative by the overclosure, MPa/mm, for an `overclosure_mm` >= 0 of a layer of
+    /// thickness 1/`per_thickness`, in every lane.
     #[inline(always)]
     pub fn pressures<T: Number>(&self, overclosure_mm: T, per_thickness: T) -> (T, T) {
         if let Self::Linear { modulus_mpa } = self {
@@ -89,9 +88,9 @@ impl PressureLaw {
         )
     }
 
-    /// Returns the one variable that the pressure depends on: the strain d/h, or with a table the overclosure d, mm.
+    /// Returns the single variable on which the pressure depends: the strain d/h, or with a table the overclosure d, mm.
     ///
-    /// As an overclosure of a layer 1 mm thick it gives the same pressure.
+    /// Taken as the overclosure of a layer 1 mm thick it gives the same pressure.
     pub fn measure(&self, overclosure_mm: f64, per_thickness: f64) -> f64 {
         match self {
             Self::Linear { .. }
@@ -102,8 +101,8 @@ impl PressureLaw {
         }
     }
 
-    /// Pressure, MPa, and its derivative by the overclosure, MPa/mm, for an `overclosure_mm` >= 0
-    /// of a layer `thickness_mm` thick.
+    /// Returns the pressure, MPa, and its derivative by the overclosure, MPa/mm, for an `overclosure_mm` >= 0 of a layer
+    /// `thickness_mm` thick.
     pub fn pressure(&self, overclosure_mm: f64, thickness_mm: f64) -> (f64, f64) {
         match self {
             Self::Linear { modulus_mpa } => {
@@ -133,14 +132,14 @@ impl PressureLaw {
     }
 }
 
-/// -ln(1 - x) and its derivative, continued as a straight line beyond [`LOGARITHM_ENDS_AT`].
+/// Returns -ln(1 - x) and its derivative, continued as a straight line beyond [`LOGARITHM_ENDS_AT`].
 fn minus_log_one_minus(x: f64) -> (f64, f64) {
     let end = x.min(LOGARITHM_ENDS_AT);
     let slope = 1.0 / (1.0 - end);
     (-(-end).ln_1p() + (x - end) * slope, slope)
 }
 
-/// The root x of x + x^3 = y for y >= 0, and dx/dy.
+/// Returns the root x of x + x^3 = y for y >= 0, and dx/dy.
 ///
 /// With $x = \tfrac{2}{\sqrt 3} \sinh t$ the left side is $\tfrac{2}{3 \sqrt 3} \sinh 3t$.
 fn root_of_cube(y: f64) -> (f64, f64) {
@@ -150,13 +149,13 @@ fn root_of_cube(y: f64) -> (f64, f64) {
     (x, 1.0 / (1.0 + 3.0 * x * x))
 }
 
-/// Why points make no pressure table.
+/// An error in the points of a pressure table.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PressureTableError {
     /// Fewer than two points.
     #[error("a pressure table needs two points or more, it has {count}")]
     TooShort {
-        /// The number of points.
+        /// Their count.
         count: usize,
     },
     /// The first point is not the origin.
@@ -169,7 +168,7 @@ pub enum PressureTableError {
         /// First pressure.
         pressure_mpa: f64,
     },
-    /// A point that does not rise above the one before, or is not finite.
+    /// A point is not above the one before, or not finite.
     #[error(
         "point {index} of the pressure table does not rise: overclosure and pressure must both grow from point to point"
     )]
@@ -187,7 +186,7 @@ pub struct PressureTable {
 }
 
 impl PressureTable {
-    /// A table through (overclosure mm, pressure MPa) `points`.
+    /// Creates a table through (overclosure mm, pressure MPa) `points`.
     ///
     /// # Errors
     /// Fewer than two points, a first that is not (0, 0), or one that does not rise.
@@ -205,10 +204,8 @@ impl PressureTable {
             });
         }
         let rises = |pair: &[(f64, f64)]| {
-            pair[1].0 > pair[0].0
-                && pair[1].1 > pair[0].1
-                && pair[1].0.is_finite()
-                && pair[1].1.is_finite()
+            let ((xa, ya), (xb, yb)) = (pair[0], pair[1]);
+            xb > xa && yb > ya && xb.is_finite() && yb.is_finite()
         };
         match points.windows(2).position(|pair| !rises(pair)) {
             Some(before) => Err(PressureTableError::NotRising { index: before + 1 }),
@@ -216,13 +213,12 @@ impl PressureTable {
         }
     }
 
-    /// The points, (overclosure mm, pressure MPa).
+    /// Returns the points, (overclosure mm, pressure MPa).
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }
 
-    /// Pressure, MPa, and its derivative by the overclosure, MPa/mm.
-    pub(crate) fn pressure(&self, overclosure_mm: f64) -> (f64, f64) {
+    fn pressure(&self, overclosure_mm: f64) -> (f64, f64) {
         let after = self
             .points
             .partition_point(|point| point.0 <= overclosure_mm);

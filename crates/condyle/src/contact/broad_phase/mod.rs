@@ -110,7 +110,7 @@ pub enum Search {
 /// of where it was, so every increment starts from the bounds found there before; where these do not suffice, from those
 /// of the increment before. Hardly any block is then a candidate but those that touch.
 pub(crate) struct BroadPhase {
-    search: Search,
+    pub search: Search,
     /// The bounds at the increments so far, but for the present one.
     kept: Vec<Option<Separations>>,
     increment: usize,

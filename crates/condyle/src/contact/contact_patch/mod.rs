@@ -12,22 +12,33 @@ pub(crate) use peak::{MIN_NODES, Quadratic, highest_mpa};
 pub(crate) use traction::{Coulomb, Sliding, Tractions4};
 
 use super::{
-    broad_phase::ShareBlock,
-    model::{MAX_REGIONS, Tangent, TouchedNode},
+    broad_phase::{Search, ShareBlock},
+    law::Bodies,
+    model::{ContactCache, MAX_REGIONS, Tangent, TouchedNode},
 };
 use crate::{
     Vec3, Vector,
-    geometry::ArticulatingSurface,
     number::{F64x4, LANES, Number, cross, dot, scale_add, vector_from_lanes, zero_vector},
     spatial::{
-        FrameChange, Pose, Pose4, RelativeMotion, Twist, Twist4, Wrench, WrenchByTwist, body,
+        FrameChange, Pose, Pose4, RelativeMotion, Twist, Twist4, Vec6, Wrench, WrenchByTwist, body,
     },
 };
 use traction::TangentSum;
 
+/// The settings that the contacts of all laws have in common.
+#[derive(Clone, Copy)]
+pub(crate) struct ContactSettings {
+    /// Regularised friction.
+    pub friction: Coulomb,
+    pub search: Search,
+    /// Motion up to which a sample of the femur is extrapolated, mm.
+    pub sample_reuse_mm: f64,
+}
+
 /// The blocks under pressure at a response, and the tractions on them.
-pub(crate) struct ContactPatch {
-    /// The blocks near the femur, ascending.
+pub(crate) struct ContactPatch<'a> {
+    pub nearby: NearBlocks<'a>,
+    /// The blocks in contact, ascending.
     pub near: Vec<NearBlock>,
     /// The tractions on each of them.
     tractions: Vec<Tractions4>,
@@ -38,19 +49,35 @@ pub(crate) struct ContactPatch {
     directions: Vec<[Vector<F64x4>; 2]>,
 }
 
-impl ContactPatch {
-    /// Starts without contact.
-    pub fn new(surface: &ArticulatingSurface, blocks: &[ShareBlock], friction: Coulomb) -> Self {
+/// A node in contact.
+#[derive(Clone, Copy)]
+pub(crate) struct ContactNode {
+    pub node: u32,
+    /// The force along the femur's normal, N, and its derivatives by a turn and a shift of the femur in its frame.
+    pub force_n: f64,
+    pub by_motion: Vec6,
+}
+
+impl<'a> ContactPatch<'a> {
+    /// Starts without contact, with the cache of another contact.
+    pub fn new(
+        bodies: Bodies<'a>,
+        blocks: Vec<ShareBlock>,
+        settings: ContactSettings,
+        cache: ContactCache,
+    ) -> Self {
         let directions = |block: &ShareBlock| {
-            let at = block.nodes.map(|node| surface.directions(node as usize));
+            let at = block.nodes;
+            let at = at.map(|node| bodies.surface.directions(node as usize));
             [0, 1].map(|which| vector_from_lanes(|lane| &at[lane][which]))
         };
         Self {
             near: Vec::new(),
             tractions: Vec::new(),
             pose: Pose::identity(),
-            friction,
+            friction: settings.friction,
             directions: blocks.iter().map(directions).collect(),
+            nearby: NearBlocks::new(cache.into_inner(), bodies.femur, blocks, settings),
         }
     }
 
@@ -58,7 +85,6 @@ impl ContactPatch {
     /// femoral frame, and the load-weighted mean slip of every region.
     pub fn press(
         &mut self,
-        blocks: &[ShareBlock],
         mut traction: impl FnMut(usize, &NearBlock, &ShareBlock) -> Tractions4,
     ) -> (Wrench<body::Insert, body::Femur>, [Vec3; MAX_REGIONS]) {
         let none = F64x4::splat(0.0);
@@ -66,7 +92,7 @@ impl ContactPatch {
         let mut slips = [(none, zero_vector::<F64x4>()); MAX_REGIONS];
         self.tractions.clear();
         for (number, near) in self.near.iter().enumerate() {
-            let shares = &blocks[near.block as usize];
+            let shares = &self.nearby.blocks[near.block as usize];
             let tractions = traction(number, near, shares);
             let CachedSample { place, sample } = &near.cached;
             let force = tractions.force_n(&sample.normal, self.friction.coefficient);
@@ -95,11 +121,6 @@ impl ContactPatch {
         )
     }
 
-    /// Returns the blocks near the femur, each with its tractions.
-    pub fn loaded(&self) -> impl Iterator<Item = (&NearBlock, &Tractions4)> {
-        self.near.iter().zip(&self.tractions)
-    }
-
     /// Returns the derivatives of the wrench.
     pub fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
@@ -120,15 +141,15 @@ impl ContactPatch {
     /// Returns the nodes in contact at a motion near that of the response.
     ///
     /// Over the short way from there pressures change to first order, and covered areas stay.
-    pub fn touched(&self, blocks: &[ShareBlock], motion: &RelativeMotion) -> Vec<TouchedNode> {
+    pub fn touched(&self, motion: &RelativeMotion) -> Vec<TouchedNode> {
         let change = FrameChange::to_femur(&self.pose);
         let moved = Twist4::new(&change.twist(&Twist::between(&self.pose, &motion.pose)));
         let twist = Twist4::new(&change.twist(&motion.twist));
         let pose = Pose4::new(&self.pose);
         let mut touched = Vec::with_capacity(LANES * self.near.len());
-        for (near, tractions) in self.loaded() {
+        for (near, tractions) in self.near.iter().zip(&self.tractions) {
             let (shares, [anterior, lateral]) = (
-                &blocks[near.block as usize],
+                &self.nearby.blocks[near.block as usize],
                 &self.directions[near.block as usize],
             );
             let CachedSample { place, sample } = &near.cached;
@@ -162,5 +183,29 @@ impl ContactPatch {
             }
         }
         touched
+    }
+
+    /// Returns the forces on the nodes in contact, extrapolated over a short motion of the femur since the response.
+    pub fn nodes(&self, moved: &Twist<body::Femur, body::Femur>) -> Vec<ContactNode> {
+        let mut nodes = Vec::new();
+        for (near, tractions) in self.near.iter().zip(&self.tractions) {
+            let shares = &self.nearby.blocks[near.block as usize];
+            let force_n = tractions.pressure_mpa * tractions.area_mm2;
+            let shift = &tractions.load_by_motion;
+            let turn = cross(&near.cached.place, shift) + tractions.load_by_turn;
+            let by: [F64x4; 6] = [turn.x, turn.y, turn.z, shift.x, shift.y, shift.z];
+            for (lane, &node) in shares.nodes.iter().enumerate() {
+                let own_n = force_n.lane(lane);
+                if own_n * shares.area_mm2.lane(lane) > 0.0 {
+                    let by_motion = Vec6::from_fn(|motion, _| by[motion].lane(lane));
+                    nodes.push(ContactNode {
+                        node,
+                        force_n: (own_n + by_motion.dot(&moved.numbers())).max(0.0),
+                        by_motion,
+                    });
+                }
+            }
+        }
+        nodes
     }
 }

@@ -1,8 +1,9 @@
 //! The blocks of shares near the femur, each with its sample of it.
 
+use super::ContactSettings;
 use crate::{
     Vector,
-    contact::broad_phase::{BroadPhase, Search, SeparationBound, ShareBlock},
+    contact::broad_phase::{BroadPhase, SeparationBound, ShareBlock},
     geometry::{FemoralSurface, SurfaceSample},
     number::{F64x4, Number, dot},
     spatial::{Pose, Pose4},
@@ -46,15 +47,17 @@ impl<'a> NearBlocks<'a> {
         cache: Option<NearCache>,
         femur: &'a FemoralSurface,
         blocks: Vec<ShareBlock>,
-        (search, reuse_mm): (Search, f64),
+        settings: ContactSettings,
     ) -> Self {
         Self {
             femur,
             broad_phase: match cache {
-                Some(cache) => cache.broad_phase.worn(&cache.blocks, &blocks),
-                None => BroadPhase::new(search, &blocks),
+                Some(cache) if cache.broad_phase.search == settings.search => {
+                    cache.broad_phase.worn(&cache.blocks, &blocks)
+                }
+                Some(_) | None => BroadPhase::new(settings.search, &blocks),
             },
-            reuse_mm,
+            reuse_mm: settings.sample_reuse_mm,
             cached: vec![CachedSample::nothing(); blocks.len()],
             near_at: vec![0; blocks.len()],
             number: 1,

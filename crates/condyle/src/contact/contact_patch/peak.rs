@@ -1,4 +1,4 @@
-//! The highest pressure, which may lie between the nodes.
+//! Interpolation between the nodes, and the search for the highest pressure there.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -8,24 +8,31 @@ use crate::{
     geometry::Share,
 };
 
-/// Nodes whose pressures differ by no more than this part press equally: which of them leads is a
-/// matter of round-off, and of which way round the knee is told.
+/// Pressures that differ by no more than this part count as equal: the order of their nodes would be a matter of round-off,
+/// and a mirrored knee would have another peak.
 const EQUAL: f64 = 1e-9;
 
-/// Around any node inside a surface there are as many, and they determine a quadratic; at its rim
-/// there are fewer, and farther ones must help.
+/// Nodes to which a quadratic is fitted at least: a node inside a surface and those around it are as many; at the rim
+/// farther ones are added.
 pub(crate) const MIN_NODES: usize = 7;
 
-/// Highest pressure at or around the nodes that touch, MPa, any region of which may have it.
+/// Returns the highest pressure at or around the nodes in contact, MPa; any region may have it.
 ///
-/// `highest_around` tells it for a node's share and what lies around; it is asked of those that lead their region,
-/// and told the highest so far: what cannot be above that need not be told exactly.
-/// It is not below the highest mean over a share.
+/// `highest_around` returns that within a node's share. It is called for the nodes with the highest mean of their region,
+/// with the highest pressure so far; a result that is not above it need not be exact. The highest mean over a share is a
+/// lower bound.
 pub(crate) fn highest_mpa(
     touched: &[TouchedNode],
     highest_around: impl Fn(u32, f64) -> f64,
 ) -> f64 {
-    let highest = highest_of_regions(touched);
+    let mut highest = [0.0; MAX_REGIONS];
+    for node in touched {
+        let highest = &mut highest[usize::from(node.region)];
+        // A branch that is seldom taken is faster than a maximum that waits for the one before.
+        if node.pressure_mpa > *highest {
+            *highest = node.pressure_mpa;
+        }
+    }
     let leads = highest.map(|highest| highest * (1.0 - EQUAL));
     let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.region)];
     let mut tops = touched.iter().filter(leads).collect::<Vec<_>>();
@@ -36,26 +43,12 @@ pub(crate) fn highest_mpa(
     })
 }
 
-/// Highest mean over a share in every region, MPa.
-fn highest_of_regions(touched: &[TouchedNode]) -> [f64; MAX_REGIONS] {
-    let mut highest = [0.0; MAX_REGIONS];
-    for node in touched {
-        let highest = &mut highest[usize::from(node.region)];
-        // A jump that is seldom taken is faster than a maximum that waits for the one before.
-        if node.pressure_mpa > *highest {
-            *highest = node.pressure_mpa;
-        }
-    }
-    highest
-}
-
-/// Regularisation added to the least squares for every coefficient but the constant, where a length is a
-/// share's edge: a patch that does not tell a coefficient then takes it to be small, and one that
-/// tells it does not feel it.
+/// Regularisation of the least squares for every coefficient but the constant, with lengths in units of a share's edge. A
+/// coefficient that the patch does not determine then becomes small; one that it determines is not affected.
 const LEAST_SQUARES_FLOOR: f64 = 1e-10;
 
-/// q(u) = constant + slope . u + u . bend u / 2 along the plane of a share, u from its centre in
-/// units of `length_mm`.
+/// A quadratic q(u) = constant + slope . u + u . bend u / 2 in the plane of a share, u from its centre in units of
+/// `length_mm`.
 #[derive(Clone, Debug)]
 pub(crate) struct Quadratic {
     constant: f64,
@@ -94,12 +87,12 @@ impl Plane {
 }
 
 impl Quadratic {
-    /// The least-squares fit to means over shares, in the plane of `around`; none without a mean.
+    /// Fits a quadratic to means over shares, in the plane of `around`, by least squares; none without a mean.
     ///
     /// With a share's centre u and its spread s, the mean of the quadratic is
-    /// constant + slope . u + bend : (u u'/2 + s I), as the contact takes its means (see
-    /// [`FemoralSurface::sample`](crate::geometry::FemoralSurface::sample)). Where the means do not
-    /// determine all six coefficients, these are the smallest that fit.
+    /// constant + slope . u + bend : (u u'/2 + s I), in the sense of
+    /// [`FemoralSurface::sample`](crate::geometry::FemoralSurface::sample). If the means do not determine all six
+    /// coefficients, these are the smallest that fit.
     pub fn fit<'a>(
         around: &Share,
         means: impl Iterator<Item = (&'a Share, f64)> + Clone,
@@ -124,13 +117,13 @@ impl Quadratic {
         })
     }
 
-    /// The mean over the share.
+    /// Returns the mean over the share.
     pub fn mean(&self) -> f64 {
         let [xx, _, yy] = self.bend;
         self.constant + self.moment * (xx + yy) / 2.0
     }
 
-    /// By how much it misses one of the means that it was fitted to around a share, at most.
+    /// Returns the largest difference from the given means, in the plane of `around`.
     pub fn worst_miss<'a>(
         &self,
         around: &Share,
@@ -146,10 +139,9 @@ impl Quadratic {
         means.map(miss).fold(0.0, f64::max)
     }
 
-    /// The largest value within the share.
+    /// Returns the largest value within the share.
     ///
-    /// Along either axis of the bend it is at the stationary point, or at the end of the share
-    /// where there is none before it.
+    /// Along either axis of the bend it is at the stationary point, or at the end of the share if that comes first.
     pub fn highest(&self) -> f64 {
         let [xx, xy, yy] = self.bend;
         let mean = (xx + yy) / 2.0;

@@ -1,4 +1,4 @@
-//! The factor of the compliance of nodes that press, kept while few of them change.
+//! The factor of the compliance of the nodes in contact, kept while few of them change.
 
 use super::{
     cholesky::{Cholesky, Eight, ROWS, get, product, set, subtract, zero},
@@ -8,29 +8,31 @@ use crate::number::{F64x4, Number};
 
 /// The number of changes side by side.
 const SIDES: usize = ROWS;
-/// With more changes than one to so many nodes the matrix is factored again: that takes n^3/6 products, each change
+/// With more than one change to so many nodes the matrix is factored again: that takes n^3/6 products, and each change
 /// n^2/2 and more.
 const NODES_A_CHANGE: usize = 4;
-/// Fewest and most changes up to which it is not.
+/// Bounds on the number of changes from which on it is.
 const MAX_CHANGES: [usize; 2] = [32, 320];
-/// A node that is in no row.
+/// The row of a node that has none.
 const NONE: u32 = u32::MAX;
 
-/// Loads on the nodes that press, from their overclosures.
+/// The loads on the nodes in contact, from their overclosures.
 ///
-/// The compliance C = L L' of the nodes B that pressed some time ago is factored. Since then nodes E have begun to
-/// press, and R have ceased. With W = [C_BE, I_R] and Z = L\W the changes x, loads on E and what holds R, satisfy
+/// The compliance C = L L' of the nodes B that were in contact some time ago is factored. Since then nodes E have come into
+/// contact, and nodes R have left it. With W = [C_BE, I_R] and Z = L\W the changes x, which are the loads on E and the
+/// overclosures that keep the loads on R at zero, satisfy
 ///
 /// $$ \left( \begin{bmatrix} C_{EE} & 0 \cr 0 & 0 \end{bmatrix} - Z^T Z \right) x =
 ///    \begin{bmatrix} d_E \cr 0 \end{bmatrix} - Z^T y, \qquad y = L^{-1} d_B, \qquad N_B = L^{-T} (y - Z x). $$
 ///
-/// The small matrix is quasi-definite: L D L' of it exists in any order.
+/// The small matrix is quasi-definite, so that its L D L' exists in any order of the changes: there is no pivoting, and
+/// rows are appended as nodes change.
 pub(crate) struct ChangedFactor {
     /// B, and the row of every surface node in it.
     nodes: Vec<u32>,
     row_of: Vec<u32>,
     factor: Cholesky,
-    /// Nodes of which there are columns of Z, none twice, each eight of which share a block of Z.
+    /// Nodes with columns of Z, each at most once; eight of them share a block of Z.
     kept: Vec<Option<u32>>,
     blocks: Vec<Vec<Eight>>,
     /// Z' Z of the kept columns, up to the diagonal.
@@ -38,7 +40,7 @@ pub(crate) struct ChangedFactor {
     /// The kept columns that count now, and the rows of the factor of their matrix.
     changes: Vec<usize>,
     small: Vec<Vec<f64>>,
-    /// y, if it is that of the present overclosures.
+    /// y, and whether it is that of the present overclosures.
     forward: Vec<Eight>,
     is_forward_known: bool,
     is_pressing: Vec<bool>,
@@ -47,7 +49,7 @@ pub(crate) struct ChangedFactor {
 }
 
 impl ChangedFactor {
-    /// No node presses, of a surface with so many.
+    /// Starts without contact on a surface with so many nodes.
     pub fn new(node_count: usize) -> Self {
         Self {
             nodes: Vec::new(),
@@ -66,21 +68,31 @@ impl ChangedFactor {
         }
     }
 
-    /// The next loads are from other overclosures.
+    /// Announces other overclosures.
     pub fn take_other_overclosures(&mut self) {
         self.is_forward_known = false;
     }
 
-    /// Lets nodes press, and no others.
+    /// Sets the nodes in contact.
     pub fn press(&mut self, nodes: &[u32], compliance: &NearMatrix) {
-        let changed = self.changed(nodes);
+        for &node in nodes {
+            self.is_pressing[node as usize] = true;
+        }
+        let left = self.nodes.iter();
+        let left = left.filter(|&&node| !self.is_pressing[node as usize]);
+        let new = nodes.iter();
+        let new = new.filter(|&&node| self.row_of[node as usize] == NONE);
+        let changed: Vec<u32> = left.chain(new).copied().collect();
+        for &node in nodes {
+            self.is_pressing[node as usize] = false;
+        }
         let is_new = |node: &&u32| !self.kept.contains(&Some(**node));
         let new: Vec<u32> = changed.iter().filter(is_new).copied().collect();
         let kept = self.kept.len() + new.len().next_multiple_of(SIDES);
         let [fewest, most] = MAX_CHANGES;
         let most = (nodes.len() / NODES_A_CHANGE).clamp(fewest, most);
         if changed.len() > most.min(nodes.len() / 2) || kept > 2 * most {
-            self.factor_anew(nodes, compliance);
+            self.factor_again(nodes, compliance);
             return;
         }
         for new in new.chunks(SIDES) {
@@ -92,32 +104,13 @@ impl ChangedFactor {
         self.change(changes, compliance);
     }
 
-    /// The nodes that have ceased to press since the matrix was factored, and those that have begun.
-    fn changed(&mut self, nodes: &[u32]) -> Vec<u32> {
-        nodes
-            .iter()
-            .for_each(|&node| self.is_pressing[node as usize] = true);
-        let ceased = self
-            .nodes
-            .iter()
-            .filter(|&&node| !self.is_pressing[node as usize]);
-        let begun = nodes
-            .iter()
-            .filter(|&&node| self.row_of[node as usize] == NONE);
-        let changed = ceased.chain(begun).copied().collect();
-        nodes
-            .iter()
-            .for_each(|&node| self.is_pressing[node as usize] = false);
-        changed
-    }
-
-    fn factor_anew(&mut self, nodes: &[u32], compliance: &NearMatrix) {
-        self.nodes
-            .iter()
-            .for_each(|&node| self.row_of[node as usize] = NONE);
+    fn factor_again(&mut self, nodes: &[u32], compliance: &NearMatrix) {
+        for &node in &self.nodes {
+            self.row_of[node as usize] = NONE;
+        }
         self.nodes.clear();
         self.nodes.extend_from_slice(nodes);
-        // Rows of a panel together: an entry is next to the one before.
+        // Rows of a panel are kept together, so that successive entries are next to each other in memory.
         self.nodes
             .sort_unstable_by_key(|&node| compliance.place(node));
         for (row, &node) in self.nodes.iter().enumerate() {
@@ -125,7 +118,7 @@ impl ChangedFactor {
         }
         let rows = self.nodes.iter().map(|&node| compliance.row(node));
         let rows: Vec<u32> = rows.collect();
-        // Column after column of some rows is asked for, and these numbers lie side by side.
+        // The factor reads column after column of some rows; the matrix is symmetric, and these numbers are side by side.
         let entry = |row: usize, column: usize| compliance.at(rows[column], rows[row]);
         self.factor.factor(nodes.len(), entry);
         self.kept.clear();
@@ -136,7 +129,7 @@ impl ChangedFactor {
         self.is_forward_known = false;
     }
 
-    /// Keeps the columns of Z of up to eight nodes.
+    /// Adds a block of Z with the columns of up to eight nodes, and its products with all blocks.
     fn keep(&mut self, new: &[u32], compliance: &NearMatrix) {
         let mut block = vec![zero(); self.factor.rows()];
         for (side, &node) in new.iter().enumerate() {
@@ -154,11 +147,6 @@ impl ChangedFactor {
         self.blocks.push(block);
         let sides = (0..SIDES).map(|side| new.get(side).copied());
         self.kept.extend(sides);
-        self.add_products();
-    }
-
-    /// Adds the products of the last block with all blocks.
-    fn add_products(&mut self) {
         let last = self.blocks.len() - 1;
         let first = self.products.len();
         for row in first..self.kept.len() {
@@ -180,8 +168,8 @@ impl ChangedFactor {
         }
     }
 
-    /// Factors the matrix of other changes, L D L', the diagonal of L left to D. What it has in common with that of
-    /// the changes before stays.
+    /// Factors the matrix of other changes to L D L', with D in place of the unit diagonal of L. The rows that it has in common
+    /// with the matrix before stay.
     fn change(&mut self, changes: Vec<usize>, compliance: &NearMatrix) {
         let pairs = self.changes.iter().zip(&changes);
         let same = pairs.take_while(|(before, now)| before == now).count();
@@ -205,7 +193,7 @@ impl ChangedFactor {
         }
     }
 
-    /// An entry of the matrix of the changes, up to the diagonal.
+    /// Returns an entry of the matrix of the changes, up to the diagonal.
     fn of_changes(&self, i: usize, j: usize, compliance: &NearMatrix) -> f64 {
         let (i, j) = (self.changes[i], self.changes[j]);
         let own = match (self.begun(i), self.begun(j)) {
@@ -215,12 +203,14 @@ impl ChangedFactor {
         own - self.products[i][j]
     }
 
-    /// The node of a kept column, if it has begun to press.
+    /// Returns the node of a kept column, if it has come into contact.
     fn begun(&self, kept: usize) -> Option<u32> {
         self.kept[kept].filter(|&node| self.row_of[node as usize] == NONE)
     }
 
-    /// The loads on the nodes that press, in their order, from the overclosures of all surface nodes.
+    /// Computes the loads on the nodes in contact, in their order, from the overclosures of all surface nodes.
+    ///
+    /// The search for the contact set needs only loads; this path is several times faster than that with derivatives.
     pub fn loads(&mut self, nodes: &[u32], overclosures: &[Eight], loads: &mut Vec<f64>) {
         self.find_forward(overclosures);
         let changes = self.changes_of_loads(overclosures);
@@ -228,7 +218,12 @@ impl ChangedFactor {
         self.side
             .extend(self.forward.iter().map(|side| get(side, 0)));
         for (block, columns) in self.blocks.iter().enumerate() {
-            let of_block = self.of_block(block, &changes);
+            let mut of_block = zero();
+            for (&kept, &change) in self.changes.iter().zip(&changes) {
+                if kept / SIDES == block {
+                    set(&mut of_block, kept % SIDES, change);
+                }
+            }
             for (sum, columns) in self.side.iter_mut().zip(columns) {
                 let [a, b] = [0, 1].map(|half| columns[half] * of_block[half]);
                 *sum -= (a + b).sum();
@@ -246,7 +241,7 @@ impl ChangedFactor {
         }
     }
 
-    /// The changes x of the loads.
+    /// Returns the changes x.
     fn changes_of_loads(&self, overclosures: &[Eight]) -> Vec<f64> {
         let mut products = Vec::with_capacity(self.kept.len());
         for block in &self.blocks {
@@ -275,17 +270,6 @@ impl ChangedFactor {
         x
     }
 
-    /// The changes of the columns of a block, those that do not count none.
-    fn of_block(&self, block: usize, changes: &[f64]) -> Eight {
-        let mut numbers = zero();
-        for (&kept, &change) in self.changes.iter().zip(changes) {
-            if kept / SIDES == block {
-                set(&mut numbers, kept % SIDES, change);
-            }
-        }
-        numbers
-    }
-
     /// Returns the place of a node among the changes.
     fn place_of(&self, node: u32) -> Option<usize> {
         self.changes
@@ -293,7 +277,7 @@ impl ChangedFactor {
             .position(|&kept| self.kept[kept] == Some(node))
     }
 
-    /// The same with the derivatives by six motions.
+    /// Computes the same with the derivatives by six motions.
     pub fn loads_by_motion(
         &mut self,
         nodes: &[u32],
@@ -321,7 +305,7 @@ impl ChangedFactor {
         }
     }
 
-    /// Finds y, unless it is known; a node that ceased to press may have any overclosure.
+    /// Computes y, unless it is known. The overclosures of nodes that have left the contact do not matter.
     fn find_forward(&mut self, overclosures: &[Eight]) {
         if !self.is_forward_known {
             self.forward.clear();
@@ -333,7 +317,7 @@ impl ChangedFactor {
         }
     }
 
-    /// The changes x, with their derivatives.
+    /// Returns the changes x with their derivatives.
     fn changes_by_motion(&self, overclosures: &[Eight]) -> Vec<Eight> {
         let mut x: Vec<Eight> = Vec::with_capacity(self.changes.len());
         for (&kept, row) in self.changes.iter().zip(&self.small) {

@@ -5,7 +5,7 @@ use crate::number::{F64x4, LANES, Number};
 /// The number of rows side by side.
 pub(crate) const ROWS: usize = 2 * LANES;
 
-/// Panels that go together past those before, which come from memory once for all of them.
+/// Panels that are eliminated together: those before are then read from memory once for all of them.
 const TOGETHER: usize = 4;
 
 /// One number for each of the rows that go side by side, or for each right-hand side.
@@ -13,9 +13,12 @@ pub(crate) type Eight = [F64x4; 2];
 
 /// The factor L of a symmetric positive definite matrix A = L L'.
 ///
-/// It is kept in panels of eight rows, each column of a panel side by side, so that all of the work is
-/// products of vectors. A matrix whose order is no multiple of eight is filled up with the identity. The
-/// same matrix gives the same bytes on any machine with fused products.
+/// It is stored in panels of eight rows, the rows of each column side by side, so that all of the work is products of
+/// vectors. A matrix whose order is no multiple of eight is padded with the identity. The same matrix gives the same bytes
+/// on any machine with fused products.
+///
+/// Written here and not taken from a library, since small matrices are factored and solved some thousand times a second,
+/// right-hand sides come in eights (a load and its six derivatives), and the order of all operations is fixed.
 #[derive(Default)]
 pub(crate) struct Cholesky {
     order: usize,
@@ -24,17 +27,16 @@ pub(crate) struct Cholesky {
     per_diagonal: Vec<f64>,
 }
 
-/// Number of the first column of a panel.
+/// Returns the number of the first column of a panel.
 fn start(panel: usize) -> usize {
     ROWS * panel * (panel + 1) / 2
 }
 
-/// Eight zeros.
 pub(crate) fn zero() -> Eight {
     [F64x4::splat(0.0); 2]
 }
 
-/// a - b f
+/// Subtracts b f from a.
 #[inline(always)]
 pub(crate) fn subtract(a: &mut Eight, b: &Eight, f: f64) {
     let f = F64x4::splat(-f);
@@ -42,7 +44,7 @@ pub(crate) fn subtract(a: &mut Eight, b: &Eight, f: f64) {
     a[1] = b[1].mul_add(f, a[1]);
 }
 
-/// The number of a row, or of a right-hand side.
+/// Returns the number of a row, or of a right-hand side.
 pub(crate) fn get(numbers: &Eight, side: usize) -> f64 {
     numbers[side / LANES].lane(side % LANES)
 }
@@ -54,7 +56,7 @@ pub(crate) fn set(numbers: &mut Eight, side: usize, value: f64) {
     *half = F64x4::new(lanes);
 }
 
-/// The product of two vectors, four of their numbers side by side.
+/// Returns the product of two vectors, summed in four lanes.
 pub(crate) fn product(a: &[f64], b: &[f64]) -> f64 {
     let (fours, others) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
     let rest = fours.remainder().iter().zip(others.remainder());
@@ -65,7 +67,7 @@ pub(crate) fn product(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Cholesky {
-    /// Factors a matrix of an order; `entry` gives what is in a row and a column that is not beyond it.
+    /// Factors a matrix of the given order; `entry` returns the number in a row and a column up to the diagonal.
     pub fn factor(&mut self, order: usize, entry: impl Fn(usize, usize) -> f64) {
         let panels = order.div_ceil(ROWS);
         self.order = order;
@@ -86,7 +88,7 @@ impl Cholesky {
         }
     }
 
-    /// Puts the rows of a panel behind those before.
+    /// Appends the rows of a panel.
     fn add_rows(&mut self, panel: usize, entry: &impl Fn(usize, usize) -> f64) {
         let order = self.order;
         let at = |row: usize, column: usize| {
@@ -107,7 +109,7 @@ impl Cholesky {
         }
     }
 
-    /// Computes four columns of a panel, number 4 `block` and on, left of its diagonal.
+    /// Computes four columns of a panel left of its diagonal, from number 4 `block` on.
     fn eliminate(&mut self, panel: usize, block: usize) {
         let first = LANES * block;
         let (done, own) = self.columns.split_at_mut(start(panel));
@@ -132,7 +134,7 @@ impl Cholesky {
         own[first..first + LANES].copy_from_slice(&four);
     }
 
-    /// Computes the columns of a panel that reach its diagonal.
+    /// Computes the columns of a panel at its diagonal.
     fn factor_diagonal(&mut self, panel: usize) {
         let first = ROWS * panel;
         let own = &mut self.columns[start(panel)..start(panel + 1)];
@@ -142,6 +144,7 @@ impl Cholesky {
                 let across = before[j / LANES].lane(j % LANES);
                 subtract(&mut column, before, across);
             }
+            // A compliance is positive definite; the bound only keeps round-off from a division by zero.
             let pivot = column[j / LANES].lane(j % LANES).max(f64::MIN_POSITIVE);
             let per_diagonal = 1.0 / pivot.sqrt();
             self.per_diagonal.push(per_diagonal);
@@ -154,7 +157,7 @@ impl Cholesky {
         self.per_diagonal.len()
     }
 
-    /// L\sides for eight right-hand sides at once, in place.
+    /// Solves L x = b for eight right-hand sides at once, in place.
     pub fn forward(&self, sides: &mut [Eight]) {
         for four in 0..self.rows() / LANES {
             let (first, half) = (LANES * four, four % 2);
@@ -177,7 +180,7 @@ impl Cholesky {
         }
     }
 
-    /// L'\sides for eight right-hand sides at once, in place.
+    /// Solves L' x = b for eight right-hand sides at once, in place.
     pub fn backward(&self, sides: &mut [Eight]) {
         for four in (0..self.rows() / LANES).rev() {
             let (first, half) = (LANES * four, four % 2);
@@ -200,9 +203,9 @@ impl Cholesky {
         }
     }
 
-    /// L'\side for one right-hand side, in place.
+    /// Solves L' x = b for one right-hand side, in place.
     pub fn backward_one(&self, side: &mut [f64]) {
-        // What the rows below take off each, not yet added up.
+        // The sums over the rows below, in lanes.
         let mut taken = vec![zero(); side.len()];
         for panel in (0..side.len() / ROWS).rev() {
             let first = ROWS * panel;

@@ -1,4 +1,4 @@
-//! The loads under which the surfaces touch and nowhere overlap, and nowhere pull.
+//! The loads under which the surfaces touch and nowhere overlap, and nowhere pull: a linear complementarity problem.
 
 use super::{
     changed_factor::ChangedFactor,
@@ -7,44 +7,45 @@ use super::{
 };
 use crate::number::{F64x4, LANES, Number};
 
-/// A load may pull by this much, N.
+/// A load may pull by this much, N: round-off of loads of some newtons.
 const LOAD_TOLERANCE_N: f64 = 1e-9;
 /// Block exchanges without progress after which single exchanges follow.
 const MAX_TRIES: u32 = 10;
-/// Rounds after which what is left is round-off: ten times what was ever seen.
+/// Rounds after which the rest is round-off: ten times the most that was ever seen.
 const MAX_ROUNDS: u32 = 500;
 
 /// The set of nodes in contact, and the factor of their compliance.
 ///
-/// With the overclosure d of the bodies at rest, the normal compliance C of the surface and the loads N,
-/// the gap is C N - d, and
+/// With the overclosure d of the bodies at rest, the normal compliance C of the surface and the loads N, the gap is C N - d,
+/// and
 ///
 /// $$ N \ge 0, \quad C N - d \ge 0, \quad N \cdot (C N - d) = 0. $$
 ///
-/// C is positive definite, so there is one solution. It is found by trying which nodes press: those of the
-/// response before; then without those that pull, and with those that overlap. Block pivoting with Murty's
-/// rule as the last resort (Portugal, Judice and Vicente 1994), which ends.
+/// C is positive definite, so there is one solution. It is found by trying which nodes are in contact: first those of the
+/// response before; then without those that pull, and with those that overlap. Exchanging all of these at once takes few
+/// rounds but may cycle; Murty's rule, which exchanges one at a time, is slow but ends. So block exchanges are tried as
+/// long as they reduce the number of wrong nodes (Portugal, Judice and Vicente 1994).
 pub(crate) struct Pressing {
-    /// For every surface node, whether it pressed at the last response.
+    /// For every surface node, whether it was in contact at the last response.
     pressed_before: Vec<bool>,
-    /// For every candidate, whether it presses in the trial set.
+    /// For every candidate, whether it is in the trial set.
     is_pressing: Vec<bool>,
-    /// The pressing nodes, and their places among the candidates.
+    /// The nodes of the trial set, and their places among the candidates.
     places: Vec<usize>,
     nodes: Vec<u32>,
     /// The overclosure of every surface node and its derivatives by six motions, current for candidates.
     overclosures: Vec<Eight>,
     factor: ChangedFactor,
-    /// The load of every pressing node; and once these are right, with the derivatives by six motions.
+    /// The load of every node of the trial set; and of the solution, with the derivatives by six motions.
     loads_n: Vec<f64>,
     loads: Vec<Eight>,
-    /// Those loads by the panels of their nodes.
+    /// The former by the panels of their nodes.
     by_panel: Vec<(usize, Eight)>,
     clearances: Clearances,
 }
 
 impl Pressing {
-    /// Nothing presses yet on a surface with so many nodes.
+    /// Starts without contact on a surface with so many nodes.
     pub fn new(node_count: usize) -> Self {
         Self {
             pressed_before: vec![false; node_count],
@@ -60,7 +61,7 @@ impl Pressing {
         }
     }
 
-    /// Finds the loads; the place of each pressing node among the candidates with its load and the load's
+    /// Finds the loads, and returns the place of each node in contact among the candidates with its load and the load's
     /// derivatives by six motions.
     ///
     /// Candidates come in an order that is always the same.
@@ -87,43 +88,40 @@ impl Pressing {
                 tries.saturating_sub(1)
             };
             least = least.min(wrong.len());
-            let changed = if tries > 0 {
+            let exchanged = if tries > 0 {
                 &wrong[..]
             } else {
                 std::slice::from_ref(last)
             };
-            for &place in changed {
+            for &place in exchanged {
                 self.is_pressing[place] = !self.is_pressing[place];
             }
         }
         self.factor
             .loads_by_motion(&self.nodes, &self.overclosures, &mut self.loads);
-        self.nodes
-            .iter()
-            .for_each(|&node| self.pressed_before[node as usize] = true);
+        for &node in &self.nodes {
+            self.pressed_before[node as usize] = true;
+        }
         self.places.iter().copied().zip(&self.loads)
     }
 
-    /// Tries those that pressed before and are candidates still; where there are none, all that overlap.
+    /// Starts with the candidates that were in contact before; if there is none, with all that overlap.
     fn start(&mut self, candidates: &[Candidate]) {
-        let before = candidates
-            .iter()
-            .map(|candidate| self.pressed_before[candidate.node as usize]);
+        let pressed_before = |candidate: &Candidate| self.pressed_before[candidate.node as usize];
         self.is_pressing.clear();
-        self.is_pressing.extend(before);
-        self.nodes
-            .iter()
-            .for_each(|&node| self.pressed_before[node as usize] = false);
+        self.is_pressing
+            .extend(candidates.iter().map(pressed_before));
+        for &node in &self.nodes {
+            self.pressed_before[node as usize] = false;
+        }
         if !self.is_pressing.contains(&true) {
-            let overlap = candidates
-                .iter()
-                .map(|candidate| candidate.overclosed_mm() > 0.0);
+            let overlaps = |candidate: &Candidate| candidate.overclosed_mm() > 0.0;
             self.is_pressing.clear();
-            self.is_pressing.extend(overlap);
+            self.is_pressing.extend(candidates.iter().map(overlaps));
         }
     }
 
-    /// The loads under which the gap of all that press is zero.
+    /// Finds the loads under which the gaps of the trial set are zero.
     fn load(&mut self, candidates: &[Candidate], compliance: &NearMatrix) {
         let (places, nodes) = (&mut self.places, &mut self.nodes);
         places.clear();
@@ -137,43 +135,34 @@ impl Pressing {
         self.by_panel = by_panel(nodes, &self.loads_n, compliance);
     }
 
-    /// Places of the candidates that pull, and of those that overlap and do not press; ascending.
+    /// Returns the places of the candidates that pull, and of those that overlap and are not in the trial set; ascending.
     fn wrong(&mut self, candidates: &[Candidate], compliance: &NearMatrix) -> Vec<usize> {
         let loads = self.places.iter().zip(&self.loads_n);
         let pulling = loads.filter(|(_, load_n)| **load_n < -LOAD_TOLERANCE_N);
         let mut wrong: Vec<usize> = pulling.map(|(&place, _)| place).collect();
-        // Those that are likely to, first: while some of these are wrong, the others can wait.
+        // Gaps are expensive. Nodes that are likely to overlap come first: as long as anything is wrong, the others can wait.
         for is_likely in [true, false] {
-            if is_likely || wrong.is_empty() {
-                self.add_overlapping(is_likely, candidates, compliance, &mut wrong);
+            if !is_likely && !wrong.is_empty() {
+                break;
+            }
+            for (place, candidate) in candidates.iter().enumerate() {
+                if self.is_pressing[place] || self.clearances.may_overlap(candidate) != is_likely {
+                    continue;
+                }
+                let row = compliance.row(candidate.node);
+                let moved_mm = || compliance.moved(row, &self.by_panel);
+                if self.clearances.overlaps(candidate, compliance, moved_mm) {
+                    wrong.push(place);
+                }
             }
         }
         wrong.sort_unstable();
         wrong
     }
-
-    /// Adds the places of the candidates that overlap and do not press, of those that are likely to or of the others.
-    fn add_overlapping(
-        &mut self,
-        is_likely: bool,
-        candidates: &[Candidate],
-        compliance: &NearMatrix,
-        wrong: &mut Vec<usize>,
-    ) {
-        for (place, candidate) in candidates.iter().enumerate() {
-            if self.is_pressing[place] || self.clearances.may_overlap(candidate) != is_likely {
-                continue;
-            }
-            let row = compliance.row(candidate.node);
-            let moved_mm = || compliance.moved(row, &self.by_panel);
-            if self.clearances.overlaps(candidate, compliance, moved_mm) {
-                wrong.push(place);
-            }
-        }
-    }
 }
 
-/// Loads on nodes by the panels of these.
+/// Arranges loads on nodes by the panels of the compliance, in the order of places: sums do not depend on the order in which
+/// tiles were added.
 pub(crate) fn by_panel(
     nodes: &[u32],
     loads_n: &[f64],
@@ -204,12 +193,11 @@ pub(crate) fn by_panel(
         .collect()
 }
 
-/// A node that may touch.
+/// A node that may be in contact.
 #[derive(Clone, Copy)]
 pub(crate) struct Candidate {
     pub node: u32,
-    /// The overclosure of the rigid femur and the surface at rest, mm; < 0 apart. Then its derivatives by six
-    /// motions.
+    /// The overclosure of the rigid femur and the surface at rest, mm, < 0 if apart; then its derivatives by six motions.
     pub overclosure_mm: Eight,
 }
 
@@ -218,28 +206,27 @@ impl Candidate {
         self.overclosure_mm[0].lane(0)
     }
 
-    /// Moves the node inwards by a displacement that does not depend on the present loads.
+    /// Moves the node inwards.
     pub fn displace(&mut self, by_mm: f64) {
         self.overclosure_mm[0] -= F64x4::new([by_mm, 0.0, 0.0, 0.0]);
     }
 }
 
-/// A gap may be below zero by this much, mm: a millionth of what a surface is rough by.
+/// A gap may be below zero by this much, mm: a millionth of the roughness of a surface.
 const GAP_TOLERANCE_MM: f64 = 1e-10;
 
-/// A node whose gap would be less than this if it had deflected as it was last known to is likely to overlap, mm.
+/// A node is likely to overlap if its gap would be less than this, mm, with the deflection that was computed last.
 const NARROW_MM: f64 = 0.01;
 
-/// Bounds on the gaps of nodes that do not press.
+/// Bounds on the gaps of nodes that are not in contact, which make most gaps unnecessary to compute.
 ///
-/// A gap is the sum of many loads, each times its compliance; but it cannot have closed since it was last computed
-/// where it was wider than all changes of load since then can move a node, and the femur can have come nearer. Tile by
-/// tile is known how far loads there can move the nodes of another. So most need not be computed again. What is told
-/// of a node does not depend on when it was computed last.
-pub(crate) struct Clearances {
-    /// For every surface node, its deflection plus the closing of its tile when that was computed last, mm.
+/// A gap is the sum of many loads, each times its compliance. It cannot have closed since it was last computed if it was
+/// wider than all changes of load since then can have moved its node and the femur can have come nearer; the bounds on the
+/// former are known tile by tile. Results do not depend on when a gap was computed last.
+struct Clearances {
+    /// For every surface node, its deflection when that was computed last plus the closing of its tile until then, mm.
     wider_mm: Vec<f64>,
-    /// The deflection of each node when that was computed last, mm.
+    /// That deflection, mm.
     moved_mm: Vec<f64>,
     tiles: Vec<TileClearance>,
     /// The load of every surface node, and the nodes that have one.
@@ -254,15 +241,14 @@ struct TileClearance {
     closed_mm: f64,
     /// The largest outward displacement of any of its nodes by the loads, mm.
     most_bulge_mm: f64,
-    /// By how much loads on it have become less and more with the last change, and their sum, N.
+    /// The decrease and the increase of loads on it with the last change, and their sum, N.
     less_n: f64,
     more_n: f64,
     pressing_n: f64,
 }
 
 impl Clearances {
-    /// Nothing is known of a surface with so many nodes, and nothing presses on it.
-    pub fn new(node_count: usize) -> Self {
+    fn new(node_count: usize) -> Self {
         Self {
             wider_mm: vec![f64::NEG_INFINITY; node_count],
             moved_mm: vec![f64::NEG_INFINITY; node_count],
@@ -272,8 +258,8 @@ impl Clearances {
         }
     }
 
-    /// Takes other loads.
-    pub fn take(&mut self, nodes: &[u32], loads_n: &[f64], compliance: &NearMatrix) {
+    /// Updates the bounds for other loads.
+    fn take(&mut self, nodes: &[u32], loads_n: &[f64], compliance: &NearMatrix) {
         let reaches = compliance.reaches();
         self.tiles.resize(reaches.len(), TileClearance::default());
         for tile in &mut self.tiles {
@@ -305,14 +291,14 @@ impl Clearances {
     }
 
     /// Returns whether a node is likely to overlap the femur.
-    pub fn may_overlap(&self, candidate: &Candidate) -> bool {
+    fn may_overlap(&self, candidate: &Candidate) -> bool {
         self.moved_mm[candidate.node as usize] - candidate.overclosed_mm() < NARROW_MM
     }
 
-    /// Returns whether a node that does not press overlaps the femur; `moved_mm` computes its deflection.
+    /// Returns whether a node outside the trial set overlaps the femur; `moved_mm` computes its deflection.
     ///
-    /// That is right where no load pulls.
-    pub fn overlaps(
+    /// It may miss an overlap while a load pulls; the trial set is then wrong anyway.
+    fn overlaps(
         &mut self,
         candidate: &Candidate,
         compliance: &NearMatrix,
@@ -333,7 +319,7 @@ impl Clearances {
 }
 
 impl TileClearance {
-    /// A load on it has become more by so much.
+    /// Counts a change of a load on it.
     fn change(&mut self, by_n: f64) {
         self.less_n += (-by_n).max(0.0);
         self.more_n += by_n.max(0.0);

@@ -4,20 +4,20 @@
 //! the loads that keep the bodies just in touch (`complementarity`), and the wrench of these. `settle`, `accept` and
 //! `evaluate` pass the loads on to the histories.
 
-use std::sync::Arc;
+use std::{array::from_fn, sync::Arc};
 
 use super::{
-    cholesky::Eight,
+    cholesky::{Eight, get},
     complementarity::{Candidate, Pressing},
     compliance::Compliance,
     edge_and_peak::{EdgeOfContact, PeakSearch},
-    history::{LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads},
+    history::{LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads},
 };
 use crate::{
     Vector,
     contact::{
-        broad_phase::{Search, ShareBlock},
-        contact_patch::{ContactPatch, Coulomb, NearBlock, NearBlocks, Sliding, Tractions4},
+        broad_phase::ShareBlock,
+        contact_patch::{ContactPatch, ContactSettings, Coulomb, NearBlock, Sliding, Tractions4},
         law::Bodies,
         model::{
             ContactCache, ContactMemory, ContactModel, ContactResult, Linearization, NotBorne,
@@ -32,16 +32,6 @@ use crate::{
 /// hundredths of its deflection.
 const MAX_BULGE_MM: f64 = 0.1;
 
-/// The settings of a deformable contact.
-#[derive(Clone, Copy)]
-pub(crate) struct FrictionSettings {
-    /// Regularised friction; its coefficient is 0 if a history adds friction.
-    pub friction: Coulomb,
-    pub search: Search,
-    /// Motion up to which a sample of the femur is extrapolated, mm.
-    pub sample_reuse_mm: f64,
-}
-
 /// The contact of a femur with an elastic insert as it is now.
 ///
 /// Invariant: a response depends on the motion alone, but for samples that are extrapolated and for the tolerance of the
@@ -50,8 +40,7 @@ pub(crate) struct FrictionSettings {
 pub(crate) struct DeformableContact<'a> {
     bodies: Bodies<'a>,
     friction: Coulomb,
-    nearby: NearBlocks<'a>,
-    patch: ContactPatch,
+    patch: ContactPatch<'a>,
     compliance: Arc<Compliance>,
     pressing: Pressing,
     /// The blocks near the femur, the nodes that may touch, and the place of each of these: number among the blocks, and
@@ -69,89 +58,37 @@ pub(crate) struct DeformableContact<'a> {
     histories: Vec<Box<dyn LoadHistory + 'a>>,
 }
 
-/// The loads on a block of nodes along the inward normals, N, and their derivatives by six motions.
-#[derive(Clone, Copy)]
-struct Loads4 {
-    load_n: [f64; LANES],
-    by_motion: [[f64; LANES]; 6],
-}
-
-impl Loads4 {
-    const NONE: Self = Self {
-        load_n: [0.0; LANES],
-        by_motion: [[0.0; LANES]; 6],
-    };
-
-    fn is_none(&self) -> bool {
-        self.load_n == [0.0; LANES]
-    }
-
-    fn tractions(
-        &self,
-        near: &NearBlock,
-        along: &AlongNormal,
-        area_mm2: F64x4,
-        twist: &Twist4,
-        friction: Coulomb,
-    ) -> Tractions4 {
-        let place = &near.cached.place;
-        let by_motion = self.by_motion.map(F64x4::new);
-        let (force_n, by_motion) = along.forces_n(F64x4::new(self.load_n), &by_motion);
-        let [ax, ay, az, x, y, z] = by_motion;
-        let load_by_motion = Vector::new(x, y, z);
-        // Unused lanes have no area.
-        let area = Number::max(area_mm2, F64x4::splat(f64::MIN_POSITIVE));
-        Tractions4 {
-            pressure_mpa: force_n / area,
-            area_mm2,
-            covered_mm2: area_mm2,
-            // The derivative by a turn about the origin, less that by the motion of the material which the turn causes at
-            // the share.
-            load_by_turn: Vector::new(ax, ay, az) - cross(place, &load_by_motion),
-            load_by_motion,
-            sliding: Sliding::new(
-                &twist.velocity(place),
-                &near.cached.sample.normal,
-                friction.slip_tolerance_mm_per_s,
-            ),
-        }
-    }
-}
+/// The loads on a block of nodes along the inward normals, N, followed by their derivatives by six motions.
+type Loads4 = [[f64; LANES]; 7];
 
 impl<'a> DeformableContact<'a> {
     /// Creates the contact of bodies, faster with the cache of another. Histories resume from their own part of the state;
-    /// `memory` holds the other fields, which are passed on.
+    /// `memory` holds the other fields, which are passed on. With a history of friction, `settings` have none.
     pub fn new(
         memory: ContactMemory,
         bodies: Bodies<'a>,
-        settings: FrictionSettings,
+        settings: ContactSettings,
         compliance: Arc<Compliance>,
         histories: Vec<Box<dyn LoadHistory + 'a>>,
     ) -> Self {
-        let nearby = NearBlocks::new(
-            memory.cache.into_inner(),
-            bodies.femur,
-            ShareBlock::from_nodes(bodies.insert, bodies.surface),
-            (settings.search, settings.sample_reuse_mm),
-        );
+        let blocks = ShareBlock::from_nodes(bodies.insert, bodies.surface);
         let inward = |block: &ShareBlock| {
             -vector_from_lanes(|lane| &bodies.surface.normals[block.nodes[lane] as usize])
         };
         Self {
-            patch: ContactPatch::new(bodies.surface, &nearby.blocks, settings.friction),
             pressing: Pressing::new(compliance.node_count()),
             compliance,
             near: Vec::new(),
             candidates: Vec::new(),
             lanes: Vec::new(),
-            inward: nearby.blocks.iter().map(inward).collect(),
+            inward: blocks.iter().map(inward).collect(),
             along: Vec::new(),
             fields: memory.state.fields,
             node_loads: Vec::new(),
             histories,
             bodies,
             friction: settings.friction,
-            nearby,
+            patch: ContactPatch::new(bodies, blocks, settings, memory.cache),
         }
     }
 
@@ -161,19 +98,17 @@ impl<'a> DeformableContact<'a> {
         let lifts_mm = self.histories.iter().map(|history| history.lift_mm());
         let most_mm = MAX_BULGE_MM + lifts_mm.fold(0.0, f64::max);
         let (near, most) = (&mut self.near, F64x4::splat(most_mm));
-        let prepared_mm2 = self.bodies.femur.prepared_spread_mm2();
+        // A mesh's field is smoothed over a share; the gap is needed at the node.
+        let prepared_mm2 = F64x4::splat(self.bodies.femur.prepared_spread_mm2());
         near.clear();
-        self.nearby
-            .find(pose, pose4, |_, _| (most, ()), |block, ()| near.push(block));
+        let nearby = &mut self.patch.nearby;
+        nearby.find(pose, pose4, |_, _| (most, ()), |block, ()| near.push(block));
         self.candidates.clear();
         self.lanes.clear();
         self.along.clear();
         for (number, near) in self.near.iter().enumerate() {
-            let shares = &self.nearby.blocks[near.block as usize];
-            let gap_mm = near
-                .cached
-                .sample
-                .gap_at_point_mm(F64x4::splat(prepared_mm2));
+            let shares = &nearby.blocks[near.block as usize];
+            let gap_mm = near.cached.sample.gap_at_point_mm(prepared_mm2);
             let inward = pose4.turn_to_femur(&self.inward[near.block as usize]);
             let along = AlongNormal::new(near, &inward);
             let overclosures = along.overclosures_mm(near, gap_mm);
@@ -196,30 +131,28 @@ impl<'a> DeformableContact<'a> {
 
     /// Finds the loads on the candidates, and keeps the blocks that carry one.
     fn find_loads(&mut self) -> Vec<Loads4> {
-        let mut loads = vec![Loads4::NONE; self.near.len()];
-        let candidates = self.candidates.iter();
-        let compliance = self
-            .compliance
-            .near(candidates.map(|candidate| candidate.node));
+        let mut loads = vec![Loads4::default(); self.near.len()];
+        let nodes = self.candidates.iter().map(|candidate| candidate.node);
+        let compliance = self.compliance.near(nodes);
         self.node_loads.clear();
         for (place, load) in self.pressing.solve(&self.candidates, &compliance) {
             let (number, lane) = self.lanes[place];
-            let node_load = (self.candidates[place].node, load[0].lane(0).max(0.0));
-            self.node_loads.push(node_load);
-            let block = &mut loads[number];
-            block.load_n[lane] = load[0].lane(0).max(0.0);
-            for (motion, by) in block.by_motion.iter_mut().enumerate() {
-                let at = motion + 1;
-                by[lane] = load[at / LANES].lane(at % LANES);
+            for (at, numbers) in loads[number].iter_mut().enumerate() {
+                numbers[lane] = get(load, at);
             }
+            let load_n = &mut loads[number][0][lane];
+            // A load may pull by round-off.
+            *load_n = load_n.max(0.0);
+            self.node_loads.push((self.candidates[place].node, *load_n));
         }
-        let mut pressing = loads.iter().map(|loads| !loads.is_none());
-        self.along.retain(|_| pressing.next().unwrap_or(false));
-        let pressing = self.near.drain(..).zip(&loads);
-        let pressing = pressing.filter(|(_, loads)| !loads.is_none());
+        let is_loaded = |loads: &Loads4| loads[0] != [0.0; LANES];
+        let mut loaded = loads.iter().map(is_loaded);
+        self.along.retain(|_| loaded.next().unwrap_or(false));
+        let near = self.near.drain(..).zip(&loads);
+        let near = near.filter(|(_, loads)| is_loaded(loads));
         self.patch.near.clear();
-        self.patch.near.extend(pressing.map(|(near, _)| near));
-        loads.retain(|loads| !loads.is_none());
+        self.patch.near.extend(near.map(|(near, _)| near));
+        loads.retain(is_loaded);
         loads
     }
 }
@@ -249,7 +182,7 @@ impl ContactModel for DeformableContact<'_> {
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.nearby.begin_increment(increment);
+        self.patch.nearby.begin_increment(increment);
         for history in &mut self.histories {
             history.begin_increment(increment);
         }
@@ -263,17 +196,11 @@ impl ContactModel for DeformableContact<'_> {
         self.find_candidates(&motion.pose, &pose);
         let (loads, friction) = (self.find_loads(), self.friction);
         let along = &self.along;
-        let (mut wrench, mean_slip) =
-            self.patch
-                .press(&self.nearby.blocks, |place, near, shares| {
-                    loads[place].tractions(near, &along[place], shares.area_mm2, &twist, friction)
-                });
-        let patch = LoadedPatch {
-            patch: &self.patch,
-            blocks: &self.nearby.blocks,
-        };
+        let (mut wrench, mean_slip) = self.patch.press(|place, near, shares| {
+            along[place].tractions(&loads[place], near, shares.area_mm2, &twist, friction)
+        });
         for history in &mut self.histories {
-            if let Some(along_surface) = history.respond(&patch) {
+            if let Some(along_surface) = history.respond(&self.patch) {
                 wrench = wrench + along_surface;
             }
         }
@@ -298,12 +225,8 @@ impl ContactModel for DeformableContact<'_> {
     }
 
     fn accept(&mut self, motion: &RelativeMotion) {
-        let patch = LoadedPatch {
-            patch: &self.patch,
-            blocks: &self.nearby.blocks,
-        };
         for history in &mut self.histories {
-            history.accept(motion, &patch);
+            history.accept(motion, &self.patch);
         }
     }
 
@@ -321,7 +244,7 @@ impl ContactModel for DeformableContact<'_> {
     }
 
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
-        let mut touched = self.patch.touched(&self.nearby.blocks, motion);
+        let mut touched = self.patch.touched(motion);
         for history in &mut self.histories {
             history.evaluate(&mut touched);
         }
@@ -355,7 +278,7 @@ impl ContactModel for DeformableContact<'_> {
         let histories = self.histories.into_iter();
         let own = histories.flat_map(LoadHistory::into_fields);
         memory.state.fields.extend(own);
-        memory.cache = ContactCache::new(self.nearby.into_cache());
+        memory.cache = ContactCache::new(self.patch.nearby.into_cache());
         memory
     }
 }
@@ -414,14 +337,40 @@ impl AlongNormal {
             by(gradient.z, z),
             F64x4::splat(0.0),
         ]);
-        std::array::from_fn(|lane| [first[lane], second[lane]])
+        from_fn(|lane| [first[lane], second[lane]])
     }
 
-    /// Returns the forces along the femur's normal that belong to loads along the insert's, and their derivatives by motion.
-    fn forces_n(&self, load_n: F64x4, by_motion: &[F64x4; 6]) -> (F64x4, [F64x4; 6]) {
+    /// Returns the tractions on a block under loads along the insert's normals.
+    fn tractions(
+        &self,
+        loads: &Loads4,
+        near: &NearBlock,
+        area_mm2: F64x4,
+        twist: &Twist4,
+        friction: Coulomb,
+    ) -> Tractions4 {
+        let place = &near.cached.place;
+        let [load_n, by_motion @ ..] = loads.map(F64x4::new);
         let per_slope = F64x4::splat(1.0) / self.slope;
         let force_n = load_n * per_slope;
         let by = |motion: usize| (by_motion[motion] - force_n * self.by_motion[motion]) * per_slope;
-        (force_n, std::array::from_fn(by))
+        let [ax, ay, az, x, y, z] = from_fn(by);
+        let load_by_motion = Vector::new(x, y, z);
+        // Unused lanes have no area.
+        let area = Number::max(area_mm2, F64x4::splat(f64::MIN_POSITIVE));
+        Tractions4 {
+            pressure_mpa: force_n / area,
+            area_mm2,
+            covered_mm2: area_mm2,
+            // The derivative by a turn about the origin, less that by the motion of the material which the turn causes at
+            // the share.
+            load_by_turn: Vector::new(ax, ay, az) - cross(place, &load_by_motion),
+            load_by_motion,
+            sliding: Sliding::new(
+                &twist.velocity(place),
+                &near.cached.sample.normal,
+                friction.slip_tolerance_mm_per_s,
+            ),
+        }
     }
 }

@@ -9,12 +9,15 @@ use super::{
     cholesky::{Eight, get, set, zero},
     complementarity::by_panel,
     compliance::{Compliance, NearMatrix, along_surface},
-    history::{ByActivity, ByIncrement, ContactNode, LoadHistory, LoadedPatch, field},
+    history::{ByActivity, ByIncrement, LoadHistory, field},
     stick_slip::{ByMotion, FrictionNode, Pair, StickSlip},
 };
 use crate::{
     Mat3, Vec3,
-    contact::model::{ContactState, StateField, TouchedNode},
+    contact::{
+        contact_patch::{ContactNode, ContactPatch},
+        model::{ContactState, StateField, TouchedNode},
+    },
     geometry::ArticulatingSurface,
     spatial::{FrameChange, Mat6, Pose, RelativeMotion, Twist, Vec6, Wrench, body},
 };
@@ -205,8 +208,8 @@ impl LoadHistory for ElasticFriction<'_> {
         self.ends.begin_increment(increment);
     }
 
-    fn respond(&mut self, patch: &LoadedPatch<'_>) -> Option<Wrench<body::Insert, body::Femur>> {
-        let pose = &patch.patch.pose;
+    fn respond(&mut self, patch: &ContactPatch<'_>) -> Option<Wrench<body::Insert, body::Femur>> {
+        let pose = &patch.pose;
         self.solve(pose, patch.nodes(&Twist::zero()));
         let mut total = Wrench::zero();
         for &node in &self.loaded_nodes {
@@ -244,8 +247,8 @@ impl LoadHistory for ElasticFriction<'_> {
 
     /// The accepted motion differs slightly from that of the last response. The loads follow by their derivatives if the
     /// tangent was asked for there; otherwise they are solved again.
-    fn accept(&mut self, motion: &RelativeMotion, patch: &LoadedPatch<'_>) {
-        let (from, pose) = (&patch.patch.pose, &motion.pose);
+    fn accept(&mut self, motion: &RelativeMotion, patch: &ContactPatch<'_>) {
+        let (from, pose) = (&patch.pose, &motion.pose);
         let moved = FrameChange::to_femur(from).twist(&Twist::between(from, pose));
         let pressed = patch.nodes(&moved);
         let by_motion = self.by_motion.take();

@@ -4,14 +4,12 @@ use std::collections::BTreeMap;
 
 use crate::{
     contact::{
-        broad_phase::ShareBlock,
         contact_patch::ContactPatch,
         law::Bodies,
         model::{NotBorne, StateField, TouchedNode},
     },
-    number::{F64x4, Number, cross},
     spatial::{
-        Mat6, RelativeMotion, Twist, Vec6, Wrench,
+        Mat6, RelativeMotion, Wrench,
         body::{Femur, Insert},
     },
 };
@@ -51,7 +49,7 @@ pub(crate) trait LoadHistory {
     }
 
     /// Returns the wrench on the insert of the loads along its surface about the femur's origin, in the femoral frame.
-    fn respond(&mut self, _patch: &LoadedPatch<'_>) -> Option<Wrench<Insert, Femur>> {
+    fn respond(&mut self, _patch: &ContactPatch<'_>) -> Option<Wrench<Insert, Femur>> {
         None
     }
 
@@ -69,7 +67,7 @@ pub(crate) trait LoadHistory {
     }
 
     /// Commits the trial state at the end of a step, near the last response.
-    fn accept(&mut self, motion: &RelativeMotion, patch: &LoadedPatch<'_>);
+    fn accept(&mut self, motion: &RelativeMotion, patch: &ContactPatch<'_>);
 
     /// Drops the trial state.
     fn reject(&mut self) {}
@@ -204,46 +202,5 @@ impl SurfaceLoads<'_> {
     /// The nodes whose displacement is asked for.
     pub fn near(&self) -> impl Iterator<Item = u32> {
         self.candidates.iter().map(|candidate| candidate.node)
-    }
-}
-
-/// A node in contact.
-#[derive(Clone, Copy)]
-pub(crate) struct ContactNode {
-    pub node: u32,
-    /// The force along the femur's normal, N, and its derivatives by a turn and a shift of the femur in its frame.
-    pub force_n: f64,
-    pub by_motion: Vec6,
-}
-
-/// The contact patch of the last response.
-pub(crate) struct LoadedPatch<'p> {
-    pub patch: &'p ContactPatch,
-    pub blocks: &'p [ShareBlock],
-}
-
-impl LoadedPatch<'_> {
-    /// Returns the nodes in contact, their forces extrapolated over a short motion of the femur since the last response.
-    pub fn nodes(&self, moved: &Twist<Femur, Femur>) -> Vec<ContactNode> {
-        let mut nodes = Vec::new();
-        for (near, tractions) in self.patch.loaded() {
-            let shares = &self.blocks[near.block as usize];
-            let force_n = tractions.pressure_mpa * tractions.area_mm2;
-            let shift = &tractions.load_by_motion;
-            let turn = cross(&near.cached.place, shift) + tractions.load_by_turn;
-            let by: [F64x4; 6] = [turn.x, turn.y, turn.z, shift.x, shift.y, shift.z];
-            for (lane, &node) in shares.nodes.iter().enumerate() {
-                let own_n = force_n.lane(lane);
-                if own_n * shares.area_mm2.lane(lane) > 0.0 {
-                    let by_motion = Vec6::from_fn(|motion, _| by[motion].lane(lane));
-                    nodes.push(ContactNode {
-                        node,
-                        force_n: (own_n + by_motion.dot(&moved.numbers())).max(0.0),
-                        by_motion,
-                    });
-                }
-            }
-        }
-        nodes
     }
 }

@@ -39,14 +39,14 @@ use condyle_fem::{Elastic, Material, SolidError, Stress};
 
 use super::{
     broad_phase::Search,
-    contact_patch::Coulomb,
+    contact_patch::{ContactSettings, Coulomb},
     foundation::Foundation,
     law::{Bodies, ContactLaw, KnownCompliance, UnderSurface},
     model::{ContactMemory, ContactModel, ContactState},
 };
 use crate::{Vec3, geometry::Insert};
 use backside::{Floor, RestingInsert};
-use contact::{DeformableContact, FrictionSettings};
+use contact::DeformableContact;
 use elastic_surface::{ElasticSurface, HeldBy};
 use friction::ElasticFriction;
 use history::{LoadHistory, field};
@@ -348,7 +348,7 @@ impl ContactLaw for Deformable {
             },
             cache,
         };
-        let settings = FrictionSettings {
+        let settings = ContactSettings {
             friction,
             search: self.search,
             sample_reuse_mm: self.sample_reuse_mm,

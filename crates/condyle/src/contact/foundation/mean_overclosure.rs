@@ -1,21 +1,20 @@
-//! Mean overclosure of a share of the surface that may press only in part.
+//! The mean overclosure of a share of the surface of which only a part may be in contact.
 
 use crate::number::Number;
 
-/// Below this an edge slope counts as this much, mm: it keeps the
-/// closed form away from 0/0 and widens the edge of contact by a thousandth of a millimetre.
+/// Edge slopes are bounded from below, smoothly, by this much, mm: it keeps the closed form away from 0/0, and widens the
+/// edge of contact by a thousandth of a millimetre.
 const MIN_SLOPE_MM: f64 = 1e-3;
 
-/// The edge slopes of a share: how much the overclosure rises along each of its edges.
+/// The edge slopes of a share: the rise of the overclosure along each of its edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EdgeSlopes<T> {
     signed_mm: [T; 2],
-    /// Without sign, and never quite zero.
+    /// Without sign, and never zero.
     size_mm: [T; 2],
 }
 
 impl<T: Number> EdgeSlopes<T> {
-    /// From those along both edges, mm.
     #[inline(always)]
     pub fn new(signed_mm: [T; 2]) -> Self {
         let least2 = T::splat(MIN_SLOPE_MM * MIN_SLOPE_MM);
@@ -27,30 +26,29 @@ impl<T: Number> EdgeSlopes<T> {
         }
     }
 
-    /// Overclosure that the share's most overclosed corner has above its middle, mm.
+    /// Returns the overclosure of the share's most overclosed corner above that of its middle, mm.
     #[inline(always)]
     pub fn reach_mm(&self) -> T {
         (self.size_mm[0] + self.size_mm[1]) * T::splat(0.5)
     }
 }
 
-/// Mean of the positive part of the overclosure over a share, and its derivatives.
+/// The mean of the positive part of the overclosure over a share, and its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeanOverclosure<T> {
-    /// The mean, mm; 0 where nothing presses.
     pub mm: T,
-    /// Derivative by the overclosure of the share's middle: the part of the share that presses.
+    /// Derivative by the overclosure of the share's middle: the part of the share in contact.
     pub by_middle: T,
-    /// Derivative by the edge slopes of the share; none where all of
-    /// it presses in every lane.
+    /// Derivatives by the edge slopes; none if all of the share is in contact in every lane.
     pub by_slope: Option<[T; 2]>,
 }
 
-/// Mean of max(0, d) over a parallelogram where d is linear: `middle_mm` at its centre, rising
-/// along each edge.
+/// Returns the mean of max(0, d) over a parallelogram on which d is linear: `middle_mm` at its centre, rising along each
+/// edge.
 ///
-/// It is twice continuously differentiable, so force and tangent are smooth as nodes come into
-/// contact; where all corners press it is d.
+/// With the edge slopes r and s it is (c1^3 - c2^3 - c3^3 + c4^3)/(6 r s) over the positive parts of the four corners
+/// c = d +- r/2 +- s/2: twice continuously differentiable, so that force and tangent are smooth as nodes come into contact.
+/// If all corners are in contact it is d.
 #[inline(always)]
 pub(crate) fn mean_overclosure<T: Number>(
     middle_mm: T,
@@ -64,20 +62,6 @@ pub(crate) fn mean_overclosure<T: Number>(
             by_slope: None,
         };
     }
-    let part = mean_in_part(middle_mm, slopes);
-    let none_or = |by: T| in_part.below_zero(by, T::zero());
-    // Where all corners press, the closed form is right but loses digits.
-    MeanOverclosure {
-        mm: in_part.below_zero(part.mm, middle_mm),
-        by_middle: in_part.below_zero(part.by_middle, T::one()),
-        by_slope: part.by_slope.map(|[a, b]| [none_or(a), none_or(b)]),
-    }
-}
-
-/// With r and s the edge slopes, the mean is (c1^3 - c2^3 - c3^3 + c4^3)/(6 r s) over the positive
-/// parts of the four corners c = d +- r/2 +- s/2.
-#[inline(always)]
-fn mean_in_part<T: Number>(middle_mm: T, slopes: &EdgeSlopes<T>) -> MeanOverclosure<T> {
     let (zero, half) = (T::zero(), T::splat(0.5));
     let [r, s] = slopes.size_mm;
     let (sum, difference) = (slopes.reach_mm(), (r - s) * half);
@@ -88,13 +72,16 @@ fn mean_in_part<T: Number>(middle_mm: T, slopes: &EdgeSlopes<T>) -> MeanOverclos
     let per_area = T::one() / (r * s);
     let (per_r, per_s) = (s * per_area, r * per_area);
     let mm = (c1 * q1 - c2 * q2 - c3 * q3 + c4 * q4) * per_area * T::splat(1.0 / 6.0);
+    let by_middle = (q1 - q2 - q3 + q4) * per_area * half;
     let by_r = (q1 - q2 + q3 - q4) * per_area * T::splat(0.25) - mm * per_r;
     let by_s = (q1 + q2 - q3 - q4) * per_area * T::splat(0.25) - mm * per_s;
     let (sign_r, sign_s) = (slopes.signed_mm[0] * per_r, slopes.signed_mm[1] * per_s);
+    // In lanes where all corners are in contact the closed form is right but loses digits.
+    let in_part_or = |value: T, whole: T| in_part.below_zero(value, whole);
     MeanOverclosure {
-        mm,
-        by_middle: (q1 - q2 - q3 + q4) * per_area * half,
-        by_slope: Some([by_r * sign_r, by_s * sign_s]),
+        mm: in_part_or(mm, middle_mm),
+        by_middle: in_part_or(by_middle, T::one()),
+        by_slope: Some([by_r * sign_r, by_s * sign_s].map(|by| in_part_or(by, zero))),
     }
 }
 

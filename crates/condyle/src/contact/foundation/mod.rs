@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use super::{
     broad_phase::{Search, ShareBlock},
-    contact_patch::{CachedSample, ContactPatch, Coulomb, NearBlocks, Sliding, Tractions4},
+    contact_patch::{CachedSample, ContactPatch, ContactSettings, Coulomb, Sliding, Tractions4},
     law::{Bodies, ContactLaw},
     model::{
         ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Linearization,
@@ -83,21 +83,19 @@ impl ContactLaw for Foundation {
         bodies: Bodies<'a>,
         memory: ContactMemory,
     ) -> Box<dyn ContactModel + 'a> {
-        let nearby = NearBlocks::new(
-            memory.cache.into_inner(),
-            bodies.femur,
-            ShareBlock::from_shares(bodies.insert, bodies.surface),
-            (self.search, self.sample_reuse_mm),
-        );
-        let friction = Coulomb {
-            coefficient: self.friction,
-            slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
+        let settings = ContactSettings {
+            friction: Coulomb {
+                coefficient: self.friction,
+                slip_tolerance_mm_per_s: self.slip_tolerance_mm_per_s,
+            },
+            search: self.search,
+            sample_reuse_mm: self.sample_reuse_mm,
         };
+        let blocks = ShareBlock::from_shares(bodies.insert, bodies.surface);
         Box::new(FoundationContact {
             law: self,
             bodies,
-            patch: ContactPatch::new(bodies.surface, &nearby.blocks, friction),
-            nearby,
+            patch: ContactPatch::new(bodies, blocks, settings, memory.cache),
             slopes: Vec::new(),
         })
     }
@@ -121,9 +119,8 @@ impl ContactLaw for Foundation {
 struct FoundationContact<'a> {
     law: &'a Foundation,
     bodies: Bodies<'a>,
-    nearby: NearBlocks<'a>,
     /// The blocks that touched at the last response.
-    patch: ContactPatch,
+    patch: ContactPatch<'a>,
     /// The edge slopes of their shares.
     slopes: Vec<EdgeSlopes<F64x4>>,
 }
@@ -140,7 +137,7 @@ impl ContactModel for FoundationContact<'_> {
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.nearby.begin_increment(increment);
+        self.patch.nearby.begin_increment(increment);
     }
 
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
@@ -148,11 +145,11 @@ impl ContactModel for FoundationContact<'_> {
         let change = FrameChange::to_femur(&motion.pose);
         let pose = Pose4::new(&motion.pose);
         let twist = Twist4::new(&change.twist(&motion.twist));
-        let (patch, slopes) = (&mut self.patch, &mut self.slopes);
-        patch.near.clear();
+        let (ContactPatch { nearby, near, .. }, slopes) = (&mut self.patch, &mut self.slopes);
+        near.clear();
         slopes.clear();
         // A block touches if a corner of one of its shares is overclosed.
-        self.nearby.find(
+        nearby.find(
             &motion.pose,
             &pose,
             |cached, shares| {
@@ -161,20 +158,20 @@ impl ContactModel for FoundationContact<'_> {
                     EdgeSlopes::new([dot(&normal, &shares.edge_a), dot(&normal, &shares.edge_b)]);
                 (edges.reach_mm(), edges)
             },
-            |near, edges| {
-                patch.near.push(near);
+            |block, edges| {
+                near.push(block);
                 slopes.push(edges);
             },
         );
         let law = self.law;
-        let (wrench, mean_slip) = patch.press(&self.nearby.blocks, |place, near, shares| {
+        let (wrench, mean_slip) = self.patch.press(|place, near, shares| {
             law.tractions(&near.cached, &slopes[place], shares, &pose, &twist)
         });
         Response::new(change.wrench_back(&wrench), mean_slip, self)
     }
 
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
-        let touched = self.patch.touched(&self.nearby.blocks, motion);
+        let touched = self.patch.touched(motion);
         let Bodies {
             femur,
             insert,
@@ -197,7 +194,7 @@ impl ContactModel for FoundationContact<'_> {
     fn into_memory(self: Box<Self>) -> ContactMemory {
         ContactMemory {
             state: ContactState::default(),
-            cache: ContactCache::new(self.nearby.into_cache()),
+            cache: ContactCache::new(self.patch.nearby.into_cache()),
         }
     }
 }

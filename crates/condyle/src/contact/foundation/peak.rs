@@ -1,4 +1,4 @@
-//! The highest pressure, which lies between the nodes.
+//! The highest pressure of a foundation, which lies between the nodes.
 
 use crate::{
     contact::{
@@ -11,28 +11,26 @@ use crate::{
     spatial::Pose4,
 };
 
-/// A quadratic that misses the mean under the top by more than this part of the highest mean follows something
-/// that is none, such as a step of the thickness at the rim; what it says between the nodes is made up.
+/// A fit is rejected if it misses the mean under the top by more than this part of the highest mean: it then follows a step,
+/// such as that of the thickness at the rim, and its values between the nodes are meaningless.
 const MAX_MISSED: f64 = 0.3;
 
-/// A quadratic that misses a mean around the top by more than this part of its rise there bends otherwise than the
-/// surface does.
+/// A fit over the edge of contact is replaced if it misses a mean around the top by more than this part of its rise there:
+/// it is then bent otherwise than the surface.
 const MISSED_OF_RISE: f64 = 0.1;
 
-/// So many that at an edge, too, those on one side of it determine a quadratic.
+/// At an edge those nodes on one side of it are to determine a quadratic: twice as many as in the interior are searched.
 const NODES_ONE_SIDED: usize = 2 * MIN_NODES;
 
-/// Looks for the highest pressure.
+/// The search for the highest pressure.
 ///
-/// The law's measure of overclosure (see [`PressureLaw::measure`]) is smooth where the pressure is
-/// not: at the edge of contact and at the corners of a table. So it is this that is fitted, with a
-/// quadratic over the node that presses most and those around it, whether they touch or not, and
-/// the peak is the law's pressure at its maximum within the share. It is never below the highest
-/// mean over a share, and is that where the quadratic does not follow the
-/// measure.
+/// The law's measure of overclosure (see [`PressureLaw::measure`]) is smooth where the pressure is not: at the edge of
+/// contact and at the corners of a table. So a quadratic is fitted to the measure, over the node with the highest pressure
+/// and those around it, in contact or not; the peak is the law's pressure at its maximum within the share. It is never
+/// below the highest mean over a share, and equal to that if the fit is rejected.
 ///
-/// Its error falls with the third power of the edge, under a body that is smooth and symmetric about the
-/// peak with the fourth.
+/// Its error falls with the third power of the edge length, under a body that is smooth and symmetric about the peak with
+/// the fourth.
 pub(crate) struct PeakSearch<'a> {
     pub law: &'a PressureLaw,
     pub femur: &'a FemoralSurface,
@@ -42,7 +40,7 @@ pub(crate) struct PeakSearch<'a> {
     pub pose: Pose4,
 }
 
-/// The overclosure of a share whether it touches or not.
+/// The overclosure of a share, in contact or not.
 struct PatchNode {
     node: u32,
     gap_mm: f64,
@@ -51,36 +49,29 @@ struct PatchNode {
 }
 
 impl PeakSearch<'_> {
-    /// Highest pressure at or around the nodes that touch, MPa; any region may have it.
+    /// Returns the highest pressure at or around the nodes in contact, MPa; any region may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
+        let pressure_mpa = |measure: f64| self.law.pressure(measure.max(0.0), 1.0).0;
         highest_mpa(touched, |node, so_far_mpa| {
-            self.highest_around(node, so_far_mpa)
+            let patch = self.sampled(&self.faces.patch(node, MIN_NODES));
+            let Some(fit) = self.fit(&patch) else {
+                return 0.0;
+            };
+            let highest_mpa = pressure_mpa(fit.highest());
+            if highest_mpa <= so_far_mpa {
+                0.0
+            } else if patch.iter().all(|at| at.mean > 0.0) {
+                highest_mpa
+            } else {
+                pressure_mpa(self.limited(&fit, patch))
+            }
         })
     }
 
-    /// Highest pressure within the share of a node, MPa; 0 where nothing tells that it is higher than the mean, or
-    /// than `so_far_mpa`.
-    fn highest_around(&self, node: u32, so_far_mpa: f64) -> f64 {
-        let patch = self.sampled(&self.faces.patch(node, MIN_NODES));
-        let Some(fit) = self.fit(&patch) else {
-            return 0.0;
-        };
-        let pressure_mpa = |measure: f64| self.law.pressure(measure.max(0.0), 1.0).0;
-        let highest_mpa = pressure_mpa(fit.highest());
-        if highest_mpa <= so_far_mpa {
-            0.0
-        } else if patch.iter().all(|at| at.mean > 0.0) {
-            highest_mpa
-        } else {
-            pressure_mpa(self.limited(&fit, patch))
-        }
-    }
-
-    /// Returns the maximum of a quadratic that has the edge of contact in the patch that it was fitted over; never more than
-    /// the quadratic itself.
+    /// Returns the maximum of a quadratic over a patch that contains the edge of contact; never more than that of the fit.
     ///
-    /// At an edge of the femur the surface falls away beyond, and bends it more than the surface inside is bent: it
-    /// then misses the nodes farther inside that press, and these alone tell how high it rises.
+    /// At an edge of the femur the surface falls away, which bends the fit more than the surface inside is bent. The fit then
+    /// misses nodes in contact farther inside, and is replaced by one over these alone.
     fn limited(&self, fit: &Quadratic, patch: Vec<PatchNode>) -> f64 {
         let top = patch[0].node;
         // A larger patch begins with the smaller one.
@@ -100,7 +91,7 @@ impl PeakSearch<'_> {
         highest.min(of_pressing.max(mean))
     }
 
-    /// The quadratic over a patch; none where it does not follow the mean of the first node.
+    /// Fits a quadratic over a patch; none if it misses the mean of the first node.
     fn fit(&self, patch: &[PatchNode]) -> Option<Quadratic> {
         let top = &patch[0];
         let means = self.means(patch);
@@ -110,7 +101,7 @@ impl PeakSearch<'_> {
         fit.filter(follows)
     }
 
-    /// Shares and means of those nodes of a patch that are on one surface with the first.
+    /// Returns shares and means of the nodes of a patch that are on one surface with the first.
     fn means<'a>(
         &'a self,
         patch: &'a [PatchNode],
@@ -119,7 +110,7 @@ impl PeakSearch<'_> {
         let top = &patch[0];
         let is_surface = move |at: &&PatchNode| {
             let distance2_mm2 = (share(at).centre - share(top).centre).norm_squared();
-            // What changes faster from point to point than a gap can has no surface behind it.
+            // No gap changes faster along a surface: such a node lies under another part of the femur, or under none.
             let change = (at.gap_mm - top.gap_mm) / MAX_GAP_SLOPE;
             change * change <= distance2_mm2
         };
@@ -145,7 +136,7 @@ impl PeakSearch<'_> {
         patch
     }
 
-    /// Mean gaps over the shares of up to four nodes, mm.
+    /// Samples the mean gaps over the shares of up to four nodes, mm.
     fn gaps_mm(&self, nodes: &[u32]) -> F64x4 {
         let share = |lane: usize| &self.shares[nodes[lane.min(nodes.len() - 1)] as usize];
         let centres = vector_from_lanes(|lane| &share(lane).centre);

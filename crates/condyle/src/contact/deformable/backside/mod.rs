@@ -20,12 +20,13 @@ use super::{
     complementarity::Candidate,
     elastic_surface::ElasticSurface,
     history::{
-        ByActivity, ByIncrement, LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads,
-        farthest_mm, field,
+        ByActivity, ByIncrement, LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads, farthest_mm,
+        field,
     },
 };
 use crate::{
     contact::{
+        contact_patch::ContactPatch,
         law::BacksideAtRest,
         model::{ContactState, NotBorne, StateField, TouchedNode},
     },
@@ -217,7 +218,7 @@ impl LoadHistory for RestingInsert {
         self.settle_under(under.loads, under.near())
     }
 
-    fn accept(&mut self, _: &RelativeMotion, _: &LoadedPatch<'_>) {
+    fn accept(&mut self, _: &RelativeMotion, _: &ContactPatch<'_>) {
         if let Some(found) = &self.found {
             let way = found.moved_mm.iter().zip(&self.left_mm);
             let way: Vec<f64> = way.map(|(to, from)| to - from).collect();

@@ -17,14 +17,12 @@ use condyle_fem::{ElasticSolid, Material, MaterialPoint, Strain};
 use super::{
     complementarity::Candidate,
     elastic_surface::ElasticSurface,
-    history::{
-        ByIncrement, LoadHistory, LoadedPatch, NodeLoad, SETTLED_MM, SurfaceLoads, farthest_mm,
-        field,
-    },
+    history::{ByIncrement, LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads, farthest_mm, field},
 };
 use crate::{
     Vec3,
     contact::{
+        contact_patch::ContactPatch,
         law::{PlasticUnderSurface, Regime},
         model::{ContactState, NotBorne, StateField, TouchedNode},
     },
@@ -527,7 +525,7 @@ impl<M: Material> LoadHistory for PlasticInsert<M> {
         self.flow(under.loads, under.peak_mpa(), under.near(), around)
     }
 
-    fn accept(&mut self, _: &RelativeMotion, _: &LoadedPatch<'_>) {
+    fn accept(&mut self, _: &RelativeMotion, _: &ContactPatch<'_>) {
         self.commit();
     }
 

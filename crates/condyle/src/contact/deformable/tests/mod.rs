@@ -7,14 +7,14 @@ use std::{f64::consts::PI, sync::Arc};
 
 use super::{
     compliance::{Compliance, SurfaceCompliance},
-    contact::{DeformableContact, FrictionSettings},
+    contact::DeformableContact,
     history::LoadHistory,
 };
 use crate::{
     Mat3, Vec3,
     contact::{
         broad_phase::Search,
-        contact_patch::Coulomb,
+        contact_patch::{ContactSettings, Coulomb},
         law::Bodies,
         model::{ContactMemory, ContactModel, TouchedNode},
     },
@@ -74,7 +74,7 @@ impl Plane {
             insert: &self.insert,
             surface: &self.surface,
         };
-        let settings = FrictionSettings {
+        let settings = ContactSettings {
             friction: Coulomb {
                 coefficient: friction,
                 slip_tolerance_mm_per_s: 1.0,
