@@ -10,7 +10,9 @@ use std::{error::Error, fs::File, io::BufWriter, time::Instant};
 
 use condyle::{
     Mat3, Vec3,
-    contact::{Bodies, ContactLaw, ContactMemory, ContactModel, Deformable, FrictionModel},
+    contact::{
+        Backside, Bodies, ContactLaw, ContactMemory, ContactModel, Deformable, FrictionModel,
+    },
     geometry::{FemoralSurface, Insert, Meshing, TriangleMesh, flat_insert},
     spatial::{Pose, RelativeMotion, Twist},
 };
@@ -50,7 +52,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         (FrictionModel::StickSlip, "sticks"),
     ] {
         let start = Instant::now();
-        let mut law = Deformable::new(elastic, FRICTION, SLIP_TOLERANCE_MM_PER_S, &insert)?;
+        let mut law = Deformable::new(
+            elastic,
+            FRICTION,
+            SLIP_TOLERANCE_MM_PER_S,
+            Backside::Bonded,
+            &insert,
+        )?;
         law.friction_model = model;
         let mut contact = law.contact(bodies, ContactMemory::default());
         let answer = press(contact.as_mut());

@@ -28,8 +28,7 @@ struct Pair {
 impl Pair {
     fn new(femur: FemoralSurface, insert: Insert, backside: Backside) -> Self {
         let elastic = Elastic::new(MODULUS_MPA, POISSON).unwrap();
-        let law = Deformable::new(elastic, 0.07, 1.0, &insert).unwrap();
-        let law = law.with_backside(backside, &insert).unwrap();
+        let law = Deformable::new(elastic, 0.07, 1.0, backside, &insert).unwrap();
         Self {
             surface: insert.surface(),
             femur,

@@ -7,8 +7,8 @@ use std::f64::consts::PI;
 use condyle::{
     Mat3, Vec3,
     contact::{
-        Bodies, ContactLaw, ContactMemory, ContactModel, ContactResult, ContactState, Deformable,
-        Foundation, FrictionModel, PressureLaw, confined_modulus,
+        Backside, Bodies, ContactLaw, ContactMemory, ContactModel, ContactResult, ContactState,
+        Deformable, Foundation, FrictionModel, PressureLaw, confined_modulus,
     },
     geometry::{
         ArticulatingSurface, Cylinder, FemoralSurface, GenericFemur, GenericFemurShape,
@@ -25,7 +25,7 @@ const POISSON: f64 = 0.46;
 
 fn law(insert: &Insert, friction: f64) -> Deformable {
     let elastic = Elastic::new(MODULUS_MPA, POISSON).unwrap();
-    Deformable::new(elastic, friction, 1.0, insert).unwrap()
+    Deformable::new(elastic, friction, 1.0, Backside::Bonded, insert).unwrap()
 }
 
 /// Two bodies that contacts are made of.
@@ -138,7 +138,7 @@ fn off_an_even_pressure(aside_mm: f64) -> (f64, Vec<f64>) {
     });
     let pair = Pair::new(FemoralSurface::sphere(radius_mm), insert);
     let elastic = Elastic::new(MODULUS_MPA, 0.0).unwrap();
-    let law = Deformable::new(elastic, 0.0, 1.0, &pair.insert).unwrap();
+    let law = Deformable::new(elastic, 0.0, 1.0, Backside::Bonded, &pair.insert).unwrap();
     let mut contact = pair.contact(&law);
     let motion = over([0.0, radius_mm - depth_mm, 0.0]);
     let force_n = down_n(contact.as_mut(), &motion);
@@ -533,7 +533,7 @@ fn what_another_run_found_is_taken_to_the_bit() {
     assert!(more.pairs() > known.pairs());
     // A stiffer insert that is told of this one believes it: nothing is computed twice.
     let elastic = Elastic::new(2.0 * MODULUS_MPA, POISSON).unwrap();
-    let stiff = Deformable::new(elastic, 0.07, 1.0, &pair.insert).unwrap();
+    let stiff = Deformable::new(elastic, 0.07, 1.0, Backside::Bonded, &pair.insert).unwrap();
     stiff.know(&pair.insert, more).unwrap();
     assert_eq!(force_n(&stiff, 0.4), deep_n);
 }

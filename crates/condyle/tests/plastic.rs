@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 use condyle::{
     Mat3, Vec3,
     contact::{
-        Bodies, ContactLaw, ContactMemory, ContactModel, ContactResult, ContactState, Deformable,
-        Settled,
+        Backside, Bodies, ContactLaw, ContactMemory, ContactModel, ContactResult, ContactState,
+        Deformable, Settled,
     },
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
     spatial::{Pose, RelativeMotion},
@@ -34,7 +34,7 @@ impl Pair {
     fn new(ratio: f64, hardening: Option<Hardening>) -> Self {
         let insert = half_space(EDGE_MM, 13);
         let elastic = Elastic::new(MODULUS_MPA, ratio).unwrap();
-        let mut law = Deformable::new(elastic, 0.0, 1.0, &insert).unwrap();
+        let mut law = Deformable::new(elastic, 0.0, 1.0, Backside::Bonded, &insert).unwrap();
         if let Some(hardening) = hardening {
             law = law.with_material(ElasticPlastic { elastic, hardening });
         }

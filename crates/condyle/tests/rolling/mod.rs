@@ -4,7 +4,10 @@ use std::f64::consts::PI;
 
 use condyle::{
     Mat3, Vec3,
-    contact::{Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Deformable, Settled},
+    contact::{
+        Backside, Bodies, ContactLaw, ContactMemory, ContactModel, ContactState, Deformable,
+        Settled,
+    },
     geometry::{ArticulatingSurface, Cylinder, FemoralSurface, Insert, Meshing, flat_insert},
     spatial::{Pose, RelativeMotion},
 };
@@ -62,7 +65,7 @@ impl Rolling {
                 radius_mm: RADIUS_MM,
             }),
             surface: insert.surface(),
-            law: Deformable::new(elastic, 0.0, 1.0, &insert).unwrap(),
+            law: Deformable::new(elastic, 0.0, 1.0, Backside::Bonded, &insert).unwrap(),
             peak_mpa: modulus_mpa * HALF_WIDTH_MM / (2.0 * RADIUS_MM),
             insert,
         }

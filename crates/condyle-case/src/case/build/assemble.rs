@@ -159,7 +159,7 @@ impl Case {
         let (coefficient, slip) = (friction.friction, friction.slip_tolerance_mm_per_s);
         let backside = self.contact.backside.backside();
         let mut law = bodies.elastic(self, elastic, || {
-            Deformable::held(elastic, coefficient, slip, backside, insert)
+            Deformable::new(elastic, coefficient, slip, backside, insert)
         })?;
         (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
         law.search = self.contact.finding.search.search();

@@ -143,7 +143,7 @@ impl BroadPhase {
             return Self::new(self.search, after);
         }
         // Only the last wear is kept: bounds that are older than it cannot be carried to the new surface.
-        if self.now.worn() < self.last_wear.number {
+        if self.now.worn < self.last_wear.number {
             self.now = Separations::new(after.len());
         }
         self.last_wear = LastWear {
@@ -164,7 +164,7 @@ impl BroadPhase {
             self.kept.resize(most + 1, None);
         }
         let kept = self.kept[increment].take();
-        let kept = kept.filter(|kept| kept.worn() + 1 >= self.last_wear.number);
+        let kept = kept.filter(|kept| kept.worn + 1 >= self.last_wear.number);
         self.neighbour = kept.is_some().then_some(self.increment);
         let next = kept.unwrap_or_else(|| self.now.clone());
         let left = std::mem::replace(&mut self.now, next);

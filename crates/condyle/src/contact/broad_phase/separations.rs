@@ -24,7 +24,7 @@ pub(crate) struct Separations {
     eights: Vec<Eight>,
     count: usize,
     /// The number of the wear that the bounds are for.
-    worn: u32,
+    pub worn: u32,
 }
 
 /// The [bounds](SeparationBound) of eight blocks.
@@ -130,11 +130,6 @@ impl Separations {
         }
     }
 
-    /// Returns the number of the wear that the bounds are for.
-    pub fn worn(&self) -> u32 {
-        self.worn
-    }
-
     /// Carries the bounds to another pose of the femur and to the last wear, and lists the blocks that may touch then,
     /// ascending.
     ///
@@ -221,7 +216,6 @@ pub(crate) struct BlockPlaces {
     pub levers_mm: F32x8,
 }
 
-/// The change of eight blocks by wear.
 pub(crate) struct BlockWear {
     /// Motion of their middles, mm.
     pub moved: Vector<F32x8>,
@@ -272,20 +266,15 @@ impl BlockWear {
     }
 
     fn new(before: &[ShareBlock], after: &[ShareBlock]) -> Self {
-        let last = before.len() - 1;
-        let at = |i: usize| (&before[i.min(last)], &after[i.min(last)]);
-        let moved = |i: usize| {
-            let (before, after) = at(i);
-            middle(after) - middle(before)
-        };
-        let lost_mm = |i: usize| {
-            let (before, after) = at(i);
-            lost_mm(before, after, &moved(i))
-        };
-        let axis = |axis: usize| F32x8::from_lanes(|i| moved(i)[axis]);
+        let changes: [(Vec3, f64); LANES_F32] = std::array::from_fn(|i| {
+            let i = i.min(before.len() - 1);
+            let moved = middle(&after[i]) - middle(&before[i]);
+            (moved, lost_mm(&before[i], &after[i], &moved))
+        });
+        let axis = |axis: usize| F32x8::from_lanes(|i| changes[i].0[axis]);
         Self {
             moved: Vector::new(axis(0), axis(1), axis(2)),
-            lost_mm: F32x8::from_lanes(lost_mm),
+            lost_mm: F32x8::from_lanes(|i| changes[i].1),
         }
     }
 }

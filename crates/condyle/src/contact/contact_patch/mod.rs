@@ -40,16 +40,13 @@ pub(crate) struct ContactPatch<'a> {
     pub nearby: NearBlocks<'a>,
     /// The blocks in contact, ascending.
     pub near: Vec<NearBlock>,
-    /// The tractions on each of them.
     tractions: Vec<Tractions4>,
-    /// The pose of the femur.
     pub pose: Pose,
     friction: Coulomb,
     /// The surface's own directions at the nodes of every block, anterior and lateral.
     directions: Vec<[Vector<F64x4>; 2]>,
 }
 
-/// A node in contact.
 #[derive(Clone, Copy)]
 pub(crate) struct ContactNode {
     pub node: u32,
@@ -121,7 +118,6 @@ impl<'a> ContactPatch<'a> {
         )
     }
 
-    /// Returns the derivatives of the wrench.
     pub fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
         for (near, tractions) in self.near.chunks(2).zip(self.tractions.chunks(2)) {

@@ -9,9 +9,7 @@ use crate::{
     spatial::{Pose, Pose4},
 };
 
-/// A block of shares near the femur.
 pub(crate) struct NearBlock {
-    /// Number of the block.
     pub block: u32,
     pub cached: CachedSample,
 }
@@ -28,7 +26,7 @@ pub(crate) struct NearCache {
 pub(crate) struct NearBlocks<'a> {
     femur: &'a FemoralSurface,
     pub blocks: Vec<ShareBlock>,
-    broad_phase: BroadPhase,
+    pub broad_phase: BroadPhase,
     /// Motion up to which a sample is extrapolated, mm.
     reuse_mm: f64,
     /// Every block's last sample of the femur, and the number of the search at which it was near last.
@@ -66,12 +64,6 @@ impl<'a> NearBlocks<'a> {
         }
     }
 
-    /// See [`BroadPhase::begin_increment`].
-    pub fn begin_increment(&mut self, increment: usize) {
-        self.broad_phase.begin_increment(increment);
-    }
-
-    /// Returns the search state for the next contact.
     pub fn into_cache(self) -> NearCache {
         NearCache {
             blocks: self.blocks,
@@ -144,7 +136,6 @@ impl CachedSample {
         }
     }
 
-    /// Samples the femur at `place`.
     #[inline(always)]
     pub fn at(femur: &FemoralSurface, place: Vector<F64x4>, spread_mm2: F64x4) -> Self {
         let sample = femur.sample(&place, spread_mm2);

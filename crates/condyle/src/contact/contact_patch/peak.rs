@@ -117,7 +117,6 @@ impl Quadratic {
         })
     }
 
-    /// Returns the mean over the share.
     pub fn mean(&self) -> f64 {
         let [xx, _, yy] = self.bend;
         self.constant + self.moment * (xx + yy) / 2.0

@@ -17,7 +17,6 @@ const STANDSTILL_MM_PER_S: f64 = 1e-9;
 /// Coulomb's law of friction, regularised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Coulomb {
-    /// Coefficient of friction, mu.
     pub coefficient: f64,
     /// Speed at which friction has reached 71 % of its full value, v0, mm/s, > 0.
     pub slip_tolerance_mm_per_s: f64,
@@ -69,7 +68,6 @@ impl Sliding {
 }
 
 impl Tractions4 {
-    /// No traction.
     pub fn none() -> Self {
         let zero = F64x4::splat(0.0);
         Self {
@@ -239,7 +237,6 @@ impl TangentSum {
         }
     }
 
-    /// Returns the sums by pose and by twist.
     pub fn total(&self) -> (Mat6, Mat6) {
         let by_pose = Mat6::from_fn(|i, column| self.by_pose[column][i].sum());
         let by_twist = Mat6::from_fn(|i, column| self.by_twist[column.max(i)][column.min(i)].sum());

@@ -49,7 +49,6 @@ pub(crate) struct ChangedFactor {
 }
 
 impl ChangedFactor {
-    /// Starts without contact on a surface with so many nodes.
     pub fn new(node_count: usize) -> Self {
         Self {
             nodes: Vec::new(),
@@ -68,12 +67,10 @@ impl ChangedFactor {
         }
     }
 
-    /// Announces other overclosures.
     pub fn take_other_overclosures(&mut self) {
         self.is_forward_known = false;
     }
 
-    /// Sets the nodes in contact.
     pub fn press(&mut self, nodes: &[u32], compliance: &NearMatrix) {
         for &node in nodes {
             self.is_pressing[node as usize] = true;
@@ -241,7 +238,6 @@ impl ChangedFactor {
         }
     }
 
-    /// Returns the changes x.
     fn changes_of_loads(&self, overclosures: &[Eight]) -> Vec<f64> {
         let mut products = Vec::with_capacity(self.kept.len());
         for block in &self.blocks {
@@ -270,7 +266,6 @@ impl ChangedFactor {
         x
     }
 
-    /// Returns the place of a node among the changes.
     fn place_of(&self, node: u32) -> Option<usize> {
         self.changes
             .iter()
@@ -317,7 +312,6 @@ impl ChangedFactor {
         }
     }
 
-    /// Returns the changes x with their derivatives.
     fn changes_by_motion(&self, overclosures: &[Eight]) -> Vec<Eight> {
         let mut x: Vec<Eight> = Vec::with_capacity(self.changes.len());
         for (&kept, row) in self.changes.iter().zip(&self.small) {

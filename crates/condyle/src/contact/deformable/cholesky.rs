@@ -2,7 +2,6 @@
 
 use crate::number::{F64x4, LANES, Number};
 
-/// The number of rows side by side.
 pub(crate) const ROWS: usize = 2 * LANES;
 
 /// Panels that are eliminated together: those before are then read from memory once for all of them.
@@ -27,7 +26,6 @@ pub(crate) struct Cholesky {
     per_diagonal: Vec<f64>,
 }
 
-/// Returns the number of the first column of a panel.
 fn start(panel: usize) -> usize {
     ROWS * panel * (panel + 1) / 2
 }
@@ -88,7 +86,6 @@ impl Cholesky {
         }
     }
 
-    /// Appends the rows of a panel.
     fn add_rows(&mut self, panel: usize, entry: &impl Fn(usize, usize) -> f64) {
         let order = self.order;
         let at = |row: usize, column: usize| {

@@ -45,7 +45,6 @@ pub(crate) struct Pressing {
 }
 
 impl Pressing {
-    /// Starts without contact on a surface with so many nodes.
     pub fn new(node_count: usize) -> Self {
         Self {
             pressed_before: vec![false; node_count],
@@ -193,7 +192,6 @@ pub(crate) fn by_panel(
         .collect()
 }
 
-/// A node that may be in contact.
 #[derive(Clone, Copy)]
 pub(crate) struct Candidate {
     pub node: u32,
@@ -206,7 +204,6 @@ impl Candidate {
         self.overclosure_mm[0].lane(0)
     }
 
-    /// Moves the node inwards.
     pub fn displace(&mut self, by_mm: f64) {
         self.overclosure_mm[0] -= F64x4::new([by_mm, 0.0, 0.0, 0.0]);
     }
@@ -226,7 +223,6 @@ const NARROW_MM: f64 = 0.01;
 struct Clearances {
     /// For every surface node, its deflection when that was computed last plus the closing of its tile until then, mm.
     wider_mm: Vec<f64>,
-    /// That deflection, mm.
     moved_mm: Vec<f64>,
     tiles: Vec<TileClearance>,
     /// The load of every surface node, and the nodes that have one.
@@ -258,7 +254,6 @@ impl Clearances {
         }
     }
 
-    /// Updates the bounds for other loads.
     fn take(&mut self, nodes: &[u32], loads_n: &[f64], compliance: &NearMatrix) {
         let reaches = compliance.reaches();
         self.tiles.resize(reaches.len(), TileClearance::default());
@@ -290,7 +285,6 @@ impl Clearances {
         }
     }
 
-    /// Returns whether a node is likely to overlap the femur.
     fn may_overlap(&self, candidate: &Candidate) -> bool {
         self.moved_mm[candidate.node as usize] - candidate.overclosed_mm() < NARROW_MM
     }
@@ -319,7 +313,6 @@ impl Clearances {
 }
 
 impl TileClearance {
-    /// Counts a change of a load on it.
     fn change(&mut self, by_n: f64) {
         self.less_n += (-by_n).max(0.0);
         self.more_n += by_n.max(0.0);

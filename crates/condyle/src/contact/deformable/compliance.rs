@@ -1,9 +1,6 @@
 //! The compliance of a surface under loads on its nodes, computed tile by tile when it is first needed.
 
-use std::{
-    fmt::{self, Debug},
-    sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard},
-};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard};
 
 use condyle_fem::{ElasticSolid, HalfSolved};
 
@@ -19,7 +16,7 @@ use crate::{
 ///
 /// It is symmetric and positive definite. It is computed for two tiles of nodes at a time and on demand, since most nodes
 /// are never in contact; the result does not depend on what was computed before.
-pub(crate) trait SurfaceCompliance: Debug + Send + Sync {
+pub(crate) trait SurfaceCompliance: Send + Sync {
     /// Returns all nodes of the surface, in tiles of neighbours.
     fn tiles(&self) -> &[Vec<u32>];
 
@@ -28,7 +25,6 @@ pub(crate) trait SurfaceCompliance: Debug + Send + Sync {
 }
 
 /// The compliance of a surface, with the part that was needed so far.
-#[derive(Debug)]
 pub(crate) struct Compliance {
     tile_of: Vec<u32>,
     near: RwLock<NearMatrix>,
@@ -52,7 +48,6 @@ impl Compliance {
         }
     }
 
-    /// Returns the number of nodes of the surface.
     pub fn node_count(&self) -> usize {
         self.tile_of.len()
     }
@@ -77,7 +72,6 @@ impl Compliance {
         known
     }
 
-    /// Returns the tile of a node.
     pub fn tile_of(&self, node: u32) -> u32 {
         self.tile_of[node as usize]
     }
@@ -110,14 +104,12 @@ impl Compliance {
     }
 }
 
-/// The row of a node whose compliance is not computed.
 const UNKNOWN: u32 = u32::MAX;
 
 /// The compliance between the nodes of some tiles of a surface.
 ///
 /// A row holds the displacements of its node by loads on all nodes, those of eight nodes, a panel, side by side. A tile is
 /// padded to whole panels by nodes that do not move.
-#[derive(Debug)]
 pub(crate) struct NearMatrix {
     /// Tiles in the order in which they were added, and the first row of each.
     tiles: Vec<(usize, usize)>,
@@ -134,7 +126,7 @@ pub(crate) struct NearMatrix {
 }
 
 /// The largest displacement of a node by a newton on another node, of the same or another tile, mm/N.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Reach {
     pub outwards: f64,
     pub inwards: f64,
@@ -320,14 +312,6 @@ pub(crate) struct UnitLoads {
     known: Mutex<KnownCompliance>,
 }
 
-impl Debug for UnitLoads {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("UnitLoads")
-            .field("loads", &self.forces.len())
-            .finish_non_exhaustive()
-    }
-}
-
 impl UnitLoads {
     /// Prepares loads on a solid; `tiles` groups the numbers of loads that lie together.
     pub fn new(solid: Arc<ElasticSolid>, forces: Vec<(u32, Vec3)>, tiles: Vec<Vec<u32>>) -> Self {
@@ -345,12 +329,10 @@ impl UnitLoads {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the mesh node of a load, and its direction.
     pub fn force(&self, load: u32) -> (u32, Vec3) {
         self.forces[load as usize]
     }
 
-    /// Returns the mesh nodes and directions of the loads of a tile.
     pub fn forces_of(&self, tile: usize) -> Vec<(u32, Vec3)> {
         self.tiles[tile]
             .iter()
@@ -358,7 +340,6 @@ impl UnitLoads {
             .collect()
     }
 
-    /// Returns the half-solved unit loads of a tile.
     pub fn solved(&self, tile: usize) -> Arc<HalfSolved> {
         let mut solved = self.solved.lock().unwrap_or_else(PoisonError::into_inner);
         let own = solved[tile]

@@ -10,7 +10,7 @@ use super::{
     cholesky::{Eight, get},
     complementarity::{Candidate, Pressing},
     compliance::Compliance,
-    edge_and_peak::{EdgeOfContact, PeakSearch},
+    edge_and_peak::NodePressures,
     history::{LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads},
 };
 use crate::{
@@ -182,7 +182,7 @@ impl ContactModel for DeformableContact<'_> {
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.patch.nearby.begin_increment(increment);
+        self.patch.nearby.broad_phase.begin_increment(increment);
         for history in &mut self.histories {
             history.begin_increment(increment);
         }
@@ -248,26 +248,13 @@ impl ContactModel for DeformableContact<'_> {
         for history in &mut self.histories {
             history.evaluate(&mut touched);
         }
-        let (surface, faces) = (self.bodies.surface, self.bodies.insert.faces_around());
-        let mut pressure2 = vec![0.0; self.node_count()];
-        for node in &touched {
-            pressure2[node.node as usize] = node.pressure_mpa * node.pressure_mpa;
-        }
-        let edge = EdgeOfContact {
-            surface,
-            faces,
-            pressure2: &pressure2,
-        };
+        let pressures = NodePressures::new(self.bodies, &touched);
         for node in &mut touched {
-            node.covered_mm2 = edge.part(node.node) * surface.shares[node.node as usize].area_mm2;
+            let share = &self.bodies.surface.shares[node.node as usize];
+            node.covered_mm2 = pressures.part(node.node) * share.area_mm2;
         }
-        let peak = PeakSearch {
-            shares: &surface.shares,
-            faces,
-            pressure2: &pressure2,
-        };
         ContactResult {
-            peak_pressure_mpa: peak.highest_mpa(&touched),
+            peak_pressure_mpa: pressures.highest_mpa(&touched),
             touched,
         }
     }

@@ -7,9 +7,10 @@ use crate::{
     Vec3,
     contact::{
         contact_patch::{MIN_NODES, Quadratic, highest_mpa},
+        law::Bodies,
         model::TouchedNode,
     },
-    geometry::{ArticulatingSurface, FacesAround, Share},
+    geometry::{ArticulatingSurface, FacesAround},
 };
 
 /// The reach of the contact beyond a node, in steps between nodes: [`STEPS_BY_RATIO`] times the ratio of its pressure to
@@ -18,15 +19,31 @@ use crate::{
 const STEPS_BY_RATIO: f64 = 2.3;
 const STEPS_LESS: f64 = 0.77;
 
-/// The nodes that press, and the surface around them.
-pub(crate) struct EdgeOfContact<'a> {
-    pub surface: &'a ArticulatingSurface,
-    pub faces: &'a FacesAround,
-    /// Square of the pressure at every node, MPa2; 0 where it does not press.
-    pub pressure2: &'a [f64],
+/// A fit is rejected if it misses the square of the pressure at its node by more than this part.
+const MAX_MISSED: f64 = 0.1;
+
+/// The pressures at the nodes of a surface.
+pub(crate) struct NodePressures<'a> {
+    surface: &'a ArticulatingSurface,
+    faces: &'a FacesAround,
+    /// Square of the pressure at every node, MPa2; 0 if it is not in contact.
+    pressure2: Vec<f64>,
 }
 
-impl EdgeOfContact<'_> {
+impl<'a> NodePressures<'a> {
+    pub fn new(bodies: Bodies<'a>, touched: &[TouchedNode]) -> Self {
+        let surface = bodies.surface;
+        let mut pressure2 = vec![0.0; surface.positions.len()];
+        for node in touched {
+            pressure2[node.node as usize] = node.pressure_mpa * node.pressure_mpa;
+        }
+        Self {
+            surface,
+            faces: bodies.insert.faces_around(),
+            pressure2,
+        }
+    }
+
     /// Returns the part of a node's share that is in contact; more than 1 if the contact reaches past the share.
     ///
     /// Under smooth bodies p = c sqrt(s) at a distance s from the edge of contact. So the ratio of a node's pressure to that
@@ -73,25 +90,12 @@ impl EdgeOfContact<'_> {
         let slope = matrix.cholesky()?.solve(&right);
         Some(along[0] * slope.x + along[1] * slope.y)
     }
-}
 
-/// A fit is rejected if it misses the square of the pressure at its node by more than this part.
-const MAX_MISSED: f64 = 0.1;
-
-/// The search for the highest pressure.
-///
-/// A quadratic is fitted to the square of the pressure over the node with the highest pressure and those around it, if all
-/// of these are in contact; at the edge of a worn scar, where they are not, nothing smooth can be fitted. The peak is not
-/// below the highest mean over a share, and equal to that if the fit is rejected.
-pub(crate) struct PeakSearch<'a> {
-    pub shares: &'a [Share],
-    pub faces: &'a FacesAround,
-    /// Square of the pressure at every node, MPa2; 0 where there is no contact.
-    pub pressure2: &'a [f64],
-}
-
-impl PeakSearch<'_> {
     /// Returns the highest pressure at or around the nodes in contact, MPa; any region may have it.
+    ///
+    /// A quadratic is fitted to the square of the pressure over the node with the highest pressure and those around it, if all
+    /// of these are in contact; at the edge of a worn scar, where they are not, nothing smooth can be fitted. The peak is not
+    /// below the highest mean over a share, and equal to that if the fit is rejected.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
         highest_mpa(touched, |node, _| {
             let patch = self.faces.patch(node, MIN_NODES);
@@ -100,10 +104,9 @@ impl PeakSearch<'_> {
             if own == 0.0 || patch.iter().any(|node| pressure2(node) == 0.0) {
                 return 0.0;
             }
-            let means = patch
-                .iter()
-                .map(|node| (&self.shares[*node as usize], pressure2(node)));
-            let fit = Quadratic::fit(&self.shares[node as usize], means);
+            let share = |node: u32| &self.surface.shares[node as usize];
+            let means = patch.iter().map(|node| (share(*node), pressure2(node)));
+            let fit = Quadratic::fit(share(node), means);
             let follows = |fit: &Quadratic| (fit.mean() - own).abs() <= MAX_MISSED * own;
             fit.filter(follows)
                 .map_or(0.0, |fit| fit.highest().max(0.0).sqrt())

@@ -31,15 +31,6 @@ const TILE_NODES: usize = 48;
 /// load, through a plate of three layers of nodes. Used for estimates of memory only.
 const FELT_PER_ROOT: f64 = 6.0;
 
-/// The nodes at which an insert is held while its loads are half-solved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum HeldBy {
-    /// The backside: it is bonded.
-    Backside,
-    /// The flat part of the backside, which rests; walls and recesses are free.
-    Floor,
-}
-
 /// The articulating surface of an elastic insert, held at its backside or at the floor of that.
 ///
 /// The stiffness is factored once. Everything else is computed when it is first needed, and kept.
@@ -57,10 +48,9 @@ pub(crate) struct ElasticSurface {
     tangential: OnceLock<Arc<Compliance>>,
     /// The influence of loads inside the insert, if it yields.
     influence: OnceLock<Influence>,
-    held_by: HeldBy,
-    backside: Vec<u32>,
-    /// The flat part of the backside, if it rests on that.
-    floor: OnceLock<Floor>,
+    /// The flat part of the backside, and whether the insert rests on that; else the whole backside is bonded.
+    floor: Floor,
+    rests: bool,
     /// The tray, if the insert rests on it, and the spacing of its points, mm.
     tray: Mutex<Option<(f64, Arc<Tray>)>>,
 }
@@ -74,7 +64,8 @@ impl fmt::Debug for ElasticSurface {
 }
 
 impl ElasticSurface {
-    /// The surface of an insert with its mesh nodes at `mesh_nodes`, mm.
+    /// Factors the stiffness of an insert with its mesh nodes at `mesh_nodes`, mm. An insert that `rests` is held at the flat
+    /// part of its backside; walls and recesses are free.
     ///
     /// # Errors
     /// A material or a mesh that is no elastic solid.
@@ -82,7 +73,7 @@ impl ElasticSurface {
         insert: &Insert,
         mesh_nodes: &[Vec3],
         elastic: Elastic,
-        held_by: HeldBy,
+        rests: bool,
     ) -> Result<Self, SolidError> {
         let mesh = HexMesh {
             nodes: mesh_nodes.to_vec(),
@@ -90,11 +81,13 @@ impl ElasticSurface {
         };
         let surface = insert.surface_at(mesh_nodes);
         let tiles = tiles(&surface.positions, TILE_NODES);
-        let backside = insert.backside_nodes();
-        let held = match held_by {
-            HeldBy::Backside => backside.to_vec(),
-            HeldBy::Floor => Floor::from_backside(&mesh, backside).nodes,
+        let floor = Floor::from_backside(&mesh, insert.backside_nodes());
+        let held = if rests {
+            &floor.nodes
+        } else {
+            insert.backside_nodes()
         };
+        let held = held.iter().copied();
         let solid = Arc::new(ElasticSolid::new(&mesh, elastic, held)?);
         let nodes = insert.surface_nodes();
         let inward = surface.normals.iter().map(|normal| -normal);
@@ -112,25 +105,21 @@ impl ElasticSurface {
             nodes: nodes.to_vec(),
             tangential: OnceLock::new(),
             influence: OnceLock::new(),
-            backside: backside.to_vec(),
-            floor: OnceLock::new(),
-            held_by,
+            floor,
+            rests,
             tray: Mutex::default(),
         })
     }
 
-    /// Returns the compliance along the inward normals.
     pub fn normal(&self) -> &Arc<Compliance> {
         &self.normal
     }
 
-    /// Takes the normal compliance that another run has computed.
     pub fn know(&self, known: KnownCompliance) {
         self.known_at_first.store(known.pairs(), Ordering::Relaxed);
         *self.loads.known() = known;
     }
 
-    /// Returns whether any of the normal compliance is known.
     pub fn knows(&self) -> bool {
         self.normal.known_count() > 0 || self.known_at_first.load(Ordering::Relaxed) > 0
     }
@@ -147,12 +136,6 @@ impl ElasticSurface {
         Some(self.normal.add_to(unused))
     }
 
-    fn floor(&self) -> &Floor {
-        let mesh = self.solid.mesh();
-        self.floor
-            .get_or_init(|| Floor::from_backside(mesh, &self.backside))
-    }
-
     /// Returns the tray with points at some spacing, which is kept while the spacing stays.
     pub fn tray(&self, spacing_mm: f64) -> Arc<Tray> {
         let mut tray = self.tray.lock().unwrap_or_else(PoisonError::into_inner);
@@ -162,7 +145,7 @@ impl ElasticSurface {
             return Arc::clone(known);
         }
         let tiles = self.loads.tiles().len();
-        let made = Arc::new(Tray::new(&self.solid, self.floor(), spacing_mm, tiles));
+        let made = Arc::new(Tray::new(&self.solid, &self.floor, spacing_mm, tiles));
         *tray = Some((spacing_mm, Arc::clone(&made)));
         made
     }
@@ -213,7 +196,7 @@ impl ElasticSurface {
     /// Estimates the memory of a tray with points at some spacing, and of its influence on some nodes, bytes.
     pub fn bytes_of_tray(&self, spacing_mm: f64, nodes: f64) -> f64 {
         let mesh = self.solid.mesh();
-        let places: Vec<Vec3> = mesh.positions(&self.floor().nodes).collect();
+        let places: Vec<Vec3> = mesh.positions(&self.floor.nodes).collect();
         let (low, high) = bounds(&places);
         let points = [0, 2].map(|axis| (high[axis] - low[axis]) / spacing_mm + 1.0);
         Tray::bytes(3.0 * points[0] * points[1], nodes, self.felt())
@@ -231,20 +214,18 @@ impl ElasticSurface {
     }
 
     /// Returns whether it belongs to an insert with the given mesh nodes.
-    pub fn is_of(&self, insert: &Insert, mesh_nodes: &[Vec3], held_by: HeldBy) -> bool {
+    pub fn is_of(&self, insert: &Insert, mesh_nodes: &[Vec3], rests: bool) -> bool {
         let mesh = self.solid.mesh();
-        self.held_by == held_by
+        self.rests == rests
             && mesh.hexes == insert.mesh().hexes
             && mesh.nodes == mesh_nodes
             && self.nodes == insert.surface_nodes()
     }
 
-    /// Returns the insert as a solid.
     pub fn solid(&self) -> &Arc<ElasticSolid> {
         &self.solid
     }
 
-    /// Returns the influence of loads inside the insert.
     pub fn influence(&self) -> &Influence {
         self.influence.get_or_init(|| {
             let places = self.solid.mesh().positions(&self.nodes).collect::<Vec<_>>();
@@ -252,7 +233,6 @@ impl ElasticSurface {
         })
     }
 
-    /// Returns the nodes of a tile.
     pub fn nodes_of_tile(&self, tile: usize) -> &[u32] {
         &self.loads.tiles()[tile]
     }

@@ -58,7 +58,6 @@ pub(crate) struct ElasticFriction<'a> {
 }
 
 impl<'a> ElasticFriction<'a> {
-    /// Resumes friction from the stored `state`.
     pub fn new(
         state: &ContactState,
         coefficient: f64,
@@ -117,7 +116,6 @@ impl<'a> ElasticFriction<'a> {
         self.spread();
     }
 
-    /// Sets the pose and the nodes in contact there.
     fn set_contact(&mut self, pose: &Pose, pressed: Vec<ContactNode>) {
         for before in std::mem::replace(&mut self.pressed, pressed) {
             self.sticks[before.node as usize] = false;
@@ -129,7 +127,7 @@ impl<'a> ElasticFriction<'a> {
     fn spread(&mut self) {
         self.loads_n.fill([0.0; 2]);
         for (place, &node) in self.loaded_nodes.iter().enumerate() {
-            self.loads_n[node as usize] = self.loads.loads_n()[place];
+            self.loads_n[node as usize] = self.loads.load_n(place);
             self.sticks[node as usize] = self.loads.sticks(place);
         }
     }
@@ -333,7 +331,6 @@ fn panels(loads: &LoadsAlong, compliance: &NearMatrix) -> Vec<(usize, Eight)> {
     by_panel(&numbers, &loads_n, compliance)
 }
 
-/// Returns the changes of loads from `before` to `now`.
 fn differences(now: &LoadsAlong, before: &LoadsAlong) -> LoadsAlong {
     let mut changes: BTreeMap<u32, Pair> = now.iter().copied().collect();
     for &(node, [x, y]) in before {

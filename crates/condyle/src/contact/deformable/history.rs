@@ -37,7 +37,6 @@ pub(crate) trait LoadHistory {
     /// Begins the cycle of the next activity.
     fn begin_cycle(&mut self);
 
-    /// Begins an increment of the cycle.
     fn begin_increment(&mut self, increment: usize);
 
     /// Subtracts from the overclosures of the candidates the displacement of the surface in the trial state.
@@ -69,7 +68,6 @@ pub(crate) trait LoadHistory {
     /// Commits the trial state at the end of a step, near the last response.
     fn accept(&mut self, motion: &RelativeMotion, patch: &ContactPatch<'_>);
 
-    /// Drops the trial state.
     fn reject(&mut self) {}
 
     /// Ends an increment, and adds to the nodes in contact what the history contributes.
@@ -82,7 +80,6 @@ pub(crate) trait LoadHistory {
     fn into_fields(self: Box<Self>) -> Vec<StateField>;
 }
 
-/// A field of a history's stored state.
 pub(crate) fn field(name: &str, values: Vec<f64>) -> StateField {
     StateField {
         name: name.to_owned(),
@@ -162,7 +159,6 @@ impl<T> ByIncrement<T> {
         self.records.insert(self.present, record)
     }
 
-    /// Returns the records in the order of the increments.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &T> {
         self.records.values()
     }
@@ -175,7 +171,6 @@ impl<T: Default> ByIncrement<T> {
     }
 }
 
-/// Returns the largest distance between two surfaces, mm.
 pub(crate) fn farthest_mm(one_mm: &[f64], other_mm: &[f64]) -> f64 {
     let apart = one_mm.iter().zip(other_mm).map(|(a, b)| (a - b).abs());
     apart.fold(0.0, f64::max)
@@ -185,12 +180,10 @@ pub(crate) fn farthest_mm(one_mm: &[f64], other_mm: &[f64]) -> f64 {
 pub(crate) struct SurfaceLoads<'l> {
     pub bodies: Bodies<'l>,
     pub loads: &'l [NodeLoad],
-    /// The nodes whose displacement is asked for.
     pub candidates: &'l [Candidate],
 }
 
 impl SurfaceLoads<'_> {
-    /// Returns the highest pressure, MPa.
     pub fn peak_mpa(&self) -> f64 {
         let shares = &self.bodies.surface.shares;
         let pressures = self.loads.iter();
@@ -199,7 +192,6 @@ impl SurfaceLoads<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// The nodes whose displacement is asked for.
     pub fn near(&self) -> impl Iterator<Item = u32> {
         self.candidates.iter().map(|candidate| candidate.node)
     }

@@ -47,7 +47,7 @@ use super::{
 use crate::{Vec3, geometry::Insert};
 use backside::{Floor, RestingInsert};
 use contact::DeformableContact;
-use elastic_surface::{ElasticSurface, HeldBy};
+use elastic_surface::ElasticSurface;
 use friction::ElasticFriction;
 use history::{LoadHistory, field};
 use plastic::InsertMaterial;
@@ -117,43 +117,30 @@ pub struct Deformable {
 }
 
 impl Deformable {
-    /// Creates the law of an insert that is bonded to its tray, and factors its stiffness.
+    /// Creates the law of an insert of a material, with regularised friction, and factors its stiffness.
     ///
     /// # Errors
     /// A material or a mesh that is no elastic solid: a part of it is not held by the backside, for instance.
     pub fn new(
-        elastic: Elastic,
-        friction: f64,
-        slip_tolerance_mm_per_s: f64,
-        insert: &Insert,
-    ) -> Result<Self, SolidError> {
-        let backside = Backside::default();
-        Self::held(elastic, friction, slip_tolerance_mm_per_s, backside, insert)
-    }
-
-    /// Creates the law of an insert whose backside is supported as given.
-    ///
-    /// # Errors
-    /// As [`Deformable::new`].
-    pub fn held(
-        elastic: Elastic,
+        material: impl Material + Clone + Debug + Send + Sync + 'static,
         friction: f64,
         slip_tolerance_mm_per_s: f64,
         backside: Backside,
         insert: &Insert,
     ) -> Result<Self, SolidError> {
         let law = Self {
-            elastic,
-            material: Arc::new(elastic),
+            elastic: material.elastic(),
+            material: Arc::new(material),
             friction,
             friction_model: FrictionModel::default(),
             slip_tolerance_mm_per_s,
             search: Search::default(),
             sample_reuse_mm: Foundation::SAMPLE_REUSE_MM,
-            backside: Backside::default(),
+            backside,
             kept: Arc::default(),
         };
-        law.with_backside(backside, insert)
+        law.surface(insert, insert.unworn_nodes())?;
+        Ok(law)
     }
 
     /// Returns the same law with another support of the backside. The stiffness is factored again if other nodes hold the
@@ -173,10 +160,10 @@ impl Deformable {
 
     /// Returns the same law for an insert of another material. Its compliance is recomputed if the elastic constants differ.
     #[must_use]
-    pub fn with_material<M>(mut self, material: M) -> Self
-    where
-        M: Material + Clone + Debug + Send + Sync + 'static,
-    {
+    pub fn with_material(
+        mut self,
+        material: impl Material + Clone + Debug + Send + Sync + 'static,
+    ) -> Self {
         if material.elastic() != self.elastic {
             self.elastic = material.elastic();
             self.kept = Arc::default();
@@ -208,11 +195,8 @@ impl Deformable {
         Ok(())
     }
 
-    fn held_by(&self) -> HeldBy {
-        match self.backside {
-            Backside::Bonded => HeldBy::Backside,
-            Backside::Resting { .. } => HeldBy::Floor,
-        }
+    fn rests(&self) -> bool {
+        matches!(self.backside, Backside::Resting { .. })
     }
 
     fn kept(&self) -> MutexGuard<'_, Vec<Arc<ElasticSurface>>> {
@@ -221,10 +205,10 @@ impl Deformable {
 
     /// Returns the surface of an insert with the given mesh nodes, if it is kept.
     fn find_kept(&self, insert: &Insert, mesh_nodes: &[Vec3]) -> Option<Arc<ElasticSurface>> {
-        let held_by = self.held_by();
+        let rests = self.rests();
         let kept = self.kept();
         let mut kept = kept.iter();
-        kept.find(|surface| surface.is_of(insert, mesh_nodes, held_by))
+        kept.find(|surface| surface.is_of(insert, mesh_nodes, rests))
             .map(Arc::clone)
     }
 
@@ -234,12 +218,12 @@ impl Deformable {
         insert: &Insert,
         mesh_nodes: &[Vec3],
     ) -> Result<Arc<ElasticSurface>, SolidError> {
-        let held_by = self.held_by();
+        let rests = self.rests();
         // The lock is held while a surface is computed, so that no other thread computes the same.
         let mut kept = self.kept();
         let place = kept
             .iter()
-            .position(|surface| surface.is_of(insert, mesh_nodes, held_by));
+            .position(|surface| surface.is_of(insert, mesh_nodes, rests));
         let surface = if let Some(place) = place {
             kept.remove(place)
         } else {
@@ -252,7 +236,7 @@ impl Deformable {
             {
                 kept.remove(0);
             }
-            let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic, held_by)?;
+            let surface = ElasticSurface::new(insert, mesh_nodes, self.elastic, rests)?;
             Arc::new(surface)
         };
         kept.push(Arc::clone(&surface));
@@ -303,7 +287,6 @@ const NODES_FIELD: &str = "compliance_nodes_mm";
 /// body.
 const ALONE: f64 = 1.9;
 
-/// The memory of an insert and its coarser twin over that of the insert.
 const WITH_TWIN: f64 = 1.5;
 
 impl ContactLaw for Deformable {

@@ -137,7 +137,7 @@ impl ContactModel for FoundationContact<'_> {
     }
 
     fn begin_increment(&mut self, increment: usize) {
-        self.patch.nearby.begin_increment(increment);
+        self.patch.nearby.broad_phase.begin_increment(increment);
     }
 
     fn respond(&mut self, motion: &RelativeMotion) -> Response<'_> {
@@ -172,17 +172,9 @@ impl ContactModel for FoundationContact<'_> {
 
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
         let touched = self.patch.touched(motion);
-        let Bodies {
-            femur,
-            insert,
-            surface,
-        } = self.bodies;
         let peak = PeakSearch {
             law: &self.law.pressure,
-            femur,
-            shares: &surface.shares,
-            thickness_mm: insert.thickness_mm(),
-            faces: insert.faces_around(),
+            bodies: self.bodies,
             pose: Pose4::new(&motion.pose),
         };
         ContactResult {

@@ -3,10 +3,11 @@
 use crate::{
     contact::{
         contact_patch::{MIN_NODES, Quadratic, highest_mpa},
+        law::Bodies,
         model::TouchedNode,
         pressure_law::PressureLaw,
     },
-    geometry::{FacesAround, FemoralSurface, MAX_GAP_SLOPE, Share},
+    geometry::{FacesAround, MAX_GAP_SLOPE, Share},
     number::{F64x4, LANES, Number, vector_from_lanes},
     spatial::Pose4,
 };
@@ -33,10 +34,7 @@ const NODES_ONE_SIDED: usize = 2 * MIN_NODES;
 /// the fourth.
 pub(crate) struct PeakSearch<'a> {
     pub law: &'a PressureLaw,
-    pub femur: &'a FemoralSurface,
-    pub shares: &'a [Share],
-    pub thickness_mm: &'a [f64],
-    pub faces: &'a FacesAround,
+    pub bodies: Bodies<'a>,
     pub pose: Pose4,
 }
 
@@ -44,16 +42,19 @@ pub(crate) struct PeakSearch<'a> {
 struct PatchNode {
     node: u32,
     gap_mm: f64,
-    /// In the law's measure.
     mean: f64,
 }
 
 impl PeakSearch<'_> {
+    fn faces(&self) -> &FacesAround {
+        self.bodies.insert.faces_around()
+    }
+
     /// Returns the highest pressure at or around the nodes in contact, MPa; any region may have it.
     pub fn highest_mpa(&self, touched: &[TouchedNode]) -> f64 {
         let pressure_mpa = |measure: f64| self.law.pressure(measure.max(0.0), 1.0).0;
         highest_mpa(touched, |node, so_far_mpa| {
-            let patch = self.sampled(&self.faces.patch(node, MIN_NODES));
+            let patch = self.sampled(&self.faces().patch(node, MIN_NODES));
             let Some(fit) = self.fit(&patch) else {
                 return 0.0;
             };
@@ -76,13 +77,16 @@ impl PeakSearch<'_> {
         let top = patch[0].node;
         // A larger patch begins with the smaller one.
         let farther = self
-            .faces
+            .faces()
             .patch(top, NODES_ONE_SIDED)
             .split_off(patch.len());
         let mut pressing = patch;
         pressing.extend(self.sampled(&farther));
         pressing.retain(|at| at.node == top || at.mean > 0.0);
-        let missed = fit.worst_miss(&self.shares[top as usize], self.means(&pressing));
+        let missed = fit.worst_miss(
+            &self.bodies.surface.shares[top as usize],
+            self.means(&pressing),
+        );
         let (highest, mean) = (fit.highest(), pressing[0].mean);
         if missed <= MISSED_OF_RISE * (highest - mean) {
             return highest;
@@ -96,7 +100,7 @@ impl PeakSearch<'_> {
         let top = &patch[0];
         let means = self.means(patch);
         let highest = means.clone().map(|(_, mean)| mean).fold(top.mean, f64::max);
-        let fit = Quadratic::fit(&self.shares[top.node as usize], means);
+        let fit = Quadratic::fit(&self.bodies.surface.shares[top.node as usize], means);
         let follows = |fit: &Quadratic| (fit.mean() - top.mean).abs() <= MAX_MISSED * highest.abs();
         fit.filter(follows)
     }
@@ -106,7 +110,7 @@ impl PeakSearch<'_> {
         &'a self,
         patch: &'a [PatchNode],
     ) -> impl Iterator<Item = (&'a Share, f64)> + Clone {
-        let share = |at: &PatchNode| &self.shares[at.node as usize];
+        let share = |at: &PatchNode| &self.bodies.surface.shares[at.node as usize];
         let top = &patch[0];
         let is_surface = move |at: &&PatchNode| {
             let distance2_mm2 = (share(at).centre - share(top).centre).norm_squared();
@@ -124,7 +128,7 @@ impl PeakSearch<'_> {
             let gaps_mm = self.gaps_mm(nodes);
             let at = |(lane, &node): (usize, &u32)| {
                 let gap_mm = gaps_mm.lane(lane);
-                let per_thickness = 1.0 / self.thickness_mm[node as usize];
+                let per_thickness = 1.0 / self.bodies.insert.thickness_mm()[node as usize];
                 PatchNode {
                     node,
                     gap_mm,
@@ -138,10 +142,11 @@ impl PeakSearch<'_> {
 
     /// Samples the mean gaps over the shares of up to four nodes, mm.
     fn gaps_mm(&self, nodes: &[u32]) -> F64x4 {
-        let share = |lane: usize| &self.shares[nodes[lane.min(nodes.len() - 1)] as usize];
+        let share =
+            |lane: usize| &self.bodies.surface.shares[nodes[lane.min(nodes.len() - 1)] as usize];
         let centres = vector_from_lanes(|lane| &share(lane).centre);
         let place = self.pose.to_femur(&centres);
         let spread_mm2 = F64x4::from_lanes(|lane| share(lane).spread_mm2);
-        self.femur.sample(&place, spread_mm2).gap_mm
+        self.bodies.femur.sample(&place, spread_mm2).gap_mm
     }
 }

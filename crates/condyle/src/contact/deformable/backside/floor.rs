@@ -11,11 +11,9 @@ const MIN_COSINE: f64 = 0.966;
 /// Flat faces farther than this from the median height are recesses or pegs, mm.
 const MAX_OFF_MM: f64 = 0.25;
 
-/// The flat part of a backside.
 pub(crate) struct Floor {
     /// Its normal, into the insert.
     pub normal: Vec3,
-    /// Its mesh nodes, ascending.
     pub nodes: Vec<u32>,
     /// The share of the floor of each, mm2.
     pub share_mm2: Vec<f64>,
@@ -23,7 +21,6 @@ pub(crate) struct Floor {
     pub part: f64,
 }
 
-/// A face of the backside.
 struct Face {
     quad: [u32; 4],
     inward: Vec3,
@@ -111,12 +108,10 @@ impl Grid {
         self.cells[0] + 1
     }
 
-    /// Area of a cell, mm2.
     pub fn cell_mm2(&self) -> f64 {
         self.step_mm[0] * self.step_mm[1]
     }
 
-    /// Returns the position of a point.
     pub fn place(&self, at: usize) -> Vec3 {
         let [i, k] = [at % self.columns(), at / self.columns()].map(|i| i as f64);
         self.low + Vec3::new(i * self.step_mm[0], 0.0, k * self.step_mm[1])

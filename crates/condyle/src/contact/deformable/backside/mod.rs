@@ -68,7 +68,6 @@ pub(crate) struct RestingInsert {
     moved_in_a_cycle_mm: f64,
 }
 
-/// The backside at the end of an increment.
 struct IncrementEnd {
     moved_mm: Vec<f64>,
     in_contact: Vec<bool>,
@@ -77,7 +76,6 @@ struct IncrementEnd {
 }
 
 impl RestingInsert {
-    /// Resumes from the stored `state`.
     pub fn new(
         state: &ContactState,
         surface: Arc<ElasticSurface>,
@@ -156,7 +154,6 @@ impl RestingInsert {
         self.turns = Turns::default();
     }
 
-    /// Returns the extremes over the last cycle of every activity.
     fn most(&self) -> BacksideAtRest {
         let most = self.ends.iter().map(|end| &end.most);
         let most = most.fold(self.before, or_more);

@@ -6,10 +6,7 @@ use super::tray::{Rest, Tray};
 use crate::{
     Vec3,
     contact::{
-        deformable::{
-            elastic_surface::{ElasticSurface, HeldBy},
-            history::NodeLoad,
-        },
+        deformable::{elastic_surface::ElasticSurface, history::NodeLoad},
         model::NotBorne,
     },
     geometry::{Insert, Meshing, Share, flat_insert},
@@ -38,8 +35,7 @@ impl Layer {
     fn new(size_mm: (f64, f64), meshing: Meshing, spacing_mm: f64) -> Self {
         let insert = flat_insert(size_mm, THICKNESS_MM, meshing).unwrap();
         let elastic = condyle_fem::Elastic::new(MODULUS_MPA, POISSON).unwrap();
-        let surface =
-            ElasticSurface::new(&insert, insert.unworn_nodes(), elastic, HeldBy::Floor).unwrap();
+        let surface = ElasticSurface::new(&insert, insert.unworn_nodes(), elastic, true).unwrap();
         let tray = surface.tray(spacing_mm);
         Self {
             insert,

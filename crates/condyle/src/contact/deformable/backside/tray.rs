@@ -92,7 +92,6 @@ impl Tray {
         }
     }
 
-    /// Returns the count of numbers in the motion of the backside: three per point.
     pub fn freedoms(&self) -> usize {
         self.stiffness_of_search.len()
     }
@@ -202,7 +201,6 @@ impl Tray {
     }
 }
 
-/// A backside in equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rest {
     /// Motion of every point along its own directions, anterior, lateral, off the tray, mm.

@@ -90,7 +90,6 @@ impl Influence {
         })
     }
 
-    /// Adds a force on a mesh node.
     pub fn add_force(&self, forces: &mut ByTile, node: u32, force: &Vec3) {
         let (tile, place) = self.place_of[node as usize];
         let forces = forces
@@ -126,12 +125,10 @@ impl Influence {
         })
     }
 
-    /// Returns the mesh nodes of a tile.
     pub fn nodes(&self, tile: u32) -> &[u32] {
         &self.node_tiles[tile as usize]
     }
 
-    /// Returns the tile of a mesh node.
     pub fn tile_of(&self, node: u32) -> u32 {
         self.place_of[node as usize].0
     }

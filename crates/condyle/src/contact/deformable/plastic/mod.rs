@@ -51,7 +51,6 @@ const MAX_STRAIN: f64 = 0.5;
 /// interval.
 const MORE_EXACTLY: f64 = 20.0;
 
-/// Gauss points of an element.
 const POINTS: usize = 8;
 
 /// The internal variables at the Gauss points of elements that have yielded, by the number of the element.
@@ -65,7 +64,6 @@ pub(crate) type Eigenstrains = BTreeMap<usize, [Strain; POINTS]>;
 
 /// The material of an insert as its law holds it: any [`Material`], without the type of its internal variables.
 pub(crate) trait InsertMaterial: Debug + Send + Sync {
-    /// Returns whether it can yield.
     fn yields(&self) -> bool;
 
     /// Creates the history of an insert of this material, resumed from the stored `state`.
@@ -152,7 +150,6 @@ struct Increment {
 }
 
 impl<M: Material> PlasticInsert<M> {
-    /// Resumes from a stored state.
     fn new(stored: StoredPlasticity<M::Point>, surface: Arc<ElasticSurface>, material: M) -> Self {
         let nodes = surface.solid().mesh().nodes.len();
         let surface_nodes = surface.normal().node_count();
@@ -216,7 +213,6 @@ impl<M: Material> PlasticInsert<M> {
         Ok(changed_mm)
     }
 
-    /// Commits the trial state.
     fn commit(&mut self) {
         let mut changed = false;
         for (element, points) in std::mem::take(&mut self.trial) {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use condyle_fem::{Elastic, ElasticPlastic, Hardening, PlasticPoint, PlasticSolid};
 
-use super::{super::elastic_surface::HeldBy, *};
+use super::*;
 use crate::{
     Vec3,
     geometry::{Insert, Meshing, flat_insert},
@@ -38,8 +38,7 @@ impl Block {
         };
         let insert = flat_insert((14.0, 14.0), 7.0, meshing).unwrap();
         let elastic = Elastic::new(463.0, 0.46).unwrap();
-        let surface =
-            ElasticSurface::new(&insert, insert.unworn_nodes(), elastic, HeldBy::Backside).unwrap();
+        let surface = ElasticSurface::new(&insert, insert.unworn_nodes(), elastic, false).unwrap();
         let held = insert.backside_nodes().iter().copied();
         let solid = ElasticSolid::new(insert.mesh(), elastic, held).unwrap();
         Self {
