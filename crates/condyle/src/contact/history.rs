@@ -237,6 +237,7 @@ impl SlipWork {
 
     /// Returns half the difference of the eigenvalues.
     fn half_difference(&self) -> f64 {
+        // Not the discriminant of the characteristic polynomial: this form does not cancel.
         let skew = 0.5 * (self.anterior - self.lateral);
         (skew * skew + self.mixed * self.mixed).sqrt()
     }

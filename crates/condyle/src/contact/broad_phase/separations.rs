@@ -148,6 +148,7 @@ impl Separations {
             let at = other.at.as_ref()?;
             Some((&other.eights, FemurStep::between(at, to)))
         });
+        // Before the first pose there are no bounds to carry, and the step is none.
         let from = self.at.replace(*to).unwrap_or(*to);
         let step = FemurStep::between(&from, to);
         let axes = columns(&from.rotation);
@@ -162,6 +163,7 @@ impl Separations {
                 lost_mm += wear.lost_mm;
             }
             let mut may_touch = bounds.carry(&motion, lost_mm);
+            // Most blocks are apart by their own bounds; the others are worth a second opinion before they are sampled.
             if let Some((eights, step)) = &neighbour
                 && may_touch != 0
             {

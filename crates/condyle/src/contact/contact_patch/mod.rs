@@ -120,6 +120,7 @@ impl<'a> ContactPatch<'a> {
 
     pub fn tangent(&self) -> Tangent {
         let mut sum = TangentSum::new();
+        // Two blocks of four fill the eight lanes of single precision; an odd last block is paired with no traction.
         for (near, tractions) in self.near.chunks(2).zip(self.tractions.chunks(2)) {
             let one = (&near[0].cached, &tractions[0]);
             let nothing = (one.0, &Tractions4::none());

@@ -99,6 +99,7 @@ impl Quadratic {
     ) -> Option<Self> {
         let plane = Plane::new(around);
         let (_, base) = means.clone().next()?;
+        // Means are fitted relative to the first, so that the regularisation does not depend on their level.
         let mut matrix = SMatrix::<f64, 6, 6>::identity() * LEAST_SQUARES_FLOOR;
         let mut right = SVector::<f64, 6>::zeros();
         matrix[(0, 0)] = 0.0;
@@ -155,6 +156,7 @@ impl Quadratic {
         let along = |vector: &[f64; 2]| (vector[0] * axis[0] + vector[1] * axis[1]).abs();
         let slope = along(&self.slope);
         let end = self.edges.iter().map(along).sum::<f64>() / 2.0;
+        // Downward bends have a stationary point at -slope/bend, which counts if it lies within the share.
         let at = if -bend * end > slope {
             -slope / bend
         } else {

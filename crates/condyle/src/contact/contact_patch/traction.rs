@@ -54,6 +54,7 @@ impl Sliding {
     #[inline(always)]
     pub fn new(velocity: &Vector<F64x4>, normal: &Vector<F64x4>, tolerance_mm_per_s: f64) -> Self {
         let closing = dot(normal, velocity);
+        // Any vector along the surface will do for the lean; this one vanishes only for a normal along z.
         let lean = F64x4::splat(STANDSTILL_MM_PER_S);
         let leaning = Vector::new(-(normal.y * lean), normal.x * lean, F64x4::splat(0.0));
         let tangential = scale_add(normal, -closing, &(velocity + leaning));
@@ -194,6 +195,7 @@ impl TangentSum {
             ..
         } = &facets;
         let one = F32x8::splat(1.0);
+        // The lean of the sliding keeps the speed above zero, but for a normal along z.
         let speed2 = dot(&facets.velocity, &facets.velocity);
         let speed = Number::max(speed2, F32x8::splat(MIN_SPEED2)).sqrt();
         let t1 = facets.velocity * (one / speed);
@@ -227,7 +229,7 @@ impl TangentSum {
             }
         }
         let (drag_1, drag_2) = (*load * per_speed * stuck, *load * per_speed);
-        // Symmetric: one triangle is enough.
+        // The drag is symmetric: one triangle is enough.
         for (column, entries) in self.by_twist.iter_mut().enumerate() {
             let (weight_1, weight_2) = (drag_1 * wrench_1[column], drag_2 * wrench_2[column]);
             for (i, entry) in entries.iter_mut().enumerate().take(column + 1) {

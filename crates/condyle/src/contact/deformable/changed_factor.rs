@@ -86,6 +86,7 @@ impl ChangedFactor {
         let is_new = |node: &&u32| !self.kept.contains(&Some(**node));
         let new: Vec<u32> = changed.iter().filter(is_new).copied().collect();
         let kept = self.kept.len() + new.len().next_multiple_of(SIDES);
+        // The factor is kept while changes are few, and the kept columns of Z, some of which no longer count, not too many.
         let [fewest, most] = MAX_CHANGES;
         let most = (nodes.len() / NODES_A_CHANGE).clamp(fewest, most);
         if changed.len() > most.min(nodes.len() / 2) || kept > 2 * most {
@@ -168,6 +169,7 @@ impl ChangedFactor {
     /// Factors the matrix of other changes to L D L', with D in place of the unit diagonal of L. The rows that it has in common
     /// with the matrix before stay.
     fn change(&mut self, changes: Vec<usize>, compliance: &NearMatrix) {
+        // From one trial set to the next few changes differ: rows of L before the first of these are right.
         let pairs = self.changes.iter().zip(&changes);
         let same = pairs.take_while(|(before, now)| before == now).count();
         self.changes = changes;

@@ -87,6 +87,7 @@ impl Pressing {
                 tries.saturating_sub(1)
             };
             least = least.min(wrong.len());
+            // Murty's rule exchanges the last one, by the fixed order of the candidates.
             let exchanged = if tries > 0 {
                 &wrong[..]
             } else {
@@ -96,6 +97,7 @@ impl Pressing {
                 self.is_pressing[place] = !self.is_pressing[place];
             }
         }
+        // The derivatives are needed of the solution only.
         self.factor
             .loads_by_motion(&self.nodes, &self.overclosures, &mut self.loads);
         for &node in &self.nodes {
@@ -260,6 +262,7 @@ impl Clearances {
         for tile in &mut self.tiles {
             (tile.less_n, tile.more_n, tile.pressing_n) = (0.0, 0.0, 0.0);
         }
+        // First the changes of loads on nodes in contact now, then those on nodes that have left.
         for (&node, &load_n) in nodes.iter().zip(loads_n) {
             let tile = &mut self.tiles[compliance.slot(node)];
             tile.change(load_n - self.load_n[node as usize]);
@@ -300,6 +303,7 @@ impl Clearances {
     ) -> bool {
         let (node, overclosed_mm) = (candidate.node as usize, candidate.overclosed_mm());
         let tile = &self.tiles[compliance.slot(candidate.node)];
+        // Either no load can bulge the surface as far as the femur, or the gap was wider than it can have closed since.
         let is_apart = overclosed_mm + tile.most_bulge_mm < 0.0
             || self.wider_mm[node] - overclosed_mm - tile.closed_mm > 0.0;
         if is_apart {

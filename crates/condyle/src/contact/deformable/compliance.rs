@@ -254,6 +254,7 @@ impl NearMatrix {
         mut between: impl FnMut(usize, usize) -> Vec<f64>,
     ) {
         let first = self.rows.len();
+        // Whole panels: rows beyond the last node are zero and never asked for.
         let rows = first + tiles[new].len().next_multiple_of(ROWS);
         for (row, &node) in (first..).zip(&tiles[new]) {
             self.row_of[node as usize] = row as u32;
@@ -269,6 +270,7 @@ impl NearMatrix {
         }
         for place in 0..self.tiles.len() {
             let (other, other_first) = self.tiles[place];
+            // Computed once and stored twice: the matrix is exactly symmetric.
             let numbers = between(new, other);
             let columns = tiles[other].len();
             let mut reach = Reach::default();
@@ -277,6 +279,7 @@ impl NearMatrix {
                     self.set(first + i, other_first + j, number);
                     self.set(other_first + j, first + i, number);
                     reach.outwards = reach.outwards.max(-number);
+                    // Bounds are needed of nodes that carry no load themselves, so the large diagonal does not count.
                     if (new, i) != (other, j) {
                         reach.inwards = reach.inwards.max(number);
                     }
@@ -376,6 +379,7 @@ pub(crate) fn tiles(positions: &[Vec3], most: usize) -> Vec<Vec<u32>> {
             let at = |node: &u32| positions[*node as usize];
             let (low, high) = bounds(nodes.iter().map(|node| &positions[*node as usize]));
             let axis = (high - low).imax();
+            // Ties are broken by number, so that tiles are the same on any machine.
             nodes.sort_by(|a, b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b)));
             let second = nodes.split_off(nodes.len() / 2);
             open.extend([second, nodes]);

@@ -213,6 +213,7 @@ impl ContactModel for DeformableContact<'_> {
             loads: &self.node_loads,
             candidates: &self.candidates,
         };
+        // All histories are settled under the same loads; the step is solved again if any of them moves the surface.
         let mut moved_mm = 0.0_f64;
         for history in &mut self.histories {
             moved_mm = moved_mm.max(history.settle(&loads)?);
@@ -294,6 +295,7 @@ impl AlongNormal {
         // A motion a + w x p of the femur's material moves the node by its opposite, and turns m by -w.
         let bent = sample.curvature.times(inward);
         let turn = cross(&near.cached.place, &bent) + cross(inward, gradient);
+        // A slope that is replaced does not depend on the motion.
         let is_steep = slope - F64x4::splat(MIN_SLOPE);
         let counted = |by: F64x4| is_steep.below_zero(F64x4::splat(0.0), -by);
         let by_motion = [turn.x, turn.y, turn.z, bent.x, bent.y, bent.z];

@@ -61,6 +61,8 @@ impl<'a> NodePressures<'a> {
         let Some(slope) = at_edge else {
             return 1.0;
         };
+        // Of the neighbours outside, the one down the slope is nearest to the edge; the pressure falls to it as fast as it
+        // rises to the next node inside.
         let own = self.pressure2[node as usize];
         let at = |node: u32| self.surface.positions[node as usize];
         let fall = outside().map(|other| -slope.dot(&(at(other) - at(node))));
@@ -82,6 +84,7 @@ impl<'a> NodePressures<'a> {
             if other_own > 0.0 {
                 let way = self.surface.positions[*other as usize] - place;
                 let flat = nalgebra::Vector2::new(along[0].dot(&way), along[1].dot(&way));
+                // With this weight all difference quotients count equally, however far the neighbour is.
                 let weight = 1.0 / flat.norm_squared();
                 matrix += flat * flat.transpose() * weight;
                 right += flat * ((other_own - own) * weight);

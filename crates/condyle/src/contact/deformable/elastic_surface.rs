@@ -198,6 +198,7 @@ impl ElasticSurface {
         let mesh = self.solid.mesh();
         let places: Vec<Vec3> = mesh.positions(&self.floor.nodes).collect();
         let (low, high) = bounds(&places);
+        // Points of a full grid over the floor: an upper bound, since points outside are left out.
         let points = [0, 2].map(|axis| (high[axis] - low[axis]) / spacing_mm + 1.0);
         Tray::bytes(3.0 * points[0] * points[1], nodes, self.felt())
     }

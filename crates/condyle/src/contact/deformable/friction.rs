@@ -167,6 +167,7 @@ impl<'a> ElasticFriction<'a> {
         let friction_node = |pressed: &ContactNode| {
             let node = pressed.node as usize;
             let place = &self.surface.positions[node];
+            // The material of the femur that is at the node now, and where it was at the start.
             let moved = place - start.to_insert(&self.pose.to_femur(place));
             let along = self.surface.directions(node).map(|along| along.dot(&moved));
             let before = along_surface(pressed.node).map(&mut start_mm);
@@ -292,6 +293,7 @@ impl LoadHistory for ElasticFriction<'_> {
                 .into_iter()
                 .zip(self.loads_n[at]);
             node.force_n += loads.map(|(along, load_n)| along * load_n).sum::<Vec3>();
+            // A sticking node has no slip: no wear follows from its regularised velocity.
             if self.sticks[at] {
                 node.sliding_mm_per_s = [0.0; 2];
             } else {
@@ -299,6 +301,8 @@ impl LoadHistory for ElasticFriction<'_> {
                 node.along_mm = rows.map(|row| compliance.moved(row, &change));
             }
         }
+        // A cycle repeats itself once the loads of an increment do; a change of load counts by the deflection that it would
+        // cause alone.
         let moved_mm = |&(node, by_n): &(u32, Pair)| {
             let own = along_surface(node).map(|load| compliance.row(load));
             let [x, y] = own.map(|row| compliance.at(row, row));

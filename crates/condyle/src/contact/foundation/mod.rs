@@ -211,6 +211,7 @@ impl Foundation {
         let (pressure_mpa, slope) = self.pressure.pressures(mean.mm, shares.per_thickness);
         let stiffness = slope * shares.area_mm2;
         let mut load_by_motion = sample.gap_gradient * (mean.by_middle * stiffness);
+        // Inside the contact, where the whole share is in contact, the load depends on the middle alone.
         let mut load_by_turn = zero_vector();
         if let Some(by_slope) = mean.by_slope {
             let (by_a, by_b) = (by_slope[0] * stiffness, by_slope[1] * stiffness);

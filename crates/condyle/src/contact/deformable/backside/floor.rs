@@ -138,6 +138,7 @@ impl Grid {
             let from = place - self.low;
             let [x, z] = [from.x / self.step_mm[0], from.z / self.step_mm[1]];
             let cell = [x, z].map(|along| along as usize);
+            // Nodes on the far boundary belong to the last cell.
             let cell = [0, 1].map(|axis| cell[axis].min(self.cells[axis] - 1));
             let weights = self.weights(cell, &place).into_iter();
             for (point, weight) in weights.filter(|(_, weight)| *weight > 0.0) {

@@ -177,6 +177,7 @@ impl Tray {
         let mut mixing = Mixing::default();
         for _ in 0..MAX_STEPS {
             let admissible = admissible(friction, stuck_mm, &searched);
+            // The reflection of the splitting: at its fixed point the force of the springs is that of the contact.
             let mirrored = &admissible * 2.0 - &searched;
             let apart = self.pulled(forces_n, &mirrored) - &admissible;
             if apart.amax() <= AT_REST_MM {
@@ -251,6 +252,7 @@ fn lock_of(points: &[TrayPoint]) -> ([DVector<f64>; 3], f64) {
         .iter()
         .map(|point| part(point) * arm(point).norm_squared());
     let gyration_mm = arms.sum::<f64>().sqrt();
+    // The turn is scaled by the radius of gyration, so that one stiffness serves slips and turn.
     let mean = |slip: &dyn Fn(&TrayPoint) -> Vec3| {
         let parts = points.iter().flat_map(|point| {
             let [anterior, lateral, _] = point.frame;

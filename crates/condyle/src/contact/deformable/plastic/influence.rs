@@ -85,6 +85,7 @@ impl Influence {
     pub fn by_surface(&self, solid: &ElasticSolid, tile: usize, loads: &[(u32, Vec3)]) -> &[f32] {
         self.by_surface[tile].get_or_init(|| {
             let nodes: Vec<u32> = (0..solid.mesh().nodes.len() as u32).collect();
+            // Full solutions rather than products of half-solutions: all nodes are needed.
             let moved = solid.influence(&nodes, loads);
             moved.values().iter().map(|&by| by as f32).collect()
         })

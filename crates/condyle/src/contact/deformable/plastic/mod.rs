@@ -182,7 +182,8 @@ impl<M: Material> PlasticInsert<M> {
         near: impl Iterator<Item = u32>,
         around: &FacesAround,
     ) -> Result<f64, NotBorne> {
-        // The von Mises stress of a sum is at most the sum of the von Mises stresses: most increments end here.
+        // The von Mises stress of a sum is at most the sum of the von Mises stresses: without a peak high enough nothing
+        // yields, and nothing has to be evaluated.
         let by_load = MAX_OF_PRESSURE * peak_mpa / self.material.initial_yield_stress();
         if self.trial.is_empty() && self.residual_use + by_load <= 1.0 {
             return Ok(0.0);
@@ -202,6 +203,7 @@ impl<M: Material> PlasticInsert<M> {
                 return Ok(f64::INFINITY);
             }
         };
+        // Only the set near the contact is needed while the step is solved; committing computes it everywhere.
         let mut found_mm = Vec::clone(&self.committed_set_mm);
         self.add_set(&forces, near, &mut found_mm);
         let changed_mm = farthest_mm(&found_mm, &self.set_mm);
@@ -285,6 +287,7 @@ impl<M: Material> PlasticInsert<M> {
             let committed = self.committed.get(&(element as u32));
             committed.map_or_else(
                 || {
+                    // Elements without plastic strain are judged by their mean stress, with the same margin as under load.
                     let mean = influence.means[element].stress(&nodes, &Strain::default());
                     mean.von_mises() / (EVALUATED_FROM * yield_mpa)
                 },
