@@ -495,10 +495,7 @@ impl<M: Material> PlasticInsert<M> {
     }
 
     fn largest_strain(&self) -> f64 {
-        self.trial
-            .values()
-            .map(|points| largest_strain(points))
-            .fold(0.0, f64::max)
+        self.trial.values().map(largest_strain).fold(0.0, f64::max)
     }
 }
 
