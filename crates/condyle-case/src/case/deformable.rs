@@ -1,7 +1,7 @@
 //! Settings of a deformable insert: plasticity, and the support of its backside.
 
-use condyle::contact::Backside;
-use condyle_fem::{Hardening, HardeningError};
+use condyle::contact::{Backside, Deformable};
+use condyle_fem::{Elastic, ElasticPlastic, Hardening, HardeningError};
 use thiserror::Error;
 
 use crate::config::{
@@ -78,6 +78,14 @@ variants! {
 }
 
 impl PlasticityChoice {
+    /// Returns the law with the insert's material: each choice creates its own.
+    pub(crate) fn with_material(&self, law: Deformable, elastic: Elastic) -> Deformable {
+        match self.hardening() {
+            Some(hardening) => law.with_material(ElasticPlastic { elastic, hardening }),
+            None => law.with_material(elastic),
+        }
+    }
+
     /// The yield stress, if the insert yields.
     pub(crate) fn hardening(&self) -> Option<Hardening> {
         match self {

@@ -6,7 +6,6 @@ use condyle::contact::{ContactLaw, Deformable, Foundation, PressureLaw, confined
 use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
-use condyle_fem::ElasticPlastic;
 
 use super::super::contact::{ContactModelWord, FrictionModelWord, PressureLawChoice};
 use super::super::contents::Case;
@@ -165,10 +164,7 @@ impl Case {
         law.search = self.contact.finding.search.search();
         law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
         law.friction_model = self.contact.friction_model.model();
-        let law = match self.contact.plasticity.hardening() {
-            Some(hardening) => law.with_material(ElasticPlastic { elastic, hardening }),
-            None => law.with_material(elastic),
-        };
+        let law = self.contact.plasticity.with_material(law, elastic);
         let law = law.with_backside(backside, insert)?;
         self.tell_compliance(&law, insert, keep)?;
         Ok(law)
