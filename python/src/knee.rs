@@ -142,14 +142,12 @@ fn settle(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> PyResult<(
 fn message(why: NotBorne) -> String {
     match why {
         NotBorne::Flattened { plastic_strain } => format!(
-            "the femur presses the insert flat at this pose: a plastic strain of {:.2} was reached; lift the femur, or see \
-             yield_stress_mpa and hardening",
-            plastic_strain
+            "the femur presses the insert flat at this pose: a plastic strain of {plastic_strain:.2} was reached; lift \
+             the femur, or see yield_stress_mpa and hardening"
         ),
         NotBorne::Tipped { moved_mm } => format!(
-            "the femur tips the insert off its tray at this pose: its backside finds no rest, and had moved by {:.2} mm; lift \
-             the femur, or take [contact] backside = \"bonded\"",
-            moved_mm
+            "the femur tips the insert off its tray at this pose: its backside finds no rest, and had moved by {moved_mm:.2} \
+             mm; lift the femur, or take [contact] backside = \"bonded\""
         ),
     }
 }
