@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ._raw import RawRun
+from ._summary import Summary
 from .case import Case
 from .errors import CondyleError
 from .table import Table
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Result"]
 
 
-class Result:
+class Result(Summary):
     """The results of a run, whether it was run from Python or read from a folder of the command.
 
     The numbers of ``summary.json`` are attributes with their unit in the name; an unfinished run has none of them.
@@ -36,81 +37,6 @@ class Result:
     >>> float(result.fields["wear_depth_mm"][-1].max()) == result.max_depth_mm
     True
     """
-
-    cycles: float
-    """Number of gait cycles."""
-    mass_loss_mg: float
-    """Mass loss, mg."""
-    volume_loss_mm3: float
-    """Volume loss from depth times area, mm3."""
-    volume_loss_mesh_mm3: float
-    """Volume loss from the change of the mesh, without creep, mm3."""
-    max_depth_mm: float
-    """Deepest wear, mm."""
-    peak_pressure_mpa: float
-    """Highest pressure of any cycle, including between nodes, MPa."""
-    peak_pressure_cycle: float
-    """Number of cycles before the cycle with this value."""
-    first_cycle_peak_pressure_mpa: float
-    """Highest pressure of the first cycle, MPa."""
-    last_cycle_peak_pressure_mpa: float
-    """Highest pressure of the last solved cycle, MPa."""
-    peak_contact_area_mm2: float
-    """Largest contact area in any cycle, mm2."""
-    peak_contact_area_cycle: float
-    """Number of cycles before the cycle with this value."""
-    first_cycle_contact_area_mm2: float
-    """Largest contact area of the first cycle, mm2."""
-    last_cycle_contact_area_mm2: float
-    """Largest contact area of the last solved cycle, mm2."""
-    last_cycle: float
-    """Number of cycles before the last solved cycle."""
-    ap_range_mm: float
-    """Range of AP in the first cycle, mm."""
-    ie_range_deg: float
-    """Range of IE in the first cycle, degrees."""
-    medial_load_share: float
-    """Medial part of the axial force in the first cycle, weighted by force."""
-    updates: int
-    """Number of updates of the geometry."""
-    increments: int
-    """Increments per cycle."""
-    cycles_solved: float
-    """Number of solved cycles."""
-    cycles_not_repeating: int
-    """Updates without a periodic cycle within the tolerance."""
-    newton_iterations: int
-    """Number of Newton iterations."""
-    contact_evaluations: int
-    """Number of contact evaluations."""
-    newton_iterations_per_cycle: float
-    """Newton iterations per solved cycle."""
-    contact_evaluations_per_cycle: float
-    """Contact evaluations per solved cycle."""
-    step_halvings: int
-    """Number of halved steps."""
-    hexahedra: int
-    """Number of hexahedra of the insert."""
-    articulating_nodes: int
-    """Number of nodes of its articulating surface."""
-    worst_quality: float
-    """Smallest scaled Jacobian of any update's mesh."""
-    wall_s: float
-    """Time of the solver, s."""
-    version: str
-    """Version of condyle."""
-    inputs_blake3: str
-    """Hash of case and meshes."""
-    warnings: list[str]
-    """Repairs and doubtful settings of the input."""
-    plausibility: list[dict[str, Any]]
-    """Reasons to doubt the numbers, the most serious first, each with ``message`` and ``advice``."""
-    error: dict[str, Any] | None
-    """Estimated discretisation errors, in % of each quantity, with their parts; ``None`` if the case disables the estimate."""
-    wear_laws: list[dict[str, Any]]
-    """The wear by every law on the same histories, that of the run first."""
-    neutral_pose: dict[str, Any]
-    """The pose of the settled femur in the insert frame, where AP, ML and IS are zero."""
 
     def __init__(self, run: RawRun, folder: Path | None = None) -> None:
         """Use :func:`condyle.run` or :func:`condyle.open`."""

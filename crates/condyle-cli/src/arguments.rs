@@ -27,8 +27,9 @@ pub enum Command {
     Check(Check),
     /// Write a new case file to start from.
     New(New),
-    /// Print a JSON schema of case files, with which an editor completes their keys and underlines what is wrong.
-    Schema,
+    /// Print a JSON schema of case files, with which an editor completes their keys and underlines what is wrong; or of
+    /// results.
+    Schema(Schema),
     /// Write a case as an Abaqus input file, to check condyle against Abaqus.
     Export(Export),
     /// Write the report page of a results folder again; of several, one page with all of them side by side.
@@ -179,6 +180,13 @@ pub enum PictureFormat {
     Svg,
     /// Dots.
     Png,
+}
+
+#[derive(Args)]
+pub struct Schema {
+    /// Print the schema of summary.json, with the columns of tables and the fields of meshes.
+    #[arg(long)]
+    pub results: bool,
 }
 
 #[derive(Args)]

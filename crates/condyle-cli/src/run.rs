@@ -13,7 +13,7 @@ use std::{
 use condyle_case::cache::Cache;
 use condyle_lab::{Outcome, RunOptions};
 use condyle_results::{
-    CreepSummary, ErrorEstimate, ErrorParts, Summary,
+    CreepSummary, ErrorEstimate, ErrorParts, Part, Summary,
     catalogue::{self, MASS_LOSS_MG, MAX_DEPTH_MM, Prominence, Scalar, WEAR_OVER_CONVENTIONAL},
 };
 
@@ -244,15 +244,12 @@ fn rows_of_error(error: &ErrorEstimate) -> [SummaryLine; 3] {
 }
 
 fn in_parts(error: &ErrorParts) -> String {
-    let part = |(name, percent): (&str, Option<f64>)| match percent {
-        Some(percent) => format!("{name} {percent:+.2} %"),
-        None => format!("{name} unknown"),
+    let part = |(part, percent): (Part, Option<f64>)| {
+        let name = part.name().replace('_', " ");
+        match percent {
+            Some(percent) => format!("{name} {percent:+.2} %"),
+            None => format!("{name} unknown"),
+        }
     };
-    let parts = [
-        ("increments", error.increments),
-        ("updates", error.updates),
-        ("mesh", error.mesh),
-        ("slip tolerance", error.slip_tolerance),
-    ];
-    parts.map(part).join(", ")
+    error.parts().map(part).join(", ")
 }

@@ -4,8 +4,12 @@ use std::process::ExitCode;
 
 use condyle_case::case::Case;
 
-use crate::output;
+use crate::{arguments::Schema, output};
 
-pub fn schema() -> ExitCode {
-    output::print(&Case::json_schema())
+pub fn schema(arguments: &Schema) -> ExitCode {
+    output::print(&if arguments.results {
+        condyle_results::results_schema()
+    } else {
+        Case::json_schema()
+    })
 }

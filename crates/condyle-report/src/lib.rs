@@ -23,7 +23,7 @@ mod sheets;
 pub mod study;
 
 pub use condyle_fem::Vec3;
-pub use condyle_results::Side;
+pub use condyle_results::{Side, Summary};
 pub use error::ReportError;
 pub use page::{moving_report_html, report_html};
 pub use pictures::{
@@ -36,7 +36,6 @@ pub use png::png;
 pub use results::{
     contents::Results,
     measure::{Extreme, Region},
-    summary::Summary,
     surface::SurfaceFields,
     table::Table,
 };

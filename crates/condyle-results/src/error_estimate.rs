@@ -26,6 +26,7 @@ pub type QuantityErrors = Vec<(&'static Scalar, Result<f64, String>)>;
 /// Estimated discretisation error of a number by its parts: the change that a much finer value would make; none where a
 /// part cannot be estimated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct ErrorParts {
     /// From the increments in the gait cycle.
     pub increments: Option<f64>,
@@ -62,7 +63,7 @@ pub struct ErrorEstimate {
 
 impl Part {
     /// The name in files.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Increments => "increments",
             Self::Updates => "updates",
@@ -80,14 +81,18 @@ impl ErrorParts {
             Part::Mesh => self.mesh = error,
             Part::SlipTolerance => self.slip_tolerance = error,
         }
-        let parts = [
-            self.increments,
-            self.updates,
-            self.mesh,
-            self.slip_tolerance,
-        ];
-        let squares = parts.into_iter().flatten().map(|part| part * part);
-        self.total = squares.sum::<f64>().sqrt();
+        let parts = self.parts().into_iter().filter_map(|(_, part)| part);
+        self.total = parts.map(|part| part * part).sum::<f64>().sqrt();
+    }
+
+    /// Each part with its error; none where it could not be estimated.
+    pub fn parts(&self) -> [(Part, Option<f64>); 4] {
+        [
+            (Part::Increments, self.increments),
+            (Part::Updates, self.updates),
+            (Part::Mesh, self.mesh),
+            (Part::SlipTolerance, self.slip_tolerance),
+        ]
     }
 }
 
@@ -117,6 +122,11 @@ impl ErrorEstimate {
             }
         }
         estimate
+    }
+
+    /// The errors of all numbers that were estimated, in the order of the catalogue.
+    pub fn quantities(&self) -> &[QuantityError] {
+        &self.quantities
     }
 
     /// The error of a number; none where it was not estimated.
@@ -185,13 +195,15 @@ impl<'de> Deserialize<'de> for ErrorEstimate {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut entries = Map::<String, Value>::deserialize(deserializer)?;
         let mut parts = |key: &str| {
-            let entry = entries.remove(key).map(serde_json::from_value);
+            let entry = entries.remove(key).map(ErrorParts::deserialize);
             entry.transpose().map_err(D::Error::custom)
         };
         let mut quantities = Vec::new();
         for scalar in estimated() {
             let percent = parts(&QuantityError::percent_key(scalar))?;
-            if let (Some(percent), Some(in_unit)) = (percent, parts(scalar.key)?) {
+            let in_unit = parts(scalar.key)?;
+            if percent.is_some() || in_unit.is_some() {
+                let (percent, in_unit) = (percent.unwrap_or_default(), in_unit.unwrap_or_default());
                 quantities.push(QuantityError {
                     scalar,
                     percent,
@@ -199,7 +211,7 @@ impl<'de> Deserialize<'de> for ErrorEstimate {
                 });
             }
         }
-        let not_estimated = entries.remove("not_estimated").map(serde_json::from_value);
+        let not_estimated = entries.remove("not_estimated").map(BTreeMap::deserialize);
         let not_estimated = not_estimated.transpose().map_err(D::Error::custom)?;
         Ok(Self {
             quantities,

@@ -1,6 +1,6 @@
 //! The insert as worn so far, with its results at the nodes, in the knee of the case.
 
-use condyle::{Vec3, evolve::March};
+use condyle::{Vec3, contact::UnderSurface, evolve::March};
 use condyle_fem::HexMesh;
 
 use super::side::Side;
@@ -20,67 +20,160 @@ pub struct InsertFields {
     pub articulating: Vec<u8>,
 }
 
+/// What the fields of an insert are computed from.
+struct Source<'a> {
+    march: &'a March,
+    mesh: &'a HexMesh,
+}
+
+/// A field of `insert_*.vtu` with a value a node.
+#[derive(Clone, Copy)]
+pub struct NodeField {
+    /// Its name, which ends in its unit.
+    pub name: &'static str,
+    /// A description.
+    pub about: &'static str,
+    values: fn(&Source<'_>) -> Option<Vec<f64>>,
+}
+
+const fn field(
+    name: &'static str,
+    values: fn(&Source<'_>) -> Option<Vec<f64>>,
+    about: &'static str,
+) -> NodeField {
+    NodeField {
+        name,
+        about,
+        values,
+    }
+}
+
+/// The fields with a value a node, in the order of the file.
+pub const NODE_FIELDS: [NodeField; 13] = [
+    field(
+        "wear_depth_mm",
+        |source| source.at_surface(&source.march.fields().wear_depth_mm),
+        "Wear depth along the normal.",
+    ),
+    field(
+        "depth_per_cycle_mm",
+        |source| source.at_surface(&source.march.fields().depth_per_cycle_mm),
+        "Wear depth of one cycle.",
+    ),
+    field(
+        "peak_pressure_mpa",
+        |source| source.at_surface(&source.march.fields().peak_pressure_mpa),
+        "Highest pressure in the cycle.",
+    ),
+    field(
+        "sliding_distance_mm",
+        |source| source.at_surface(&source.march.fields().sliding_distance_mm),
+        "Sliding distance under pressure in the cycle.",
+    ),
+    field(
+        "cross_shear",
+        |source| source.at_surface(&source.march.fields().cross_shear),
+        "Cross-shear ratio.",
+    ),
+    field(
+        "thickness_mm",
+        |source| source.at_surface(&source.march.fields().thickness_mm),
+        "Thickness left.",
+    ),
+    field(
+        "creep_depth_mm",
+        |source| source.of_creep(source.march.state().depths.creep_mm()),
+        "Depth of creep; of an insert that creeps.",
+    ),
+    field(
+        "creep_left_unloaded_mm",
+        |source| {
+            let law = source.march.test().creep.as_ref()?;
+            let left_mm = source.march.state().creep.left_mm(law);
+            source.of_creep(Some(left_mm.as_slice()).filter(|left| !left.is_empty()))
+        },
+        "Depth of creep that is left after a rest without load.",
+    ),
+    field(
+        "von_mises_mpa",
+        |source| {
+            Some(mean_around(
+                source.mesh,
+                &source.under_surface()?.von_mises_mpa,
+            ))
+        },
+        "Von Mises stress at the instant of highest pressure; of a deformable insert, the mean of the elements around.",
+    ),
+    field(
+        "max_shear_mpa",
+        |source| {
+            Some(mean_around(
+                source.mesh,
+                &source.under_surface()?.max_shear_mpa,
+            ))
+        },
+        "Largest shear stress at that instant, likewise.",
+    ),
+    field(
+        "permanent_set_mm",
+        |source| source.at_surface(&source.under_surface()?.plastic.as_ref()?.permanent_set_mm),
+        "Permanent set of the surface; of an insert that yields.",
+    ),
+    field(
+        "plastic_strain",
+        |source| {
+            let plastic = source.under_surface()?.plastic.as_ref()?;
+            Some(most_around(source.mesh, &plastic.plastic_strain))
+        },
+        "Accumulated plastic strain, the largest of the elements around.",
+    ),
+    field(
+        "plastic_regime",
+        |source| {
+            let regimes = source.under_surface()?.plastic.as_ref()?.regime.iter();
+            let regimes: Vec<f64> = regimes.map(|regime| f64::from(regime.number())).collect();
+            Some(most_around(source.mesh, &regimes))
+        },
+        "Number of the plastic regime, the largest of the elements around.",
+    ),
+];
+
+impl Source<'_> {
+    /// Values at the nodes of the articulating surface as values at all nodes.
+    fn at_surface(&self, values: &[f64]) -> Option<Vec<f64>> {
+        let surface = self.march.insert().surface_nodes();
+        Some(spread(surface, values, 0.0, self.mesh.nodes.len()))
+    }
+
+    /// The same of an insert that creeps, 0 before it has.
+    fn of_creep(&self, values: Option<&[f64]>) -> Option<Vec<f64>> {
+        self.march.test().creep.as_ref()?;
+        let none = || Some(vec![0.0; self.mesh.nodes.len()]);
+        values.map_or_else(none, |values| self.at_surface(values))
+    }
+
+    /// The inside of a deformable insert at the last update; none of a foundation.
+    fn under_surface(&self) -> Option<&UnderSurface> {
+        self.march.state().under_surface.as_ref()
+    }
+}
+
 impl InsertFields {
-    /// Those of a march, in the knee of that side.
+    /// The fields of a march, in the knee of that side.
     pub fn of(march: &March, side: Side) -> Self {
         let surface = march.insert().surface_nodes();
         let mesh = mesh_on_side(march.insert().mesh(), side);
         let count = mesh.nodes.len();
-        let mut scalars = scalars(march, count);
-        scalars.extend(under_surface(march, &mesh));
+        let source = Source { march, mesh: &mesh };
+        let fields = NODE_FIELDS.iter();
+        let scalars = fields.filter_map(|field| Some((field.name, (field.values)(&source)?)));
         Self {
-            scalars,
+            scalars: scalars.collect(),
             vectors: vec![("principal_direction", directions(march, side, count))],
             articulating: spread(surface, &vec![1; surface.len()], 0, count),
             mesh,
         }
     }
-}
-
-fn scalars(march: &March, count: usize) -> Vec<(&'static str, Vec<f64>)> {
-    let (surface, fields) = (march.insert().surface_nodes(), march.fields());
-    let scalars = |values: &[f64]| spread(surface, values, 0.0, count);
-    let mut arrays = vec![
-        ("wear_depth_mm", scalars(&fields.wear_depth_mm)),
-        ("depth_per_cycle_mm", scalars(&fields.depth_per_cycle_mm)),
-        ("peak_pressure_mpa", scalars(&fields.peak_pressure_mpa)),
-        ("sliding_distance_mm", scalars(&fields.sliding_distance_mm)),
-        ("cross_shear", scalars(&fields.cross_shear)),
-        ("thickness_mm", scalars(&fields.thickness_mm)),
-    ];
-    if let Some(law) = &march.test().creep {
-        let (depths, left_mm) = (&march.state().depths, march.state().creep.left_mm(law));
-        let none = vec![0.0; surface.len()];
-        let or_none = |values: Option<&[f64]>| scalars(values.unwrap_or(&none));
-        arrays.push(("creep_depth_mm", or_none(depths.creep_mm())));
-        let left_mm = Some(left_mm.as_slice()).filter(|left| !left.is_empty());
-        arrays.push(("creep_left_unloaded_mm", or_none(left_mm)));
-    }
-    arrays
-}
-
-/// What the last update found in the inside of a deformable insert; nothing of a foundation.
-fn under_surface(march: &March, mesh: &HexMesh) -> Vec<(&'static str, Vec<f64>)> {
-    let Some(under) = &march.state().under_surface else {
-        return Vec::new();
-    };
-    let around = |values: &[f64]| mean_around(mesh, values);
-    let mut arrays = vec![
-        ("von_mises_mpa", around(&under.von_mises_mpa)),
-        ("max_shear_mpa", around(&under.max_shear_mpa)),
-    ];
-    if let Some(plastic) = &under.plastic {
-        let surface = march.insert().surface_nodes();
-        let set_mm = spread(surface, &plastic.permanent_set_mm, 0.0, mesh.nodes.len());
-        let regimes = plastic.regime.iter();
-        let regimes: Vec<f64> = regimes.map(|regime| f64::from(regime.number())).collect();
-        arrays.extend([
-            ("permanent_set_mm", set_mm),
-            ("plastic_strain", most_around(mesh, &plastic.plastic_strain)),
-            ("plastic_regime", most_around(mesh, &regimes)),
-        ]);
-    }
-    arrays
 }
 
 fn directions(march: &March, side: Side, count: usize) -> Vec<[f64; 3]> {

@@ -1,4 +1,6 @@
-//! The results folder: what a run writes, one file a table, all readable without condyle.
+//! The results of a run: the [`catalogue`] of quantities, the results folder and its readers.
+//!
+//! A run writes a folder with one file a table, all readable without condyle; [`Summary`] is its `summary.json`.
 
 mod activities;
 mod added;
@@ -10,6 +12,7 @@ mod creep;
 mod cycle_files;
 mod cycle_motion;
 mod cycle_pressures;
+mod declared;
 mod error_estimate;
 mod femur_pose;
 #[cfg(feature = "file-system")]
@@ -30,7 +33,7 @@ mod tables;
 #[cfg(feature = "file-system")]
 mod write_over;
 
-/// What the columns of `kinematics.csv` are.
+/// The columns of `kinematics.csv`.
 pub use condyle::machine::{
     CycleQuantity, JointKind,
     knee::{KNEE, LATERAL, MEDIAL},
@@ -51,11 +54,12 @@ pub use cycle_files::{
 };
 pub use cycle_motion::joint_range;
 pub use cycle_pressures::{cycle_pressure_csv, cycle_pressure_file};
+pub use declared::{python_types, results_schema, typescript_types};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, QuantityError, QuantityErrors};
 pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]
 pub use folder::{Found, ResultsError, ResultsFolder};
-pub use insert_fields::InsertFields;
+pub use insert_fields::{InsertFields, NODE_FIELDS, NodeField};
 pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
 pub use law_wear::LawWear;
 #[cfg(feature = "file-system")]
@@ -63,4 +67,4 @@ pub use lock::FolderLock;
 pub use plausibility::PlausibilityWarning;
 pub use side::Side;
 pub use summary::Summary;
-pub use tables::{kinematics_csv, wear_csv};
+pub use tables::{WEAR_COLUMNS, WearColumn, kinematics_csv, wear_csv};

@@ -4,9 +4,7 @@ use std::{collections::BTreeMap, ops::Index};
 
 use condyle::evolve::March;
 use serde::{
-    Deserialize, Deserializer, Serialize, Serializer,
-    de::{DeserializeOwned, Error},
-    ser::SerializeMap,
+    Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, ser::SerializeMap,
 };
 use serde_json::{Map, Value};
 
@@ -67,6 +65,11 @@ impl Summary {
     /// The value of a number; none where the run does not have it.
     pub fn get(&self, scalar: &Scalar) -> Option<f64> {
         self.scalars.get(scalar.key).copied()
+    }
+
+    /// The estimated discretisation error of a number, in its unit; none where it was not estimated.
+    pub fn total_error(&self, scalar: &Scalar) -> Option<f64> {
+        Some(self.error.as_ref()?.get(scalar)?.in_unit.total)
     }
 
     /// Replaces the value of a number.
@@ -131,26 +134,22 @@ impl<'de> Deserialize<'de> for Summary {
             values.filter_map(|scalar| Some((scalar.key, entries.remove(scalar.key)?.as_f64()?)));
         Ok(Self {
             scalars: values.collect(),
-            plausibility: part(&mut entries, "plausibility").map_err(D::Error::custom)?,
-            error: part(&mut entries, "error").map_err(D::Error::custom)?,
-            wear_laws: part(&mut entries, "wear_laws").map_err(D::Error::custom)?,
-            activities: part(&mut entries, "activities").map_err(D::Error::custom)?,
-            creep: part(&mut entries, "creep").map_err(D::Error::custom)?,
-            neutral_pose: part(&mut entries, "neutral_pose").map_err(D::Error::custom)?,
-            warnings: part(&mut entries, "warnings").map_err(D::Error::custom)?,
-            version: part(&mut entries, "version").map_err(D::Error::custom)?,
-            inputs_blake3: part(&mut entries, "inputs_blake3").map_err(D::Error::custom)?,
+            plausibility: part(&mut entries, "plausibility"),
+            error: part(&mut entries, "error"),
+            wear_laws: part(&mut entries, "wear_laws"),
+            activities: part(&mut entries, "activities"),
+            creep: part(&mut entries, "creep"),
+            neutral_pose: part(&mut entries, "neutral_pose"),
+            warnings: part(&mut entries, "warnings"),
+            version: part(&mut entries, "version"),
+            inputs_blake3: part(&mut entries, "inputs_blake3"),
             others: entries.into_iter().collect(),
         })
     }
 }
 
-/// Takes a part out of the entries; its default where it is missing.
-fn part<T: DeserializeOwned + Default>(
-    entries: &mut Map<String, Value>,
-    key: &str,
-) -> serde_json::Result<T> {
-    entries
-        .remove(key)
-        .map_or_else(|| Ok(T::default()), serde_json::from_value)
+/// Takes a part out of the entries; its default where it is missing, or of another form in another version.
+fn part<T: DeserializeOwned + Default>(entries: &mut Map<String, Value>, key: &str) -> T {
+    let entry = entries.remove(key).map(serde_json::from_value);
+    entry.and_then(Result::ok).unwrap_or_default()
 }

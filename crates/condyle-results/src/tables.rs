@@ -7,55 +7,110 @@ use condyle::{
     machine::Mechanism,
 };
 
+/// A column of `wear.csv`.
+#[derive(Clone, Copy, Debug)]
+pub struct WearColumn {
+    /// Its name, which ends in its unit.
+    pub name: &'static str,
+    /// A description.
+    pub about: &'static str,
+    value: Value,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Value {
+    OfUpdate(fn(&UpdateRecord) -> f64),
+    /// Only in the table of an insert that creeps.
+    OfCreep(fn(&CreepRecord) -> f64),
+}
+
+const fn of_update(
+    name: &'static str,
+    value: fn(&UpdateRecord) -> f64,
+    about: &'static str,
+) -> WearColumn {
+    let value = Value::OfUpdate(value);
+    WearColumn { name, about, value }
+}
+
+const fn of_creep(
+    name: &'static str,
+    value: fn(&CreepRecord) -> f64,
+    about: &'static str,
+) -> WearColumn {
+    let value = Value::OfCreep(value);
+    WearColumn { name, about, value }
+}
+
+/// The columns of `wear.csv`.
+pub const WEAR_COLUMNS: [WearColumn; 12] = [
+    of_update("cycles", |row| row.cycles, "Cycles after the update."),
+    of_update("mass_loss_mg", |row| row.mass_loss_mg, "Mass worn."),
+    of_update(
+        "volume_loss_mm3",
+        |row| row.volume_loss_mm3,
+        "Volume worn, from depth.",
+    ),
+    of_update("max_depth_mm", |row| row.max_depth_mm, "Deepest wear."),
+    of_update(
+        "peak_pressure_mpa",
+        |row| row.peak_pressure_mpa,
+        "Highest pressure in the cycle that the update solved.",
+    ),
+    of_update(
+        "peak_contact_area_mm2",
+        |row| row.peak_contact_area_mm2,
+        "Largest contact area in that cycle.",
+    ),
+    of_creep(
+        "creep_volume_mm3",
+        |creep| creep.volume_mm3,
+        "Volume of creep.",
+    ),
+    of_creep("max_creep_mm", |creep| creep.max_depth_mm, "Deepest creep."),
+    of_creep(
+        "max_penetration_mm",
+        |creep| creep.max_penetration_mm,
+        "Deepest penetration, wear and creep together.",
+    ),
+    of_creep(
+        "wear_at_max_penetration_mm",
+        |creep| creep.wear_there_mm,
+        "Wear at the deepest penetration.",
+    ),
+    of_creep(
+        "creep_at_max_penetration_mm",
+        |creep| creep.creep_there_mm,
+        "Creep at the deepest penetration.",
+    ),
+    of_creep(
+        "max_unloaded_depth_mm",
+        |creep| creep.max_unloaded_mm,
+        "Deepest place of a scan after the insert has rested without load.",
+    ),
+];
+
 /// `wear.csv`: a row an update.
 pub fn wear_csv(updates: &[UpdateRecord]) -> String {
-    let mut text = String::from(
-        "cycles,mass_loss_mg,volume_loss_mm3,max_depth_mm,peak_pressure_mpa,peak_contact_area_mm2",
-    );
-    if updates.iter().any(|row| row.creep.is_some()) {
-        text.push_str(OF_CREEP);
-    }
-    text.push('\n');
+    let creeps = updates.iter().any(|row| row.creep.is_some());
+    let columns = WEAR_COLUMNS.iter();
+    let columns: Vec<&WearColumn> = columns
+        .filter(|column| creeps || matches!(column.value, Value::OfUpdate(_)))
+        .collect();
+    let names = columns.iter().map(|column| column.name.to_owned());
+    let mut text = line(names);
     for row in updates {
-        let UpdateRecord {
-            cycles,
-            mass_loss_mg,
-            volume_loss_mm3,
-            max_depth_mm,
-            peak_pressure_mpa,
-            peak_contact_area_mm2,
-            ..
-        } = row;
-        write!(
-            text,
-            "{cycles},{mass_loss_mg},{volume_loss_mm3},{max_depth_mm},{peak_pressure_mpa},{peak_contact_area_mm2}"
-        )
-        .expect("writing to a string cannot fail");
-        if let Some(creep) = &row.creep {
-            add_creep(&mut text, creep);
-        }
-        text.push('\n');
+        let values = columns.iter().filter_map(|column| match column.value {
+            Value::OfUpdate(value) => Some(value(row)),
+            Value::OfCreep(value) => row.creep.as_ref().map(value),
+        });
+        text += &line(values.map(|value| value.to_string()));
     }
     text
 }
 
-/// The columns that creep adds, in the order of [`add_creep`].
-const OF_CREEP: &str = ",creep_volume_mm3,max_creep_mm,max_penetration_mm,wear_at_max_penetration_mm,creep_at_max_penetration_mm,max_unloaded_depth_mm";
-
-fn add_creep(text: &mut String, creep: &CreepRecord) {
-    let CreepRecord {
-        volume_mm3,
-        max_depth_mm,
-        max_penetration_mm,
-        wear_there_mm,
-        creep_there_mm,
-        max_unloaded_mm,
-    } = creep;
-    write!(
-        text,
-        ",{volume_mm3},{max_depth_mm},{max_penetration_mm},{wear_there_mm},{creep_there_mm},{max_unloaded_mm}"
-    )
-    .expect("writing to a string cannot fail");
+fn line(cells: impl Iterator<Item = String>) -> String {
+    cells.collect::<Vec<_>>().join(",") + "\n"
 }
 
 /// `kinematics.csv`: a row an increment of the given cycles, with the columns of their mechanism.

@@ -1,9 +1,12 @@
 //! The discretisation errors that a run states, and where they come from.
 
+use condyle_results::{ErrorParts, Part};
 use serde::Serialize;
-use serde_json::{Map, Value};
 
-use super::key_words::in_words;
+use super::{
+    key_words::{first_letter_large, in_words},
+    numbers::unit_of,
+};
 use crate::number::{fixed, significant};
 use crate::results::contents::Results;
 
@@ -22,91 +25,75 @@ pub(super) struct Accuracy {
 #[derive(Serialize)]
 struct QuantityError {
     name: String,
-    unit: &'static str,
+    unit: String,
     values: Vec<String>,
 }
 
-/// Parts of the error that the report knows, and what would take them away.
-const CURES: [(&str, &str); 4] = [
-    ("increments", "finer increments of the gait cycle"),
-    ("updates", "more updates of the shape"),
-    ("mesh", "shorter edges of the mesh"),
-    ("slip_tolerance", "friction that sticks rather than creeps"),
-];
-/// The root of the sum of squares of all parts.
-const TOTAL: &str = "total";
+/// The remedy for a part of the error.
+fn cure(part: Part) -> &'static str {
+    match part {
+        Part::Increments => "finer increments of the gait cycle",
+        Part::Updates => "more updates of the shape",
+        Part::Mesh => "shorter edges of the mesh",
+        Part::SlipTolerance => "friction that sticks rather than creeps",
+    }
+}
 
 /// What the summary estimates; none where it estimates nothing.
 pub(super) fn accuracy(results: &Results) -> Option<Accuracy> {
-    let error = results.summary.as_ref()?.object("error")?;
-    let parts = parts(error);
-    let row = |(key, value): (&String, &Value)| Some(quantity(key, by_parts(value)?, &parts));
+    let error = results.summary.as_ref()?.error.as_ref()?;
+    let parts = || {
+        ErrorParts::default()
+            .parts()
+            .into_iter()
+            .map(|(part, _)| part)
+    };
+    let rows = error.quantities().iter().flat_map(|quantity| {
+        let name = first_letter_large(quantity.scalar.label);
+        [
+            row(name.clone(), "%".to_owned(), &quantity.percent),
+            row(name, unit_of(quantity.scalar), &quantity.in_unit),
+        ]
+    });
+    let names = parts().map(|part| in_words(part.name()).0);
+    let cures = parts().map(|part| format!("{} with {}", in_words_of(part), cure(part)));
     Some(Accuracy {
-        rows: error.iter().filter_map(row).collect(),
-        parts: parts.iter().map(|part| part_name(part)).collect(),
-        cures: cures(),
+        rows: rows.collect(),
+        parts: names.chain(["Together".to_owned()]).collect(),
+        cures: format!("They go away: {}.", cures.collect::<Vec<_>>().join(", ")),
         missing: not_estimated(results),
     })
 }
 
-/// A quantity's error as an object of parts; none of what else stands in the estimate.
-fn by_parts(value: &Value) -> Option<&Map<String, Value>> {
-    value.as_object().filter(|parts| parts.contains_key(TOTAL))
+fn in_words_of(part: Part) -> String {
+    part.name().replace('_', " ")
 }
 
-/// The parts that stand in the estimate: those known, others, and together.
-fn parts(error: &Map<String, Value>) -> Vec<String> {
-    let known = CURES.iter().map(|(part, _)| (*part).to_owned());
-    let mut parts: Vec<String> = known.collect();
-    for part in error.values().filter_map(by_parts).flat_map(Map::keys) {
-        if part != TOTAL && !parts.contains(part) {
-            parts.push(part.clone());
-        }
-    }
-    parts.push(TOTAL.to_owned());
-    parts
-}
-
-fn part_name(part: &str) -> String {
-    match part {
-        TOTAL => String::from("Together"),
-        part => in_words(part).0,
-    }
-}
-
-fn quantity(key: &str, error: &Map<String, Value>, parts: &[String]) -> QuantityError {
-    let (name, unit) = in_words(key);
-    let digits = |value: f64| match unit {
+fn row(name: String, unit: String, error: &ErrorParts) -> QuantityError {
+    let digits = |value: f64| match unit.as_str() {
         "%" => fixed(value, 2),
         _ => significant(value, 2),
     };
-    let shown = |part: &String| {
-        let value = error.get(part).and_then(Value::as_f64);
-        value.map_or_else(|| String::from("unknown"), digits)
-    };
+    let parts = error.parts().into_iter().map(|(_, part)| part);
+    let values = parts.chain([Some(error.total)]);
+    let values = values.map(|value| value.map_or_else(|| String::from("unknown"), digits));
     QuantityError {
         name,
+        values: values.collect(),
         unit,
-        values: parts.iter().map(shown).collect(),
     }
-}
-
-fn cures() -> String {
-    let cure = |(part, cure): &(&str, &str)| format!("{} with {cure}", part.replace('_', " "));
-    let cures: Vec<String> = CURES.iter().map(cure).collect();
-    format!("They go away: {}.", cures.join(", "))
 }
 
 /// Why parts of the error have no estimate, a sentence each.
 pub(super) fn not_estimated(results: &Results) -> Vec<String> {
-    let summary = results.summary.as_ref();
-    let error = summary.and_then(|summary| summary.object("error"));
-    let reasons = error.and_then(|error| error.get("not_estimated")?.as_object());
-    let sentence = |(part, why): (&String, &Value)| {
-        let (part, why) = (part.replace('_', " "), why.as_str()?);
-        Some(format!(
-            "The error from {part} could not be estimated: {why}."
-        ))
+    let error = results
+        .summary
+        .iter()
+        .filter_map(|summary| summary.error.as_ref());
+    let reasons = error.flat_map(|error| &error.not_estimated);
+    let sentence = |(part, why): (&String, &String)| {
+        let part = part.replace('_', " ");
+        format!("The error from {part} could not be estimated: {why}.")
     };
-    reasons.into_iter().flatten().filter_map(sentence).collect()
+    reasons.map(sentence).collect()
 }

@@ -1,5 +1,7 @@
 //! Whether the files of a folder are of one run, and of this version.
 
+use condyle_results::catalogue::{INCREMENTS, UPDATES};
+
 use crate::results::contents::Results;
 
 /// The version of condyle that makes this page.
@@ -14,8 +16,8 @@ pub(super) fn disagreements(results: &Results) -> Vec<String> {
 }
 
 fn version(results: &Results) -> Option<String> {
-    let written = results.summary.as_ref()?.text("version")?;
-    (written != VERSION).then(|| {
+    let written = &results.summary.as_ref()?.version;
+    (!written.is_empty() && written != VERSION).then(|| {
         format!(
             "The run is of condyle {written} and this page of {VERSION}: what that version did not write, or called otherwise, \
              is not on it."
@@ -24,7 +26,7 @@ fn version(results: &Results) -> Option<String> {
 }
 
 fn updates(results: &Results) -> Option<String> {
-    let told = results.summary.as_ref()?.number("updates")?;
+    let told = results.summary.as_ref()?.get(&UPDATES)?;
     let rows = results.wear.as_ref()?.rows();
     (told != rows as f64).then(|| {
         format!(
@@ -35,7 +37,7 @@ fn updates(results: &Results) -> Option<String> {
 
 /// Every cycle of kinematics.csv has as many rows as the summary tells of increments.
 fn increments(results: &Results) -> Option<String> {
-    let told = results.summary.as_ref()?.number("increments")?;
+    let told = results.summary.as_ref()?.get(&INCREMENTS)?;
     let cycles = results.kinematics.as_ref()?.column("cycles")?;
     let lengths = cycles.chunk_by(|one, next| one == next).map(<[f64]>::len);
     let wrong = lengths.into_iter().find(|length| *length as f64 != told)?;

@@ -1,6 +1,6 @@
 //! Medial and lateral compared: what the report measures on the last mesh.
 
-use condyle_results::Side;
+use condyle_results::{Side, catalogue::VOLUME_LOSS_MM3};
 
 use serde::Serialize;
 
@@ -146,12 +146,18 @@ impl Sides<'_> {
 
 /// As the summary says; of a run that is not finished, as the last row of wear.csv says.
 fn volume_loss_mm3(results: &Results) -> Option<f64> {
-    const KEY: &str = "volume_loss_mm3";
     let stated = results
         .summary
         .as_ref()
-        .and_then(|summary| summary.number(KEY));
-    stated.or_else(|| results.wear.as_ref()?.column(KEY)?.last().copied())
+        .and_then(|summary| summary.get(&VOLUME_LOSS_MM3));
+    stated.or_else(|| {
+        results
+            .wear
+            .as_ref()?
+            .column(VOLUME_LOSS_MM3.key)?
+            .last()
+            .copied()
+    })
 }
 
 fn thinnest(surface: &SurfaceFields, values: &[f64], region: Region) -> String {

@@ -6,7 +6,7 @@ use super::{
     accuracy::not_estimated,
     key_words::{first_letter_large, with_powers},
 };
-use crate::results::{contents::Results, summary::Summary};
+use crate::results::contents::Results;
 
 /// Why the numbers are to be doubted, and what to do.
 #[derive(Serialize)]
@@ -17,8 +17,11 @@ pub(super) struct Doubt {
 
 /// What makes the run doubtful, as the summary says; and errors that it could not estimate.
 pub(super) fn doubts(results: &Results) -> Vec<Doubt> {
-    let warnings = results.summary.as_ref().map(Summary::plausibility);
-    let warnings = warnings.unwrap_or_default().into_iter();
+    let warnings = results
+        .summary
+        .as_ref()
+        .map(|summary| &summary.plausibility);
+    let warnings = warnings.into_iter().flatten();
     let doubtful = warnings.map(|warning| Doubt {
         message: ended(&first_letter_large(&warning.message)),
         advice: with_powers(&warning.advice),
@@ -32,9 +35,8 @@ pub(super) fn doubts(results: &Results) -> Vec<Doubt> {
 
 /// What was put right or looked doubtful on the way in.
 pub(super) fn warnings(results: &Results) -> Vec<String> {
-    let warnings = results.summary.as_ref().map(Summary::warnings);
-    let warnings = warnings.unwrap_or_default();
-    warnings.iter().map(|warning| ended(warning)).collect()
+    let warnings = results.summary.iter().flat_map(|summary| &summary.warnings);
+    warnings.map(|warning| ended(warning)).collect()
 }
 
 fn ended(text: &str) -> String {

@@ -2,8 +2,10 @@
 
 use serde::Serialize;
 
+use condyle_results::catalogue::WEAR_OVER_CONVENTIONAL;
+
 use crate::number::{fixed, significant};
-use crate::results::{contents::Results, summary::Summary};
+use crate::results::contents::Results;
 
 /// A law in the table.
 #[derive(Serialize)]
@@ -21,12 +23,12 @@ pub(super) struct Law {
 /// The laws of the summary; none where there is only one.
 pub(super) fn laws(results: &Results) -> Vec<Law> {
     let summary = results.summary.as_ref();
-    let laws = summary.map_or_else(Vec::new, Summary::wear_laws);
+    let laws = summary.map_or(&[][..], |summary| &summary.wear_laws);
     if laws.len() < 2 {
         return Vec::new();
     }
-    let rows = laws.into_iter().map(|law| Law {
-        name: law.law,
+    let rows = laws.iter().map(|law| Law {
+        name: law.law.clone(),
         approximate: law.approximate,
         moved_the_surface: law.moved_the_surface,
         mass_per_million: significant(law.mass_loss_mg_per_million_cycles, 3),
@@ -40,14 +42,14 @@ pub(super) fn laws(results: &Results) -> Vec<Law> {
 
 /// The law that moved the surface, if the summary says which.
 pub(super) fn of_run(results: &Results) -> Option<String> {
-    let laws = results.summary.as_ref()?.wear_laws();
-    let own = laws.into_iter().find(|law| law.moved_the_surface)?;
-    Some(own.law)
+    let laws = &results.summary.as_ref()?.wear_laws;
+    let own = laws.iter().find(|law| law.moved_the_surface)?;
+    Some(own.law.clone())
 }
 
 /// What cross-linked polyethylene is taken to wear over conventional one, if the insert is of it.
 pub(super) fn wear_over_conventional(results: &Results) -> Option<String> {
-    let times = results.summary.as_ref()?.wear_over_conventional()?;
+    let times = results.summary.as_ref()?.get(&WEAR_OVER_CONVENTIONAL)?;
     Some(significant(times, 3))
 }
 

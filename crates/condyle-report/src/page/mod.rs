@@ -21,7 +21,7 @@ mod story;
 pub(crate) use channels::{PlottedColumn, channel, panels as kinematics_panels};
 pub(crate) use curves::{most_cycles, panels as wear_panels, panels_up_to as wear_panels_up_to};
 pub(crate) use maps::{MAPS, MapOf, wear_map};
-pub(crate) use numbers::{results_in_words, shown_value};
+pub(crate) use numbers::{label_of, shown, unit_of};
 pub(crate) use slip::slip_map;
 
 use minijinja::Environment;

@@ -1,12 +1,15 @@
 //! The numbers of summary.json, as the catalogue names and describes them.
 
-use condyle_results::catalogue::{self, Scalar, Section};
+use condyle_results::{
+    Summary,
+    catalogue::{self, Scalar, Section},
+};
 use serde::Serialize;
 use serde_json::Value;
 
 use super::key_words::{first_letter_large, in_words, with_powers};
 use crate::number::{fixed, significant};
-use crate::results::{contents::Results, summary::Summary};
+use crate::results::contents::Results;
 
 /// Numbers under one heading.
 #[derive(Serialize)]
@@ -34,17 +37,6 @@ pub(super) struct Tile {
     error: Option<String>,
 }
 
-/// Entries of the summary that the page shows elsewhere.
-const SHOWN_ELSEWHERE: [&str; 6] = [
-    "error",
-    "warnings",
-    "plausibility",
-    "wear_laws",
-    "activities",
-    NEUTRAL,
-];
-/// Where the femur settled.
-const NEUTRAL: &str = "neutral_pose";
 /// Parts of names of entries that differ from run to run of one case, or that the page shows as its origin.
 const NOT_LISTED: [&str; 4] = ["wall_s", "version", "hash", "blake3"];
 
@@ -56,17 +48,14 @@ pub(super) fn tiles(results: &Results) -> Vec<Tile> {
     let tile = |number: &'static Scalar| {
         Some(Tile {
             label: label_of(number),
-            value: shown(number, summary.number(number.key)?, 3),
+            value: shown(number, summary.get(number)?, 3),
             unit: unit_of(number),
-            error: total_error(summary, number.key),
+            error: summary
+                .total_error(number)
+                .map(|error| significant(error, 2)),
         })
     };
     catalogue::headlines().filter_map(tile).collect()
-}
-
-/// The estimated discretisation error of a number, where the summary has one.
-fn total_error(summary: &Summary, key: &str) -> Option<String> {
-    Some(significant(summary.total_error(key)?, 2))
 }
 
 /// All numbers in groups; entries that are not in the catalogue come last under their own names.
@@ -98,41 +87,35 @@ const NEUTRAL_PLACE: usize = 4;
 
 /// Where the femur stands when AP, ML and IS read zero.
 fn neutral(summary: &Summary) -> Group {
-    let rows = [
-        (
-            "Femoral frame's origin: x, y, z",
-            ["femoral_origin_mm"].as_slice(),
-            "mm",
-            "In the insert frame where the femur settles: there AP, ML and IS read zero. x is anterior, y up, z to the right.",
-        ),
-        (
-            "Flexion, internal rotation, varus",
-            &["flexion_deg", "ie_deg", "vv_deg"],
-            "degrees",
-            "Where the femur settles; zero would be parallel frames.",
-        ),
-    ];
-    let row = |(label, keys, unit, meaning): (&str, &[&str], &'static str, &str)| {
-        let pose = summary.object(NEUTRAL)?;
-        let values = keys.iter().filter_map(|key| pose.get(*key));
-        let numbers = values.flat_map(|value| {
-            value
-                .as_array()
-                .map_or(std::slice::from_ref(value), Vec::as_slice)
-        });
-        let texts: Vec<String> = numbers
-            .filter_map(|number| Some(fixed(number.as_f64()?, 3)))
-            .collect();
-        Some(Listed {
-            label: label.to_owned(),
-            value: texts.join(", "),
-            unit: unit.to_owned(),
-            meaning: meaning.to_owned(),
-        })
+    let row = |label: &str, values: &[f64], unit: &str, meaning: &str| Listed {
+        label: label.to_owned(),
+        value: values
+            .iter()
+            .map(|value| fixed(*value, 3))
+            .collect::<Vec<_>>()
+            .join(", "),
+        unit: unit.to_owned(),
+        meaning: meaning.to_owned(),
     };
+    let rows = summary.neutral_pose.iter().flat_map(|pose| {
+        [
+            row(
+                "Femoral frame's origin: x, y, z",
+                &pose.femoral_origin_mm,
+                "mm",
+                "In the insert frame where the femur settles: there AP, ML and IS read zero. x is anterior, y up, z to the right.",
+            ),
+            row(
+                "Flexion, internal rotation, varus",
+                &[pose.flexion_deg, pose.ie_deg, pose.vv_deg],
+                "degrees",
+                "Where the femur settles; zero would be parallel frames.",
+            ),
+        ]
+    });
     Group {
         heading: "Neutral position",
-        rows: rows.into_iter().filter_map(row).collect(),
+        rows: rows.collect(),
     }
 }
 
@@ -140,19 +123,19 @@ fn listed(number: &Scalar, summary: &Summary) -> Option<Listed> {
     let meaning = [number.description(), number.definition()].join(" ");
     Some(Listed {
         label: label_of(number),
-        value: shown(number, summary.number(number.key)?, 4),
+        value: shown(number, summary.get(number)?, 4),
         unit: unit_of(number),
         meaning: with_powers(meaning.trim_end()),
     })
 }
 
 /// The name of a number as a title.
-fn label_of(number: &Scalar) -> String {
+pub(crate) fn label_of(number: &Scalar) -> String {
     first_letter_large(number.label)
 }
 
 /// The unit that a number is shown in, as it is printed.
-fn unit_of(number: &Scalar) -> String {
+pub(crate) fn unit_of(number: &Scalar) -> String {
     with_powers(number.shown_unit())
 }
 
@@ -160,14 +143,19 @@ fn is_hidden(key: &str) -> bool {
     NOT_LISTED.iter().any(|hidden| key.contains(hidden))
 }
 
-/// Entries that are not in the catalogue, in the words of their keys.
+/// Creep, and entries that are not in the catalogue, in the words of their keys.
 fn others(summary: &Summary) -> Vec<Listed> {
+    let creep = summary
+        .creep
+        .as_ref()
+        .map(|creep| ("creep", serde_json::to_value(creep).unwrap_or_default()));
+    let creep = creep.iter().map(|(key, value)| (*key, value));
     let unknown = summary
-        .entries()
-        .filter(|(key, _)| catalogue::scalar(key).is_none())
-        .filter(|(key, _)| !SHOWN_ELSEWHERE.contains(key));
-    unknown
-        .flat_map(|(key, value)| unlisted(key, key, value))
+        .others
+        .iter()
+        .map(|(key, value)| (key.as_str(), value));
+    let all = creep.chain(unknown);
+    all.flat_map(|(key, value)| unlisted(key, key, value))
         .collect()
 }
 
@@ -202,21 +190,8 @@ fn under(key: &str, row: Listed) -> Listed {
     }
 }
 
-/// Key, name and unit of the numbers of the test, in the order of the page.
-pub(crate) fn results_in_words() -> impl Iterator<Item = (&'static str, String, String)> {
-    catalogue::results().map(|number| (number.key, label_of(number), unit_of(number)))
-}
-
-/// The value of a number in its unit, as the page shows it.
-pub(crate) fn shown_value(key: &str, value: f64, digits: i32) -> String {
-    catalogue::scalar(key).map_or_else(
-        || significant(value, digits),
-        |number| shown(number, value, digits),
-    )
-}
-
 /// Numbers with a unit span orders of magnitude and get significant digits; counts, shares and ratios get decimals.
-fn shown(number: &Scalar, value: f64, digits: i32) -> String {
+pub(crate) fn shown(number: &Scalar, value: f64, digits: i32) -> String {
     let value = number.shown(value);
     if number.unit().is_empty() {
         return fixed(value, number.decimals);

@@ -2,6 +2,10 @@
 
 use serde::Serialize;
 
+use condyle_results::catalogue::{
+    CYCLES, MASS_LOSS_MG, Scalar, VOLUME_LOSS_MESH_MM3, VOLUME_LOSS_MM3,
+};
+
 use super::key_words::in_words;
 use crate::number::{cycles, fixed, significant};
 use crate::results::{case::cycles_asked, contents::Results, measure::Region};
@@ -39,14 +43,14 @@ impl Reached {
     /// As the summary says; without one, as the last row of wear.csv says.
     fn of(results: &Results) -> Option<Self> {
         let last = |key: &str| results.wear.as_ref()?.column(key)?.last().copied();
-        let number = |key: &str| match &results.summary {
-            Some(summary) => summary.number(key),
-            None => last(key),
+        let number = |scalar: &Scalar| match &results.summary {
+            Some(summary) => summary.get(scalar),
+            None => last(scalar.key),
         };
         Some(Self {
-            cycles: number("cycles")?,
-            mass_loss_mg: number("mass_loss_mg")?,
-            volume_loss_mm3: number("volume_loss_mm3"),
+            cycles: number(&CYCLES)?,
+            mass_loss_mg: number(&MASS_LOSS_MG)?,
+            volume_loss_mm3: number(&VOLUME_LOSS_MM3),
         })
     }
 
@@ -91,8 +95,8 @@ fn deepest(results: &Results) -> Option<String> {
 /// How far the two counts of the worn volume differ, and why.
 pub(super) fn volume_check(results: &Results) -> Option<String> {
     let summary = results.summary.as_ref()?;
-    let depth = summary.number("volume_loss_mm3")?;
-    let mesh = summary.number("volume_loss_mesh_mm3")?;
+    let depth = summary.get(&VOLUME_LOSS_MM3)?;
+    let mesh = summary.get(&VOLUME_LOSS_MESH_MM3)?;
     let percent = 100.0 * (mesh - depth).abs() / depth.abs().max(mesh.abs()).max(f64::MIN_POSITIVE);
     Some(format!(
         "The two counts of the volume differ by {}\u{a0}%: depth times area takes each node's share of the surface as large as \
@@ -114,15 +118,19 @@ pub(super) fn provenance(results: &Results) -> Vec<Fact> {
     let Some(summary) = &results.summary else {
         return Vec::new();
     };
-    let mut facts: Vec<_> = summary
-        .entries()
-        .filter(|(key, _)| key.contains("version") || is_hash(key))
-        .filter_map(|(key, value)| {
-            let name = in_words(key).0.replace("blake3", "(BLAKE3)");
-            Some(Fact {
-                name,
-                value: value.as_str()?.to_owned(),
-            })
+    let own = [
+        ("version", summary.version.as_str()),
+        ("inputs_blake3", summary.inputs_blake3.as_str()),
+    ];
+    let others = summary.others.iter();
+    let others = others.filter_map(|(key, value)| Some((key.as_str(), value.as_str()?)));
+    let all = own.into_iter().chain(others);
+    let origins =
+        all.filter(|(key, value)| !value.is_empty() && (key.contains("version") || is_hash(key)));
+    let mut facts: Vec<_> = origins
+        .map(|(key, value)| Fact {
+            name: in_words(key).0.replace("blake3", "(BLAKE3)"),
+            value: value.to_owned(),
         })
         .collect();
     facts.sort_by_key(|fact| is_hash(&fact.name.to_lowercase()));

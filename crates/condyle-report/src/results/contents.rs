@@ -1,8 +1,8 @@
 //! What a results folder holds.
 
-use condyle_results::{ActivitySummary, Side};
+use condyle_results::{ActivitySummary, Side, Summary};
 
-use super::{summary::Summary, surface::SurfaceFields, table::Table};
+use super::{surface::SurfaceFields, table::Table};
 
 /// What a results folder holds; a part that is not there is `None`.
 #[derive(Clone, Debug, Default, PartialEq)]

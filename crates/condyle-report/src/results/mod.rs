@@ -4,7 +4,6 @@ pub(crate) mod case;
 pub(crate) mod contents;
 pub(crate) mod measure;
 pub(crate) mod read;
-pub(crate) mod summary;
 pub(crate) mod surface;
 pub(crate) mod surface_of_mesh;
 pub(crate) mod table;

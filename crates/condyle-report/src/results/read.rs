@@ -4,12 +4,10 @@ use std::path::{Path, PathBuf};
 
 use condyle_mesh::formats::read_vtu_points;
 use condyle_results::{
-    ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, Side, check_file,
+    ActivitySummary, COMPARED, COMPARED_KINEMATICS, COMPARED_WEAR, Side, Summary, check_file,
 };
 
-use super::{
-    case::side, contents::Results, summary::Summary, surface::SurfaceFields, table::Table,
-};
+use super::{case::side, contents::Results, surface::SurfaceFields, table::Table};
 use crate::error::ReportError;
 
 /// What is done about a part that cannot be read: the reading ends, or goes on without it.
@@ -118,7 +116,7 @@ fn activities(
     summary: Option<&Summary>,
     on_damage: OnDamage<'_>,
 ) -> Result<Vec<(ActivitySummary, Option<Table>)>, ReportError> {
-    let listed = summary.map_or_else(Vec::new, Summary::activities);
+    let listed = summary.map_or_else(Vec::new, |summary| summary.activities.clone());
     let with_table = |activity: ActivitySummary| {
         // A summary that somebody wrote may name any file: only one of the folder itself is read.
         let name = Path::new(&activity.kinematics_file).file_name();
@@ -192,7 +190,7 @@ fn summary(path: PathBuf) -> Result<Option<Summary>, ReportError> {
     let Some(text) = text(&path)? else {
         return Ok(None);
     };
-    match Summary::parse(&text) {
+    match serde_json::from_str(&text) {
         Ok(summary) => Ok(Some(summary)),
         Err(source) => Err(ReportError::Json { path, source }),
     }

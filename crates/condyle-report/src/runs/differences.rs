@@ -66,7 +66,7 @@ fn notes(first: &Run, second: &Run) -> Vec<String> {
             "One is a right knee and the other a left one: medial is on opposite sides.".to_owned(),
         );
     }
-    let version = |run: &Run| Some(run.results.summary.as_ref()?.text("version")?.to_owned());
+    let version = |run: &Run| Some(run.results.summary.as_ref()?.version.clone());
     if let Some((one, two)) = version(first).zip(version(second))
         && one != two
     {

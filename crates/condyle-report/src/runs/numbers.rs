@@ -2,15 +2,22 @@
 
 use serde::Serialize;
 
-use crate::page::results_in_words;
-use crate::results::summary::Summary;
+use condyle_results::{
+    Summary,
+    catalogue::{self, Scalar},
+};
+
+use crate::page::{label_of, unit_of};
 
 /// A number in which two runs differ.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NumberDifference {
-    /// Its name in `summary.json`, which ends in its unit.
+    /// The number, as the catalogue describes it.
+    #[serde(skip)]
+    pub scalar: &'static Scalar,
+    /// Its key in `summary.json`, which ends in its unit.
     pub key: &'static str,
-    /// What people call it.
+    /// Its name in words.
     pub label: String,
     /// Its unit as the report shows it.
     pub unit: String,
@@ -50,16 +57,18 @@ impl NumberDifference {
 
 /// Numbers that differ: by size over errors, then those without errors by their percent.
 pub(super) fn numbers(first: &Summary, second: &Summary) -> Vec<NumberDifference> {
-    let difference = |(key, label, unit)| {
-        let (one, two) = (first.number(key)?, second.number(key)?);
-        let [first_error, second_error] = [first, second].map(|summary| summary.total_error(key));
+    let difference = |scalar: &'static Scalar| {
+        let (one, two) = (first.get(scalar)?, second.get(scalar)?);
+        let [first_error, second_error] =
+            [first, second].map(|summary| summary.total_error(scalar));
         let difference = two - one;
         let errors = first_error.zip(second_error).map(|(one, two)| one + two);
         let errors = errors.filter(|errors| *errors > 0.0);
         (difference != 0.0).then(|| NumberDifference {
-            key,
-            label,
-            unit,
+            scalar,
+            key: scalar.key,
+            label: label_of(scalar),
+            unit: unit_of(scalar),
             first: one,
             second: two,
             difference,
@@ -69,7 +78,7 @@ pub(super) fn numbers(first: &Summary, second: &Summary) -> Vec<NumberDifference
             times_errors: errors.map(|errors| difference.abs() / errors),
         })
     };
-    let mut numbers: Vec<_> = results_in_words().filter_map(difference).collect();
+    let mut numbers: Vec<_> = catalogue::results().filter_map(difference).collect();
     numbers.sort_by(|one, two| {
         rank(two)
             .partial_cmp(&rank(one))
@@ -92,7 +101,7 @@ mod tests {
             r#"{{"mass_loss_mg": {mass}, "max_depth_mm": {depth}, "ap_range_mm": {ap}, "ie_range_deg": 5,
                 "error": {{"mass_loss_mg": {{"total": 0.5}}, "max_depth_mm": {{"total": 0.01}}}}}}"#
         );
-        Summary::parse(&text).expect("is JSON")
+        serde_json::from_str(&text).expect("is JSON")
     }
 
     #[test]

@@ -6,7 +6,9 @@ use super::{differences::Differences, numbers::NumberDifference, pictures, run::
 use crate::error::ReportError;
 use crate::file::write_text;
 use crate::number::significant;
-use crate::page::{results_in_words, shown_value};
+use condyle_results::catalogue::{self, Scalar};
+
+use crate::page::{label_of, shown, unit_of};
 use crate::sheets::Sheets;
 
 /// A table: its heading, and rows of which the first is the head.
@@ -98,22 +100,22 @@ fn numbers(runs: &[Run]) -> Table {
     let names = runs.iter().map(|run| run.name.clone());
     let head = ["Quantity".to_owned(), "Unit".to_owned()];
     let mut rows = vec![head.into_iter().chain(names).collect()];
-    for (key, label, unit) in results_in_words() {
-        let cells: Vec<Option<String>> = runs.iter().map(|run| with_error(run, key)).collect();
+    for scalar in catalogue::results() {
+        let cells: Vec<Option<String>> = runs.iter().map(|run| with_error(run, scalar)).collect();
         if cells.iter().any(Option::is_some) {
             let cells = cells.into_iter();
             let cells = cells.map(|cell| cell.unwrap_or_else(|| "\u{2013}".to_owned()));
-            let named = [label, unit];
+            let named = [label_of(scalar), unit_of(scalar)];
             rows.push(named.into_iter().chain(cells).collect());
         }
     }
     ("All numbers".to_owned(), rows)
 }
 
-fn with_error(run: &Run, key: &str) -> Option<String> {
+fn with_error(run: &Run, scalar: &Scalar) -> Option<String> {
     let summary = run.results.summary.as_ref()?;
-    let value = shown_value(key, summary.number(key)?, 4);
-    Some(match summary.total_error(key) {
+    let value = shown(scalar, summary.get(scalar)?, 4);
+    Some(match summary.total_error(scalar) {
         Some(error) => format!("{value} \u{b1} {}", significant(error, 2)),
         None => value,
     })
@@ -169,12 +171,9 @@ fn differing(difference: &Differences) -> Vec<Vec<String>> {
     let row = |one: &NumberDifference| {
         let errors = one.errors();
         vec![
-            one.label.to_owned(),
-            one.unit.to_owned(),
-            signed(
-                one.difference,
-                &shown_value(one.key, one.difference.abs(), 3),
-            ),
+            label_of(one.scalar),
+            unit_of(one.scalar),
+            signed(one.difference, &shown(one.scalar, one.difference.abs(), 3)),
             percent(one.difference_percent),
             errors.map_or_else(|| "\u{2013}".to_owned(), |errors| significant(errors, 2)),
             one.verdict(),

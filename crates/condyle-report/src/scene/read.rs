@@ -7,7 +7,7 @@ use std::{
 };
 
 use condyle_mesh::formats::{VtuFile, parse_vtu_triangles, read_vtu_points};
-use condyle_results::{KeptCycle, check_file, cycle_pressure_file};
+use condyle_results::{KeptCycle, catalogue::UPDATES, check_file, cycle_pressure_file};
 
 use super::{Scene, SceneBody, SceneCycle};
 use crate::{
@@ -15,7 +15,6 @@ use crate::{
     results::{
         contents::Results,
         read::{meshes, table, without_folder},
-        summary::Summary,
         table::Table,
     },
 };
@@ -43,7 +42,7 @@ impl Scene {
         let mut scene = of_meshes(folder, results);
         scene.femur = femur(folder, &mut scene.missing);
         let summary = results.summary.as_ref();
-        scene.neutral_pose = summary.and_then(Summary::neutral_pose);
+        scene.neutral_pose = summary.and_then(|summary| summary.neutral_pose);
         scene.cycles = cycles(folder, &mut scene.missing);
         let is_gone = |(name, _): &&(&str, &str)| !folder.join(name).exists();
         let gone = MOVING_FILES.iter().filter(is_gone);
@@ -93,7 +92,7 @@ fn of_meshes(folder: &Path, results: &Results) -> Scene {
 fn not_there(meshes: &[(u32, PathBuf)], results: &Results) -> Option<String> {
     let (last, _) = meshes.last()?;
     let summary = results.summary.as_ref();
-    let told = summary.and_then(|summary| summary.number("updates"));
+    let told = summary.and_then(|summary| summary.get(&UPDATES));
     let all = 0..=told.map_or(*last, |updates| updates as u32).max(*last);
     let is_there = |update: &u32| meshes.iter().any(|(there, _)| there == update);
     let gone: Vec<String> = all

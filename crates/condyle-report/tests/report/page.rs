@@ -2,7 +2,7 @@
 
 use crate::fixture;
 
-use condyle_report::{Results, Side, Summary, report_html, write_report};
+use condyle_report::{Results, Side, report_html, write_report};
 
 #[test]
 fn the_page_stands_alone_and_is_small() {
@@ -36,7 +36,7 @@ fn wall_time_does_not_reach_the_page() {
     let mut results = fixture::results();
     let page = report_html(&results);
     let slower = fixture::SUMMARY.replace("\"wall_s\": 0.83", "\"wall_s\": 7.5");
-    results.summary = Some(Summary::parse(&slower).expect("is JSON"));
+    results.summary = Some(serde_json::from_str(&slower).expect("is JSON"));
     assert_eq!(page, report_html(&results));
 }
 
@@ -75,7 +75,7 @@ fn a_number_that_the_report_does_not_know_has_a_title_and_a_unit() {
         "\"peak_memory_mb\": 61.5",
         "\"peak_memory_mb\": 61.5, \"scar\": {\"width_mm\": 12.25, \"ends_mm\": [1.5, -2]}",
     );
-    results.summary = Some(Summary::parse(&text).expect("is JSON"));
+    results.summary = Some(serde_json::from_str(&text).expect("is JSON"));
     let html = report_html(&results);
     for row in [
         "Peak memory</th><td class=\"n\">61.50</td><td class=\"u\">MB</td>",
@@ -130,7 +130,7 @@ fn all_that_was_said_of_the_run_stands_before_its_numbers() {
             "value": 1.0, "limit": 0.5, "unit": "mm", "message": "it slides by 1 mm2", "advice": "Stop it."}], "#,
         1,
     );
-    results.summary = Some(Summary::parse(&text).expect("is JSON"));
+    results.summary = Some(serde_json::from_str(&text).expect("is JSON"));
     let html = report_html(&results);
     let top = html.split("class=\"tiles\"").next().expect("has a top");
     for said in [
@@ -179,7 +179,8 @@ fn the_estimated_error_is_shown_by_its_parts() {
 #[test]
 fn a_run_without_an_estimate_says_so() {
     let mut results = fixture::results();
-    results.summary = Some(Summary::parse("{\"cycles\": 1, \"error\": null}").expect("is JSON"));
+    results.summary =
+        Some(serde_json::from_str("{\"cycles\": 1, \"error\": null}").expect("is JSON"));
     assert!(report_html(&results).contains("was not estimated"));
 }
 
@@ -254,7 +255,7 @@ fn other_laws_stand_beside_that_of_the_run() {
     let with = |laws: &[String]| {
         let mut results = fixture::results();
         let text = format!("{{\"wear_laws\": [{}]}}", laws.join(", "));
-        results.summary = Some(Summary::parse(&text).expect("is JSON"));
+        results.summary = Some(serde_json::from_str(&text).expect("is JSON"));
         report_html(&results)
     };
     let (kang, archard) = (law("kang", true, "12.4"), law("archard", false, "null"));

@@ -268,6 +268,11 @@ impl Scalar {
         }
     }
 
+    /// Its doc comment: a description in one sentence, then the definition.
+    pub fn documentation(&self) -> &'static str {
+        self.about.trim()
+    }
+
     /// A description in one sentence.
     pub fn description(&self) -> &'static str {
         self.sentences().0
