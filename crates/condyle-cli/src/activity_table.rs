@@ -1,10 +1,10 @@
-//! What each of several activities did.
+//! Motion, loads and wear of each of several activities.
 
 use condyle_results::ActivitySummary;
 
 use crate::output::Lines;
 
-/// Adds the table; nothing where the case has one activity.
+/// Adds the table; nothing for a case with one activity.
 pub fn add(activities: &[ActivitySummary], lines: &mut Lines) {
     if activities.is_empty() {
         return;

@@ -1,4 +1,4 @@
-//! What the command line says.
+//! The arguments of the command line.
 
 use std::path::PathBuf;
 
@@ -36,7 +36,7 @@ pub enum Command {
     Report(Report),
     /// Write the pictures of a results folder as files, without a browser.
     Plot(Plot),
-    /// Say in which numbers, curves and maps two runs differ, beside their discretisation errors.
+    /// List the numbers, curves and maps in which two runs differ, with their discretisation errors.
     Diff(Diff),
     /// Run a case over finer and finer values of one of its numbers, and see what changes.
     Converge(Converge),
@@ -77,7 +77,7 @@ pub struct Run {
     pub json: bool,
 }
 
-/// What is changed of a case before it is read.
+/// Changes of a case before it is read.
 #[derive(Args)]
 pub struct Changes {
     /// Change a value of the case: a dotted path such as contact.friction=0.05, or the last word of one. May be given
@@ -110,7 +110,7 @@ pub struct Check {
 pub struct New {
     /// The case file to write; it must not be there yet.
     pub case: PathBuf,
-    /// Which simulator.
+    /// The simulator.
     #[arg(long, default_value = Preset::StanmoreForce.word(), value_parser = presets())]
     pub preset: Preset,
     /// A mesh of the femoral component: its unit and axes are concluded from the shape.
@@ -119,7 +119,7 @@ pub struct New {
     /// A mesh of the insert, closed or its articulating surface.
     #[arg(long, value_name = "MESH", requires = "femur")]
     pub insert: Option<PathBuf>,
-    /// Which knee, right or left; by default as the femur's trochlea shows, which a symmetric one does not.
+    /// The side of the knee, right or left; by default the side that the femur's trochlea shows.
     #[arg(long, value_parser = sides(), requires = "femur")]
     pub side: Option<Side>,
 }
@@ -147,7 +147,7 @@ pub struct Export {
 
 #[derive(Args)]
 pub struct Report {
-    /// The results folder; several are shown side by side on a page of their own, held against the first.
+    /// The results folder; several are shown side by side on one page, compared with the first.
     #[arg(required = true, value_name = "RESULTS")]
     pub results: Vec<PathBuf>,
     /// Also write wear_map.svg, wear.svg and kinematics.svg.
@@ -173,7 +173,7 @@ pub struct Plot {
     pub format: Vec<PictureFormat>,
 }
 
-/// How a picture is written.
+/// The format of a picture.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum PictureFormat {
     /// Lines and letters, at any size.
@@ -191,7 +191,7 @@ pub struct Schema {
 
 #[derive(Args)]
 pub struct Diff {
-    /// The results folder that the other is held against.
+    /// The results folder that the other is compared with.
     pub first: PathBuf,
     /// The other results folder.
     pub second: PathBuf,
@@ -260,7 +260,7 @@ pub struct Uncertainty {
 pub struct Study {
     #[command(subcommand)]
     pub command: Option<StudyCommand>,
-    /// The study file: which case, what varies, how tests are chosen, what is asked. The same command goes on with a study
+    /// The study file: the case, the varied inputs, the design and the answers. The same command goes on with a study
     /// that was stopped.
     #[arg(required = true)]
     pub study: Option<PathBuf>,
@@ -282,7 +282,7 @@ pub struct Study {
 pub enum StudyCommand {
     /// Write the table of a study, as far as it is, as CSV.
     Export(StudyExport),
-    /// Make one test of a study, by the number of its row, a whole run in a folder of its own.
+    /// Run one test of a study, by the number of its row, into its own folder.
     RunRow(RunRow),
     /// Put the shards of a study together, and answer it.
     Merge(StudyMerge),

@@ -1,11 +1,10 @@
-//! What every law of wear says of a run: before its numbers, as all that makes them doubtful.
+//! Wear by every law, printed before the numbers of a run.
 
 use condyle_results::LawWear;
 
 use crate::output::Lines;
 
-/// Adds the table; nothing where there is no law beside that of the run. Then what cross-linked polyethylene wears over
-/// conventional one, if the insert is of it.
+/// Adds the table if there is more than one law, then the factor of a cross-linked insert.
 pub fn add(laws: &[LawWear], wear_over_conventional: Option<f64>, lines: &mut Lines) {
     if laws.len() >= 2 {
         add_table(laws, lines);

@@ -12,18 +12,18 @@ use serde::Serialize;
 
 use crate::exit;
 
-/// Prints `text` on standard output and gives the exit code.
+/// Prints `text` on standard output and returns the exit code.
 pub fn print(text: &str) -> ExitCode {
     ended(write(text), "")
 }
 
-/// Prints `text`, of which more is kept in `folder`, and gives the exit code.
+/// Prints `text`, of which more is kept in `folder`, and returns the exit code.
 pub fn print_beside(text: &str, folder: &Path) -> ExitCode {
     let kept = format!("; the results are kept in {}", folder.display());
     ended(write(text), &kept)
 }
 
-/// Prints what the parser of the command line says, such as its help, and gives the exit code.
+/// Prints a message of the command-line parser, such as its help, and returns the exit code.
 pub fn print_from_parser(words: &clap::Error) -> ExitCode {
     match words.print().or_else(forgive_a_closed_pipe) {
         Err(error) if !words.use_stderr() => ended(Err(error), ""),
@@ -39,7 +39,7 @@ fn write(text: &str) -> io::Result<()> {
     written.or_else(forgive_a_closed_pipe)
 }
 
-/// A reader that has gone, as `head` does, has read all that it wanted: that is no error.
+/// A reader that has closed the pipe, such as `head`, is no error.
 fn forgive_a_closed_pipe(error: io::Error) -> io::Result<()> {
     match error.kind() {
         ErrorKind::BrokenPipe => Ok(()),
@@ -73,7 +73,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Adds a line of words, which may hold what a file says.
+    /// Adds a line; its words may come from a file.
     pub fn line(&mut self, words: impl Display) {
         self.text += &format!("{}\n", visible(&words.to_string()));
     }

@@ -17,7 +17,7 @@ use crate::{
     standard_error::tell,
 };
 
-/// Whether this build makes PNG.
+/// True if this build writes PNG.
 const MAKES_PNG: bool = cfg!(feature = "png");
 
 pub fn plot(arguments: &Plot) -> ExitCode {

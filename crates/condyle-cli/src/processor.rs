@@ -1,4 +1,4 @@
-//! What this build asks of the processor.
+//! Processor features that this build requires.
 
 use std::process::ExitCode;
 

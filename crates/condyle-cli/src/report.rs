@@ -72,7 +72,7 @@ fn of_one(folder: &Path, has_pictures: bool) -> ExitCode {
     output::print(lines.text())
 }
 
-/// Says of a folder of results that its run is not done, so that what is made from it is not taken for the
+/// Notes that the run of a results folder is not done, so that its page is not taken for the
 /// whole.
 pub fn note_unfinished(folder: &Path) {
     let is_begun = folder.join("checkpoint").exists() && !folder.join("summary.json").exists();

@@ -70,7 +70,7 @@ pub fn run(arguments: &Run) -> ExitCode {
     }
 }
 
-/// The command that goes on with a run, as a shell takes it.
+/// The shell command that resumes a run.
 fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
     let (case, out) = (arguments.case.display(), options.out.display());
     let changes = arguments.changes.set.iter().map(|change| {
@@ -81,7 +81,7 @@ fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
     format!("condyle run {case} --out {out} --resume{changes}")
 }
 
-/// `results/` and the case's name, beside where the command runs.
+/// `results/` and the case's name, in the current folder.
 fn default_folder(arguments: &Run) -> PathBuf {
     PathBuf::from("results").join(arguments.case.file_stem().unwrap_or_default())
 }
@@ -138,7 +138,7 @@ fn for_paraview(out: &Path) -> String {
     named.join(", ")
 }
 
-/// What makes the run doubtful comes before its numbers.
+/// Reasons to doubt the run come before its numbers.
 fn add_doubts(summary: &Summary, lines: &mut Lines) {
     for doubt in &summary.plausibility {
         lines.line(format_args!("doubtful: {}", doubt.message));

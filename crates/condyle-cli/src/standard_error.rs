@@ -7,12 +7,12 @@ use std::{
 
 use condyle_case::config::visible;
 
-/// Says `words` on standard error, which may hold what a file or the command line says.
+/// Prints `words` on standard error; they may come from a file or the command line.
 pub fn tell(words: impl Display) {
     show(&format!("{}\n", visible(&words.to_string())));
 }
 
-/// Shows `text` on standard error as it is. No work is given up because nobody hears of it.
+/// Prints `text` on standard error as it is. A closed standard error stops no work.
 pub fn show(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }

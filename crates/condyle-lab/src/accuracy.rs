@@ -1,9 +1,9 @@
-//! How far a run's numbers lie from what finer steps and meshes would give.
+//! Estimated discretisation errors of a run.
 //!
 //! Two cycles on the way are solved again with finer increments, and with a looser slip tolerance;
-//! the first one, on the unworn insert, with a coarser mesh. By how much what they wear changes
-//! tells the error of the run, from the order at which it falls. What the length of the march's
-//! steps costs is known from the march itself; where the insert creeps, from a march of half as many.
+//! the first one, on the unworn insert, with a coarser mesh. The change of their wear and the order of
+//! convergence give the error of the run. The error of the march's steps is known from the march
+//! itself; of an insert that creeps, from a march of half as many.
 //!
 //! Ranges of motion are those of the first cycle, which is solved again with each of the changes, and so is a peak
 //! that the first cycle has. A peak of a later cycle is looked at in the later of the two on the way: solved again as
@@ -49,18 +49,18 @@ const MISSED: f64 = 1.0;
 /// wear of second, and twice the updates leave a third of the error, so that half of them make three times of it.
 const HALF_THE_UPDATES: f64 = -1.0 / 2.0;
 
-/// Why a part has no estimate.
+/// The reason why a part has no estimate.
 enum Without {
-    /// Somebody asked to stop.
+    /// The user asked to stop.
     Stopped,
     /// A test changed so could not be solved.
     Reason(String),
 }
 
-/// What a changed test finds, or why nothing.
+/// The result of a changed test, or the reason why there is none.
 type Found<T> = Result<T, Without>;
 
-/// What a changed test finds, or why nothing in words.
+/// The result of a changed test, or the reason in words.
 type Stated<T> = Result<T, String>;
 
 /// Errors of volume loss and maximum depth, %.
@@ -72,13 +72,13 @@ type Peaks = [f64; 2];
 /// The peaks of the first cycle, and its ranges of AP and IE; or errors of them, %.
 type FirstCycle = [f64; 4];
 
-/// What a cycle on the way tells of errors, %.
+/// Errors by a cycle on the way, %.
 struct OnTheWay {
     wear: OfWear,
     peaks: Peaks,
 }
 
-/// What one part is told by.
+/// The estimate of one part.
 struct PartEstimate {
     wear: Stated<OfWear>,
     /// Of the later cycle on the way.
@@ -140,7 +140,7 @@ pub(crate) fn estimate(
     ControlFlow::Continue(Some(estimate))
 }
 
-/// What was found, or why not in words.
+/// Passes a stop on; every other reason in words.
 fn stated<T>(found: Found<T>) -> ControlFlow<(), Stated<T>> {
     match found {
         Ok(percent) => ControlFlow::Continue(Ok(percent)),
@@ -166,7 +166,7 @@ fn with_insert(test: WearTest, insert: Arc<Insert>) -> WearTest {
     WearTest { insert, ..test }
 }
 
-/// Whether a peak is not of the first cycle.
+/// Returns whether a peak is not of the first cycle.
 fn has_later_peak(summary: &Summary) -> bool {
     summary[&PEAK_PRESSURE_CYCLE] > 0.0 || summary[&PEAK_CONTACT_AREA_CYCLE] > 0.0
 }
@@ -177,7 +177,7 @@ fn last_of_several(state: &MarchState) -> Stated<&UpdateRecord> {
     last.ok_or_else(|| "one update has no other to be compared with".to_owned())
 }
 
-/// What the march knows of the error of its own steps, % of volume loss and of maximum depth.
+/// The march's own estimate of the error of its steps, % of volume loss and of maximum depth.
 fn of_updates(state: &MarchState) -> Stated<OfWear> {
     let last = last_of_several(state)?;
     let error = state.step_error;
@@ -196,12 +196,12 @@ struct Base {
 /// Cycles of a run, solved again.
 struct Again<'a> {
     march: &'a March,
-    /// What the run's first cycles wore, and the motions that they ended with.
+    /// Wear of the run's first cycles, and the motions that they ended with.
     first: &'a (StepRecord, Vec<MachineState>),
-    /// Steps on the way, which stand for all, one if both are the same.
+    /// Steps on the way that represent all; one if both are the same.
     snapshots: Vec<&'a Snapshot>,
     worn: WornSurface,
-    /// By what power of the rates volume loss and maximum depth grow.
+    /// The powers of the rates with which volume loss and maximum depth grow.
     growth: OfWear,
     watch: &'a mut dyn FnMut() -> ControlFlow<()>,
 }
@@ -238,7 +238,7 @@ impl<'a> Again<'a> {
         }
     }
 
-    /// What a coarser mesh tells; and a test whose first cycle is solved quickly, on that mesh if there is one.
+    /// The estimate by a coarser mesh; and a test whose first cycle is solved quickly, on that mesh if there is one.
     fn by_mesh(
         &mut self,
         coarser: &Stated<Arc<Insert>>,
@@ -247,7 +247,7 @@ impl<'a> Again<'a> {
         let own = self.own_base();
         let insert = match coarser {
             Ok(insert) => insert,
-            Err(why) => return ControlFlow::Continue((untold(why), own)),
+            Err(why) => return ControlFlow::Continue((unknown(why), own)),
         };
         let test = with_insert(self.as_run(), Arc::clone(insert));
         let unworn = stated(self.unworn(&test))?;
@@ -257,7 +257,7 @@ impl<'a> Again<'a> {
             Ok([0.0; 2])
         };
         ControlFlow::Continue(match unworn {
-            Err(why) => (untold(&why), own),
+            Err(why) => (unknown(&why), own),
             Ok((wear, first)) => {
                 let told = PartEstimate {
                     wear: Ok(self.between_the_nodes_too(wear)),
@@ -378,7 +378,7 @@ impl<'a> Again<'a> {
         self.peaks_at(MISSED, &test, &exact, snapshot.update)
     }
 
-    /// Errors of the peaks in the later cycle on the way, in %, told by a coarser mesh that is worn as deep.
+    /// Errors of the peaks in the later cycle on the way, in %, by a coarser mesh that is worn as deep.
     fn worn_on(&mut self, coarser: &WearTest) -> Found<Peaks> {
         let Some(snapshot) = self.snapshots.last().copied() else {
             return Ok([0.0; 2]);
@@ -402,7 +402,7 @@ impl<'a> Again<'a> {
         Ok(errors(factor, first_peaks(march.state()), reference))
     }
 
-    /// Errors of wear in % told by a coarser mesh, unworn; and what its first cycle is like.
+    /// Errors of wear in % by a coarser mesh, unworn; and its first cycle.
     fn unworn(&mut self, coarser: &WearTest) -> Found<(OfWear, FirstCycle)> {
         let march = self.started(coarser.clone())?;
         let reference = worn(&self.first.0, &self.worn.weights());
@@ -411,7 +411,7 @@ impl<'a> Again<'a> {
         Ok((wear, first_cycle(march.state())))
     }
 
-    /// Errors of the first cycle in %, told by a change of a test's own first cycle.
+    /// Errors of the first cycle in %, by a change of a test's own first cycle.
     fn again_first(&mut self, factor: f64, changed: WearTest, base: &Base) -> Found<FirstCycle> {
         let march = self.started(changed)?;
         Ok(errors(factor, first_cycle(march.state()), base.first))
@@ -445,8 +445,8 @@ impl<'a> Again<'a> {
     }
 }
 
-/// A part of which nothing can be told.
-fn untold(why: &str) -> PartEstimate {
+/// A part without any estimate.
+fn unknown(why: &str) -> PartEstimate {
     PartEstimate {
         wear: Err(why.to_owned()),
         later: Err(why.to_owned()),
@@ -454,7 +454,7 @@ fn untold(why: &str) -> PartEstimate {
     }
 }
 
-/// What cycles on the way and the first one tell.
+/// The estimate by cycles on the way and the first one.
 fn told(on_the_way: Stated<OnTheWay>, first: Stated<FirstCycle>) -> PartEstimate {
     let (wear, later) = match on_the_way {
         Ok(OnTheWay { wear, peaks }) => (Ok(wear), Ok(peaks)),
@@ -518,7 +518,7 @@ impl From<MarchError> for Without {
     }
 }
 
-/// By what power of the rates volume loss and maximum depth grow.
+/// The powers of the rates with which volume loss and maximum depth grow.
 ///
 /// Rates that are 1 % higher all along are a test that is 1 % longer: volume and depth grow by
 /// rate x cycles / (all so far) of that, with the rate of the end. A scar that spreads deepens

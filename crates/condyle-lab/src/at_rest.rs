@@ -15,7 +15,7 @@ use serde::Serialize;
 /// The settled femur on the insert, in the insert frame of a right knee.
 #[derive(Debug, Serialize)]
 pub struct AtRest {
-    /// Where the middle of the flexion axis stands: anterior, superior and lateral of the insert's origin, mm.
+    /// The middle of the flexion axis: anterior, superior and lateral of the insert's origin, mm.
     pub flexion_axis_mm: [f64; 3],
     /// Flexion at the start of the cycle, degrees.
     pub flexion_deg: f64,

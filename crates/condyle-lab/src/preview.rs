@@ -1,4 +1,4 @@
-//! What a case comes to before it runs: its bodies, where the femur settles, and what a run will need.
+//! A preview of a case: its bodies, the settled femur, and the expected time and memory of a run.
 
 use std::{
     path::Path,
@@ -30,14 +30,14 @@ use crate::{
     },
 };
 
-/// What a case comes to before it runs; units are in the names.
+/// A preview of a case; units are in the names.
 #[derive(Serialize)]
 pub struct Preview {
     /// Title of the case.
     pub title: String,
-    /// Which knee it is.
+    /// The side of the knee.
     pub side: &'static str,
-    /// What was put right or looks doubtful.
+    /// Corrections and doubts of the input.
     pub warnings: Vec<String>,
     /// The femoral component.
     pub femur: FemurFacts,
@@ -45,7 +45,7 @@ pub struct Preview {
     pub insert: InsertFacts,
     /// The settled femur on the insert.
     pub at_rest: AtRest,
-    /// What a run will need.
+    /// Expected time and memory of a run.
     pub expected: Expected,
     /// The case, checked.
     #[serde(skip)]
@@ -113,7 +113,7 @@ const AROUND_DISH_MM: f64 = 10.0;
 /// The femoral component.
 #[derive(Debug, Serialize)]
 pub struct FemurFacts {
-    /// What it is made from.
+    /// Its source.
     pub shape: &'static str,
     /// Its file without the folder, if it has one.
     pub file: Option<String>,
@@ -121,7 +121,7 @@ pub struct FemurFacts {
     pub size_mm: [f64; 3],
     /// Triangles of its mesh; none of a shape by measures.
     pub triangles: Option<usize>,
-    /// What was found wrong in its file.
+    /// Defects of its file.
     pub defects: Vec<String>,
 }
 
@@ -142,7 +142,7 @@ impl FemurFacts {
 /// The insert as it is meshed.
 #[derive(Debug, Serialize)]
 pub struct InsertFacts {
-    /// What it is made from.
+    /// Its source.
     pub shape: &'static str,
     /// Its file without the folder, if it has one.
     pub file: Option<String>,
@@ -150,7 +150,7 @@ pub struct InsertFacts {
     pub size_mm: [f64; 3],
     /// Triangles of its file; none of hexahedra and of a shape by measures.
     pub triangles: Option<usize>,
-    /// What was found wrong in its file.
+    /// Defects of its file.
     pub defects: Vec<String>,
     /// Hexahedra.
     pub hexahedra: usize,
@@ -205,7 +205,7 @@ fn least_around(dish: &Vec3, places: &[Vec3], values: &[f64]) -> f64 {
     near.map(|(_, value)| *value).fold(f64::INFINITY, f64::min)
 }
 
-/// What a file's name begins a warning of it with is left out: what was found in that file.
+/// The warnings of a file, without its name at their start.
 fn found_in(file: &str, warnings: &[String]) -> Vec<String> {
     let start = format!("{file}: ");
     let of_file = warnings.iter().filter_map(|said| said.strip_prefix(&start));
@@ -224,7 +224,7 @@ const STEP_MM: f64 = 0.1;
 /// Lowerings of the femur until it carries the mean load of the cycle.
 const LOWERINGS: usize = 8;
 
-/// What a run will need, about.
+/// Expected time and memory of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Expected {
     /// Memory at its highest, MB.
@@ -246,7 +246,7 @@ impl Expected {
     }
 }
 
-/// How long the cycles take, by how long the contact under the mean load takes to answer.
+/// Time of the cycles, from the time of a contact evaluation under the mean load, s.
 fn solving_s(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
     let updates = match &case.march.update {
         Update::Fixed(fixed) => fixed.updates as f64,

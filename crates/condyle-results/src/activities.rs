@@ -1,4 +1,4 @@
-//! What each of several activities did.
+//! Motion, loads and wear of each of several activities.
 
 use condyle::{
     evolve::{Activity, ActivityState, March},
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cycle_motion::{joint_range, medial_load_share};
 
-/// What one of several activities did and wore; units are in the names.
+/// Motion, loads and wear of one of several activities; units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActivitySummary {
     /// Its name in the case.
@@ -24,7 +24,7 @@ pub struct ActivitySummary {
     pub mass_loss_mg: f64,
     /// Its part of the volume worn, mm3.
     pub volume_loss_mm3: f64,
-    /// What its cycles would have worn on their own, with a main direction of their own, mm3.
+    /// Wear of its cycles alone, with their own principal direction, mm3.
     pub volume_loss_alone_mm3: f64,
     /// Highest pressure in any of its cycles, MPa.
     pub peak_pressure_mpa: f64,
@@ -41,7 +41,7 @@ pub struct ActivitySummary {
 }
 
 impl ActivitySummary {
-    /// Those of a march with several activities; none of a march with one, since that did all.
+    /// The activities of a march with several; none of a march with one.
     pub fn of(march: &March) -> Vec<Self> {
         let (test, state) = (march.test(), march.state());
         if test.activities.len() < 2 {

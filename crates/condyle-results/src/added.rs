@@ -1,6 +1,6 @@
-//! What other commands add to the folder of a run: a run that is written over takes it away, or it would stand for the wrong one.
+//! Files that other commands add to the folder of a run; a run that replaces it removes them.
 
-/// Files that a command puts into a folder of its own among the results.
+/// Files that a command writes into its own folder among the results.
 #[derive(Clone, Copy, Debug)]
 pub struct AddedFiles {
     /// The folder, in that of the run.
@@ -27,7 +27,7 @@ pub const WEAR_PICTURE: &str = "wear";
 /// Name of its curves over the gait cycle.
 pub const KINEMATICS_PICTURE: &str = "kinematics";
 
-/// What `condyle plot` writes.
+/// Files of `condyle plot`.
 pub const PLOTTED: AddedFiles = AddedFiles {
     folder: "pictures",
     names: &{
@@ -47,16 +47,16 @@ pub const PLOTTED: AddedFiles = AddedFiles {
     endings: &["svg", "png"],
 };
 
-/// Motion held against what was measured.
+/// Motion compared with measurements.
 pub const COMPARED_KINEMATICS: &str = "compare_kinematics";
-/// The same of the surface.
+/// Surface compared with measurements.
 pub const COMPARED_SURFACE: &str = "compare_surface";
-/// The same of the mass.
+/// Mass compared with measurements.
 pub const COMPARED_WEAR: &str = "compare_wear";
 /// All numbers of a comparison.
 pub const COMPARED_NUMBERS: &str = "compare";
 
-/// What `condyle compare` writes.
+/// Files of `condyle compare`.
 pub const COMPARED: AddedFiles = AddedFiles {
     folder: "compare",
     names: &[

@@ -20,14 +20,16 @@ pub struct Checkpoint {
     pub state: MarchState,
 }
 
-/// Why bytes are no checkpoint.
+/// A reason why bytes are no checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum CheckpointError {
     /// Not a checkpoint, or one of another version.
-    #[error("it was not written by this version of condyle; run the case anew into another folder")]
+    #[error(
+        "it was not written by this version of condyle; run the case again into another folder"
+    )]
     Foreign,
     /// Its bytes are damaged.
-    #[error("its bytes are damaged; run the case anew into another folder")]
+    #[error("its bytes are damaged; run the case again into another folder")]
     Damaged,
 }
 

@@ -1,4 +1,4 @@
-//! What creep came to, and how laboratories would part it from wear.
+//! Creep of a run, and its separation from wear as in laboratories.
 
 use condyle::evolve::{CreepRecord, MarchState, UpdateRecord};
 use serde::{Deserialize, Serialize};
@@ -9,26 +9,25 @@ const MILLION: f64 = 1e6;
 /// Creep of a finished run; units are in the names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreepSummary {
-    /// Volume that the surface has gone down by without loss of mass, mm3.
+    /// Volume by which the surface has sunk without loss of mass, mm3.
     pub volume_mm3: f64,
     /// Deepest creep, mm.
     pub max_depth_mm: f64,
     /// Deepest penetration, wear and creep together, mm.
     pub max_penetration_mm: f64,
-    /// What of that is wear, mm.
+    /// Wear at that place, mm.
     pub wear_there_mm: f64,
-    /// What of that is creep, mm.
+    /// Creep at that place, mm.
     pub creep_there_mm: f64,
     /// Deepest place that a scan would find once the insert has rested without load, mm.
     pub max_unloaded_depth_mm: f64,
     /// The deepest penetration after a million cycles; none of a shorter test.
     pub first_million: Option<Penetration>,
-    /// The line that a laboratory would lay through its scans from a million cycles on; none where there are less
-    /// than two.
+    /// The line that a laboratory fits to its scans from a million cycles on; none of fewer than two scans.
     pub line_from_a_million: Option<ScanLine>,
 }
 
-/// The deepest penetration, and what of it is what, mm.
+/// The deepest penetration and its parts, mm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Penetration {
     /// Wear and creep together.
@@ -42,14 +41,14 @@ pub struct Penetration {
 /// A line through the deepest place of unloaded scans against cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScanLine {
-    /// What laboratories call wear: how it rises in a million cycles, mm.
+    /// Its slope, which laboratories take for wear: mm in a million cycles.
     pub rise_mm_per_million_cycles: f64,
-    /// What they call creep and bedding in: where it meets no cycles, mm.
+    /// Its value at no cycles, which they take for creep and bedding in, mm.
     pub at_no_cycles_mm: f64,
 }
 
 impl CreepSummary {
-    /// That of a march that is done, if its insert creeps.
+    /// The creep of a finished march, if its insert creeps.
     pub fn of(state: &MarchState) -> Option<Self> {
         let last = state.updates.last()?.creep?;
         Some(Self {
@@ -66,7 +65,7 @@ impl CreepSummary {
 }
 
 impl Penetration {
-    /// That after so many cycles, straight from update to update; none where the test is shorter.
+    /// The penetration after so many cycles, linear between updates; none of a shorter test.
     fn at(updates: &[UpdateRecord], cycles: f64) -> Option<Self> {
         let after = updates.iter().position(|update| update.cycles >= cycles)?;
         let end = updates[after].creep?;

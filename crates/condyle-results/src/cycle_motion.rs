@@ -1,4 +1,4 @@
-//! What the motions and loads of a cycle come to.
+//! Ranges of motion and shares of load of a cycle.
 
 use condyle::machine::{
     CycleRow, JointIndex,

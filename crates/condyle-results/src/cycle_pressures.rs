@@ -1,4 +1,4 @@
-//! `cycle_first_pressure.csv` and `cycle_last_pressure.csv`: where the femur presses through a cycle.
+//! `cycle_first_pressure.csv` and `cycle_last_pressure.csv`: contact pressure through a cycle.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! Where the femur is in the insert frame: at neutral, and at every increment of the cycles that are kept.
+//! The pose of the femur in the insert frame: at neutral, and at every increment of the first and the last cycle.
 
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::side::Side;
 use super::side::pose_on_side;
 
-/// Where the femur settles under the load at the start of the cycle, where AP, ML and IS read zero: a
+/// The pose in which the femur settles under the load at the start of the cycle, where AP, ML and IS read zero: a
 /// point p of the femoral frame is at R p + t in the insert frame, each of the knee's own side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NeutralPose {
@@ -20,7 +20,7 @@ pub struct NeutralPose {
     pub femoral_origin_mm: [f64; 3],
     /// R, its rows.
     pub rotation: [[f64; 3]; 3],
-    /// Flexion that R stands for, degrees.
+    /// Flexion of R, degrees.
     pub flexion_deg: f64,
     /// Internal rotation of the insert, degrees.
     pub ie_deg: f64,
@@ -29,7 +29,7 @@ pub struct NeutralPose {
 }
 
 impl NeutralPose {
-    /// That of a march, in the knee of that side.
+    /// The neutral pose of a march, in the knee of that side.
     pub fn of(march: &March, side: Side) -> Self {
         let pose = pose_on_side(&march.neutral_pose(), side);
         let settled = &march.state().settled;

@@ -25,7 +25,7 @@ use super::{
 };
 use condyle_mesh::formats::MeshFileError;
 
-/// Why a results folder cannot be used.
+/// A reason why a results folder cannot be used.
 #[derive(Debug, Error)]
 pub enum ResultsError {
     /// A run is already in it.
@@ -84,7 +84,7 @@ pub enum ResultsError {
     HoldsInput {
         /// The folder.
         folder: PathBuf,
-        /// What is read.
+        /// The file that the run reads.
         file: PathBuf,
     },
     /// Another run is writing.
@@ -116,7 +116,7 @@ pub enum ResultsError {
     /// The run in it was begun by another version.
     #[error(
         "{}: the run in this folder was begun by condyle {version}, and this is {}; \
-         go on with that version, or run the case anew into another folder",
+         resume it with that version, or run the case again into another folder",
         folder.display(),
         env!("CARGO_PKG_VERSION")
     )]
@@ -137,7 +137,7 @@ pub enum ResultsError {
     Checkpoint {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// The cause.
         source: CheckpointError,
     },
     /// The system refused to read or write.
@@ -145,7 +145,7 @@ pub enum ResultsError {
     Refused {
         /// The file or folder.
         file: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
     /// A mesh of the run that is no longer what the run wrote.
@@ -186,12 +186,12 @@ pub(super) const SIGNS_OF_A_RUN: [&str; 16] = [
 /// is the same bytes whether it was stopped or not.
 pub(super) const TIME_SPENT: &str = "time_spent_s";
 
-/// What a folder holds of a run to go on with.
+/// The part of a run that a folder holds.
 #[derive(Debug)]
 pub enum Found {
     /// Nothing yet: a new run starts.
     Nothing,
-    /// Nothing but the case: the run was stopped before its first checkpoint.
+    /// The case only: the run was stopped before its first checkpoint.
     Case,
     /// A checkpoint, and the seconds that the run has taken so far.
     Checkpoint(Box<Checkpoint>, f64),
@@ -206,7 +206,7 @@ impl ResultsFolder {
         Self { path }
     }
 
-    /// Whether a new run can be written to `path`; nothing is made.
+    /// Checks that a new run can be written to `path`; creates nothing.
     ///
     /// # Errors
     /// A folder that holds a run, done or not, or a file in its place.
@@ -265,7 +265,7 @@ impl ResultsFolder {
         Ok(Self::existing(path))
     }
 
-    /// What the folder holds of a run of `cycles` gait cycles to go on with.
+    /// Returns the part that the folder holds of a run of `cycles` gait cycles.
     ///
     /// `case_toml` is the case as [`Self::write_case`] would write it.
     ///
@@ -308,7 +308,7 @@ impl ResultsFolder {
         })
     }
 
-    /// Whether it is there and holds nothing but what a run has before its first file is whole.
+    /// Returns whether the folder exists and holds nothing but the files of a run before its first file is complete.
     fn was_only_made(&self) -> bool {
         let begun = beside(Path::new("case.toml"));
         let is_of_beginning = |entry: io::Result<fs::DirEntry>| {
@@ -333,7 +333,7 @@ impl ResultsFolder {
         serde_json::from_str(&text).ok()
     }
 
-    /// What [`Self::write_time_spent`] wrote; 0 if that is gone.
+    /// The time from [`Self::write_time_spent`], s; 0 without its file.
     fn time_spent_s(&self) -> f64 {
         let text = fs::read_to_string(self.file(TIME_SPENT)).unwrap_or_default();
         let seconds = text.trim().parse().unwrap_or(0.0);
@@ -369,7 +369,7 @@ impl ResultsFolder {
         Ok(())
     }
 
-    /// Where it is.
+    /// The path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }

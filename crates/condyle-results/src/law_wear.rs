@@ -1,28 +1,28 @@
-//! What every law of wear says of the same histories.
+//! Wear by every law for the same histories.
 
 use condyle::evolve::March;
 use serde::{Deserialize, Serialize};
 
-/// What a law of wear says of a run: of the law that moved the surface what it wore, of every other what it
-/// would have worn by the same histories.
+/// Wear by one law: of the law that moved the surface the wear of the run, of every other the wear that it predicts for
+/// the same histories.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LawWear {
     /// The word for the law.
     pub law: String,
-    /// Whether it moved the surface. It has the constants of the case; the others have their defaults.
+    /// True of the law that moved the surface, with the constants of the case; the others have their defaults.
     pub moved_the_surface: bool,
-    /// Whether its formula or a constant is remembered rather than read.
+    /// True if its formula or a constant was quoted from memory.
     pub approximate: bool,
     /// Mass, mg.
     pub mass_loss_mg: f64,
-    /// Mass in a million cycles, on the mean, mg.
+    /// Mean mass in a million cycles, mg.
     pub mass_loss_mg_per_million_cycles: f64,
     /// Volume, from depth times area, mm3.
     pub volume_loss_mm3: f64,
     /// Deepest wear, mm.
     pub max_depth_mm: f64,
-    /// What of the volume is worn outside of the pressures and cross-shear that the law was fitted to, %; none
-    /// where those are not known.
+    /// Part of the volume worn at pressures and cross-shear outside the range that the law was fitted to, %; none where
+    /// the range is not known.
     pub outside_of_fit_percent: Option<f64>,
 }
 

@@ -10,7 +10,7 @@ use std::{
 pub(super) const LOCK: &str = "in_use";
 
 /// A folder that no other run writes into. The system releases it when the program ends, however
-/// it ends; the file that is then left behind locks nobody out.
+/// it ends; a file that is left behind locks no other run out.
 #[derive(Debug)]
 pub struct FolderLock {
     path: PathBuf,

@@ -1,20 +1,20 @@
-//! What makes a finished run doubtful.
+//! Reasons to doubt a finished run.
 
 use serde::{Deserialize, Serialize};
 
-/// A number of a run beyond what it may be if the run is to be believed.
+/// A number of a run beyond the limit of plausible runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlausibilityWarning {
-    /// Which check, a name that stays.
+    /// The name of the check, the same in all versions.
     pub check: String,
-    /// What was found, in `unit`.
+    /// The value, in `unit`.
     pub value: f64,
-    /// What it may be.
+    /// Its limit.
     pub limit: f64,
-    /// Of value and limit; empty for a pure number.
+    /// Unit of value and limit; empty for a pure number.
     pub unit: String,
-    /// What is doubtful, with the numbers, as a sentence.
+    /// The doubt in a sentence with the numbers.
     pub message: String,
-    /// What to do, as a sentence.
+    /// The remedy in a sentence.
     pub advice: String,
 }

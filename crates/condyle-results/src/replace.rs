@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes `bytes` beside the file and puts them in its place in one step, so that a run stopped
+/// Writes `bytes` next to the file and renames them into its place, so that a run stopped
 /// at any time leaves the old file or the new one, never half of one.
 pub(super) fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let beside = beside(path);
@@ -24,7 +24,7 @@ pub(super) fn replace_file_durably(path: &Path, bytes: &[u8]) -> io::Result<()> 
 }
 
 /// The name of a file while it is written: always the same, so that one left behind by a run that
-/// was stopped is written over by the run that goes on.
+/// was stopped is replaced by the resumed run.
 pub(super) fn beside(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".part");

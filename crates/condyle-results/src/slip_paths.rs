@@ -1,4 +1,4 @@
-//! `slip_paths.csv`: how the femur slides past some places of the insert in the last cycle.
+//! `slip_paths.csv`: slip of the femur past some places of the insert in the last cycle.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use condyle::{
 use super::side::Side;
 use super::side::point_on_side;
 
-/// How far the other places of a side lie from its deepest one, mm.
+/// Distance of the other places of a side from its deepest one, mm.
 const AROUND_MM: f64 = 6.0;
 
 /// `slip_paths.csv`: the slip of the femur past the place of each side that is worn deepest, and past four around it, a row

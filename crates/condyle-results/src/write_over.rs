@@ -1,4 +1,4 @@
-//! A folder whose run is written over by another, because somebody asked for it.
+//! Replacing the run of a folder by another, on request.
 
 use std::{
     fs,
@@ -14,19 +14,19 @@ use super::{
     replace::beside,
 };
 
-/// What `condyle report` adds to a run on request, beside the run's own files.
+/// Pictures that `condyle report` adds to a run on request.
 const PICTURES: [&str; 3] = ["wear_map.svg", "wear.svg", "kinematics.svg"];
 
-/// What is added in folders of its own.
+/// Files that commands add in folders of their own.
 const ADDED: [AddedFiles; 2] = [COMPARED, PLOTTED];
 
 impl ResultsFolder {
-    /// Whether a new run, which reads the files `read`, can be written over what `path` holds;
-    /// nothing is changed.
+    /// Checks that a new run, which reads the files `read`, can replace the run in `path`; changes
+    /// nothing.
     ///
     /// # Errors
-    /// A folder with files of a run's names that has no checkpoint, so that they may be somebody's
-    /// own; one of whose files the new run reads; a file in its place.
+    /// A folder with files of a run's names that has no checkpoint, so that they may belong to
+    /// another program; one of whose files the new run reads; a file in its place.
     pub fn may_be_written_over(path: &Path, read: &[&Path]) -> Result<(), ResultsError> {
         let folder = path.to_owned();
         match Self::free(path) {
@@ -50,8 +50,8 @@ impl ResultsFolder {
         }
     }
 
-    /// Takes away every file of a run, the checkpoint last: until then the folder can be written
-    /// over again.
+    /// Removes every file of a run, the checkpoint last: until then the folder can be cleared
+    /// again.
     ///
     /// # Errors
     /// Where the system refuses.
@@ -66,7 +66,7 @@ impl ResultsFolder {
         }
         let folders = KeptCycle::BOTH.into_iter().map(KeptCycle::name);
         for folder in folders.chain(ADDED.map(|added| added.folder)) {
-            // Left where somebody has put files of their own into it.
+            // Kept if it holds files of others.
             let _ = fs::remove_dir(self.path().join(folder));
         }
         Ok(())
@@ -126,7 +126,7 @@ fn names_in(folder: &Path) -> impl Iterator<Item = String> + use<> {
     entries.filter_map(|entry| entry.file_name().into_string().ok())
 }
 
-/// Whether a name is that of a body after some update or increment.
+/// Returns whether a name is that of a body after an update or increment.
 fn is_numbered(name: &str, body: &str) -> bool {
     let number = name
         .strip_prefix(body)
@@ -135,7 +135,7 @@ fn is_numbered(name: &str, body: &str) -> bool {
     number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// Whether `file` is one of `files`, by whatever path.
+/// Returns whether `file` is one of `files`, by any path.
 fn is_among(file: &Path, files: &[PathBuf]) -> bool {
     let place = |path: &Path| fs::canonicalize(path).ok();
     let found = place(file);

@@ -1,4 +1,4 @@
-//! What is wrong with a case, before anything is built of it.
+//! Problems of a case, before anything is built from it.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use condyle_case::case::Case;
 
 use crate::failure::Failure;
 
-/// Reads the case at `path`, and says everything that is wrong with it.
+/// Reads the case at `path` and reports all of its problems.
 pub fn check(path: &Path) -> Result<(), Failure> {
     match Case::read(path) {
         Ok(_) => Ok(()),

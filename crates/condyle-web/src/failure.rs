@@ -1,4 +1,4 @@
-//! Why something could not be done, as the command says it.
+//! Failures, with the messages of the command.
 
 use std::{fmt::Display, io, path::Path};
 
@@ -11,18 +11,18 @@ const BAD_INPUT: u8 = 2;
 /// The physics could not be solved.
 const PHYSICS: u8 = 3;
 
-/// Why something could not be done.
+/// A failed call.
 #[derive(Debug, Serialize)]
 pub struct Failure {
     /// The command's own message, with its carets.
     message: String,
-    /// What is wrong, each with its place where it has one.
+    /// Each problem, with its place where it has one.
     problems: Vec<Wrong>,
     #[serde(skip)]
     is_physics: bool,
 }
 
-/// One thing that is wrong.
+/// One problem.
 #[derive(Debug, Serialize)]
 struct Wrong {
     message: String,

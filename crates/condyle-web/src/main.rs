@@ -1,12 +1,12 @@
 //! The program that the web page of condyle calls, built for `wasm32-wasip1`.
 //!
-//! The page keeps a few files in memory and calls this program once for every thing that it wants done; what the
-//! program tells is on standard output, one [`Told`] as JSON a line.
+//! The page keeps a few files in memory and calls this program once for every task; the
+//! program answers on standard output, one [`Told`] as JSON a line.
 //!
 //! | arguments | what it does |
 //! | --- | --- |
-//! | `check CASE` | says what is wrong with a case, as far as its text and files tell |
-//! | `run CASE OUT` | runs it in memory; OUT has what the page shows, `scene`, and `summary.json` |
+//! | `check CASE` | reports the problems of the text and files of a case |
+//! | `run CASE OUT` | runs it in memory; OUT receives `scene` and `summary.json` |
 //! | `keep CASE OUT` | runs it into the results folder OUT, report and all |
 //! | `draft CASE FEMUR INSERT` | writes a case of two meshes, as `condyle new` does |
 //!

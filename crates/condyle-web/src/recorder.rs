@@ -1,4 +1,4 @@
-//! Keeps of a run what the page shows.
+//! Records of a run for the page.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use condyle_results::{
     femur_pose_csv, kinematics_csv, wear_csv,
 };
 
-/// Keeps of a run what the page shows: the scene that its results folder would make.
+/// Records the scene of a run that its results folder would give.
 pub struct Recorder {
     side: Side,
     scene: Scene,
@@ -51,7 +51,7 @@ impl Recorder {
         }
     }
 
-    /// What stands in tables of a results folder.
+    /// Adds the tables of a results folder.
     fn add_tables(&mut self, march: &March) {
         let activity = &march.state().activities[0];
         let mechanism = march.test().machine().mechanism;

@@ -1,4 +1,4 @@
-//! Runs, in memory to be looked at, or into a folder to be kept.
+//! Runs: in memory for the page, or into a results folder.
 
 use std::{fs, ops::ControlFlow, path::Path};
 
@@ -69,7 +69,7 @@ fn write(folder: &Path, name: &str, content: &[u8]) -> Result<(), Failure> {
     written.map_err(|error| Failure::of_file(&path, &error))
 }
 
-/// Tells the page how far a run has come.
+/// Reports the progress of a run to the page.
 struct Heard {
     reached: Reached,
     is_estimating: bool,

@@ -1,4 +1,4 @@
-//! What the page hears while the program works.
+//! Messages to the page while the program works.
 
 use std::io::{self, Write};
 
@@ -11,9 +11,9 @@ use crate::failure::Failure;
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Told {
-    /// Something was put right or looks doubtful.
+    /// A correction or a doubt of the input.
     Warning(String),
-    /// How far a run has come.
+    /// Progress of a run.
     Reached {
         /// Updates done.
         updates: usize,
@@ -22,11 +22,11 @@ pub enum Told {
         /// Gait cycles in all.
         of_cycles: f64,
     },
-    /// All updates are done, and how accurate they are is being estimated.
+    /// All updates are done, and their error is being estimated.
     Estimating,
-    /// What was concluded of a body.
+    /// A conclusion about a body.
     Remark(String),
-    /// It could not be done.
+    /// The call failed.
     Failed(Failure),
 }
 
@@ -45,7 +45,7 @@ impl From<Reached> for Told {
     }
 }
 
-/// Tells the page; nobody may be listening.
+/// Sends a message to the page, which may not be listening.
 pub fn tell(told: &Told) {
     let line = serde_json::to_string(told).expect("numbers and text always serialise");
     let mut page = io::stdout().lock();

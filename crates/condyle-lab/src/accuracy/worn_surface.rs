@@ -16,7 +16,7 @@ const FITTED: usize = 9;
 pub(super) struct WornSurface(Vec<([f64; 2], f64)>);
 
 impl WornSurface {
-    /// How a march has worn its insert, each depth as a part of the largest.
+    /// The worn surface of a march, each depth as a part of the largest.
     pub fn of(march: &March) -> Self {
         let worn_mm = march.state().depths.wear_mm();
         let deepest = worn_mm.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -29,7 +29,7 @@ impl WornSurface {
         Self(places(insert).zip(depth_mm.iter().copied()).collect())
     }
 
-    /// How much every node counts for the maximum depth.
+    /// The weight of every node in the maximum depth.
     pub fn weights(&self) -> Vec<f64> {
         let depths = self.0.iter().map(|(_, depth)| depth);
         depths.map(|depth| weight_of_depth(*depth)).collect()
@@ -53,7 +53,7 @@ impl WornSurface {
         places(insert).map(|place| self.depth_at(place)).collect()
     }
 
-    /// How much deeper the surface is between its nodes than at the deepest of them, as a part of that depth.
+    /// The depth between nodes beyond that of the deepest node, as a part of it.
     ///
     /// The lowest place of the paraboloid that fits the nine nodes around best; none if that is no hollow, or lies
     /// farther away than they do.
@@ -98,7 +98,7 @@ struct Paraboloid {
 }
 
 impl Paraboloid {
-    /// The one nearest to heights at places around `middle`; none where they do not tell one.
+    /// The paraboloid nearest to heights at places around `middle`; none where they do not determine one.
     fn fit([x, z]: [f64; 2], nodes: &[&([f64; 2], f64)]) -> Option<Self> {
         let (mut matrix, mut right) = (Matrix6::zeros(), Vector6::zeros());
         for &&([node_x, node_z], height) in nodes {

@@ -26,11 +26,11 @@ const FIRST_YIELD: f64 = 1.6;
 /// A ball has sunk into material that flows all round it when the mean pressure is 2.8 times the yield stress; the
 /// peak of an elastic contact is 1.5 times its mean [johnson1985].
 const FULL_FLOW: f64 = 1.5 * 2.8;
-/// An insert that lifts more than this off its tray, mm, rocks: twice what the polyethylene itself gives way by under a knee's load.
+/// An insert that lifts more than this off its tray, mm, rocks: twice the deflection of the polyethylene under a knee's load.
 const MAX_LIFT_MM: f64 = 0.3;
 /// Under less the stresses in polyethylene rise steeply, mm [bartel1986]; approximate.
 const MIN_THICKNESS_MM: f64 = 6.0;
-/// Where it is worn deeper than this part of the deepest, there is a scar.
+/// Depth of the scar's edge, as a part of the deepest wear.
 const SCAR: f64 = 0.1;
 
 /// Wear within 1.5 mm of the rim.
@@ -147,7 +147,7 @@ pub(crate) fn pressure_beyond_yield(finished: &Finished<'_>) -> Option<Plausibil
     })
 }
 
-/// Which area is pressed harder than a limit in a cycle, and how long, in words.
+/// The area above a limit of pressure in a cycle, and its time, in words.
 fn extent(finished: &Finished<'_>, cycle: &str, pressures: &[f64], limit_mpa: f64) -> String {
     let shares = pressures.iter().zip(&finished.surface.shares);
     let above = shares.filter(|(pressure_mpa, _)| **pressure_mpa > limit_mpa);
@@ -212,7 +212,7 @@ const NEAR_MM: f64 = 1.5;
 /// Instants of a cycle that are looked at, at most.
 const INSTANTS: usize = 50;
 
-/// Where a condyle is beyond the rim.
+/// A condyle beyond the rim.
 struct Beyond {
     percent: f64,
     side: &'static str,
@@ -269,7 +269,7 @@ fn beyond(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Beyond> {
     sides.map(of_side).collect()
 }
 
-/// Whether the node of a side that the femur is nearest to is one of the rim.
+/// Returns whether the node of a side nearest to the femur is on the rim.
 fn is_at_rim(finished: &Finished<'_>, pose: &Pose, side: usize) -> bool {
     let regions = finished.march.insert().regions();
     let nodes = finished.surface.positions.iter().enumerate();

@@ -1,4 +1,4 @@
-//! What the checks look at.
+//! The run that the checks examine.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use condyle::{
 };
 use condyle_results::Summary;
 
-/// A march that is done, its surface, and what it came to.
+/// A finished march, its surface and its summary.
 pub(crate) struct Finished<'a> {
     pub march: &'a March,
     pub summary: &'a Summary,
@@ -23,16 +23,16 @@ pub(crate) struct Finished<'a> {
 /// The first or the last cycle that was solved of an activity.
 #[derive(Clone, Copy)]
 pub(crate) struct SolvedCycle<'a> {
-    /// Which of both, as a sentence calls it.
+    /// `first` or `last`.
     pub name: &'static str,
-    /// Which activity.
+    /// The number of the activity.
     pub activity: usize,
     /// Its increments.
     pub rows: &'a [CycleRow],
 }
 
 impl SolvedCycle<'_> {
-    /// Part of the cycle in which this is so, %.
+    /// Part of the cycle whose rows satisfy a condition, %.
     pub fn percent_of_rows(&self, is_so: impl Fn(&CycleRow) -> bool) -> f64 {
         let count = self.rows.iter().filter(|row| is_so(row)).count();
         100.0 * count as f64 / self.rows.len().max(1) as f64
@@ -61,7 +61,7 @@ impl<'a> Finished<'a> {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether a surface node is one of the rim.
+    /// Returns whether a surface node is on the rim.
     pub fn is_on_rim(&self, node: usize) -> bool {
         self.rim_nodes.contains(&(node as u32))
     }

@@ -88,7 +88,7 @@ fn not_reached_by(applied: &Applied, missed: &Missed) -> PlausibilityWarning {
     }
 }
 
-/// How a load of a machine is missed in a cycle; none where the joint has none.
+/// The part of a load that is missed in a cycle; none of a joint without a load.
 fn missed(machine: &Machine, cycle: &SolvedCycle<'_>, applied: &Applied) -> Option<Missed> {
     let joint = applied.joint;
     let Drive::Loaded(waveform) = &machine.joint(joint).drive else {
@@ -114,7 +114,7 @@ fn load(waveform: &Waveform, row: &CycleRow) -> f64 {
     waveform.at(row.percent / 100.0).0
 }
 
-/// What of a load contact and springs leave, N or N mm: of the axial force what the contact does not carry, of
+/// The part of a load that contact and springs leave, N or N mm: of the axial force the part that the contact does not carry, of
 /// another what inertia and damping take, M a + C v.
 fn missing(
     machine: &Machine,
@@ -135,7 +135,7 @@ fn missing(
     joint.inertia * acceleration + joint.damping * rate
 }
 
-/// How far a spring is pulled beyond its free play.
+/// Pull of a spring beyond its free play.
 #[derive(Clone, Copy)]
 struct Pulled {
     beyond_mm: f64,
@@ -200,7 +200,7 @@ type MostMotion = (JointIndex, f64);
 const MOST: [MostMotion; 5] = [(AP, 25.0), (IE, 35.0), (ML, 10.0), (VV, 8.0), (IS, 10.0)];
 /// A side that carries less of the load is lifted off, as a part.
 const LIFTED: f64 = 0.01;
-/// Below this part of the largest load a lift says little.
+/// Part of the largest load below which a lift has no meaning.
 const LITTLE_LOAD: f64 = 0.1;
 /// Part of a cycle that one side may be lifted off, %: a choice of ours.
 const MAX_LIFTED_PERCENT: f64 = 5.0;

@@ -1,7 +1,7 @@
-//! Whether a finished run can be believed: each check with its number, its limit and what to do.
+//! Plausibility checks of a finished run: each with its number, its limit and a remedy.
 //!
-//! A small discretisation error says that the model was solved well, not that the model is sane. These checks look
-//! for what makes a sane-looking number wrong: wear at the rim, polyethylene pressed beyond yield, a mesh about to
+//! A small discretisation error shows that the model was solved well, not that the model is right. These checks find
+//! causes of wrong numbers that look right: wear at the rim, polyethylene pressed beyond yield, a mesh about to
 //! fold, two counts of one volume that differ.
 
 pub(crate) mod bodies;
@@ -22,7 +22,7 @@ use finished::Finished;
 /// A check of one number: none where the run is as it should be.
 type Check = fn(&Finished<'_>) -> Option<PlausibilityWarning>;
 
-/// Where the femur is on the insert, and pressure that there cannot be.
+/// Place of the femur on the insert, and impossible pressure.
 const PLACE: [Check; 4] = [
     bodies::wear_at_rim,
     bodies::femur_beyond_rim,
@@ -30,7 +30,7 @@ const PLACE: [Check; 4] = [
     bodies::pressure_beyond_flow,
 ];
 
-/// What the polyethylene bears, and how well the model was solved.
+/// Load on the polyethylene, and quality of the solution.
 const REST: [Check; 11] = [
     bodies::pressure_beyond_yield,
     bodies::insert_rocks,
@@ -45,7 +45,7 @@ const REST: [Check; 11] = [
     cycles_not_repeating,
 ];
 
-/// What makes a finished march doubtful, the worst first.
+/// Reasons to doubt a finished march, the worst first.
 pub(crate) fn warnings(march: &March, summary: &Summary) -> Vec<PlausibilityWarning> {
     let finished = Finished::new(march, summary);
     let one = |check: &Check| check(&finished);
@@ -73,7 +73,7 @@ const MAX_OF_UPDATES_PERCENT: f64 = 2.0;
 /// Discretisation error of mass and depth, %.
 const MAX_ERROR_PERCENT: f64 = 5.0;
 
-/// The volume of depth times area beside that of the mesh.
+/// The volume by depth times area compared with that of the mesh.
 pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let [depth, mesh] =
         [&VOLUME_LOSS_MM3, &VOLUME_LOSS_MESH_MM3].map(|volume| finished.summary[volume]);

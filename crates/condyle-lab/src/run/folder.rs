@@ -21,7 +21,7 @@ use crate::run::{
 /// Runs the case at `case_path`.
 ///
 /// `on_event` hears of everything and may stop the run by breaking; the updates done are then on
-/// the disk, and a run with `resume` goes on to the same bytes as one never stopped. A run that
+/// the disk, and a run with `resume` gives the same bytes as one never stopped. A run that
 /// cannot start makes no folder, and one that is done is left as it is.
 ///
 /// # Errors
@@ -157,7 +157,7 @@ impl WrittenRun {
         Ok(written)
     }
 
-    /// A run that goes on in its folder.
+    /// A run that is resumed in its folder.
     pub fn resume(
         options: &RunOptions,
         lock: Option<FolderLock>,

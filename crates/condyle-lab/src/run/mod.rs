@@ -42,7 +42,7 @@ impl Reached {
 /// What happens while a case runs.
 #[derive(Clone, Debug)]
 pub enum RunEvent<'a> {
-    /// Something was put right or looks doubtful.
+    /// A correction or a doubt of the input.
     Warning(String),
     /// The bodies are placed, or the checkpoint is read.
     Started(Reached),
@@ -61,7 +61,7 @@ pub enum Outcome {
     Done(Box<Summary>),
     /// The folder holds the whole run already; nothing was computed.
     DoneBefore(Box<Summary>),
-    /// Somebody asked to stop; what was computed is kept, and can be gone on with.
+    /// The user asked to stop; the run is kept and can be resumed.
     Interrupted(Reached),
 }
 

@@ -16,7 +16,7 @@ use condyle_case::{
 use crate::{at_rest::AtRest, run::error::RunError};
 
 /// Checks the case at `case_path` as far as a run would go before its first cycle: the file, the
-/// meshes, and that the femur settles on the insert. Gives the case and what was put right.
+/// meshes, and that the femur settles on the insert. Returns the case, and corrections and doubts of its input.
 ///
 /// # Errors
 /// Those of a run that cannot start.
@@ -151,7 +151,7 @@ fn check_holes(
 const PROGRAM_MB: f64 = 6.0;
 /// Bytes of a touched node at an increment: the histories of a cycle and of the one before.
 const BYTES_A_TOUCH: f64 = 230.0;
-/// The estimate of the error keeps histories of twice the increments beside them.
+/// The estimate of the error keeps histories of twice the increments in addition.
 const WITH_ESTIMATE: f64 = 2.1;
 /// To so many times the nodes that it is near at rest the femur comes near in the life of an insert, about.
 const EVER_NEAR: f64 = 4.0;

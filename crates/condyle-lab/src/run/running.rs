@@ -23,7 +23,7 @@ pub(crate) enum Start {
     Resume(Box<Checkpoint>, f64),
 }
 
-/// What a run is done with.
+/// The means of a run.
 #[derive(Clone, Copy)]
 pub(crate) struct RunContext<'a> {
     pub threads: usize,
@@ -50,7 +50,7 @@ pub(crate) struct Run<'a> {
 type Keep<'a, 'b> = dyn FnMut(&Run<'b>) -> Result<(), RunError> + 'a;
 
 impl<'a> Run<'a> {
-    /// Builds the bodies and starts the march, or goes on from a checkpoint.
+    /// Builds the bodies and starts the march, or continues from a checkpoint.
     pub fn begin(
         case: &'a Case,
         means: RunContext<'a>,
@@ -96,7 +96,7 @@ impl<'a> Run<'a> {
         self.clock.spent
     }
 
-    /// Updates until all cycles are done or somebody asks to stop, then what it found.
+    /// Updates until all cycles are done or the user asks to stop, then returns the results.
     pub fn complete(
         &mut self,
         keep: &mut Keep<'_, 'a>,
@@ -129,7 +129,7 @@ impl<'a> Run<'a> {
         Ok((self.march, summary))
     }
 
-    /// Updates until all cycles are done; a break if somebody asked to stop before.
+    /// Updates until all cycles are done; a break if the user asked to stop before.
     fn march_on(
         &mut self,
         keep: &mut Keep<'_, 'a>,
@@ -153,7 +153,7 @@ impl<'a> Run<'a> {
         Ok(flow)
     }
 
-    /// Keeps an update, and tells of it; a break if there was none.
+    /// Keeps and reports an update; a break if there was none.
     fn updated(
         &self,
         is_updated: bool,
@@ -169,7 +169,7 @@ impl<'a> Run<'a> {
         Ok(on_event(RunEvent::Updated(update)))
     }
 
-    /// What the run found, with its error if the case asks for that; a break if somebody asked to stop.
+    /// The summary, with its error if the case asks for that; a break if the user asked to stop.
     fn summary(&self, on_event: &mut Listener<'_>) -> ControlFlow<(), Summary> {
         let mut summary = self.summary_without_error();
         if self.case.accuracy.estimate {
