@@ -16,8 +16,7 @@ use std::{ops::ControlFlow, sync::Arc};
 use condyle::{
     contact::ContactLaw,
     evolve::{
-        March, MarchError, MarchState, PlacementError, Schedule, Snapshot, StepRecord,
-        UpdateRecord, WearTest, mean_over_volume,
+        March, MarchState, Schedule, Snapshot, StepRecord, UpdateRecord, WearTest, mean_over_volume,
     },
     geometry::Insert,
     machine::{
@@ -162,16 +161,12 @@ fn with_contact(test: WearTest, contact: Arc<dyn ContactLaw>) -> WearTest {
     WearTest { contact, ..test }
 }
 
-fn with_insert(test: WearTest, insert: Arc<Insert>) -> WearTest {
-    WearTest { insert, ..test }
-}
-
 /// Returns whether a peak is not of the first cycle.
 fn has_later_peak(summary: &Summary) -> bool {
     summary[&PEAK_PRESSURE_CYCLE] > 0.0 || summary[&PEAK_CONTACT_AREA_CYCLE] > 0.0
 }
 
-/// The last update; none of a march of one, which has no other to be compared with.
+/// The last update; none of a march with one update, which cannot be compared.
 fn last_of_several(state: &MarchState) -> Stated<&UpdateRecord> {
     let last = state.updates.last().filter(|_| state.updates.len() > 1);
     last.ok_or_else(|| "one update has no other to be compared with".to_owned())
@@ -230,26 +225,25 @@ impl<'a> Again<'a> {
         }
     }
 
-    /// The run's own first cycle.
-    fn own_base(&self) -> Base {
-        Base {
-            test: self.as_run(),
-            first: first_cycle(self.march.state()),
-        }
-    }
-
     /// The estimate by a coarser mesh; and a test whose first cycle is solved quickly, on that mesh if there is one.
     fn by_mesh(
         &mut self,
         coarser: &Stated<Arc<Insert>>,
         summary: &Summary,
     ) -> ControlFlow<(), (PartEstimate, Base)> {
-        let own = self.own_base();
+        // The run's own first cycle.
+        let own = Base {
+            test: self.as_run(),
+            first: first_cycle(self.march.state()),
+        };
         let insert = match coarser {
             Ok(insert) => insert,
             Err(why) => return ControlFlow::Continue((unknown(why), own)),
         };
-        let test = with_insert(self.as_run(), Arc::clone(insert));
+        let test = WearTest {
+            insert: Arc::clone(insert),
+            ..self.as_run()
+        };
         let unworn = stated(self.unworn(&test))?;
         let later = if has_later_peak(summary) {
             stated(self.worn_on(&test))?
@@ -287,8 +281,9 @@ impl<'a> Again<'a> {
         base: &Base,
         looser: &Arc<dyn ContactLaw>,
     ) -> ControlFlow<(), PartEstimate> {
+        // The slip tolerance has much the same effect all the way: the last snapshot represents it.
         let test = with_contact(self.as_run(), Arc::clone(looser));
-        let on_the_way = stated(self.once(LOOSER_SLIP, &test))?;
+        let on_the_way = stated(self.at(self.snapshots.len() - 1, LOOSER_SLIP, &test))?;
         let test = with_contact(base.test.clone(), Arc::clone(looser));
         let first = stated(self.again_first(LOOSER_SLIP, test, base))?;
         ControlFlow::Continue(told(on_the_way, first))
@@ -344,11 +339,6 @@ impl<'a> Again<'a> {
             peaks = here.peaks;
         }
         Ok(OnTheWay { wear: mean, peaks })
-    }
-
-    /// The same at the last snapshot alone, for a change that makes much the same all the way.
-    fn once(&mut self, factor: f64, changed: &WearTest) -> Found<OnTheWay> {
-        self.at(self.snapshots.len() - 1, factor, changed)
     }
 
     fn at(&mut self, snapshot: usize, factor: f64, changed: &WearTest) -> Found<OnTheWay> {
@@ -506,14 +496,8 @@ fn worn(step: &StepRecord, weights: &[f64]) -> [f64; 2] {
     ]
 }
 
-impl From<PlacementError> for Without {
-    fn from(why: PlacementError) -> Self {
-        Self::Reason(why.to_string())
-    }
-}
-
-impl From<MarchError> for Without {
-    fn from(why: MarchError) -> Self {
+impl<E: std::error::Error> From<E> for Without {
+    fn from(why: E) -> Self {
         Self::Reason(why.to_string())
     }
 }

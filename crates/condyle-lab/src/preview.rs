@@ -98,12 +98,25 @@ impl Preview {
 
     /// Both bodies from three sides, as the text of an SVG file.
     pub fn picture_svg(&self) -> String {
-        svg(
-            &self.case,
-            &self.march,
-            &self.femur_triangles,
-            &self.at_rest,
-        )
+        let (march, at_rest, side) = (&self.march, &self.at_rest, self.case.heading.side);
+        let insert = march.test().insert.mesh();
+        let on_insert = |vertex: &Vec3| at_rest.pose.to_insert(vertex);
+        let femur = of_triangles(self.femur_triangles.clone().mapped(on_insert));
+        let insert = of_quads(&insert.nodes, &insert.boundary_quads());
+        let [femur, insert, contact] =
+            [femur, insert, pressed(march, at_rest)].map(|body| mirrored(body, side));
+        bodies_svg(&BodiesPicture {
+            title: &self.title,
+            side,
+            femur: &femur,
+            insert: &insert,
+            contact: &contact,
+            axes: Some(axes(march, at_rest, side)),
+            caption: &format!(
+                "Red: in contact at rest under {:.0} N, {:.0} mm2, up to {:.1} MPa.",
+                at_rest.axial_force_n, at_rest.contact_area_mm2, at_rest.peak_pressure_mpa
+            ),
+        })
     }
 }
 
@@ -126,7 +139,7 @@ pub struct FemurFacts {
 }
 
 impl FemurFacts {
-    pub(crate) fn of(case: &Case, mesh: &TriangleMesh, warnings: &[String]) -> Self {
+    fn of(case: &Case, mesh: &TriangleMesh, warnings: &[String]) -> Self {
         let file = case.femur.file().map(DataFile::name);
         let (low, high) = mesh.bounds();
         Self {
@@ -165,15 +178,16 @@ pub struct InsertFacts {
 }
 
 impl InsertFacts {
-    pub(crate) fn of(case: &Case, march: &March, warnings: &[String]) -> Self {
+    fn of(case: &Case, march: &March, warnings: &[String]) -> Self {
         let insert = march.test().insert.as_ref();
         let file = case.insert.file().map(DataFile::name);
         let (mesh, places) = (insert.mesh(), insert.surface().positions);
+        let (low, high) = bounds(&mesh.nodes);
         let dishes = Dishes::of(&places);
         let thickness = |dish: Vec3| least_around(&dish, &places, insert.thickness_mm());
         Self {
             shape: case.insert.word(),
-            size_mm: size_of(&mesh.nodes),
+            size_mm: (high - low).into(),
             triangles: case.insert_triangle_count(),
             defects: defects(file.as_deref(), warnings),
             hexahedra: mesh.hexes.len(),
@@ -186,13 +200,12 @@ impl InsertFacts {
     }
 }
 
+/// The warnings of a file, without its name at their start.
 fn defects(file: Option<&str>, warnings: &[String]) -> Vec<String> {
-    file.map_or(Vec::new(), |file| found_in(file, warnings))
-}
-
-fn size_of(points: &[Vec3]) -> [f64; 3] {
-    let (low, high) = bounds(points);
-    (high - low).into()
+    let Some(file) = file else { return Vec::new() };
+    let start = format!("{file}: ");
+    let of_file = warnings.iter().filter_map(|said| said.strip_prefix(&start));
+    of_file.map(str::to_owned).collect()
 }
 
 /// Least value at the nodes around a dish.
@@ -203,13 +216,6 @@ fn least_around(dish: &Vec3, places: &[Vec3], values: &[f64]) -> f64 {
         .zip(values)
         .filter(|(place, _)| is_near(place));
     near.map(|(_, value)| *value).fold(f64::INFINITY, f64::min)
-}
-
-/// The warnings of a file, without its name at their start.
-fn found_in(file: &str, warnings: &[String]) -> Vec<String> {
-    let start = format!("{file}: ");
-    let of_file = warnings.iter().filter_map(|said| said.strip_prefix(&start));
-    of_file.map(str::to_owned).collect()
 }
 
 /// Cycles solved for an update: some are solved again until they repeat themselves.
@@ -237,7 +243,7 @@ pub struct Expected {
 
 impl Expected {
     /// Of a march that was built in `built_in`.
-    pub(crate) fn of(case: &Case, march: &March, at_rest: &AtRest, built_in: Duration) -> Self {
+    fn of(case: &Case, march: &March, at_rest: &AtRest, built_in: Duration) -> Self {
         Self {
             memory_mb: memory_mb(case, march, at_rest),
             memory_allowed_mb: 1e3 * case.limits.memory_gb,
@@ -297,33 +303,6 @@ fn lowered(contact: &mut dyn ContactModel, at_rest: &AtRest, load_n: f64) -> Pos
         pose.translation.y -= (missing_n / stiffness_n_per_mm).clamp(-0.1, 0.1);
     }
     pose
-}
-
-/// The picture as the text of an SVG file.
-pub(crate) fn svg(case: &Case, march: &March, femur: &TriangleMesh, at_rest: &AtRest) -> String {
-    let side = case.heading.side;
-    let insert = march.test().insert.mesh();
-    let on_insert = |vertex: &Vec3| at_rest.pose.to_insert(vertex);
-    let femur = of_triangles(femur.clone().mapped(on_insert));
-    let insert = of_quads(&insert.nodes, &insert.boundary_quads());
-    let [femur, insert, contact] =
-        [femur, insert, pressed(march, at_rest)].map(|body| mirrored(body, side));
-    bodies_svg(&BodiesPicture {
-        title: &case.heading.title,
-        side,
-        femur: &femur,
-        insert: &insert,
-        contact: &contact,
-        axes: Some(axes(march, at_rest, side)),
-        caption: &caption(at_rest),
-    })
-}
-
-fn caption(at_rest: &AtRest) -> String {
-    format!(
-        "Red: in contact at rest under {:.0} N, {:.0} mm2, up to {:.1} MPa.",
-        at_rest.axial_force_n, at_rest.contact_area_mm2, at_rest.peak_pressure_mpa
-    )
 }
 
 fn of_triangles(mesh: TriangleMesh) -> BodySurface {

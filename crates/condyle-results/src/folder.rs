@@ -13,10 +13,12 @@ use super::{
     activities::kinematics_file,
     checkpoint::{Checkpoint, CheckpointError},
     checksums::{CHECKSUMS, DamagedFile, check_all, is_listed, write_checksum},
-    cycle_files::{KeptCycle, cycle_pvd, femur_vtu, frame_name, insert_frame},
-    cycle_pressures::{cycle_pressure_csv, cycle_pressure_file},
+    cycle_files::{
+        KeptCycle, cycle_pressure_csv, cycle_pressure_file, cycle_pvd, femur_vtu, frame_name,
+        insert_frame,
+    },
     femur_pose::femur_pose_csv,
-    insert_series::{insert_file_name, insert_pvd, insert_vtu},
+    insert_fields::{insert_file_name, insert_pvd, insert_vtu},
     lock::{FolderLock, LOCK},
     replace::{beside, replace_file, replace_file_durably},
     slip_paths::slip_paths_csv,
@@ -28,109 +30,13 @@ use condyle_mesh::formats::MeshFileError;
 /// A reason why a results folder cannot be used.
 #[derive(Debug, Error)]
 pub enum ResultsError {
-    /// A run is already in it.
-    #[error(
-        "{}: the folder already holds a run ({file} is there); \
-         give another folder with --out, go on with --resume, or write over it with --force",
-        folder.display()
-    )]
-    HoldsRun {
+    /// A folder in whose state the run cannot go into it.
+    #[error("{}: {state}", folder.display())]
+    Folder {
         /// The folder.
         folder: PathBuf,
-        /// A file of the run.
-        file: &'static str,
-    },
-    /// Files of a run's names are in it, and nothing to go on from.
-    #[error(
-        "{}: the folder already holds a run or a part of one ({file} is there, and no checkpoint to go on from); \
-         give another folder with --out, or take the file away yourself",
-        folder.display()
-    )]
-    HoldsPartOfRun {
-        /// The folder.
-        folder: PathBuf,
-        /// A file of the run.
-        file: &'static str,
-    },
-    /// A run that is done is in it.
-    #[error(
-        "{}: the folder already holds a run, which is done (summary.json is there); \
-         give another folder with --out, or write over it with --force: there is nothing left to --resume",
-        folder.display()
-    )]
-    HoldsDoneRun {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// Files that a run would replace, and no run that they are of.
-    #[error(
-        "{}: {file} is there, but no checkpoint, so that it may be something else than a run; \
-         give another folder with --out, or take the file away yourself",
-        folder.display()
-    )]
-    HoldsNoWholeRun {
-        /// The folder.
-        folder: PathBuf,
-        /// The file.
-        file: &'static str,
-    },
-    /// A run that would be written over by one that reads it.
-    #[error(
-        "{}: the run reads {} of the folder that it would write over; \
-         give another folder with --out",
-        folder.display(),
-        file.display()
-    )]
-    HoldsInput {
-        /// The folder.
-        folder: PathBuf,
-        /// The file that the run reads.
-        file: PathBuf,
-    },
-    /// Another run is writing.
-    #[error(
-        "{}: another run is writing into this folder; \
-         wait until it has ended, or give another folder with --out",
-        folder.display()
-    )]
-    InUse {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// A file stands where the folder should be.
-    #[error("{}: this is a file and no folder; give another folder with --out", path.display())]
-    NoFolder {
-        /// The file.
-        path: PathBuf,
-    },
-    /// No run is in it to go on with.
-    #[error(
-        "{}: the folder holds no run to go on with: there is no checkpoint, and no case.toml of this case; \
-         leave out --resume to begin one",
-        folder.display()
-    )]
-    HoldsNone {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// The run in it was begun by another version.
-    #[error(
-        "{}: the run in this folder was begun by condyle {version}, and this is {}; \
-         resume it with that version, or run the case again into another folder",
-        folder.display(),
-        env!("CARGO_PKG_VERSION")
-    )]
-    OtherVersion {
-        /// The folder.
-        folder: PathBuf,
-        /// The version that began it.
-        version: String,
-    },
-    /// The run in it is one of another case.
-    #[error("{}: the run in this folder is one of another case or other meshes; give another folder with --out", folder.display())]
-    OtherCase {
-        /// The folder.
-        folder: PathBuf,
+        /// Its state and the remedy.
+        state: FolderState,
     },
     /// A checkpoint that cannot be read.
     #[error("{}: the checkpoint cannot be used: {source}", file.display())]
@@ -154,6 +60,81 @@ pub enum ResultsError {
     /// An insert that cannot be written.
     #[error(transparent)]
     Insert(#[from] MeshFileError),
+}
+
+/// The state of a folder that cannot take a run.
+#[derive(Debug, Error)]
+pub enum FolderState {
+    /// It holds a run, of which it has this file.
+    #[error(
+        "the folder already holds a run ({0} is there); \
+         give another folder with --out, go on with --resume, or write over it with --force"
+    )]
+    Run(&'static str),
+    /// It holds a file of a run's name, and nothing to resume.
+    #[error(
+        "the folder already holds a run or a part of one ({0} is there, and no checkpoint to go on from); \
+         give another folder with --out, or take the file away yourself"
+    )]
+    PartOfRun(&'static str),
+    /// It holds a run that is done.
+    #[error(
+        "the folder already holds a run, which is done (summary.json is there); \
+         give another folder with --out, or write over it with --force: there is nothing left to --resume"
+    )]
+    DoneRun,
+    /// It holds a file that a run would replace, and no run that the file is of.
+    #[error(
+        "{0} is there, but no checkpoint, so that it may be something else than a run; \
+         give another folder with --out, or take the file away yourself"
+    )]
+    NoWholeRun(&'static str),
+    /// It holds a file that the new run reads.
+    #[error(
+        "the run reads {} of the folder that it would write over; give another folder with --out",
+        .0.display()
+    )]
+    Input(PathBuf),
+    /// Another run is writing.
+    #[error(
+        "another run is writing into this folder; \
+         wait until it has ended, or give another folder with --out"
+    )]
+    InUse,
+    /// It is a file.
+    #[error("this is a file and no folder; give another folder with --out")]
+    File,
+    /// It holds no run to resume.
+    #[error(
+        "the folder holds no run to go on with: there is no checkpoint, and no case.toml of this case; \
+         leave out --resume to begin one"
+    )]
+    NoRun,
+    /// It holds a run that another version began.
+    #[error(
+        "the run in this folder was begun by condyle {version}, and this is {}; \
+         resume it with that version, or run the case again into another folder",
+        env!("CARGO_PKG_VERSION")
+    )]
+    OtherVersion {
+        /// The version that began it.
+        version: String,
+    },
+    /// It holds a run of another case.
+    #[error(
+        "the run in this folder is one of another case or other meshes; give another folder with --out"
+    )]
+    OtherCase,
+}
+
+impl FolderState {
+    /// The error of the folder at `path` in this state.
+    pub(super) fn of(self, path: &Path) -> ResultsError {
+        ResultsError::Folder {
+            folder: path.to_owned(),
+            state: self,
+        }
+    }
 }
 
 /// The folder of a run.
@@ -211,29 +192,23 @@ impl ResultsFolder {
     /// # Errors
     /// A folder that holds a run, done or not, or a file in its place.
     pub fn free(path: &Path) -> Result<(), ResultsError> {
-        let folder = Self::existing(path);
+        let is_there = |name: &&&str| path.join(name).exists();
         if path.exists() && !path.is_dir() {
-            return Err(ResultsError::NoFolder { path: folder.path });
+            return Err(FolderState::File.of(path));
         }
-        let is_there = |name: &&&str| folder.file(name).exists();
-        if ["checkpoint", "summary.json"]
-            .iter()
-            .all(|name| is_there(&name))
-        {
-            return Err(ResultsError::HoldsDoneRun {
-                folder: folder.path,
-            });
+        if is_there(&&"checkpoint") && is_there(&&"summary.json") {
+            return Err(FolderState::DoneRun.of(path));
         }
         let Some(&file) = SIGNS_OF_A_RUN.iter().find(is_there) else {
             return Ok(());
         };
-        let has_something_to_go_on_from = file == "case.toml" || is_there(&&"checkpoint");
-        let folder = folder.path;
-        Err(if has_something_to_go_on_from {
-            ResultsError::HoldsRun { folder, file }
+        let can_be_resumed = file == "case.toml" || is_there(&&"checkpoint");
+        let state = if can_be_resumed {
+            FolderState::Run(file)
         } else {
-            ResultsError::HoldsPartOfRun { folder, file }
-        })
+            FolderState::PartOfRun(file)
+        };
+        Err(state.of(path))
     }
 
     /// The lock of the folder at `path`, so that no other run writes into it; none where there is
@@ -245,12 +220,8 @@ impl ResultsFolder {
         if !path.is_dir() {
             return Ok(None);
         }
-        let taken = FolderLock::take(path).map_err(|source| ResultsError::Refused {
-            file: path.to_owned(),
-            source,
-        })?;
-        let folder = path.to_owned();
-        taken.map(Some).ok_or(ResultsError::InUse { folder })
+        let taken = FolderLock::take(path).map_err(refused(path))?;
+        taken.map(Some).ok_or(FolderState::InUse.of(path))
     }
 
     /// A folder for a run, made if it is not there.
@@ -258,10 +229,7 @@ impl ResultsFolder {
     /// # Errors
     /// A folder that cannot be made.
     pub fn create(path: &Path) -> Result<Self, ResultsError> {
-        fs::create_dir_all(path).map_err(|source| ResultsError::Refused {
-            file: path.to_owned(),
-            source,
-        })?;
+        fs::create_dir_all(path).map_err(refused(path))?;
         Ok(Self::existing(path))
     }
 
@@ -282,22 +250,16 @@ impl ResultsFolder {
             return match fs::read_to_string(folder.file("case.toml")) {
                 Ok(text) if text == case_toml => Ok(Found::Case),
                 Err(_) if folder.was_only_made() => Ok(Found::Nothing),
-                Ok(_) | Err(_) => Err(ResultsError::HoldsNone {
-                    folder: folder.path,
-                }),
+                Ok(_) | Err(_) => Err(FolderState::NoRun.of(path)),
             };
         }
         let checkpoint = folder.checkpoint()?;
         if checkpoint.inputs_blake3 != inputs_blake3 {
-            return Err(ResultsError::OtherCase {
-                folder: folder.path,
-            });
+            return Err(FolderState::OtherCase.of(path));
         }
         if checkpoint.version != env!("CARGO_PKG_VERSION") {
-            return Err(ResultsError::OtherVersion {
-                folder: folder.path,
-                version: checkpoint.version,
-            });
+            let version = checkpoint.version;
+            return Err(FolderState::OtherVersion { version }.of(path));
         }
         check_all(&folder.path)?;
         let last = checkpoint.state.updates.last();
@@ -320,10 +282,7 @@ impl ResultsFolder {
 
     fn checkpoint(&self) -> Result<Checkpoint, ResultsError> {
         let file = self.file("checkpoint");
-        let bytes = fs::read(&file).map_err(|source| ResultsError::Refused {
-            file: file.clone(),
-            source,
-        })?;
+        let bytes = fs::read(&file).map_err(refused(&file))?;
         Checkpoint::from_bytes(&bytes).map_err(|source| ResultsError::Checkpoint { file, source })
     }
 
@@ -347,7 +306,7 @@ impl ResultsFolder {
     /// Writes how many seconds the run has taken so far.
     ///
     /// # Errors
-    /// Where the system refuses.
+    /// [`ResultsError::Refused`].
     pub fn write_time_spent(&self, seconds: f64) -> Result<(), ResultsError> {
         self.replace(TIME_SPENT, format!("{seconds}\n").as_bytes())
     }
@@ -355,18 +314,11 @@ impl ResultsFolder {
     /// Takes away what only a run that is not done needs.
     ///
     /// # Errors
-    /// Where the system refuses.
+    /// [`ResultsError::Refused`].
     pub fn finish(&self) -> Result<(), ResultsError> {
         let file = self.file(TIME_SPENT);
-        for file in [beside(&file), file] {
-            match fs::remove_file(&file) {
-                Err(source) if source.kind() != io::ErrorKind::NotFound => {
-                    return Err(ResultsError::Refused { file, source });
-                }
-                Ok(()) | Err(_) => {}
-            }
-        }
-        Ok(())
+        remove(&beside(&file))?;
+        remove(&file)
     }
 
     /// The path of the folder.
@@ -377,7 +329,7 @@ impl ResultsFolder {
     /// Writes the case as run.
     ///
     /// # Errors
-    /// Where the system refuses.
+    /// [`ResultsError::Refused`].
     pub fn write_case(&self, toml: &str) -> Result<(), ResultsError> {
         self.replace("case.toml", toml.as_bytes())
     }
@@ -385,7 +337,7 @@ impl ResultsFolder {
     /// Writes the femur as it stands at neutral, in the insert frame.
     ///
     /// # Errors
-    /// Where the system refuses.
+    /// [`ResultsError::Refused`].
     pub fn write_femur(
         &self,
         march: &March,
@@ -400,7 +352,7 @@ impl ResultsFolder {
     /// last; to be done before [`Self::write_update`], so that a checkpoint never lacks it.
     ///
     /// # Errors
-    /// Where the system refuses.
+    /// [`ResultsError::Refused`].
     pub fn write_cycles(
         &self,
         march: &March,
@@ -441,7 +393,7 @@ impl ResultsFolder {
     /// done before [`Self::write_update`], as [`Self::write_cycles`].
     ///
     /// # Errors
-    /// Where the system refuses.
+    /// [`ResultsError::Refused`].
     pub fn write_pressures(&self, march: &March) -> Result<(), ResultsError> {
         for cycle in KeptCycle::solved_by(march) {
             if let Some(table) = cycle_pressure_csv(march) {
@@ -455,7 +407,7 @@ impl ResultsFolder {
     /// remembers is then already in the other files.
     ///
     /// # Errors
-    /// Where the system refuses.
+    /// [`ResultsError::Refused`].
     pub fn write_update(
         &self,
         march: &March,
@@ -487,14 +439,13 @@ impl ResultsFolder {
             state: state.clone(),
         };
         let file = self.file("checkpoint");
-        replace_file_durably(&file, &checkpoint.to_bytes())
-            .map_err(|source| ResultsError::Refused { file, source })
+        replace_file_durably(&file, &checkpoint.to_bytes()).map_err(refused(&file))
     }
 
     /// Writes the summary.
     ///
     /// # Errors
-    /// Where the system refuses.
+    /// [`ResultsError::Refused`].
     pub fn write_summary(&self, summary: &Summary) -> Result<(), ResultsError> {
         let mut text =
             serde_json::to_string_pretty(summary).expect("numbers and text always serialise");
@@ -504,18 +455,27 @@ impl ResultsFolder {
 
     fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), ResultsError> {
         let file = self.file(name);
-        let refused = |source| ResultsError::Refused {
-            file: self.file(name),
-            source,
-        };
-        replace_file(&file, bytes).map_err(refused)?;
+        replace_file(&file, bytes).map_err(refused(&file))?;
         if is_listed(name) {
-            write_checksum(&self.path, name, bytes).map_err(refused)?;
+            write_checksum(&self.path, name, bytes).map_err(refused(&file))?;
         }
         Ok(())
     }
 
     fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
+    }
+}
+
+fn refused(file: &Path) -> impl FnOnce(io::Error) -> ResultsError {
+    let file = file.to_owned();
+    move |source| ResultsError::Refused { file, source }
+}
+
+/// Removes a file, which need not be there.
+pub(super) fn remove(file: &Path) -> Result<(), ResultsError> {
+    match fs::remove_file(file) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(refused(file)(source)),
+        Ok(()) | Err(_) => Ok(()),
     }
 }

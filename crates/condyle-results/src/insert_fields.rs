@@ -1,10 +1,14 @@
-//! The insert as worn so far, with its results at the nodes, in the knee of the case.
+//! `insert_*.vtu` and `insert.pvd`: the insert with its results at the nodes at each update, for ParaView.
 
-use condyle::{Vec3, contact::UnderSurface, evolve::March};
+use condyle::{
+    Vec3,
+    contact::UnderSurface,
+    evolve::{March, UpdateRecord},
+};
 use condyle_fem::HexMesh;
+use condyle_mesh::formats::{MeshFileError, PointArray, PointValues, pvd_text, vtu_bytes};
 
-use super::side::Side;
-use super::side::{mesh_on_side, point_on_side};
+use super::side::{Side, mesh_on_side, point_on_side};
 
 /// The insert as worn so far, with the results of its last update at the nodes; what is not on the articulating
 /// surface has none, which is 0.
@@ -215,4 +219,39 @@ fn most_around(mesh: &HexMesh, values: &[f64]) -> Vec<f64> {
         }
     }
     most
+}
+
+/// Name of the file that holds the insert after `update` updates.
+pub fn insert_file_name(update: usize) -> String {
+    format!("insert_{update:04}.vtu")
+}
+
+/// `insert_*.vtu`: the insert as worn so far, with the results of its last update at the nodes, in
+/// the knee of that side.
+///
+/// # Errors
+/// None but those of [`vtu_bytes`].
+pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
+    let fields = InsertFields::of(march, side);
+    let scalars = fields.scalars.iter().map(|(name, values)| PointArray {
+        name,
+        values: PointValues::Float64(values),
+    });
+    let vectors = fields.vectors.iter().map(|(name, values)| PointArray {
+        name,
+        values: PointValues::Vectors(values),
+    });
+    let mut points: Vec<_> = scalars.chain(vectors).collect();
+    points.push(PointArray {
+        name: "articulating",
+        values: PointValues::UInt8(&fields.articulating),
+    });
+    vtu_bytes(&fields.mesh, &points)
+}
+
+/// `insert.pvd`: the series of all files so far, with the cycles as time.
+pub fn insert_pvd(updates: &[UpdateRecord]) -> String {
+    let names: Vec<String> = (0..=updates.len()).map(insert_file_name).collect();
+    let cycles = std::iter::once(0.0).chain(updates.iter().map(|update| update.cycles));
+    pvd_text(cycles.zip(names.iter().map(String::as_str)))
 }

@@ -11,18 +11,15 @@ mod checksums;
 mod creep;
 mod cycle_files;
 mod cycle_motion;
-mod cycle_pressures;
 mod declared;
 mod error_estimate;
 mod femur_pose;
 #[cfg(feature = "file-system")]
 mod folder;
 mod insert_fields;
-mod insert_series;
 mod law_wear;
 #[cfg(feature = "file-system")]
 mod lock;
-mod plausibility;
 #[cfg(feature = "file-system")]
 mod replace;
 mod side;
@@ -49,22 +46,21 @@ pub use checkpoint::{Checkpoint, CheckpointError};
 pub use checksums::{DamagedFile, check_file};
 pub use creep::{CreepSummary, Penetration, ScanLine};
 pub use cycle_files::{
-    BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pvd, femur_of_frames, femur_on_side, femur_vtu,
-    frame_name, insert_frame,
+    BODIES, FRAME_TRIANGLES, KeptCycle, cycle_pressure_csv, cycle_pressure_file, cycle_pvd,
+    femur_of_frames, femur_on_side, femur_vtu, frame_name, insert_frame,
 };
 pub use cycle_motion::joint_range;
-pub use cycle_pressures::{cycle_pressure_csv, cycle_pressure_file};
 pub use declared::{python_types, results_schema, typescript_types};
 pub use error_estimate::{ErrorEstimate, ErrorParts, Part, QuantityError, QuantityErrors};
 pub use femur_pose::{NeutralPose, femur_pose_csv};
 #[cfg(feature = "file-system")]
-pub use folder::{Found, ResultsError, ResultsFolder};
-pub use insert_fields::{InsertFields, NODE_FIELDS, NodeField};
-pub use insert_series::{insert_file_name, insert_pvd, insert_vtu};
+pub use folder::{FolderState, Found, ResultsError, ResultsFolder};
+pub use insert_fields::{
+    InsertFields, NODE_FIELDS, NodeField, insert_file_name, insert_pvd, insert_vtu,
+};
 pub use law_wear::LawWear;
 #[cfg(feature = "file-system")]
 pub use lock::FolderLock;
-pub use plausibility::PlausibilityWarning;
 pub use side::Side;
-pub use summary::Summary;
+pub use summary::{PlausibilityWarning, Summary};
 pub use tables::{WEAR_COLUMNS, WearColumn, kinematics_csv, wear_csv};

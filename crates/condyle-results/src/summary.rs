@@ -15,7 +15,6 @@ use super::{
     error_estimate::ErrorEstimate,
     femur_pose::NeutralPose,
     law_wear::LawWear,
-    plausibility::PlausibilityWarning,
 };
 
 /// The results of a run in one table: `summary[&MASS_LOSS_MG]` is a number of the catalogue.
@@ -45,6 +44,23 @@ pub struct Summary {
     pub inputs_blake3: String,
     /// Entries of a file by another version that the catalogue does not have.
     pub others: BTreeMap<String, Value>,
+}
+
+/// A number of a run beyond the limit of plausible runs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlausibilityWarning {
+    /// The name of the check, the same in all versions.
+    pub check: String,
+    /// The value, in `unit`.
+    pub value: f64,
+    /// Its limit.
+    pub limit: f64,
+    /// Unit of value and limit; empty for a pure number.
+    pub unit: String,
+    /// The doubt in a sentence with the numbers.
+    pub message: String,
+    /// The remedy in a sentence.
+    pub advice: String,
 }
 
 impl Summary {

@@ -2,7 +2,6 @@
 
 use std::{
     fs,
-    io::ErrorKind,
     path::{Path, PathBuf},
 };
 
@@ -10,7 +9,7 @@ use super::{
     activities::{kinematics_file, listed_in},
     added::{AddedFiles, COMPARED, PLOTTED},
     cycle_files::{BODIES, KeptCycle},
-    folder::{ResultsError, ResultsFolder, SIGNS_OF_A_RUN, TIME_SPENT},
+    folder::{FolderState, ResultsError, ResultsFolder, SIGNS_OF_A_RUN, TIME_SPENT, remove},
     replace::beside,
 };
 
@@ -28,25 +27,23 @@ impl ResultsFolder {
     /// A folder with files of a run's names that has no checkpoint, so that they may belong to
     /// another program; one of whose files the new run reads; a file in its place.
     pub fn may_be_written_over(path: &Path, read: &[&Path]) -> Result<(), ResultsError> {
-        let folder = path.to_owned();
-        match Self::free(path) {
-            Err(ResultsError::HoldsPartOfRun { file, .. }) => {
-                Err(ResultsError::HoldsNoWholeRun { folder, file })
+        let state = match Self::free(path) {
+            Err(ResultsError::Folder { state, .. }) => state,
+            other => return other,
+        };
+        match state {
+            FolderState::PartOfRun(file) => Err(FolderState::NoWholeRun(file).of(path)),
+            FolderState::Run(file) if !path.join("checkpoint").exists() => {
+                Err(FolderState::NoWholeRun(file).of(path))
             }
-            Err(ResultsError::HoldsRun { file, .. }) if !path.join("checkpoint").exists() => {
-                Err(ResultsError::HoldsNoWholeRun { folder, file })
-            }
-            Err(ResultsError::HoldsRun { .. } | ResultsError::HoldsDoneRun { .. }) => {
+            FolderState::Run(_) | FolderState::DoneRun => {
                 let files = Self::existing(path).files_of_a_run();
                 match read.iter().find(|file| is_among(file, &files)) {
-                    Some(file) => Err(ResultsError::HoldsInput {
-                        folder,
-                        file: file.to_path_buf(),
-                    }),
+                    Some(file) => Err(FolderState::Input(file.to_path_buf()).of(path)),
                     None => Ok(()),
                 }
             }
-            other => other,
+            other => Err(other.of(path)),
         }
     }
 
@@ -57,12 +54,7 @@ impl ResultsFolder {
     /// Where the system refuses.
     pub fn clear(&self) -> Result<(), ResultsError> {
         for file in self.files_of_a_run() {
-            match fs::remove_file(&file) {
-                Err(source) if source.kind() != ErrorKind::NotFound => {
-                    return Err(ResultsError::Refused { file, source });
-                }
-                Ok(()) | Err(_) => {}
-            }
+            remove(&file)?;
         }
         let folders = KeptCycle::BOTH.into_iter().map(KeptCycle::name);
         for folder in folders.chain(ADDED.map(|added| added.folder)) {

@@ -83,11 +83,7 @@ fn run_read(
     };
     let is_fresh = matches!(start_from, Start::Fresh);
     let mut run = Run::begin(case, means, start_from, inputs_blake3.clone(), on_event)?;
-    let written = if is_fresh {
-        WrittenRun::new(options, lock, inputs_blake3, &run)?
-    } else {
-        WrittenRun::resume(options, lock, inputs_blake3, &run)?
-    };
+    let written = WrittenRun::new(options, lock, inputs_blake3, &run, is_fresh)?;
     let outcome = run.complete(&mut |run| written.write_update(run), on_event)?;
     if let Outcome::Done(summary) = &outcome {
         written.write_end(summary)?;
@@ -95,7 +91,7 @@ fn run_read(
     Ok(outcome)
 }
 
-/// What the folder holds; an error if a new run cannot be written to it, or with `resume` if there is
+/// The part of a run that the folder holds; an error if a new run cannot be written to it, or with `resume` if there is
 /// no run in it.
 fn found(
     case: &Case,
@@ -126,54 +122,62 @@ fn done_before(summary: Box<Summary>, options: &RunOptions) -> Result<Outcome, R
 }
 
 /// A run as it is written into its folder.
-pub(crate) struct WrittenRun {
+struct WrittenRun {
     folder: ResultsFolder,
     /// Held until the run has ended.
-    _lock: Option<FolderLock>,
+    lock: Option<FolderLock>,
     inputs_blake3: String,
     /// The femur that the frames of the first and last cycle show, where the case asks for them.
     in_frames: Option<TriangleMesh>,
 }
 
 impl WrittenRun {
-    /// A new run, in a folder that is made if it is not there.
-    pub fn new(
+    /// A fresh run in a folder that is made if it is not there, or one that is resumed in its folder.
+    fn new(
         options: &RunOptions,
         lock: Option<FolderLock>,
         inputs_blake3: String,
         run: &Run<'_>,
+        is_fresh: bool,
     ) -> Result<Self, RunError> {
-        let in_frames = in_frames(run)?;
-        let alone = run.femur_triangles(FEMUR_TRIANGLES)?;
-        let (folder, lock) = new_folder(run.case, options, lock)?;
-        folder.write_femur(&run.march, &alone, run.case.heading.side)?;
-        let written = Self {
-            folder,
-            _lock: lock,
+        let in_frames = if run.case.output.cycle_frames {
+            Some(femur_of_frames(run.femur_triangles(FRAME_TRIANGLES)?))
+        } else {
+            None
+        };
+        let mut written = Self {
+            folder: ResultsFolder::existing(&options.out),
+            lock,
             inputs_blake3,
             in_frames,
         };
-        written.write_update(run)?;
+        if is_fresh {
+            // Before the folder is made: a femur that cannot be drawn leaves none behind.
+            let femur = run.femur_triangles(FEMUR_TRIANGLES)?;
+            written.start(run.case, options)?;
+            let side = run.case.heading.side;
+            written.folder.write_femur(&run.march, &femur, side)?;
+            written.write_update(run)?;
+        }
         Ok(written)
     }
 
-    /// A run that is resumed in its folder.
-    pub fn resume(
-        options: &RunOptions,
-        lock: Option<FolderLock>,
-        inputs_blake3: String,
-        run: &Run<'_>,
-    ) -> Result<Self, RunError> {
-        Ok(Self {
-            folder: ResultsFolder::existing(&options.out),
-            _lock: lock,
-            inputs_blake3,
-            in_frames: in_frames(run)?,
-        })
+    /// Makes the folder of a fresh run, locks it and writes the case.
+    fn start(&mut self, case: &Case, options: &RunOptions) -> Result<(), ResultsError> {
+        let folder = ResultsFolder::create(&options.out)?;
+        if self.lock.is_none() {
+            self.lock = ResultsFolder::lock(folder.path())?;
+            // Another run may have come first since the folder was found not to be there.
+            ResultsFolder::free(folder.path())?;
+        }
+        if options.force {
+            folder.clear()?;
+        }
+        folder.write_case(&case.to_toml_in(folder.path()))
     }
 
-    /// Writes what the run has found so far.
-    pub fn write_update(&self, run: &Run<'_>) -> Result<(), RunError> {
+    /// Writes the results so far.
+    fn write_update(&self, run: &Run<'_>) -> Result<(), RunError> {
         let side = run.case.heading.side;
         if let Some(femur) = &self.in_frames {
             self.folder.write_cycles(&run.march, femur, side)?;
@@ -185,38 +189,10 @@ impl WrittenRun {
         Ok(self.folder.write_time_spent(spent_s)?)
     }
 
-    /// Writes what a run that is done has found.
-    pub fn write_end(&self, summary: &Summary) -> Result<(), RunError> {
+    /// Writes the summary and the page of a finished run.
+    fn write_end(&self, summary: &Summary) -> Result<(), RunError> {
         self.folder.write_summary(summary)?;
         condyle_report::write_report(self.folder.path())?;
         Ok(self.folder.finish()?)
     }
-}
-
-fn in_frames(run: &Run<'_>) -> Result<Option<TriangleMesh>, RunError> {
-    if !run.case.output.cycle_frames {
-        return Ok(None);
-    }
-    let femur = run.femur_triangles(FRAME_TRIANGLES)?;
-    Ok(Some(femur_of_frames(femur)))
-}
-
-/// A folder for a new run, with the case in it, and its lock.
-fn new_folder(
-    case: &Case,
-    options: &RunOptions,
-    lock: Option<FolderLock>,
-) -> Result<(ResultsFolder, Option<FolderLock>), ResultsError> {
-    let folder = ResultsFolder::create(&options.out)?;
-    let was_there = lock.is_some();
-    let lock = lock.map_or_else(|| ResultsFolder::lock(folder.path()), |lock| Ok(Some(lock)))?;
-    // Another run may have come first since the folder was found not to be there.
-    if !was_there {
-        ResultsFolder::free(folder.path())?;
-    }
-    if options.force {
-        folder.clear()?;
-    }
-    folder.write_case(&case.to_toml_in(folder.path()))?;
-    Ok((folder, lock))
 }
