@@ -12,7 +12,6 @@
 //!
 //! It ends with 0, with 2 on bad input and with 3 where the physics could not be solved, as the command does.
 
-mod check;
 mod draft;
 mod failure;
 mod recorder;
@@ -39,14 +38,14 @@ fn main() -> ExitCode {
 
 fn done(words: &[&str]) -> Result<(), Failure> {
     match words {
-        ["check", case] => check::check(Path::new(case)),
+        ["check", case] => runs::check(Path::new(case)),
         ["run", case, out] => runs::run(Path::new(case), Path::new(out)),
         ["keep", case, out] => runs::keep(Path::new(case), Path::new(out)),
         ["draft", case, femur, insert] => {
             draft::draft(Path::new(case), Path::new(femur), Path::new(insert))
         }
         _ => Err(Failure::of_words(format!(
-            "{words:?}: this is no call; the program is for the web page, and says in its source which there are"
+            "{words:?} is not a call of this program, which serves the web page; its source lists the calls"
         ))),
     }
 }

@@ -1,4 +1,4 @@
-//! Runs: in memory for the page, or into a results folder.
+//! Checks and runs of a case: in memory for the page, or into a results folder.
 
 use std::{fs, ops::ControlFlow, path::Path};
 
@@ -11,6 +11,11 @@ use crate::{
     recorder::Recorder,
     told::{Told, tell},
 };
+
+/// Reads the case at `case` and reports all of its problems.
+pub fn check(case: &Path) -> Result<(), Failure> {
+    read(case).map(|_| ())
+}
 
 /// Runs the case at `case` in memory; writes what the page shows into the folder `out`.
 pub fn run(case: &Path, out: &Path) -> Result<(), Failure> {
@@ -27,7 +32,8 @@ pub fn run(case: &Path, out: &Path) -> Result<(), Failure> {
     let summary = done(outcome)?;
     let scene = recorder.into_scene(summary.neutral_pose);
     write(out, "scene", &scene.to_bytes())?;
-    write(out, "summary.json", json(&summary).as_bytes())
+    let json = serde_json::to_vec_pretty(&summary).expect("numbers and text always serialise");
+    write(out, "summary.json", &json)
 }
 
 /// Runs the case at `case` into the results folder `out`.
@@ -57,10 +63,6 @@ fn done(outcome: Result<Outcome, RunError>) -> Result<Box<Summary>, Failure> {
         }
         Err(error) => Err(Failure::from(&error)),
     }
-}
-
-fn json(summary: &Summary) -> String {
-    serde_json::to_string_pretty(summary).expect("numbers and text always serialise")
 }
 
 fn write(folder: &Path, name: &str, content: &[u8]) -> Result<(), Failure> {
@@ -108,6 +110,6 @@ impl Heard {
 
     fn reach(&mut self, reached: Reached) {
         self.reached = reached;
-        tell(&Told::from(reached));
+        tell(&Told::Reached(reached));
     }
 }

@@ -14,35 +14,13 @@ pub enum Told {
     /// A correction or a doubt of the input.
     Warning(String),
     /// Progress of a run.
-    Reached {
-        /// Updates done.
-        updates: usize,
-        /// Gait cycles done.
-        cycles: f64,
-        /// Gait cycles in all.
-        of_cycles: f64,
-    },
+    Reached(Reached),
     /// All updates are done, and their error is being estimated.
     Estimating,
     /// A conclusion about a body.
     Remark(String),
     /// The call failed.
     Failed(Failure),
-}
-
-impl From<Reached> for Told {
-    fn from(reached: Reached) -> Self {
-        let Reached {
-            updates,
-            cycles,
-            of_cycles,
-        } = reached;
-        Self::Reached {
-            updates,
-            cycles,
-            of_cycles,
-        }
-    }
 }
 
 /// Sends a message to the page, which may not be listening.

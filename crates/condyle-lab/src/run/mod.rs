@@ -14,12 +14,13 @@ use std::{
 use condyle::evolve::{March, Progress, UpdateRecord};
 use condyle_case::cache::Cache;
 use condyle_results::Summary;
+use serde::Serialize;
 
-/// Hears of everything that happens, and may stop the run by breaking.
+/// Receives every event, and may stop the run by breaking.
 pub(crate) type Listener<'a> = dyn FnMut(RunEvent<'_>) -> ControlFlow<()> + 'a;
 
-/// How far a run has come.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The progress of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Reached {
     /// Updates done.
     pub updates: usize,
@@ -39,7 +40,7 @@ impl Reached {
     }
 }
 
-/// What happens while a case runs.
+/// An event while a case runs.
 #[derive(Clone, Debug)]
 pub enum RunEvent<'a> {
     /// A correction or a doubt of the input.
@@ -54,7 +55,7 @@ pub enum RunEvent<'a> {
     Updated(&'a UpdateRecord),
 }
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Clone, Debug)]
 pub enum Outcome {
     /// All cycles are done.
@@ -65,7 +66,7 @@ pub enum Outcome {
     Interrupted(Reached),
 }
 
-/// How a case is run.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
     /// Folder for the results.
@@ -76,7 +77,7 @@ pub struct RunOptions {
     pub force: bool,
     /// Threads for the one-time work on a mesh; results do not depend on it.
     pub threads: usize,
-    /// Where the one-time work on a mesh is kept for the next run; results do not depend on it.
+    /// The cache of the one-time work on a mesh for the next run; results do not depend on it.
     pub cache: Cache,
 }
 
