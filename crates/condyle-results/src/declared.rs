@@ -21,15 +21,15 @@ pub fn results_schema() -> String {
         required.extend(scalar.is_always_there().then_some(scalar.key));
     }
     for part in &PARTS {
-        let kind = match part.kind {
+        let mut schema = match part.kind {
             PartKind::Text => json!({"type": "string"}),
             PartKind::Texts => json!({"type": "array", "items": {"type": "string"}}),
-            PartKind::Object => json!({"type": ["object", "null"]}),
+            PartKind::Object => json!({"type": "object"}),
+            PartKind::ObjectOrNull => json!({"type": ["object", "null"]}),
             PartKind::Objects => json!({"type": "array", "items": {"type": "object"}}),
         };
-        let mut kind = kind;
-        kind["description"] = part.about.into();
-        properties.insert(part.key.to_owned(), kind);
+        schema["description"] = part.about.into();
+        properties.insert(part.key.to_owned(), schema);
         required.extend(part.is_always_there.then_some(part.key));
     }
     let column = |name: &str, about: &str| json!({"name": name, "description": about});
@@ -90,7 +90,8 @@ pub fn python_types() -> String {
         let kind = match part.kind {
             PartKind::Text => "str",
             PartKind::Texts => "list[str]",
-            PartKind::Object => "dict[str, Any] | None",
+            PartKind::Object => "dict[str, Any]",
+            PartKind::ObjectOrNull => "dict[str, Any] | None",
             PartKind::Objects => "list[dict[str, Any]]",
         };
         add(part.key, kind, &part.about.replace('`', "``"));

@@ -11,6 +11,8 @@ pub enum PartKind {
     Texts,
     /// An object.
     Object,
+    /// An object or null.
+    ObjectOrNull,
     /// A list of objects.
     Objects,
 }
@@ -22,7 +24,7 @@ pub struct Part {
     pub key: &'static str,
     /// Its JSON type.
     pub kind: PartKind,
-    /// True if every run has it; it may be null then.
+    /// True if every run has it.
     pub is_always_there: bool,
     /// A description.
     pub about: &'static str,
@@ -62,10 +64,9 @@ pub static PARTS: [Part; 9] = [
     ),
     part(
         "error",
-        PartKind::Object,
+        PartKind::ObjectOrNull,
         Some(&WEAR_OVER_CONVENTIONAL),
-        "Estimated discretisation errors with their parts, in % of each number and in its unit; null if the case does not \
-         ask for them.",
+        "Estimated discretisation errors by their parts; null if the case does not ask for them.",
     ),
     part(
         "wear_laws",

@@ -1,0 +1,134 @@
+"""The entries of ``summary.json``; written by ``cargo run -p condyle-results --example result_types``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+__all__ = ["Summary"]
+
+
+class Summary:
+    """The entries of ``summary.json`` as attributes; a run does not have all of them."""
+
+    cycles: float
+    """Cycles that the insert has gone through."""
+    mass_loss_mg: float
+    """Mass worn. In mg."""
+    volume_loss_mm3: float
+    """Volume worn, from depth. In mm3."""
+    volume_loss_mesh_mm3: float
+    """Volume worn, from the mesh. In mm3."""
+    max_depth_mm: float
+    """Wear depth at the deepest node. In mm."""
+    wear_over_conventional: float
+    """Wear of cross-linked over conventional polyethylene."""
+    peak_pressure_mpa: float
+    """Highest contact pressure. In MPa."""
+    peak_pressure_cycle: float
+    """Cycles done before the cycle with the peak pressure."""
+    first_cycle_peak_pressure_mpa: float
+    """Peak pressure of the first cycle. In MPa."""
+    last_cycle_peak_pressure_mpa: float
+    """Peak pressure of the last cycle solved. In MPa."""
+    pressure_law_peak_error_percent: float
+    """Error of the peak pressure by the pressure law. In %."""
+    peak_contact_area_mm2: float
+    """Largest contact area. In mm2."""
+    peak_contact_area_cycle: float
+    """Cycles done before the cycle with the largest contact area."""
+    first_cycle_contact_area_mm2: float
+    """Largest contact area of the first cycle. In mm2."""
+    last_cycle_contact_area_mm2: float
+    """Largest contact area of the last cycle solved. In mm2."""
+    last_cycle: float
+    """Cycles done before the last cycle solved."""
+    peak_von_mises_mpa: float
+    """Largest von Mises stress. In MPa."""
+    peak_von_mises_depth_mm: float
+    """Depth of the largest von Mises stress. In mm."""
+    peak_max_shear_mpa: float
+    """Largest shear stress. In MPa."""
+    peak_max_shear_depth_mm: float
+    """Depth of the largest shear stress. In mm."""
+    peak_max_shear_cycle: float
+    """Cycles done before the cycle with the largest shear stress."""
+    peak_max_shear_percent: float
+    """Instant of the largest shear stress in its cycle. In %."""
+    first_cycle_max_shear_mpa: float
+    """Largest shear stress of the first cycle. In MPa."""
+    first_cycle_max_shear_depth_mm: float
+    """Depth of the largest shear stress of the first cycle. In mm."""
+    max_permanent_set_mm: float
+    """Largest permanent set. In mm."""
+    first_cycle_permanent_set_mm: float
+    """Largest permanent set of the first cycle. In mm."""
+    max_plastic_strain: float
+    """Largest accumulated plastic strain."""
+    yielded_elements: int
+    """Elements that have yielded."""
+    ratcheting_elements: int
+    """Elements that still yield in every cycle."""
+    backside_lift_mm: float
+    """Largest lift of the backside off the tray. In mm."""
+    backside_lifted_percent: float
+    """Largest part of the backside that lifts at once. In %."""
+    backside_slip_mm: float
+    """Longest slip of the backside in a cycle. In mm."""
+    backside_lock_force_n: float
+    """Largest force on the lock. In N."""
+    backside_lock_moment_nm: float
+    """Largest moment on the lock. In N m."""
+    ap_range_mm: float
+    """Range of AP in the first cycle. In mm."""
+    ie_range_deg: float
+    """Range of IE in the first cycle. In degrees."""
+    medial_load_share: float
+    """Medial part of the axial force."""
+    updates: int
+    """Updates of the geometry."""
+    increments: int
+    """Increments a cycle."""
+    cycles_solved: float
+    """Cycles solved in all."""
+    cycles_not_repeating: int
+    """Updates whose motion did not repeat itself within the tolerance."""
+    newton_iterations: int
+    """Newton iterations in all."""
+    contact_evaluations: int
+    """Contact evaluations in all."""
+    newton_iterations_per_cycle: float
+    """Newton iterations of a cycle solved, on average."""
+    contact_evaluations_per_cycle: float
+    """Contact evaluations of a cycle solved, on average."""
+    step_halvings: int
+    """Steps in time that were halved."""
+    explicit_steps: int
+    """Steps of central differences."""
+    added_inertia: float
+    """Largest inertia added by the explicit integrator."""
+    hexahedra: int
+    """Hexahedra of the insert's mesh."""
+    articulating_nodes: int
+    """Nodes of the articulating surface."""
+    worst_quality: float
+    """Smallest scaled Jacobian of any update's mesh."""
+    wall_s: float
+    """Time of the solver. In s."""
+    plausibility: list[dict[str, Any]]
+    """Reasons to doubt the numbers, the worst first, each with ``message`` and ``advice``."""
+    error: dict[str, Any] | None
+    """Estimated discretisation errors by their parts; null if the case does not ask for them."""
+    wear_laws: list[dict[str, Any]]
+    """Wear by every law for the same histories, that of the run first; only that one moved the surface."""
+    activities: list[dict[str, Any]]
+    """Motion, loads and wear of each of several activities."""
+    creep: dict[str, Any]
+    """Creep of an insert that creeps, and its separation from wear."""
+    neutral_pose: dict[str, Any]
+    """Pose of the settled femur in the insert frame: there AP, ML and IS read zero."""
+    warnings: list[str]
+    """Corrections and doubts of the input."""
+    version: str
+    """Version of condyle."""
+    inputs_blake3: str
+    """Hash of case and meshes."""
