@@ -60,6 +60,10 @@ pub fn exception(class: &str, arguments: impl for<'py> PyCallArgs<'py>) -> PyErr
 /// The cause, then remedy, key and file, then line and column of a problem.
 fn fields(problem: &Problem) -> (String, [Option<String>; 3], Option<(usize, usize)>) {
     let file = problem.file().map(str::to_owned);
-    let texts = [problem.reason.advice(), problem.key(), file];
+    let texts = [
+        problem.reason.advice(),
+        problem.key().map(str::to_owned),
+        file,
+    ];
     (problem.to_string(), texts, problem.line_and_column())
 }

@@ -147,7 +147,7 @@ fn message(why: NotBorne) -> String {
         ),
         NotBorne::Tipped { moved_mm } => format!(
             "the femur tips the insert off its tray at this pose: its backside finds no rest, and had moved by {moved_mm:.2} \
-             mm; lift the femur, or take [contact] backside = \"bonded\""
+             mm; lift the femur, or take [contact.deformable] backside = \"bonded\""
         ),
     }
 }

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 
 use condyle_case::case::Assignment;
-use condyle_case::config::Variants;
 use condyle_case::study::Study;
 use condyle_results::catalogue;
 use condyle_study::{

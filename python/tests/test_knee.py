@@ -74,7 +74,7 @@ def test_what_is_no_pose_is_refused(knee: condyle.Knee) -> None:
 
 def test_an_insert_that_yields_or_rests_does_so_under_the_load() -> None:
     def force_n(depth_mm: float, **contact: object) -> float:
-        made = {**SPHERE_ON_FLAT, "contact": {"friction": 0.0, "model": "deformable", **contact}}
+        made = {**SPHERE_ON_FLAT, "contact": {"friction": 0.0, "model": "deformable", "deformable": contact}}
         insert = {"shape": "flat", "edge_mm": 1.5, "layers": 4, "thickness_mm": 10.0}
         knee = condyle.Knee({**made, "insert": insert})
         return float(-knee.contact(np.eye(3), [0.0, 24.0 - depth_mm, 0.0]).force_n[1])

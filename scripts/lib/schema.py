@@ -16,10 +16,10 @@ WRONG = [
     ("[contact]\nmu = 0.05", "contact"),
     ('[contact]\nfriction = "low"', "contact.friction"),
     ("[contact]\nfriction = 7.0", "contact.friction"),
-    ('[contact]\nlaw = "lineer"', "contact.law"),
-    ("[contact]\ntable = [[0.0, 0.0], [1.0, 1.0]]", "contact"),
-    ('[contact]\nlaw = "tabulated"', "contact"),
-    ('[contact]\nlaw = "tabulated"\ntable = [[0.0, 0.0, 1.0]]', "contact.table.0"),
+    ('[contact.foundation]\nlaw = "lineer"', "contact.foundation.law"),
+    ("[contact.foundation]\ntable = [[0.0, 0.0], [1.0, 1.0]]", "contact.foundation"),
+    ('[contact.foundation]\nlaw = "tabulated"', "contact.foundation"),
+    ('[contact.foundation]\nlaw = "tabulated"\ntable = [[0.0, 0.0, 1.0]]', "contact.foundation.table.0"),
     ('[insert]\nshape = "mesh"', "insert"),
     ("[insert]\nradius_mm = 24.0", "insert"),
     ("[insert]\nlayers = 2.5", "insert.layers"),
@@ -58,7 +58,7 @@ RIGHT = [
     "[insert]\nlayers = 2.0",
     "[machine]\nie_torque_sign = -1.0",
     "[machine.flexion]\nknots_deg = [[0, 0], [50, 60]]\nscale = 0.5",
-    '[contact]\nlaw = "tabulated"\ntable = [[0.0, 0.0], [1.0, 10.0]]',
+    '[contact.foundation]\nlaw = "tabulated"\ntable = [[0.0, 0.0], [1.0, 10.0]]',
     '[insert]\nshape = "flat"\nthickness_mm = 8.0\n[femur]\nshape = "sphere"\nradius_mm = 20\n[machine.freedoms.vv]\ndrive = "locked"',
     '[march]\nupdate = "auto"\ndepth_tolerance_fraction = 0.1',
     '[creep]\nlaw = "lee-pienkowski"\nrecovering_fraction = 0.4',
@@ -96,7 +96,7 @@ def beyond(condyle: str, case: str, path: str, kind: dict) -> bool:
     chosen = [f"--set={table}." + words[0].replace(" ", "")] if words else []
     if path.startswith(("machine.ap_motion", "machine.ie_motion")):
         chosen.append("--set=machine.preset=stanmore-displacement")
-    if any(word.startswith(("--set=contact.plasticity", "--set=contact.backside")) for word in chosen):
+    if path.startswith("contact.deformable."):
         chosen.append("--set=contact.model=deformable")
     value = int(kind["maximum"]) + 1 if kind["type"] == "integer" else kind["maximum"] * 1.01 + 1e-9
     code, message = checked(condyle, [case, *chosen, f"--set={path}={value}"])

@@ -30,7 +30,7 @@ pub enum Command {
     /// Print a JSON schema of case files, with which an editor completes their keys and underlines what is wrong; or of
     /// results.
     Schema(Schema),
-    /// Write a case as an Abaqus input file, to check condyle against Abaqus.
+    /// Write the contact of a deformable insert at one pose as an input file of CalculiX and Abaqus.
     Export(Export),
     /// Write the report page of a results folder again; of several, one page with all of them side by side.
     Report(Report),
@@ -128,18 +128,12 @@ pub struct New {
 pub struct Export {
     /// The case file.
     pub case: PathBuf,
-    /// The Abaqus input file to write; it must not be there yet.
+    /// The input file to write; it must not exist yet.
     #[arg(short, long, value_name = "FILE.inp")]
     pub out: PathBuf,
-    /// An elastic insert under hard contact, rather than a rigid one under the pressure law.
-    #[arg(long)]
-    pub deformable: bool,
-    /// For Abaqus/Explicit rather than Abaqus/Standard.
-    #[arg(long)]
-    pub explicit: bool,
-    /// The bodies alone of a case with a deformable insert, for CalculiX and Abaqus: the femur pressed to where it is at so many percent of the first cycle.
-    #[arg(long, value_name = "PERCENT", conflicts_with_all = ["deformable", "explicit"], value_parser = percent)]
-    pub pressed_at: Option<f64>,
+    /// Place in the first cycle, %: the femur is pressed to the pose that it has there.
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    pub pressed_at: f64,
     /// Threads for the one-time work on a mesh; the file is the same on any number.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: u16,

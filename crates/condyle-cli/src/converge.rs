@@ -76,7 +76,7 @@ fn show(on_event: &ConvergeHappening<'_>, told: &Mutex<BTreeSet<String>>) {
     match on_event {
         ConvergeHappening::Ran(run, summary) => tell(format_args!(
             "{} = {}: {:.3} mg worn, {:.4} mm deep",
-            run.number.path(),
+            run.number.key(),
             run.number.text(),
             summary[&catalogue::MASS_LOSS_MG],
             summary[&catalogue::MAX_DEPTH_MM]

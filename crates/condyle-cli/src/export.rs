@@ -3,8 +3,8 @@
 use std::{fs::File, io::Write, process::ExitCode};
 
 use condyle_case::{
-    abaqus::{AbaqusOptions, ExportError, PressedCase, write_abaqus},
-    case::{BuildWarning, Case},
+    abaqus::{ExportError, PressedCase},
+    case::Case,
 };
 use condyle_lab::RunError;
 
@@ -16,33 +16,19 @@ pub fn export(arguments: &Export) -> ExitCode {
         Err(error) => return exit::fail_run(&error.into()),
     };
     let mut text = Vec::new();
-    match write(arguments, &case, &mut text) {
+    let written = PressedCase::new(&case, usize::from(arguments.threads)).and_then(|pressed| {
+        pressed.write(arguments.pressed_at, &mut text)?;
+        Ok(pressed.warnings)
+    });
+    match written {
         Ok(warnings) => {
-            warnings
-                .iter()
-                .for_each(|warning| tell(format_args!("warning: {warning}")));
+            for warning in &warnings {
+                tell(format_args!("warning: {warning}"));
+            }
             save(arguments, &text)
         }
         Err(error) => fail(&case, error),
     }
-}
-
-fn write(
-    arguments: &Export,
-    case: &Case,
-    text: &mut Vec<u8>,
-) -> Result<Vec<BuildWarning>, ExportError> {
-    let threads = usize::from(arguments.threads);
-    if let Some(percent) = arguments.pressed_at {
-        let pressed = PressedCase::new(case, threads)?;
-        pressed.write(percent, text)?;
-        return Ok(pressed.warnings);
-    }
-    let options = AbaqusOptions {
-        deformable: arguments.deformable,
-        explicit: arguments.explicit,
-    };
-    write_abaqus(case, options, threads, text)
 }
 
 /// Fails as a run of the same case would.
@@ -60,16 +46,13 @@ fn fail(case: &Case, error: ExportError) -> ExitCode {
             source: *source,
             out: None,
         },
-        ExportError::Write { .. }
-        | ExportError::Deformable
-        | ExportError::Foundation
-        | ExportError::Resting
-        | ExportError::KinematicHardening { .. }
-        | ExportError::Apart { .. } => return exit::fail(error, exit::BAD_INPUT),
+        ExportError::Write { .. } | ExportError::Unsupported { .. } | ExportError::Apart { .. } => {
+            return exit::fail(error, exit::BAD_INPUT);
+        }
     })
 }
 
-/// Writes a new file; one that is there already may hold somebody's changes.
+/// Writes a new file; an existing one is kept, because a user may have edited it.
 fn save(arguments: &Export, text: &[u8]) -> ExitCode {
     let path = &arguments.out;
     let written = File::create_new(path).and_then(|mut file| file.write_all(text));

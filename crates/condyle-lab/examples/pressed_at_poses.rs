@@ -25,7 +25,7 @@ use condyle::{
 };
 use condyle_case::{
     abaqus::PressedCase,
-    case::{Case, PlasticityChoice},
+    case::{Case, ContactModelChoice, PlasticityChoice},
 };
 
 /// Increments of pressing.
@@ -74,11 +74,13 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The case with an insert that does not yield, if its own does.
 fn unyielding(case: &Case) -> Option<Case> {
-    if case.contact.plasticity == PlasticityChoice::None {
+    let mut model = case.contact.deformable()?.clone();
+    if model.plasticity == PlasticityChoice::None {
         return None;
     }
+    model.plasticity = PlasticityChoice::None;
     let mut elastic = case.clone();
-    elastic.contact.plasticity = PlasticityChoice::None;
+    elastic.contact.model = ContactModelChoice::Deformable(model);
     Some(elastic)
 }
 

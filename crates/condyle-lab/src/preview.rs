@@ -16,7 +16,7 @@ use condyle::{
 use condyle_case::{
     cache::Cache,
     case::{Assignment, Case, FEMUR_TRIANGLES, Side, Update},
-    config::{DataFile, Variants},
+    config::DataFile,
 };
 use condyle_report::bodies::{BodiesPicture, BodySurface, MachineAxes, bodies_svg};
 use serde::Serialize;
@@ -143,7 +143,7 @@ impl FemurFacts {
         let file = case.femur.file().map(DataFile::name);
         let (low, high) = mesh.bounds();
         Self {
-            shape: case.femur.word(),
+            shape: case.femur.shape.word(),
             size_mm: (high - low).into(),
             triangles: file.as_ref().map(|_| mesh.triangles.len()),
             defects: defects(file.as_deref(), warnings),
@@ -186,7 +186,7 @@ impl InsertFacts {
         let dishes = Dishes::of(&places);
         let thickness = |dish: Vec3| least_around(&dish, &places, insert.thickness_mm());
         Self {
-            shape: case.insert.word(),
+            shape: case.insert.shape.word(),
             size_mm: (high - low).into(),
             triangles: case.insert_triangle_count(),
             defects: defects(file.as_deref(), warnings),

@@ -221,15 +221,15 @@ fn verify_the_estimated_errors_of_the_default_case() {
         |parts| parts.slip_tolerance,
         2.0,
         |case| {
-            case.contact.friction.slip_tolerance_mm_per_s /= 2.0;
+            case.contact.slip_tolerance_mm_per_s /= 2.0;
         },
     );
     stated.assert_near(
         "mesh",
         |parts| parts.mesh,
         4.0 / 3.0,
-        |case| match &mut case.insert {
-            condyle_case::case::Insert::Generic(insert) => insert.edge_mm /= 2.0,
+        |case| match &mut case.insert.shape {
+            condyle_case::case::InsertShape::Generic(insert) => insert.edge_mm /= 2.0,
             other => panic!("{other:?}"),
         },
     );

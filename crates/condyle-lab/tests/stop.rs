@@ -89,8 +89,7 @@ fn the_frames_of_the_first_and_last_cycle_stopped_at_any_increment() {
 
 #[test]
 fn an_insert_that_rests_on_its_tray_stopped_at_any_increment() {
-    let contact =
-        "[contact]\nmodel = \"deformable\"\nbackside = \"resting\"\nbackside_spacing_mm = 9.0\n";
+    let contact = "[contact]\nmodel = \"deformable\"\n[contact.deformable]\nbackside = \"resting\"\nbackside_spacing_mm = 9.0\n";
     assert_same_bytes_however_stopped(&format!("{CASE}{contact}"));
 }
 

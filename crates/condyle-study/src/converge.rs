@@ -16,7 +16,7 @@ use std::{
 
 use condyle_case::{
     cache::Cache,
-    case::{Case, Override, OverrideError},
+    case::{Assignment, AssignmentError, Case, ChangeError},
     config::Problems,
 };
 use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, run_case};
@@ -170,7 +170,7 @@ pub fn converge(
     for (run, outcome) in plan.runs.iter().zip(run_all(plan, options, listener)) {
         match outcome {
             Ok(Some(summary)) => points.push(Point {
-                value: run.number.value(),
+                value: run.value,
                 text: run.number.text().to_owned(),
                 folder: folder_name(run),
                 summary: *summary,
@@ -248,9 +248,9 @@ fn holds_a_run(folder: &Path) -> bool {
 
 /// The last word of the key and the value, such as `updates-10`.
 fn folder_name(run: &Planned) -> String {
-    let path = run.number.path();
+    let path = run.number.key();
     let key = path.rsplit('.').next().unwrap_or(path);
-    format!("{key}-{}", run.number.value())
+    format!("{key}-{}", run.value)
 }
 
 /// Why a study of convergence is not done.
@@ -261,7 +261,7 @@ pub enum ConvergeError {
     Case(#[from] Problems),
     /// A key or a value that is none.
     #[error(transparent)]
-    Override(#[from] OverrideError),
+    Assignment(#[from] AssignmentError),
     /// Not written as a key with values.
     #[error("`{written}` is no key with values; write them as `updates=1,2,5,10`")]
     NotKeyAndValues {
@@ -320,7 +320,9 @@ pub struct ConvergePlan {
 #[derive(Clone, Debug)]
 pub struct Planned {
     /// The number.
-    pub number: Override,
+    pub number: Assignment,
+    /// Its value.
+    pub value: f64,
     /// The case with it.
     pub case: Case,
 }
@@ -339,11 +341,20 @@ impl ConvergePlan {
         let path = case.path_of_number(key)?;
         let mut runs = Vec::new();
         for text in values {
-            let number = Override::new(&path, text)?;
-            let mut case = Case::read_with(case_path, &number)?;
+            let number = Assignment::number(&path, text)?;
+            let value = number.as_number().unwrap_or_default();
+            let changed = Case::read_changed(case_path, std::slice::from_ref(&number));
+            let mut case = changed.map_err(|error| match error {
+                ChangeError::Case(problems) => ConvergeError::from(problems),
+                ChangeError::Assignment(error) => error.into(),
+            })?;
             // The study itself shows what its runs would otherwise estimate one by one.
             case.accuracy.estimate = false;
-            runs.push(Planned { number, case });
+            runs.push(Planned {
+                number,
+                value,
+                case,
+            });
         }
         let is_whole = runs[0].case.is_whole_number(&path);
         sort(&mut runs, is_whole);
@@ -411,7 +422,7 @@ fn key_and_values(written: &str) -> Result<(&str, Vec<&str>), ConvergeError> {
 }
 
 fn sort(runs: &mut [Planned], is_whole: bool) {
-    let value = |run: &Planned| run.number.value();
+    let value = |run: &Planned| run.value;
     runs.sort_by(|one, other| {
         if is_whole {
             value(one).total_cmp(&value(other))
@@ -423,8 +434,8 @@ fn sort(runs: &mut [Planned], is_whole: bool) {
 
 fn twice(runs: &[Planned]) -> Option<f64> {
     let values = runs.windows(2);
-    let mut same = values.filter(|pair| pair[0].number.value() == pair[1].number.value());
-    Some(same.next()?[0].number.value())
+    let mut same = values.filter(|pair| pair[0].value == pair[1].value);
+    Some(same.next()?[0].value)
 }
 
 /// The least that a plot shows, as a share of the finest value: less is the same to a reader.

@@ -4,7 +4,7 @@ use std::{fmt, path::Path, str::FromStr};
 
 use condyle_case::{
     case::{Assignment, Case},
-    config::{Level, Variants},
+    config::Level,
     study::{Design, Input, Study, Variation},
 };
 use condyle_lab::RunError;

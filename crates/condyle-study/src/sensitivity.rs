@@ -187,7 +187,7 @@ const ASSUMPTIONS: &[Assumption] = &[
     },
     Assumption {
         name: "pressure law",
-        keys: &["contact.law"],
+        keys: &["contact.foundation.law"],
         tried: Instead(&["linear", "logarithmic", "softening"]),
     },
 ];

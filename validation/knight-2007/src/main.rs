@@ -36,7 +36,7 @@ fn main() -> ExitCode {
 
 fn report(on_event: &ConvergeHappening<'_>) -> ControlFlow<()> {
     if let ConvergeHappening::Ran(run, summary) = on_event {
-        let (path, text) = (run.number.path(), run.number.text());
+        let (path, text) = (run.number.key(), run.number.text());
         eprintln!(
             "{path} = {text}: {:.3} mg worn",
             summary[&catalogue::MASS_LOSS_MG]

@@ -1,4 +1,4 @@
-//! The part of the femur that may touch, as facets fine enough to be taken for smooth.
+//! The part of the femur that may touch, as facets that approximate its smooth surface.
 
 use std::collections::HashSet;
 
@@ -8,18 +8,17 @@ use condyle::spatial::Pose;
 
 use crate::case::in_four;
 
-/// Nodes of the insert as near to the femur as this may touch it, mm.
+/// Gap below which a node of the insert may come into contact, mm.
 const NEAR_MM: f64 = 0.1;
-/// Edge of the cells by which triangles are told to be near such nodes, mm.
+/// Edge of the cells by which triangles near such nodes are found, mm.
 const CELL_MM: f64 = 1.0;
-/// Edges are halved until they are this short, mm: between corners on a radius of 20 mm such a facet lies 0.1
-/// micrometres too deep on average.
+/// Edges are halved until they are this short, mm: on a radius of 20 mm such a facet then lies 0.1 micrometres below the
+/// surface on average.
 const LONGEST_EDGE_MM: f64 = 0.25;
-/// So often at most.
 const MAX_HALVINGS: usize = 3;
 
-/// Triangles that are near `nodes` (insert frame) with the femur at any of `poses`, their corners on `femur`;
-/// everything of them is in the femoral frame, anticlockwise seen from outside.
+/// Returns the triangles near `nodes` (insert frame) with the femur at any of `poses`, refined and moved onto `femur`; in
+/// the femoral frame, anticlockwise seen from outside.
 pub(super) fn facets(
     femur: &FemoralSurface,
     triangles: &TriangleMesh,
@@ -36,13 +35,14 @@ pub(super) fn facets(
     facets.mapped(|corner| on_surface(femur, corner))
 }
 
-/// The same corners `thickness_mm` inside.
+/// Returns the same corners moved inward by `thickness_mm`.
 pub(super) fn inside(femur: &FemoralSurface, corners: &[Vec3], thickness_mm: f64) -> Vec<Vec3> {
     let inward = |corner: &Vec3| corner - thickness_mm * femur.sample(corner, 0.0).gap_gradient;
     corners.iter().map(inward).collect()
 }
 
 fn on_surface(femur: &FemoralSurface, point: &Vec3) -> Vec3 {
+    // The gap is a distance only near the surface, so one projection along its gradient is not enough.
     const ROUNDS: usize = 3;
     let nearer = |point: Vec3, _| {
         let sample = femur.sample(&point, 0.0);
@@ -57,7 +57,7 @@ fn cell(point: &Vec3) -> Cell {
     [point.x, point.y, point.z].map(|mm| (mm / CELL_MM).floor() as i64)
 }
 
-/// Cells of the femoral frame in which the femur is near a node, and those around them.
+/// Returns the cells of the femoral frame in which the femur is near a node, and their neighbours.
 fn cells(femur: &FemoralSurface, nodes: &[Vec3], poses: &[Pose]) -> HashSet<Cell> {
     let seen = poses
         .iter()
@@ -73,7 +73,7 @@ fn cells(femur: &FemoralSurface, nodes: &[Vec3], poses: &[Pose]) -> HashSet<Cell
     cells
 }
 
-/// The triangles with a corner in `cells`, and no other vertices.
+/// Returns the triangles with a corner in `cells`, without unused vertices.
 fn near(mesh: &TriangleMesh, cells: &HashSet<Cell>) -> TriangleMesh {
     let is_near: Vec<bool> = mesh
         .vertices

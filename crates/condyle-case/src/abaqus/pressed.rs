@@ -1,4 +1,4 @@
-//! A rigid femur pressed on the deformable insert, bodies alone: a file that CalculiX and Abaqus read.
+//! The input file of a rigid femur pressed on the deformable insert.
 
 use std::io::{self, Write};
 
@@ -9,73 +9,70 @@ use condyle::spatial::Pose;
 use condyle_fem::{Elastic, Hardening};
 
 use super::facets::{facets, inside};
-use super::lift::lift;
-use super::model::{after, in_mesh};
-use super::names;
-use condyle_mesh::formats::{InpWriter, PressureOverclosure, element_faces};
+use condyle_mesh::formats::{InpWriter, element_faces};
 
-/// Pressure over overlap of the contact, MPa/mm: nodes that press overlap by some hundredths of a micrometre, and a
-/// tenth of this changes the force by a thousandth.
+/// Contact stiffness, MPa/mm: nodes under pressure overlap by some hundredths of a micrometre; a tenth of this stiffness
+/// changes the force by a thousandth.
 const STIFFNESS_MPA_PER_MM: f64 = 1e6;
-/// Friction over slip while a node sticks, MPa/mm: after some hundredths of a millimetre all slide.
+/// Stiffness of sticking friction, MPa/mm: nodes slide after some hundredths of a millimetre.
 const STICK_MPA_PER_MM: f64 = 100.0;
-/// Where CalculiX is to change the friction, there must have been some.
-const AS_GOOD_AS_NONE: f64 = 1e-9;
-/// Smallest gap before the femur comes down, mm.
+/// CalculiX can change a coefficient of friction in a later step only if there was one before.
+const NEGLIGIBLE_FRICTION: f64 = 1e-9;
+/// Smallest gap before the femur descends, mm.
 const CLEARANCE_MM: f64 = 1e-3;
-/// Thickness of the rigid wedges, mm; it is of no matter.
+/// Thickness of the rigid wedges, mm; it has no effect, because all their nodes are prescribed.
 const WEDGE_MM: f64 = 0.5;
-/// Most of a step in an increment: of pressing an elastic insert, one that yields, and of sliding.
-const ELASTIC: f64 = 0.5;
-const YIELDING: f64 = 0.25;
-const SLIDING: f64 = 0.1;
-/// The last way of a slide, mm, and most of that step in an increment. CalculiX may look for the facet over a node once an
-/// increment, before the femur moves in it: what it finds is then as wrong as the femur's normal turns over an increment.
+/// Elastic constants of the prescribed wedges; they have no effect, but the format requires a material.
+const METAL_MPA: f64 = 210_000.0;
+const METAL_RATIO: f64 = 0.3;
+/// Largest share of a step in one increment while an elastic insert is pressed, a yielding one is pressed, and while the
+/// femur slides.
+const ELASTIC_SHARE: f64 = 0.5;
+const YIELDING_SHARE: f64 = 0.25;
+const SLIDING_SHARE: f64 = 0.1;
+/// Length of the last step of a slide, mm, and its largest share in one increment. CalculiX may search the facet over a
+/// node once per increment, before the femur moves: the error of the normal is then its change over that increment.
 const LAST_MM: f64 = 0.02;
-const ARRIVING: f64 = 0.5;
-
-/// Most increments of a step.
+const LAST_SHARE: f64 = 0.5;
+const MIN_SHARE: f64 = 1e-6;
 const MAX_INCREMENTS: u32 = 1000;
 
-/// How far the pressed femur slides on, and the friction while it slides.
+const HEAD: &str = "\nUNITS mm, N, MPa.
+FRAME that of the insert: x anterior, y superior, z lateral of a right knee.
+MODEL small displacements, as condyle's deformable insert: the steps have no NLGEOM. The insert is bonded
+by its backside; the femur is rigid and prescribed. The reaction is the total force on BACKSIDE, the pressure
+that at the nodes of ARTICULATING.";
+
+/// A slide of the pressed femur.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slide {
-    /// Way in the insert frame, mm.
+    /// Displacement in the insert frame, mm.
     pub by_mm: Vec3,
-    /// Coulomb's coefficient.
+    /// Coulomb's coefficient during the slide.
     pub friction: f64,
 }
 
-/// A femur that is pressed straight down on an insert to a pose, without friction unless it slides on from there.
+/// A femur pressed straight down on an insert without friction, then slid if `slide` is given.
 ///
-/// The insert is bonded by its backside. Everything is small displacements, as in [`condyle::contact::Deformable`].
+/// The insert is bonded by its backside, and displacements are small, as in [`condyle::contact::Deformable`].
 #[derive(Clone, Copy)]
 pub struct Pressed<'a> {
-    /// A line that says what it is.
+    /// The file's title, one line.
     pub title: &'a str,
-    /// More lines for the head of the file.
+    /// Further lines of comment at the head of the file.
     pub note: &'a str,
     /// The bodies.
     pub bodies: Bodies<'a>,
-    /// The femur, coarsely; in its own frame, anticlockwise seen from outside.
+    /// A coarse mesh of the femur in its own frame, anticlockwise seen from outside.
     pub triangles: &'a TriangleMesh,
     /// The insert's elasticity, MPa.
     pub elastic: Elastic,
-    /// How its yield stress rises, MPa, if it yields. Its kinematic modulus is not written.
+    /// The insert's hardening, MPa, if it yields. Its kinematic modulus is not written.
     pub hardening: Option<&'a Hardening>,
-    /// Where the femur ends pressed, in the insert frame.
+    /// The femur's pose at the end of the descent, in the insert frame.
     pub pose: Pose,
-    /// What it does then.
+    /// The slide after the descent.
     pub slide: Option<Slide>,
-}
-
-/// The first labels of the bodies.
-struct Labels {
-    hexahedron: u32,
-    wedge: u32,
-    node: u32,
-    outer: u32,
-    inner: u32,
 }
 
 impl Pressed<'_> {
@@ -88,79 +85,72 @@ impl Pressed<'_> {
         inp.heading(self.title)?;
         inp.comment(self.note)?;
         inp.comment(HEAD)?;
-        let labels = self.bodies(lift_mm, inp)?;
-        self.insert_surfaces(&labels, inp)?;
+        self.insert(inp)?;
+        self.femur(lift_mm, inp)?;
         self.materials(inp)?;
         self.contact(inp)?;
-        inp.comment("\nSTEP PRESSED: the femur comes straight down from where nothing touches.")?;
-        let press = if self.hardening.is_some() {
-            YIELDING
-        } else {
-            ELASTIC
-        };
+        inp.comment("\nSTEP PRESSED: the femur descends from a pose without contact.")?;
         let down = Vec3::new(0.0, -lift_mm, 0.0);
-        begin_step("PRESSED", inp)?;
-        self.end_step(press, &down, inp)?;
-        match &self.slide {
-            Some(slide) => self.slide(slide, &down, inp),
-            None => Ok(()),
-        }
-    }
-
-    /// Steps in which the femur, pressed by `down`, slides on.
-    fn slide<W: Write>(
-        &self,
-        slide: &Slide,
-        down: &Vec3,
-        inp: &mut InpWriter<W>,
-    ) -> io::Result<()> {
-        inp.comment("\nSTEP SLIDING: it slides on,")?;
-        begin_step("SLIDING", inp)?;
-        inp.keyword(&format!("*CHANGE FRICTION, INTERACTION={}", names::BEARING))?;
+        let share = match self.hardening {
+            Some(_) => YIELDING_SHARE,
+            None => ELASTIC_SHARE,
+        };
+        inp.keyword(&begin_step("PRESSED"))?;
+        self.finish_step(share, &down, inp)?;
+        let Some(slide) = &self.slide else {
+            return Ok(());
+        };
+        inp.comment("\nSTEP SLIDING: it slides,")?;
+        inp.keyword(&begin_step("SLIDING"))?;
+        inp.keyword("*CHANGE FRICTION, INTERACTION=BEARING")?;
         friction(slide.friction, inp)?;
         let way_mm = slide.by_mm.norm();
         let nearly = (way_mm - LAST_MM).max(0.0) / way_mm;
-        self.end_step(SLIDING, &(down + slide.by_mm * nearly), inp)?;
-        inp.comment("\nSTEP SLID: and arrives, in short increments.")?;
-        begin_step("SLID", inp)?;
-        self.end_step(ARRIVING, &(down + slide.by_mm), inp)
+        self.finish_step(SLIDING_SHARE, &(down + slide.by_mm * nearly), inp)?;
+        inp.comment("\nSTEP SLID: and arrives in short increments.")?;
+        inp.keyword(&begin_step("SLID"))?;
+        self.finish_step(LAST_SHARE, &(down + slide.by_mm), inp)
     }
 
-    /// The rest of a step in which the femur goes to `to_mm` from where the file begins, in increments of `most` of it.
-    fn end_step<W: Write>(
-        &self,
-        most: f64,
-        to_mm: &Vec3,
-        inp: &mut InpWriter<W>,
-    ) -> io::Result<()> {
-        lead(most, to_mm, inp)?;
-        if self.hardening.is_some() {
-            inp.keyword(&format!(
-                "*EL PRINT, ELSET={}, FREQUENCY={}",
-                names::INSERT,
-                MAX_INCREMENTS
-            ))?;
-            inp.line("PEEQ")?;
-        }
-        inp.end_step()
-    }
-
-    /// How far above the pose nothing touches.
+    /// Returns the height above the pose at which no gap is smaller than the clearance.
+    ///
+    /// A gap grows no faster than the femur rises, so the height is approached from below.
     fn lift_mm(&self) -> f64 {
+        const MAX_STEPS: usize = 100;
+        const MIN_STEP_MM: f64 = 1e-4;
         let Bodies { femur, surface, .. } = self.bodies;
         let mut lift_mm = 0.0;
-        lift(CLEARANCE_MM, |way_mm| {
-            lift_mm += way_mm;
-            let pose = raised(&self.pose, lift_mm);
+        for _ in 0..MAX_STEPS {
+            let pose = shifted(&self.pose, Vec3::new(0.0, lift_mm, 0.0));
             let gaps = surface.positions.iter();
             let gaps = gaps.map(|node| femur.gap_mm(&pose.to_femur(node)));
-            gaps.fold(f64::INFINITY, f64::min)
-        });
+            let nearest_mm = gaps.fold(f64::INFINITY, f64::min);
+            if nearest_mm >= CLEARANCE_MM {
+                break;
+            }
+            lift_mm += (CLEARANCE_MM - nearest_mm).max(MIN_STEP_MM);
+        }
         lift_mm
     }
 
-    /// Nodes and elements of both, and the femur's surface.
-    fn bodies<W: Write>(&self, lift_mm: f64, inp: &mut InpWriter<W>) -> io::Result<Labels> {
+    fn insert<W: Write>(&self, inp: &mut InpWriter<W>) -> io::Result<()> {
+        let insert = self.bodies.insert;
+        let mesh = insert.mesh();
+        inp.comment(&format!(
+            "\nINSERT: {} hexahedra with incompatible modes.",
+            mesh.hexes.len()
+        ))?;
+        inp.nodes(1, &mesh.nodes, "INSERT-NODES")?;
+        let corners: Vec<[u32; 8]> = mesh.hexes.iter().map(|hex| hex.map(|at| at + 1)).collect();
+        inp.elements("C3D8I", 1, &corners, "INSERT")?;
+        inp.node_set("BACKSIDE", insert.backside_nodes().iter().map(|at| at + 1))?;
+        let in_mesh = |face: &[u32; 4]| face.map(|at| insert.surface_nodes()[at as usize]);
+        let quads: Vec<[u32; 4]> = insert.surface_faces().iter().map(in_mesh).collect();
+        inp.surface_of_faces("ARTICULATING", &element_faces(mesh, &quads, 1))
+    }
+
+    /// Writes the part of the femur that may touch, raised by `lift_mm`.
+    fn femur<W: Write>(&self, lift_mm: f64, inp: &mut InpWriter<W>) -> io::Result<()> {
         let Bodies {
             femur,
             insert,
@@ -169,67 +159,38 @@ impl Pressed<'_> {
         let mut poses = vec![self.pose];
         poses.extend(self.slide.map(|slide| shifted(&self.pose, slide.by_mm)));
         let facets = facets(femur, self.triangles, &surface.positions, &poses);
-        let mesh = insert.mesh();
-        let outer = after(1, mesh.nodes.len());
-        let labels = Labels {
-            hexahedron: 1,
-            wedge: after(1, mesh.hexes.len()),
-            node: 1,
-            outer,
-            inner: after(outer, facets.vertices.len()),
-        };
+        let outer = after(1, insert.mesh().nodes.len());
+        let inner = after(outer, facets.vertices.len());
+        let first_wedge = after(1, insert.mesh().hexes.len());
         inp.comment(&format!(
-            "\nINSERT: {} hexahedra with incompatible modes.",
-            mesh.hexes.len()
-        ))?;
-        inp.nodes(labels.node, &mesh.nodes, names::INSERT_NODES)?;
-        inp.hexahedra(
-            "C3D8I",
-            labels.hexahedron,
-            &mesh.hexes,
-            labels.node,
-            names::INSERT,
-        )?;
-        inp.comment(&format!(
-            "\nFEMUR: its part that may touch as {} wedges, led by all their nodes.",
+            "\nFEMUR: its part that may touch as {} wedges with all nodes prescribed.",
             facets.triangles.len()
         ))?;
-        let start = raised(&self.pose, lift_mm);
-        let placed = |corners: &[Vec3]| {
-            corners
-                .iter()
-                .map(|at| start.to_insert(at))
-                .collect::<Vec<_>>()
+        let start = shifted(&self.pose, Vec3::new(0.0, lift_mm, 0.0));
+        let placed = |corners: &[Vec3]| -> Vec<Vec3> {
+            corners.iter().map(|at| start.to_insert(at)).collect()
         };
         let within = inside(femur, &facets.vertices, WEDGE_MM);
-        inp.nodes(labels.outer, &placed(&facets.vertices), names::FEMUR_NODES)?;
-        inp.nodes(labels.inner, &placed(&within), names::FEMUR_NODES)?;
-        let wedge = |corners: &[u32; 3]| {
-            let ([a, b, c], [d, e, f]) = (
-                corners.map(|at| at + labels.inner),
-                corners.map(|at| at + labels.outer),
-            );
-            [a, b, c, d, e, f]
+        inp.nodes(outer, &placed(&facets.vertices), "FEMUR-NODES")?;
+        inp.nodes(inner, &placed(&within), "FEMUR-NODES")?;
+        let wedge = |&[a, b, c]: &[u32; 3]| {
+            [
+                a + inner,
+                b + inner,
+                c + inner,
+                a + outer,
+                b + outer,
+                c + outer,
+            ]
         };
         let wedges: Vec<[u32; 6]> = facets.triangles.iter().map(wedge).collect();
-        inp.wedges(labels.wedge, &wedges, 0, names::FEMUR)?;
-        let outside: Vec<(u32, u8)> = (labels.wedge..)
+        inp.elements("C3D6", first_wedge, &wedges, "FEMUR")?;
+        // Face 2 of a wedge is the one through its last three nodes.
+        let outside: Vec<(u32, u8)> = (first_wedge..)
             .zip(&wedges)
-            .map(|(label, _)| (label, 2))
+            .map(|(at, _)| (at, 2))
             .collect();
-        inp.surface_of_faces(names::FEMUR_SURFACE, &outside)?;
-        Ok(labels)
-    }
-
-    fn insert_surfaces<W: Write>(&self, labels: &Labels, inp: &mut InpWriter<W>) -> io::Result<()> {
-        let insert = self.bodies.insert;
-        let held = insert
-            .backside_nodes()
-            .iter()
-            .map(|node| node + labels.node);
-        inp.node_set(names::BACKSIDE, held)?;
-        let faces = element_faces(insert.mesh(), &in_mesh(insert), labels.hexahedron);
-        inp.surface_of_faces(names::ARTICULATING, &faces)
+        inp.surface_of_faces("FEMUR-SURFACE", &outside)
     }
 
     fn materials<W: Write>(&self, inp: &mut InpWriter<W>) -> io::Result<()> {
@@ -237,7 +198,7 @@ impl Pressed<'_> {
             youngs_modulus,
             poissons_ratio,
         } = self.elastic;
-        inp.keyword(&format!("*MATERIAL, NAME={}", names::MATERIAL))?;
+        inp.keyword("*MATERIAL, NAME=UHMWPE")?;
         inp.keyword("*ELASTIC")?;
         inp.reals(&[youngs_modulus, poissons_ratio])?;
         if let Some(hardening) = self.hardening {
@@ -247,80 +208,77 @@ impl Pressed<'_> {
                 inp.reals(&[stress_mpa, strain])?;
             }
         }
-        inp.solid_section(names::INSERT, names::MATERIAL)?;
-        inp.comment("The femur's nodes are all led: its material is of no matter.")?;
-        inp.keyword(&format!("*MATERIAL, NAME={}", names::METAL))?;
+        inp.keyword("*SOLID SECTION, ELSET=INSERT, MATERIAL=UHMWPE")?;
+        inp.comment("All nodes of the femur are prescribed: its material has no effect.")?;
+        inp.keyword("*MATERIAL, NAME=METAL")?;
         inp.keyword("*ELASTIC")?;
         inp.reals(&[METAL_MPA, METAL_RATIO])?;
-        inp.solid_section(names::FEMUR, names::METAL)
+        inp.keyword("*SOLID SECTION, ELSET=FEMUR, MATERIAL=METAL")
     }
 
     fn contact<W: Write>(&self, inp: &mut InpWriter<W>) -> io::Result<()> {
-        inp.comment(CONTACT)?;
-        let most_mm = 1.0;
-        let law = [0.0, most_mm].map(|overclosure_mm| PressureOverclosure {
-            pressure_mpa: STIFFNESS_MPA_PER_MM * overclosure_mm,
-            overclosure_mm,
-        });
-        inp.softened(names::BEARING, &law)?;
+        inp.comment(
+            "\nCONTACT. The nodes of the insert against the facets of the femur; stiff enough to be practically hard.",
+        )?;
+        inp.keyword("*SURFACE INTERACTION, NAME=BEARING")?;
+        inp.keyword("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TABULAR")?;
+        inp.reals(&[0.0, 0.0])?;
+        inp.reals(&[STIFFNESS_MPA_PER_MM, 1.0])?;
         if self.slide.is_some() {
-            inp.comment("As good as no friction while the femur comes down.")?;
-            friction(AS_GOOD_AS_NONE, inp)?;
+            inp.comment("Negligible friction while the femur descends.")?;
+            friction(NEGLIGIBLE_FRICTION, inp)?;
         }
-        inp.nodes_on_surface(names::BEARING, names::ARTICULATING, names::FEMUR_SURFACE)
+        inp.keyword("*CONTACT PAIR, INTERACTION=BEARING, TYPE=NODE TO SURFACE")?;
+        inp.line("ARTICULATING, FEMUR-SURFACE")
     }
-}
 
-/// Young's modulus and Poisson's ratio of a cobalt-chromium alloy; any would do.
-const METAL_MPA: f64 = 210_000.0;
-const METAL_RATIO: f64 = 0.3;
-
-const HEAD: &str = "\nUNITS mm, N, MPa.
-FRAME that of the insert: x anterior, y superior, z lateral of a right knee.
-MODEL small displacements, as condyle's deformable insert: the steps have no NLGEOM. The insert is bonded
-by its backside; the femur is rigid and led. The reaction is the total force on BACKSIDE, the pressure
-that at the nodes of ARTICULATING.";
-
-const CONTACT: &str = "\nCONTACT. The nodes of the insert against the facets of the femur, so stiff that it is as good as hard.";
-
-fn raised(pose: &Pose, by_mm: f64) -> Pose {
-    shifted(pose, Vec3::new(0.0, by_mm, 0.0))
+    /// Writes the rest of a step in which the femur moves to `to_mm` from its first position, in increments of at most
+    /// `max_share` of the step.
+    fn finish_step<W: Write>(
+        &self,
+        max_share: f64,
+        to_mm: &Vec3,
+        inp: &mut InpWriter<W>,
+    ) -> io::Result<()> {
+        inp.keyword("*STATIC")?;
+        inp.reals(&[max_share, 1.0, MIN_SHARE, max_share])?;
+        inp.keyword("*BOUNDARY")?;
+        inp.line("BACKSIDE, 1, 3")?;
+        inp.keyword("*BOUNDARY")?;
+        for (freedom, to_mm) in (1..).zip(to_mm.iter()) {
+            inp.line(&format!("FEMUR-NODES, {freedom}, {freedom}, {to_mm:?}"))?;
+        }
+        inp.keyword("*NODE PRINT, NSET=BACKSIDE, TOTALS=YES")?;
+        inp.line("RF")?;
+        inp.keyword("*NODE FILE")?;
+        inp.line("U")?;
+        inp.keyword("*CONTACT FILE")?;
+        inp.line("CDISP, CSTRESS")?;
+        if self.hardening.is_some() {
+            inp.keyword(&format!(
+                "*EL PRINT, ELSET=INSERT, FREQUENCY={MAX_INCREMENTS}"
+            ))?;
+            inp.line("PEEQ")?;
+        }
+        inp.keyword("*END STEP")
+    }
 }
 
 fn shifted(pose: &Pose, by_mm: Vec3) -> Pose {
     Pose::new(pose.rotation, pose.translation + by_mm)
 }
 
-fn begin_step<W: Write>(name: &str, inp: &mut InpWriter<W>) -> io::Result<()> {
-    inp.keyword(&format!("*STEP, NAME={name}, INC={MAX_INCREMENTS}"))
+fn begin_step(name: &str) -> String {
+    format!("*STEP, NAME={name}, INC={MAX_INCREMENTS}")
 }
 
-/// A coefficient, and how stiffly CalculiX's nodes stick.
 fn friction<W: Write>(coefficient: f64, inp: &mut InpWriter<W>) -> io::Result<()> {
     inp.keyword("*FRICTION")?;
     inp.reals(&[coefficient, STICK_MPA_PER_MM])
 }
 
-/// The femur goes to `to_mm` from where the file begins, in increments of `most` of the step; and what is to be said.
-fn lead<W: Write>(most: f64, to_mm: &Vec3, inp: &mut InpWriter<W>) -> io::Result<()> {
-    const LEAST: f64 = 1e-6;
-    inp.keyword("*STATIC")?;
-    inp.reals(&[most, 1.0, LEAST, most])?;
-    inp.fixed(names::BACKSIDE, 1, 3)?;
-    inp.keyword("*BOUNDARY")?;
-    for (freedom, to_mm) in (1..).zip(to_mm.iter()) {
-        inp.line(&format!(
-            "{}, {freedom}, {freedom}, {to_mm:?}",
-            names::FEMUR_NODES
-        ))?;
-    }
-    inp.keyword(&format!(
-        "*NODE PRINT, NSET={}, TOTALS=YES",
-        names::BACKSIDE
-    ))?;
-    inp.line("RF")?;
-    inp.keyword("*NODE FILE")?;
-    inp.line("U")?;
-    inp.keyword("*CONTACT FILE")?;
-    inp.line("CDISP, CSTRESS")
+/// Returns a round label after `count` labels from `first`.
+fn after(first: u32, count: usize) -> u32 {
+    const ROUND: u32 = 100_000;
+    (first + count as u32).div_ceil(ROUND) * ROUND + 1
 }

@@ -1,4 +1,4 @@
-//! The femur of a case pressed on its deformable insert, where its first cycle is at a place.
+//! The femur of a case pressed on its deformable insert at one place of the first cycle.
 
 use std::io::Write;
 use std::ops::ControlFlow;
@@ -12,7 +12,7 @@ use condyle_fem::Hardening;
 
 use super::error::ExportError;
 use super::pressed::Pressed;
-use crate::case::{BuildWarning, Case, ContactModelWord, FEMUR_TRIANGLES, Side};
+use crate::case::{BuildWarning, Case, FEMUR_TRIANGLES, Side};
 
 /// A case with a deformable insert, and its first solved cycle on the unworn insert.
 pub struct PressedCase<'a> {
@@ -21,7 +21,7 @@ pub struct PressedCase<'a> {
     triangles: TriangleMesh,
     unworn: March,
     cycle: Vec<(CycleRow, Pose)>,
-    /// What was put right in the meshes on the way.
+    /// Repairs of the meshes and other remarks of the build.
     pub warnings: Vec<BuildWarning>,
 }
 
@@ -29,19 +29,31 @@ impl<'a> PressedCase<'a> {
     /// Builds the case and solves its first cycle; `threads` share the work on a mesh.
     ///
     /// # Errors
-    /// A foundation, a backside that rests, kinematic hardening, a case that does not build, bodies that do not settle, or a cycle that is
-    /// not solved.
+    /// A foundation, a resting backside, kinematic hardening, a case that does not build, bodies that do not settle, or a
+    /// cycle that cannot be solved.
     pub fn new(case: &'a Case, threads: usize) -> Result<Self, ExportError> {
-        if case.contact.model == ContactModelWord::Foundation {
-            return Err(ExportError::Foundation);
+        let Some(model) = case.contact.deformable() else {
+            return Err(ExportError::Unsupported {
+                supported: "a femur pressed on a deformable insert",
+                found: "an elastic foundation".to_owned(),
+                remedy: "[contact] model = \"deformable\"",
+            });
+        };
+        if model.backside.is_resting() {
+            return Err(ExportError::Unsupported {
+                supported: "an insert that is bonded to its tray",
+                found: "backside = \"resting\"".to_owned(),
+                remedy: "[contact.deformable] backside = \"bonded\"",
+            });
         }
-        if case.contact.backside.is_resting() {
-            return Err(ExportError::Resting);
-        }
-        let hardening = case.contact.plasticity.hardening();
+        let hardening = model.plasticity.hardening();
         let modulus_mpa = hardening.as_ref().map_or(0.0, Hardening::kinematic_modulus);
         if modulus_mpa != 0.0 {
-            return Err(ExportError::KinematicHardening { modulus_mpa });
+            return Err(ExportError::Unsupported {
+                supported: "isotropic hardening only",
+                found: format!("kinematic_modulus_mpa = {modulus_mpa}"),
+                remedy: "kinematic_modulus_mpa = 0",
+            });
         }
         let built = case.build(threads)?;
         let unworn = March::start(built.test)?;
@@ -55,12 +67,12 @@ impl<'a> PressedCase<'a> {
         })
     }
 
-    /// The test, its insert unworn.
+    /// The test with the unworn insert.
     pub fn unworn(&self) -> &March {
         &self.unworn
     }
 
-    /// The increment that ends nearest to `percent` of the cycle, and where the femur is then in the insert frame.
+    /// Returns the increment that ends nearest to `percent` of the cycle, and the femur's pose at its end in the insert frame.
     ///
     /// # Errors
     /// If nothing touches there.
@@ -74,7 +86,7 @@ impl<'a> PressedCase<'a> {
         touching.ok_or(ExportError::Apart { percent })
     }
 
-    /// Writes the bodies alone, the femur pressed to where it is at `percent` of the cycle, for CalculiX and Abaqus.
+    /// Writes the femur pressed on the insert at its pose at `percent` of the cycle.
     ///
     /// # Errors
     /// If nothing touches there, or the file cannot be written.

@@ -6,9 +6,8 @@ use condyle::machine::Waveform;
 
 use super::machine::{Freedoms, Machine, Sign, Waveforms};
 use super::machine_reason::ActivityReason;
-use super::table::{Context, Table, WearLaws, WriteWaveform};
-use super::waveform::{CaseChannel, with_waveforms};
-use crate::config::{Log, Page, Section, Settings, TableSchema, Writer, names, settings, within};
+use super::waveform::{CaseChannel, waveform_items};
+use crate::config::{Item, Log, Section, Settings, TableItem, Writer, settings, within};
 
 /// Shares whose sum is so near to 1 are whole: thirds are written with a few digits.
 const WHOLE: f64 = 1e-3;
@@ -49,9 +48,6 @@ pub struct Activities {
     all: Vec<Activity>,
 }
 
-/// What the key that lists them is called.
-const TABLE: &str = "activity";
-
 const ACTIVITIES: &str = "
 One table for each thing that the machine does, each with every waveform that its freedoms need as \
 `[activity.axial_force]`, `[activity.flexion]` and so on, with the keys of the waveforms above; `[machine]` then has \
@@ -75,10 +71,29 @@ impl Activities {
         let sum: f64 = parts.iter().sum();
         parts.iter().map(|part| part / sum).collect()
     }
+}
 
-    /// Reads every `[[activity]]` of a case.
-    fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let sections = root.list(TABLE, log)?;
+impl Settings for Activities {
+    fn items() -> Vec<Item> {
+        [ActivityKeys::items(), waveform_items(false)].concat()
+    }
+
+    fn item(name: &'static str, about: &str) -> Item {
+        Item::Table(TableItem {
+            is_list: true,
+            note: ACTIVITIES.to_owned(),
+            ..TableItem::new(name, about, Self::items())
+        })
+    }
+
+    /// Reads the only activity of `section`.
+    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let all = vec![Activity::read(section, None, log)?];
+        Some(Self { all })
+    }
+
+    fn read_in(root: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
+        let sections = root.list(name, log)?;
         let freedoms = Machine::freedoms_in(root, log);
         let read = |section| Activity::read(section, freedoms.as_ref(), log);
         let all: Vec<Option<Activity>> = sections.iter().map(read).collect();
@@ -88,14 +103,19 @@ impl Activities {
         Some(Self { all })
     }
 
-    /// Writes every `[[activity]]`.
-    fn write(&self, write_waveform: WriteWaveform, out: &mut Writer) {
+    fn write(&self, out: &mut Writer) {
         for activity in &self.all {
-            out.table_of_list(TABLE);
             activity.keys.write(out);
-            activity
-                .waveforms
-                .write(&format!("{TABLE}."), write_waveform, out);
+            activity.waveforms.write(out);
+        }
+    }
+
+    fn write_in(&self, name: &str, out: &mut Writer) {
+        for activity in &self.all {
+            out.table_of_list(name, |out| {
+                activity.keys.write(out);
+                activity.waveforms.write(out);
+            });
         }
     }
 }
@@ -108,10 +128,6 @@ impl Activity {
     }
 
     fn read(section: &Section<'_>, freedoms: Option<&Freedoms>, log: &mut Log<'_>) -> Option<Self> {
-        let known: Vec<&str> = names(&ActivityKeys::keys())
-            .chain(CaseChannel::all().map(CaseChannel::name))
-            .collect();
-        section.check_keys(&known, log);
         let keys = ActivityKeys::read(section, log);
         let name = keys.as_ref().map_or("", |keys| keys.name.as_str());
         let waveforms = freedoms.and_then(|freedoms| {
@@ -218,27 +234,4 @@ fn check_shares(sections: &[Section<'_>], all: &[Activity], log: &mut Log<'_>) {
 
 fn place_of_share(section: &Section<'_>) -> Range<usize> {
     section.value_span("share")
-}
-
-impl Table for Activities {
-    const NAME: &'static str = TABLE;
-
-    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
-        Self::read(root, log)
-    }
-
-    fn write_in(&self, waveforms: WriteWaveform, out: &mut Writer) {
-        self.write(waveforms, out);
-    }
-
-    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
-        let about = "Something that the machine does over and over, with inputs of its own.";
-        let activity = TableSchema::new(about).with_keys(&ActivityKeys::keys());
-        case.with_list(TABLE, with_waveforms(activity))
-    }
-
-    fn add_to_page(page: &mut Page, _: WearLaws) {
-        page.section("`[[activity]]`", &ActivityKeys::keys());
-        page.push(ACTIVITIES);
-    }
 }

@@ -1,178 +1,27 @@
-//! Values of a case set from outside, before the case is read.
+//! Values set from outside, which replace those of a case file.
 
 use std::fmt;
+use std::ops::Range;
 
+use condyle::parameter::split_unit;
 use thiserror::Error;
-use toml_edit::{DocumentMut, Item, Table, TableLike, Value};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
-use super::contents::{Case, LeftOutConstant};
-use super::key_names::{KeyNameError, OverrideError, path_called};
-use super::table::WearLaws;
-use crate::config::{Problems, likeliest};
+use super::contents::{Case, CaseNote};
+use super::renamed::current_path;
+use crate::config::{
+    Choices, Item, Problems, Source, likeliest, nearest, number, quoted, set_value, take, value_at,
+};
 
-/// A number to be taken in place of the one that the case file gives, or leaves out.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Override {
-    path: String,
-    text: String,
-    value: f64,
-}
-
-impl Override {
-    /// The number written as `text` for the key at the dotted `path`.
-    ///
-    /// # Errors
-    /// A text that is no finite number of TOML. Whether the key exists and the number is in its
-    /// range is seen when a case is read with it.
-    pub fn new(path: &str, text: &str) -> Result<Self, OverrideError> {
-        let value = match text.parse::<Value>() {
-            Ok(Value::Integer(whole)) => Some(*whole.value() as f64),
-            Ok(Value::Float(float)) => Some(*float.value()),
-            Ok(_) | Err(_) => None,
-        };
-        let (path, text) = (path.to_owned(), text.trim().to_owned());
-        match value.filter(|value| value.is_finite()) {
-            Some(value) => Ok(Self { path, text, value }),
-            None => Err(OverrideError::NotNumber { path, text }),
-        }
-    }
-
-    /// Dotted path of the key.
-    pub fn path(&self) -> &str {
-        &self.path
-    }
-
-    /// The number as written.
-    pub fn text(&self) -> &str {
-        &self.text
-    }
-
-    /// The number, in the unit of the key's name.
-    pub fn value(&self) -> f64 {
-        self.value
-    }
-
-    /// The text of a case with this number in it; a text that is not TOML stays as it is.
-    pub(super) fn applied_to(&self, case: &str) -> String {
-        let value = self.text.parse().unwrap_or(self.value.into());
-        with_value(case, &self.path, value)
-    }
-}
-
-/// The text of a case with `value` at the dotted `path`; a text that is not TOML stays as it is.
-pub(super) fn with_value(case: &str, path: &str, value: Value) -> String {
-    let Ok(mut document) = case.parse::<DocumentMut>() else {
-        return case.to_owned();
-    };
-    let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
-    let names: Vec<&str> = tables.split('.').filter(|name| !name.is_empty()).collect();
-    set(table_at(document.as_table_mut(), &names), key, value);
-    document.to_string()
-}
-
-/// The table at the end of a path; of a list of tables the one with the name that follows.
-fn table_at<'a>(above: &'a mut dyn TableLike, names: &[&str]) -> &'a mut dyn TableLike {
-    match names {
-        [] => above,
-        [list, name, below @ ..] if above.get(list).is_some_and(Item::is_array_of_tables) => {
-            table_at(named_in(above, list, name), below)
-        }
-        [name, below @ ..] => table_at(table_in(above, name), below),
-    }
-}
-
-/// The table called `name` of the list `list`, put there if it is not; a reader then says what it lacks.
-fn named_in<'a>(above: &'a mut dyn TableLike, list: &str, name: &str) -> &'a mut dyn TableLike {
-    let tables = above
-        .get_mut(list)
-        .and_then(Item::as_array_of_tables_mut)
-        .expect("it was seen there");
-    let is_called = |table: &Table| table.get("name").and_then(Item::as_str) == Some(name);
-    let place = tables.iter().position(is_called);
-    if place.is_none() {
-        let mut table = Table::new();
-        table.insert("name", toml_edit::value(name));
-        tables.push(table);
-    }
-    let place = place.unwrap_or(tables.len() - 1);
-    tables.get_mut(place).expect("it was put there")
-}
-
-/// The table `name`, put there if it is not; a reader then says what should be there instead.
-fn table_in<'a>(above: &'a mut dyn TableLike, name: &str) -> &'a mut dyn TableLike {
-    if !above.get(name).is_some_and(Item::is_table_like) {
-        above.insert(name, toml_edit::table());
-    }
-    above
-        .get_mut(name)
-        .and_then(Item::as_table_like_mut)
-        .expect("it was put there")
-}
-
-/// Sets a value, with the blanks and the comment around the one before.
-fn set(table: &mut dyn TableLike, key: &str, mut value: Value) {
-    if let Some(before) = table.get(key).and_then(Item::as_value) {
-        *value.decor_mut() = before.decor().clone();
-    }
-    table.insert(key, Item::Value(value));
-}
-
-/// The key that chooses the law.
-const CHOOSES: &str = "wear.law";
-
-/// The text of a case with `set` keys changed to those of `changed`, less the constants of the file's own law where
-/// another was set; and these.
-///
-/// A constant that is itself set from outside stays, for the reader to judge.
-pub(super) fn without_other_laws(
-    changed: &str,
-    set: &[&str],
-    laws: WearLaws,
-) -> (String, Vec<LeftOutConstant>) {
-    let as_it_is = || (changed.to_owned(), Vec::new());
-    let Ok(mut document) = changed.parse::<DocumentMut>() else {
-        return as_it_is();
-    };
-    let table = document.get_mut("wear").and_then(Item::as_table_like_mut);
-    let (true, Some(table)) = (set.contains(&CHOOSES), table) else {
-        return as_it_is();
-    };
-    let left_out = take_out(table, set, laws);
-    (document.to_string(), left_out)
-}
-
-/// Takes out of `[wear]` what other laws than its own have, unless it was set.
-fn take_out(table: &mut dyn TableLike, set: &[&str], laws: WearLaws) -> Vec<LeftOutConstant> {
-    let word = table.get("law").and_then(Item::as_str);
-    let Some(own) = laws.iter().find(|law| Some(law.word) == word) else {
-        return Vec::new();
-    };
-    let others = laws.iter().flat_map(|law| law.parameters);
-    let others: Vec<&str> = others.map(|parameter| parameter.name).collect();
-    let belongs_elsewhere = |key: &&str| {
-        let is_own = own.parameters.iter().any(|own| own.name == *key);
-        let is_set = set.contains(&format!("wear.{key}").as_str());
-        others.contains(key) && !is_own && !is_set
-    };
-    let keys: Vec<String> = table.iter().map(|(key, _)| key.to_owned()).collect();
-    let keys = keys.iter().map(String::as_str).filter(belongs_elsewhere);
-    let take = |key: &str| {
-        let value = table.remove(key)?;
-        let written = format!("{key} = {}", value.as_value()?.to_string().trim());
-        let law = own.word;
-        Some(LeftOutConstant { written, law })
-    };
-    keys.filter_map(take).collect()
-}
-
-/// A value to be taken in place of the one that the case file gives, or leaves out.
-#[derive(Clone, Debug)]
+/// A value that replaces the one that a case file gives, or its default.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
     key: String,
     text: String,
 }
 
-/// Why a value of a case cannot be set from outside.
+/// A key or value that cannot be set from outside.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum AssignmentError {
     /// Not written as a key with a value.
@@ -181,15 +30,52 @@ pub enum AssignmentError {
         /// As written.
         written: String,
     },
-    /// A name that is not that of one key.
-    #[error(transparent)]
-    Name(#[from] KeyNameError),
+    /// A value that is no number.
+    #[error("`{text}` is no value for `{key}`; write a number, such as 10 or 0.5")]
+    NotNumber {
+        /// The key.
+        key: String,
+        /// As written.
+        text: String,
+    },
+    /// A name that no key has.
+    #[error(
+        "the case has no {what} called `{name}`; {}",
+        match near {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "give its dotted path, such as `march.updates`".to_owned(),
+        }
+    )]
+    Unknown {
+        /// "key" or "number".
+        what: &'static str,
+        /// As written.
+        name: String,
+        /// A similar name.
+        near: Option<String>,
+    },
+    /// A name that several keys have.
+    #[error("the case has more than one {what} called `{name}`; write `{}`", paths.join("` or `"))]
+    Many {
+        /// "key" or "number".
+        what: &'static str,
+        /// As written.
+        name: String,
+        /// Their dotted paths.
+        paths: Vec<String>,
+    },
+    /// The number of updates of a march that determines it.
+    #[error(
+        "the march of this case determines its updates, since it has update = \"auto\"; refine what it goes by, such as \
+         depth_tolerance_fraction=0.1,0.03,0.01, or write update = \"fixed\""
+    )]
+    UpdatesAreFound,
 }
 
-/// Why a case cannot be read with values set from outside.
+/// A case that cannot be read with values set from outside.
 #[derive(Clone, Debug, Error)]
 pub enum ChangeError {
-    /// What is wrong with the case, as it is or changed.
+    /// Problems of the case, as it is or changed.
     #[error(transparent)]
     Case(#[from] Problems),
     /// A value that cannot be set.
@@ -198,164 +84,345 @@ pub enum ChangeError {
 }
 
 impl Assignment {
-    /// The one written as `key=value`: the key a dotted path, or the last word of one, with or
-    /// without its unit; the value as in a case, but a word needs no quotes.
+    /// Parses `key=value`: the key is a dotted path, or its last word with or without the unit; the value is written as in
+    /// a case, but a word needs no quotes.
     ///
     /// # Errors
-    /// A text without a key or without a value.
+    /// The key or the value is missing.
     pub fn parse(written: &str) -> Result<Self, AssignmentError> {
         let (key, text) = written.split_once('=').unwrap_or_default();
-        let (key, text) = (key.trim().to_owned(), text.trim().to_owned());
+        let (key, text) = (key.trim(), text.trim());
         if key.is_empty() || text.is_empty() {
             let written = written.to_owned();
             return Err(AssignmentError::NotKeyAndValue { written });
         }
-        Ok(Self { key, text })
+        Ok(Self::new(key, text))
     }
 
-    /// The one that gives `key` a value, written as in a case, but a word needs no quotes.
-    pub fn of(key: &str, text: String) -> Self {
-        let key = key.to_owned();
+    /// Sets `key` to a value written as in a case, but a word needs no quotes.
+    pub fn new(key: &str, text: impl Into<String>) -> Self {
+        let (key, text) = (current_path(key).to_owned(), text.into());
         Self { key, text }
     }
 
-    /// Whether its key is a dotted path, which says where it stands without a look at the case.
+    /// Sets the key at the dotted path `key` to the number written as `text`.
+    ///
+    /// # Errors
+    /// The text is no finite number. Whether the key exists and the number is in its range is checked when a case is read.
+    pub fn number(key: &str, text: &str) -> Result<Self, AssignmentError> {
+        let assignment = Self::new(key, text.trim());
+        match assignment.as_number() {
+            Some(_) => Ok(assignment),
+            None => Err(AssignmentError::NotNumber {
+                key: assignment.key,
+                text: assignment.text,
+            }),
+        }
+    }
+
+    /// The key: a dotted path, or its last word.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// The value as written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The value as a finite number, in the unit of the key's name.
+    pub fn as_number(&self) -> Option<f64> {
+        let value = DeValue::parse(&self.text).ok()?;
+        number(value.get_ref()).filter(|number| number.is_finite())
+    }
+
+    /// Returns true if the key is a dotted path, which can be set without reading the case.
     pub(super) fn is_placed(&self) -> bool {
         self.key.contains('.')
     }
 
-    /// The dotted path of its key, once it is placed.
-    pub(super) fn key(&self) -> &str {
-        &self.key
-    }
-
-    /// The same with the dotted path of its key in `case`.
+    /// Returns the same with the dotted path of its key in `case`.
     pub(super) fn placed_in(&self, case: &Case) -> Result<Self, AssignmentError> {
-        let key = case.path_of_key(&self.key)?;
-        let text = self.text.clone();
-        Ok(Self { key, text })
+        Ok(Self::new(&case.path_of_key(&self.key)?, self.text.clone()))
     }
 
-    /// The text of a case with this value in it; a text that is not TOML stays as it is.
-    pub(super) fn applied_to(&self, case: &str) -> String {
-        let value = self.text.parse::<Value>();
-        with_value(
-            case,
-            &self.key,
-            value.unwrap_or_else(|_| self.text.as_str().into()),
-        )
-    }
-
-    /// The key and the value, as messages name them.
-    pub(super) fn in_words(&self) -> String {
-        format!("{} = {}", self.key, self.text)
-    }
-}
-
-impl Case {
-    /// The dotted path of the key that `written` names: a dotted path as it is, or the last word of one, with or without
-    /// its unit.
-    pub(crate) fn path_of_key(&self, written: &str) -> Result<String, KeyNameError> {
-        if written.contains('.') {
-            return Ok(written.to_owned());
+    /// The value in TOML.
+    fn value(&self) -> String {
+        match DeValue::parse(&self.text) {
+            Ok(_) => self.text.clone(),
+            Err(_) => quoted(&self.text),
         }
-        let paths: Vec<String> = self.keys().into_iter().map(|(path, _)| path).collect();
-        let near = |names: &[&str]| likeliest(written, names);
-        path_called("key", written, &paths, near)
+    }
+
+    /// The key and the value as messages show them.
+    pub(super) fn line(&self) -> String {
+        format!("{} = {}", self.key, self.value())
     }
 }
 
 impl fmt::Display for Assignment {
-    /// As [`Assignment::parse`] reads it.
+    /// Writes the form that [`Assignment::parse`] reads.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}={}", self.key, self.text)
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use condyle::wear::WEAR_LAWS;
+/// Values to be set in a document, as lines below the text of the file: problems with a value are shown at its line.
+pub(super) struct Lines<'c> {
+    changes: &'c [Assignment],
+    /// For each change a text with blanks up to the place of the value.
+    padded: Vec<(Range<usize>, String)>,
+    pub shown: String,
+}
 
-    use super::*;
-
-    fn applied(path: &str, text: &str, case: &str) -> String {
-        let number = Override::new(path, text).expect("a number");
-        number.applied_to(case)
-    }
-
-    #[test]
-    fn only_the_number_changes() {
-        let case = "title = \"a\"\n\n[march] # long\ncycles = 10  # few\nupdates = 2   # fewer\n";
-        let changed = applied("march.updates", "5", case);
-        assert_eq!(changed, case.replace("= 2 ", "= 5 "));
-        assert_eq!(applied("march.updates", "5", &changed), changed);
-        assert_eq!(
-            applied("march.updates", "0x10", case),
-            case.replace("= 2 ", "= 0x10 ")
-        );
-    }
-
-    #[test]
-    fn a_key_or_table_that_is_not_there_is_added() {
-        assert_eq!(
-            applied("time.increments", "50", "[march]\nupdates = 2\n"),
-            "[march]\nupdates = 2\n\n[time]\nincrements = 50\n"
-        );
-        assert_eq!(
-            applied(
-                "machine.springs.free_play_mm",
-                "1.5",
-                "machine.frequency_hz = 1\n"
-            ),
-            "machine.frequency_hz = 1\n\n[machine.springs]\nfree_play_mm = 1.5\n"
-        );
-        assert_eq!(applied("a.b", "1", "a = {}\n"), "a = { b = 1 }\n");
-    }
-
-    #[test]
-    fn a_text_that_is_not_toml_is_left_for_the_reader() {
-        assert_eq!(applied("march.updates", "5", "[march\n"), "[march\n");
-    }
-
-    #[test]
-    fn values_are_finite_numbers() {
-        let value = |text| Override::new("a", text).map(|number| number.value());
-        assert_eq!(value("1_000"), Ok(1000.0));
-        assert_eq!(value("-1e-3"), Ok(-1e-3));
-        for text in ["", "ten", "inf", "nan", "[1]", "1 2", ".5"] {
-            let error = Override::new("march.updates", text).expect_err(text);
-            let expected = format!("`{text}` is no value for `march.updates`; write a number");
-            assert!(error.to_string().starts_with(&expected), "{error}");
+impl<'c> Lines<'c> {
+    pub fn new(file: &Source, changes: &'c [Assignment]) -> Self {
+        let mut shown = file.inner().clone();
+        let mut padded = Vec::new();
+        for change in changes {
+            if !shown.ends_with('\n') {
+                shown.push('\n');
+            }
+            let start = shown.len();
+            let key = start..start + change.key.len();
+            let blanks = " ".repeat(key.end - 1);
+            padded.push((key, format!("{blanks}x = {}", change.value())));
+            shown.push_str(&change.line());
+        }
+        Self {
+            changes,
+            padded,
+            shown,
         }
     }
 
-    const CHANGED: &str = "[wear]\nlaw = \"kang\"\nwear_factor_mm3_per_nm = 2.64e-7 # paper\ndecay_per_mpa = 0.2\nlog = 1\n";
+    /// Sets every value.
+    pub fn apply<'a>(&'a self, document: &mut DeTable<'a>) {
+        for (change, (place, text)) in self.changes.iter().zip(&self.padded) {
+            let parsed = DeTable::parse(text).ok();
+            let value = parsed.and_then(|parsed| parsed.into_inner().remove("x"));
+            if let Some(value) = value {
+                set_value(document, &change.key, place.clone(), value);
+            }
+        }
+    }
 
-    #[test]
-    fn only_constants_of_other_laws_are_left_out_and_told() {
-        let (text, left_out) = without_other_laws(CHANGED, &["wear.law"], WEAR_LAWS);
-        assert_eq!(
-            text,
-            "[wear]\nlaw = \"kang\"\ndecay_per_mpa = 0.2\nlog = 1\n"
-        );
-        let [one] = &left_out[..] else {
-            panic!("{left_out:?}");
+    /// Removes what does not go with a choice that was set, unless it was set too.
+    pub fn leave_out(&self, document: &mut DeTable<'_>, items: &[Item]) -> Vec<CaseNote> {
+        let mut notes = Vec::new();
+        for change in self.changes {
+            let above = change.key.rsplit_once('.').map_or("", |(above, _)| above);
+            let Some(choices) = choices_at(items, &change.key) else {
+                continue;
+            };
+            let value = value_at(document, &change.key).and_then(|value| value.get_ref().as_str());
+            let Some(word) = value.map(str::to_owned) else {
+                continue;
+            };
+            let offered = choices.offered.iter().flat_map(|offer| &offer.items);
+            for name in offered.filter_map(Item::name) {
+                let path = format!("{above}.{name}");
+                let is_below = |other: &Assignment| {
+                    let rest = other.key.strip_prefix(&path);
+                    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+                };
+                let is_set = self.changes.iter().any(is_below);
+                if is_set || choices.other_owner(name, &word).is_none() {
+                    continue;
+                }
+                let Some((_, value)) = take(document, &path) else {
+                    continue;
+                };
+                notes.push(CaseNote::LeftOut {
+                    written: self.written(&path, &value),
+                    chosen: format!("{} = \"{word}\"", change.key),
+                });
+            }
+        }
+        notes
+    }
+
+    fn written(&self, path: &str, value: &Spanned<DeValue<'_>>) -> String {
+        match value.get_ref() {
+            DeValue::Table(_) => format!("[{path}]"),
+            _ => format!("{path} = {}", &self.shown[value.span()]),
+        }
+    }
+}
+
+/// Returns the choice whose key has the dotted `path`.
+fn choices_at<'i>(items: &'i [Item], path: &str) -> Option<&'i Choices> {
+    let offered = items.iter().flat_map(|item| match item {
+        Item::Choice(choices) => choices
+            .offered
+            .iter()
+            .flat_map(|offer| &offer.items)
+            .collect(),
+        _ => Vec::new(),
+    });
+    let mut all = items.iter().chain(offered);
+    match path.split_once('.') {
+        Some((first, rest)) => all.find_map(|item| match item {
+            Item::Table(table) if table.name == first => choices_at(&table.items, rest),
+            _ => None,
+        }),
+        None => all.find_map(|item| match item {
+            Item::Choice(choices) if choices.by.name == path => Some(choices),
+            _ => None,
+        }),
+    }
+}
+
+/// A number of a case.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NumberKey {
+    /// Dotted path, such as `march.updates`.
+    pub path: String,
+    /// The number is a count.
+    pub is_whole: bool,
+}
+
+impl Case {
+    /// Returns the dotted path of every key with its value, defaults too, in the order they are written.
+    pub(super) fn keys(&self) -> Vec<(String, toml::Value)> {
+        let mut keys = Vec::new();
+        add_keys(self.to_toml().parse().unwrap_or_default(), "", &mut keys);
+        keys
+    }
+
+    fn value_at(&self, path: &str) -> Option<toml::Value> {
+        let path = current_path(path);
+        let mut keys = self.keys().into_iter();
+        keys.find_map(|(key, value)| (key == path).then_some(value))
+    }
+
+    /// Returns the number at the dotted `path`, defaults too.
+    pub fn number_at(&self, path: &str) -> Option<f64> {
+        let value = self.value_at(path)?;
+        value
+            .as_float()
+            .or(value.as_integer().map(|whole| whole as f64))
+    }
+
+    /// Returns the number at the dotted `path` as the case has it; of the processing of a waveform, which is no part of a
+    /// read case, as the file gives it.
+    pub fn number_at_or_written(&self, path: &str) -> Option<f64> {
+        let written = || {
+            let text = self.origin.source.inner();
+            let text = text.get(self.origin.places.get(path)?.clone())?;
+            number(DeValue::parse(text).ok()?.get_ref())
         };
-        // A comment behind a value is the file's, not the value's.
-        assert!(one.written.starts_with("wear_factor_mm3_per_nm = 2.64e-7"));
-        assert_eq!(one.law, "kang");
+        let default = || match leaf(path) {
+            "scale" => Some(1.0),
+            "offset" => Some(0.0),
+            _ => None,
+        };
+        self.number_at(path).or_else(written).or_else(default)
     }
 
-    #[test]
-    fn a_file_that_is_wrong_itself_or_a_constant_that_was_set_stays_for_the_reader() {
-        for set in [
-            &["march.updates"][..],
-            &["wear.law", "wear.wear_factor_mm3_per_nm"],
-        ] {
-            let (text, left_out) = without_other_laws(CHANGED, set, WEAR_LAWS);
-            assert_eq!((text.as_str(), left_out.len()), (CHANGED, 0));
-        }
-        let nothing = without_other_laws("[wear\n", &["wear.law"], WEAR_LAWS);
-        assert_eq!(nothing, ("[wear\n".to_owned(), Vec::new()));
+    /// Returns the word at the dotted `path`, defaults too.
+    pub fn word_at(&self, path: &str) -> Option<String> {
+        self.value_at(path)?.as_str().map(str::to_owned)
     }
+
+    /// Returns true if the case has a key or a table at the dotted `path`, defaults too.
+    pub fn has(&self, path: &str) -> bool {
+        let path = current_path(path);
+        let is_below = |(key, _): &(String, _)| {
+            let rest = key.strip_prefix(path);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        self.keys().iter().any(is_below)
+    }
+
+    /// Returns every number of the case, defaults too, in the order they are written.
+    pub fn number_keys(&self) -> Vec<NumberKey> {
+        let numbers = self.keys().into_iter().filter_map(|(path, value)| {
+            let is_whole = value.is_integer();
+            (is_whole || value.is_float()).then_some(NumberKey { path, is_whole })
+        });
+        numbers.collect()
+    }
+
+    /// Returns true if the number at the dotted `path` is a count.
+    pub fn is_whole_number(&self, path: &str) -> bool {
+        self.value_at(path).is_some_and(|value| value.is_integer())
+    }
+
+    /// Returns the dotted path of the key that `written` names: a dotted path, or its last word with or without the unit.
+    pub(crate) fn path_of_key(&self, written: &str) -> Result<String, AssignmentError> {
+        let paths = || self.keys().into_iter().map(|(path, _)| path).collect();
+        path_called("key", written, paths, |names| likeliest(written, names))
+    }
+
+    /// Returns the dotted path of the number that `written` names: a dotted path, or its last word with or without the
+    /// unit.
+    ///
+    /// # Errors
+    /// No number has that name, or several have it.
+    pub fn path_of_number(&self, written: &str) -> Result<String, AssignmentError> {
+        let paths = || self.number_keys().into_iter().map(|key| key.path).collect();
+        let near = |names: &[&str]| nearest(written, names.iter().copied());
+        path_called("number", written, paths, near).map_err(|error| match error {
+            AssignmentError::Unknown { name, .. } if name == "updates" => {
+                AssignmentError::UpdatesAreFound
+            }
+            error => error,
+        })
+    }
+}
+
+fn add_keys(table: toml::Table, above: &str, keys: &mut Vec<(String, toml::Value)>) {
+    for (name, value) in table {
+        let path = match above {
+            "" => name,
+            above => format!("{above}.{name}"),
+        };
+        match value {
+            toml::Value::Table(inside) => add_keys(inside, &path, keys),
+            // A table of a list has its name in its path: `activity.stairs.share`.
+            toml::Value::Array(list) if list.iter().all(toml::Value::is_table) => {
+                for table in list {
+                    if let toml::Value::Table(table) = table
+                        && let Some(name) = table.get("name").and_then(toml::Value::as_str)
+                    {
+                        let path = format!("{path}.{name}");
+                        add_keys(table, &path, keys);
+                    }
+                }
+            }
+            value => keys.push((path, value)),
+        }
+    }
+}
+
+/// Returns `written` if it is a dotted path, or else the only one of `paths` whose last word it is, with or without the
+/// unit; `near` finds a similar last word for the message.
+fn path_called(
+    what: &'static str,
+    written: &str,
+    paths: impl FnOnce() -> Vec<String>,
+    near: impl FnOnce(&[&str]) -> Option<String>,
+) -> Result<String, AssignmentError> {
+    if written.contains('.') {
+        return Ok(current_path(written).to_owned());
+    }
+    let paths = paths();
+    let is_meant = |path: &&String| leaf(path) == written || split_unit(leaf(path)).0 == written;
+    let meant: Vec<String> = paths.iter().filter(is_meant).cloned().collect();
+    let name = written.to_owned();
+    match <[String; 1]>::try_from(meant) {
+        Ok([path]) => Ok(path),
+        Err(meant) if meant.is_empty() => {
+            let leaves: Vec<&str> = paths.iter().map(|path| leaf(path)).collect();
+            let near = near(&leaves);
+            Err(AssignmentError::Unknown { what, name, near })
+        }
+        Err(paths) => Err(AssignmentError::Many { what, name, paths }),
+    }
+}
+
+/// The last word of a dotted path.
+fn leaf(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
 }

@@ -1,34 +1,24 @@
-//! Model of contact, pressure law, friction, and how nodes that touch are found.
+//! Model of contact, pressure law, friction, and the search for nodes in contact.
 
-use condyle::contact::{Foundation, FrictionModel, PressureTable, Search, softening_modulus};
-
-use super::deformable::BacksideChoice;
-use super::deformable::PlasticityChoice;
-use super::pressure_table::{StrainTable, WAYS, WAYS_OF_STRAIN};
-use super::table::{Context, Table, WearLaws, WriteWaveform};
-use crate::config::{
-    Choices, Key, Log, Offered, Page, Section, Settings, TableSchema, Variants, Writer, choice,
-    settings, variants, within,
+use condyle::contact::{
+    Backside, Deformable, Foundation, FrictionModel, PressureTable, Search, softening_modulus,
 };
+use condyle_fem::{Elastic, ElasticPlastic, Hardening, HardeningError};
+use thiserror::Error;
+
+use super::pressure_table::StrainTable;
+use crate::config::{Log, Points, Reason, Section, choice, settings, variants, within};
 
 choice! {
-    /// What the insert is to the femur.
-    ContactModelWord {
-        /// A rigid body with an elastic layer on it, in which neighbours do not feel each other.
-        Foundation = "foundation",
-        /// An elastic body of finite elements, bonded to its tray.
-        Deformable = "deformable",
-    }
-
-    /// How a deformable insert rubs.
+    /// Friction of a deformable insert.
     FrictionModelWord {
         /// Friction goes with the sliding speed, and does not move the surface.
         Regularised = "regularised",
-        /// The surface gives way along itself, and each node sticks or slides.
+        /// The surface yields along itself, and each node sticks or slides.
         StickSlip = "stick-slip",
     }
 
-    /// How the nodes that may touch are found.
+    /// Search for the nodes that may touch.
     SearchWord {
         /// By bounds that are carried along as the femur moves.
         Coherent = "coherent",
@@ -38,7 +28,7 @@ choice! {
 }
 
 impl FrictionModelWord {
-    /// The model that it stands for.
+    /// Returns the model of friction.
     pub fn model(self) -> FrictionModel {
         match self {
             Self::Regularised => FrictionModel::Regularised,
@@ -48,7 +38,7 @@ impl FrictionModelWord {
 }
 
 impl SearchWord {
-    /// The search that it stands for.
+    /// Returns the search.
     pub fn search(self) -> Search {
         match self {
             Self::Coherent => Search::Coherent,
@@ -58,57 +48,74 @@ impl SearchWord {
 }
 
 settings! {
-    /// The model of contact.
-    ModelOfContact {
-        /// What the insert is: an elastic foundation, quick, whose pressure follows a law; or a deformable body, exact for small strains, which has no law.
-        model: ContactModelWord = ContactModelWord::Foundation;
-    }
-
-    /// Friction on a deformable insert.
-    FrictionSettings {
-        /// Regularised: friction goes with the sliding speed by slip_tolerance_mm_per_s. Stick-slip: the surface gives way along itself, and each node sticks or slides by Coulomb's law, without a tolerance; some seven times the time, and the implicit integrator alone.
-        friction_model: FrictionModelWord = FrictionModelWord::Regularised;
-    }
-
-    /// Contact besides the pressure law.
-    Friction {
+    /// Model of contact and friction.
+    Contact {
         /// Coulomb coefficient of friction.
         friction: f64 = 0.07, in within(0.0, 2.0);
         /// Sliding speed at which friction is nearly full: smaller is truer and slower.
         slip_tolerance_mm_per_s: f64 = 0.3, in within(1e-6, 1000.0);
-    }
-
-    /// How contact is found; results do not depend on it, but for what a reused sample rounds.
-    Finding {
-        /// How the nodes that may touch are found; the results are the same, brute force is the slow reference.
+        /// Search for the nodes that may touch; the results are the same, brute force is the slow reference.
         search: SearchWord = SearchWord::Coherent;
-        /// Motion up to which a sample of the femur is extrapolated rather than taken anew, which changes the force by less than a hundred-thousandth; 0 takes every sample anew.
+        /// Motion up to which a sample of the femur is extrapolated rather than computed again, which changes the force by less than a hundred-thousandth; 0 computes every sample.
         sample_reuse_mm: f64 = Foundation::SAMPLE_REUSE_MM, in within(0.0, 0.02);
+        /// The model of the insert.
+        [flat] model: ContactModelChoice;
     }
-}
 
-settings! {
-    /// How polyethylene softens under one stress: strain = e0/2 (stress/s0 + (stress/s0)^3).
+    /// The insert as an elastic foundation, a rigid body with a layer on it, in which neighbouring points do not act on each other.
+    FoundationContact {
+        /// Pressure against overclosure.
+        [flat] law: PressureLawChoice;
+    }
+
+    /// The insert as a body of finite elements on its tray.
+    DeformableContact {
+        /// Friction: regularised, it goes with the sliding speed by slip_tolerance_mm_per_s; stick-slip, the surface yields along itself, and each node sticks or slides by Coulomb's law, without a tolerance, which takes some seven times the time and the implicit integrator.
+        friction_model: FrictionModelWord = FrictionModelWord::Regularised;
+        /// Yield of the insert.
+        [flat] plasticity: PlasticityChoice;
+        /// Support of the backside.
+        [flat] backside: BacksideChoice;
+    }
+
+    /// Softening of polyethylene under uniaxial stress: strain = e0/2 (stress/s0 + (stress/s0)^3).
     SofteningCurve {
         /// e0, the strain at the softening stress; Young's modulus is then 2 s0/e0, 616 MPa by default, and that of the material is not used. Approximate.
         softening_strain: f64 = 0.0597, in within(1e-4, 10.0);
-        /// s0, the stress at which the strain is twice what the first modulus gives. Approximate.
+        /// s0, the stress at which the strain is twice that by the initial modulus. Approximate.
         softening_stress_mpa: f64 = 18.4, in within(0.1, 10_000.0);
     }
-}
 
-impl SofteningCurve {
-    /// Modulus of a confined layer at no pressure, MPa.
-    pub(super) fn modulus_mpa(&self, poissons_ratio: f64) -> f64 {
-        softening_modulus(
-            self.softening_strain,
-            self.softening_stress_mpa,
-            poissons_ratio,
-        )
+    /// Plasticity of von Mises with isotropic and kinematic hardening.
+    J2Plasticity [check] {
+        /// Equivalent stress (von Mises) at which polyethylene begins to yield. The default is approximate: quoted from memory, not checked at the source.
+        yield_stress_mpa: f64 = 14.0, in within(0.1, 10_000.0);
+        /// Modulus of linear kinematic hardening: stress of the centre of the yield surface over plastic strain, in tension.
+        kinematic_modulus_mpa: f64 = 0.0, in within(0.0, 10_000.0);
+        /// Points [plastic strain, yield stress in MPa] of isotropic hardening, rising from [0.0, yield_stress_mpa]; by default those of [0.0099, 23.2], [0.0258, 25.1], [0.0434, 26.2], [0.0619, 26.9] above the yield stress, from a model of polyethylene [bergstrom2010]. Approximate.
+        hardening: Option<Points> = None;
+    }
+
+    /// A backside that rests on its tray.
+    RestingBackside {
+        /// Coulomb coefficient of friction between backside and tray. The default is assumed, not measured.
+        backside_friction: f64 = 0.2, in within(0.0, 1000.0);
+        /// Spacing of the points at which the motion of the backside is solved; it is interpolated between them.
+        backside_spacing_mm: f64 = 5.0, in within(1.0, 50.0);
     }
 }
 
 variants! {
+    /// The model of the insert in contact.
+    ContactModelChoice by
+    /// Model of the insert: an elastic foundation, quick, whose pressure follows a law; or a deformable body of finite elements, exact for small strains, which has no law.
+    model = "foundation" {
+        /// An elastic foundation: its pressure law.
+        Foundation(@table FoundationContact) = "foundation",
+        /// A deformable body: its plasticity, friction and backside.
+        Deformable(@table DeformableContact) = "deformable",
+    }
+
     /// Pressure against overclosure; the modulus comes from the material.
     PressureLawChoice by
     /// Form of pressure against overclosure.
@@ -124,10 +131,68 @@ variants! {
         /// Points of pressure against overclosure over thickness.
         TabulatedStrain(StrainTable) = "tabulated-strain",
     }
+
+    /// Yield of a deformable insert.
+    PlasticityChoice by
+    /// Yield of the insert.
+    plasticity = "none" {
+        /// It is elastic.
+        None = "none",
+        /// By von Mises, with hardening.
+        J2(J2Plasticity) = "j2",
+    }
+
+    /// Support of the backside of a deformable insert.
+    BacksideChoice by
+    /// Support of the backside on its tray: a bond, or the tray alone, from which it lifts and along which it slips with friction, which takes some ten times the time and the implicit integrator.
+    backside = "bonded" {
+        /// It neither lifts nor slips.
+        Bonded = "bonded",
+        /// It presses and sticks or slips, or lifts.
+        Resting(RestingBackside) = "resting",
+    }
+}
+
+impl Contact {
+    /// The pressure law of a foundation; `None` for a deformable insert, which has none.
+    pub fn law(&self) -> Option<&PressureLawChoice> {
+        match &self.model {
+            ContactModelChoice::Foundation(foundation) => Some(&foundation.law),
+            ContactModelChoice::Deformable(_) => None,
+        }
+    }
+
+    /// The settings of a deformable insert; `None` for a foundation.
+    pub fn deformable(&self) -> Option<&DeformableContact> {
+        match &self.model {
+            ContactModelChoice::Foundation(_) => None,
+            ContactModelChoice::Deformable(deformable) => Some(deformable),
+        }
+    }
+}
+
+impl DeformableContact {
+    /// An elastic insert with regularised friction that is bonded to its tray.
+    pub const ELASTIC: Self = Self {
+        friction_model: FrictionModelWord::Regularised,
+        plasticity: PlasticityChoice::None,
+        backside: BacksideChoice::Bonded,
+    };
+}
+
+impl SofteningCurve {
+    /// Modulus of a confined layer at no pressure, MPa.
+    pub(super) fn modulus_mpa(&self, poissons_ratio: f64) -> f64 {
+        softening_modulus(
+            self.softening_strain,
+            self.softening_stress_mpa,
+            poissons_ratio,
+        )
+    }
 }
 
 impl PressureLawChoice {
-    /// By how much the peak pressure is off that of the deformable insert that the law was fitted to, %, if that is known.
+    /// Error of the peak pressure against the deformable insert that the law was fitted to, %, if it is known.
     pub fn peak_error_percent(&self) -> Option<f64> {
         match self {
             Self::TabulatedStrain(table) => table.error.peak_error_percent,
@@ -136,198 +201,102 @@ impl PressureLawChoice {
     }
 }
 
-/// Model of contact, pressure law, friction, and how nodes that touch are found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Contact {
-    /// The model.
-    pub model: ContactModelWord,
-    /// Pressure against overclosure; of the foundation alone.
-    pub law: PressureLawChoice,
-    /// Whether and how the insert yields; of the deformable insert alone.
-    pub plasticity: PlasticityChoice,
-    /// How it rubs; of the deformable insert alone.
-    pub friction_model: FrictionModelWord,
-    /// What holds its backside; of the deformable insert alone.
-    pub backside: BacksideChoice,
-    /// Friction.
-    pub friction: Friction,
-    /// How contact is found.
-    pub finding: Finding,
+/// Plastic strain and yield stress, MPa, of ultra-high-molecular-weight polyethylene beyond its first yield: the
+/// three-network model of Bergstrom and Bischoff (2010) in compression at 1 % a second, run by us, less the elastic strain
+/// of 463 MPa. Approximate.
+const CURVE: [(f64, f64); 4] = [
+    (0.0099, 23.2),
+    (0.0258, 25.1),
+    (0.0434, 26.2),
+    (0.0619, 26.9),
+];
+
+/// A hardening curve that cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PlasticityReason {
+    /// The points are no curve.
+    #[error("`hardening`: {0}")]
+    Hardening(HardeningError),
+    /// The curve does not begin with the yield stress.
+    #[error(
+        "`hardening` starts at {found} MPa, and yield_stress_mpa is {yield_stress_mpa}: its first point must be [0.0, {yield_stress_mpa:?}]"
+    )]
+    NotFromYield {
+        /// Stress of its first point, MPa.
+        found: f64,
+        /// The yield stress, MPa.
+        yield_stress_mpa: f64,
+    },
 }
 
-impl Contact {
-    /// The keys that choose model and law, and those that `[contact]` has whatever they are.
-    pub(super) fn keys() -> Vec<Key> {
-        [
-            ModelOfContact::keys(),
-            vec![PressureLawChoice::choices().by],
-            Self::keys_of_deformable(),
-            Self::other_keys(),
-        ]
-        .concat()
+impl Reason for PlasticityReason {
+    fn advice(&self) -> Option<String> {
+        None
+    }
+}
+
+impl PlasticityChoice {
+    /// Returns the law with the insert's material: each choice creates its own.
+    pub(crate) fn with_material(&self, law: Deformable, elastic: Elastic) -> Deformable {
+        match self.hardening() {
+            Some(hardening) => law.with_material(ElasticPlastic { elastic, hardening }),
+            None => law.with_material(elastic),
+        }
     }
 
-    /// The same but for those of a deformable insert alone.
-    pub(super) fn keys_of_page() -> Vec<Key> {
-        let of_deformable = Self::keys_of_deformable();
-        let mut keys = Self::keys();
-        keys.retain(|key| of_deformable.iter().all(|other| other.name != key.name));
-        keys
+    /// The yield stress and its hardening, if the insert yields.
+    pub(crate) fn hardening(&self) -> Option<Hardening> {
+        match self {
+            Self::None => None,
+            Self::J2(j2) => j2.hardening().ok(),
+        }
     }
+}
 
-    /// Those of a deformable insert alone, but for those that a kind of plasticity or of backside brings.
-    pub(super) fn keys_of_deformable() -> Vec<Key> {
-        let plasticity = PlasticityChoice::choices().by;
-        let backside = BacksideChoice::choices().by;
-        [vec![plasticity], FrictionSettings::keys(), vec![backside]].concat()
-    }
-
-    /// The choice of the model, which brings the key of the law, or that and `of_law`, or the keys of a deformable insert,
-    /// or those and `of_choices`.
-    pub(super) fn models(of_law: &[Key], of_choices: &[Key]) -> Choices {
-        let key = &ModelOfContact::keys()[0];
-        let law = [&[PressureLawChoice::choices().by], of_law].concat();
-        let deformable = [&Self::keys_of_deformable(), of_choices].concat();
-        let offered = ContactModelWord::ALL.iter().map(|model| Offered {
-            word: model.word(),
-            keys: match model {
-                ContactModelWord::Foundation => law.clone(),
-                ContactModelWord::Deformable => deformable.clone(),
-            },
-        });
-        let default = ContactModelWord::Foundation.word();
-        Choices::new(key.name, key.doc.clone(), default, offered.collect())
-    }
-
-    fn other_keys() -> Vec<Key> {
-        [Friction::keys(), Finding::keys()].concat()
-    }
-
-    pub(super) fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        let model = ModelOfContact::read(section, log).map(|of| of.model);
-        let word = model.unwrap_or(ContactModelWord::Foundation);
-        let of_law = all_keys(&PressureLawChoice::choices());
-        let of_plasticity = all_keys(&PlasticityChoice::choices());
-        let of_backside = all_keys(&BacksideChoice::choices());
-        let of_choices = [&of_plasticity[1..], &of_backside[1..]].concat();
-        Self::models(&of_law[1..], &of_choices).check_keys_of_others(word.word(), section, log);
-        let common = [
-            ModelOfContact::keys(),
-            Self::other_keys(),
-            FrictionSettings::keys(),
-        ]
-        .concat();
-        let (law, (plasticity, rubbing, backside)) = match word {
-            ContactModelWord::Deformable => {
-                let common = [common, of_law].concat();
-                let law = Some(PressureLawChoice::Linear);
-                (law, Self::read_deformable(section, &common, log))
-            }
-            ContactModelWord::Foundation => {
-                let common = [common, of_plasticity, of_backside].concat();
-                let law = PressureLawChoice::read(section, &common, log);
-                let friction_model = FrictionModelWord::Regularised;
-                let rubbing = FrictionSettings { friction_model };
-                let none = (PlasticityChoice::None, rubbing, BacksideChoice::Bonded);
-                (law, (Some(none.0), Some(none.1), Some(none.2)))
+impl J2Plasticity {
+    fn hardening(&self) -> Result<Hardening, HardeningError> {
+        let first_mpa = self.yield_stress_mpa;
+        let points = match &self.hardening {
+            Some(points) => points.0.clone(),
+            None => {
+                let beyond = CURVE.into_iter().filter(|point| point.1 > first_mpa);
+                [(0.0, first_mpa)].into_iter().chain(beyond).collect()
             }
         };
-        let friction = Friction::read(section, log);
-        let finding = Finding::read(section, log);
-        Some(Self {
-            model: model?,
-            law: law?,
-            plasticity: plasticity?,
-            friction_model: rubbing?.friction_model,
-            backside: backside?,
-            friction: friction?,
-            finding: finding?,
-        })
+        Hardening::new(points, self.kinematic_modulus_mpa)
     }
 
-    /// What a deformable insert alone has.
-    fn read_deformable(
-        section: &Section<'_>,
-        common: &[Key],
-        log: &mut Log<'_>,
-    ) -> (
-        Option<PlasticityChoice>,
-        Option<FrictionSettings>,
-        Option<BacksideChoice>,
-    ) {
-        let with = |choices: Choices| [common, &all_keys(&choices)].concat();
-        let beside_plasticity = with(BacksideChoice::choices());
-        let beside_backside = with(PlasticityChoice::choices());
-        (
-            PlasticityChoice::read(section, &beside_plasticity, log),
-            FrictionSettings::read(section, log),
-            BacksideChoice::read(section, &beside_backside, log),
-        )
-    }
-
-    pub(super) fn write(&self, out: &mut Writer) {
-        let model = self.model;
-        ModelOfContact { model }.write(out);
-        match model {
-            ContactModelWord::Foundation => self.law.write(out),
-            ContactModelWord::Deformable => {
-                self.plasticity.write(out);
-                let friction_model = self.friction_model;
-                FrictionSettings { friction_model }.write(out);
-                self.backside.write(out);
+    fn check(&self, section: &Section<'_>, log: &mut Log<'_>) {
+        let mut report = |point, reason| log.problem(section.item_span("hardening", point), reason);
+        let yield_stress_mpa = self.yield_stress_mpa;
+        let first = self.hardening.as_ref().and_then(|points| points.0.first());
+        match (self.hardening(), first) {
+            (Err(error), _) => report(error.point, PlasticityReason::Hardening(error)),
+            (Ok(_), Some(&(_, found))) if found != yield_stress_mpa => {
+                let reason = PlasticityReason::NotFromYield {
+                    found,
+                    yield_stress_mpa,
+                };
+                report(0, reason);
             }
+            (Ok(_), _) => {}
         }
-        self.friction.write(out);
-        self.finding.write(out);
     }
 }
 
-/// The key that chooses, and those that all words bring.
-fn all_keys(choices: &Choices) -> Vec<Key> {
-    let offered = choices.offered.iter();
-    let keys = offered.flat_map(|offer| offer.keys.clone());
-    [choices.by.clone()].into_iter().chain(keys).collect()
-}
-
-impl Table for Contact {
-    const NAME: &'static str = "contact";
-
-    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
-        Self::read(&root.table(Self::NAME, log), log)
+impl BacksideChoice {
+    /// Returns the support of the backside.
+    pub fn backside(&self) -> Backside {
+        match self {
+            Self::Bonded => Backside::Bonded,
+            Self::Resting(resting) => Backside::Resting {
+                friction: resting.backside_friction,
+                spacing_mm: resting.backside_spacing_mm,
+            },
+        }
     }
 
-    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
-        out.table(Self::NAME);
-        self.write(out);
-    }
-
-    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
-        let laws = PressureLawChoice::choices();
-        let table = TableSchema::new("Model of contact, pressure law and friction.")
-            .with_keys(&Self::keys())
-            .with_choices(&Self::models(&[], &[]))
-            .with_choices(&laws)
-            .with_choices(&PlasticityChoice::choices())
-            .with_choices(&BacksideChoice::choices())
-            .with_one_of_under(&laws, "tabulated", &WAYS)
-            .with_one_of_under(&laws, "tabulated-strain", &WAYS_OF_STRAIN);
-        case.with_table(Self::NAME, table)
-    }
-
-    fn add_to_page(page: &mut Page, _: WearLaws) {
-        page.chosen(
-            "`[contact]`",
-            &Self::keys_of_page(),
-            &PressureLawChoice::choices(),
-        );
-        let plasticity = PlasticityChoice::choices();
-        page.chosen(
-            "`[contact]` of a deformable insert",
-            &Self::keys_of_deformable(),
-            &plasticity,
-        );
-        let backside = BacksideChoice::choices();
-        let by = std::slice::from_ref(&backside.by);
-        page.chosen("`[contact]` of a backside", by, &backside);
+    pub(crate) fn is_resting(&self) -> bool {
+        matches!(self, Self::Resting(_))
     }
 }

@@ -176,7 +176,7 @@ fn three<'a, 'i>(array: &'a toml::de::DeArray<'i>) -> Option<[&'a Spanned<DeValu
 }
 
 /// Reports axes that are no right-handed frame on a `side` knee.
-pub(crate) fn check(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
+pub(crate) fn check_axes(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
     if let Err(error) = axes.rotation(side) {
         log.problem(span, AxesReason { key: "axes", error });
     }

@@ -1,26 +1,24 @@
-//! The key of a case that is behind a failed build, so that the message points to it.
+//! The key of a case at fault for a failed build, so that the message points to it.
 
 use std::collections::BTreeMap;
 use std::iter;
 use std::ops::Range;
 
 use condyle::evolve::PlacementError;
-use condyle::geometry::InsertError;
 use condyle::machine::knee;
-use condyle_mesh::columns::ColumnError;
 use thiserror::Error;
 
-use super::build::{Body, BuildError, BuildWarning};
+use super::build::{Body, BuildError, BuildWarning, MeshRemark};
 use super::contents::Case;
 use super::machine::DriveWord;
 use super::run_options::Limits;
 use crate::config::{DataFile, Problem, Problems, Reason};
 
-/// Values that are good one by one and make no wear test together.
+/// Values that are valid one by one but make no wear test together.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{message}")]
 pub struct CaseConflict {
-    /// Why, and what to do.
+    /// Cause and remedy.
     pub message: String,
 }
 
@@ -30,13 +28,13 @@ impl Reason for CaseConflict {
     }
 }
 
-/// A table of a case and those of its keys that may be at fault, likeliest first.
+/// A table of a case and those of its keys that may be at fault, the likeliest first.
 struct KeyLocation {
     table: &'static str,
     keys: &'static [&'static str],
 }
 
-/// What places the femur over the insert.
+/// The keys that place the femur over the insert.
 const START: KeyLocation = KeyLocation {
     table: "femur",
     keys: &["start_mm", "length_unit", "axes", "file", "shape"],
@@ -51,13 +49,13 @@ const FINENESS: KeyLocation = KeyLocation {
 const SOFT_MPA: f64 = 100.0;
 
 impl Case {
-    /// A failed build, at the key of this case that is behind it.
+    /// Returns a failed build as a problem at the key of this case at fault.
     pub fn at_its_key(&self, error: &BuildError) -> Problems {
         self.errors_at(&[(self.location_of_build(error), error.to_string())])
     }
 
-    /// A failed placement of this case's bodies, at the key that is behind it, after axes that `warnings` say are
-    /// likely wrong, which may be why.
+    /// Returns a failed placement of this case's bodies as a problem at the key at fault, after axes that `warnings` find
+    /// likely wrong, which may be the cause.
     pub fn placement_at_its_key(
         &self,
         error: &PlacementError,
@@ -70,7 +68,10 @@ impl Case {
         };
         let mut errors = Vec::new();
         for warning in warnings {
-            if let BuildWarning::WrongAxes { wrong, .. } = warning {
+            let BuildWarning::Mesh { remark, .. } = warning else {
+                continue;
+            };
+            if let MeshRemark::WrongAxes { wrong } = remark {
                 errors.push((axes_of(wrong.body), warning.to_string()));
             }
         }
@@ -78,7 +79,7 @@ impl Case {
         self.errors_at(&errors)
     }
 
-    /// A run of this case that needs more memory than it allows, at the key that allows it or else at the insert's mesh.
+    /// Returns a run that needs more memory than the case allows as a problem at that limit, or else at the insert's mesh.
     pub fn memory_at_its_key(&self, message: String) -> Problems {
         let limits = KeyLocation {
             table: "limits",
@@ -93,50 +94,10 @@ impl Case {
     }
 
     fn location_of_build(&self, error: &BuildError) -> KeyLocation {
-        let keys: &[&str] = match error {
-            BuildError::RestingBeside { .. } | BuildError::BacksideNotFlat { .. } => {
-                return KeyLocation {
-                    table: "contact",
-                    keys: &["backside"],
-                };
-            }
-            BuildError::StickSlipExplicit | BuildError::RestingExplicit => {
-                return KeyLocation {
-                    table: "time",
-                    keys: &["integrator"],
-                };
-            }
-            BuildError::MeshFile(_)
-            | BuildError::StrayPiece { .. }
-            | BuildError::Shell { .. }
-            | BuildError::PressedHole { .. } => &["file"],
-            BuildError::Size { .. }
-            | BuildError::WrongUnit { .. }
-            | BuildError::TooManyNodes { .. } => &["length_unit", "file"],
-            BuildError::ShellInsert { source, .. } => match source {
-                InsertError::TooManyNodes(_)
-                | InsertError::Columns(
-                    ColumnError::NoColumns { .. }
-                    | ColumnError::TooCoarse { .. }
-                    | ColumnError::TooManyNodes(_),
-                ) => &["edge_mm", "file"],
-                _ => &["file"],
-            },
-            BuildError::InsertTooFine { .. } => &["edge_mm", "layers", "file", "length_unit"],
-            BuildError::ClipMisses { .. } => &["clip_below_mm"],
-            BuildError::UnclearUnderside { .. } => &["clip_below_mm", "file"],
-            BuildError::ThicknessOfClosed { .. } => &["thickness_mm"],
-            BuildError::NoSurface { key, .. } => match *key {
-                "backside" => &["backside"],
-                _ => &["articulating_surface"],
-            },
-            BuildError::Insert(InsertError::TooManyNodes(_)) => &["edge_mm", "layers"],
-            BuildError::Insert(_) | BuildError::Solid(_) => {
-                &["backside", "articulating_surface", "file", "edge_mm"]
-            }
-            BuildError::Axes(_) => &["axes"],
-            BuildError::WrongAxes { .. } => &["axes", "file"],
-        };
+        let keys = error.keys();
+        if let BuildError::Conflict { table, .. } = error {
+            return KeyLocation { table, keys };
+        }
         let file = error.file();
         let is_of_femur = file.is_some() && file == self.femur.file().map(DataFile::path);
         let table = if is_of_femur { "femur" } else { "insert" };
@@ -144,7 +105,7 @@ impl Case {
     }
 
     fn location_of_overlap(&self) -> KeyLocation {
-        if self.machine.freedoms.get(knee::IS).drive() == DriveWord::Locked {
+        if self.machine.freedoms.get(knee::IS).drive == DriveWord::Locked {
             KeyLocation {
                 table: "machine.freedoms.is",
                 keys: &["locked_at_mm", "drive"],
@@ -163,24 +124,21 @@ impl Case {
         let source = &self.origin.source;
         let problem = |(location, message): &(KeyLocation, String)| {
             let message = message.clone();
-            Problem::at(
-                source,
-                location.span(&self.origin.places),
-                CaseConflict { message },
-            )
+            let (key, span) = location.place(&self.origin.places);
+            Problem::at(source, span, key.as_deref(), CaseConflict { message })
         };
         Problems::new(errors.iter().map(problem).collect(), source)
     }
 }
 
 impl KeyLocation {
-    /// The value of its first key that is given, or else the name of its table, or of the nearest table around that.
-    fn span(&self, places: &BTreeMap<String, Range<usize>>) -> Range<usize> {
+    /// Returns the path and place of its first key that is given, or else of its table, or of the nearest table around that.
+    fn place(&self, places: &BTreeMap<String, Range<usize>>) -> (Option<String>, Range<usize>) {
         let keys = self.keys.iter().map(|key| format!("{}.{key}", self.table));
         let tables = iter::successors(Some(self.table), |table| Some(table.rsplit_once('.')?.0));
         let mut names = keys.chain(tables.map(str::to_owned));
-        let place = names.find_map(|name| places.get(&name).cloned());
-        place.unwrap_or_default()
+        let place = names.find_map(|name| Some((places.get(&name)?.clone(), name)));
+        place.map_or((None, 0..0), |(place, name)| (Some(name), place))
     }
 }
 

@@ -1,19 +1,16 @@
-//! The simulator: its numbers, its six freedoms and what drives them.
+//! The simulator: its own keys, its six freedoms, and the waveforms that drive them.
 
 use condyle::machine::knee::{self, KNEE};
 use condyle::machine::{JointDescription, JointIndex, JointKind, Waveform};
-use condyle::parameter::unit_of;
 use toml::Spanned;
 use toml::de::DeValue;
 
 use super::machine_reason::{ActivityReason, DriveReason};
-use super::table::{Context, Table, WearLaws, WriteWaveform};
-use super::waveform::CaseChannel;
-use super::waveform::{DEFAULT_WAVEFORM, InterpolationWord, list_waveforms, with_waveforms};
+use super::waveform::{CaseChannel, waveform_items};
 use super::waveform_points;
 use crate::config::{
-    Key, KeyReason, Kind, Log, Page, Section, Setting, Settings, TableSchema, Writer, choice,
-    names, number, quoted_list, read_table, settings, within, wrong_type,
+    Item, Key, KeyReason, Kind, Log, Section, Setting, Settings, TableItem, Writer, choice, keys,
+    number, quoted_list, rows, settings, within, wrong_type,
 };
 
 choice! {
@@ -25,7 +22,7 @@ choice! {
         StanmoreDisplacement = "stanmore-displacement",
     }
 
-    /// What a stated spring stiffness belongs to.
+    /// Meaning of a stated spring stiffness.
     StiffnessOf {
         /// Both springs of the pair together: each has half.
         Pair = "pair",
@@ -33,7 +30,7 @@ choice! {
         Each = "each",
     }
 
-    /// What moves a freedom.
+    /// Drive of a freedom.
     DriveWord {
         /// Held at a position.
         Locked = "locked",
@@ -45,14 +42,10 @@ choice! {
 }
 
 settings! {
-    /// The simulator that a machine starts from.
-    Start {
-        /// The simulator it starts from: which freedoms are free and which are moved.
-        preset: Preset = Preset::StanmoreForce;
-    }
-
-    /// The simulator's numbers.
+    /// The simulator's own keys.
     MachineSettings {
+        /// The simulator to start from: it determines which freedoms are free and which are moved.
+        preset: Preset = Preset::StanmoreForce;
         /// Gait cycles a second.
         frequency_hz: f64 = 1.1, in within(0.001, 100.0);
         /// Added to the flexion waveform: -7 sets the femur 7 degrees towards hyperextension.
@@ -61,33 +54,33 @@ settings! {
         ap_force_sign: Sign = Sign::Plus;
         /// 1 or -1 times the IE torque: laboratories dispute its direction.
         ie_torque_sign: Sign = Sign::Plus;
-        /// How far medial of the load axis the varus-valgus axis lies.
+        /// Distance of the varus-valgus axis medial of the load axis.
         vv_axis_medial_mm: f64 = 5.0, in within(-50.0, 50.0);
-        /// How far below the dish's lowest point the varus-valgus axis lies.
+        /// Distance of the varus-valgus axis below the dish's lowest point.
         vv_axis_below_mm: f64 = 20.0, in within(-100.0, 200.0);
-        /// How far anterior of the insert's origin the axis of IE rotation lies.
+        /// Distance of the axis of IE rotation anterior of the insert's origin.
         ie_axis_anterior_mm: f64 = 0.0, in within(-50.0, 50.0);
     }
 
-    /// The pair of springs that stands for the ligaments.
+    /// The pair of springs that represents the ligaments.
     Springs {
         /// Stiffness against posterior motion of the insert.
         posterior_n_per_mm: f64 = 33.8, in within(0.0, 10_000.0);
         /// Stiffness against anterior motion of the insert.
         anterior_n_per_mm: f64 = 7.24, in within(0.0, 10_000.0);
-        /// Whether the stiffnesses are those of the pair or of each spring: the paper does not say.
+        /// Meaning of the stiffnesses, of the pair or of each spring: the paper leaves it open.
         stiffness_of: StiffnessOf = StiffnessOf::Pair;
         /// Motion each way before they engage.
         free_play_mm: f64 = 2.5, in within(0.0, 50.0);
-        /// How far each spring lies to the side of the IE axis.
+        /// Distance of each spring to the side of the IE axis.
         lateral_offset_mm: f64 = 28.0, in within(0.0, 100.0);
     }
 
-    /// A freedom that translates. No source gives inertia and damping: the book says why they are so.
+    /// A freedom that translates. No source gives inertia and damping: the book explains the defaults.
     Translation {
-        /// What moves it; by the preset if not given.
+        /// Its drive; that of the preset if not given.
         drive: Option<DriveWord> = None;
-        /// Where it is held when locked.
+        /// Position at which it is held when locked.
         locked_at_mm: f64 = 0.0, in within(-100.0, 100.0);
         /// Mass that moves with it.
         inertia_kg: f64 = 1e3 * knee::MASS_TONNE, in within(0.0, 1000.0);
@@ -95,11 +88,11 @@ settings! {
         damping_n_s_per_mm: f64 = knee::DAMPING_N_S_PER_MM, in within(0.0, 1000.0);
     }
 
-    /// A freedom that rotates. No source gives inertia and damping: the book says why they are so.
+    /// A freedom that rotates. No source gives inertia and damping: the book explains the defaults.
     Rotation {
-        /// What moves it; by the preset if not given.
+        /// Its drive; that of the preset if not given.
         drive: Option<DriveWord> = None;
-        /// Where it is held when locked.
+        /// Position at which it is held when locked.
         locked_at_deg: f64 = 0.0, in within(-180.0, 180.0);
         /// Moment of inertia that moves with it.
         inertia_kg_m2: f64 = 1e-3 * knee::MOMENT_OF_INERTIA_TONNE_MM2, in within(0.0, 100.0);
@@ -111,9 +104,9 @@ settings! {
 /// 1 or -1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
-    /// 1: as the waveform says.
+    /// 1: as given by the waveform.
     Plus,
-    /// -1: turned round.
+    /// -1: reversed.
     Minus,
 }
 
@@ -151,9 +144,7 @@ impl Setting for Sign {
 /// The simulator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Machine {
-    /// The simulator it starts from.
-    pub preset: Preset,
-    /// Its numbers.
+    /// Its own keys.
     pub settings: MachineSettings,
     /// The pair of springs.
     pub springs: Springs,
@@ -163,13 +154,17 @@ pub struct Machine {
     pub waveforms: Waveforms,
 }
 
-/// The keys of a freedom.
+/// The settings of a freedom.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Freedom {
-    /// One that translates.
-    Translation(Translation),
-    /// One that rotates.
-    Rotation(Rotation),
+pub struct Freedom {
+    /// Its drive.
+    pub drive: DriveWord,
+    /// Position at which it is held when locked, mm or degrees.
+    pub locked_at: f64,
+    /// Mass, kg, or moment of inertia, kg m2, that moves with it.
+    pub inertia: f64,
+    /// Viscous damping, N s/mm or N m s/rad.
+    pub damping: f64,
 }
 
 /// The six freedoms, one a joint; the drive of each is given.
@@ -185,183 +180,200 @@ pub struct Waveforms {
     given: Vec<(CaseChannel, Waveform)>,
 }
 
-impl Waveforms {
-    /// The waveform of `channel`, if the machine uses it.
-    pub fn get(&self, channel: CaseChannel) -> Option<&Waveform> {
-        let mut given = self.given.iter();
-        given.find_map(|(of, waveform)| (*of == channel).then_some(waveform))
+impl Preset {
+    /// Returns the drive of a freedom that the case does not give.
+    fn drive(self, freedom: &str) -> DriveWord {
+        match (self, freedom) {
+            (_, "flexion") | (Self::StanmoreDisplacement, "ap" | "ie") => DriveWord::Prescribed,
+            _ => DriveWord::Loaded,
+        }
     }
 }
 
-/// What moves each freedom of a preset.
-fn preset_drives(preset: Preset) -> [(&'static str, DriveWord); 6] {
-    use DriveWord::{Loaded, Prescribed};
-    match preset {
-        Preset::StanmoreForce => [
-            ("ap", Loaded),
-            ("ie", Loaded),
-            ("ml", Loaded),
-            ("vv", Loaded),
-            ("is", Loaded),
-            ("flexion", Prescribed),
-        ],
-        Preset::StanmoreDisplacement => [
-            ("ap", Prescribed),
-            ("ie", Prescribed),
-            ("ml", Loaded),
-            ("vv", Loaded),
-            ("is", Loaded),
-            ("flexion", Prescribed),
-        ],
+impl DriveWord {
+    fn fits(self, joint: &JointDescription) -> bool {
+        match self {
+            Self::Locked => true,
+            Self::Prescribed => joint.motion.is_some(),
+            Self::Loaded => joint.can_be_free(),
+        }
     }
-}
 
-/// What moves a freedom where the case does not say.
-fn preset_drive(preset: Preset, freedom: &str) -> Option<DriveWord> {
-    let mut drives = preset_drives(preset).into_iter();
-    drives.find_map(|(name, drive)| (name == freedom).then_some(drive))
-}
-
-/// Whether a drive moves a joint.
-fn allows(joint: &JointDescription, drive: DriveWord) -> bool {
-    match drive {
-        DriveWord::Locked => true,
-        DriveWord::Prescribed => joint.motion.is_some(),
-        DriveWord::Loaded => joint.can_be_free(),
+    fn words_for(joint: &JointDescription) -> Vec<&'static str> {
+        let drives = Self::ALL.iter().copied();
+        drives
+            .filter(|drive| drive.fits(joint))
+            .map(Self::word)
+            .collect()
     }
-}
 
-/// The drives that a joint can have.
-fn drive_words(joint: &JointDescription) -> Vec<&'static str> {
-    let drives = DriveWord::ALL.iter().copied();
-    drives
-        .filter(|drive| allows(joint, *drive))
-        .map(DriveWord::word)
-        .collect()
-}
-
-/// The waveform that a drive of a joint needs.
-pub(super) fn channel_of(joint: &JointDescription, drive: DriveWord) -> Option<CaseChannel> {
-    let channel = match drive {
-        DriveWord::Locked => None,
-        DriveWord::Prescribed => joint.motion,
-        DriveWord::Loaded => joint.load_channel(),
-    };
-    channel.map(CaseChannel::of)
+    /// Returns the waveform that the drive of a joint needs.
+    fn channel(self, joint: &JointDescription) -> Option<CaseChannel> {
+        let channel = match self {
+            Self::Locked => None,
+            Self::Prescribed => joint.motion,
+            Self::Loaded => joint.load_channel(),
+        };
+        channel.map(CaseChannel::of)
+    }
 }
 
 impl Freedom {
-    fn read(joint: &JointDescription, section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
-        match joint.kind() {
-            JointKind::Translation => read_table(section, joint.name, log).map(Self::Translation),
-            JointKind::Rotation => read_table(section, joint.name, log).map(Self::Rotation),
-        }
-    }
-
-    /// The keys that the freedom of `joint` has.
-    pub(super) fn keys(joint: &JointDescription) -> Vec<Key> {
-        let keys = match joint.kind() {
-            JointKind::Translation => Translation::keys(),
-            JointKind::Rotation => Rotation::keys(),
+    fn read(
+        joint: &JointDescription,
+        preset: Preset,
+        section: &Section<'_>,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
+        let (drive, locked_at, inertia, damping) = match joint.kind() {
+            JointKind::Translation => {
+                let keys = Translation::read(section, log)?;
+                (
+                    keys.drive,
+                    keys.locked_at_mm,
+                    keys.inertia_kg,
+                    keys.damping_n_s_per_mm,
+                )
+            }
+            JointKind::Rotation => {
+                let keys = Rotation::read(section, log)?;
+                (
+                    keys.drive,
+                    keys.locked_at_deg,
+                    keys.inertia_kg_m2,
+                    keys.damping_nm_s_per_rad,
+                )
+            }
         };
-        let narrowed = |key: Key| match key.name {
-            "drive" => key.of_words(drive_words(joint)),
-            _ => key,
-        };
-        keys.into_iter().map(narrowed).collect()
-    }
-
-    /// What moves it.
-    pub fn drive(&self) -> DriveWord {
-        let drive = match self {
-            Self::Translation(keys) => keys.drive,
-            Self::Rotation(keys) => keys.drive,
-        };
-        drive.unwrap_or(DriveWord::Locked)
-    }
-
-    fn drive_unless_given(&mut self, drive: Option<DriveWord>) {
-        let given = match self {
-            Self::Translation(keys) => &mut keys.drive,
-            Self::Rotation(keys) => &mut keys.drive,
-        };
-        *given = given.or(drive);
-    }
-
-    /// The key that says where it is held when locked.
-    fn locked_at_key(&self) -> &'static str {
-        match self {
-            Self::Translation(_) => "locked_at_mm",
-            Self::Rotation(_) => "locked_at_deg",
-        }
-    }
-
-    /// Where it is held when locked, in the unit of files.
-    pub(super) fn locked_at(&self) -> f64 {
-        match self {
-            Self::Translation(keys) => keys.locked_at_mm,
-            Self::Rotation(keys) => keys.locked_at_deg,
-        }
-    }
-
-    /// Reports a drive that it cannot have, and a place to lock it where it is not locked.
-    fn check(&self, joint: &JointDescription, section: &Section<'_>, log: &mut Log<'_>) {
-        let (row, drive) = (section.table(joint.name, log), self.drive());
-        if !allows(joint, drive) {
+        let drive = drive.unwrap_or(preset.drive(joint.name));
+        if !drive.fits(joint) {
             let reason = DriveReason::NoSuchDrive {
                 freedom: joint.name,
                 drive: drive.word(),
-                drives: quoted_list(&drive_words(joint)),
+                drives: quoted_list(&DriveWord::words_for(joint)),
             };
-            log.problem(row.value_span("drive"), reason);
+            log.problem(section.value_span("drive"), reason);
         }
-        if drive != DriveWord::Locked && self.locked_at() != 0.0 {
-            let key = self.locked_at_key();
-            let reason = KeyReason::Idle {
-                key: key.to_owned(),
-                needs: "`drive = \"locked\"`".to_owned(),
+        if drive != DriveWord::Locked && locked_at != 0.0 {
+            let key = match joint.kind() {
+                JointKind::Translation => "locked_at_mm",
+                JointKind::Rotation => "locked_at_deg",
             };
-            log.problem(row.key_span(key), reason);
+            let (key, needs) = (key.to_owned(), "`drive = \"locked\"`".to_owned());
+            log.problem(section.key_span(&key), KeyReason::Idle { key, needs });
         }
+        Some(Self {
+            drive,
+            locked_at,
+            inertia,
+            damping,
+        })
+    }
+
+    fn write(&self, joint: &JointDescription, out: &mut Writer) {
+        let drive = Some(self.drive);
+        match joint.kind() {
+            JointKind::Translation => Translation {
+                drive,
+                locked_at_mm: self.locked_at,
+                inertia_kg: self.inertia,
+                damping_n_s_per_mm: self.damping,
+            }
+            .write(out),
+            JointKind::Rotation => Rotation {
+                drive,
+                locked_at_deg: self.locked_at,
+                inertia_kg_m2: self.inertia,
+                damping_nm_s_per_rad: self.damping,
+            }
+            .write(out),
+        }
+    }
+
+    fn item(joint: &'static JointDescription) -> Item {
+        let mut items = match joint.kind() {
+            JointKind::Translation => Translation::items(),
+            JointKind::Rotation => Rotation::items(),
+        };
+        for item in &mut items {
+            if let Item::Key(key) = item
+                && key.name == "drive"
+            {
+                key.kind = Kind::Word(DriveWord::words_for(joint));
+            }
+        }
+        let about = format!("{}: + is {}.", joint.title, joint.positive);
+        Item::Table(TableItem::new(joint.name, &about, items))
     }
 }
 
 impl Freedoms {
     fn read(machine: &Section<'_>, preset: Preset, log: &mut Log<'_>) -> Option<Self> {
         let section = machine.table("freedoms", log);
-        let known = KNEE.in_files.map(|index| KNEE.joint(index).name);
-        section.check_keys(&known, log);
-        let read = KNEE.joints.each_ref();
-        let read = read.map(|joint| Freedom::read(joint, &section, log));
+        let read = KNEE.joints.each_ref().map(|joint| {
+            let section = section.table(joint.name, log);
+            Freedom::read(joint, preset, &section, log)
+        });
         let rows: Vec<Freedom> = read.into_iter().collect::<Option<_>>()?;
-        let mut rows: [Freedom; 6] = rows.try_into().ok()?;
-        for (joint, row) in KNEE.joints.iter().zip(&mut rows) {
-            row.drive_unless_given(preset_drive(preset, joint.name));
-            row.check(joint, &section, log);
-        }
+        let rows = rows.try_into().ok()?;
         Some(Self { rows })
     }
 
-    /// The keys of one freedom.
+    /// Returns the settings of one freedom.
     pub fn get(&self, joint: JointIndex) -> &Freedom {
         &self.rows[joint.place()]
     }
 
-    /// The waveforms that they need.
+    /// Returns the waveforms that the freedoms need.
     pub(super) fn channels(&self) -> impl Iterator<Item = CaseChannel> {
-        let channel = |(joint, freedom): (_, &Freedom)| channel_of(joint, freedom.drive());
-        self.in_files().filter_map(channel)
+        self.in_files()
+            .filter_map(|(joint, freedom)| freedom.drive.channel(joint))
     }
 
-    /// Every freedom with its joint, in the order they are written.
-    pub(super) fn in_files(&self) -> impl Iterator<Item = (&'static JointDescription, &Freedom)> {
-        let joints = KNEE.in_files.into_iter();
-        joints.map(|index| (KNEE.joint(index), self.get(index)))
+    /// Returns every freedom with its joint, in the order they are written.
+    fn in_files(&self) -> impl Iterator<Item = (&'static JointDescription, &Freedom)> {
+        joints_in_files()
+            .zip(KNEE.in_files)
+            .map(|(joint, index)| (joint, self.get(index)))
+    }
+
+    /// Describes the table; the book describes freedoms of a kind together.
+    fn item() -> Item {
+        let items = joints_in_files().map(Freedom::item).collect();
+        let page = |kind: JointKind, keys: &[&Key]| {
+            let joints = joints_in_files().filter(|joint| joint.kind() == kind);
+            let names: Vec<&str> = joints.map(|joint| joint.name).collect();
+            let (last, others) = names
+                .split_last()
+                .expect("a machine has freedoms of each kind");
+            let others = others.join(", .");
+            format!(
+                "\n## `[machine.freedoms.{others} and .{last}]`\n\n{}",
+                rows(keys)
+            )
+        };
+        let (translation, rotation) = (Translation::items(), Rotation::items());
+        let page = page(JointKind::Translation, &keys(&translation))
+            + &page(JointKind::Rotation, &keys(&rotation));
+        Item::Table(TableItem {
+            page: Some(page),
+            ..TableItem::new("freedoms", "The six freedoms.", items)
+        })
     }
 }
 
+fn joints_in_files() -> impl Iterator<Item = &'static JointDescription> {
+    KNEE.in_files.into_iter().map(|index| KNEE.joint(index))
+}
+
 impl Waveforms {
-    /// Reads those that freedoms so driven need from their tables in `machine`.
+    /// Returns the waveform of `channel`, if the machine uses it.
+    pub fn get(&self, channel: CaseChannel) -> Option<&Waveform> {
+        let mut given = self.given.iter();
+        given.find_map(|(of, waveform)| (*of == channel).then_some(waveform))
+    }
+
+    /// Reads those that `freedoms` need from their tables in `machine`; reports every other one.
     pub(super) fn read(
         machine: &Section<'_>,
         freedoms: &Freedoms,
@@ -370,86 +382,65 @@ impl Waveforms {
         let mut given = Vec::new();
         let mut complete = true;
         for (joint, freedom) in freedoms.in_files() {
-            let channels = [joint.motion, joint.load_channel()].into_iter().flatten();
-            for channel in channels.map(CaseChannel::of) {
-                if channel_of(joint, freedom.drive()) == Some(channel) {
+            let motion = joint.motion.map(CaseChannel::of);
+            let load = joint.load_channel().map(CaseChannel::of);
+            for channel in [motion, load].into_iter().flatten() {
+                if freedom.drive.channel(joint) == Some(channel) {
                     let waveform = waveform_points::read(channel, machine, log);
                     complete &= waveform.is_some();
                     given.extend(waveform.map(|waveform| (channel, waveform)));
-                } else {
-                    check_absent(machine, joint, freedom.drive(), channel, log);
+                } else if machine.value(channel.name()).is_some() {
+                    let wanted = if motion == Some(channel) {
+                        DriveWord::Prescribed
+                    } else {
+                        DriveWord::Loaded
+                    };
+                    let reason = DriveReason::UnusedWaveform {
+                        section: format!("{}.{}", machine.path(), channel.name()),
+                        freedom: joint.name,
+                        drive: freedom.drive.word(),
+                        wanted: wanted.word(),
+                    };
+                    log.problem(machine.key_span(channel.name()), reason);
                 }
             }
         }
         complete.then_some(Self { given })
     }
-}
 
-/// Reports a waveform for a freedom that is driven otherwise.
-fn check_absent(
-    machine: &Section<'_>,
-    joint: &JointDescription,
-    drive: DriveWord,
-    channel: CaseChannel,
-    log: &mut Log<'_>,
-) {
-    if machine.value(channel.name()).is_none() {
-        return;
-    }
-    let wanted = if joint.motion.map(CaseChannel::of) == Some(channel) {
-        DriveWord::Prescribed
-    } else {
-        DriveWord::Loaded
-    };
-    let reason = DriveReason::UnusedWaveform {
-        section: format!("{}.{}", machine.path(), channel.name()),
-        freedom: joint.name,
-        drive: drive.word(),
-        wanted: wanted.word(),
-    };
-    log.problem(machine.key_span(channel.name()), reason);
-}
-
-/// Reports waveforms of the machine, which has those of its activities.
-fn check_without_waveforms(machine: &Section<'_>, log: &mut Log<'_>) {
-    for channel in CaseChannel::all() {
-        if machine.value(channel.name()).is_some() {
-            let table = channel.name();
-            log.problem(machine.key_span(table), ActivityReason::OfMachine { table });
+    /// Writes a table for each waveform.
+    pub(super) fn write(&self, out: &mut Writer) {
+        for channel in CaseChannel::all() {
+            if let Some(waveform) = self.get(channel) {
+                out.table(channel.name(), |out| {
+                    waveform_points::write(channel, waveform, out);
+                });
+            }
         }
     }
 }
 
 impl Machine {
-    /// The freedoms of the machine of a case, whatever else is wrong with it.
+    /// Returns the freedoms of the machine of a case, ignoring all other problems of the machine.
     pub(super) fn freedoms_in(root: &Section<'_>, log: &Log<'_>) -> Option<Freedoms> {
-        let mut unheard = log.unheard();
-        let section = root.part(Self::NAME);
-        let preset = Start::read(&section, &mut unheard)?.preset;
-        Freedoms::read(&section, preset, &mut unheard)
+        let mut discarded = log.discarded();
+        let section = root.part("machine");
+        let preset = MachineSettings::read(&section, &mut discarded)?.preset;
+        Freedoms::read(&section, preset, &mut discarded)
     }
 
-    /// Reads `[machine]`, whose waveforms are elsewhere where the case has activities.
-    fn read(section: &Section<'_>, has_activities: bool, log: &mut Log<'_>) -> Option<Self> {
-        let known: Vec<&str> = names(&MachineSettings::keys())
-            .chain(names(&Start::keys()))
-            .chain(["springs", "freedoms"])
-            .chain(CaseChannel::all().map(CaseChannel::name))
-            .collect();
-        section.check_keys(&known, log);
+    fn read_with(
+        section: &Section<'_>,
+        waveforms: impl FnOnce(&Section<'_>, &Freedoms, &mut Log<'_>) -> Option<Waveforms>,
+        log: &mut Log<'_>,
+    ) -> Option<Self> {
         let settings = MachineSettings::read(section, log);
-        let springs = read_table(section, "springs", log);
-        let preset = Start::read(section, log)?.preset;
-        let freedoms = Freedoms::read(section, preset, log)?;
-        let waveforms = if has_activities {
-            check_without_waveforms(section, log);
-            Some(Waveforms::default())
-        } else {
-            Waveforms::read(section, &freedoms, log)
-        };
+        let springs = Springs::read_in(section, "springs", log);
+        let settings = settings?;
+        let freedoms = Freedoms::read(section, settings.preset, log)?;
+        let waveforms = waveforms(section, &freedoms, log);
         Some(Self {
-            preset,
-            settings: settings?,
+            settings,
             springs: springs?,
             freedoms,
             waveforms: waveforms?,
@@ -457,128 +448,45 @@ impl Machine {
     }
 }
 
-impl Machine {
-    /// Writes `[machine]` and the tables inside it.
-    fn write(&self, write_waveform: WriteWaveform, out: &mut Writer) {
-        out.table("machine");
-        let preset = self.preset;
-        Start { preset }.write(out);
-        self.settings.write(out);
-        out.table("machine.springs");
-        self.springs.write(out);
-        self.waveforms.write("machine.", write_waveform, out);
-        self.write_freedoms(out);
+impl Settings for Machine {
+    fn items() -> Vec<Item> {
+        let mut items = MachineSettings::items();
+        items.push(Springs::item(
+            "springs",
+            "The pair of springs that represents the ligaments.",
+        ));
+        items.push(Freedoms::item());
+        items.extend(waveform_items(true));
+        items
     }
 
-    fn write_freedoms(&self, out: &mut Writer) {
-        for (joint, freedom) in self.freedoms.in_files() {
-            out.table(&format!("machine.freedoms.{}", joint.name));
-            match freedom {
-                Freedom::Translation(keys) => keys.write(out),
-                Freedom::Rotation(keys) => keys.write(out),
-            }
+    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        Self::read_with(section, Waveforms::read, log)
+    }
+
+    /// Reads the machine of a case; if the case has activities, they have the waveforms.
+    fn read_in(root: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
+        let section = root.table(name, log);
+        if root.value("activity").is_none() {
+            return Self::read(&section, log);
         }
-    }
-}
-
-impl Waveforms {
-    /// Writes a table a waveform, each with `above` before its name.
-    pub(super) fn write(&self, above: &str, write_waveform: WriteWaveform, out: &mut Writer) {
         for channel in CaseChannel::all() {
-            if let Some(waveform) = self.get(channel) {
-                let table = format!("{above}{}", channel.name());
-                write_waveform(out, &table, channel, waveform);
+            let table = channel.name();
+            if section.value(table).is_some() {
+                log.problem(section.key_span(table), ActivityReason::OfMachine { table });
             }
         }
-    }
-}
-
-/// The points of a waveform as its table.
-pub(super) fn write_knots(
-    out: &mut Writer,
-    table: &str,
-    channel: CaseChannel,
-    waveform: &Waveform,
-) {
-    let interpolation = InterpolationWord::of(waveform.interpolation()).word();
-    out.table(table);
-    out.comment(channel.about());
-    out.line(
-        &format!("interpolation = {interpolation:?}"),
-        "From point to point.",
-    );
-    let unit = unit_of(channel.knots_key()).unwrap_or_default();
-    out.comment(&format!("[percent of the cycle, {unit}]"));
-    let knots = waveform.knots().iter();
-    let pairs: Vec<(f64, f64)> = knots.map(|knot| (knot.percent, knot.value)).collect();
-    out.pairs(channel.knots_key(), &pairs);
-}
-
-/// The table of a waveform by its name.
-pub(super) fn write_name(out: &mut Writer, table: &str, channel: CaseChannel, _: &Waveform) {
-    out.table(table);
-    out.comment(channel.about());
-    out.line(
-        &format!("waveform = {DEFAULT_WAVEFORM:?}"),
-        "Or file and column, or knots.",
-    );
-}
-
-impl Table for Machine {
-    const NAME: &'static str = "machine";
-
-    fn read_in(root: &Section<'_>, _: &Context, log: &mut Log<'_>) -> Option<Self> {
-        let has_activities = root.value("activity").is_some();
-        Self::read(&root.table(Self::NAME, log), has_activities, log)
+        Self::read_with(&section, |_, _, _| Some(Waveforms::default()), log)
     }
 
-    fn write_in(&self, waveforms: WriteWaveform, out: &mut Writer) {
-        self.write(waveforms, out);
-    }
-
-    fn add_to_schema(case: TableSchema, _: WearLaws) -> TableSchema {
-        let keys = [Start::keys(), MachineSettings::keys()].concat();
-        let springs = TableSchema::new("The pair of springs that stands for the ligaments.");
-        let joints = KNEE.in_files.into_iter().map(|index| KNEE.joint(index));
-        let freedoms = joints.fold(TableSchema::new("The six freedoms."), |freedoms, joint| {
-            let about = format!("{}: + is {}.", joint.title, joint.positive);
-            freedoms.with_table(
-                joint.name,
-                TableSchema::new(&about).with_keys(&Freedom::keys(joint)),
-            )
-        });
-        let machine = TableSchema::new("The simulator.")
-            .with_keys(&keys)
-            .with_table("springs", springs.with_keys(&Springs::keys()))
-            .with_table("freedoms", freedoms);
-        case.with_table(Self::NAME, with_waveforms(machine))
-    }
-
-    fn add_to_page(page: &mut Page, _: WearLaws) {
-        let keys = [Start::keys(), MachineSettings::keys()].concat();
-        page.section("`[machine]`", &keys);
-        page.section("`[machine.springs]`", &Springs::keys());
-        page.section(&freedoms(JointKind::Translation), &Translation::keys());
-        page.section(&freedoms(JointKind::Rotation), &Rotation::keys());
-        list_waveforms(page);
-    }
-}
-
-/// The tables of all freedoms of a kind, such as `[machine.freedoms.ap], .ml and .is`.
-fn freedoms(kind: JointKind) -> String {
-    let joints = KNEE.in_files.into_iter().map(|index| KNEE.joint(index));
-    let names: Vec<&str> = joints
-        .filter(|joint| joint.kind() == kind)
-        .map(|joint| joint.name)
-        .collect();
-    let others = names[1..].iter().map(|name| format!(".{name}"));
-    let others: Vec<String> = others.collect();
-    let first = format!("[machine.freedoms.{}]", names[0]);
-    match others.split_last() {
-        Some((last, between)) => {
-            let listed = [&[first], between].concat().join(", ");
-            format!("`{listed} and {last}`")
+    fn write(&self, out: &mut Writer) {
+        self.settings.write(out);
+        self.springs.write_in("springs", out);
+        self.waveforms.write(out);
+        for (joint, freedom) in self.freedoms.in_files() {
+            out.table(&format!("freedoms.{}", joint.name), |out| {
+                freedom.write(joint, out);
+            });
         }
-        None => format!("`{first}`"),
     }
 }

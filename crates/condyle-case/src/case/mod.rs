@@ -8,22 +8,20 @@ mod assignment;
 mod build;
 mod contact;
 mod contents;
-mod deformable;
 #[cfg(feature = "file-system")]
 mod draft;
 mod femur;
 mod frame;
 mod insert;
 mod key_location;
-mod key_names;
 mod machine;
 mod machine_reason;
 mod material;
 mod pressure_table;
 mod reader;
+mod renamed;
 mod run_options;
 mod schedule;
-mod table;
 #[cfg(test)]
 mod tests;
 mod waveform;
@@ -31,25 +29,26 @@ mod waveform_points;
 mod wear;
 
 pub use activity::{Activities, Activity, ActivityKeys};
-pub use assignment::{Assignment, AssignmentError, ChangeError, Override};
+pub use assignment::{Assignment, AssignmentError, ChangeError, NumberKey};
 pub use build::{
-    Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, SharedBodies, StrayPiece, WrongAxes,
+    Body, BuildError, BuildWarning, Built, FEMUR_TRIANGLES, MeshFault, MeshRemark, SharedBodies,
+    StrayPiece, WrongAxes,
 };
 pub use contact::{
-    Contact, ContactModelWord, Finding, Friction, FrictionModelWord, PressureLawChoice, SearchWord,
-    SofteningCurve,
+    BacksideChoice, Contact, ContactModelChoice, DeformableContact, FoundationContact,
+    FrictionModelWord, J2Plasticity, PlasticityChoice, PlasticityReason, PressureLawChoice,
+    RestingBackside, SearchWord, SofteningCurve,
 };
-pub use contents::{Case, json_schema, schema_markdown};
-pub use deformable::{
-    BacksideChoice, FirstYield, J2Plasticity, PlasticityChoice, PlasticityReason, RestingBackside,
+pub use contents::{Case, Origin, WearLaws, json_schema, schema_markdown};
+pub use femur::{
+    CylinderFemur, Femur, FemurPlacement, FemurShape, GenericFemur, MeshFemur, SphereFemur,
 };
-pub use femur::{CylinderFemur, Femur, FemurPlacement, GenericFemur, MeshFemur, SphereFemur};
 pub use frame::{Axes, AxesError, AxesReason, Heading, LengthUnit, Side};
 pub use insert::{
-    FlatInsert, GenericInsert, HexahedralInsert, Insert, InsertOrigin, InsertPlacement, MeshInsert,
+    FlatInsert, GenericInsert, HexahedralInsert, Insert, InsertOrigin, InsertPlacement,
+    InsertShape, MeshInsert,
 };
 pub use key_location::CaseConflict;
-pub use key_names::{KeyNameError, NumberKey, OverrideError};
 pub use machine::{
     DriveWord, Freedom, Freedoms, Machine, MachineSettings, Preset, Rotation, Sign, Springs,
     StiffnessOf, Translation, Waveforms,
@@ -62,7 +61,6 @@ pub use pressure_table::{PressureTableReason, StrainTable, TableError};
 pub use reader::{CaseReader, template};
 pub use run_options::{Accuracy, Limits, Output};
 pub use schedule::{AutoUpdates, FixedUpdates, IntegratorWord, March, Time, Update};
-pub use table::WearLaws;
 pub use waveform::{CaseChannel, InterpolationWord, WaveformReason};
 pub use wear::{ConstantError, Wear};
 
@@ -70,4 +68,4 @@ pub use wear::{ConstantError, Wear};
 pub use draft::{Draft, DraftError, Drafted};
 
 pub(crate) use build::in_four;
-pub(crate) use frame::check as check_axes;
+pub(crate) use frame::check_axes;

@@ -4,11 +4,11 @@ use condyle::contact::{PressureTable, PressureTableError};
 use thiserror::Error;
 
 use crate::config::{
-    Cell, ColumnReason, Columns, DataFile, Key, KeyReason, Kind, Log, Placed, Reason, Section,
-    Setting, Settings, WhereSilent, Writer, pairs, settings, within,
+    Cell, ColumnReason, Columns, DataFile, Item, Key, KeyReason, Kind, Log, Placed, Points, Reason,
+    Section, Setting, Settings, WhereSilent, Writer, settings, within,
 };
 
-/// How a pressure table is given.
+/// A way to give a pressure table.
 struct Form {
     /// The word of the law that needs it.
     law: &'static str,
@@ -41,15 +41,10 @@ const BY_STRAIN: Form = Form {
     ],
 };
 
-/// The keys of which one gives the points of a table by overclosure.
-pub(super) const WAYS: [&str; 2] = BY_OVERCLOSURE.ways;
-/// The keys of which one gives the points of a table by overclosure over thickness.
-pub(super) const WAYS_OF_STRAIN: [&str; 2] = BY_STRAIN.ways;
-
 settings! {
-    /// How well a table is known.
+    /// Error of a fitted table.
     TableError {
-        /// By how much the peak pressure with this table is off that of the deformable insert it was fitted to, at most in stance, first cycle and last; `condyle calibrate` writes it, and a run with the table says it.
+        /// Largest error of the peak pressure with this table in stance, in the first and last cycle, against the deformable insert that it was fitted to; `condyle calibrate` writes it, and runs with the table report it.
         peak_error_percent: Option<f64> = None, in within(0.0, 1000.0);
     }
 }
@@ -59,19 +54,19 @@ settings! {
 pub struct StrainTable {
     /// The points, with the overclosure of a layer 1 mm thick.
     pub points: PressureTable,
-    /// How well they are known.
+    /// Their error.
     pub error: TableError,
 }
 
-/// Points that make no pressure table.
+/// Points that are not a pressure table.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("`{key}`: {}", in_words(.error, *.is_over_thickness))]
 pub struct PressureTableReason {
     /// The key that gives them.
     pub key: &'static str,
-    /// Whether they are points of overclosure over thickness.
+    /// The points are overclosure over thickness.
     pub is_over_thickness: bool,
-    /// Why.
+    /// The error.
     pub error: PressureTableError,
 }
 
@@ -95,8 +90,8 @@ impl Reason for PressureTableReason {
 }
 
 impl Settings for PressureTable {
-    fn keys() -> Vec<Key> {
-        BY_OVERCLOSURE.keys()
+    fn items() -> Vec<Item> {
+        BY_OVERCLOSURE.items()
     }
 
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
@@ -109,8 +104,8 @@ impl Settings for PressureTable {
 }
 
 impl Settings for StrainTable {
-    fn keys() -> Vec<Key> {
-        [BY_STRAIN.keys(), TableError::keys()].concat()
+    fn items() -> Vec<Item> {
+        [BY_STRAIN.items(), TableError::items()].concat()
     }
 
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
@@ -129,7 +124,7 @@ impl Settings for StrainTable {
 }
 
 impl StrainTable {
-    /// The points as a file that `strain_table_file` reads.
+    /// Returns the points as a file that `strain_table_file` reads.
     pub fn to_csv(&self) -> String {
         let rows = self.points.points().iter();
         let rows = rows.map(|(strain, pressure_mpa)| format!("{strain:?},{pressure_mpa:?}\n"));
@@ -142,15 +137,22 @@ impl StrainTable {
 }
 
 impl Form {
-    fn keys(&self) -> Vec<Key> {
-        let points = Key {
+    fn items(&self) -> Vec<Item> {
+        vec![
+            Item::Key(self.points_key()),
+            Item::Key(self.file_key()),
+            Item::OneOf(self.ways.to_vec()),
+        ]
+    }
+
+    fn points_key(&self) -> Key {
+        Key {
             name: self.ways[0],
             doc: self.doc.into(),
             kind: Kind::Pairs,
             silent: WhereSilent::LeftOut,
             limits: None,
-        };
-        vec![points, self.file_key()]
+        }
     }
 
     fn file_key(&self) -> Key {
@@ -202,20 +204,16 @@ impl Form {
         }
     }
 
-    /// The points that stand in the case itself.
     fn inline(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
-        let key = self.ways[0];
-        let value = section.value(key)?;
-        let pairs = pairs(value, key, log)?;
-        let points = pairs.iter().map(|&([d, p], _)| (d, p)).collect();
-        let placed = PressureTable::new(points).map_err(|error| {
-            let at = pairs.get(place_of(&error)).map(|(_, span)| span.clone());
-            log.problem(at.unwrap_or(value.span()), self.reason(key, error));
+        let key = self.points_key();
+        let Points(points) = Points::read(section.value(key.name)?, &key, log)?;
+        let table = PressureTable::new(points).map_err(|error| {
+            let place = section.item_span(key.name, point_of(&error));
+            log.problem(place, self.reason(key.name, error));
         });
-        placed.ok()
+        table.ok()
     }
 
-    /// The points of a CSV file.
     fn of_file(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
         let key = self.ways[1];
         let value = section.value(key)?;
@@ -232,7 +230,7 @@ impl Form {
         let point = |(d, p): (&Cell, &Cell)| (d.value, p.value);
         let points = overclosures.iter().zip(&pressures).map(point).collect();
         PressureTable::new(points).map_err(|error| {
-            let cell = overclosures.get(place_of(&error));
+            let cell = overclosures.get(point_of(&error));
             let at = cell.map_or(0..0, |cell| cell.span.clone());
             vec![Placed::new(at, self.reason(self.ways[1], error))]
         })
@@ -260,8 +258,8 @@ impl Form {
     }
 }
 
-/// Which point an error is about.
-fn place_of(error: &PressureTableError) -> usize {
+/// Returns the index of the point at fault.
+fn point_of(error: &PressureTableError) -> usize {
     match *error {
         PressureTableError::TooShort { .. } | PressureTableError::NotFromZero { .. } => 0,
         PressureTableError::NotRising { index } => index,

@@ -6,8 +6,8 @@ use condyle::parameter::unit_of;
 use thiserror::Error;
 
 use crate::config::{
-    DataFile, Key, Kind, Limits, Page, Reason, Settings, TableSchema, WhereSilent, choice,
-    settings, within,
+    DataFile, Item, Key, Kind, Limits, Reason, Settings, TableItem, WhereSilent, choice, keys,
+    rows, settings, within,
 };
 
 /// A waveform of the machine, as a case has it.
@@ -41,22 +41,22 @@ const NONE: NamedWaveform = NamedWaveform {
 };
 
 impl CaseChannel {
-    /// What presses the femur on the insert.
+    /// The load that presses the femur on the insert.
     pub(super) fn load() -> Self {
         Self(&machine::knee::AXIAL_FORCE)
     }
 
-    /// All of them, in the order they are written.
+    /// Returns every channel, in the order they are written.
     pub fn all() -> impl Iterator<Item = Self> {
         KNEE.channels.iter().copied().map(Self)
     }
 
-    /// That of a machine's channel.
+    /// Returns the channel of a machine.
     pub fn of(channel: &'static machine::Channel) -> Self {
         Self(channel)
     }
 
-    /// What the machine knows of it.
+    /// Returns the machine's description.
     pub fn of_machine(self) -> &'static machine::Channel {
         self.0
     }
@@ -66,7 +66,7 @@ impl CaseChannel {
         self.0.name
     }
 
-    /// What it is and which way is positive.
+    /// Describes it and its positive direction.
     pub fn about(self) -> &'static str {
         self.0.about
     }
@@ -81,17 +81,48 @@ impl CaseChannel {
         }
     }
 
-    /// What its values may be, in its unit.
+    /// The key of the points in the case file itself.
+    pub(super) fn knots(self) -> Key {
+        Key {
+            name: self.knots_key(),
+            doc: "Points [percent of the cycle, value] in the case file itself.".into(),
+            kind: Kind::Pairs,
+            silent: WhereSilent::LeftOut,
+            limits: Some(self.limits()),
+        }
+    }
+
+    /// The keys of which exactly one gives the points: by name, from a file, or directly.
+    pub(super) fn ways(self) -> [&'static str; 3] {
+        ["waveform", "file", self.knots_key()]
+    }
+
+    fn items(self) -> Vec<Item> {
+        let mut items = WaveformSource::items();
+        for item in &mut items {
+            if let Item::Key(key) = item
+                && key.name == "waveform"
+            {
+                key.kind = Kind::Word(self.words());
+            }
+        }
+        items.extend([
+            Item::Key(self.knots()),
+            Item::OneOf(self.ways().to_vec()),
+            Item::Needs("column", "file"),
+        ]);
+        items
+    }
+
+    /// The range of its values, in its unit.
     pub fn limits(self) -> Limits {
         within(self.0.least, self.0.most)
     }
 
-    /// The words for the named waveforms it can have.
     pub(super) fn words(self) -> Vec<&'static str> {
         self.named().iter().map(|named| named.word).collect()
     }
 
-    /// The named waveforms it can have.
     pub(super) fn named(self) -> &'static [NamedWaveform] {
         const AXIAL_FORCE: &[NamedWaveform] = &[
             shipped!("iso-like", "iso-like-axial-force.csv", HalfCosine),
@@ -134,7 +165,7 @@ impl CaseChannel {
 }
 
 choice! {
-    /// How a waveform goes from point to point.
+    /// Interpolation between the points of a waveform.
     InterpolationWord {
         /// Half a cosine: flat at every point.
         HalfCosine = "half-cosine",
@@ -144,7 +175,7 @@ choice! {
 }
 
 impl InterpolationWord {
-    /// The word for a way to go from point to point.
+    /// Returns the word for an interpolation.
     pub fn of(interpolation: Interpolation) -> Self {
         match interpolation {
             Interpolation::HalfCosine => Self::HalfCosine,
@@ -152,7 +183,7 @@ impl InterpolationWord {
         }
     }
 
-    /// The way itself.
+    /// Returns the interpolation.
     pub fn interpolation(self) -> Interpolation {
         match self {
             Self::HalfCosine => Interpolation::HalfCosine,
@@ -162,14 +193,13 @@ impl InterpolationWord {
 }
 
 settings! {
-    /// Where a waveform comes from and what is done to it, in this order: scale, offset, drift,
-    /// low pass.
+    /// Source of a waveform and its processing, in this order: scale, offset, drift, low pass.
     WaveformSource {
         /// Name of a waveform that comes with condyle.
         waveform: Option<String> = None;
         /// CSV file, relative to the case file; first column percent of the cycle.
         file: Option<DataFile> = None;
-        /// Which column of the file, by its name in the header, which ends in its unit.
+        /// Column of the file by its name in the header, which ends in its unit.
         column: Option<String> = None;
         /// Factor on every value.
         scale: f64 = 1.0, in within(-1e6, 1e6);
@@ -184,43 +214,16 @@ settings! {
     }
 }
 
-/// The waveform taken where a case gives none.
-pub(crate) const DEFAULT_WAVEFORM: &str = "iso-like";
+/// The waveform of a case that gives none.
+pub(super) const DEFAULT_WAVEFORM: &str = "iso-like";
 
-/// The keys that give the points of `channel`, of which a table has one: by name, from a file, or
-/// in the case itself.
-pub(crate) fn ways(channel: CaseChannel) -> [&'static str; 3] {
-    ["waveform", "file", channel.knots_key()]
-}
-
-/// The keys of the table of `channel`.
-pub(crate) fn waveform_keys(channel: CaseChannel) -> Vec<Key> {
-    let named = |key: Key| match key.name {
-        "waveform" => key.of_words(channel.words()),
-        _ => key,
-    };
-    let source = WaveformSource::keys().into_iter().map(named);
-    source.chain([knots_key(channel)]).collect()
-}
-
-/// The key that gives the points in the case file itself.
-pub(crate) fn knots_key(channel: CaseChannel) -> Key {
-    Key {
-        name: channel.knots_key(),
-        doc: "Points [percent of the cycle, value] in the case file itself.".into(),
-        kind: Kind::Pairs,
-        silent: WhereSilent::LeftOut,
-        limits: Some(channel.limits()),
-    }
-}
-
-/// Points that make no waveform.
+/// Points that are not a waveform.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("[{section}]: {error}")]
 pub struct WaveformReason {
     /// The table of the waveform.
     pub section: String,
-    /// Why.
+    /// The error.
     pub error: WaveformError,
 }
 
@@ -232,7 +235,7 @@ impl Reason for WaveformReason {
 }
 
 const WAVEFORMS: &str = "\
-One of `waveform`, `file` or the points themselves. A freedom takes the one its drive \
+One of `waveform`, `file` or the points themselves. A freedom takes the waveform that its drive \
 needs; one for another drive is an error.
 
 ";
@@ -242,37 +245,39 @@ const POINTS: &str = "
 | --- | --- | --- | --- | --- | --- |
 ";
 
-/// Adds a table of keys for each waveform of the machine.
-pub(super) fn with_waveforms(table: TableSchema) -> TableSchema {
-    CaseChannel::all().fold(table, |table, channel| {
-        let waveform = TableSchema::new(channel.about())
-            .with_keys(&waveform_keys(channel))
-            .with_one_of(&ways(channel))
-            .with_need("column", "file");
-        table.with_table(channel.name(), waveform)
-    })
+/// Describes the table of each waveform; with `in_book`, the first also describes all of them in the book.
+pub(super) fn waveform_items(in_book: bool) -> Vec<Item> {
+    let items = CaseChannel::all().enumerate().map(|(index, channel)| {
+        let page = if in_book && index == 0 {
+            page()
+        } else {
+            String::new()
+        };
+        Item::Table(TableItem {
+            page: Some(page),
+            ..TableItem::new(channel.name(), channel.about(), channel.items())
+        })
+    });
+    items.collect()
 }
 
-/// Adds the section of the book's page that lists the waveforms of the machine.
-pub(super) fn list_waveforms(page: &mut Page) {
+fn page() -> String {
     let named = |channel: CaseChannel| format!("`[machine.{}]`", channel.name());
     let tables: Vec<String> = CaseChannel::all().map(named).collect();
-    page.push(&format!("\n## Waveforms: {}\n\n", tables.join(", ")));
-    page.push(WAVEFORMS);
-    page.table(&WaveformSource::keys());
-    page.push(POINTS);
-    for channel in CaseChannel::all() {
-        page.push(&waveform_row(channel));
-    }
+    let keys = rows(&keys(&WaveformSource::items()));
+    let channels: String = CaseChannel::all().map(row).collect();
+    format!(
+        "\n## Waveforms: {}\n\n{WAVEFORMS}{keys}{POINTS}{channels}",
+        tables.join(", ")
+    )
 }
 
-fn waveform_row(channel: CaseChannel) -> String {
-    let key = knots_key(channel);
+fn row(channel: CaseChannel) -> String {
+    let key = channel.knots_key();
     format!(
-        "| `{}` | `{}` | {} | {} | {} | {} |\n",
+        "| `{}` | `{key}` | {} | {} | {} | {} |\n",
         channel.name(),
-        key.name,
-        unit_of(key.name).unwrap_or_default(),
+        unit_of(key).unwrap_or_default(),
         channel.limits(),
         channel.words().join(", "),
         channel.about(),

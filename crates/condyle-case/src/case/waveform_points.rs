@@ -1,4 +1,4 @@
-//! Points of a waveform: in the case file, or in columns of a CSV file.
+//! Points of a waveform, in the case file or in columns of a CSV file.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -6,58 +6,82 @@ use std::sync::Arc;
 use condyle::machine::{Interpolation, Knot, Waveform, WaveformError, low_passed, without_drift};
 use condyle::parameter::unit_of;
 use miette::NamedSource;
-use toml::Spanned;
-use toml::de::DeValue;
 
 use super::waveform::{
-    CaseChannel, DEFAULT_WAVEFORM, InterpolationWord, NamedWaveform, WaveformReason,
-    WaveformSource, ways,
+    CaseChannel, DEFAULT_WAVEFORM, InterpolationWord, WaveformReason, WaveformSource,
 };
 use crate::config::{
-    Cell, ColumnReason, Columns, DataFile, KeyReason, Log, Placed, Section, Settings, Source,
-    names, nearest, pairs, plain, quoted_list,
+    ColumnReason, Columns, DataFile, KeyReason, Log, Placed, Points, Section, Settings, Source,
+    Writer, nearest, plain, quoted_list,
 };
 
 /// Reads the waveform of `channel` from its table in `machine`.
-pub(crate) fn read(
+pub(super) fn read(
     channel: CaseChannel,
     machine: &Section<'_>,
     log: &mut Log<'_>,
 ) -> Option<Waveform> {
     let section = machine.table(channel.name(), log);
-    check_names(channel, &section, log);
     let source = WaveformSource::read(&section, log)?;
-    let points = points(channel, &section, &source, log)?;
-    finish(channel, &section, &source, points, log)
+    let samples = samples(channel, &section, &source, log)?;
+    let place = |index: usize| samples.spans.get(index).cloned();
+    let text = samples.source.as_ref();
+    match join(&source, samples.interpolation, &samples.knots) {
+        Ok((waveform, knots)) => match out_of_range(channel, &knots) {
+            Some((index, reason)) => {
+                log.placed(text, Placed::new(place(index).unwrap_or(0..0), reason));
+                None
+            }
+            None => Some(waveform),
+        },
+        Err((error, knots)) => {
+            let span = place(point_of(&error, &knots)).unwrap_or(section.span());
+            let section = section.path().to_owned();
+            log.placed(text, Placed::new(span, WaveformReason { section, error }));
+            None
+        }
+    }
 }
 
-fn check_names(channel: CaseChannel, section: &Section<'_>, log: &mut Log<'_>) {
-    let mut known: Vec<&str> = names(&WaveformSource::keys()).collect();
-    known.push(channel.knots_key());
-    section.check_keys(&known, log);
+/// Writes the table of a waveform, by the default name or by its points.
+pub(super) fn write(channel: CaseChannel, waveform: &Waveform, out: &mut Writer) {
+    out.comment(channel.about());
+    if out.names_waveforms {
+        let name = format!("waveform = {DEFAULT_WAVEFORM:?}");
+        out.line(&name, "Or file and column, or knots.");
+        return;
+    }
+    let interpolation = InterpolationWord::of(waveform.interpolation()).word();
+    let line = format!("interpolation = {interpolation:?}");
+    out.line(&line, "From point to point.");
+    let unit = unit_of(channel.knots_key()).unwrap_or_default();
+    out.comment(&format!("[percent of the cycle, {unit}]"));
+    let knots = waveform.knots().iter();
+    let pairs: Vec<(f64, f64)> = knots.map(|knot| (knot.percent, knot.value)).collect();
+    out.pairs(channel.knots_key(), &pairs);
 }
 
-/// Points, the places where they stand, and the text these are in; none for the case file.
-struct Points {
+/// Points as given.
+struct Samples {
     knots: Vec<Knot>,
+    /// Place of each point in `source`.
     spans: Vec<Range<usize>>,
+    /// The text that the points are in; `None` for the case file.
     source: Option<Source>,
     interpolation: Interpolation,
 }
 
-/// The points that the table gives, by name, by file or by themselves.
-fn points(
+/// Reads the points that the table gives by name, by file or directly.
+fn samples(
     channel: CaseChannel,
     section: &Section<'_>,
     source: &WaveformSource,
     log: &mut Log<'_>,
-) -> Option<Points> {
-    let ways = ways(channel);
-    let given: Vec<&str> = ways
-        .into_iter()
-        .filter(|way| section.value(way).is_some())
-        .collect();
-    if let [first, second, ..] = given[..] {
+) -> Option<Samples> {
+    let ways = channel.ways();
+    let mut given = ways.into_iter().filter(|way| section.value(way).is_some());
+    let (first, second) = (given.next(), given.next());
+    if let (Some(first), Some(second)) = (first, second) {
         let reason = KeyReason::Both {
             section: section.name(),
             first: first.to_owned(),
@@ -66,24 +90,36 @@ fn points(
         log.problem(section.key_span(second), reason);
         return None;
     }
-    if let (Some(_), None) = (&source.column, &source.file) {
+    if source.column.is_some() && source.file.is_none() {
         let (key, needs) = ("column".to_owned(), "`file`".to_owned());
         log.problem(section.key_span("column"), KeyReason::Idle { key, needs });
     }
-    match (&source.file, section.value(channel.knots_key())) {
-        (Some(file), _) => from_file(channel, section, file, source.column.as_deref(), log),
-        (None, Some(value)) => inline(channel, value, log),
-        (None, None) if section.is_given() && source.waveform.is_none() => {
-            let (section_name, keys) = (section.name(), format!("`{}`", ways.join("`, `")));
-            let reason = KeyReason::NoneOf {
-                section: section_name,
-                keys,
-            };
-            log.problem(section.span(), reason);
-            None
-        }
-        (None, None) => by_name(channel, section, source.waveform.as_deref(), log),
+    if let Some(file) = &source.file {
+        return from_file(channel, section, file, source.column.as_deref(), log);
     }
+    let points: Option<Points> = section.setting(&channel.knots(), Some(None), log)?;
+    if let Some(Points(points)) = points {
+        let place = |index| section.item_span(channel.knots_key(), index);
+        let knot = |&(percent, value): &(f64, f64)| Knot { percent, value };
+        return Some(Samples {
+            knots: points.iter().map(knot).collect(),
+            spans: (0..points.len()).map(place).collect(),
+            source: None,
+            interpolation: Interpolation::HalfCosine,
+        });
+    }
+    if section.is_given() && source.waveform.is_none() {
+        let (name, keys) = (section.name(), format!("`{}`", ways.join("`, `")));
+        log.problem(
+            section.span(),
+            KeyReason::NoneOf {
+                section: name,
+                keys,
+            },
+        );
+        return None;
+    }
+    by_name(channel, section, source.waveform.as_deref(), log)
 }
 
 fn by_name(
@@ -91,10 +127,9 @@ fn by_name(
     section: &Section<'_>,
     word: Option<&str>,
     log: &mut Log<'_>,
-) -> Option<Points> {
+) -> Option<Samples> {
     let word = word.unwrap_or(DEFAULT_WAVEFORM);
-    let named = channel.named();
-    let Some(shipped) = named.iter().find(|named| named.word == word) else {
+    let Some(named) = channel.named().iter().find(|named| named.word == word) else {
         let words = channel.words();
         let reason = KeyReason::UnknownWord {
             key: "waveform".to_owned(),
@@ -105,22 +140,10 @@ fn by_name(
         log.problem(section.value_span("waveform"), reason);
         return None;
     };
-    let mut points = shipped_points(channel, shipped, log)?;
-    points.interpolation = shipped.interpolation;
-    Some(points)
-}
-
-fn shipped_points(
-    channel: CaseChannel,
-    named: &NamedWaveform,
-    log: &mut Log<'_>,
-) -> Option<Points> {
     let source = Arc::new(NamedSource::new(named.file, named.text.to_owned()));
-    let read = match named.word {
-        "none" => column_points(named.text, 1),
-        _ => csv_points(channel, named.text, named.file, None),
-    };
-    logged(read, source, log)
+    let columns = Columns::split(named.text, named.file, "").map_err(|placed| vec![placed]);
+    let read = columns.and_then(|columns| column_points(&columns, 1));
+    from_text(source, read, named.interpolation, log)
 }
 
 fn from_file(
@@ -129,100 +152,34 @@ fn from_file(
     file: &DataFile,
     column: Option<&str>,
     log: &mut Log<'_>,
-) -> Option<Points> {
+) -> Option<Samples> {
     let source = file.source(section, "file", log)?;
-    let name = file.name();
-    let text = source.inner().clone();
-    match choose_column(&text, &name, column, channel) {
-        Ok(Choice::Column) => logged(csv_points(channel, &text, &name, column), source, log),
-        Ok(Choice::InTheCase(reason)) => {
-            let key = if column.is_some() { "column" } else { "file" };
-            log.problem(section.value_span(key), reason);
-            None
-        }
-        Err(placed) => logged(Err(vec![placed]), source, log),
-    }
-}
-
-/// Points read from a CSV text, or its problems in `log`.
-fn logged(read: Result<Samples, Vec<Placed>>, source: Source, log: &mut Log<'_>) -> Option<Points> {
-    let Samples { knots, spans } = log.noted(&source, read)?;
-    Some(Points {
-        knots,
-        spans,
-        source: Some(source),
-        interpolation: Interpolation::Spline,
-    })
-}
-
-/// Points that stand in the case file itself.
-fn inline(channel: CaseChannel, value: &Spanned<DeValue<'_>>, log: &mut Log<'_>) -> Option<Points> {
-    let pairs = pairs(value, channel.knots_key(), log)?;
-    let knot = |&([percent, value], _): &([f64; 2], Range<usize>)| Knot { percent, value };
-    Some(Points {
-        knots: pairs.iter().map(knot).collect(),
-        spans: pairs.into_iter().map(|(_, span)| span).collect(),
-        source: None,
-        interpolation: Interpolation::HalfCosine,
-    })
-}
-
-/// Samples, and where each stands in its text.
-#[derive(Default)]
-struct Samples {
-    knots: Vec<Knot>,
-    spans: Vec<Range<usize>>,
-}
-
-/// Whether the case names a column of the file, or what is wrong with what it says.
-enum Choice {
-    Column,
-    InTheCase(ColumnReason),
-}
-
-fn choose_column(
-    text: &str,
-    file: &str,
-    column: Option<&str>,
-    channel: CaseChannel,
-) -> Result<Choice, Placed> {
-    let names = Columns::split(text, file, &example(channel))?.names();
-    let columns: Vec<String> = names[1..].iter().map(|&name| name.to_owned()).collect();
-    let file = file.to_owned();
-    Ok(match column {
-        Some(column) if !columns.iter().any(|name| name == column) => {
-            let column = column.to_owned();
-            Choice::InTheCase(ColumnReason::NoColumn {
-                column,
+    let suffix = channel.knots_key().trim_start_matches("knots");
+    let example = format!("percent,{}{suffix}", channel.name());
+    let split = Columns::split(source.inner(), &file.name(), &example);
+    let columns = log.noted(&source, split.map_err(|placed| vec![placed]))?;
+    let names = columns.names();
+    let index = match column {
+        Some(column) => names.iter().skip(1).position(|name| *name == column),
+        None => (names.len() == 2).then_some(0),
+    };
+    let Some(index) = index.map(|index| index + 1) else {
+        let columns = names[1..].iter().map(|&name| name.to_owned()).collect();
+        let (key, file) = (
+            if column.is_some() { "column" } else { "file" },
+            file.name(),
+        );
+        let reason = match column {
+            Some(column) => ColumnReason::NoColumn {
+                column: column.to_owned(),
                 file,
                 columns,
-            })
-        }
-        None if columns.len() > 1 => Choice::InTheCase(ColumnReason::WhichColumn { file, columns }),
-        _ => Choice::Column,
-    })
-}
-
-/// A header that would do.
-fn example(channel: CaseChannel) -> String {
-    format!("percent,{}{}", channel.name(), suffix(channel))
-}
-
-/// The unit of a channel as a name ends in it.
-fn suffix(channel: CaseChannel) -> &'static str {
-    channel.knots_key().trim_start_matches("knots")
-}
-
-fn csv_points(
-    channel: CaseChannel,
-    text: &str,
-    file: &str,
-    column: Option<&str>,
-) -> Result<Samples, Vec<Placed>> {
-    let columns = Columns::split(text, file, &example(channel)).map_err(|placed| vec![placed])?;
-    let names = columns.names();
-    let wanted = |name: &&str| Some(*name) == column;
-    let index = names.iter().position(wanted).unwrap_or(1);
+            },
+            None => ColumnReason::WhichColumn { file, columns },
+        };
+        log.problem(section.value_span(key), reason);
+        return None;
+    };
     let mut problems = Vec::new();
     if !is_percent(names[0]) {
         let column = names[0].to_owned();
@@ -233,20 +190,37 @@ fn csv_points(
         let reason = ColumnReason::OtherUnit {
             column: names[index].to_owned(),
             unit: unit_of(channel.knots_key()).unwrap_or_default(),
-            suffix: suffix(channel),
+            suffix,
         };
         problems.push(Placed::new(columns.name_span(index), reason));
     }
-    if problems.is_empty() {
-        column_points(text, index)
+    let read = if problems.is_empty() {
+        column_points(&columns, index)
     } else {
         Err(problems)
-    }
+    };
+    from_text(Arc::clone(&source), read, Interpolation::Spline, log)
 }
 
-/// Percent from the first column and values from column `index`.
-fn column_points(text: &str, index: usize) -> Result<Samples, Vec<Placed>> {
-    let columns = Columns::split(text, "", "").map_err(|placed| vec![placed])?;
+type Placements = (Vec<Knot>, Vec<Range<usize>>);
+
+fn from_text(
+    source: Source,
+    read: Result<Placements, Vec<Placed>>,
+    interpolation: Interpolation,
+    log: &mut Log<'_>,
+) -> Option<Samples> {
+    let (knots, spans) = log.noted(&source, read)?;
+    Some(Samples {
+        knots,
+        spans,
+        source: Some(source),
+        interpolation,
+    })
+}
+
+/// Reads percent from the first column and values from column `index`.
+fn column_points(columns: &Columns<'_>, index: usize) -> Result<Placements, Vec<Placed>> {
     let (percents, values) = match (columns.numbers(0), columns.numbers(index)) {
         (Ok(percents), Ok(values)) => (percents, values),
         (Err(mut one), Err(other)) => {
@@ -255,17 +229,14 @@ fn column_points(text: &str, index: usize) -> Result<Samples, Vec<Placed>> {
         }
         (Err(problems), _) | (_, Err(problems)) => return Err(problems),
     };
-    let knot = |(percent, value): (&Cell, &Cell)| Knot {
-        percent: percent.value,
-        value: value.value,
-    };
-    let knots = percents.iter().zip(&values).map(knot).collect();
-    let spans = percents.iter().zip(&values);
-    let spans = spans.map(|(percent, value)| percent.span.start..value.span.end);
-    Ok(Samples {
-        knots,
-        spans: spans.collect(),
-    })
+    let rows = percents.iter().zip(&values).map(|(percent, value)| {
+        let knot = Knot {
+            percent: percent.value,
+            value: value.value,
+        };
+        (knot, percent.span.start..value.span.end)
+    });
+    Ok(rows.unzip())
 }
 
 fn is_percent(column: &str) -> bool {
@@ -275,52 +246,19 @@ fn is_percent(column: &str) -> bool {
         .any(|word| column.contains(word))
 }
 
-/// The unit in a header such as `ant_mm(xtrans)`: at the end of what stands before a bracket.
+/// Returns the unit in a header such as `ant_mm(xtrans)`, which ends what precedes a bracket.
 fn header_unit(column: &str) -> Option<&'static str> {
     let name = column.split('(').next().unwrap_or_default();
     unit_of(&name.to_lowercase())
 }
 
-/// Scales, levels, smooths and joins points.
-fn finish(
-    channel: CaseChannel,
-    section: &Section<'_>,
-    source: &WaveformSource,
-    points: Points,
-    log: &mut Log<'_>,
-) -> Option<Waveform> {
-    let Points {
-        knots,
-        spans,
-        source: text,
-        interpolation,
-    } = points;
-    match join(source, interpolation, knots) {
-        Ok((waveform, placed)) => {
-            if let Some((index, reason)) = out_of_range(channel, &placed) {
-                let span = spans.get(index).cloned().unwrap_or(0..0);
-                log.placed(text.as_ref(), Placed::new(span, reason));
-                return None;
-            }
-            Some(waveform)
-        }
-        Err((error, placed)) => {
-            let index = place_of(&error, &placed);
-            let span = spans.get(index).cloned().unwrap_or(section.span());
-            let section = section.path().to_owned();
-            let reason = WaveformReason { section, error };
-            log.placed(text.as_ref(), Placed::new(span, reason));
-            None
-        }
-    }
-}
-
-/// The waveform, and the scaled and levelled points it was made from.
+/// Returns the waveform, and the scaled and levelled points that it was made from.
 fn join(
     source: &WaveformSource,
     interpolation: Interpolation,
-    mut knots: Vec<Knot>,
+    knots: &[Knot],
 ) -> Result<(Waveform, Vec<Knot>), (WaveformError, Vec<Knot>)> {
+    let mut knots = knots.to_vec();
     for knot in &mut knots {
         knot.value = knot.value * source.scale + source.offset;
     }
@@ -328,40 +266,38 @@ fn join(
         knots = without_drift(&knots);
     }
     let given = source.interpolation.map(InterpolationWord::interpolation);
-    let chosen = given.unwrap_or(interpolation);
-    let waveform =
-        Waveform::new(knots.clone(), chosen).and_then(|waveform| match source.low_pass_harmonics {
-            Some(harmonics) => Waveform::new(
-                low_passed(&waveform, harmonics as usize),
-                Interpolation::Spline,
-            ),
-            None => Ok(waveform),
-        });
+    let waveform = Waveform::new(knots.clone(), given.unwrap_or(interpolation));
+    let waveform = waveform.and_then(|waveform| match source.low_pass_harmonics {
+        Some(harmonics) => {
+            let knots = low_passed(&waveform, harmonics as usize);
+            Waveform::new(knots, Interpolation::Spline)
+        }
+        None => Ok(waveform),
+    });
     match waveform {
         Ok(waveform) => Ok((waveform, knots)),
         Err(error) => Err((error, knots)),
     }
 }
 
-/// The first value that the channel cannot have.
+/// Returns the first value outside the channel's range.
 fn out_of_range(channel: CaseChannel, knots: &[Knot]) -> Option<(usize, KeyReason)> {
     let limits = channel.limits();
     let index = knots.iter().position(|knot| !limits.allow(knot.value))?;
-    let unit = unit_of(channel.knots_key()).unwrap_or_default();
+    let (knot, unit) = (
+        &knots[index],
+        unit_of(channel.knots_key()).unwrap_or_default(),
+    );
     let reason = KeyReason::OutOfRange {
         key: channel.name().to_owned(),
-        value: format!(
-            "{} {unit} at {} %",
-            plain(knots[index].value),
-            knots[index].percent
-        ),
+        value: format!("{} {unit} at {} %", plain(knot.value), knot.percent),
         range: format!("{limits} {unit}"),
     };
     Some((index, reason))
 }
 
-/// Which point an error is about.
-fn place_of(error: &WaveformError, knots: &[Knot]) -> usize {
+/// Returns the index of the point at fault.
+fn point_of(error: &WaveformError, knots: &[Knot]) -> usize {
     match *error {
         WaveformError::Empty => 0,
         WaveformError::NotFinite { index }

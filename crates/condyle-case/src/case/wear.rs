@@ -6,23 +6,22 @@ use condyle::parameter::{Known, Parameter};
 use condyle::wear::{NamedLaw, WEAR_LAWS, WearLawKind};
 use thiserror::Error;
 
-use super::table::{Context, Table, WearLaws, WriteWaveform};
+use super::contents::WearLaws;
 use crate::config::{
-    Choices, Key, Limits, Log, Offered, Page, Section, Setting, TableSchema, WhereSilent, Writer,
-    within,
+    Choices, Item, Key, Limits, Log, Offered, Section, Setting, Settings, TableItem, WhereSilent,
+    Writer, within,
 };
 
 /// A wear law and its constants.
 #[derive(Clone, Debug)]
 pub struct Wear {
     kind: &'static WearLawKind,
-    /// One for each parameter of the kind, in their order.
+    /// In the order of the kind's parameters.
     constants: Vec<f64>,
-    /// What it was chosen from.
     offered: WearLaws,
 }
 
-/// Why a wear law cannot have a constant.
+/// A constant that a wear law cannot have.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ConstantError {
     /// The law has none of that name.
@@ -52,7 +51,7 @@ impl PartialEq for Wear {
 }
 
 impl Wear {
-    /// A law with the defaults of its constants.
+    /// Returns a law with the defaults of its constants.
     pub fn new(kind: &'static WearLawKind) -> Self {
         let constants = kind.defaults();
         Self {
@@ -62,15 +61,15 @@ impl Wear {
         }
     }
 
-    /// Which law.
+    /// Returns the kind of law.
     pub fn kind(&self) -> &'static WearLawKind {
         self.kind
     }
 
-    /// The constant of that name.
+    /// Returns the constant of that name.
     ///
     /// # Errors
-    /// A name that the law has no constant of.
+    /// The law has no such constant.
     pub fn constant(&self, name: &'static str) -> Result<f64, ConstantError> {
         Ok(self.constants[self.index(name)?])
     }
@@ -80,7 +79,7 @@ impl Wear {
         &self.constants
     }
 
-    /// The same law with constants by which it wears so many times as much, whatever the cycle.
+    /// Returns the law with constants scaled so that every cycle wears `times` as much.
     ///
     /// # Errors
     /// A constant outside its range.
@@ -92,10 +91,10 @@ impl Wear {
         })
     }
 
-    /// The same law with another value of the constant of that name.
+    /// Returns the law with another value of the constant of that name.
     ///
     /// # Errors
-    /// A name that the law has no constant of, or a value outside its range.
+    /// The law has no such constant, or the value is outside its range.
     pub fn with_constant(mut self, name: &'static str, value: f64) -> Result<Self, ConstantError> {
         let index = self.index(name)?;
         let parameter = &self.kind.parameters[index];
@@ -118,7 +117,6 @@ impl Wear {
         found.ok_or(ConstantError::Unknown { law, name })
     }
 
-    /// The law itself.
     pub(super) fn law(&self) -> NamedLaw {
         NamedLaw {
             word: self.kind.word,
@@ -126,64 +124,83 @@ impl Wear {
         }
     }
 
-    /// Whether the law of that word, with the constants of the case if it is the case's, is remembered rather
-    /// than read.
+    /// Returns true if the law of that word, with the constants of the case if it is the case's, is quoted from memory.
     pub fn is_approximate(&self, word: &str) -> bool {
         if word != self.kind.word {
             let other = self.offered.iter().find(|other| other.word == word);
             return other.is_some_and(|other| other.is_approximate());
         }
         let mut constants = self.kind.parameters.iter().zip(&self.constants);
-        let is_remembered = |(parameter, value): (&Parameter, &f64)| {
+        let is_from_memory = |(parameter, value): (&Parameter, &f64)| {
             parameter.known == Known::Approximate && *value == parameter.default
         };
-        self.kind.known == Known::Approximate || constants.any(is_remembered)
+        self.kind.known == Known::Approximate || constants.any(is_from_memory)
     }
 
-    /// Every other law that it was chosen from, with the defaults of its constants.
-    pub(super) fn beside(&self) -> Vec<NamedLaw> {
+    /// Returns every other law on offer, with the defaults of its constants.
+    pub(super) fn comparison_laws(&self) -> Vec<NamedLaw> {
         let others = self.offered.iter();
         let others = others.filter(|other| other.word != self.kind.word);
         others.map(|other| other.with_defaults()).collect()
     }
 
-    /// The key that chooses the law, and the keys that each brings.
-    pub(super) fn choices(laws: &[&WearLawKind]) -> Choices {
+    fn choices(laws: &[&WearLawKind]) -> Choices {
         let offered = |law: &&WearLawKind| Offered {
             word: law.word,
-            keys: law.parameters.iter().map(key_of).collect(),
+            items: law
+                .parameters
+                .iter()
+                .map(|parameter| Item::Key(key_of(parameter)))
+                .collect(),
         };
         let default = laws.first().map_or("", |law| law.word);
         let offered = laws.iter().map(offered).collect();
-        Choices::new("law", "Which law.", default, offered)
+        Choices::new("law", "Wear law.", default, offered)
     }
 
-    /// Reads `[wear]`, whose law is one of `laws`.
-    pub(super) fn read(section: &Section<'_>, laws: WearLaws, log: &mut Log<'_>) -> Option<Self> {
-        let word = Self::choices(laws).read(section, &[], log)?;
-        let kind = laws.iter().find(|law| law.word == word)?;
+    /// Describes the table of a case that may choose from `laws`.
+    pub(super) fn item_of(laws: WearLaws) -> Item {
+        let items = vec![Item::Choice(Self::choices(laws))];
+        let lines: String = laws.iter().map(|law| law_line(law)).collect();
+        Item::Table(TableItem {
+            note: format!("\n{lines}"),
+            ..TableItem::new(Self::TABLE, "The wear law.", items)
+        })
+    }
+
+    /// Name of the table.
+    pub(super) const TABLE: &'static str = "wear";
+}
+
+impl Settings for Wear {
+    fn items() -> Vec<Item> {
+        vec![Item::Choice(Self::choices(WEAR_LAWS))]
+    }
+
+    fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let offered = log.wear_laws;
+        let word = Self::choices(offered).read(section, log)?;
+        let kind = offered.iter().find(|law| law.word == word)?;
         let read = |parameter: &Parameter| {
             section.setting(&key_of(parameter), Some(parameter.default), log)
         };
         let constants: Vec<Option<f64>> = kind.parameters.iter().map(read).collect();
-        let constants = constants.into_iter().collect::<Option<_>>()?;
         Some(Self {
             kind,
-            constants,
-            offered: laws,
+            constants: constants.into_iter().collect::<Option<_>>()?,
+            offered,
         })
     }
 
-    /// Writes the law and its constants.
-    pub(super) fn write(&self, out: &mut Writer) {
-        out.word(&Self::choices(&[self.kind]).by, self.kind.word);
+    fn write(&self, out: &mut Writer) {
+        let by = Self::choices(&[self.kind]).by;
+        out.line(&format!("{} = {:?}", by.name, self.kind.word), &by.doc);
         for (parameter, value) in self.kind.parameters.iter().zip(&self.constants) {
-            out.setting(&key_of(parameter), value);
+            value.write(&key_of(parameter), out);
         }
     }
 }
 
-/// The key that gives a constant.
 fn key_of(parameter: &Parameter) -> Key {
     Key {
         name: parameter.name,
@@ -194,7 +211,6 @@ fn key_of(parameter: &Parameter) -> Key {
     }
 }
 
-/// What a constant is; a default that nobody read says so.
 fn doc_of(parameter: &Parameter) -> Cow<'static, str> {
     if parameter.known == Known::Approximate {
         return format!("{} The default is approximate.", parameter.about).into();
@@ -206,34 +222,7 @@ fn limits_of(parameter: &Parameter) -> Limits {
     within(parameter.least, parameter.most)
 }
 
-impl Table for Wear {
-    const NAME: &'static str = "wear";
-
-    fn read_in(root: &Section<'_>, context: &Context, log: &mut Log<'_>) -> Option<Self> {
-        Self::read(&root.table(Self::NAME, log), context.wear_laws, log)
-    }
-
-    fn write_in(&self, _: WriteWaveform, out: &mut Writer) {
-        out.table(Self::NAME);
-        self.write(out);
-    }
-
-    fn add_to_schema(case: TableSchema, laws: WearLaws) -> TableSchema {
-        case.with_table(
-            Self::NAME,
-            TableSchema::new("The wear law.").with_choices(&Self::choices(laws)),
-        )
-    }
-
-    fn add_to_page(page: &mut Page, laws: WearLaws) {
-        let choices = Self::choices(laws);
-        page.chosen("`[wear]`", std::slice::from_ref(&choices.by), &choices);
-        page.push("\n");
-        laws.iter().for_each(|law| page.push(&law_line(law)));
-    }
-}
-
-/// The formula of a law and where its constants are from.
+/// Returns the formula of a law and the sources of its constants.
 fn law_line(law: &WearLawKind) -> String {
     let source = |parameter: &Parameter| match parameter.source {
         "choice" => "choice".to_owned(),
@@ -243,7 +232,7 @@ fn law_line(law: &WearLawKind) -> String {
     let sources: Vec<String> = law.parameters.iter().map(source).collect();
     let (word, about, sources) = (law.word, law.about, sources.join(", "));
     let formula = if law.known == Known::Approximate {
-        " The formula is approximate: remembered rather than read."
+        " The formula is approximate: quoted from memory, not checked at the source."
     } else {
         ""
     };

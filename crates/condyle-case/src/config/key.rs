@@ -1,52 +1,43 @@
-//! Keys: what is known of one before any file is read, and values of TOML in words.
+//! Declared keys, their units, and values of TOML in words.
 
 use std::borrow::Cow;
 use std::fmt;
 
 use toml::de::DeValue;
 
-/// What is known of a key before any file is read.
+/// A declared key.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Key {
-    /// Name in the file, with the unit where it has one.
+pub(crate) struct Key {
+    /// Name in the file, which ends in the unit of a quantity.
     pub name: &'static str,
-    /// What it means.
+    /// Meaning.
     pub doc: Cow<'static, str>,
-    /// What may be written.
+    /// Type of the value.
     pub kind: Kind,
-    /// What is taken where the file is silent.
+    /// Default.
     pub silent: WhereSilent,
-    /// What a number may be.
+    /// Range of a number.
     pub limits: Option<Limits>,
 }
 
-impl Key {
-    /// The same where only some words can be written.
-    pub(crate) fn of_words(self, words: Vec<&'static str>) -> Self {
-        let kind = Kind::Word(words);
-        Self { kind, ..self }
-    }
-}
-
-/// What is taken where a file does not give a key.
+/// The default of a key.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum WhereSilent {
-    /// Nothing can be: the key must be given.
+pub(crate) enum WhereSilent {
+    /// None: the key must be given.
     MustBeGiven,
-    /// Nothing: the value is left out.
+    /// No value.
     LeftOut,
-    /// A value, as it would be written.
+    /// A value, in TOML.
     Takes(String),
 }
 
-/// Names of keys.
 pub(crate) fn names(keys: &[Key]) -> impl Iterator<Item = &'static str> + '_ {
     keys.iter().map(|key| key.name)
 }
 
-/// What may be written behind a key; its `Display` says it in words.
+/// The type of a value; `Display` describes it in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// A number.
     Number,
     /// A number without a fraction.
@@ -57,7 +48,7 @@ pub enum Kind {
     Truth,
     /// Any text.
     Text,
-    /// Where a file is.
+    /// Path of a file.
     Path,
     /// One of a few words.
     Word(Vec<&'static str>),
@@ -67,10 +58,8 @@ pub enum Kind {
     Names,
     /// Numbers or words, one or more.
     Levels,
-    /// Two numbers.
-    TwoNumbers,
-    /// Three numbers.
-    ThreeNumbers,
+    /// A list of so many numbers.
+    Numbers(usize),
     /// Any number of pairs of numbers.
     Pairs,
 }
@@ -88,29 +77,29 @@ impl fmt::Display for Kind {
             Self::ThreeWords(words) => write!(f, "three words of {}", quoted_list(words)),
             Self::Names => f.write_str("a list of names in quotes"),
             Self::Levels => f.write_str("a list of numbers or of words in quotes"),
-            Self::TwoNumbers => f.write_str("a list of two numbers"),
-            Self::ThreeNumbers => f.write_str("a list of three numbers"),
+            Self::Numbers(2) => f.write_str("a list of two numbers"),
+            Self::Numbers(3) => f.write_str("a list of three numbers"),
+            Self::Numbers(count) => write!(f, "a list of {count} numbers"),
             Self::Pairs => f.write_str("a list of pairs of numbers"),
         }
     }
 }
 
-/// The least and the most that a number may be, both allowed.
+/// An interval that includes its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Least.
+    /// Lower end.
     pub least: f64,
-    /// Most.
+    /// Upper end.
     pub most: f64,
 }
 
-/// Limits from `least` to `most`, both allowed.
 pub(crate) const fn within(least: f64, most: f64) -> Limits {
     Limits { least, most }
 }
 
 impl Limits {
-    /// Whether `value` lies inside; NaN does not.
+    /// Returns true if `value` lies inside; NaN does not.
     pub fn allow(&self, value: f64) -> bool {
         (self.least..=self.most).contains(&value)
     }
@@ -122,7 +111,7 @@ impl fmt::Display for Limits {
     }
 }
 
-/// A number as a person would write it.
+/// Formats a number as a person would write it.
 pub(crate) fn plain(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e9).contains(&value.abs()) {
         format!("{value:e}")
@@ -131,7 +120,7 @@ pub(crate) fn plain(value: f64) -> String {
     }
 }
 
-/// Words in quotes with commas between: `"a", "b" or "c"`.
+/// Formats words as `"a", "b" or "c"`.
 pub(crate) fn quoted_list(words: &[&str]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     match quoted.split_last() {
@@ -140,7 +129,7 @@ pub(crate) fn quoted_list(words: &[&str]) -> String {
     }
 }
 
-/// What a value is, in words.
+/// Returns the type of a value in words.
 pub(crate) fn type_name(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "text in quotes",
@@ -153,7 +142,7 @@ pub(crate) fn type_name(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-/// A float or an integer as a number; none for anything else.
+/// Returns a float or an integer as a number.
 pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().replace('_', "").parse().ok(),
@@ -164,7 +153,7 @@ pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// A basic string of TOML.
+/// Formats text as a string of TOML.
 pub(crate) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }

@@ -1,46 +1,44 @@
-//! Files of keys and values: every key declared once, read with the place of each problem, and
-//! written back.
+//! Files of keys and values: every key is declared once, read with the place of each problem, and written back.
 //!
-//! What a case or measured data are made of stands above and is not known here: each brings its
-//! own keys ([`Settings`], [`Variants`]) and its own reasons ([`Reason`]).
+//! The layer knows no contents: cases, studies and measured data declare their own keys ([`Settings`]) and their own
+//! problems ([`Reason`]).
 
 mod columns;
 mod data_file;
-pub(crate) mod key;
-pub(crate) mod log;
+mod document;
+mod items;
+mod key;
+mod log;
 mod problem;
 mod reason;
 mod render;
 mod schema;
-pub(crate) mod section;
-pub(crate) mod setting;
+mod section;
+mod setting;
 pub(crate) mod settings;
 mod suggest;
-pub(crate) mod variants;
-pub(crate) mod writer;
+mod writer;
 
 pub use columns::ColumnReason;
 pub use data_file::DataFile;
-pub use key::{Key, Kind, Limits, WhereSilent};
-pub use log::{Base, Log};
+pub use key::Limits;
 pub use problem::{Problem, Problems};
 pub use reason::{FileReason, KeyReason, Reason};
 pub use render::{RenderStyle, visible};
-pub use section::Section;
-pub use setting::{Level, Levels, Names, Setting};
-pub use settings::Settings;
-pub use variants::{Choices, Offered, Variants};
-pub use writer::Writer;
+pub use setting::{Level, Levels, Names, Points};
 
 pub(crate) use columns::{Cell, Columns};
-pub(crate) use key::{names, number, plain, quoted_list, within};
+pub(crate) use document::{rename, set_value, take, value_at};
+pub(crate) use items::{Choices, Item, Offered, TableItem, check, keys};
+pub(crate) use key::{Key, Kind, WhereSilent, names, number, plain, quoted_list, within};
+pub(crate) use log::{Base, Log};
 pub(crate) use problem::{Placed, Source, read_source};
-pub(crate) use schema::{Page, TableSchema};
-pub(crate) use section::read_document;
-pub(crate) use setting::{choice, pairs, read_word, wrong_type};
-pub(crate) use settings::{read_table, settings};
+pub(crate) use schema::{rows, sections, table_schema};
+pub(crate) use section::{Section, read_document, read_part};
+pub(crate) use setting::{Setting, choice, read_word, wrong_type};
+pub(crate) use settings::{Settings, settings, variants};
 pub(crate) use suggest::{likeliest, nearest};
-pub(crate) use variants::variants;
+pub(crate) use writer::Writer;
 
 #[cfg(feature = "file-system")]
 pub(crate) use key::quoted;

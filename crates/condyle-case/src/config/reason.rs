@@ -1,19 +1,19 @@
-//! Reasons why something in a file cannot be used.
+//! Problems of keys, values and files.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// Why something in a file cannot be used, as data: `Display` says what is wrong.
+/// A problem of a file as data; `Display` describes it.
 ///
 /// Every part of a file has reasons of its own, each an enum with fields or a struct.
 pub trait Reason: Error + Send + Sync + 'static {
-    /// What to do about it, where there is more to say than what is wrong.
+    /// Returns the remedy, if it does not follow from the description.
     fn advice(&self) -> Option<String>;
 }
 
-/// Why a key or its value cannot be used.
+/// A key or a value that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum KeyReason {
     /// Not TOML.
@@ -143,7 +143,7 @@ impl Reason for KeyReason {
             Self::WrongUnit { meant, unit, .. } => {
                 Some(format!("write `{meant}`, with the value in {unit}"))
             }
-            Self::OtherChoice { owner, .. } => Some(format!("remove the key, or write `{owner}`")),
+            Self::OtherChoice { owner, .. } => Some(format!("remove it, or write `{owner}`")),
             Self::UnknownWord { near, words, .. } => Some(match near {
                 Some(near) => format!("did you mean \"{near}\"? It can be {words}"),
                 None => format!("it can be {words}"),
@@ -160,11 +160,10 @@ impl Reason for KeyReason {
     }
 }
 
-/// What most often ails a line that is not TOML.
 const SYNTAX_ADVICE: &str = "a line is `key = value`: text in quotes, a number without its unit, \
     a list in square brackets; a key stands once in its table";
 
-/// Why a file cannot be used.
+/// A file that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum FileReason {
     /// A file that is not there.
@@ -194,7 +193,6 @@ impl Reason for FileReason {
     }
 }
 
-/// Where a file that is not there comes from.
 fn how_to_get(path: &Path) -> &'static str {
     if path.iter().any(|part| part == "dm-knee") {
         "data are not part of condyle: fetch the Grand Challenge subject DM meshes and gait \

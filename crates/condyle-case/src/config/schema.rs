@@ -1,7 +1,7 @@
-//! Keys described: a page of the book in Markdown, and a JSON schema, draft 2020-12, with which an editor completes keys and
-//! underlines what is wrong.
+//! Declared tables described: a page of the book in Markdown, and a JSON schema, draft 2020-12, with which editors complete
+//! keys and underline errors.
 //!
-//! A schema never refuses what a reader takes; a reader may refuse more.
+//! The schema accepts every file that the reader accepts; the reader may refuse more.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -9,124 +9,101 @@ use std::fmt::Write;
 use condyle::parameter::unit_of;
 use serde_json::{Map, Value, json};
 
-use super::key::Kind;
-use super::key::Limits;
-use super::key::{Key, WhereSilent};
-use super::variants::Choices;
+use super::items::{Choices, Item, TableItem, keys};
+use super::key::{Key, Kind, Limits, WhereSilent};
 
-/// The schema of a table, being made.
-pub(crate) struct TableSchema {
-    about: String,
-    properties: Map<String, Value>,
-    rules: Vec<Value>,
+/// Returns the schema of a table.
+pub(crate) fn table_schema(about: &str, items: &[Item]) -> Value {
+    let mut properties: Map<String, Value> = items.iter().filter_map(property).collect();
+    let mut rules = rules(items);
+    for item in items {
+        if let Item::Choice(choices) = item {
+            add_offered(choices, &mut properties, &mut rules);
+        }
+    }
+    let mut schema = json!({
+        "description": about,
+        "type": "object",
+        "properties": properties,
+        "additionalProperties": false,
+    });
+    if !rules.is_empty() {
+        schema["allOf"] = rules.into();
+    }
+    schema
 }
 
-impl TableSchema {
-    /// A table without keys.
-    pub(crate) fn new(about: &str) -> Self {
-        Self {
-            about: about.to_owned(),
-            properties: Map::new(),
-            rules: Vec::new(),
+fn property(item: &Item) -> Option<(String, Value)> {
+    let schema = match item {
+        Item::Key(key) => of_key(key),
+        Item::Choice(choices) => of_key(&choices.by),
+        Item::Table(table) if table.is_list => {
+            json!({ "type": "array", "minItems": 1, "items": table_schema(&table.about, &table.items) })
         }
-    }
-
-    /// The same with `keys`.
-    pub(crate) fn with_keys(mut self, keys: &[Key]) -> Self {
-        let given = keys.iter().map(|key| (key.name.to_owned(), of_key(key)));
-        self.properties.extend(given);
-        self.rules.extend(required(keys));
-        self
-    }
-
-    /// The same with the key of `choices`, and with the keys that each of its words brings where
-    /// that word is given.
-    pub(crate) fn with_choices(mut self, choices: &Choices) -> Self {
-        let by = &choices.by;
-        self.properties.insert(by.name.to_owned(), of_key(by));
-        for (name, bearers) in bearers(choices) {
-            self.properties
-                .insert(name.to_owned(), of_bearers(&bearers, by.name));
-            let words: Vec<&str> = bearers.iter().map(|(word, _)| *word).collect();
-            self.rules.push(only_under(choices, &words, name));
-        }
-        for offer in &choices.offered {
-            let then = required(&offer.keys);
-            self.rules
-                .extend(then.map(|then| rule(choices, &[offer.word], &then)));
-        }
-        self
-    }
-
-    /// The same with the table `name` inside.
-    pub(crate) fn with_table(mut self, name: &str, table: Self) -> Self {
-        self.properties.insert(name.to_owned(), table.into_schema());
-        self
-    }
-
-    /// The same with the list `name` of such tables inside, of one or more.
-    pub(crate) fn with_list(mut self, name: &str, table: Self) -> Self {
-        let list = json!({ "type": "array", "minItems": 1, "items": table.into_schema() });
-        self.properties.insert(name.to_owned(), list);
-        self
-    }
-
-    /// The same where exactly one of the keys `names` is given.
-    pub(crate) fn with_one_of(mut self, names: &[&str]) -> Self {
-        self.rules.push(one_of(names));
-        self
-    }
-
-    /// The same where exactly one of the keys `names` is given if the table has `word`.
-    pub(crate) fn with_one_of_under(
-        mut self,
-        choices: &Choices,
-        word: &str,
-        names: &[&str],
-    ) -> Self {
-        self.rules.push(rule(choices, &[word], &one_of(names)));
-        self
-    }
-
-    /// The same where `key` is given only beside `needs`.
-    pub(crate) fn with_need(mut self, key: &str, needs: &str) -> Self {
-        self.rules
-            .push(json!({ "dependentRequired": { key: [needs] } }));
-        self
-    }
-
-    /// The schema.
-    pub(crate) fn into_schema(self) -> Value {
-        let mut schema = json!({
-            "description": self.about,
-            "type": "object",
-            "properties": self.properties,
-            "additionalProperties": false,
-        });
-        if !self.rules.is_empty() {
-            schema["allOf"] = self.rules.into();
-        }
-        schema
-    }
+        Item::Table(table) => table_schema(&table.about, &table.items),
+        Item::OneOf(_) | Item::Needs(..) => return None,
+    };
+    Some((item.name()?.to_owned(), schema))
 }
 
-/// Keys by their names, each with the words of `choices` that bring it.
-fn bearers(choices: &Choices) -> BTreeMap<&'static str, Vec<(&'static str, &Key)>> {
-    let mut bearers: BTreeMap<_, Vec<_>> = BTreeMap::new();
+/// Returns the rules that hold among `items`.
+fn rules(items: &[Item]) -> Vec<Value> {
+    let mut rules = Vec::new();
+    let must = keys(items).into_iter();
+    let must = must.filter(|key| key.silent == WhereSilent::MustBeGiven);
+    let names: Vec<&str> = must.map(|key| key.name).collect();
+    if !names.is_empty() {
+        rules.push(json!({ "required": names }));
+    }
+    for item in items {
+        match item {
+            Item::OneOf(names) => {
+                let alone = names.iter().map(|name| json!({ "required": [name] }));
+                rules.push(json!({ "oneOf": alone.collect::<Vec<Value>>() }));
+            }
+            Item::Needs(key, needs) => {
+                rules.push(json!({ "dependentRequired": { *key: [needs] } }));
+            }
+            Item::Key(_) | Item::Choice(_) | Item::Table(_) => {}
+        }
+    }
+    rules
+}
+
+/// Adds the entries that each word brings, and the rule that they are given only under such a word.
+fn add_offered(choices: &Choices, properties: &mut Map<String, Value>, rules_of: &mut Vec<Value>) {
+    let mut bearers: BTreeMap<String, Vec<(&str, Value)>> = BTreeMap::new();
     for offer in &choices.offered {
-        for key in &offer.keys {
-            bearers.entry(key.name).or_default().push((offer.word, key));
+        for (name, schema) in offer.items.iter().filter_map(property) {
+            bearers.entry(name).or_default().push((offer.word, schema));
         }
     }
-    bearers
+    for (name, bearers) in bearers {
+        let others = choices.offered.iter().map(|offer| offer.word);
+        let others: Vec<&str> = others
+            .filter(|word| bearers.iter().all(|(bearer, _)| bearer != word))
+            .collect();
+        rules_of.push(rule(
+            choices,
+            &others,
+            &json!({ "properties": { &*name: false } }),
+        ));
+        properties.insert(name, of_bearers(&bearers, choices.by.name));
+    }
+    for offer in &choices.offered {
+        let then = rules(&offer.items);
+        rules_of.extend(then.iter().map(|then| rule(choices, &[offer.word], then)));
+    }
 }
 
-/// A key that several words bring, perhaps with other meanings.
-fn of_bearers(bearers: &[(&'static str, &Key)], by: &str) -> Value {
+/// Returns the schema of an entry that several words bring, perhaps with other meanings, titled with those words.
+fn of_bearers(bearers: &[(&str, Value)], by: &str) -> Value {
     let mut schemas: Vec<Value> = Vec::new();
-    for &(word, key) in bearers {
-        let mut schema = of_key(key);
-        schema["title"] = words_of(bearers, key, by, word).into();
+    for (_, schema) in bearers {
+        let alike = bearers.iter().filter(|(_, other)| other == schema);
+        let words: Vec<String> = alike.map(|(word, _)| format!("{by} = {word:?}")).collect();
+        let mut schema = schema.clone();
+        schema["title"] = words.join(", ").into();
         if !schemas.contains(&schema) {
             schemas.push(schema);
         }
@@ -137,23 +114,7 @@ fn of_bearers(bearers: &[(&'static str, &Key)], by: &str) -> Value {
     }
 }
 
-/// The words that bring a key like `key`, as the case has them.
-fn words_of(bearers: &[(&str, &Key)], key: &Key, by: &str, own: &str) -> String {
-    let alike = bearers
-        .iter()
-        .filter(|(word, other)| *other == key || *word == own);
-    let words: Vec<String> = alike.map(|(word, _)| format!("{by} = {word:?}")).collect();
-    words.join(", ")
-}
-
-/// That the key `name` is given only under some of the words, and then as it is meant there.
-fn only_under(choices: &Choices, words: &[&str], name: &str) -> Value {
-    let others = choices.offered.iter().map(|offer| offer.word);
-    let others: Vec<&str> = others.filter(|word| !words.contains(word)).collect();
-    rule(choices, &others, &json!({ "properties": { name: false } }))
-}
-
-/// What holds where a table has one of `words`, of which the default is had by silence.
+/// Returns a rule for tables with one of `words`; the default word is also chosen by silence.
 fn rule(choices: &Choices, words: &[&str], then: &Value) -> Value {
     let by = choices.by.name;
     let mut condition = json!({ "properties": { by: { "enum": words } } });
@@ -163,34 +124,30 @@ fn rule(choices: &Choices, words: &[&str], then: &Value) -> Value {
     json!({ "if": condition, "then": then })
 }
 
-fn one_of(names: &[&str]) -> Value {
-    let alone = |name: &&str| json!({ "required": [name] });
-    json!({ "oneOf": names.iter().map(alone).collect::<Vec<Value>>() })
-}
-
-/// That the keys that must be given are.
-fn required(keys: &[Key]) -> Option<Value> {
-    let must = keys
-        .iter()
-        .filter(|key| key.silent == WhereSilent::MustBeGiven);
-    let names: Vec<&str> = must.map(|key| key.name).collect();
-    (!names.is_empty()).then(|| json!({ "required": names }))
-}
-
-/// The schema of the value behind a key, with what it means.
-pub(crate) fn of_key(key: &Key) -> Value {
+fn of_key(key: &Key) -> Value {
     let mut schema = of_kind(&key.kind, key.limits);
     schema["description"] = description(key).into();
     if let WhereSilent::Takes(text) = &key.silent {
-        schema["default"] = value_of(text);
+        let value = format!("x = {text}").parse::<toml::Table>();
+        let value = value.ok().and_then(|mut table| table.remove("x"));
+        schema["default"] = value.map_or_else(|| text.as_str().into(), |value| json!(value));
     }
     schema
 }
 
 fn of_kind(kind: &Kind, limits: Option<Limits>) -> Value {
+    let limited = |number: &str| {
+        let mut schema = json!({ "type": number });
+        if let Some(Limits { least, most }) = limits {
+            schema["minimum"] = json!(least);
+            schema["maximum"] = json!(most);
+        }
+        schema
+    };
+    let list = |item: &Value, length: usize| json!({ "type": "array", "items": item, "minItems": length, "maxItems": length });
     match kind {
-        Kind::Number => limited("number", limits),
-        Kind::WholeNumber => limited("integer", limits),
+        Kind::Number => limited("number"),
+        Kind::WholeNumber => limited("integer"),
         Kind::Sign => json!({ "enum": [1, -1] }),
         Kind::Truth => json!({ "type": "boolean" }),
         Kind::Text | Kind::Path => json!({ "type": "string" }),
@@ -198,27 +155,13 @@ fn of_kind(kind: &Kind, limits: Option<Limits>) -> Value {
         Kind::ThreeWords(words) => list(&json!({ "type": "string", "enum": words }), 3),
         Kind::Names => json!({ "type": "array", "items": { "type": "string" } }),
         Kind::Levels => json!({ "type": "array", "minItems": 1 }),
-        Kind::TwoNumbers => list(&limited("number", limits), 2),
-        Kind::ThreeNumbers => list(&limited("number", limits), 3),
-        // Limits of points hold for what becomes of them, once scaled and offset.
+        Kind::Numbers(count) => list(&limited("number"), *count),
+        // Limits of points hold for the points as scaled and offset, which the schema cannot compute.
         Kind::Pairs => json!({ "type": "array", "items": list(&json!({ "type": "number" }), 2) }),
     }
 }
 
-fn limited(number: &str, limits: Option<Limits>) -> Value {
-    let mut schema = json!({ "type": number });
-    if let Some(Limits { least, most }) = limits {
-        schema["minimum"] = json!(least);
-        schema["maximum"] = json!(most);
-    }
-    schema
-}
-
-fn list(item: &Value, length: usize) -> Value {
-    json!({ "type": "array", "items": item, "minItems": length, "maxItems": length })
-}
-
-/// What a key means, its unit, its range and what is taken without it.
+/// Returns the meaning of a key, its unit, its range and its default.
 fn description(key: &Key) -> String {
     let unit = unit_of(key.name).map(|unit| format!("Unit: {unit}."));
     let range = key.limits.map(|limits| format!("Range: {limits}."));
@@ -235,80 +178,76 @@ fn description(key: &Key) -> String {
         .join(" ")
 }
 
-/// A value of TOML as one of JSON.
-fn value_of(text: &str) -> Value {
-    let value: Result<toml::Value, _> = format!("x = {text}")
-        .parse::<toml::Table>()
-        .map(|mut table| table.remove("x").unwrap_or_else(|| text.into()));
-    value.map_or_else(|_| text.into(), |value| json!(value))
+/// Returns the sections of the book on the tables among `items`, `above` being the path of the table around them.
+pub(crate) fn sections(above: &str, items: &[Item]) -> String {
+    let tables = items.iter().flat_map(|item| match item {
+        Item::Table(table) => vec![table],
+        Item::Choice(choices) => {
+            let offered = choices.offered.iter().flat_map(|offer| &offer.items);
+            offered.filter_map(as_table).collect()
+        }
+        _ => Vec::new(),
+    });
+    tables.map(|table| section(above, table)).collect()
 }
 
-/// A page being made.
-pub(crate) struct Page {
-    text: String,
+fn as_table(item: &Item) -> Option<&TableItem> {
+    match item {
+        Item::Table(table) => Some(table),
+        _ => None,
+    }
 }
 
-impl Page {
-    /// A page that begins with `opening`.
-    pub(crate) fn new(opening: &str) -> Self {
-        let text = opening.to_owned();
-        Self { text }
+fn section(above: &str, table: &TableItem) -> String {
+    if let Some(page) = &table.page {
+        return page.clone();
     }
-
-    /// Adds Markdown as it stands.
-    pub(crate) fn push(&mut self, markdown: &str) {
-        self.text.push_str(markdown);
-    }
-
-    /// Adds a heading, and the keys below it.
-    pub(crate) fn section(&mut self, title: &str, keys: &[Key]) {
-        self.push(&format!("\n## {title}\n\n"));
-        self.table(keys);
-    }
-
-    /// Adds a section of `keys`, of which one is the key of `choices`, and the keys that each of
-    /// its words brings.
-    pub(crate) fn chosen(&mut self, title: &str, keys: &[Key], choices: &Choices) {
-        let by = &choices.by;
-        self.section(title, keys);
-        for offer in choices
-            .offered
-            .iter()
-            .filter(|offer| !offer.keys.is_empty())
-        {
-            self.push(&format!("\nWith `{} = \"{}\"`:\n\n", by.name, offer.word));
-            self.table(&offer.keys);
+    let path = match above {
+        "" => table.name.to_owned(),
+        above => format!("{above}.{}", table.name),
+    };
+    let title = if table.is_list {
+        format!("[[{path}]]")
+    } else {
+        format!("[{path}]")
+    };
+    let mut text = format!("\n## `{title}`\n\n{}", rows(&keys(&table.items)));
+    for item in &table.items {
+        let Item::Choice(choices) = item else {
+            continue;
+        };
+        for offer in &choices.offered {
+            let keys = keys(&offer.items);
+            if !keys.is_empty() {
+                let (by, word) = (choices.by.name, offer.word);
+                text += &format!("\nWith `{by} = \"{word}\"`:\n\n{}", rows(&keys));
+            }
         }
     }
+    text + &table.note + &sections(&path, &table.items)
+}
 
-    /// Adds a table of keys.
-    pub(crate) fn table(&mut self, keys: &[Key]) {
-        self.push("| key | unit | may be | default | meaning |\n");
-        self.push("| --- | --- | --- | --- | --- |\n");
-        keys.iter().for_each(|key| self.row(key));
-    }
-
-    fn row(&mut self, key: &Key) {
-        let unit = unit_of(key.name).unwrap_or("");
-        let range = match &key.limits {
-            Some(limits) => format!("{}, {limits}", key.kind),
-            None => key.kind.to_string(),
-        };
+/// Returns a table of keys in Markdown.
+pub(crate) fn rows(keys: &[&Key]) -> String {
+    let mut text =
+        "| key | unit | may be | default | meaning |\n| --- | --- | --- | --- | --- |\n".to_owned();
+    for key in keys {
+        let (name, kind, doc) = (key.name, &key.kind, &key.doc);
+        let unit = unit_of(name).unwrap_or("");
+        let range = key
+            .limits
+            .map(|limits| format!(", {limits}"))
+            .unwrap_or_default();
         let default = match &key.silent {
             WhereSilent::Takes(text) => format!("`{text}`"),
             WhereSilent::LeftOut => "none".to_owned(),
             WhereSilent::MustBeGiven => "must be given".to_owned(),
         };
-        let (name, doc) = (key.name, &key.doc);
         let row = writeln!(
-            self.text,
-            "| `{name}` | {unit} | {range} | {default} | {doc} |"
+            text,
+            "| `{name}` | {unit} | {kind}{range} | {default} | {doc} |"
         );
         debug_assert!(row.is_ok(), "writing to a String does not fail");
     }
-
-    /// The whole page.
-    pub(crate) fn into_text(self) -> String {
-        self.text
-    }
+    text
 }

@@ -1,6 +1,5 @@
 //! Tables of a file: finding keys, reporting those that are not known.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -13,20 +12,15 @@ use super::reason::KeyReason;
 use super::setting::Setting;
 use super::suggest::explain;
 
-/// A key and its value, each with its place.
-type Entry<'a> = (&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>);
-
 /// A table of a file; an absent one has no keys.
-pub struct Section<'a> {
+pub(crate) struct Section<'a> {
     path: String,
-    /// Whether it is one of a list of tables.
     is_of_list: bool,
     table: Option<&'a DeTable<'a>>,
     span: Range<usize>,
 }
 
 impl<'a> Section<'a> {
-    /// The whole file.
     pub(crate) fn root(table: &'a DeTable<'a>) -> Self {
         Self {
             path: String::new(),
@@ -36,7 +30,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The table `name` inside this one.
+    /// Returns the table `name` inside this one; reports a value that is no table.
     pub(crate) fn table(&self, name: &str, log: &mut Log<'_>) -> Self {
         let part = self.part(name);
         if let (Some(value), None) = (self.value(name), part.table) {
@@ -47,51 +41,56 @@ impl<'a> Section<'a> {
         part
     }
 
-    /// The same, without a report where `name` is no table.
+    /// Returns the table `name` inside this one; an absent one where it is no table.
     pub(crate) fn part(&self, name: &str) -> Self {
         let path = match self.path.as_str() {
             "" => name.to_owned(),
             above => format!("{above}.{name}"),
         };
         let entry = self.entry(name);
-        let table = entry.and_then(|(_, value)| value.get_ref().as_table());
-        let span = entry.map_or(self.span.clone(), |(key, _)| key.span());
         Self {
             path,
             is_of_list: false,
-            table,
-            span,
+            table: entry.and_then(|(_, value)| value.get_ref().as_table()),
+            span: entry.map_or(self.span.clone(), |(key, _)| key.span()),
         }
     }
 
-    /// The tables of the list `name` at the top of the file; nothing where it is something else.
+    /// Returns the tables of the list `name` at the top of the file, or reports what it is instead.
     pub(crate) fn list(&self, name: &str, log: &mut Log<'_>) -> Option<Vec<Self>> {
         let Some(value) = self.value(name) else {
             return Some(Vec::new());
         };
-        let listed = value.get_ref().as_array();
-        let tables: Option<Vec<Self>> = listed.and_then(|listed| {
-            let table = |item| Self::of_list(name, item);
-            listed.iter().map(table).collect()
-        });
-        let tables = tables.filter(|tables| !tables.is_empty());
-        if tables.is_none() {
+        let items = value.get_ref().as_array().map_or(0, |items| items.len());
+        let tables = self.tables(name);
+        if items == 0 || tables.len() < items {
             let (key, found) = (name.to_owned(), type_name(value.get_ref()));
             let wanted = format!("tables, each headed [[{name}]]");
             let reason = KeyReason::WrongType { key, wanted, found };
             log.problem(self.key_span(name), reason);
+            return None;
         }
-        tables
+        Some(tables)
     }
 
-    /// A table of the list `name`; nothing where it is something else.
-    fn of_list(name: &str, item: &'a Spanned<DeValue<'a>>) -> Option<Self> {
-        Some(Self {
-            path: name.to_owned(),
-            is_of_list: true,
-            table: Some(item.get_ref().as_table()?),
-            span: item.span(),
-        })
+    /// Returns every table called `name`: none, one, or those of a list.
+    pub(crate) fn tables(&self, name: &str) -> Vec<Self> {
+        let Some(list) = self
+            .value(name)
+            .and_then(|value| value.get_ref().as_array())
+        else {
+            let part = self.part(name);
+            return part.table.is_some().then_some(part).into_iter().collect();
+        };
+        let table = |item: &'a Spanned<DeValue<'a>>| {
+            Some(Self {
+                path: name.to_owned(),
+                is_of_list: true,
+                table: Some(item.get_ref().as_table()?),
+                span: item.span(),
+            })
+        };
+        list.iter().filter_map(table).collect()
     }
 
     /// Path of the table, such as `machine.springs`.
@@ -99,7 +98,7 @@ impl<'a> Section<'a> {
         &self.path
     }
 
-    /// The table as a message names it.
+    /// The table as messages name it.
     pub(crate) fn name(&self) -> String {
         match self.path.as_str() {
             "" => "the top of the file".to_owned(),
@@ -108,53 +107,58 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Whether the file has the table.
     pub(crate) fn is_given(&self) -> bool {
         self.table.is_some()
     }
 
-    /// Where the table is named; where the one around it is, if it is absent.
+    /// Place of the table's name; of the table around it if it is absent.
     pub(crate) fn span(&self) -> Range<usize> {
         self.span.clone()
     }
 
-    fn entry(&self, name: &str) -> Option<Entry<'a>> {
-        self.table?.iter().find(|(key, _)| key.get_ref() == name)
+    fn entry(&self, name: &str) -> Option<(&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>)> {
+        self.table?.get_key_value(name)
     }
 
-    /// The value of `name`.
     pub(crate) fn value(&self, name: &str) -> Option<&'a Spanned<DeValue<'a>>> {
         self.entry(name).map(|(_, value)| value)
     }
 
-    /// The places of all keys and tables in this one, by dotted path: of a key its value, of a table its name.
-    pub(crate) fn places(&self) -> BTreeMap<String, Range<usize>> {
-        let mut places = BTreeMap::new();
+    /// Returns the place of every key and table below, with its dotted path: of a key its name and its value, of a table
+    /// its name.
+    pub(crate) fn places(&self) -> Vec<(Range<usize>, String)> {
+        let mut places = Vec::new();
         for (key, value) in self.table.into_iter().flatten() {
-            let part = self.part(key.get_ref());
-            let is_table = part.is_given();
-            places.extend(part.places());
-            places.insert(part.path, if is_table { key.span() } else { value.span() });
+            let (part, inside) = (self.part(key.get_ref()), self.tables(key.get_ref()));
+            places.push((key.span(), part.path.clone()));
+            if inside.is_empty() {
+                places.push((value.span(), part.path));
+            }
+            places.extend(inside.iter().flat_map(Self::places));
         }
         places
     }
 
-    /// The word that `name` has, if it has one.
-    pub(crate) fn word(&self, name: &str) -> Option<&'a str> {
-        self.value(name)?.get_ref().as_str()
-    }
-
-    /// Where the name of the key `name` stands, or that of the table.
+    /// Place of the name of the key `name`, or of the table if it is not given.
     pub(crate) fn key_span(&self, name: &str) -> Range<usize> {
         self.entry(name).map_or(self.span(), |(key, _)| key.span())
     }
 
-    /// Where the value of `name` stands, or the name of the table.
+    /// Place of the value of `name`, or of the table if it is not given.
     pub(crate) fn value_span(&self, name: &str) -> Range<usize> {
         self.value(name).map_or(self.span(), Spanned::span)
     }
 
-    /// The value behind `key`, its default, or nothing and the reason in `log`.
+    /// Place of an item of the list behind `name`, or of the whole value.
+    pub(crate) fn item_span(&self, name: &str, index: usize) -> Range<usize> {
+        let list = self
+            .value(name)
+            .and_then(|value| value.get_ref().as_array());
+        let item = list.and_then(|list| list.get(index));
+        item.map_or(self.value_span(name), Spanned::span)
+    }
+
+    /// Returns the value behind `key` or its default; reports a missing or wrong one.
     pub fn setting<T: Setting>(
         &self,
         key: &Key,
@@ -175,7 +179,7 @@ impl<'a> Section<'a> {
         default
     }
 
-    /// Reports each of `keys` that is given, since it has an effect only with `needs`.
+    /// Reports each of `keys` that is given, because it has an effect only with `needs`.
     pub(crate) fn report_idle(&self, keys: &[Key], needs: &str, log: &mut Log<'_>) {
         for key in names(keys).filter(|key| self.value(key).is_some()) {
             let (key, needs) = (key.to_owned(), needs.to_owned());
@@ -190,7 +194,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Keys of the table that are none of `known`, with their values.
+    /// Returns the keys of the table that are none of `known`, with their values.
     pub(super) fn other_keys(
         &self,
         known: &[&str],
@@ -201,29 +205,43 @@ impl<'a> Section<'a> {
             .map(|(key, value)| (key, value.get_ref()))
     }
 
-    /// The likeliest reason why the table has no key `name` among those `known`.
+    /// Returns the likeliest reason why the table has no key `name` among those `known`.
     pub(super) fn unknown(&self, name: &str, value: &DeValue<'_>, known: &[&str]) -> KeyReason {
         explain(name, value, &self.name(), known)
     }
 }
 
-/// What `read` makes of the file `source`; those it names are looked for from `base`.
+/// Parses the file `source` and returns what `read` makes of it; files that it names are looked for from `base`.
 ///
 /// # Errors
-/// Everything that is wrong, what is no TOML before all else.
+/// Every problem; only the syntax errors if there are any.
 pub(crate) fn read_document<T>(
     source: &Source,
     base: Base<'_>,
     read: impl FnOnce(&Section<'_>, &mut Log<'_>) -> Option<T>,
 ) -> Result<T, Problems> {
-    let (document, errors) = DeTable::parse_recoverable(source.inner());
+    read_part(source, source.inner(), base, |document, log| {
+        let root = Section::root(document);
+        log.places = root.places();
+        read(&root, log)
+    })
+}
+
+/// As [`read_document`], of `text` that begins the shown `source`, from the document itself.
+pub(crate) fn read_part<'a, T>(
+    source: &Source,
+    text: &'a str,
+    base: Base<'a>,
+    read: impl FnOnce(&mut DeTable<'a>, &mut Log<'a>) -> Option<T>,
+) -> Result<T, Problems> {
+    let (document, errors) = DeTable::parse_recoverable(text);
     let mut log = Log::new(source, base);
     for error in &errors {
         let message = error.message().to_owned();
         log.problem(error.span().unwrap_or(0..0), KeyReason::Syntax { message });
     }
     let found = if errors.is_empty() {
-        read(&Section::root(document.get_ref()), &mut log)
+        read(&mut document.into_inner(), &mut log)
     } else {
         None
     };

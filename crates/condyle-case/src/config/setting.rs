@@ -1,6 +1,4 @@
-//! Values that a key can take: read from a file, written to one.
-
-use std::ops::Range;
+//! Types of values: what a file may have behind a key, read and written.
 
 use condyle::parameter::unit_of;
 use toml::Spanned;
@@ -10,20 +8,29 @@ use super::key::{Key, Kind, number, quoted, quoted_list, type_name};
 use super::log::Log;
 use super::reason::KeyReason;
 use super::suggest::nearest;
+use super::writer::Writer;
 
-/// A value that stands behind a key.
-pub trait Setting: Sized {
-    /// What may be written.
+/// A type of value.
+pub(crate) trait Setting: Sized {
+    /// Its kind in messages, schema and book.
     fn kind() -> Kind;
 
-    /// The value, or nothing and the reason in `log`.
+    /// Reads the value, or reports why it cannot be used.
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self>;
 
-    /// The value as a file has it; nothing for a value that is left out.
+    /// The value in TOML; `None` for a value that is left out.
     fn text(&self) -> Option<String>;
+
+    /// Writes the value with the meaning of its key; one that is left out as a comment.
+    fn write(&self, key: &Key, out: &mut Writer) {
+        match self.text() {
+            Some(text) => out.line(&format!("{} = {text}", key.name), &key.doc),
+            None => out.line(&format!("# {} =", key.name), &key.doc),
+        }
+    }
 }
 
-/// A number inside the limits of its key, or the reason in `log`.
+/// Reads a number within the limits of its key, or reports why it cannot be used.
 fn limited(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<f64> {
     let Some(number) = number(value.get_ref()) else {
         wrong_type(value, key, log);
@@ -42,6 +49,56 @@ fn limited(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option
         }
         _ => Some(number),
     }
+}
+
+/// Declares types of values by kind, text, and reader; a reader that returns `None` for a value of another type has it
+/// reported.
+macro_rules! plain_values {
+    ($( $ty:ty: $kind:ident, |$this:ident| $text:expr, |$value:ident| $read:expr; )+) => { $(
+        impl Setting for $ty {
+            fn kind() -> Kind {
+                Kind::$kind
+            }
+
+            fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
+                let $value = value.get_ref();
+                let read = $read;
+                if read.is_none() {
+                    wrong_type(value, key, log);
+                }
+                read
+            }
+
+            fn text(&self) -> Option<String> {
+                let $this = self;
+                Some($text)
+            }
+        }
+    )+ };
+}
+
+plain_values! {
+    bool: Truth, |this| this.to_string(), |value| value.as_bool();
+    String: Text, |this| quoted(this), |value| value.as_str().map(str::to_owned);
+    Names: Names, |this| {
+        let names: Vec<String> = this.0.iter().map(|name| quoted(name)).collect();
+        format!("[{}]", names.join(", "))
+    }, |value| {
+        let name = |name: &Spanned<DeValue<'_>>| name.get_ref().as_str().map(str::to_owned);
+        let names: Option<_> = value.as_array().and_then(|list| list.iter().map(name).collect());
+        names.map(Self)
+    };
+    Levels: Levels, |this| {
+        let levels: Vec<String> = this.0.iter().map(|level| match level {
+            Level::Number(number) => format!("{number:?}"),
+            Level::Word(word) => quoted(word),
+        }).collect();
+        format!("[{}]", levels.join(", "))
+    }, |value| {
+        let levels: Option<Vec<Level>> =
+            value.as_array().and_then(|list| list.iter().map(|item| Level::of(item.get_ref())).collect());
+        levels.filter(|levels| !levels.is_empty()).map(Self)
+    };
 }
 
 impl Setting for f64 {
@@ -77,56 +134,21 @@ impl Setting for u64 {
     }
 }
 
-impl Setting for bool {
+/// A list of numbers that the limits of its key hold for.
+impl<const N: usize> Setting for [f64; N] {
     fn kind() -> Kind {
-        Kind::Truth
+        Kind::Numbers(N)
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        let read = value.get_ref().as_bool();
-        if read.is_none() {
-            wrong_type(value, key, log);
-        }
-        read
-    }
-
-    fn text(&self) -> Option<String> {
-        Some(format!("{self}"))
-    }
-}
-
-impl Setting for String {
-    fn kind() -> Kind {
-        Kind::Text
-    }
-
-    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        let read = value.get_ref().as_str().map(str::to_owned);
-        if read.is_none() {
-            wrong_type(value, key, log);
-        }
-        read
-    }
-
-    fn text(&self) -> Option<String> {
-        Some(quoted(self))
-    }
-}
-
-impl Setting for [f64; 2] {
-    fn kind() -> Kind {
-        Kind::TwoNumbers
-    }
-
-    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        let list = value.get_ref().as_array();
-        let pair: Vec<_> = list.into_iter().flatten().collect();
-        let [first, second] = pair[..] else {
+        let list = value.get_ref().as_array().filter(|list| list.len() == N);
+        let Some(list) = list else {
             wrong_type(value, key, log);
             return None;
         };
-        let (first, second) = (limited(first, key, log), limited(second, key, log));
-        Some([first?, second?])
+        let numbers: Vec<Option<f64>> = list.iter().map(|item| limited(item, key, log)).collect();
+        let numbers: Option<Vec<f64>> = numbers.into_iter().collect();
+        numbers?.try_into().ok()
     }
 
     fn text(&self) -> Option<String> {
@@ -146,33 +168,16 @@ impl<T: Setting> Setting for Option<T> {
     fn text(&self) -> Option<String> {
         self.as_ref().and_then(T::text)
     }
-}
 
-impl Setting for [f64; 3] {
-    fn kind() -> Kind {
-        Kind::ThreeNumbers
-    }
-
-    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        let list: Vec<_> = value.get_ref().as_array().into_iter().flatten().collect();
-        let numbers: Vec<f64> = list
-            .iter()
-            .filter_map(|value| number(value.get_ref()))
-            .filter(|value| key.limits.is_none_or(|limits| limits.allow(*value)))
-            .collect();
-        let three = numbers.try_into().ok().filter(|_| list.len() == 3);
-        if three.is_none() {
-            wrong_type(value, key, log);
+    fn write(&self, key: &Key, out: &mut Writer) {
+        match self {
+            Some(value) => value.write(key, out),
+            None => out.line(&format!("# {} =", key.name), &key.doc),
         }
-        three
-    }
-
-    fn text(&self) -> Option<String> {
-        Some(format!("{self:?}"))
     }
 }
 
-/// Reports that `value` is not what `key` takes.
+/// Reports that `value` has another type than `key` takes.
 pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
     let reason = KeyReason::WrongType {
         key: key.name.to_owned(),
@@ -182,7 +187,7 @@ pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<
     log.problem(value.span(), reason);
 }
 
-/// The one of `words` that `value` is, or the reason in `log`.
+/// Reads one of `words`, or reports why it cannot be used.
 pub(crate) fn read_word<'w>(
     value: &Spanned<DeValue<'_>>,
     key: &Key,
@@ -210,29 +215,6 @@ pub(crate) fn read_word<'w>(
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names(pub Vec<String>);
 
-impl Setting for Names {
-    fn kind() -> Kind {
-        Kind::Names
-    }
-
-    fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        let list = value.get_ref().as_array();
-        let names = list.and_then(|list| {
-            let name = |name: &Spanned<DeValue<'_>>| name.get_ref().as_str().map(str::to_owned);
-            list.iter().map(name).collect()
-        });
-        if names.is_none() {
-            wrong_type(value, key, log);
-        }
-        names.map(Self)
-    }
-
-    fn text(&self) -> Option<String> {
-        let names: Vec<String> = self.0.iter().map(|name| quoted(name)).collect();
-        Some(format!("[{}]", names.join(", ")))
-    }
-}
-
 /// One of several values that a key takes in turn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Level {
@@ -247,89 +229,64 @@ pub enum Level {
 pub struct Levels(pub Vec<Level>);
 
 impl Level {
-    fn of(value: &Spanned<DeValue<'_>>) -> Option<Self> {
-        let value = value.get_ref();
-        let word = || {
-            value
-                .as_str()
-                .filter(|word| !word.is_empty())
-                .map(str::to_owned)
-        };
-        let truth = || value.as_bool().map(|truth| truth.to_string());
-        let as_number = number(value).filter(|number| number.is_finite());
-        as_number
-            .map(Self::Number)
-            .or_else(|| word().or_else(truth).map(Self::Word))
-    }
-
-    fn text(&self) -> String {
-        match self {
-            Self::Number(number) => format!("{number:?}"),
-            Self::Word(word) => quoted(word),
+    fn of(value: &DeValue<'_>) -> Option<Self> {
+        if let Some(number) = number(value).filter(|number| number.is_finite()) {
+            return Some(Self::Number(number));
         }
+        let word = value
+            .as_str()
+            .filter(|word| !word.is_empty())
+            .map(str::to_owned);
+        let truth = || value.as_bool().map(|truth| truth.to_string());
+        word.or_else(truth).map(Self::Word)
     }
 }
 
-impl Setting for Levels {
+/// Pairs of numbers, such as the points of a curve. Limits are not applied to them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points(pub Vec<(f64, f64)>);
+
+impl Setting for Points {
     fn kind() -> Kind {
-        Kind::Levels
+        Kind::Pairs
     }
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
-        let list = value.get_ref().as_array();
-        let levels: Option<Vec<Level>> = list.and_then(|list| list.iter().map(Level::of).collect());
-        let levels = levels.filter(|levels| !levels.is_empty());
-        if levels.is_none() {
-            wrong_type(value, key, log);
+        let mut wrong = |value: &Spanned<DeValue<'_>>, wanted: &str| {
+            let reason = KeyReason::WrongType {
+                key: key.name.to_owned(),
+                wanted: wanted.to_owned(),
+                found: type_name(value.get_ref()),
+            };
+            log.problem(value.span(), reason);
+        };
+        let Some(list) = value.get_ref().as_array() else {
+            wrong(value, "a list of pairs, such as [[0.0, 1.0], [50.0, 2.0]]");
+            return None;
+        };
+        let mut pairs = Vec::new();
+        for item in list {
+            let cells = item.get_ref().as_array().into_iter().flatten();
+            let numbers: Vec<Option<f64>> = cells.map(|cell| number(cell.get_ref())).collect();
+            match numbers[..] {
+                [Some(first), Some(second)] => pairs.push((first, second)),
+                _ => wrong(item, "made of pairs of numbers"),
+            }
         }
-        levels.map(Self)
+        (pairs.len() == list.len()).then_some(Self(pairs))
     }
 
     fn text(&self) -> Option<String> {
-        let levels: Vec<String> = self.0.iter().map(Level::text).collect();
-        Some(format!("[{}]", levels.join(", ")))
+        Some(format!("{:?}", self.0))
+    }
+
+    fn write(&self, key: &Key, out: &mut Writer) {
+        out.comment(&key.doc);
+        out.pairs(key.name, &self.0);
     }
 }
 
-/// A pair of numbers and where it stands.
-pub(crate) type PlacedPair = ([f64; 2], Range<usize>);
-
-/// A list of pairs of numbers with their places, or everything in it that is none.
-pub(crate) fn pairs(
-    value: &Spanned<DeValue<'_>>,
-    key: &str,
-    log: &mut Log<'_>,
-) -> Option<Vec<PlacedPair>> {
-    let mut wrong = |value: &Spanned<DeValue<'_>>, wanted: &str| {
-        let reason = KeyReason::WrongType {
-            key: key.to_owned(),
-            wanted: wanted.to_owned(),
-            found: type_name(value.get_ref()),
-        };
-        log.problem(value.span(), reason);
-    };
-    let Some(list) = value.get_ref().as_array() else {
-        wrong(value, "a list of pairs, such as [[0.0, 1.0], [50.0, 2.0]]");
-        return None;
-    };
-    let mut pairs = Vec::new();
-    for item in list {
-        match pair(item.get_ref()) {
-            Some(pair) => pairs.push((pair, item.span())),
-            None => wrong(item, "made of pairs of numbers"),
-        }
-    }
-    (pairs.len() == list.len()).then_some(pairs)
-}
-
-/// A list of two numbers.
-fn pair(value: &DeValue<'_>) -> Option<[f64; 2]> {
-    let cells = value.as_array()?.iter();
-    let numbers: Option<Vec<f64>> = cells.map(|cell| number(cell.get_ref())).collect();
-    numbers?.try_into().ok()
-}
-
-/// Declares a value that is one of a few words.
+/// Declares values that are one of a few words.
 macro_rules! choice {
     ($(
         $(#[doc = $about:literal])+
@@ -344,39 +301,39 @@ macro_rules! choice {
         }
 
         impl $name {
-            /// Every one of them.
+            /// Every choice.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// Every word a file may use.
+            /// The words of all choices.
             pub const WORDS: &'static [&'static str] = &[$($word),+];
 
-            /// The word a file uses for it.
+            /// The word of a file for this choice.
             pub fn word(self) -> &'static str {
                 match self { $( Self::$variant => $word, )+ }
             }
 
-            /// What it is, in one sentence.
+            /// Describes the choice in one sentence.
             pub fn about(self) -> &'static str {
                 match self { $( Self::$variant => concat!($($doc),+).trim(), )+ }
             }
 
-            /// The choice that `word` stands for.
+            /// Returns the choice that `word` stands for.
             pub fn from_word(word: &str) -> Option<Self> {
                 match word { $( $word => Some(Self::$variant), )+ _ => None }
             }
         }
 
-        impl $crate::config::setting::Setting for $name {
-            fn kind() -> $crate::config::key::Kind {
-                $crate::config::key::Kind::Word(Self::WORDS.to_vec())
+        impl $crate::config::Setting for $name {
+            fn kind() -> $crate::config::Kind {
+                $crate::config::Kind::Word(Self::WORDS.to_vec())
             }
 
             fn read(
                 value: &toml::Spanned<toml::de::DeValue<'_>>,
-                key: &$crate::config::key::Key,
-                log: &mut $crate::config::log::Log<'_>,
+                key: &$crate::config::Key,
+                log: &mut $crate::config::Log<'_>,
             ) -> Option<Self> {
-                let word = $crate::config::setting::read_word(value, key, Self::WORDS, log)?;
+                let word = $crate::config::read_word(value, key, Self::WORDS, log)?;
                 Self::from_word(word)
             }
 

@@ -1,47 +1,61 @@
-//! Tables whose keys are declared once: name with the unit, default, range, meaning.
-//!
-//! The struct, its reader, its writer and the page of the book all come from one declaration made
-//! with [`settings!`].
+//! Tables and choices that are declared once: the struct or enum, its reader, its writer and its description.
 
-use super::key::{Key, names};
+use super::items::{Item, TableItem, check, keys};
+use super::key::Key;
 use super::log::Log;
 use super::section::Section;
 use super::writer::Writer;
 
-/// A part of a file whose keys are declared once.
-pub trait Settings: Sized {
-    /// Its keys, in the order they are written.
-    fn keys() -> Vec<Key>;
+/// A part of a file that is declared once.
+pub(crate) trait Settings: Sized {
+    /// Its entries, in the order they are written.
+    fn items() -> Vec<Item>;
 
-    /// Reads every key of `section`; nothing where one is wrong, with the reason in `log`.
+    /// Reads the part from the table that has its keys; reports what is wrong with their values.
     fn read(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self>;
 
-    /// Writes every key with its value.
+    /// Writes every entry with its value.
     fn write(&self, out: &mut Writer);
+
+    /// The keys of the part itself, without those of tables inside.
+    fn keys() -> Vec<Key> {
+        keys(&Self::items()).into_iter().cloned().collect()
+    }
+
+    /// Describes the part as the table `name`.
+    fn item(name: &'static str, about: &str) -> Item {
+        Item::Table(TableItem::new(name, about, Self::items()))
+    }
+
+    /// Reads the part from the table `name` of `above`.
+    fn read_in(above: &Section<'_>, name: &'static str, log: &mut Log<'_>) -> Option<Self> {
+        Self::read(&above.table(name, log), log)
+    }
+
+    /// Writes the part as the table `name`.
+    fn write_in(&self, name: &str, out: &mut Writer) {
+        out.table(name, |out| self.write(out));
+    }
+
+    /// Reads the part from `section`, and reports every key that it does not have.
+    fn read_checked(section: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        check(section, &Self::items(), log);
+        Self::read(section, log)
+    }
 }
 
-/// Reads the table `name` of `above`, which holds nothing but the keys of `S`.
-pub(crate) fn read_table<S: Settings>(
-    above: &Section<'_>,
-    name: &str,
-    log: &mut Log<'_>,
-) -> Option<S> {
-    let section = above.table(name, log);
-    let known: Vec<&str> = names(&S::keys()).collect();
-    section.check_keys(&known, log);
-    S::read(&section, log)
-}
-
-/// Declares a part of a file: a struct, and its [`Settings`].
+/// Declares parts of a file, each a struct with [`Settings`].
 ///
-/// `name: Type = default, in limits;` where the default is left out the key must be given.
+/// `key: Type = default, in limits;` declares a key, which must be given if there is no default; `[flat] part: Type;` the
+/// entries of another part in the same table; `[table] part: Type;` a table inside, called like the field or as in
+/// `[table "name"]`. After `Name [method]`, `method(&self, section, log)` checks values against each other.
 macro_rules! settings {
     ($(
         $(#[doc = $about:literal])+
-        $name:ident {
+        $name:ident $([$check:ident])? {
             $(
                 $(#[doc = $doc:literal])+
-                $field:ident : $ty:ty $(= $default:expr)? $(, in $limits:expr)? ;
+                $([$($how:tt)+])? $field:ident : $ty:ty $(= $default:expr)? $(, in $limits:expr)? ;
             )*
         }
     )+) => { $(
@@ -51,60 +65,100 @@ macro_rules! settings {
             $( $(#[doc = $doc])+ pub $field: $ty, )*
         }
 
-        impl $crate::config::settings::Settings for $name {
-            fn keys() -> Vec<$crate::config::key::Key> {
-                vec![$(
-                    $crate::config::key::Key {
-                        name: stringify!($field),
-                        doc: concat!($($doc),+).trim().into(),
-                        kind: <$ty as $crate::config::setting::Setting>::kind(),
-                        silent: $crate::config::settings::where_silent!($ty $(, $default)?),
-                        limits: $crate::config::settings::given!($($limits)?),
-                    },
-                )*]
+        impl $crate::config::Settings for $name {
+            fn items() -> Vec<$crate::config::Item> {
+                [$( $crate::config::settings::entry!(
+                    items [$($($how)+)?] $field $ty, [concat!($($doc),+)] [$($default)?] [$($limits)?]
+                ) ),*].concat()
             }
 
             fn read(
-                section: &$crate::config::section::Section<'_>,
-                log: &mut $crate::config::log::Log<'_>,
+                section: &$crate::config::Section<'_>,
+                log: &mut $crate::config::Log<'_>,
             ) -> Option<Self> {
-                let mut keys = Self::keys().into_iter();
-                $(
-                    let $field: Option<$ty> = section.setting(
-                        &keys.next()?,
-                        $crate::config::settings::given!($($default)?),
-                        log,
-                    );
-                )*
-                Some(Self { $( $field: $field?, )* })
+                $( let $field: Option<$ty> = $crate::config::settings::entry!(
+                    read section log [$($($how)+)?] $field $ty, [concat!($($doc),+)] [$($default)?] [$($limits)?]
+                ); )*
+                let read = Self { $( $field: $field?, )* };
+                $( read.$check(section, log); )?
+                Some(read)
             }
 
-            fn write(&self, out: &mut $crate::config::writer::Writer) {
-                let mut keys = Self::keys().into_iter();
-                $(
-                    if let Some(key) = keys.next() {
-                        out.setting(&key, &self.$field);
-                    }
-                )*
+            fn write(&self, out: &mut $crate::config::Writer) {
+                $( $crate::config::settings::entry!(
+                    write (&self.$field) out [$($($how)+)?] $field $ty, [concat!($($doc),+)] [$($default)?] [$($limits)?]
+                ); )*
             }
         }
     )+ };
 }
 
-/// What is taken where the file is silent.
-macro_rules! where_silent {
-    ($ty:ty) => {
-        $crate::config::key::WhereSilent::MustBeGiven
+/// Describes, reads or writes one entry of [`settings!`].
+macro_rules! entry {
+    (items [] $field:ident $ty:ty, $($rest:tt)*) => {
+        vec![$crate::config::Item::Key($crate::config::settings::key!($field $ty, $($rest)*))]
     };
-    ($ty:ty, $default:expr) => {
-        match <$ty as $crate::config::setting::Setting>::text(&$default) {
-            Some(text) => $crate::config::key::WhereSilent::Takes(text),
-            None => $crate::config::key::WhereSilent::LeftOut,
+    (items [flat] $field:ident $ty:ty, $($rest:tt)*) => {
+        <$ty as $crate::config::Settings>::items()
+    };
+    (items [table $($name:literal)?] $field:ident $ty:ty, [$doc:expr] $($rest:tt)*) => {
+        vec![<$ty as $crate::config::Settings>::item(
+            $crate::config::settings::name!($field $($name)?), $doc,
+        )]
+    };
+    (read $section:ident $log:ident [] $field:ident $ty:ty, [$doc:expr] [$($default:expr)?] [$($limits:expr)?]) => {
+        $section.setting(
+            &$crate::config::settings::key!($field $ty, [$doc] [$($default)?] [$($limits)?]),
+            $crate::config::settings::given!($($default)?),
+            $log,
+        )
+    };
+    (read $section:ident $log:ident [flat] $field:ident $ty:ty, $($rest:tt)*) => {
+        <$ty as $crate::config::Settings>::read($section, $log)
+    };
+    (read $section:ident $log:ident [table $($name:literal)?] $field:ident $ty:ty, $($rest:tt)*) => {
+        <$ty as $crate::config::Settings>::read_in(
+            $section, $crate::config::settings::name!($field $($name)?), $log,
+        )
+    };
+    (write ($value:expr) $out:ident [] $field:ident $ty:ty, $($rest:tt)*) => {
+        $crate::config::Setting::write($value, &$crate::config::settings::key!($field $ty, $($rest)*), $out)
+    };
+    (write ($value:expr) $out:ident [flat] $($rest:tt)*) => {
+        $crate::config::Settings::write($value, $out)
+    };
+    (write ($value:expr) $out:ident [table $($name:literal)?] $field:ident $($rest:tt)*) => {
+        $crate::config::Settings::write_in(
+            $value, $crate::config::settings::name!($field $($name)?), $out,
+        )
+    };
+}
+
+/// The declared [`Key`].
+macro_rules! key {
+    ($field:ident $ty:ty, [$doc:expr] [$($default:expr)?] [$($limits:expr)?]) => {
+        $crate::config::Key {
+            name: stringify!($field),
+            doc: $doc.trim().into(),
+            kind: <$ty as $crate::config::Setting>::kind(),
+            silent: $crate::config::settings::where_silent!($ty, $($default)?),
+            limits: $crate::config::settings::given!($($limits)?),
         }
     };
 }
 
-/// What a declaration gives, if it gives it.
+macro_rules! where_silent {
+    ($ty:ty,) => {
+        $crate::config::WhereSilent::MustBeGiven
+    };
+    ($ty:ty, $default:expr) => {
+        match <$ty as $crate::config::Setting>::text(&$default) {
+            Some(text) => $crate::config::WhereSilent::Takes(text),
+            None => $crate::config::WhereSilent::LeftOut,
+        }
+    };
+}
+
 macro_rules! given {
     () => {
         None
@@ -114,4 +168,126 @@ macro_rules! given {
     };
 }
 
-pub(crate) use {given, settings, where_silent};
+macro_rules! name {
+    ($field:ident) => {
+        stringify!($field)
+    };
+    ($field:ident $name:literal) => {
+        $name
+    };
+}
+
+/// Declares parts of a file that are one of several by the word of a key, each an enum with [`Settings`].
+///
+/// `key = "default word" { Variant(Part) = "word", }`, where the entries of `Part` follow in the same table; with
+/// `Variant(@table Part)` they are those of a table called like the word. A word without entries has no `Part`.
+macro_rules! variants {
+    ($(
+        $(#[doc = $about:literal])+
+        $name:ident by
+        $(#[doc = $key_doc:literal])+
+        $key:ident = $default:literal {
+            $( $(#[doc = $doc:literal])+ $variant:ident $(($(@$how:ident)? $part:ty))? = $word:literal, )+
+        }
+    )+) => { $(
+        $(#[doc = $about])+
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum $name {
+            $( $(#[doc = $doc])+ $variant $(($part))?, )+
+        }
+
+        impl $name {
+            pub(crate) fn choices() -> $crate::config::Choices {
+                $crate::config::Choices::new(
+                    stringify!($key),
+                    concat!($($key_doc),+),
+                    $default,
+                    vec![$(
+                        $crate::config::Offered {
+                            word: $word,
+                            items: $crate::config::settings::offer!(
+                                items $word [concat!($($doc),+)] $([$($how)?] $part)?
+                            ),
+                        },
+                    )+],
+                )
+            }
+
+            /// The word of a file for this choice.
+            pub fn word(&self) -> &'static str {
+                match self { $( Self::$variant { .. } => $word, )+ }
+            }
+
+            /// Reads the choice that `word` stands for.
+            pub(crate) fn read_as(
+                word: &str,
+                section: &$crate::config::Section<'_>,
+                log: &mut $crate::config::Log<'_>,
+            ) -> Option<Self> {
+                Some(match word {
+                    $( $word => Self::$variant
+                        $(($crate::config::settings::offer!(read section log [$($how)?] $word $part)?))?, )+
+                    _ => return None,
+                })
+            }
+        }
+
+        impl $crate::config::Settings for $name {
+            fn items() -> Vec<$crate::config::Item> {
+                vec![$crate::config::Item::Choice(Self::choices())]
+            }
+
+            fn read(
+                section: &$crate::config::Section<'_>,
+                log: &mut $crate::config::Log<'_>,
+            ) -> Option<Self> {
+                let word = Self::choices().read(section, log)?;
+                Self::read_as(word, section, log)
+            }
+
+            fn write(&self, out: &mut $crate::config::Writer) {
+                let by = Self::choices().by;
+                out.line(&format!("{} = {:?}", by.name, self.word()), &by.doc);
+                match self {
+                    $( Self::$variant $(($crate::config::settings::bound!(part, $part)))? => {
+                        $( $crate::config::settings::offer!(write part out [$($how)?] $word $part); )?
+                    } )+
+                }
+            }
+        }
+    )+ };
+}
+
+/// Describes, reads or writes what a word of [`variants!`] brings.
+macro_rules! offer {
+    (items $word:literal [$doc:expr]) => {
+        Vec::new()
+    };
+    (items $word:literal [$doc:expr] [] $part:ty) => {
+        <$part as $crate::config::Settings>::items()
+    };
+    (items $word:literal [$doc:expr] [table] $part:ty) => {
+        vec![<$part as $crate::config::Settings>::item($word, $doc)]
+    };
+    (read $section:ident $log:ident [] $word:literal $part:ty) => {
+        <$part as $crate::config::Settings>::read($section, $log)
+    };
+    (read $section:ident $log:ident [table] $word:literal $part:ty) => {
+        <$part as $crate::config::Settings>::read_in($section, $word, $log)
+    };
+    (write $value:ident $out:ident [] $word:literal $part:ty) => {
+        $crate::config::Settings::write($value, $out)
+    };
+    (write $value:ident $out:ident [table] $word:literal $part:ty) => {
+        $crate::config::Settings::write_in($value, $word, $out)
+    };
+}
+
+/// A name for what a variant holds, if it holds something.
+macro_rules! bound {
+    ($name:ident, $part:ty) => {
+        $name
+    };
+}
+
+pub(crate) use {bound, entry, given, key, name, offer, settings, variants, where_silent};

@@ -1,47 +1,50 @@
-//! A file, written key by key.
-
-use super::key::Key;
-use super::setting::Setting;
+//! Files written key by key, with the meaning of each key as a comment.
 
 /// A file being written.
 #[derive(Default)]
-pub struct Writer {
+pub(crate) struct Writer {
     text: String,
+    path: Vec<String>,
+    /// Waveforms are written by their names rather than by their points.
+    pub(crate) names_waveforms: bool,
 }
 
-/// Column at which comments start, where the value is short enough.
+/// Column at which comments start, if the value is short enough.
 const COMMENT_COLUMN: usize = 40;
 
 impl Writer {
-    /// Starts a table.
-    pub(crate) fn table(&mut self, path: &str) {
-        self.text.push_str(&format!("\n[{path}]\n"));
+    /// Returns a writer of waveforms by their names or by their points.
+    pub(crate) fn new(names_waveforms: bool) -> Self {
+        Self {
+            names_waveforms,
+            ..Self::default()
+        }
     }
 
-    /// Starts the next table of a list.
-    pub(crate) fn table_of_list(&mut self, path: &str) {
-        self.text.push_str(&format!("\n[[{path}]]\n"));
+    /// Writes the table `name` inside the one being written.
+    pub(crate) fn table(&mut self, name: &str, write: impl FnOnce(&mut Self)) {
+        self.headed(name, ["[", "]"], write);
     }
 
-    /// Writes a remark on a line of its own.
+    /// Writes the next table of the list `name`.
+    pub(crate) fn table_of_list(&mut self, name: &str, write: impl FnOnce(&mut Self)) {
+        self.headed(name, ["[[", "]]"], write);
+    }
+
+    fn headed(&mut self, name: &str, [open, close]: [&str; 2], write: impl FnOnce(&mut Self)) {
+        self.path.push(name.to_owned());
+        let path = self.path.join(".");
+        self.text.push_str(&format!("\n{open}{path}{close}\n"));
+        write(self);
+        self.path.pop();
+    }
+
+    /// Writes a comment on a line of its own.
     pub(crate) fn comment(&mut self, text: &str) {
         self.text.push_str(&format!("# {text}\n"));
     }
 
-    /// Writes a key with its value and what it means; a value that is left out only as a remark.
-    pub(crate) fn setting<T: Setting>(&mut self, key: &Key, value: &T) {
-        match value.text() {
-            Some(text) => self.line(&format!("{} = {text}", key.name), &key.doc),
-            None => self.line(&format!("# {} =", key.name), &key.doc),
-        }
-    }
-
-    /// Writes the word that chooses which other keys a table has.
-    pub(crate) fn word(&mut self, key: &Key, word: &str) {
-        self.line(&format!("{} = {word:?}", key.name), &key.doc);
-    }
-
-    /// Writes an assignment, and what it means behind it.
+    /// Writes an assignment followed by its meaning.
     pub(crate) fn line(&mut self, assignment: &str, doc: &str) {
         let doc = doc.trim();
         let line = format!("{assignment:<COMMENT_COLUMN$} # {doc}\n");
@@ -62,7 +65,6 @@ impl Writer {
         self.text.push_str("]\n");
     }
 
-    /// All that was written.
     pub(crate) fn into_text(self) -> String {
         self.text
     }

@@ -1,13 +1,13 @@
 //! Measured masses: a CSV file of specimens and soak controls, as ISO 14243-2 weighs them.
 
-use super::reason::{MeasuredReason, not_growing, repeated};
+use super::reason::{MeasuredReason, growing, misnamed_first, outside, repeated, unless};
 use crate::config::{
-    Cell, ColumnReason, Columns, DataFile, Log, Names, Placed, Section, Settings, choice, names,
-    settings, within,
+    ColumnReason, Columns, DataFile, Log, Names, Placed, Section, Settings, choice, settings,
+    within,
 };
 
 choice! {
-    /// What a confidence interval of a wear rate counts as independent.
+    /// The independent observations of a confidence interval of a wear rate.
     IntervalWord {
         /// Every weighing: that of one line through all of them.
         Weighings = "weighings",
@@ -17,7 +17,7 @@ choice! {
 }
 
 settings! {
-    /// Measured masses, and how a wear rate is found from them.
+    /// Measured masses and the determination of a wear rate from them.
     GravimetricKeys {
         /// CSV file; `cycles`, then the mass of each specimen and soak control, each name ending in _mg.
         file: DataFile;
@@ -25,20 +25,20 @@ settings! {
         soak_controls: Option<Names> = None;
         /// Confidence of the intervals.
         confidence_percent: f64 = 95.0, in within(50.0, 99.99);
-        /// Weighings before this many cycles stay out of the line: running in.
+        /// Weighings before this many cycles are left out of the line, as running-in.
         fit_from_cycles: f64 = 0.0, in within(0.0, 1e10);
-        /// What the interval that calibration uses counts as independent.
+        /// The independent observations of the interval that calibration uses.
         interval: IntervalWord = IntervalWord::Weighings;
     }
 }
 
 const EXAMPLE: &str = "cycles,specimen_1_mg,soak_1_mg";
-/// What a column's name begins with where the file does not name its soak controls.
+/// Beginning of the names of soak controls, unless the file gives them.
 const SOAK: &str = "soak";
-/// A line with an interval needs one weighing more than it has numbers.
+/// A line with an interval needs one weighing more than it has parameters.
 const MIN_WEIGHINGS: usize = 3;
 
-/// Measured masses, and how a wear rate is found from them.
+/// Measured masses and the determination of a wear rate from them.
 #[derive(Clone, Debug)]
 pub struct Gravimetric {
     /// The keys of the table.
@@ -60,21 +60,41 @@ pub struct Specimen {
     pub masses_mg: Vec<f64>,
 }
 
-/// Reads `[gravimetric]` and its CSV file.
-pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Gravimetric> {
-    let section = root.table("gravimetric", log);
-    let known: Vec<&str> = names(&GravimetricKeys::keys()).collect();
-    section.check_keys(&known, log);
-    let keys = GravimetricKeys::read(&section, log)?;
-    let source = keys.file.source(&section, "file", log)?;
-    let split = Columns::split(source.inner(), &keys.file.name(), EXAMPLE);
-    let columns = log.noted(&source, split.map_err(|placed| vec![placed]))?;
-    let soaks = soak_columns(&columns, &keys, &section, log)?;
-    let weighed = log.noted(&source, weighed(&columns, &soaks))?;
-    checked(weighed, keys, &section, log)
+impl Gravimetric {
+    /// Reads `[gravimetric]` and its CSV file.
+    pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
+        let section = root.table("gravimetric", log);
+        let keys = GravimetricKeys::read_checked(&section, log)?;
+        let source = keys.file.source(&section, "file", log)?;
+        let split = Columns::split(source.inner(), &keys.file.name(), EXAMPLE);
+        let columns = log.noted(&source, split.map_err(|placed| vec![placed]))?;
+        let controls = soak_columns(&columns, &keys, &section, log)?;
+        let (cycles, all) = log.noted(&source, weighed(&columns))?;
+        let is_counted = |cycles: &&f64| **cycles >= keys.fit_from_cycles;
+        let rows = cycles.iter().skip(1).filter(is_counted).count();
+        if rows < MIN_WEIGHINGS {
+            let reason = MeasuredReason::TooFewWeighings { rows };
+            log.problem(section.value_span("file"), reason);
+            return None;
+        }
+        let (mut specimens, mut soaks) = (Vec::new(), Vec::new());
+        for (index, specimen) in (1..).zip(all) {
+            if controls.contains(&index) {
+                soaks.push(specimen);
+            } else {
+                specimens.push(specimen);
+            }
+        }
+        Some(Self {
+            keys,
+            cycles,
+            specimens,
+            soaks,
+        })
+    }
 }
 
-/// Which columns are soak controls.
+/// Returns the indices of the columns of soak controls; at least one other column must remain.
 fn soak_columns(
     columns: &Columns<'_>,
     keys: &GravimetricKeys,
@@ -82,91 +102,55 @@ fn soak_columns(
     log: &mut Log<'_>,
 ) -> Option<Vec<usize>> {
     let names = columns.names();
-    let soaks = match &keys.soak_controls {
-        Some(soaks) => {
-            let place = |name: &String| place_of(name, &names, keys);
-            let places: Result<Vec<_>, _> = soaks.0.iter().map(place).collect();
-            let report = |reason| log.problem(section.value_span("soak_controls"), reason);
-            places.map_err(report).ok()?
-        }
+    let mut soaks: Vec<usize> = Vec::new();
+    match &keys.soak_controls {
         None => {
             let is_soak = |index: &usize| names[*index].to_lowercase().starts_with(SOAK);
-            (1..names.len()).filter(is_soak).collect()
+            soaks.extend((1..names.len()).filter(is_soak));
         }
-    };
-    if soaks.len() + 1 < names.len() {
-        return Some(soaks);
+        Some(controls) => {
+            for name in &controls.0 {
+                let Some(index) = (1..names.len()).find(|&index| names[index] == name) else {
+                    let reason = ColumnReason::NoColumn {
+                        column: name.clone(),
+                        file: keys.file.name(),
+                        columns: names[1..].iter().map(|&name| name.to_owned()).collect(),
+                    };
+                    log.problem(section.value_span("soak_controls"), reason);
+                    return None;
+                };
+                soaks.push(index);
+            }
+        }
     }
-    let file = keys.file.name();
-    let reason = MeasuredReason::NoSpecimen { file };
-    log.problem(section.value_span("soak_controls"), reason);
-    None
+    if soaks.len() + 1 >= names.len() {
+        let file = keys.file.name();
+        let reason = MeasuredReason::NoSpecimen { file };
+        log.problem(section.value_span("soak_controls"), reason);
+        return None;
+    }
+    Some(soaks)
 }
 
-/// Which column is called `name`; the first is none of the specimens.
-fn place_of(name: &str, names: &[&str], keys: &GravimetricKeys) -> Result<usize, ColumnReason> {
-    let found = (1..names.len()).find(|&index| names[index] == name);
-    found.ok_or_else(|| ColumnReason::NoColumn {
-        column: name.to_owned(),
-        file: keys.file.name(),
-        columns: names[1..].iter().map(|&name| name.to_owned()).collect(),
-    })
-}
-
-/// Cycles, specimens and soak controls.
-type Weighed = (Vec<f64>, Vec<Specimen>, Vec<Specimen>);
-
-fn weighed(columns: &Columns<'_>, soaks: &[usize]) -> Result<Weighed, Vec<Placed>> {
+/// Reads the cycles, and the masses of every other column.
+fn weighed(columns: &Columns<'_>) -> Result<(Vec<f64>, Vec<Specimen>), Vec<Placed>> {
     let mut problems = repeated(columns);
-    let cycles = cycles(columns).map_err(|found| problems.extend(found));
-    let (mut worn, mut soaked) = (Vec::new(), Vec::new());
+    let cycles = match misnamed_first(columns, "cycles") {
+        Some(problem) => Err(vec![problem]),
+        None => growing(columns, within(0.0, f64::INFINITY), "0 or more"),
+    };
+    let cycles = cycles.unwrap_or_else(|found| {
+        problems.extend(found);
+        Vec::new()
+    });
+    let mut all = Vec::new();
     for index in 1..columns.names().len() {
-        let kind = if soaks.contains(&index) {
-            &mut soaked
-        } else {
-            &mut worn
-        };
         match specimen(columns, index) {
-            Ok(specimen) => kind.push(specimen),
+            Ok(specimen) => all.push(specimen),
             Err(found) => problems.extend(found),
         }
     }
-    match cycles {
-        Ok(cycles) if problems.is_empty() => Ok((cycles, worn, soaked)),
-        Ok(_) | Err(()) => Err(problems),
-    }
-}
-
-fn cycles(columns: &Columns<'_>) -> Result<Vec<f64>, Vec<Placed>> {
-    let found = columns.names()[0];
-    if found != "cycles" {
-        let (wanted, found) = ("cycles", found.to_owned());
-        let reason = MeasuredReason::FirstColumn { wanted, found };
-        return Err(vec![Placed::new(columns.name_span(0), reason)]);
-    }
-    let cells = columns.numbers(0)?;
-    let mut problems = not_growing("cycles", &cells);
-    problems.extend(outside("cycles", &cells, 0.0, "0 or more"));
-    if problems.is_empty() {
-        Ok(cells.iter().map(|cell| cell.value).collect())
-    } else {
-        Err(problems)
-    }
-}
-
-/// Every number below `least`.
-fn outside(column: &str, cells: &[Cell], least: f64, range: &'static str) -> Vec<Placed> {
-    let limits = within(least, f64::INFINITY);
-    let wrong = cells.iter().filter(|cell| !limits.allow(cell.value));
-    let problem = |cell: &Cell| {
-        let reason = MeasuredReason::OutOfRange {
-            column: column.to_owned(),
-            value: cell.value,
-            range,
-        };
-        Placed::new(cell.span.clone(), reason)
-    };
-    wrong.map(problem).collect()
+    unless(problems, (cycles, all))
 }
 
 fn specimen(columns: &Columns<'_>, index: usize) -> Result<Specimen, Vec<Placed>> {
@@ -177,34 +161,11 @@ fn specimen(columns: &Columns<'_>, index: usize) -> Result<Specimen, Vec<Placed>
         return Err(vec![Placed::new(columns.name_span(index), reason)]);
     };
     let cells = columns.numbers(index)?;
-    let problems = outside(column, &cells, 1.0, "a mass of 1 mg or more");
-    if !problems.is_empty() {
-        return Err(problems);
-    }
-    Ok(Specimen {
+    let limits = within(1.0, f64::INFINITY);
+    let specimen = Specimen {
         name: name.to_owned(),
         masses_mg: cells.iter().map(|cell| cell.value).collect(),
-    })
-}
-
-/// The weighings, if enough of them are left for a line.
-fn checked(
-    (cycles, specimens, soaks): Weighed,
-    keys: GravimetricKeys,
-    section: &Section<'_>,
-    log: &mut Log<'_>,
-) -> Option<Gravimetric> {
-    let counts = |cycles: &&f64| **cycles >= keys.fit_from_cycles;
-    let rows = cycles.iter().skip(1).filter(counts).count();
-    if rows < MIN_WEIGHINGS {
-        let reason = MeasuredReason::TooFewWeighings { rows };
-        log.problem(section.value_span("file"), reason);
-        return None;
-    }
-    Some(Gravimetric {
-        keys,
-        cycles,
-        specimens,
-        soaks,
-    })
+    };
+    let problems = outside(column, &cells, limits, "a mass of 1 mg or more");
+    unless(problems, specimen)
 }

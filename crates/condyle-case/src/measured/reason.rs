@@ -1,18 +1,18 @@
-//! Reasons why measured data cannot be used, and what is checked of the columns of any of them.
+//! Problems of measured data, and checks of columns that all of them share.
 
 use std::ops::Range;
 
 use thiserror::Error;
 
-use crate::config::{Cell, Columns, Placed, Reason};
+use crate::config::{Cell, Columns, Limits, Placed, Reason};
 
-/// Why measured data cannot be used.
+/// Measured data that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MeasuredReason {
     /// A file that names no data.
     #[error("the file names no measured data")]
     Nothing,
-    /// A column that a run has no like of.
+    /// A column that no run has.
     #[error("a run has no column `{column}` to compare with")]
     UnknownColumn {
         /// Its name in the file.
@@ -22,21 +22,21 @@ pub enum MeasuredReason {
         /// Every column there is.
         columns: String,
     },
-    /// A column that stands twice in its file.
-    #[error("the column `{column}` stands twice in its file")]
+    /// A column that is in its file twice.
+    #[error("the column `{column}` is in its file twice")]
     RepeatedColumn {
         /// Its name.
         column: String,
     },
-    /// A file without anything to compare.
-    #[error("{file} has no column beside `{first}`")]
+    /// A file with nothing to compare.
+    #[error("{file} has no column next to `{first}`")]
     NoData {
         /// The file.
         file: String,
         /// Its first column.
         first: String,
     },
-    /// A first column that is not what it must be.
+    /// A wrong first column.
     #[error("the first column must be `{wanted}`, this one is `{found}`")]
     FirstColumn {
         /// What it must be called.
@@ -44,13 +44,13 @@ pub enum MeasuredReason {
         /// As written.
         found: String,
     },
-    /// A column of masses whose name does not say the unit.
-    #[error("`{column}` does not say that it is a mass in mg")]
+    /// A column of masses without the unit in its name.
+    #[error("the name `{column}` does not end in the unit of a mass, _mg")]
     NoMass {
         /// Its name.
         column: String,
     },
-    /// Numbers that must grow from row to row.
+    /// Numbers that do not grow from row to row.
     #[error("`{column}` is {value}, after {before} in the row above: it must grow")]
     NotGrowing {
         /// The column.
@@ -60,7 +60,7 @@ pub enum MeasuredReason {
         /// The one before it.
         before: f64,
     },
-    /// A number outside what it can be.
+    /// A number outside its range.
     #[error("`{column}` is {value}: it must be {range}")]
     OutOfRange {
         /// The column.
@@ -154,7 +154,16 @@ impl Reason for MeasuredReason {
     }
 }
 
-/// Every column whose name stands before it already.
+/// Returns `value`, or the problems if there are any.
+pub(super) fn unless<T>(problems: Vec<Placed>, value: T) -> Result<T, Vec<Placed>> {
+    if problems.is_empty() {
+        Ok(value)
+    } else {
+        Err(problems)
+    }
+}
+
+/// Returns a problem for every column whose name is repeated.
 pub(super) fn repeated(columns: &Columns<'_>) -> Vec<Placed> {
     let names = columns.names();
     let again = |index: &usize| names[..*index].contains(&names[*index]);
@@ -166,8 +175,20 @@ pub(super) fn repeated(columns: &Columns<'_>) -> Vec<Placed> {
     (0..names.len()).filter(again).map(problem).collect()
 }
 
-/// Every number that is not larger than the one above.
-pub(super) fn not_growing(column: &str, cells: &[Cell]) -> Vec<Placed> {
+/// Returns a problem if the first column is not called `wanted`.
+pub(super) fn misnamed_first(columns: &Columns<'_>, wanted: &'static str) -> Option<Placed> {
+    let found = columns.names()[0].to_owned();
+    let span = columns.name_span(0);
+    (found != wanted).then(|| Placed::new(span, MeasuredReason::FirstColumn { wanted, found }))
+}
+
+/// Reads the first column, whose numbers grow within `limits`, `range` in words.
+pub(super) fn growing(
+    columns: &Columns<'_>,
+    limits: Limits,
+    range: &'static str,
+) -> Result<Vec<f64>, Vec<Placed>> {
+    let (column, cells) = (columns.names()[0], columns.numbers(0)?);
     let falls = |pair: &&[Cell]| pair[1].value <= pair[0].value;
     let problem = |pair: &[Cell]| {
         let reason = MeasuredReason::NotGrowing {
@@ -177,10 +198,31 @@ pub(super) fn not_growing(column: &str, cells: &[Cell]) -> Vec<Placed> {
         };
         Placed::new(pair[1].span.clone(), reason)
     };
-    cells.windows(2).filter(falls).map(problem).collect()
+    let mut problems: Vec<Placed> = cells.windows(2).filter(falls).map(problem).collect();
+    problems.extend(outside(column, &cells, limits, range));
+    unless(problems, cells.iter().map(|cell| cell.value).collect())
 }
 
-/// A column with too few numbers.
+/// Returns a problem for every number outside `limits`, `range` in words.
+pub(super) fn outside(
+    column: &str,
+    cells: &[Cell],
+    limits: Limits,
+    range: &'static str,
+) -> Vec<Placed> {
+    let wrong = cells.iter().filter(|cell| !limits.allow(cell.value));
+    let problem = |cell: &Cell| {
+        let reason = MeasuredReason::OutOfRange {
+            column: column.to_owned(),
+            value: cell.value,
+            range,
+        };
+        Placed::new(cell.span.clone(), reason)
+    };
+    wrong.map(problem).collect()
+}
+
+/// Returns the problem of a column with too few numbers.
 pub(super) fn too_few(column: &str, found: usize, needed: usize, span: Range<usize>) -> Placed {
     let column = column.to_owned();
     let reason = MeasuredReason::TooFew {

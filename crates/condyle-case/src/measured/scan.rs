@@ -1,22 +1,21 @@
 //! A scan of a worn insert: a surface, or points as CSV.
 
-use condyle::geometry::TriangleMesh;
-use condyle::{Mat3, Vec3};
+use condyle::Vec3;
 
 use super::reason::{MeasuredReason, too_few};
 use crate::case::{Axes, LengthUnit, Side, check_axes};
 use crate::config::{
     Cell, ColumnReason, Columns, DataFile, KeyReason, Log, Placed, Section, Settings, choice,
-    names, settings, within,
+    settings, within,
 };
 use condyle_mesh::formats::read_surface;
 
 choice! {
-    /// Which part of a scan is laid onto the prediction.
+    /// Part of a scan that is registered to the prediction.
     FitWord {
-        /// Where the prediction is not worn.
+        /// The places that are unworn in the prediction.
         Unworn = "unworn",
-        /// Everywhere.
+        /// All of it.
         All = "all",
         /// Within `fit_x_mm` and `fit_z_mm`.
         Region = "region",
@@ -24,17 +23,17 @@ choice! {
 }
 
 settings! {
-    /// A scan of a worn insert, and how it is laid onto the prediction.
+    /// A scan of a worn insert and its registration to the prediction.
     ScanKeys {
         /// STL, PLY, OBJ or VTP surface, or points as CSV with the columns x_mm,y_mm,z_mm.
         file: DataFile;
-        /// Unit of length of a surface file; a CSV says its own.
+        /// Unit of length of a surface file; a CSV has it in its header.
         length_unit: LengthUnit = LengthUnit::Millimetre;
-        /// Where x, y and z of the file point.
+        /// Directions of x, y and z of the file.
         axes: Axes = Axes::ISB;
         /// Added to every point, in the frame of the results, before the registration starts.
         start_mm: [f64; 3] = [0.0; 3], in within(-1000.0, 1000.0);
-        /// Which part is laid onto the prediction.
+        /// Part that is registered to the prediction.
         fit: FitWord = FitWord::Unworn;
         /// Predicted depth up to which a place counts as unworn.
         unworn_depth_mm: f64 = 0.005, in within(0.0, 10.0);
@@ -62,73 +61,59 @@ pub struct Scan {
     pub normals: Option<Vec<Vec3>>,
 }
 
-/// Reads `[surface]` and its file for a `side` knee.
-pub(super) fn read(root: &Section<'_>, side: Side, log: &mut Log<'_>) -> Option<Scan> {
-    let section = root.table("surface", log);
-    let known: Vec<&str> = names(&ScanKeys::keys()).collect();
-    section.check_keys(&known, log);
-    let keys = ScanKeys::read(&section, log)?;
-    check_axes(&keys.axes, side, section.value_span("axes"), log);
-    check_region(&keys, &section, log);
-    // Reported by the check already.
-    let rotation = keys.axes.rotation(side).ok()?;
-    let is_csv = keys
-        .file
-        .path()
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-    let scan = if is_csv {
-        points(&keys, &section, log)?
-    } else {
-        surface(&keys, &section, log)?
-    };
-    let scan = placed(scan, &rotation, Vec3::from(keys.start_mm));
-    Some(Scan {
-        keys,
-        points: scan.0,
-        normals: scan.1,
-    })
-}
-
-/// Points and their normals.
-type Raw = (Vec<Vec3>, Option<Vec<Vec3>>);
-
-fn placed((points, normals): Raw, rotation: &Mat3, start: Vec3) -> Raw {
-    let points = points.iter().map(|point| rotation * point + start);
-    let normals = normals.map(|all| all.iter().map(|normal| rotation * normal).collect());
-    (points.collect(), normals)
-}
-
-fn surface(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) -> Option<Raw> {
-    match read_surface(keys.file.files(), keys.file.path()) {
-        Ok(mesh) => Some(vertices(&mesh, keys.length_unit.in_mm())),
-        Err(error) => {
-            let reason = MeasuredReason::Scan(error.to_string());
-            log.problem(section.value_span("file"), reason);
-            None
-        }
+impl Scan {
+    /// Reads `[surface]` and its file for a `side` knee.
+    pub(super) fn read(root: &Section<'_>, side: Side, log: &mut Log<'_>) -> Option<Self> {
+        let section = root.table("surface", log);
+        let keys = ScanKeys::read_checked(&section, log)?;
+        check_axes(&keys.axes, side, section.value_span("axes"), log);
+        check_region(&keys, &section, log);
+        // Left-handed axes are reported by the check above.
+        let rotation = keys.axes.rotation(side).ok()?;
+        let ending = keys.file.path().extension();
+        let is_csv = ending.is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+        let (points, normals) = if is_csv {
+            let source = keys.file.source(&section, "file", log)?;
+            let points = log.noted(&source, rows(source.inner(), &keys.file.name()))?;
+            (points, None)
+        } else {
+            surface(&keys, &section, log)?
+        };
+        let start_mm = Vec3::from(keys.start_mm);
+        let turned = |all: Vec<Vec3>| all.iter().map(|normal| rotation * normal).collect();
+        Some(Self {
+            keys,
+            points: points
+                .iter()
+                .map(|point| rotation * point + start_mm)
+                .collect(),
+            normals: normals.map(turned),
+        })
     }
 }
 
-fn vertices(mesh: &TriangleMesh, in_mm: f64) -> Raw {
-    let normals = mesh.vertex_normals();
-    (
-        mesh.vertices.iter().map(|vertex| vertex * in_mm).collect(),
-        Some(normals),
-    )
-}
-
-fn points(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) -> Option<Raw> {
-    let source = keys.file.source(section, "file", log)?;
-    let points = log.noted(&source, rows(source.inner(), &keys.file.name()))?;
-    Some((points, None))
+/// Reads the vertices of a surface, mm, and their normals.
+fn surface(
+    keys: &ScanKeys,
+    section: &Section<'_>,
+    log: &mut Log<'_>,
+) -> Option<(Vec<Vec3>, Option<Vec<Vec3>>)> {
+    let in_mm = keys.length_unit.in_mm();
+    let mesh = read_surface(keys.file.files(), keys.file.path());
+    let mesh = mesh.map_err(|error| {
+        let reason = MeasuredReason::Scan(error.to_string());
+        log.problem(section.value_span("file"), reason);
+    });
+    let mesh = mesh.ok()?;
+    let vertices = mesh.vertices.iter().map(|vertex| vertex * in_mm);
+    Some((vertices.collect(), Some(mesh.vertex_normals())))
 }
 
 fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
     let columns =
         Columns::split(text, file, &COORDINATES.join(",")).map_err(|placed| vec![placed])?;
     let names = columns.names();
-    let mut found = Vec::new();
+    let mut found: Vec<Vec<Cell>> = Vec::new();
     for name in COORDINATES {
         let Some(index) = names.iter().position(|column| *column == name) else {
             let reason = ColumnReason::NoColumn {
@@ -140,23 +125,13 @@ fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
         };
         found.push(columns.numbers(index)?);
     }
-    let value = |column: &Vec<Cell>, row: usize| column[row].value;
-    let point = |row| {
-        Vec3::new(
-            value(&found[0], row),
-            value(&found[1], row),
-            value(&found[2], row),
-        )
-    };
-    match found[0].len() {
-        few if few < MIN_POINTS => Err(vec![too_few(
-            COORDINATES[0],
-            few,
-            MIN_POINTS,
-            columns.name_span(0),
-        )]),
-        all => Ok((0..all).map(point).collect()),
+    let count = found[0].len();
+    if count < MIN_POINTS {
+        let span = columns.name_span(0);
+        return Err(vec![too_few(COORDINATES[0], count, MIN_POINTS, span)]);
     }
+    let point = |row: usize| Vec3::from_fn(|axis, _| found[axis][row].value);
+    Ok((0..count).map(point).collect())
 }
 
 fn check_region(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) {
@@ -169,13 +144,7 @@ fn check_region(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) {
         }
         if keys.fit != FitWord::Region {
             let (key, needs) = (key.to_owned(), "`fit = \"region\"`".to_owned());
-            log.problem(
-                section.key_span(&key),
-                KeyReason::Idle {
-                    key: key.clone(),
-                    needs,
-                },
-            );
+            log.problem(section.key_span(&key), KeyReason::Idle { key, needs });
         }
     }
     let none = ranges.iter().all(|(_, range)| range.is_none());

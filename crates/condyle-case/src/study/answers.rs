@@ -2,7 +2,7 @@
 
 use super::declared::{AnswersKeys, BoundKeys};
 use super::reason::StudyReason;
-use crate::config::{Log, Section, Settings, likeliest, names, read_table};
+use crate::config::{Log, Section, Settings, likeliest, names};
 use condyle_results::catalogue::{self, Scalar};
 
 /// What is asked of a study.
@@ -34,7 +34,7 @@ impl Answers {
     pub(super) fn read(root: &Section<'_>, log: &mut Log<'_>) -> Option<Self> {
         let bounds = root.list("limit", log);
         let bounds = bounds.map(|all| all.iter().map(|one| Bound::read(one, log)).collect());
-        let keys: AnswersKeys = read_table(root, "answers", log)?;
+        let keys = AnswersKeys::read_checked(&root.table("answers", log), log)?;
         let section = root.table("answers", log);
         let mut output = |key: &str, name: &String| output(name, key, &section, log);
         let outputs: Option<Vec<_>> = keys

@@ -5,7 +5,7 @@ use std::io;
 use super::contents::Study;
 use super::declared::Design;
 use crate::case::Assignment;
-use crate::config::{Settings, Variants, Writer};
+use crate::config::{Settings, Writer};
 
 impl Study {
     /// Hash of the case, its meshes, what varies and how tests are chosen, in hexadecimal.

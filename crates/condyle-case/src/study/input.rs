@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::declared::{InputKeys, Variation};
 use super::reason::StudyReason;
 use crate::case::Case;
-use crate::config::{Level, Log, Section, Settings, Variants};
+use crate::config::{Level, Log, Section, Settings, check};
 
 /// So many standard deviations from its mean, a normal input must still be allowed: of a million values 63 lie beyond.
 const NORMAL_REACH: f64 = 4.0;
@@ -133,7 +133,12 @@ fn variation(section: &Section<'_>, log: &mut Log<'_>) -> Option<Variation> {
         section.check_keys(&["key", "name", "levels"], log);
         return Variation::read_as("levels", section, log);
     }
-    Variation::read(section, &InputKeys::keys(), log)
+    check(
+        section,
+        &[InputKeys::items(), Variation::items()].concat(),
+        log,
+    );
+    Variation::read(section, log)
 }
 
 /// With the value of the case where the file gives no mean.

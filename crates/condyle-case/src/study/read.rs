@@ -14,7 +14,7 @@ use super::reason::StudyReason;
 use super::rows::{Rows, read_rows};
 use super::tried::Trial;
 use crate::case::{Case, CaseReader};
-use crate::config::{Base, Log, Problems, Section, Settings, Variants, read_document, read_source};
+use crate::config::{Base, Log, Problems, Section, Settings, read_document, read_source};
 use condyle_mesh::files::{Disk, Files};
 
 /// Values that are tried on the case before the first test, at most: a thousand files of rows would take a while, and what the
@@ -67,7 +67,7 @@ fn read_study(
     root.check_keys(TABLES, log);
     let heading = HeadingKeys::read(root, log);
     let section = root.table("design", log);
-    let design = Design::read(&section, &[], log);
+    let design = Design::read_checked(&section, log);
     let answers = Answers::read(root, log);
     let (heading, design) = (heading?, design?);
     let case_path = heading.case.path().to_path_buf();

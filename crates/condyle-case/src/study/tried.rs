@@ -19,7 +19,7 @@ pub(super) fn assignment(folder: &Path, key: &str, level: &Level) -> Assignment 
         Level::Word(word) if is_file => folder.join(word).display().to_string(),
         Level::Word(word) => word.clone(),
     };
-    Assignment::of(key, value)
+    Assignment::new(key, value)
 }
 
 /// A case, and the study's folder.

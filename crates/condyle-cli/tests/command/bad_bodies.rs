@@ -321,7 +321,9 @@ fn a_part_of_a_deformable_insert_that_nothing_holds() {
 #[test]
 fn a_load_that_presses_a_yielding_insert_flat_is_physics() {
     let soft = "yield_stress_mpa = 0.5\nhardening = [[0.0, 0.5]]\n";
-    let contact = format!("[contact]\nmodel = \"deformable\"\nplasticity = \"j2\"\n{soft}");
+    let contact = format!(
+        "[contact]\nmodel = \"deformable\"\n[contact.deformable]\nplasticity = \"j2\"\n{soft}"
+    );
     let bench = Bench::with_case(&format!("{contact}{SMALL}"));
     let said = bench.say(&["run", "case.toml", "--out", "out"]);
     let words = [

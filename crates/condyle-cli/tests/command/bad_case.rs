@@ -64,7 +64,7 @@ fn updates_that_do_not_go_together() {
         "case.toml:2:10",
         &words,
     );
-    let words = ["`updates` belongs to update = \"fixed\"", "remove the key"];
+    let words = ["`updates` belongs to update = \"fixed\"", "remove it"];
     let text = "[march]\nupdate = \"auto\"\nupdates = 5\n";
     assert_refused(text, "case.toml:3:1", &words);
     let words = ["belongs to update = \"auto\"", "write `update = \"auto\"`"];
@@ -155,7 +155,7 @@ fn control_characters_are_shown_as_escapes() {
     let said = |text: &str| Bench::with_case(text).say(&["check", "case.toml"]);
     let key = said("[contact]\n\"\\u001b[31mfriction\" = 0.07\n");
     key.assert_refused(2, &["`\\u{1b}[31mfriction`"]);
-    let value = said("[contact]\nlaw = \"\\u0007linear\"\n");
+    let value = said("[contact.foundation]\nlaw = \"\\u0007linear\"\n");
     value.assert_refused(2, &["\\u{7}linear"]);
     let bench = Bench::with_case("");
     let name = bench.say(&["check", "no\u{1b}[31m.toml"]);

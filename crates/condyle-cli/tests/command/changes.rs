@@ -8,14 +8,19 @@ use crate::bench::{Bench, SMALL, assert_same_bytes};
 #[test]
 fn a_changed_case_runs_as_if_it_were_written_so() {
     let bench = Bench::with_case(SMALL);
-    let changed = ["--set", "updates=2", "--set", "contact.law = logarithmic"];
+    let changed = [
+        "--set",
+        "updates=2",
+        "--set",
+        "contact.foundation.law = logarithmic",
+    ];
     let said = bench.say(&[&["run", "case.toml", "-o", "set"][..], &changed].concat());
     assert_eq!(said.code, Some(0), "{}", said.err);
     assert_eq!(bench.summary("set")[&catalogue::UPDATES], 2.0);
     let written = SMALL.replace("updates = 3", "updates = 2");
     bench.write(
         "case.toml",
-        &format!("{written}[contact]\nlaw = \"logarithmic\"\n"),
+        &format!("{written}[contact.foundation]\nlaw = \"logarithmic\"\n"),
     );
     bench.run_into("written");
     assert_same_bytes(&bench.path("set"), &bench.path("written"));
@@ -41,7 +46,7 @@ fn another_law_takes_the_place_of_the_files_with_all_its_constants() {
     let law = ["--set", "wear.law=kang"];
     let said = bench.say(&[&["run", "case.toml", "-o", "set"][..], &law].concat());
     assert_eq!(said.code, Some(0), "{}", said.err);
-    let told = "wear_factor_mm3_per_nm = 3e-7: left out, since the law \"kang\" that is set has no such constant";
+    let told = "wear_factor_mm3_per_nm = 3e-7: left out, since it does not go with wear.law = \"kang\", which is set";
     assert!(said.err.contains(told), "{}", said.err);
     bench.write("case.toml", &format!("{SMALL}[wear]\nlaw = \"kang\"\n"));
     let said = bench.run_into("written");

@@ -191,7 +191,10 @@ fn a_key_that_is_none_is_refused() {
         "write `femur.spacing_mm` or `insert.spacing_mm`",
     ];
     assert_refused("spacing_mm=40,41", &words);
-    assert_refused("contact.law=1,2", &["`law` must be", "this is an integer"]);
+    assert_refused(
+        "contact.foundation.law=1,2",
+        &["`law` must be", "this is an integer"],
+    );
 }
 
 #[test]

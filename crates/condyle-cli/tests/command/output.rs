@@ -19,7 +19,6 @@ const COMMANDS: &[&[&str]] = &[
     &["run", "case.toml", "--out", "json", "--json"],
     &["report", "table", "--pictures"],
     &["new", "new.toml"],
-    &["export", "case.toml", "--out", "case.inp"],
 ];
 
 /// The command with a standard output on a full disk.

@@ -101,7 +101,7 @@ fn pressure_that_polyethylene_cannot_bear_is_told_apart() {
 fn an_insert_that_rocks_on_its_tray_is_told() {
     for (modulus_mpa, rocks) in [(463.0, false), (100.0, true)] {
         let bench = Bench::with_case(&format!(
-            "[material]\nyoungs_modulus_mpa = {modulus_mpa}\n[contact]\nmodel = \"deformable\"\nbackside = \"resting\"\n\
+            "[material]\nyoungs_modulus_mpa = {modulus_mpa}\n[contact]\nmodel = \"deformable\"\n[contact.deformable]\nbackside = \"resting\"\n\
              {SMALL}[accuracy]\nestimate = false\n"
         ));
         bench.run_into("out");

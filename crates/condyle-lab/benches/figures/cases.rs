@@ -6,7 +6,7 @@ use std::{
 };
 
 use condyle::evolve::{March, MarchState, WearTest};
-use condyle_case::case::{Case, Override};
+use condyle_case::case::{Assignment, Case};
 
 /// The generic implant: no file is needed.
 pub const GENERIC: &str = "stanmore-force";
@@ -31,8 +31,8 @@ pub fn read(name: &str) -> Option<Case> {
 
 /// The generic case with one number changed.
 pub fn generic_with(key: &str, value: f64) -> Case {
-    let changed = Override::new(key, &format!("{value:?}")).expect("a number");
-    Case::read_with(&path(GENERIC), &changed).expect("a shipped case is read")
+    let change = Assignment::number(key, &format!("{value:?}")).expect("a number");
+    Case::read_changed(&path(GENERIC), &[change]).expect("a shipped case is read")
 }
 
 pub fn built(case: &Case) -> WearTest {

@@ -220,7 +220,7 @@ fn solved(case: &Case) -> MarchState {
 
 /// The generic case with edges half as long.
 fn finer(generic: &Case) -> Case {
-    let condyle_case::case::Insert::Generic(insert) = &generic.insert else {
+    let condyle_case::case::InsertShape::Generic(insert) = &generic.insert.shape else {
         panic!("the generic case has a generic insert");
     };
     cases::generic_with("insert.edge_mm", insert.edge_mm / 2.0)

@@ -178,7 +178,7 @@ pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarnin
             "the insert lifts off its tray by {lift_mm:.2} mm: it rocks, as under a load beside the flat part of its backside, and \
              nothing in the model holds it down"
         ),
-        advice: "A tray's lock would: see whether the load bears above the tray, and take [contact] backside = \"bonded\" where \
+        advice: "A tray's lock would: see whether the load bears above the tray, and take [contact.deformable] backside = \"bonded\" where \
                  the insert is held down."
             .to_owned(),
     })

@@ -20,8 +20,8 @@ use condyle::{
 use condyle_case::{
     cache::Cache,
     case::{
-        Assignment, Case, ContactModelWord, PressureLawChoice, SharedBodies, StrainTable,
-        TableError,
+        Assignment, Case, ContactModelChoice, DeformableContact, FoundationContact,
+        PressureLawChoice, SharedBodies, StrainTable, TableError,
     },
 };
 use condyle_results::Summary;
@@ -141,10 +141,10 @@ pub fn calibrate(
 }
 
 impl CalibratedLaw {
-    /// The table as a CSV file for `[contact] strain_table_file`.
+    /// The table as a CSV file for `[contact.foundation] strain_table_file`.
     pub fn to_csv(&self) -> String {
-        match &self.case.contact.law {
-            PressureLawChoice::TabulatedStrain(table) => table.to_csv(),
+        match self.case.contact.law() {
+            Some(PressureLawChoice::TabulatedStrain(table)) => table.to_csv(),
             _ => String::new(),
         }
     }
@@ -164,21 +164,29 @@ fn held_out(path: &Path, table: &PressureTable) -> Result<HeldOut, RunError> {
 
 fn deformable(case: &Case) -> Case {
     let mut case = case.clone();
-    case.contact.model = ContactModelWord::Deformable;
+    if case.contact.deformable().is_none() {
+        case.contact.model = ContactModelChoice::Deformable(DeformableContact::ELASTIC);
+    }
     case
 }
 
 fn foundation(case: &Case) -> Case {
+    let law = case.contact.law().cloned();
+    with_law(case, law.unwrap_or(PressureLawChoice::Linear))
+}
+
+fn with_law(case: &Case, law: PressureLawChoice) -> Case {
     let mut case = case.clone();
-    case.contact.model = ContactModelWord::Foundation;
+    case.contact.model = ContactModelChoice::Foundation(FoundationContact { law });
     case
 }
 
 fn with_table(case: &Case, points: PressureTable, peak_error_percent: Option<f64>) -> Case {
-    let mut case = foundation(case);
     let error = TableError { peak_error_percent };
-    case.contact.law = PressureLawChoice::TabulatedStrain(StrainTable { points, error });
-    case
+    with_law(
+        case,
+        PressureLawChoice::TabulatedStrain(StrainTable { points, error }),
+    )
 }
 
 /// What the first cycle on a deformable insert was, and on what.

@@ -9,7 +9,10 @@ use condyle::{
 };
 use condyle_case::{
     cache::Cache,
-    case::{Assignment, BuildError, BuildWarning, Built, Case, Limits, SharedBodies},
+    case::{
+        Assignment, BuildError, BuildWarning, Built, Case, Limits, MeshFault, MeshRemark,
+        SharedBodies,
+    },
     config::DataFile,
 };
 
@@ -85,7 +88,7 @@ pub(crate) fn start(
 /// Refuses a march whose settled femur presses at a hole.
 ///
 /// # Errors
-/// [`BuildError::PressedHole`].
+/// [`MeshFault::PressedHole`].
 pub(crate) fn check_at_rest(
     case: &Case,
     march: &March,
@@ -102,7 +105,7 @@ pub(crate) fn check_at_rest(
 /// Refuses a march in which the femur has pressed at a hole so far.
 ///
 /// # Errors
-/// [`BuildError::PressedHole`].
+/// [`MeshFault::PressedHole`].
 pub(crate) fn check_so_far(
     case: &Case,
     march: &March,
@@ -120,7 +123,10 @@ pub(crate) fn check_so_far(
 }
 
 fn is_bridge(warning: &BuildWarning) -> bool {
-    matches!(warning, BuildWarning::Bridged { .. })
+    let BuildWarning::Mesh { remark, .. } = warning else {
+        return false;
+    };
+    matches!(remark, MeshRemark::Bridged { .. })
 }
 
 fn check_holes(
@@ -139,10 +145,12 @@ fn check_holes(
         return Ok(());
     };
     let file = case.insert.file().map(DataFile::path);
-    let source = BuildError::PressedHole {
+    let source = BuildError::Mesh {
         file: file.map(Path::to_path_buf).unwrap_or_default(),
-        hole: hole.clone(),
-        when,
+        fault: MeshFault::PressedHole {
+            hole: hole.clone(),
+            when,
+        },
     };
     Err(RunError::of_build(case, source))
 }

@@ -5,7 +5,7 @@ use std::{ops::ControlFlow, path::Path, time::Duration};
 use condyle::{evolve::March, geometry::TriangleMesh, wear::NamedLaw};
 use condyle_case::{
     cache::Cache,
-    case::{BuildWarning, Case, FEMUR_TRIANGLES, SharedBodies},
+    case::{BuildWarning, Case, FEMUR_TRIANGLES, PressureLawChoice, SharedBodies},
 };
 use condyle_results::{Checkpoint, LawWear, NeutralPose, Summary, catalogue::RunFacts};
 
@@ -190,7 +190,11 @@ impl<'a> Run<'a> {
         let facts = RunFacts {
             wall_s: self.clock.spent.as_secs_f64(),
             wear_over_conventional: self.case.material.cross_linking.wear_over_conventional(),
-            pressure_law_peak_error_percent: self.case.contact.law.peak_error_percent(),
+            pressure_law_peak_error_percent: self
+                .case
+                .contact
+                .law()
+                .and_then(PressureLawChoice::peak_error_percent),
         };
         let mut summary =
             Summary::new(&self.march, facts).expect("a march that is done has an update");

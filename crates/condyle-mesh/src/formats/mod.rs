@@ -41,10 +41,7 @@ use condyle_fem::HexMesh;
 
 pub use error::MeshFileError;
 pub use hex_draft::{HexFile, NamedNodes, NamedSurface};
-pub use inp_writer::{
-    AnalysisStep, Application, InpWriter, PressureOverclosure, Procedure, RigidTriangle,
-    element_faces,
-};
+pub use inp_writer::{InpWriter, element_faces};
 pub use pvd::{parse_pvd, pvd_text, pvd_text_of_parts};
 pub use stl::write_stl;
 pub use vtk::{VtuFile, parse_vtu_points, parse_vtu_triangles};

@@ -33,9 +33,12 @@ pub(crate) fn is_deformable(case: &str) -> bool {
 /// Whether the insert of the case yields.
 pub(crate) fn yields(case: &str) -> bool {
     let case: Option<Table> = case.parse().ok();
-    let plasticity = case
-        .as_ref()
-        .and_then(|case| case.get("contact")?.get("plasticity")?.as_str());
+    let plasticity = case.as_ref().and_then(|case| {
+        let contact = case.get("contact")?;
+        // Results of version 0.1 have the key in the table above.
+        let model = contact.get("deformable").unwrap_or(contact);
+        model.get("plasticity")?.as_str()
+    });
     plasticity.is_some_and(|plasticity| plasticity != "none")
 }
 
@@ -90,6 +93,7 @@ mod tests {
 
     #[test]
     fn an_insert_yields_where_the_case_says_how() {
+        assert!(yields("[contact.deformable]\nplasticity = \"j2\""));
         assert!(yields("[contact]\nplasticity = \"j2\""));
         assert!(!yields("[contact]\nplasticity = \"none\""));
         assert!(!yields("[contact]\nmodel = \"deformable\""));

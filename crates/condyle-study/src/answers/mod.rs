@@ -5,7 +5,6 @@ pub(crate) mod indices;
 pub(crate) mod ranking;
 pub(crate) mod spread;
 
-use condyle_case::config::Variants;
 use condyle_lab::aligned;
 use condyle_results::catalogue::Scalar;
 use serde::Serialize;

@@ -36,7 +36,7 @@ pub enum CycleError {
     /// A load that presses the insert flat.
     #[error(
         "the load presses the insert flat at {percent:.2} % of the cycle: where plastic strain has come to {plastic_strain:.2} the \
-         insert finds no balance; check the load, and [contact] yield_stress_mpa and its hardening, or take plasticity = \"none\""
+         insert finds no balance; check the load, and [contact.deformable] yield_stress_mpa and its hardening, or take plasticity = \"none\""
     )]
     Flattened {
         /// Place in the cycle, %.

@@ -1,45 +1,39 @@
-//! Files read back by a strict reader, and held against condyle's own model.
+//! Exported files, read back by a strict reader and compared with condyle's own model.
 
-mod balance;
-mod motion;
-mod pressed;
 mod reader;
 
-use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::{fs, io, path::Path};
 
-use condyle_fem::HexMesh;
+use condyle::{
+    Mat3, Vec3,
+    contact::Bodies,
+    geometry::{FemoralSurface, Meshing, TriangleMesh, flat_insert},
+    spatial::Pose,
+};
+use condyle_fem::{Elastic, HexMesh};
 
-use super::{AbaqusOptions, ExportError, write_abaqus};
+use super::{ExportError, Pressed, PressedCase, Slide};
 use crate::case::Case;
-use condyle_mesh::files::Disk;
-use condyle_mesh::formats::read_hexahedra;
+use condyle_mesh::{files::Disk, formats::read_hexahedra};
 use reader::Deck;
 
 /// A case that is quick to build.
 const COARSE: &str = "[insert]\nshape = \"generic\"\nedge_mm = 3.0\n";
 
-fn cases() -> PathBuf {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases")).to_owned()
+const PERCENT: f64 = 14.0;
+
+fn deformable(more: &str) -> Case {
+    parsed(&format!(
+        "{COARSE}[time]\nincrements = 60\n[contact]\nmodel = \"deformable\"\n{more}"
+    ))
 }
 
 fn parsed(text: &str) -> Case {
-    Case::parse(text, "case.toml", Path::new("")).unwrap_or_else(|error| panic!("{error}"))
+    read(text, Path::new(""))
 }
 
-fn written(case: &Case, options: AbaqusOptions) -> String {
-    let mut text = Vec::new();
-    write_abaqus(case, options, 2, &mut text).unwrap_or_else(|error| panic!("{error}"));
-    String::from_utf8(text).unwrap()
-}
-
-fn refusal(text: &str, folder: &Path) -> ExportError {
-    let case = Case::parse(text, "case.toml", folder).unwrap_or_else(|error| panic!("{error}"));
-    match write_abaqus(&case, AbaqusOptions::default(), 1, &mut Vec::new()) {
-        Ok(_) => panic!("this is written:\n{text}"),
-        Err(error) => error,
-    }
+fn read(text: &str, folder: &Path) -> Case {
+    Case::parse(text, "case.toml", folder).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn hexahedra(deck: &Deck) -> HexMesh {
@@ -54,48 +48,214 @@ fn hexahedra(deck: &Deck) -> HexMesh {
     }
 }
 
-fn step_names(deck: &Deck) -> Vec<&str> {
-    deck.named("STEP")
-        .map(|step| step.get("NAME").unwrap())
-        .collect()
+fn written(pressed: &PressedCase<'_>) -> String {
+    let mut text = Vec::new();
+    pressed.write(PERCENT, &mut text).unwrap();
+    String::from_utf8(text).unwrap()
+}
+
+fn pressed(case: &Case) -> (PressedCase<'_>, Deck) {
+    let pressed = PressedCase::new(case, 2).unwrap_or_else(|error| panic!("{error}"));
+    let deck = Deck::read(&written(&pressed));
+    (pressed, deck)
+}
+
+fn refusal(case: &Case) -> ExportError {
+    match PressedCase::new(case, 1) {
+        Ok(_) => panic!("this is written"),
+        Err(error) => error,
+    }
+}
+
+/// Where the led nodes go in each step, mm.
+fn ways_mm(deck: &Deck) -> impl Iterator<Item = Vec3> {
+    let led = deck.named("BOUNDARY");
+    let led = led.filter(|led| led.rows.iter().all(|row| row[0] == "FEMUR-NODES"));
+    led.map(|led| {
+        let to: Vec<f64> = led.rows.iter().map(|row| row[3].parse().unwrap()).collect();
+        Vec3::from_row_slice(&to)
+    })
+}
+
+/// Where they go in the only step, mm.
+fn way_mm(deck: &Deck) -> Vec3 {
+    let ways: Vec<Vec3> = ways_mm(deck).collect();
+    assert_eq!(ways.len(), 1);
+    ways[0]
 }
 
 #[test]
-fn the_shipped_force_case_reads_back_whole() {
-    let case = Case::read(&cases().join("stanmore-force.toml")).unwrap();
-    let text = written(&case, AbaqusOptions::default());
-    let deck = Deck::read(&text);
-    let insert = case.build(1).unwrap().test.insert;
-    let mesh = hexahedra(&deck);
-    assert_eq!(mesh.hexes, insert.mesh().hexes);
-    assert!((mesh.volume() / insert.mesh().volume() - 1.0).abs() < 1e-9);
-    let triangles = deck.element_sets["FEMUR"].len();
-    assert!((24_000..=26_000).contains(&triangles), "{triangles}");
-    assert_eq!(step_names(&deck), ["SETTLE", "GAIT"]);
-    for name in ["FLEXION", "AXIAL-FORCE", "AP-FORCE", "IE-TORQUE"] {
-        let table = &deck.amplitudes[name];
-        assert!(table.len() > 200, "{name}");
-        assert!((table.last().unwrap().0 - 1.0 / 1.1).abs() < 1e-12);
+fn cross_the_led_facets_lie_on_the_femur_and_look_out_of_it() {
+    let case = deformable("");
+    let (pressed, deck) = pressed(&case);
+    let (row, pose) = pressed.at(PERCENT).unwrap();
+    assert!((row.percent - PERCENT).abs() < 1.0);
+    let (femur, insert) = (pressed.unworn().femur(), pressed.unworn().insert());
+    let (written, mesh) = (hexahedra(&deck), insert.mesh());
+    assert!(written.hexes == mesh.hexes && written.nodes.len() == mesh.nodes.len());
+    // A field has room for thirteen digits at least.
+    let off = |(one, other): (&Vec3, &Vec3)| (one - other).norm();
+    let off_mm = written
+        .nodes
+        .iter()
+        .zip(&mesh.nodes)
+        .map(off)
+        .fold(0.0, f64::max);
+    assert!(off_mm < 1e-11, "{off_mm}");
+    let way = way_mm(&deck);
+    assert!(way.y < 0.0 && way.x == 0.0 && way.z == 0.0, "{way}");
+    for corners in deck.corners("FEMUR") {
+        // The outer face, S2 of a wedge, is 4-6-5.
+        let outer = [corners[3], corners[5], corners[4]];
+        for corner in outer {
+            let gap_mm = femur.gap_mm(&pose.to_femur(&(corner + way)));
+            assert!(gap_mm.abs() < 1e-5, "{gap_mm}");
+        }
+        let inward = (outer[1] - outer[0]).cross(&(outer[2] - outer[0]));
+        assert!(inward.dot(&(corners[0] - corners[3])) > 0.0);
+        let [a, b, c] = [corners[0], corners[1], corners[2]];
+        assert!(
+            (b - a).cross(&(c - a)).dot(&(corners[3] - a)) > 0.0,
+            "inside out"
+        );
     }
-    let deepest = deck.amplitudes["AXIAL-FORCE"].iter().map(|row| row.1);
-    assert!((deepest.fold(0.0, f64::min) + 3200.0).abs() < 1.0);
-    let surface = deck
-        .named("SURFACE")
-        .find(|s| s.get("NAME") == Some("ARTICULATING"));
-    assert_eq!(surface.unwrap().rows.len(), insert.surface_faces().len());
+    let nearest = insert
+        .surface_nodes()
+        .iter()
+        .map(|&node| femur.gap_mm(&pose.to_femur(&(insert.mesh().nodes[node as usize] + way))));
+    // Before it comes down nothing touches: the insert seen from the femur where that begins.
+    assert!(nearest.fold(f64::INFINITY, f64::min) > 0.0);
+}
+
+#[test]
+fn what_touches_has_facets_over_it() {
+    let case = deformable("");
+    let (pressed, deck) = pressed(&case);
+    let (_, pose) = pressed.at(PERCENT).unwrap();
+    let (femur, insert) = (pressed.unworn().femur(), pressed.unworn().insert());
+    let way = way_mm(&deck);
+    let facets = deck.corners("FEMUR");
+    let nodes = insert.surface_nodes().iter();
+    let nodes = nodes.map(|&node| insert.mesh().nodes[node as usize]);
+    let touching = nodes.filter(|node| femur.gap_mm(&pose.to_femur(node)) < 0.0);
+    let mut count = 0;
+    for node in touching {
+        let near = |corners: &Vec<Vec3>| (corners[3] + way - node).norm() < 0.5;
+        assert!(facets.iter().any(near), "{node}");
+        count += 1;
+    }
+    assert!(count > 5, "{count}");
+}
+
+#[test]
+fn the_backside_is_held_and_the_curve_of_yield_is_written() {
+    let elastic = deformable("");
+    let (elastic_case, deck) = pressed(&elastic);
+    let held = elastic_case.unworn().insert().backside_nodes();
+    assert_eq!(deck.node_sets["BACKSIDE"].len(), held.len());
+    assert_eq!(deck.named("PLASTIC").count(), 0);
+    assert!(deck.named("STEP").all(|step| step.get("NLGEOM").is_none()));
+    let yielding = deformable(
+        "[contact.deformable]\nplasticity = \"j2\"\nhardening = [[0.0, 14.0], [0.1, 20.0]]\n",
+    );
+    let (_, deck) = pressed(&yielding);
+    let curve = deck.named("PLASTIC").next().unwrap().numbers();
+    assert_eq!(curve, [[14.0, 0.0], [20.0, 0.1]]);
+    assert_eq!(deck.named("EL PRINT").count(), 1);
+}
+
+#[test]
+fn a_femur_that_slides_on_arrives_where_it_is_to_with_friction_from_when_it_slides() {
+    let by_mm = Vec3::new(2.0, 0.0, -1.0);
+    let deck = slid(by_mm);
+    let steps: Vec<_> = deck
+        .named("STEP")
+        .map(|step| step.get("NAME").unwrap())
+        .collect();
+    assert_eq!(steps, ["PRESSED", "SLIDING", "SLID"]);
+    let ways: Vec<Vec3> = ways_mm(&deck).collect();
+    let [down, nearly, arrived] = ways[..] else {
+        panic!("{ways:?}");
+    };
+    assert!(down.y < -0.2 && down.x == 0.0 && down.z == 0.0, "{down}");
+    assert!((arrived - down - by_mm).norm() < 1e-12, "{arrived}");
+    let left = arrived - nearly;
+    assert!(left.cross(&by_mm).norm() < 1e-12 && (left.norm() - 0.02).abs() < 1e-12);
+    let friction: Vec<f64> = deck
+        .named("FRICTION")
+        .map(|law| law.numbers()[0][0])
+        .collect();
+    assert!(friction[0] < 1e-6, "{friction:?}");
+    assert_eq!(friction[1..], [0.07]);
+}
+
+/// A ball pressed on a block and slid on.
+fn slid(by_mm: Vec3) -> Deck {
+    let meshing = Meshing {
+        edge_mm: 2.0,
+        layers: 2,
+    };
+    let insert = flat_insert((8.0, 8.0), 4.0, meshing).unwrap();
+    let femur = FemoralSurface::sphere(24.0);
+    let surface = insert.surface();
+    let pressed = Pressed {
+        title: "Ball on a block",
+        note: "",
+        bodies: Bodies {
+            femur: &femur,
+            insert: &insert,
+            surface: &surface,
+        },
+        triangles: &TriangleMesh {
+            vertices: vec![
+                Vec3::new(-3.0, -23.8, -3.0),
+                Vec3::new(3.0, -23.8, -3.0),
+                Vec3::new(0.0, -23.8, 3.0),
+            ],
+            triangles: vec![[0, 1, 2]],
+        },
+        elastic: Elastic::new(463.0, 0.46).unwrap(),
+        hardening: None,
+        pose: Pose::new(Mat3::identity(), Vec3::new(0.0, 23.75, 0.0)),
+        slide: Some(Slide {
+            by_mm,
+            friction: 0.07,
+        }),
+    };
+    let mut text = Vec::new();
+    pressed.write(&mut text).unwrap();
+    Deck::read(&String::from_utf8(text).unwrap())
+}
+
+#[test]
+fn cases_that_cannot_be_pressed_say_why() {
+    let foundation = refusal(&parsed(COARSE));
+    assert!(
+        foundation
+            .to_string()
+            .contains("has an elastic foundation; write [contact] model = \"deformable\""),
+        "{foundation}"
+    );
+    let kinematic =
+        deformable("[contact.deformable]\nplasticity = \"j2\"\nkinematic_modulus_mpa = 10.0\n");
+    let kinematic = refusal(&kinematic);
+    assert!(
+        kinematic.to_string().contains("kinematic_modulus_mpa = 10"),
+        "{kinematic}"
+    );
 }
 
 #[test]
 fn the_insert_part_goes_through_the_reader_of_hexahedra() {
-    let text = written(&parsed(COARSE), AbaqusOptions::default());
-    let deck = Deck::read(&text);
-    let end = text.find("*MATERIAL").unwrap();
+    let case = deformable("");
+    let pressed = PressedCase::new(&case, 2).unwrap();
+    let text = written(&pressed);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("insert.inp");
-    fs::write(&path, &text[..end]).unwrap();
+    fs::write(&path, &text[..text.find("** FEMUR").unwrap()]).unwrap();
     let file = read_hexahedra(&Disk, &path).unwrap();
-    assert_eq!(file.mesh, hexahedra(&deck));
-    let insert = parsed(COARSE).build(1).unwrap().test.insert;
+    assert_eq!(file.mesh, hexahedra(&Deck::read(&text)));
+    let insert = pressed.unworn().insert();
     let mut quads = insert.surface_faces().to_vec();
     for quad in &mut quads {
         *quad = quad.map(|i| insert.surface_nodes()[i as usize]);
@@ -110,93 +270,20 @@ fn the_insert_part_goes_through_the_reader_of_hexahedra() {
 }
 
 #[test]
-fn every_way_to_write_it_reads_back() {
-    let case = parsed(COARSE);
-    for (deformable, explicit) in [(false, true), (true, false), (true, true)] {
-        let text = written(
-            &case,
-            AbaqusOptions {
-                deformable,
-                explicit,
-            },
-        );
-        let deck = Deck::read(&text);
-        let kinds = |kind: &str| deck.elements.values().any(|(k, _)| k == kind);
-        assert_eq!((kinds("C3D8"), kinds("C3D8R")), (deformable, !deformable));
-        assert_eq!(deck.node_sets.contains_key("BACKSIDE"), deformable);
-        let behavior = deck.named("SURFACE BEHAVIOR").next().unwrap();
-        let hard = behavior.get("PRESSURE-OVERCLOSURE") == Some("HARD");
-        assert_eq!(hard, deformable);
-        let dynamic = deck
-            .named("DYNAMIC")
-            .all(|step| step.get("EXPLICIT").is_some());
-        assert_eq!(dynamic, explicit);
-        assert_eq!(text.contains("FSLIPR"), explicit);
-        assert_eq!(text.contains("CDISP"), !explicit);
-    }
-}
-
-#[test]
-fn the_backside_of_an_elastic_insert_is_held_from_below() {
-    let options = AbaqusOptions {
-        deformable: true,
-        explicit: false,
-    };
-    let deck = Deck::read(&written(&parsed(COARSE), options));
-    let lowest = deck.node_sets["INSERT-NODES"]
-        .iter()
-        .map(|n| deck.nodes[n].y);
-    let lowest = lowest.fold(f64::INFINITY, f64::min);
-    let held = &deck.node_sets["BACKSIDE"];
-    assert!(held.len() > 100);
-    assert!(held.iter().all(|node| deck.nodes[node].y < lowest + 1.0));
-}
-
-#[test]
-fn displacement_control_leads_ap_and_ie_from_where_it_settled() {
-    let text = format!("{COARSE}[machine]\npreset = \"stanmore-displacement\"\n");
-    let deck = Deck::read(&written(&parsed(&text), AbaqusOptions::default()));
-    assert_eq!(step_names(&deck), ["SETTLE", "START", "GAIT"]);
-    let first = deck.amplitudes["IE-MOTION"][0].1;
-    assert!((first + 1.57f64.to_radians()).abs() < 1e-9, "{first}");
-    assert!(deck.amplitudes.contains_key("AP-MOTION"));
-    assert!(!deck.amplitudes.contains_key("AP-FORCE"));
-    // Flexion counts from where the file begins.
-    assert_eq!(deck.amplitudes["FLEXION"][0].1, 0.0);
-}
-
-#[test]
-fn a_locked_freedom_is_led_to_its_place_and_held() {
-    let text = format!(
-        "{COARSE}[machine.freedoms.ml]\ndrive = \"locked\"\nlocked_at_mm = 1.5\n\
-         [machine.freedoms.vv]\ndrive = \"locked\"\nlocked_at_deg = 0.5\n"
-    );
-    let text = written(&parsed(&text), AbaqusOptions::default());
-    let deck = Deck::read(&text);
-    assert!(text.contains("AMPLITUDE=RAMP, TYPE=DISPLACEMENT\nCARRIAGE, 3, 3, 1.5\n"));
-    assert!(text.contains("AMPLITUDE=HOLD, TYPE=DISPLACEMENT\nCARRIAGE, 3, 3, 1.5\n"));
-    // The file begins with VV where it is locked.
-    assert!(text.contains("VV 0.500000 deg"));
-    let hinge = deck.named("CONNECTOR MOTION").last().unwrap();
-    assert_eq!(hinge.rows[0], ["VV-HINGE", "4", "0.0"]);
-}
-
-#[test]
-fn bad_cases_say_why() {
+fn cases_that_do_not_build_say_why() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(
         folder.path().join("a.stl"),
         "solid nothing\nendsolid nothing\n",
     )
     .unwrap();
-    let broken = refusal(
-        "[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\n",
-        folder.path(),
-    );
+    let model = "[contact]\nmodel = \"deformable\"\n";
+    let file = format!("{model}[femur]\nshape = \"mesh\"\nfile = \"a.stl\"\n");
+    let broken = refusal(&read(&file, folder.path()));
     assert!(broken.to_string().contains("a.stl"), "{broken}");
     assert!(matches!(broken, ExportError::Build(_)));
-    let aside = format!("{COARSE}[femur]\nshape = \"sphere\"\nstart_mm = [90.0, 0.0]\n");
-    let apart = refusal(&aside, folder.path());
+    let aside = "[femur]\nshape = \"sphere\"\nstart_mm = [90.0, 0.0]\n";
+    let apart = refusal(&deformable(aside));
     assert!(apart.to_string().contains("are apart"), "{apart}");
     assert!(matches!(apart, ExportError::Placement(_)));
 }
@@ -216,35 +303,10 @@ impl io::Write for Full {
 
 #[test]
 fn a_full_disk_says_so() {
-    let error = write_abaqus(&parsed(COARSE), AbaqusOptions::default(), 1, &mut Full).unwrap_err();
+    let case = deformable("");
+    let pressed = PressedCase::new(&case, 1).unwrap();
+    let error = pressed.write(PERCENT, &mut Full).unwrap_err();
     let expected =
-        "the Abaqus file cannot be written: no space left; check the disk and the folder";
+        "the exported file cannot be written: no space left; check the disk and the folder";
     assert_eq!(error.to_string(), expected);
-}
-
-#[test]
-fn a_mesh_femur_is_written_welded_in_mm() {
-    let path = cases().join("dm-knee.toml");
-    let data = cases().join("../../shared/data/dm-knee/femoral-component.stl");
-    if !data.is_file() {
-        eprintln!(
-            "skipped: a_mesh_femur_is_written_welded_in_mm: the data of subject DM are not there"
-        );
-        return;
-    }
-    let deck = Deck::read(&written(
-        &Case::read(&path).unwrap(),
-        AbaqusOptions::default(),
-    ));
-    let (nodes, triangles) = (&deck.node_sets["FEMUR-NODES"], &deck.element_sets["FEMUR"]);
-    assert!(
-        (24_000..=24_442).contains(&triangles.len()),
-        "{}",
-        triangles.len()
-    );
-    // A closed surface has half as many vertices as triangles, and two more a handle less.
-    assert!(nodes.len() < triangles.len() / 2 + 100, "{}", nodes.len());
-    let heights = nodes.iter().map(|node| deck.nodes[node].y);
-    let (low, high) = heights.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
-    assert!((30.0..90.0).contains(&(high - low)), "{}", high - low);
 }

@@ -14,49 +14,24 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("MATERIAL", &["NAME"]),
     ("ELASTIC", &[]),
     ("PLASTIC", &[]),
-    ("DENSITY", &[]),
     ("SOLID SECTION", &["ELSET", "MATERIAL"]),
-    ("RIGID BODY", &["ELSET", "REF NODE", "TIE NSET", "PIN NSET"]),
-    ("ORIENTATION", &["NAME"]),
-    ("CONNECTOR SECTION", &["ELSET", "BEHAVIOR"]),
-    ("CONNECTOR BEHAVIOR", &["NAME"]),
-    ("CONNECTOR DAMPING", &["COMPONENT"]),
-    ("CONNECTOR ELASTICITY", &["COMPONENT", "NONLINEAR"]),
-    ("MASS", &["ELSET", "TYPE"]),
-    ("ROTARY INERTIA", &["ELSET"]),
     ("SURFACE INTERACTION", &["NAME"]),
     ("SURFACE BEHAVIOR", &["PRESSURE-OVERCLOSURE"]),
-    ("FRICTION", &["ELASTIC SLIP"]),
-    (
-        "CONTACT PAIR",
-        &["INTERACTION", "TYPE", "MECHANICAL CONSTRAINT"],
-    ),
-    ("AMPLITUDE", &["NAME", "DEFINITION", "TIME"]),
-    ("STEP", &["NAME", "NLGEOM", "INC"]),
-    ("DYNAMIC", &["APPLICATION", "EXPLICIT"]),
+    ("FRICTION", &[]),
+    ("CONTACT PAIR", &["INTERACTION", "TYPE"]),
+    ("STEP", &["NAME", "INC"]),
     ("STATIC", &[]),
     ("CHANGE FRICTION", &["INTERACTION"]),
     ("NODE PRINT", &["NSET", "TOTALS"]),
     ("EL PRINT", &["ELSET", "FREQUENCY"]),
     ("NODE FILE", &[]),
     ("CONTACT FILE", &[]),
-    ("BOUNDARY", &["OP", "AMPLITUDE", "TYPE"]),
-    ("CLOAD", &["OP", "AMPLITUDE"]),
-    ("CONNECTOR MOTION", &["OP", "AMPLITUDE", "TYPE"]),
-    ("CONNECTOR LOAD", &["OP", "AMPLITUDE"]),
-    (
-        "OUTPUT",
-        &["FIELD", "HISTORY", "NUMBER INTERVAL", "TIME INTERVAL"],
-    ),
-    ("NODE OUTPUT", &["NSET"]),
-    ("ELEMENT OUTPUT", &["ELSET"]),
-    ("CONTACT OUTPUT", &[]),
+    ("BOUNDARY", &[]),
     ("END STEP", &[]),
 ];
 
 /// Keywords that stand in a step, and only there.
 const IN_A_STEP: &[&str] = &[
-    "DYNAMIC",
     "STATIC",
     "CHANGE FRICTION",
     "NODE PRINT",
@@ -64,13 +39,6 @@ const IN_A_STEP: &[&str] = &[
     "NODE FILE",
     "CONTACT FILE",
     "BOUNDARY",
-    "CLOAD",
-    "CONNECTOR MOTION",
-    "CONNECTOR LOAD",
-    "OUTPUT",
-    "NODE OUTPUT",
-    "ELEMENT OUTPUT",
-    "CONTACT OUTPUT",
     "END STEP",
 ];
 
@@ -106,12 +74,10 @@ impl Block {
 pub(super) struct Deck {
     pub blocks: Vec<Block>,
     pub nodes: HashMap<u32, Vec3>,
-    /// Type and nodes, 0 for the ground.
+    /// Type and nodes.
     pub elements: HashMap<u32, (String, Vec<u32>)>,
     pub node_sets: HashMap<String, Vec<u32>>,
     pub element_sets: HashMap<String, Vec<u32>>,
-    /// (time, value) by name.
-    pub amplitudes: HashMap<String, Vec<(f64, f64)>>,
 }
 
 impl Deck {
@@ -122,7 +88,6 @@ impl Deck {
             elements: HashMap::new(),
             node_sets: HashMap::new(),
             element_sets: HashMap::new(),
-            amplitudes: HashMap::new(),
         };
         deck.check_keywords();
         deck.define();
@@ -145,12 +110,6 @@ impl Deck {
                 .collect()
         };
         self.element_sets[elset].iter().map(places).collect()
-    }
-
-    /// The place of the only node of a set.
-    pub fn point(&self, nset: &str) -> Vec3 {
-        assert_eq!(self.node_sets[nset].len(), 1, "{nset}");
-        self.nodes[&self.node_sets[nset][0]]
     }
 
     fn check_keywords(&self) {
@@ -198,10 +157,7 @@ impl Deck {
                     let set = self.element_sets.entry(name.clone()).or_default();
                     for row in &block.rows {
                         let label: u32 = row[0].parse().unwrap();
-                        let nodes = row[1..]
-                            .iter()
-                            .map(|word| word.parse().unwrap_or(0))
-                            .collect();
+                        let nodes = row[1..].iter().map(|word| word.parse().unwrap()).collect();
                         let element = (block.parameters["TYPE"].clone(), nodes);
                         assert!(
                             self.elements.insert(label, element).is_none(),
@@ -215,21 +171,6 @@ impl Deck {
                     let name = block.parameters["NSET"].clone();
                     assert!(self.node_sets.insert(name, labels.collect()).is_none());
                 }
-                "AMPLITUDE" => {
-                    let values = block.numbers().concat();
-                    assert!(block.rows.iter().all(|row| row.len() <= 8));
-                    let table: Vec<(f64, f64)> = values
-                        .chunks_exact(2)
-                        .map(|pair| (pair[0], pair[1]))
-                        .collect();
-                    assert_eq!(values.len() % 2, 0);
-                    assert!(
-                        table.windows(2).all(|pair| pair[1].0 > pair[0].0),
-                        "time goes back"
-                    );
-                    let name = block.parameters["NAME"].clone();
-                    assert!(self.amplitudes.insert(name, table).is_none());
-                }
                 _ => {}
             }
         }
@@ -238,20 +179,13 @@ impl Deck {
     fn check_elements(&self) {
         for (label, (kind, nodes)) in &self.elements {
             let count = match kind.as_str() {
-                "C3D8" | "C3D8R" | "C3D8I" => 8,
+                "C3D8I" => 8,
                 "C3D6" => 6,
-                "R3D3" => 3,
-                "CONN3D2" => 2,
-                "MASS" | "ROTARYI" => 1,
                 other => panic!("{other}"),
             };
             assert_eq!(nodes.len(), count, "element {label}");
-            let grounded = |i: usize| kind == "CONN3D2" && i == 0 && nodes[i] == 0;
-            for (i, node) in nodes.iter().enumerate() {
-                assert!(
-                    grounded(i) || self.nodes.contains_key(node),
-                    "element {label}"
-                );
+            for node in nodes {
+                assert!(self.nodes.contains_key(node), "element {label}");
             }
         }
         for nodes in self.node_sets.values() {
@@ -271,8 +205,6 @@ impl Deck {
 
     fn check_references(&self) {
         let surfaces = self.names("SURFACE", "NAME");
-        let orientations = self.names("ORIENTATION", "NAME");
-        let behaviors = self.names("CONNECTOR BEHAVIOR", "NAME");
         let interactions = self.names("SURFACE INTERACTION", "NAME");
         let materials = self.names("MATERIAL", "NAME");
         let elset = |name: &str| assert!(self.element_sets.contains_key(name), "elset {name}");
@@ -284,15 +216,6 @@ impl Deck {
             if let (Some(name), false) = (block.get("NSET"), block.is("NODE")) {
                 nset(name);
             }
-            for parameter in ["TIE NSET", "PIN NSET"] {
-                block.get(parameter).into_iter().for_each(nset);
-            }
-            if let Some(name) = block.get("AMPLITUDE") {
-                assert!(self.amplitudes.contains_key(name), "amplitude {name}");
-            }
-            if let Some(node) = block.get("REF NODE") {
-                assert!(self.nodes.contains_key(&node.parse().unwrap()), "{node}");
-            }
             if let Some(name) = block.get("INTERACTION") {
                 assert!(interactions.contains(name), "{name}");
             }
@@ -300,21 +223,10 @@ impl Deck {
                 assert!(materials.contains(name), "{name}");
             }
             match block.name.as_str() {
-                "CONNECTOR SECTION" => {
-                    assert!(behaviors.contains(block.get("BEHAVIOR").unwrap()));
-                    assert!(
-                        orientations.contains(&*block.rows[1][0]),
-                        "{:?}",
-                        block.rows
-                    );
-                }
                 "CONTACT PAIR" => {
                     assert!(block.rows[0].iter().all(|name| surfaces.contains(&**name)));
                 }
-                "BOUNDARY" | "CLOAD" => block.rows.iter().for_each(|row| nset(&row[0])),
-                "CONNECTOR MOTION" | "CONNECTOR LOAD" => {
-                    block.rows.iter().for_each(|row| elset(&row[0]));
-                }
+                "BOUNDARY" => block.rows.iter().for_each(|row| nset(&row[0])),
                 "SURFACE" => self.check_surface(block),
                 _ => {}
             }
@@ -323,12 +235,11 @@ impl Deck {
 
     fn check_surface(&self, block: &Block) {
         for row in &block.rows {
-            let of_set = self.element_sets.contains_key(&row[0]) && row[1] == "SPOS";
             let label = row[0].parse().ok();
             let element = label.and_then(|label: u32| self.elements.get(&label));
             let of_face = element.is_some_and(|(kind, _)| kind.starts_with("C3D"))
                 && ["S1", "S2", "S3", "S4", "S5", "S6"].contains(&&*row[1]);
-            assert!(of_set || of_face, "{row:?}");
+            assert!(of_face, "{row:?}");
         }
     }
 }

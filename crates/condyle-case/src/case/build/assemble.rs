@@ -1,4 +1,4 @@
-//! A whole case made into a wear test.
+//! A whole case built into a wear test.
 
 use std::sync::Arc;
 
@@ -7,26 +7,30 @@ use condyle::evolve::{Activity, Schedule, Updates, WearTest};
 use condyle::geometry::Insert;
 use condyle::machine::{Integration, TimeSettings};
 
-use super::super::contact::{ContactModelWord, FrictionModelWord, PressureLawChoice};
-use super::super::contents::Case;
-use super::super::contents::LeftOutConstant;
-use super::super::deformable::PlasticityChoice;
-use super::super::schedule::IntegratorWord;
-use super::super::schedule::Update;
+use super::super::contact::{
+    ContactModelChoice, DeformableContact, FrictionModelWord, PlasticityChoice, PressureLawChoice,
+};
+use super::super::contents::{Case, CaseNote};
+use super::super::schedule::{IntegratorWord, Update};
 use super::error::{BuildError, BuildWarning};
 use super::femur::{BuiltFemur, Preparing};
 use super::machine::start_flexion_rad;
 use super::shared::SharedBodies;
 use crate::cache::{Keep, KeepNothing};
 
-/// Less of a backside than this lies in a plane: it does not rest on a flat tray.
+/// Smallest part of a backside in a plane with which it rests on a flat tray.
 const MIN_FLAT_PART: f64 = 0.5;
 
-/// A wear test ready to run, and what was put right on the way to it.
+const STICK_SLIP_EXPLICIT: &str = "[contact.deformable] friction_model = \"stick-slip\" goes from one solved increment to the \
+     next, and [time] integrator = \"explicit\" solves none; take integrator = \"implicit\", or friction_model = \"regularised\"";
+const RESTING_EXPLICIT: &str = "[contact.deformable] backside = \"resting\" goes from one solved increment to the next, and \
+     [time] integrator = \"explicit\" solves none; take integrator = \"implicit\", or backside = \"bonded\"";
+
+/// A wear test ready to run, and remarks on the way to it.
 pub struct Built {
-    /// The test, of a right knee: a left one is mirrored, and its results are to be mirrored back.
+    /// The test, always of a right knee: a left one is mirrored, and its results must be mirrored back.
     pub test: WearTest,
-    /// What was put right, for the user to know.
+    /// Repairs and other remarks, for the user to know.
     pub warnings: Vec<BuildWarning>,
 }
 
@@ -70,16 +74,18 @@ impl Case {
                 keep,
                 limits,
             };
-            let (placement, side) = (&self.femur_placement, self.heading.side);
-            self.femur
-                .build(placement, side, flexion_rad, preparing, warnings)
+            let side = self.heading.side;
+            self.femur.build(side, flexion_rad, preparing, warnings)
         })?;
-        let warnings = [self.constants_left_out(), of_insert, of_femur].concat();
+        let notes = self.origin.notes.iter().map(|note| match note.clone() {
+            CaseNote::LeftOut { written, chosen } => BuildWarning::LeftOutKey { written, chosen },
+            CaseNote::Renamed { old, new } => BuildWarning::RenamedKey { old, new },
+        });
+        let warnings = [notes.collect(), of_insert, of_femur].concat();
         let test = self.assembled(insert, &femur, activities, (keep, bodies))?;
         Ok(Built { test, warnings })
     }
 
-    /// A wear test of bodies and activities.
     fn assembled(
         &self,
         insert: Arc<Insert>,
@@ -96,7 +102,12 @@ impl Case {
             insert,
             activities,
             wear: as_linked(self.wear.law()).law,
-            comparison_laws: self.wear.beside().into_iter().map(as_linked).collect(),
+            comparison_laws: self
+                .wear
+                .comparison_laws()
+                .into_iter()
+                .map(as_linked)
+                .collect(),
             creep: self.creep.law(),
             density_mg_per_mm3: self.material.density_mg_per_mm3,
             time: self.time_settings(),
@@ -112,18 +123,10 @@ impl Case {
         })
     }
 
-    /// Constants of the file that its wear law, chosen from outside, does not have.
-    fn constants_left_out(&self) -> Vec<BuildWarning> {
-        let left_out = self.origin.left_out.iter().cloned();
-        let warning =
-            |LeftOutConstant { written, law }| BuildWarning::ConstantLeftOut { written, law };
-        left_out.map(warning).collect()
-    }
-
-    /// The law of contact of this case with its insert.
+    /// Returns the law of contact of this case with its insert.
     ///
     /// # Errors
-    /// An insert that is no elastic solid, where it is to be one.
+    /// A deformable insert that is no elastic solid.
     pub fn contact_law(&self, insert: &Insert) -> Result<Arc<dyn ContactLaw>, BuildError> {
         self.contact_law_sharing(insert, &KeepNothing, &SharedBodies::default())
     }
@@ -134,70 +137,97 @@ impl Case {
         keep: &dyn Keep,
         bodies: &SharedBodies,
     ) -> Result<Arc<dyn ContactLaw>, BuildError> {
-        Ok(match self.contact.model {
-            ContactModelWord::Foundation => Arc::new(self.foundation()),
-            ContactModelWord::Deformable => Arc::new(self.deformable(insert, keep, bodies)?),
+        Ok(match &self.contact.model {
+            ContactModelChoice::Foundation(_) => Arc::new(self.foundation()),
+            ContactModelChoice::Deformable(model) => {
+                Arc::new(self.deformable(model, insert, keep, bodies)?)
+            }
         })
     }
 
-    /// The insert of this case as an elastic body.
     fn deformable(
         &self,
+        model: &DeformableContact,
         insert: &Insert,
         keep: &dyn Keep,
         bodies: &SharedBodies,
     ) -> Result<Deformable, BuildError> {
-        if self.contact.friction_model == FrictionModelWord::StickSlip
+        if model.friction_model == FrictionModelWord::StickSlip
             && self.time.integrator == IntegratorWord::Explicit
         {
-            return Err(BuildError::StickSlipExplicit);
+            return Err(BuildError::Conflict {
+                table: "time",
+                keys: &["integrator"],
+                message: STICK_SLIP_EXPLICIT.to_owned(),
+            });
         }
-        self.check_backside(insert)?;
+        self.check_backside(model, insert)?;
         let elastic = self.material.elastic();
-        let friction = &self.contact.friction;
-        let (coefficient, slip) = (friction.friction, friction.slip_tolerance_mm_per_s);
-        let backside = self.contact.backside.backside();
+        let contact = &self.contact;
+        let (coefficient, slip) = (contact.friction, contact.slip_tolerance_mm_per_s);
+        let backside = model.backside.backside();
         let mut law = bodies.elastic(self, elastic, || {
             Deformable::new(elastic, coefficient, slip, backside, insert)
         })?;
         (law.friction, law.slip_tolerance_mm_per_s) = (coefficient, slip);
-        law.search = self.contact.finding.search.search();
-        law.sample_reuse_mm = self.contact.finding.sample_reuse_mm;
-        law.friction_model = self.contact.friction_model.model();
-        let law = self.contact.plasticity.with_material(law, elastic);
+        law.search = contact.search.search();
+        law.sample_reuse_mm = contact.sample_reuse_mm;
+        law.friction_model = model.friction_model.model();
+        let law = model.plasticity.with_material(law, elastic);
         let law = law.with_backside(backside, insert)?;
         self.tell_compliance(&law, insert, keep)?;
         Ok(law)
     }
 
-    /// Refuses what a backside that rests does not go with.
-    fn check_backside(&self, insert: &Insert) -> Result<(), BuildError> {
-        let contact = &self.contact;
-        let beside = |beside| Err(BuildError::RestingBeside { beside });
+    /// Refuses settings that a resting backside cannot be combined with.
+    fn check_backside(
+        &self,
+        contact: &DeformableContact,
+        insert: &Insert,
+    ) -> Result<(), BuildError> {
         if !contact.backside.is_resting() {
-            Ok(())
-        } else if self.time.integrator == IntegratorWord::Explicit {
-            Err(BuildError::RestingExplicit)
-        } else if contact.plasticity != PlasticityChoice::None {
-            beside("plasticity = \"j2\"")
-        } else if contact.friction_model == FrictionModelWord::StickSlip {
-            beside("friction_model = \"stick-slip\"")
-        } else {
-            let part = Deformable::flat_part_of_backside(insert);
-            if part < MIN_FLAT_PART {
-                let percent = 100.0 * part;
-                return Err(BuildError::BacksideNotFlat { percent });
-            }
-            Ok(())
+            return Ok(());
         }
+        if self.time.integrator == IntegratorWord::Explicit {
+            return Err(BuildError::Conflict {
+                table: "time",
+                keys: &["integrator"],
+                message: RESTING_EXPLICIT.to_owned(),
+            });
+        }
+        let other = if contact.plasticity != PlasticityChoice::None {
+            Some("plasticity = \"j2\"")
+        } else if contact.friction_model == FrictionModelWord::StickSlip {
+            Some("friction_model = \"stick-slip\"")
+        } else {
+            None
+        };
+        let part = Deformable::flat_part_of_backside(insert);
+        let message = match other {
+            Some(other) => format!(
+                "[contact.deformable] backside = \"resting\" does not go with {other}: what that is computed from belongs to \
+                 an insert that is bonded to its tray; take one of them alone"
+            ),
+            None if part < MIN_FLAT_PART => format!(
+                "[contact.deformable] backside = \"resting\" needs a flat backside, and {:.0} % of this insert's lies in a \
+                 plane; take backside = \"bonded\", or give an insert with a flat backside",
+                100.0 * part
+            ),
+            None => return Ok(()),
+        };
+        Err(BuildError::Conflict {
+            table: "contact.deformable",
+            keys: &["backside"],
+            message,
+        })
     }
 
-    /// The elastic foundation of this case.
+    /// Returns the elastic foundation of this case.
     pub fn foundation(&self) -> Foundation {
         let material = &self.material;
         let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
-        let friction = &self.contact.friction;
-        let pressure = match &self.contact.law {
+        let contact = &self.contact;
+        let pressure = match contact.law().unwrap_or(&PressureLawChoice::Linear) {
             PressureLawChoice::Linear => PressureLaw::Linear { modulus_mpa },
             PressureLawChoice::Logarithmic => PressureLaw::Logarithmic { modulus_mpa },
             PressureLawChoice::Softening(curve) => PressureLaw::Softening {
@@ -211,10 +241,10 @@ impl Case {
         };
         Foundation {
             pressure,
-            friction: friction.friction,
-            slip_tolerance_mm_per_s: friction.slip_tolerance_mm_per_s,
-            search: self.contact.finding.search.search(),
-            sample_reuse_mm: self.contact.finding.sample_reuse_mm,
+            friction: contact.friction,
+            slip_tolerance_mm_per_s: contact.slip_tolerance_mm_per_s,
+            search: contact.search.search(),
+            sample_reuse_mm: contact.sample_reuse_mm,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Why a good case makes no wear test.
+//! Cases that cannot be built, and remarks on those that can.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -7,11 +7,12 @@ use condyle::Vec3;
 use condyle::anatomy::Recognition;
 use condyle::geometry::{InsertError, TriangleMesh};
 use condyle_fem::SolidError;
-use condyle_mesh::columns::{Hole, listed_holes};
+use condyle_mesh::columns::{ColumnError, Hole, listed_holes};
 use condyle_mesh::repair::{Defect, LeftOut, RepairError, WhyLeftOut};
 use thiserror::Error;
 
 use super::super::frame::{Axes, AxesError, LengthUnit, Side};
+use crate::config::DataFile;
 use condyle_mesh::formats::MeshFileError;
 
 /// One of the two bodies.
@@ -33,7 +34,7 @@ impl fmt::Display for Body {
 }
 
 impl Body {
-    /// What the body lies like, from triangles in any frame and unit.
+    /// Recognises the orientation of the body from triangles in any frame and unit.
     pub(crate) fn recognise(self, mesh: &TriangleMesh) -> Option<Recognition> {
         match self {
             Self::Femur => Recognition::of_femur(mesh),
@@ -53,12 +54,12 @@ impl Body {
     }
 }
 
-/// A body that lies otherwise than its axes say.
+/// A body whose orientation differs from its axes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WrongAxes {
-    /// Which.
+    /// The body.
     pub body: Body,
-    /// How it lies in the case's frame, such as "upside down".
+    /// Its orientation in the case's frame, such as "upside down".
     pub how: &'static str,
     /// The axes that its shape shows.
     pub better: Axes,
@@ -78,11 +79,11 @@ impl fmt::Display for WrongAxes {
 /// A piece of a mesh that lies far from the largest one, the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrayPiece {
-    /// How many triangles it has.
+    /// Its number of triangles.
     pub triangles: usize,
     /// Its middle, mm, in the frame of the body.
     pub at_mm: Vec3,
-    /// How far its box is from that of the body, mm.
+    /// Distance of its box from that of the body, mm.
     pub away_mm: f64,
     /// Longest edge of the body's box, mm.
     pub body_mm: f64,
@@ -99,7 +100,7 @@ impl fmt::Display for StrayPiece {
     }
 }
 
-/// Why a good case makes no wear test.
+/// A case that cannot be built.
 #[derive(Debug, Error)]
 pub enum BuildError {
     /// A mesh file that cannot be read.
@@ -108,130 +109,121 @@ pub enum BuildError {
     /// An insert that is no elastic solid.
     #[error("[contact] model = \"deformable\": {0}")]
     Solid(#[from] SolidError),
-    /// Friction that remembers in steps that are not solved.
-    #[error(
-        "[contact] friction_model = \"stick-slip\" goes from one solved increment to the next, and [time] integrator = \
-         \"explicit\" solves none; take integrator = \"implicit\", or friction_model = \"regularised\""
-    )]
-    StickSlipExplicit,
-    /// A backside that goes on from increment to increment in steps that are not solved.
-    #[error(
-        "[contact] backside = \"resting\" goes from one solved increment to the next, and [time] integrator = \"explicit\" \
-         solves none; take integrator = \"implicit\", or backside = \"bonded\""
-    )]
-    RestingExplicit,
-    /// A backside that is not flat enough to rest.
-    #[error(
-        "[contact] backside = \"resting\" needs a flat backside, and {percent:.0} % of this insert's lies in a plane; take \
-         backside = \"bonded\", or give an insert with a flat backside"
-    )]
-    BacksideNotFlat {
-        /// How much of it is flat, %.
-        percent: f64,
+    /// An insert that cannot be used.
+    #[error("the insert cannot be used: {0}")]
+    Insert(#[from] InsertError),
+    /// Axes that are no right-handed frame.
+    #[error("`axes`: {0}")]
+    Axes(#[from] AxesError),
+    /// Settings that cannot be combined.
+    #[error("{message}")]
+    Conflict {
+        /// Table of the setting at fault.
+        table: &'static str,
+        /// Keys that may be at fault, the likeliest first.
+        keys: &'static [&'static str],
+        /// Cause and remedy.
+        message: String,
     },
-    /// A backside that rests under an insert that yields or sticks and slips.
-    #[error(
-        "[contact] backside = \"resting\" does not go with {beside}: what that is computed from belongs to an insert that is \
-         bonded to its tray; take one of them alone"
-    )]
-    RestingBeside {
-        /// The key and its word.
-        beside: &'static str,
+    /// A mesh that cannot be used.
+    #[error("{}: {fault}", file.display())]
+    Mesh {
+        /// The file.
+        file: PathBuf,
+        /// The fault.
+        fault: MeshFault,
     },
+}
+
+impl BuildError {
+    pub(super) fn mesh(file: &Path, fault: MeshFault) -> Self {
+        let file = file.to_path_buf();
+        Self::Mesh { file, fault }
+    }
+
+    /// The mesh file at fault.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::MeshFile(error) => error.path(),
+            Self::Mesh { file, .. } => Some(file),
+            _ => None,
+        }
+    }
+
+    /// The keys of the body's table that may be at fault, the likeliest first.
+    pub(in crate::case) fn keys(&self) -> &'static [&'static str] {
+        match self {
+            Self::MeshFile(_) => &["file"],
+            Self::Insert(InsertError::TooManyNodes(_)) => &["edge_mm", "layers"],
+            Self::Insert(_) | Self::Solid(_) => {
+                &["backside", "articulating_surface", "file", "edge_mm"]
+            }
+            Self::Axes(_) => &["axes"],
+            Self::Conflict { keys, .. } => keys,
+            Self::Mesh { fault, .. } => fault.keys(),
+        }
+    }
+}
+
+/// A mesh that cannot be used.
+#[derive(Debug, Error)]
+pub enum MeshFault {
     /// A body that is too small or too large for a knee.
     #[error(
-        "{}: the body is {} mm long, and a knee's is 5 mm to 500 mm; {}",
-        file.display(),
+        "the body is {} mm long, and a knee's is 5 mm to 500 mm; {}",
         rounded(*size_mm),
         in_better_unit(*better)
     )]
     Size {
-        /// The file.
-        file: PathBuf,
         /// Its longest extent along an axis, mm.
         size_mm: f64,
-        /// The unit of length that makes it as long as a knee's, and how long, mm.
+        /// The unit of length that makes it as long as a knee's, and its length then, mm.
         better: Option<(LengthUnit, f64)>,
     },
     /// A body of a whole knee that another unit makes as large as a knee's.
     #[error(
-        "{}: this {body} is {} mm long, and that of a whole knee is 40 mm to 120 mm; {}",
-        file.display(),
+        "this {body} is {} mm long, and that of a whole knee is 40 mm to 120 mm; {}",
         rounded(*size_mm),
         in_better_unit(Some(*better))
     )]
     WrongUnit {
-        /// The file.
-        file: PathBuf,
         /// Which body.
         body: Body,
         /// Its longest extent along an axis, mm.
         size_mm: f64,
-        /// The unit of length that makes it as long as a knee's, and how long, mm.
+        /// The unit of length that makes it as long as a knee's, and its length then, mm.
         better: (LengthUnit, f64),
     },
-    /// A body that lies otherwise than its axes say, for certain.
-    #[error("{}: this {} lies {}; {wrong}", file.display(), wrong.body, wrong.how)]
+    /// A body whose orientation certainly differs from its axes.
+    #[error("this {} lies {}; {wrong}", wrong.body, wrong.how)]
     WrongAxes {
-        /// The file.
-        file: PathBuf,
-        /// How it lies.
+        /// Its orientation.
         wrong: WrongAxes,
     },
     /// A piece so far from the body that the whole is too large for a knee.
-    #[error("{}: {piece}, too far for a knee; delete it", file.display())]
-    StrayPiece {
-        /// The file.
-        file: PathBuf,
-        /// The piece.
-        piece: StrayPiece,
-    },
-    /// A femur so large that its field would not fit into memory.
+    #[error("{0}, too far for a knee; delete it")]
+    StrayPiece(StrayPiece),
+    /// A femur so large that its distance field exceeds the memory.
     #[error(
-        "{}: the distance field would have {nodes} nodes, and more than {most} take more than the \
-         {memory_gb} GB that [limits] memory_gb allows; cut away what never touches the insert, check length_unit, or \
-         allow more",
-        file.display()
+        "the distance field would have {nodes} nodes, and more than {most} take more than the {memory_gb} GB that [limits] \
+         memory_gb allows; cut away what never touches the insert, check length_unit, or allow more"
     )]
     TooManyNodes {
-        /// The file.
-        file: PathBuf,
-        /// How many.
+        /// Nodes of the field.
         nodes: usize,
-        /// How many there may be.
-        most: usize,
-        /// Memory that the case allows.
-        memory_gb: f64,
-    },
-    /// An insert of so many nodes that a run would not fit into memory.
-    #[error(
-        "the insert would have {nodes:.0} nodes, and more than {most} take more than the {memory_gb} GB that [limits] \
-         memory_gb allows; use a larger edge_mm or fewer layers, check length_unit, or allow more"
-    )]
-    InsertTooFine {
-        /// How many.
-        nodes: f64,
-        /// How many there may be.
+        /// Nodes that the memory allows.
         most: usize,
         /// Memory that the case allows.
         memory_gb: f64,
     },
     /// Triangles that are no shell.
-    #[error("{}: {source}", file.display())]
-    Shell {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        source: RepairError,
-    },
-    /// A height to cut at that the body does not pass.
+    #[error("{0}")]
+    Shell(RepairError),
+    /// A height to cut at outside the body.
     #[error(
-        "{}: `clip_below_mm` = {height_mm} cuts nothing off or all: with its axes turned, the body reaches from y = {low_mm:.2} mm to {high_mm:.2} mm",
-        file.display()
+        "`clip_below_mm` = {height_mm} cuts nothing off or all: with its axes turned, the body reaches from y = {low_mm:.2} mm to {high_mm:.2} mm"
     )]
     ClipMisses {
-        /// The file.
-        file: PathBuf,
         /// The height.
         height_mm: f64,
         /// The lowest point of the body.
@@ -239,101 +231,77 @@ pub enum BuildError {
         /// The highest point of the body.
         high_mm: f64,
     },
-    /// An insert in one with what it stands on, whose shape does not show where it ends.
+    /// An insert in one piece with its tray or stem, of which the shape does not show the boundary.
     #[error(
-        "{}: this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem, and \
-         its shape does not show for certain where the polyethylene ends; write [insert] {heights}",
-        file.display()
+        "this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem, and \
+         its shape does not show for certain where the polyethylene ends; write [insert] {heights}"
     )]
     UnclearUnderside {
-        /// The file.
-        file: PathBuf,
-        /// How far it reaches below its dishes, mm.
+        /// Its reach below the dishes, mm.
         reach_mm: f64,
-        /// Which heights may be meant, in words.
+        /// The heights to choose from, in words.
         heights: String,
     },
-    /// A shell that makes no insert.
-    #[error("{}: {source}", file.display())]
-    ShellInsert {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        source: InsertError,
-    },
+    /// A shell that cannot be meshed as an insert.
+    #[error("{0}")]
+    ShellInsert(InsertError),
     /// A hole or a post at which the femur presses.
     #[error(
-        "{}: the femur presses on the insert at a {hole}, {when}, where its surface is made up; fill the hole in the mesh, \
-         or see that the bodies lie as they should",
-        file.display()
+        "the femur presses on the insert at a {hole}, {when}, where its surface is made up; fill the hole in the mesh, \
+         or see that the bodies lie as they should"
     )]
     PressedHole {
-        /// The file.
-        file: PathBuf,
-        /// Which.
+        /// The hole.
         hole: Hole,
-        /// When it was found.
+        /// The stage of the run.
         when: &'static str,
     },
     /// A thickness for a mesh that has its own.
-    #[error(
-        "{}: the mesh is closed and has a thickness of its own; remove [insert] `thickness_mm`",
-        file.display()
-    )]
-    ThicknessOfClosed {
-        /// The file.
-        file: PathBuf,
-    },
+    #[error("the mesh is closed and has a thickness of its own; remove [insert] `thickness_mm`")]
+    ThicknessOfClosed,
     /// A surface that is not in the file.
-    #[error("{}: there is no surface \"{name}\"; it has {}", file.display(), listed(names))]
+    #[error("there is no surface \"{name}\"; it has {}", listed(names))]
     NoSurface {
-        /// The file.
-        file: PathBuf,
         /// The key that names it.
         key: &'static str,
         /// The name that the case gives.
         name: String,
-        /// Names there are.
+        /// The names in the file.
         names: Vec<String>,
     },
-    /// An insert that cannot be used.
-    #[error("the insert cannot be used: {0}")]
-    Insert(#[from] InsertError),
-    /// Axes that are no right-handed frame.
-    #[error("`axes`: {0}")]
-    Axes(#[from] AxesError),
 }
 
-impl BuildError {
-    /// The mesh file that is at fault.
-    pub fn file(&self) -> Option<&Path> {
+impl MeshFault {
+    fn keys(&self) -> &'static [&'static str] {
         match self {
-            Self::MeshFile(error) => error.path(),
-            Self::Size { file, .. }
-            | Self::WrongUnit { file, .. }
-            | Self::WrongAxes { file, .. }
-            | Self::StrayPiece { file, .. }
-            | Self::TooManyNodes { file, .. }
-            | Self::Shell { file, .. }
-            | Self::ClipMisses { file, .. }
-            | Self::UnclearUnderside { file, .. }
-            | Self::ShellInsert { file, .. }
-            | Self::PressedHole { file, .. }
-            | Self::ThicknessOfClosed { file }
-            | Self::NoSurface { file, .. } => Some(file),
-            Self::InsertTooFine { .. }
-            | Self::Insert(_)
-            | Self::Axes(_)
-            | Self::Solid(_)
-            | Self::StickSlipExplicit
-            | Self::RestingExplicit
-            | Self::BacksideNotFlat { .. }
-            | Self::RestingBeside { .. } => None,
+            Self::ShellInsert(
+                InsertError::TooManyNodes(_)
+                | InsertError::Columns(
+                    ColumnError::NoColumns { .. }
+                    | ColumnError::TooCoarse { .. }
+                    | ColumnError::TooManyNodes(_),
+                ),
+            ) => &["edge_mm", "file"],
+            Self::StrayPiece(_)
+            | Self::Shell(_)
+            | Self::ShellInsert(_)
+            | Self::PressedHole { .. } => &["file"],
+            Self::Size { .. } | Self::WrongUnit { .. } | Self::TooManyNodes { .. } => {
+                &["length_unit", "file"]
+            }
+            Self::ClipMisses { .. } => &["clip_below_mm"],
+            Self::UnclearUnderside { .. } => &["clip_below_mm", "file"],
+            Self::ThicknessOfClosed => &["thickness_mm"],
+            Self::NoSurface {
+                key: "backside", ..
+            } => &["backside"],
+            Self::NoSurface { .. } => &["articulating_surface"],
+            Self::WrongAxes { .. } => &["axes", "file"],
         }
     }
 }
 
-/// Three digits, for sizes from nanometres to kilometres.
+/// Formats sizes from nanometres to kilometres with three digits.
 fn rounded(size_mm: f64) -> String {
     if (0.1..1e5).contains(&size_mm) {
         format!("{size_mm:.1}")
@@ -377,52 +345,65 @@ fn listed(names: &[String]) -> String {
     }
 }
 
-/// What was put right in a mesh, or looks wrong.
+/// A remark on a case or its meshes, for the user to know.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum BuildWarning {
-    /// A constant of another wear law than the one chosen from outside.
-    #[error("[wear] {written}: left out, since the law \"{law}\" that is set has no such constant")]
-    ConstantLeftOut {
-        /// As the file writes it.
+    /// A key that does not go with a choice set from outside.
+    #[error("{written}: left out, since it does not go with {chosen}, which is set")]
+    LeftOutKey {
+        /// The key with its value, or the table.
         written: String,
-        /// The law chosen from outside.
-        law: &'static str,
+        /// The choice with its word.
+        chosen: String,
     },
-    /// A body that likely lies otherwise than its axes say.
-    #[error("{}: this {} likely lies {}; {wrong}", file.display(), wrong.body, wrong.how)]
-    WrongAxes {
-        /// The file, without its folder.
+    /// A key under a name that it had in the previous version.
+    #[error("`{old}` is called `{new}`; the next version does not read the old name")]
+    RenamedKey {
+        /// The old dotted path.
+        old: &'static str,
+        /// The new one.
+        new: &'static str,
+    },
+    /// A repair or a suspicious property of a mesh.
+    #[error("{}: {remark}", file.display())]
+    Mesh {
+        /// The file, without its folder: results repeat the remark, and name no folder.
         file: PathBuf,
-        /// How it lies.
+        /// The remark.
+        remark: MeshRemark,
+    },
+}
+
+/// A repair or a suspicious property of a mesh.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum MeshRemark {
+    /// A body whose orientation likely differs from its axes.
+    #[error("this {} likely lies {}; {wrong}", wrong.body, wrong.how)]
+    WrongAxes {
+        /// Its orientation.
         wrong: WrongAxes,
     },
     /// A femur that looks like one of the other knee.
     #[error(
-        "{}: the flange of the trochlea that side = \"{}\" makes the medial one stands out {} mm beyond the lateral one, \
+        "the flange of the trochlea that side = \"{}\" makes the medial one stands out {} mm beyond the lateral one, \
          as in a {} knee; write side = \"{}\", or see that the axes and the files are of one knee",
-        file.display(),
         side.word(),
         rounded(*lead_mm),
         side.other().word(),
         side.other().word()
     )]
     OtherSide {
-        /// The file, without its folder.
-        file: PathBuf,
-        /// The side that the case says.
+        /// The side of the case.
         side: Side,
-        /// How far the medial flange stands out beyond the lateral one, mm.
+        /// Distance by which the medial flange stands out beyond the lateral one, mm.
         lead_mm: f64,
     },
     /// A body of a whole knee that is too small or too large for one in any unit.
     #[error(
-        "{}: this {body} is {} mm long, and that of a whole knee is 40 mm to 120 mm; check length_unit",
-        file.display(),
+        "this {body} is {} mm long, and that of a whole knee is 40 mm to 120 mm; check length_unit",
         rounded(*size_mm)
     )]
     UnusualSize {
-        /// The file, without its folder.
-        file: PathBuf,
         /// Which body.
         body: Body,
         /// Its longest extent along an axis, mm.
@@ -430,119 +411,80 @@ pub enum BuildWarning {
     },
     /// The dishes of an insert lie off the origin, where the machine's axes are.
     #[error(
-        "{}: the dishes have their middle {}, where the machine's axes are; up to {} mm in front or behind and {} mm \
+        "the dishes have their middle {}, where the machine's axes are; up to {} mm in front or behind and {} mm \
          to a side would be sound; write origin = \"centre\" in [insert], or move the file's origin",
-        file.display(),
         off_origin(*anterior_mm, *lateral_mm),
         most_mm.0,
         most_mm.1
     )]
     OffCentre {
-        /// The file, without its folder.
-        file: PathBuf,
-        /// How far anterior of the origin, mm.
+        /// Distance anterior of the origin, mm.
         anterior_mm: f64,
-        /// How far lateral of it, mm.
+        /// Distance lateral of it, mm.
         lateral_mm: f64,
-        /// How far they may lie to the front or back, and to a side, mm.
+        /// Largest sound distances to the front or back, and to a side, mm.
         most_mm: (f64, f64),
     },
     /// Part of the mesh lies far from the rest.
-    #[error("{}: {piece}; delete it unless it is part of it", file.display())]
-    StrayPiece {
-        /// The file.
-        file: PathBuf,
-        /// The piece.
-        piece: StrayPiece,
-    },
+    #[error("{0}; delete it unless it is part of it")]
+    StrayPiece(StrayPiece),
     /// Parts of the file that are not of the insert.
-    #[error("{}: left out, since they are no part of the insert: {}", file.display(), parts_listed(parts))]
-    LeftOut {
-        /// The file, without its folder.
-        file: PathBuf,
-        /// What they are.
-        parts: Vec<LeftOut>,
-    },
-    /// An insert that was cut off the tray that its file holds too.
+    #[error("left out, since they are no part of the insert: {}", parts_listed(.0))]
+    LeftOut(Vec<LeftOut>),
+    /// An insert that was cut off the tray in its file.
     #[error(
-        "{}: this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem; it is cut \
+        "this body reaches {reach_mm:.1} mm below its dishes, as an insert does that is one with its tray or stem; it is cut \
          at the ledge at y = {height_mm:.2} mm, which leaves {below_dishes_mm:.2} mm of polyethylene below the dishes; write \
-         clip_below_mm = {height_mm:.2} in [insert] if that is right, or the right height",
-        file.display()
+         clip_below_mm = {height_mm:.2} in [insert] if that is right, or the right height"
     )]
     CutOffTray {
-        /// The file, without its folder.
-        file: PathBuf,
         /// Height of the cut, mm.
         height_mm: f64,
         /// Polyethylene that is left below the dishes, mm.
         below_dishes_mm: f64,
-        /// How far the body reaches below its dishes, mm.
+        /// Reach of the body below its dishes, mm.
         reach_mm: f64,
     },
     /// Holes and posts inside the outline of an insert, over which hexahedra stand.
     #[error(
-        "{}: the surface is taken to go on smoothly over a {}; nothing may press there or within {beside_mm} mm, which a run \
+        "the surface is taken to go on smoothly over a {}; nothing may press there or within {beside_mm} mm, which a run \
          makes sure of",
-        file.display(),
         listed_holes(holes)
     )]
     Bridged {
-        /// The file, without its folder.
-        file: PathBuf,
-        /// Where they are.
+        /// The holes.
         holes: Vec<Hole>,
-        /// What is pressed no farther from them than this is pressed beside them, mm.
+        /// Pressure no farther from them than this counts as pressure on them, mm.
         beside_mm: f64,
     },
     /// The mesh came inside-out.
-    #[error("{}: the triangles faced inwards and were turned round", file.display())]
-    TurnedRound {
-        /// The file, without its folder.
-        file: PathBuf,
-    },
-    /// Some triangles faced the other way than their neighbours.
-    #[error("{}: {count} triangles were turned to face as their neighbours do", file.display())]
-    MadeConsistent {
-        /// The file, without its folder.
-        file: PathBuf,
-        /// How many.
-        count: usize,
-    },
-    /// Some neighbouring triangles cross a little.
-    #[error(
-        "{}: {count} pairs of neighbouring triangles cross a little; they are left as they are",
-        file.display()
-    )]
-    Wrinkles {
-        /// The file, without its folder.
-        file: PathBuf,
-        /// How many pairs.
-        count: usize,
-    },
-    /// Some triangles had no area.
-    #[error("{}: {count} triangles without area were left out", file.display())]
-    RemovedDegenerate {
-        /// The file, without its folder.
-        file: PathBuf,
-        /// How many.
-        count: usize,
-    },
-    /// What was mended, and what was left because nothing touches there.
-    #[error("{}: defects that contact does not feel: {}", file.display(), defects_listed(defects))]
-    Defects {
-        /// The file, without its folder.
-        file: PathBuf,
-        /// Kinds, counts and places, mm in the frame of the body.
-        defects: Vec<Defect>,
-    },
+    #[error("the triangles faced inwards and were turned round")]
+    TurnedRound,
+    /// So many triangles faced the other way than their neighbours.
+    #[error("{0} triangles were turned to face as their neighbours do")]
+    MadeConsistent(usize),
+    /// So many pairs of neighbouring triangles cross a little.
+    #[error("{0} pairs of neighbouring triangles cross a little; they are left as they are")]
+    Wrinkles(usize),
+    /// So many triangles had no area.
+    #[error("{0} triangles without area were left out")]
+    RemovedDegenerate(usize),
+    /// Defects that were repaired, or left because nothing touches there.
+    #[error("defects that contact does not feel: {}", defects_listed(.0))]
+    Defects(Vec<Defect>),
 }
 
 impl BuildWarning {
-    /// The hole of an insert that a place (x, z) is in or beside, mm, over which its surface is made up.
+    pub(super) fn mesh(file: &DataFile, remark: MeshRemark) -> Self {
+        let file = PathBuf::from(file.name());
+        Self::Mesh { file, remark }
+    }
+
+    /// Returns the hole of an insert that a place (x, z), mm, is in or next to, over which its surface is made up.
     pub fn hole_at(&self, place_mm: [f64; 2]) -> Option<&Hole> {
-        let Self::Bridged {
-            holes, beside_mm, ..
+        let Self::Mesh {
+            remark: MeshRemark::Bridged { holes, beside_mm },
+            ..
         } = self
         else {
             return None;
@@ -553,10 +495,9 @@ impl BuildWarning {
     }
 }
 
-/// Parts that are listed one by one, at most.
 const LISTED_PARTS: usize = 5;
 
-/// The first parts, each with its size and place, and why it is none of the insert.
+/// Lists the first parts, each with its size, its place and the reason.
 fn parts_listed(parts: &[LeftOut]) -> String {
     let said = parts.iter().take(LISTED_PARTS).map(|part| {
         let why = match part.why {
@@ -576,7 +517,6 @@ fn parts_listed(parts: &[LeftOut]) -> String {
     said.join("; ")
 }
 
-/// Kinds and counts, with the first three places of each.
 fn defects_listed(defects: &[Defect]) -> String {
     let said: Vec<String> = defects
         .iter()

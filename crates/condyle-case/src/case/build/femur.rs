@@ -13,12 +13,10 @@ use condyle_mesh::repair::CheckedMesh;
 use serde::{Deserialize, Serialize};
 
 use super::super::contents::Case;
-use super::super::femur::FemurPlacement;
-use super::super::femur::{Femur, MeshFemur};
+use super::super::femur::{Femur, FemurPlacement, FemurShape, MeshFemur};
 use super::super::frame::Side;
 use super::super::run_options::Limits;
-use super::error::Body;
-use super::error::{BuildError, BuildWarning};
+use super::error::{Body, BuildError, BuildWarning, MeshFault};
 use super::meshes::{Placing, ShellOf, parsed_shell, shell, warn};
 use super::orientation_check::{check_orientation, check_side};
 use super::rigid_motion::RigidMotion;
@@ -46,15 +44,15 @@ impl Femur {
     /// The femur, which starts the cycle flexed by `flexion_rad`.
     pub(super) fn build(
         &self,
-        placement: &FemurPlacement,
         side: Side,
         flexion_rad: f64,
         preparing: Preparing<'_>,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<BuiltFemur, BuildError> {
+        let placement = &self.placement;
         let start = |start: Option<[f64; 2]>| start.map(|start| on_the_right(start, side));
-        Ok(match self {
-            Self::Generic(femur) => {
+        Ok(match &self.shape {
+            FemurShape::Generic(femur) => {
                 let shape = GenericFemurShape {
                     distal_radius_mm: femur.distal_radius_mm,
                     posterior_radius_mm: femur.posterior_radius_mm,
@@ -71,19 +69,19 @@ impl Femur {
                     start_mm: start(femur.start_mm).unwrap_or(over_the_dish(&shape, flexion_rad)),
                 }
             }
-            Self::Sphere(femur) => BuiltFemur {
+            FemurShape::Sphere(femur) => BuiltFemur {
                 surface: Arc::new(FemoralSurface::sphere(femur.radius_mm)),
                 flexion_axis_mm: (0.0, 0.0),
                 start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
             },
-            Self::Cylinder(femur) => BuiltFemur {
+            FemurShape::Cylinder(femur) => BuiltFemur {
                 surface: Arc::new(FemoralSurface::Cylinder(Cylinder {
                     radius_mm: femur.radius_mm,
                 })),
                 flexion_axis_mm: (0.0, 0.0),
                 start_mm: start(femur.start_mm).unwrap_or((0.0, 0.0)),
             },
-            Self::Mesh(femur) => {
+            FemurShape::Mesh(femur) => {
                 let prepared = femur.prepared(placement, side, preparing)?;
                 warn(&femur.file, &prepared.shell, warnings);
                 femur.check_orientation(&prepared.shell.mesh, side, warnings)?;
@@ -217,13 +215,13 @@ fn check_node_count(file: &Path, mesh: &TriangleMesh, limits: &Limits) -> Result
     if nodes <= most {
         return Ok(());
     }
-    let (file, memory_gb) = (file.to_path_buf(), limits.memory_gb);
-    Err(BuildError::TooManyNodes {
-        file,
+    let memory_gb = limits.memory_gb;
+    let fault = MeshFault::TooManyNodes {
         nodes,
         most,
         memory_gb,
-    })
+    };
+    Err(BuildError::mesh(file, fault))
 }
 
 /// How far anterior of the frame's origin the flexion axis lies in the insert frame.
@@ -246,15 +244,17 @@ impl Case {
     /// # Errors
     /// A mesh that cannot be read again.
     pub fn femur_triangles(&self, test: &WearTest, about: f64) -> Result<TriangleMesh, BuildError> {
-        match (&self.femur, test.femur.as_ref()) {
-            (Femur::Mesh(femur), _) => femur.triangles(&self.femur_placement, self.heading.side),
+        match (&self.femur.shape, test.femur.as_ref()) {
+            (FemurShape::Mesh(femur), _) => {
+                femur.triangles(&self.femur.placement, self.heading.side)
+            }
             (_, FemoralSurface::Generic(femur)) => Ok(generic(femur, about)),
             (_, FemoralSurface::Placed(placed)) => {
                 Ok(generic(placed.femur(), about).mapped(|point| placed.to_frame(point)))
             }
-            (Femur::Sphere(ball), _) => Ok(sphere(ball.radius_mm, about)),
-            (Femur::Cylinder(cylinder), _) => Ok(tube(cylinder.radius_mm)),
-            (Femur::Generic(_), _) => {
+            (FemurShape::Sphere(ball), _) => Ok(sphere(ball.radius_mm, about)),
+            (FemurShape::Cylinder(cylinder), _) => Ok(tube(cylinder.radius_mm)),
+            (FemurShape::Generic(_), _) => {
                 unreachable!("a generic femur is built as one")
             }
         }

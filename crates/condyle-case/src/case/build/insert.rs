@@ -1,7 +1,6 @@
 //! The insert in hexahedra.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
 use condyle::Vec3;
 use condyle::geometry::{self, GenericInsertShape, Meshing, flat_insert};
@@ -10,11 +9,11 @@ use condyle_mesh::repair::CheckedMesh;
 
 use super::super::contents::Case;
 use super::super::frame::Side;
-use super::super::insert::InsertPlacement;
-use super::super::insert::{FlatInsert, GenericInsert, HexahedralInsert, Insert, MeshInsert};
+use super::super::insert::{
+    FlatInsert, GenericInsert, HexahedralInsert, Insert, InsertPlacement, InsertShape, MeshInsert,
+};
 use super::super::run_options::Limits;
-use super::error::Body;
-use super::error::{BuildError, BuildWarning};
+use super::error::{Body, BuildError, BuildWarning, MeshFault, MeshRemark};
 use super::meshes::{Placing, ShellOf, shell};
 use super::orientation_check::off_centre;
 use super::orientation_check::{check_orientation, check_orientation_of_hexahedra};
@@ -33,11 +32,11 @@ impl Case {
     /// In words: an insert that is read as hexahedra, or that has no such mesh.
     pub fn coarser_insert(&self) -> Result<geometry::Insert, String> {
         let mut coarser = self.insert.clone();
-        match &mut coarser {
-            Insert::Generic(insert) => insert.edge_mm *= 2.0,
-            Insert::Flat(insert) => insert.edge_mm *= 2.0,
-            Insert::Mesh(insert) => insert.edge_mm *= 2.0,
-            Insert::Hexahedra(_) => {
+        match &mut coarser.shape {
+            InsertShape::Generic(insert) => insert.edge_mm *= 2.0,
+            InsertShape::Flat(insert) => insert.edge_mm *= 2.0,
+            InsertShape::Mesh(insert) => insert.edge_mm *= 2.0,
+            InsertShape::Hexahedra(_) => {
                 return Err("an insert read as hexahedra has no coarser mesh".to_owned());
             }
         }
@@ -47,7 +46,7 @@ impl Case {
 
     /// How many triangles the file of its insert has; none where it is not made from triangles.
     pub fn insert_triangle_count(&self) -> Option<usize> {
-        let Insert::Mesh(insert) = &self.insert else {
+        let InsertShape::Mesh(insert) = &self.insert.shape else {
             return None;
         };
         let path = insert.file.path();
@@ -62,7 +61,7 @@ impl Case {
         insert: &Insert,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
-        let placement = &self.insert_placement;
+        let placement = &insert.placement;
         let around = Surroundings {
             placement,
             side: self.heading.side,
@@ -70,9 +69,12 @@ impl Case {
         };
         let built = insert.build(around, warnings)?;
         // With a stray piece the dishes are not where they seem.
-        let is_whole = !warnings
-            .iter()
-            .any(|warning| matches!(warning, BuildWarning::StrayPiece { .. }));
+        let is_whole = !warnings.iter().any(|warning| {
+            let BuildWarning::Mesh { remark, .. } = warning else {
+                return false;
+            };
+            matches!(remark, MeshRemark::StrayPiece(_))
+        });
         if let Some(file) = insert.file().filter(|_| is_whole) {
             warnings.extend(off_centre(file, placement, &built));
         }
@@ -94,11 +96,11 @@ impl Insert {
         around: Surroundings<'_>,
         warnings: &mut Vec<BuildWarning>,
     ) -> Result<geometry::Insert, BuildError> {
-        match self {
-            Self::Generic(insert) => generic(insert, around),
-            Self::Flat(insert) => flat(insert, around.limits),
-            Self::Mesh(insert) => from_mesh(insert, around, warnings),
-            Self::Hexahedra(insert) => from_hexahedra(insert, around, warnings),
+        match &self.shape {
+            InsertShape::Generic(insert) => generic(insert, around),
+            InsertShape::Flat(insert) => flat(insert, around.limits),
+            InsertShape::Mesh(insert) => from_mesh(insert, around, warnings),
+            InsertShape::Hexahedra(insert) => from_hexahedra(insert, around, warnings),
         }
     }
 }
@@ -124,10 +126,13 @@ fn check_nodes(nodes: f64, limits: &Limits) -> Result<(), BuildError> {
     if nodes <= most as f64 {
         return Ok(());
     }
-    Err(BuildError::InsertTooFine {
-        nodes,
-        most,
-        memory_gb,
+    Err(BuildError::Conflict {
+        table: "insert",
+        keys: &["edge_mm", "layers", "file", "length_unit"],
+        message: format!(
+            "the insert would have {nodes:.0} nodes, and more than {most} take more than the {memory_gb} GB that [limits] \
+             memory_gb allows; use a larger edge_mm or fewer layers, check length_unit, or allow more"
+        ),
     })
 }
 
@@ -169,9 +174,8 @@ fn from_mesh(
         ShellOf::insert(insert.clip_below_mm),
         warnings,
     )?;
-    let file = || path.to_path_buf();
     if shell.closed && insert.thickness_mm.is_some() {
-        return Err(BuildError::ThicknessOfClosed { file: file() });
+        return Err(BuildError::mesh(path, MeshFault::ThicknessOfClosed));
     }
     check_orientation(Body::Insert, &insert.file, &shell.mesh, &placing, warnings)?;
     if shell.closed && insert.clip_below_mm.is_none() {
@@ -185,16 +189,14 @@ fn from_mesh(
     let (low, high) = mesh.bounds();
     check_node_count((high.x - low.x, high.z - low.z), meshing, around.limits)?;
     let built = geometry::Insert::over_holes(&mesh, shell.closed, insert.thickness_mm, meshing);
-    let (built, holes) = built.map_err(|source| BuildError::ShellInsert {
-        file: file(),
-        source,
-    })?;
+    let (built, holes) =
+        built.map_err(|error| BuildError::mesh(path, MeshFault::ShellInsert(error)))?;
     if !holes.is_empty() {
-        warnings.push(BuildWarning::Bridged {
-            file: PathBuf::from(insert.file.name()),
+        let remark = MeshRemark::Bridged {
             holes,
             beside_mm: meshing.edge_mm,
-        });
+        };
+        warnings.push(BuildWarning::mesh(&insert.file, remark));
     }
     Ok(built)
 }
@@ -272,16 +274,15 @@ fn named(
 ) -> Result<Vec<[u32; 4]>, BuildError> {
     match file.surface(name) {
         Some(surface) => Ok(surface.quads.clone()),
-        None => Err(BuildError::NoSurface {
-            file: insert.file.path().to_path_buf(),
-            key,
-            name: name.to_owned(),
-            names: file
-                .surfaces
-                .iter()
-                .map(|surface| surface.name.clone())
-                .collect(),
-        }),
+        None => {
+            let names = file.surfaces.iter().map(|surface| surface.name.clone());
+            let fault = MeshFault::NoSurface {
+                key,
+                name: name.to_owned(),
+                names: names.collect(),
+            };
+            Err(BuildError::mesh(insert.file.path(), fault))
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use condyle::Vec3;
 use condyle::evolve::Activity;
 use condyle::machine::knee::{self, KNEE};
-use condyle::machine::{Drive, JointDescription, JointIndex, Machine, Spring, Waveform};
+use condyle::machine::{Drive, JointDescription, JointIndex, JointKind, Machine, Spring, Waveform};
 
 use super::super::contents::Case;
 use super::super::machine::{DriveWord, Freedom, Springs, StiffnessOf};
@@ -17,24 +17,6 @@ const TONNE_MM2_PER_KG_M2: f64 = 1e3;
 /// A newton metre in N mm.
 const NMM_PER_NM: f64 = 1e3;
 
-impl Freedom {
-    /// Mass in tonne, or moment of inertia in tonne mm2.
-    fn inertia(&self) -> f64 {
-        match self {
-            Self::Translation(keys) => keys.inertia_kg * TONNE_PER_KG,
-            Self::Rotation(keys) => keys.inertia_kg_m2 * TONNE_MM2_PER_KG_M2,
-        }
-    }
-
-    /// Viscous damping, N s/mm or N mm s/rad.
-    fn damping(&self) -> f64 {
-        match self {
-            Self::Translation(keys) => keys.damping_n_s_per_mm,
-            Self::Rotation(keys) => keys.damping_nm_s_per_rad * NMM_PER_NM,
-        }
-    }
-}
-
 impl case::Machine {
     /// The machine around an insert whose dishes are lowest at `low_point_mm`.
     pub(super) fn build(&self, low_point_mm: Vec3) -> Machine {
@@ -43,8 +25,13 @@ impl case::Machine {
         for index in JointIndex::ALL {
             let (joint, freedom) = (machine.joint_mut(index), self.freedoms.get(index));
             joint.drive = self.drive(joint.description, freedom);
-            joint.inertia = freedom.inertia();
-            joint.damping = freedom.damping();
+            (joint.inertia, joint.damping) = match joint.description.kind() {
+                JointKind::Translation => (freedom.inertia * TONNE_PER_KG, freedom.damping),
+                JointKind::Rotation => (
+                    freedom.inertia * TONNE_MM2_PER_KG_M2,
+                    freedom.damping * NMM_PER_NM,
+                ),
+            };
         }
         machine.joint_mut(knee::VV).axis_point_mm = Vec3::new(
             0.0,
@@ -59,12 +46,12 @@ impl case::Machine {
     }
 
     fn drive(&self, joint: &JointDescription, freedom: &Freedom) -> Drive {
-        match freedom.drive() {
+        match freedom.drive {
             DriveWord::Prescribed => Drive::Prescribed(self.inside(joint.motion)),
             DriveWord::Loaded => Drive::Loaded(self.inside(joint.load_channel())),
             DriveWord::Locked => {
                 let unit = joint.kind().file_unit_in_solver();
-                Drive::Locked(freedom.locked_at() * unit)
+                Drive::Locked(freedom.locked_at * unit)
             }
         }
     }

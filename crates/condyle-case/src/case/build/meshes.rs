@@ -1,6 +1,6 @@
-//! Triangles of a file as a shell in the frame of a right knee, mm.
+//! Triangles of a file as a checked shell in the frame of a right knee, mm.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use condyle::geometry::TriangleMesh;
 use condyle::{Mat3, Vec3};
@@ -11,18 +11,18 @@ use super::super::frame::LengthUnit;
 use super::super::frame::Side;
 #[cfg(feature = "file-system")]
 use super::error::Body;
-use super::error::{BuildError, BuildWarning};
+use super::error::{BuildError, BuildWarning, MeshFault, MeshRemark};
 use super::size::check_triangles;
 use super::size::stray_piece;
 use crate::config::DataFile;
 use condyle_mesh::formats::{parse_surface, surface_bytes};
 
-/// From the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.
+/// Map from the unit and axes of a file to mm, x anterior, y superior, z to the right of a right knee.
 pub(super) struct Placing {
     pub unit: LengthUnit,
     axes: Mat3,
     linear: Mat3,
-    /// A left knee is mirrored, so that faces must be turned round.
+    /// A left knee is mirrored, and its faces are turned round.
     pub mirrors: bool,
 }
 
@@ -39,13 +39,12 @@ impl Placing {
         })
     }
 
-    /// The axes of a file whose body, placed so, is yet to be turned.
+    /// Returns the axes of a file whose body must be turned by `turn` after this placing.
     pub(super) fn axes_turned(&self, turn: &Mat3) -> Axes {
         let mirror = mirror(self.mirrors);
         Axes::of(&(mirror * turn * mirror * self.axes))
     }
 
-    /// Its bytes, the same for the same placing.
     pub(super) fn bytes(&self) -> Vec<u8> {
         self.linear
             .iter()
@@ -66,28 +65,25 @@ impl Placing {
     }
 }
 
-/// What makes a right knee of a left one, or changes nothing.
 fn mirror(mirrors: bool) -> Mat3 {
     Mat3::from_diagonal(&Vec3::new(1.0, 1.0, if mirrors { -1.0 } else { 1.0 }))
 }
 
-/// Lets every triangle face the other way.
 fn turn_round(mesh: &mut TriangleMesh) {
     mesh.triangles
         .iter_mut()
         .for_each(|triangle| triangle.swap(1, 2));
 }
 
-/// What a surface is to be, and what is done with it before it is checked.
+/// Expected orientation of a surface, and the checks of it.
 #[derive(Clone, Copy)]
 pub(super) struct ShellOf {
-    /// Which way an open surface must face on the whole.
+    /// Direction that an open surface must face on the whole.
     faces: Faces,
     checks: Checks,
 }
 
 impl ShellOf {
-    /// Of a femur, which faces down.
     pub(super) const FEMUR: Self = Self {
         faces: Faces::Down,
         checks: Checks {
@@ -97,7 +93,6 @@ impl ShellOf {
         },
     };
 
-    /// Of an insert, which faces up, cut away below a height.
     pub(super) fn insert(clip_below_mm: Option<f64>) -> Self {
         Self {
             faces: Faces::Up,
@@ -110,7 +105,6 @@ impl ShellOf {
     }
 }
 
-/// What the shell of a body is checked for, once it lies in the frame of a knee.
 #[cfg(feature = "file-system")]
 pub(in crate::case) fn checks_of(body: Body) -> Checks {
     match body {
@@ -119,19 +113,17 @@ pub(in crate::case) fn checks_of(body: Body) -> Checks {
     }
 }
 
-/// What an insert is checked for that is cut away below a height.
 pub(in crate::case) fn checks_of_insert(clip_below_mm: Option<f64>) -> Checks {
     ShellOf::insert(clip_below_mm).checks
 }
 
-/// Up or down.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Faces {
     Up,
     Down,
 }
 
-/// Reads a surface, checks it and turns it to face out; says what it put right.
+/// Reads a surface, checks it and turns it to face out; adds a warning for each repair.
 pub(super) fn shell(
     file: &DataFile,
     placing: &Placing,
@@ -144,7 +136,7 @@ pub(super) fn shell(
     Ok(shell)
 }
 
-/// The same from the bytes of the file, without a word of what was put right or looks wrong.
+/// As [`shell`], from the bytes of the file and without warnings.
 pub(super) fn parsed_shell(
     file: &Path,
     bytes: &[u8],
@@ -154,10 +146,10 @@ pub(super) fn parsed_shell(
     let mesh = placing.mesh(parse_surface(file, bytes)?);
     check_triangles(file, &mesh, placing.unit)?;
     check_clip(file, &mesh, of.checks.clip_below_mm)?;
-    let mut shell = of.checks.check(mesh).map_err(|source| BuildError::Shell {
-        file: file.to_path_buf(),
-        source,
-    })?;
+    let mut shell = of
+        .checks
+        .check(mesh)
+        .map_err(|error| BuildError::mesh(file, MeshFault::Shell(error)))?;
     if !shell.closed && faces(&shell.mesh) != of.faces {
         turn_round(&mut shell.mesh);
         shell.turned_round = true;
@@ -165,7 +157,6 @@ pub(super) fn parsed_shell(
     Ok(shell)
 }
 
-/// Refuses a height that the mesh does not pass.
 fn check_clip(
     file: &Path,
     mesh: &TriangleMesh,
@@ -174,65 +165,37 @@ fn check_clip(
     let (low, high) = mesh.bounds();
     match clip_below_mm {
         Some(height_mm) if height_mm <= low.y || height_mm >= high.y => {
-            Err(BuildError::ClipMisses {
-                file: file.to_path_buf(),
+            let fault = MeshFault::ClipMisses {
                 height_mm,
                 low_mm: low.y,
                 high_mm: high.y,
-            })
+            };
+            Err(BuildError::mesh(file, fault))
         }
         _ => Ok(()),
     }
 }
 
-/// Says what was put right in a file, and what looks wrong, by its name alone: results say so too, and name no folder.
+/// Adds a warning for each repair of a file, and for what looks wrong in it.
 pub(super) fn warn(file: &DataFile, shell: &CheckedMesh, warnings: &mut Vec<BuildWarning>) {
-    let file = || PathBuf::from(file.name());
-    if let Some(piece) = stray_piece(&shell.mesh) {
-        let file = file();
-        warnings.push(BuildWarning::StrayPiece { file, piece });
-    }
-    if !shell.left_out.is_empty() {
-        let parts = shell.left_out.clone();
-        warnings.push(BuildWarning::LeftOut {
-            file: file(),
-            parts,
-        });
-    }
-    if shell.turned_round {
-        warnings.push(BuildWarning::TurnedRound { file: file() });
-    }
-    if shell.made_consistent > 0 {
-        let count = shell.made_consistent;
-        warnings.push(BuildWarning::MadeConsistent {
-            file: file(),
-            count,
-        });
-    }
-    if shell.wrinkles > 0 {
-        let count = shell.wrinkles;
-        warnings.push(BuildWarning::Wrinkles {
-            file: file(),
-            count,
-        });
-    }
-    if shell.removed_degenerate > 0 {
-        let count = shell.removed_degenerate;
-        warnings.push(BuildWarning::RemovedDegenerate {
-            file: file(),
-            count,
-        });
-    }
-    if !shell.defects.is_empty() {
-        let defects = shell.defects.clone();
-        warnings.push(BuildWarning::Defects {
-            file: file(),
-            defects,
-        });
-    }
+    let counted =
+        |count: usize, remark: fn(usize) -> MeshRemark| (count > 0).then(|| remark(count));
+    let parts = &shell.left_out;
+    let defects = &shell.defects;
+    let remarks = [
+        stray_piece(&shell.mesh).map(MeshRemark::StrayPiece),
+        (!parts.is_empty()).then(|| MeshRemark::LeftOut(parts.clone())),
+        shell.turned_round.then_some(MeshRemark::TurnedRound),
+        counted(shell.made_consistent, MeshRemark::MadeConsistent),
+        counted(shell.wrinkles, MeshRemark::Wrinkles),
+        counted(shell.removed_degenerate, MeshRemark::RemovedDegenerate),
+        (!defects.is_empty()).then(|| MeshRemark::Defects(defects.clone())),
+    ];
+    let remarks = remarks.into_iter().flatten();
+    warnings.extend(remarks.map(|remark| BuildWarning::mesh(file, remark)));
 }
 
-/// Which way most of the surface's shadow from above faces.
+/// Returns the direction that most of the surface faces, by its area seen from above.
 fn faces(mesh: &TriangleMesh) -> Faces {
     let upward = |triangle: usize| {
         let [a, b, c] = mesh.corners(triangle);

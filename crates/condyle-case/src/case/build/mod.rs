@@ -15,7 +15,7 @@ mod tests;
 mod tray;
 
 pub use assemble::Built;
-pub use error::{Body, BuildError, BuildWarning, StrayPiece, WrongAxes};
+pub use error::{Body, BuildError, BuildWarning, MeshFault, MeshRemark, StrayPiece, WrongAxes};
 pub use femur::FEMUR_TRIANGLES;
 pub use shared::SharedBodies;
 

@@ -1,7 +1,5 @@
 //! Checks of orientation, unit, side and origin of a body by its shape.
 
-use std::path::PathBuf;
-
 use condyle::anatomy::{Orientation, Sureness, flange_lead_mm};
 use condyle::geometry::{self, TriangleMesh};
 use condyle::{Mat3, Vec3};
@@ -9,7 +7,7 @@ use condyle_fem::HexMesh;
 
 use super::super::frame::{LengthUnit, Side};
 use super::super::insert::{InsertOrigin, InsertPlacement};
-use super::error::{Body, BuildError, BuildWarning, WrongAxes};
+use super::error::{Body, BuildError, BuildWarning, MeshFault, MeshRemark, WrongAxes};
 use super::meshes::Placing;
 use super::rigid_motion::middle_of_points;
 use crate::config::DataFile;
@@ -41,11 +39,12 @@ pub(super) fn check_orientation(
         better: placing.axes_turned(&turn),
     };
     if sureness == Sureness::Certain {
-        let file = file.path().to_path_buf();
-        return Err(BuildError::WrongAxes { file, wrong });
+        return Err(BuildError::mesh(
+            file.path(),
+            MeshFault::WrongAxes { wrong },
+        ));
     }
-    let file = PathBuf::from(file.name());
-    warnings.push(BuildWarning::WrongAxes { file, wrong });
+    warnings.push(BuildWarning::mesh(file, MeshRemark::WrongAxes { wrong }));
     Ok(false)
 }
 
@@ -58,12 +57,8 @@ pub(super) fn check_side(
 ) {
     let lead_mm = -flange_lead_mm(mesh).unwrap_or(0.0);
     if lead_mm > 0.0 {
-        let file = PathBuf::from(file.name());
-        warnings.push(BuildWarning::OtherSide {
-            file,
-            side,
-            lead_mm,
-        });
+        let remark = MeshRemark::OtherSide { side, lead_mm };
+        warnings.push(BuildWarning::mesh(file, remark));
     }
 }
 
@@ -92,20 +87,15 @@ fn check_unit(
         return Ok(());
     }
     if let Some(better) = usual_unit(size_mm / unit.in_mm()) {
-        let file = file.path().to_path_buf();
-        return Err(BuildError::WrongUnit {
-            file,
+        let fault = MeshFault::WrongUnit {
             body,
             size_mm,
             better,
-        });
+        };
+        return Err(BuildError::mesh(file.path(), fault));
     }
-    let file = PathBuf::from(file.name());
-    warnings.push(BuildWarning::UnusualSize {
-        file,
-        body,
-        size_mm,
-    });
+    let remark = MeshRemark::UnusualSize { body, size_mm };
+    warnings.push(BuildWarning::mesh(file, remark));
     Ok(())
 }
 
@@ -158,12 +148,12 @@ pub(super) fn off_centre(
     let middle = rotation * middle_of_points(&unturned);
     let is_of_file = placement.origin == InsertOrigin::File;
     let is_off = middle.z.abs() > MAX_ACROSS_MM || middle.x.abs() > MAX_ALONG_MM;
-    (is_of_file && is_off).then(|| BuildWarning::OffCentre {
-        file: PathBuf::from(file.name()),
+    let remark = MeshRemark::OffCentre {
         anterior_mm: middle.x,
         lateral_mm: middle.z,
         most_mm: (MAX_ALONG_MM, MAX_ACROSS_MM),
-    })
+    };
+    (is_of_file && is_off).then(|| BuildWarning::mesh(file, remark))
 }
 
 #[cfg(test)]

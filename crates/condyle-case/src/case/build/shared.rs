@@ -7,13 +7,10 @@ use condyle::evolve::WearTest;
 use condyle::geometry;
 use condyle_fem::{Elastic, SolidError};
 
-use super::super::contact::ContactModelWord;
 use super::super::contents::Case;
 use super::super::femur::Femur;
-use super::super::femur::FemurPlacement;
 use super::super::frame::Side;
 use super::super::insert::Insert;
-use super::super::insert::InsertPlacement;
 use super::super::run_options::Limits;
 use super::error::BuildWarning;
 use super::femur::BuiltFemur;
@@ -49,20 +46,15 @@ pub(super) type WithWarnings<T> = (Arc<T>, Vec<BuildWarning>);
 
 /// All that an insert follows from.
 #[derive(PartialEq)]
-pub(super) struct InsertInputs(Insert, InsertPlacement, Side, Limits);
+pub(super) struct InsertInputs(Insert, Side, Limits);
 
 /// All that a femur follows from; last its flexion at the start, rad.
 #[derive(PartialEq)]
-pub(super) struct FemurInputs(Femur, FemurPlacement, Side, Limits, f64);
+pub(super) struct FemurInputs(Femur, Side, Limits, f64);
 
 impl InsertInputs {
     fn of(case: &Case) -> Self {
-        Self(
-            case.insert.clone(),
-            case.insert_placement.clone(),
-            case.heading.side,
-            case.limits.clone(),
-        )
+        Self(case.insert.clone(), case.heading.side, case.limits.clone())
     }
 }
 
@@ -95,7 +87,6 @@ impl SharedBodies {
     ) -> Result<WithWarnings<BuiltFemur>, E> {
         let inputs = FemurInputs(
             case.femur.clone(),
-            case.femur_placement.clone(),
             case.heading.side,
             case.limits.clone(),
             flexion_rad,
@@ -177,7 +168,7 @@ impl Case {
         keep: &dyn Keep,
         more_than_pairs: usize,
     ) -> usize {
-        if self.contact.model != ContactModelWord::Deformable {
+        if self.contact.deformable().is_none() {
             return more_than_pairs;
         }
         let known = test.contact.known_compliance(&test.insert, more_than_pairs);
@@ -194,11 +185,9 @@ impl Case {
     }
 
     fn inputs_of_compliance(&self, insert: &geometry::Insert) -> Inputs {
-        Inputs::of(
-            insert,
-            self.material.elastic(),
-            self.contact.backside.is_resting(),
-        )
+        let model = self.contact.deformable();
+        let rests = model.is_some_and(|model| model.backside.is_resting());
+        Inputs::of(insert, self.material.elastic(), rests)
     }
 }
 

@@ -6,7 +6,7 @@ use condyle::Vec3;
 use condyle::geometry::TriangleMesh;
 
 use super::super::frame::LengthUnit;
-use super::error::{BuildError, StrayPiece};
+use super::error::{BuildError, MeshFault, StrayPiece};
 
 /// No part of a knee is shorter, mm ...
 const MIN_MM: f64 = 5.0;
@@ -23,10 +23,9 @@ pub(super) fn check_triangles(
     unit: LengthUnit,
 ) -> Result<(), BuildError> {
     check_points(file, &mesh.vertices, unit).map_err(|error| match stray_piece(mesh) {
-        Some(piece) if is_possible(piece.body_mm) => BuildError::StrayPiece {
-            file: file.to_path_buf(),
-            piece,
-        },
+        Some(piece) if is_possible(piece.body_mm) => {
+            BuildError::mesh(file, MeshFault::StrayPiece(piece))
+        }
         _ => error,
     })
 }
@@ -49,11 +48,8 @@ pub(super) fn check_points(
     let in_unit = |other: LengthUnit| size_mm / unit.in_mm() * other.in_mm();
     let mut units = LengthUnit::ALL.iter().copied();
     let better = units.find(|&other| USUAL_MM.contains(&in_unit(other)));
-    Err(BuildError::Size {
-        file: file.to_path_buf(),
-        size_mm,
-        better: better.map(|unit| (unit, in_unit(unit))),
-    })
+    let better = better.map(|unit| (unit, in_unit(unit)));
+    Err(BuildError::mesh(file, MeshFault::Size { size_mm, better }))
 }
 
 fn is_possible(size_mm: f64) -> bool {

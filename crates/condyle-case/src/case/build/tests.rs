@@ -15,7 +15,7 @@ use super::error::BuildError;
 use super::meshes::{Placing, ShellOf, shell};
 use crate::cache::Cache;
 use crate::case::tests::{cases, has_dm_data};
-use crate::case::{Case, Femur, Insert, Side};
+use crate::case::{Case, FemurShape, InsertShape, Side};
 use condyle_mesh::formats::write_stl;
 
 fn built(text: &str, folder: &Path) -> Result<Built, BuildError> {
@@ -80,7 +80,7 @@ fn dm_cases_build_and_lie_the_right_way_round() {
     let thinnest = thickness.fold(f64::INFINITY, f64::min);
     // The rim rests on the tray by a ledge at 3.94 mm, and is 5.8 mm high.
     assert!((1.8..2.0).contains(&thinnest), "{thinnest}");
-    let Femur::Mesh(femur) = &case.femur else {
+    let FemurShape::Mesh(femur) = &case.femur.shape else {
         panic!("it is a mesh");
     };
     let placing = Placing::new(femur.length_unit, &femur.axes, Side::Right).unwrap();
@@ -103,7 +103,7 @@ fn the_hexahedra_of_real_inserts_are_sound_whatever_their_edge() {
     for (name, edges_mm) in [("dm-knee.toml", &dm[..]), ("cams-knee.toml", &cams)] {
         for &edge_mm in edges_mm {
             let mut case = Case::read(&cases().join(name)).unwrap();
-            let Insert::Mesh(insert) = &mut case.insert else {
+            let InsertShape::Mesh(insert) = &mut case.insert.shape else {
                 panic!("it is a mesh");
             };
             insert.edge_mm = edge_mm;

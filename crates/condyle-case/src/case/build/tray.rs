@@ -1,11 +1,9 @@
 //! The insert of a file that holds its tray and stem too.
 
-use std::path::PathBuf;
-
 use condyle::geometry::Underside;
 use condyle_mesh::repair::{CheckedMesh, RepairError};
 
-use super::error::{BuildError, BuildWarning};
+use super::error::{BuildError, BuildWarning, MeshFault, MeshRemark};
 use super::meshes::checks_of_insert;
 use crate::config::DataFile;
 
@@ -19,7 +17,7 @@ const USUAL_PLATE_MM: f64 = 4.0;
 /// The insert of a file, cut off its tray where the shape shows where that is.
 ///
 /// # Errors
-/// [`BuildError::UnclearUnderside`] where it does not, and what a shell is refused for.
+/// [`MeshFault::UnclearUnderside`] where it does not, and what a shell is refused for.
 pub(super) fn without_tray(
     file: &DataFile,
     shell: CheckedMesh,
@@ -33,26 +31,24 @@ pub(super) fn without_tray(
             reach_mm,
         } => {
             let height_mm = rounded_up(height_mm);
-            warnings.push(BuildWarning::CutOffTray {
-                file: PathBuf::from(file.name()),
+            let remark = MeshRemark::CutOffTray {
                 height_mm,
                 below_dishes_mm,
                 reach_mm,
-            });
-            cut_at(shell, height_mm).map_err(|source| BuildError::Shell {
-                file: file.path().to_path_buf(),
-                source,
-            })
+            };
+            warnings.push(BuildWarning::mesh(file, remark));
+            cut_at(shell, height_mm)
+                .map_err(|error| BuildError::mesh(file.path(), MeshFault::Shell(error)))
         }
         Underside::Unclear {
             reach_mm,
             plate_mm,
             ledges_mm,
-        } => Err(BuildError::UnclearUnderside {
-            file: file.path().to_path_buf(),
-            reach_mm,
-            heights: heights_to_write(plate_mm, &ledges_mm),
-        }),
+        } => {
+            let heights = heights_to_write(plate_mm, &ledges_mm);
+            let fault = MeshFault::UnclearUnderside { reach_mm, heights };
+            Err(BuildError::mesh(file.path(), fault))
+        }
     }
 }
 

@@ -111,23 +111,21 @@ fn key_of_a_mesh_on_a_generic_femur_contradicts() {
             "`length_unit` belongs to shape = \"mesh\", but this case has shape = \"generic\"",
             " 3 | length_unit = \"m\"",
             "   : ^^^^^^^^^^^",
-            "help: remove the key, or write `shape = \"mesh\"`",
+            "help: remove it, or write `shape = \"mesh\"`",
         ],
     );
 }
 
 #[test]
 fn keys_of_a_pressure_law_belong_to_the_foundation() {
-    let shown = refusal(
-        "[contact]\nmodel = \"deformable\"\nlaw = \"softening\"\nsoftening_strain = 0.05\n",
-    );
+    let shown =
+        refusal("[contact]\nmodel = \"deformable\"\n[contact.foundation]\nlaw = \"softening\"\n");
     assert_shows(
         &shown,
         &[
-            "`law` belongs to model = \"foundation\", but this case has model = \"deformable\"",
-            " 3 | law = \"softening\"",
-            "`softening_strain` belongs to model = \"foundation\"",
-            " 4 | softening_strain = 0.05",
+            "`[contact.foundation]` belongs to model = \"foundation\", but this case has model = \"deformable\"",
+            " 3 | [contact.foundation]",
+            "help: remove it, or write `model = \"foundation\"`",
         ],
     );
     let shown = refusal("[contact]\nmodel = \"elastic\"\n");
@@ -146,16 +144,15 @@ fn a_deformable_insert_is_written_without_a_law() {
     let case = case.expect("it is a good case");
     let written = case.to_toml();
     assert!(written.contains("model = \"deformable\""), "{written}");
-    let contact = written.split("[contact]").nth(1).unwrap_or_default();
-    let contact = contact.split("\n[").next().unwrap_or_default();
-    assert!(!contact.contains("law ="), "{contact}");
+    assert!(!written.contains("[contact.foundation]"), "{written}");
+    assert!(written.contains("[contact.deformable]"), "{written}");
 }
 
 #[test]
 fn what_is_no_yield_stress_is_named_with_its_place() {
     let of = |keys: &str| {
         refusal(&format!(
-            "[contact]\nmodel = \"deformable\"\nplasticity = \"j2\"\n{keys}\n"
+            "[contact]\nmodel = \"deformable\"\n[contact.deformable]\nplasticity = \"j2\"\n{keys}\n"
         ))
     };
     let shown = of("hardening = [[0.0, 14.0], [0.1, 13.0]]");
@@ -163,7 +160,7 @@ fn what_is_no_yield_stress_is_named_with_its_place() {
         &shown,
         &[
             "`hardening`: the hardening curve falls at point 2, from 14 to 13",
-            " 4 | hardening",
+            " 5 | hardening",
         ],
     );
     let shown = of("hardening = [[0.01, 14.0], [0.1, 20.0]]");
@@ -177,21 +174,24 @@ fn what_is_no_yield_stress_is_named_with_its_place() {
         &["`hardening` starts at 15 MPa, and yield_stress_mpa is 14"],
     );
     let shown = of("yield_stress_mpa = 0.0");
-    assert_shows(&shown, &["yield_stress_mpa", " 4 | yield_stress_mpa = 0.0"]);
-    let shown = refusal("[contact]\nmodel = \"deformable\"\nyield_stress_mpa = 12.0\n");
+    assert_shows(&shown, &["yield_stress_mpa", " 5 | yield_stress_mpa = 0.0"]);
+    let shown = refusal(
+        "[contact]\nmodel = \"deformable\"\n[contact.deformable]\nyield_stress_mpa = 12.0\n",
+    );
     assert_shows(
         &shown,
         &["`yield_stress_mpa` belongs to plasticity = \"j2\""],
     );
-    let shown = refusal("[contact]\nplasticity = \"j2\"\n");
-    assert_shows(&shown, &["`plasticity` belongs to model = \"deformable\""]);
+    let shown = refusal("[contact.deformable]\nplasticity = \"j2\"\n");
+    let belongs = "`[contact.deformable]` belongs to model = \"deformable\"";
+    assert_shows(&shown, &[belongs, " 1 | [contact.deformable]"]);
 }
 
 #[test]
 fn a_case_with_plasticity_is_written_and_read_again() {
     let keys =
         "plasticity = \"j2\"\nyield_stress_mpa = 12.0\nhardening = [[0.0, 12.0], [0.1, 20.0]]";
-    let text = format!("[contact]\nmodel = \"deformable\"\n{keys}\n");
+    let text = format!("[contact]\nmodel = \"deformable\"\n[contact.deformable]\n{keys}\n");
     let case = parsed(&text).expect("it is a good case");
     let again = parsed(&case.to_toml()).expect("what is written is a good case");
     assert_eq!(again.contact, case.contact);
@@ -199,16 +199,17 @@ fn a_case_with_plasticity_is_written_and_read_again() {
 
 #[test]
 fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments() {
-    let shown = refusal("[contact]\nfriction_model = \"stick-slip\"\n");
+    let shown = refusal("[contact.deformable]\nfriction_model = \"stick-slip\"\n");
     assert_shows(
         &shown,
-        &["`friction_model` belongs to model = \"deformable\""],
+        &["`[contact.deformable]` belongs to model = \"deformable\""],
     );
-    let sticking = "[contact]\nmodel = \"deformable\"\nfriction_model = \"stick-slip\"\n";
+    let sticking = "[contact]\nmodel = \"deformable\"\n[contact.deformable]\nfriction_model = \"stick-slip\"\n";
     let case = parsed(sticking).expect("it is a good case");
     let again = parsed(&case.to_toml()).expect("what is written is a good case");
     assert_eq!(again.contact, case.contact);
-    assert_eq!(again.contact.friction_model, FrictionModelWord::StickSlip);
+    let model = again.contact.deformable().expect("it is deformable");
+    assert_eq!(model.friction_model, FrictionModelWord::StickSlip);
     let explicit = format!("{sticking}[time]\nintegrator = \"explicit\"\n");
     let case = parsed(&explicit).expect("its keys are good");
     let refused = case.contact_law(&flat()).expect_err("it is refused");
@@ -223,9 +224,7 @@ fn friction_that_sticks_is_that_of_a_deformable_insert_and_of_solved_increments(
 
 #[test]
 fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_increments() {
-    let shown = refusal("[contact]\nbackside = \"resting\"\n");
-    assert_shows(&shown, &["`backside` belongs to model = \"deformable\""]);
-    let deformable = "[contact]\nmodel = \"deformable\"\n";
+    let deformable = "[contact]\nmodel = \"deformable\"\n[contact.deformable]\n";
     let shown = refusal(&format!("{deformable}backside_friction = 0.1\n"));
     assert_shows(
         &shown,
@@ -264,7 +263,8 @@ fn a_backside_that_rests_is_that_of_a_deformable_insert_alone_and_of_solved_incr
 
 #[test]
 fn a_backside_that_is_not_flat_does_not_rest() {
-    let resting = "[contact]\nmodel = \"deformable\"\nbackside = \"resting\"\n";
+    let resting =
+        "[contact]\nmodel = \"deformable\"\n[contact.deformable]\nbackside = \"resting\"\n";
     let case = parsed(resting).expect("it is a good case");
     let mut mesh = flat().mesh().clone();
     for node in &mut mesh.nodes {
@@ -300,7 +300,8 @@ fn flat() -> Insert {
 
 #[test]
 fn table_of_another_law_contradicts() {
-    let shown = refusal("[contact]\nlaw = \"linear\"\ntable = [[0.0, 0.0], [0.1, 5.0]]\n");
+    let shown =
+        refusal("[contact.foundation]\nlaw = \"linear\"\ntable = [[0.0, 0.0], [0.1, 5.0]]\n");
     assert_shows(
         &shown,
         &[
@@ -384,7 +385,7 @@ fn wrong_type_says_what_it_must_be() {
 
 #[test]
 fn unknown_word_offers_the_nearest_and_lists_all() {
-    let shown = refusal("[contact]\nlaw = \"logaritmic\"\n");
+    let shown = refusal("[contact.foundation]\nlaw = \"logaritmic\"\n");
     assert_shows(
         &shown,
         &[
@@ -607,7 +608,11 @@ fn place_to_lock_a_free_freedom_is_idle() {
 
 #[test]
 fn pressure_table_must_rise_from_zero_and_be_given_once() {
-    let table = |rest: &str| refusal(&format!("[contact]\nlaw = \"tabulated\"\n{rest}\n"));
+    let table = |rest: &str| {
+        refusal(&format!(
+            "[contact.foundation]\nlaw = \"tabulated\"\n{rest}\n"
+        ))
+    };
     assert_shows(
         &table("table = [[0.0, 0.0], [0.1, 5.0], [0.2, 5.0]]"),
         &[
@@ -622,18 +627,22 @@ fn pressure_table_must_rise_from_zero_and_be_given_once() {
     );
     assert_shows(
         &table(""),
-        &["[contact] needs one of `table` or `table_file`"],
+        &["[contact.foundation] needs one of `table` or `table_file`"],
     );
     let both = "table = [[0.0, 0.0], [0.1, 5.0]]\ntable_file = \"x.csv\"";
     assert_shows(
         &table(both),
-        &["[contact] has both `table` and `table_file`"],
+        &["[contact.foundation] has both `table` and `table_file`"],
     );
 }
 
 #[test]
 fn strain_table_must_rise_from_zero_and_be_given_once() {
-    let table = |rest: &str| refusal(&format!("[contact]\nlaw = \"tabulated-strain\"\n{rest}\n"));
+    let table = |rest: &str| {
+        refusal(&format!(
+            "[contact.foundation]\nlaw = \"tabulated-strain\"\n{rest}\n"
+        ))
+    };
     assert_shows(
         &table("strain_table = [[0.01, 0.0], [0.02, 1.0]]"),
         &[
@@ -643,7 +652,7 @@ fn strain_table_must_rise_from_zero_and_be_given_once() {
     );
     assert_shows(
         &table(""),
-        &["[contact] needs one of `strain_table` or `strain_table_file`"],
+        &["[contact.foundation] needs one of `strain_table` or `strain_table_file`"],
     );
     assert_shows(&table("table = [[0.0, 0.0], [0.1, 5.0]]"), &["`table`"]);
     let rising = "strain_table = [[0.0, 0.0], [0.02, 1.0]]\npeak_error_percent = -1.0";
@@ -692,7 +701,7 @@ fn an_empty_file_is_the_default_case() {
     let case = parsed("").unwrap();
     assert_eq!(case.march.cycles, 5_000_000);
     assert_eq!(
-        parsed(&crate::case::template(case.machine.preset)).unwrap(),
+        parsed(&crate::case::template(case.machine.settings.preset)).unwrap(),
         case
     );
 }

@@ -1,6 +1,7 @@
 //! Whole cases: what is read, what is refused and how that looks.
 
 mod activities;
+mod changes;
 mod errors;
 mod files;
 mod material;

@@ -7,8 +7,8 @@ use condyle::wear::WEAR_LAWS;
 
 use super::{cases, has_dm_data, parsed};
 use crate::case::{
-    Case, CaseChannel, DriveWord, Femur, Insert, Preset, Side, json_schema, schema_markdown,
-    template,
+    Case, CaseChannel, DriveWord, FemurShape, InsertShape, Preset, Side, json_schema,
+    schema_markdown, template,
 };
 
 fn shipped(name: &str) -> Case {
@@ -51,8 +51,8 @@ fn every_choice_round_trips() {
         "[femur]\nshape = \"sphere\"\nradius_mm = 12.5\nstart_mm = [1.0, -2.0]\n",
         "[femur]\nshape = \"cylinder\"\nradius_mm = 12.5\nstart_mm = [1.0, -2.0]\n",
         "[insert]\nshape = \"flat\"\nlayers = 5\n",
-        "[contact]\nlaw = \"logarithmic\"\n",
-        "[contact]\nlaw = \"tabulated\"\ntable = [[0, 0], [0.05, 5.0], [0.1, 12.0]]\n",
+        "[contact.foundation]\nlaw = \"logarithmic\"\n",
+        "[contact.foundation]\nlaw = \"tabulated\"\ntable = [[0, 0], [0.05, 5.0], [0.1, 12.0]]\n",
         "[machine]\nap_force_sign = -1\n[machine.springs]\nstiffness_of = \"each\"\n",
         "[machine.freedoms.ap]\ndrive = \"locked\"\nlocked_at_mm = 1.5\n",
         "[machine.freedoms.ap]\ndrive = \"prescribed\"\n[machine.ap_motion]\nwaveform = \"none\"\n",
@@ -141,7 +141,9 @@ fn dm_cases_turn_the_meshes_half_round() {
         return;
     }
     let case = shipped("dm-knee.toml");
-    let (Femur::Mesh(femur), Insert::Mesh(insert)) = (&case.femur, &case.insert) else {
+    let (FemurShape::Mesh(femur), InsertShape::Mesh(insert)) =
+        (&case.femur.shape, &case.insert.shape)
+    else {
         panic!("both are meshes");
     };
     for axes in [femur.axes, insert.axes] {
@@ -155,10 +157,10 @@ fn dm_cases_turn_the_meshes_half_round() {
 fn templates_are_cases_of_their_preset() {
     for preset in [Preset::StanmoreForce, Preset::StanmoreDisplacement] {
         let case = parsed(&template(preset)).unwrap();
-        assert_eq!(case.machine.preset, preset);
+        assert_eq!(case.machine.settings.preset, preset);
         let prescribed = preset == Preset::StanmoreDisplacement;
         assert_eq!(
-            case.machine.freedoms.get(knee::AP).drive() == DriveWord::Prescribed,
+            case.machine.freedoms.get(knee::AP).drive == DriveWord::Prescribed,
             prescribed
         );
     }

@@ -102,7 +102,7 @@ fn its_keys_are_checked_as_all_others() {
         &refusal("from_n_per_mm = 40.0"),
         &[
             "`from_n_per_mm` belongs to law = \"threshold\", but this case has law = \"archard\"",
-            "help: remove the key, or write `law = \"threshold\"`",
+            "help: remove it, or write `law = \"threshold\"`",
         ],
     );
     let threshold = |key: &str| refusal(&format!("law = \"threshold\"\n{key}"));
