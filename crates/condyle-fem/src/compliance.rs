@@ -160,7 +160,7 @@ impl ElasticSolid {
     ///
     /// # Panics
     /// If there is no such node.
-    pub fn half_solved_sums(&self, forces: &[&[(u32, Vec3)]]) -> HalfSolved {
+    pub(crate) fn half_solved_sums(&self, forces: &[&[(u32, Vec3)]]) -> HalfSolved {
         let factor = &self.factor;
         let places = forces.iter().copied().flatten();
         let places = places.filter_map(|&(node, _)| factor.dissection.place(node));

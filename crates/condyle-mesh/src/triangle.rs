@@ -4,14 +4,14 @@ use super::Vec3;
 
 /// Interpolates vectors at the corners with barycentric coordinates `weights`.
 #[inline]
-pub fn weighted(vectors: &[Vec3; 3], weights: [f64; 3]) -> Vec3 {
+pub(crate) fn weighted(vectors: &[Vec3; 3], weights: [f64; 3]) -> Vec3 {
     vectors[0] * weights[0] + vectors[1] * weights[1] + vectors[2] * weights[2]
 }
 
 /// Returns the barycentric coordinates of the point of a triangle closest to `point`.
 ///
 /// By the regions of the triangle, as in Ericson, Real-Time Collision Detection, 5.1.5.
-pub fn closest_point(corners: &[Vec3; 3], point: &Vec3) -> [f64; 3] {
+pub(crate) fn closest_point(corners: &[Vec3; 3], point: &Vec3) -> [f64; 3] {
     let [a, b, c] = corners;
     let (ab, ac) = (b - a, c - a);
     let from_a = point - a;

@@ -29,6 +29,7 @@ pub(super) fn turn(a: &Place, b: &Place) -> f64 {
 
 /// Returns the closed lines around the footprint, by marching squares over its samples.
 pub(super) fn outline(footprint: &Footprint<'_>, edge_mm: f64) -> Vec<Loop> {
+    // Edges without a next crossing start nothing; closed lines end where they began.
     let next = next_crossings(footprint);
     let mut is_done = vec![false; next.len()];
     let mut loops = Vec::new();

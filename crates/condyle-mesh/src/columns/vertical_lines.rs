@@ -98,6 +98,7 @@ impl<'a> VerticalLines<'a> {
                 upward: if is_higher { over.upward } else { upward },
             })
         });
+        // A line that meets a closed surface once only grazes it.
         through.filter(|all| !self.is_closed || all.top > all.bottom)
     }
 

@@ -16,12 +16,12 @@ pub(crate) struct HexDraft<'a> {
     path: &'a Path,
     nodes: Vec<Vec3>,
     node_of_label: HashMap<u64, usize>,
-    hexes: Vec<DraftHex>,
+    pub(crate) hexes: Vec<DraftHex>,
     hex_of_label: HashMap<u64, usize>,
     /// Number of hexahedra that have each face, counted on first use.
     uses_of_quad: OnceCell<HashMap<[u64; 4], usize>>,
     surfaces: NamedLists<DraftQuad>,
-    node_sets: NamedLists<u64>,
+    pub(crate) node_sets: NamedLists<u64>,
 }
 
 /// Line and labels of a quad.
@@ -119,10 +119,6 @@ impl<'a> HexDraft<'a> {
         Ok(())
     }
 
-    pub(crate) fn hexes(&self) -> &[DraftHex] {
-        &self.hexes
-    }
-
     pub(crate) fn labelled_hex(&self, label: u64) -> Option<&DraftHex> {
         Some(&self.hexes[*self.hex_of_label.get(&label)?])
     }
@@ -134,10 +130,6 @@ impl<'a> HexDraft<'a> {
 
     pub(crate) fn set_nodes(&mut self, set: &str, nodes: impl IntoIterator<Item = u64>) {
         self.node_sets.entry(set).extend(nodes);
-    }
-
-    pub(crate) fn node_sets(&self) -> &NamedLists<u64> {
-        &self.node_sets
     }
 
     /// Returns the faces of these hexahedra that no other hexahedron of the mesh shares.

@@ -241,7 +241,7 @@ impl Model<'_> {
 
     fn node_set(&mut self, keyword: &Keyword) -> Result<(), MeshFileError> {
         let name = keyword.required("NSET")?;
-        let mut nodes = self.members(keyword, |model| model.draft.node_sets())?;
+        let mut nodes = self.members(keyword, |model| &model.draft.node_sets)?;
         if let Some(elements) = keyword.value("ELSET") {
             let labels = self.element_sets.get(&plain(elements)).unwrap_or_default();
             let labels = labels.to_vec();

@@ -169,7 +169,7 @@ pub(super) fn parse_vtu(path: &Path, bytes: &[u8]) -> Result<HexFile, MeshFileEr
         let is_marked = |node: u64| mark.values.get(node as usize) == Some(&1.0);
         let nodes = (0..mark.values.len() as u64).filter(|&node| is_marked(node));
         draft.set_nodes(&mark.name, nodes);
-        for quad in draft.free_quads(draft.hexes()) {
+        for quad in draft.free_quads(&draft.hexes) {
             if quad.iter().all(|&node| is_marked(node)) {
                 draft.quad(&mark.name, At::file(path), quad);
             }

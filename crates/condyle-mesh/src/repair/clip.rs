@@ -13,41 +13,19 @@ const ON_MM: f64 = 1e-4;
 
 /// Cuts away what lies below a height along y, and closes the cut with triangles that face down.
 pub(super) fn clip_below(mesh: &TriangleMesh, height_mm: f64) -> TriangleMesh {
-    let mut clip = Clip {
-        height_mm,
-        cut: TriangleMesh {
-            vertices: mesh.vertices.clone(),
-            triangles: Vec::new(),
-        },
-        on_edge: BTreeMap::new(),
-    };
-    for at in &mut clip.cut.vertices {
+    let mut vertices = mesh.vertices.clone();
+    for at in &mut vertices {
         if (at.y - height_mm).abs() < ON_MM {
             at.y = height_mm;
         }
     }
-    mesh.triangles
-        .iter()
-        .for_each(|&triangle| clip.add(triangle));
-    let loops = loops_at(&clip.cut, height_mm);
-    fill(&mut clip.cut, &loops, &-Vec3::y());
-    join_filled(&mut clip.cut);
-    clip.cut
-}
-
-struct Clip {
-    height_mm: f64,
-    cut: TriangleMesh,
-    /// The vertex where an edge passes the height.
-    on_edge: BTreeMap<[u32; 2], u32>,
-}
-
-impl Clip {
-    /// Adds the part of a triangle that lies above.
-    fn add(&mut self, triangle: [u32; 3]) {
-        let above = triangle.map(|v| self.cut.vertices[v as usize].y - self.height_mm);
+    let mut triangles = Vec::new();
+    // The vertex where an edge passes the height, the same for both triangles of the edge.
+    let mut on_edge: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+    for &triangle in &mesh.triangles {
+        let above = triangle.map(|vertex| vertices[vertex as usize].y - height_mm);
         if above.iter().all(|&height| height <= 0.0) {
-            return;
+            continue;
         }
         let mut kept = Vec::with_capacity(4);
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
@@ -55,26 +33,30 @@ impl Clip {
                 kept.push(triangle[from]);
             }
             if above[from] * above[to] < 0.0 {
-                kept.push(self.crossing(triangle[from], triangle[to]));
+                let [from, to] = [triangle[from], triangle[to]];
+                let ends = [from.min(to), from.max(to)];
+                kept.push(*on_edge.entry(ends).or_insert_with(|| {
+                    let [a, b] = ends.map(|end| vertices[end as usize]);
+                    let mut at = a + (b - a) * ((height_mm - a.y) / (b.y - a.y));
+                    // Exactly, so that the open edges of the cut are found by their height.
+                    at.y = height_mm;
+                    vertices.push(at);
+                    vertices.len() as u32 - 1
+                }));
             }
         }
         for ends in kept[1..].windows(2) {
-            self.cut.triangles.push([kept[0], ends[0], ends[1]]);
+            triangles.push([kept[0], ends[0], ends[1]]);
         }
     }
-
-    /// Returns the vertex where an edge passes the height, the same for both triangles of the edge.
-    fn crossing(&mut self, from: u32, to: u32) -> u32 {
-        let ends = [from.min(to), from.max(to)];
-        let [a, b] = ends.map(|end| self.cut.vertices[end as usize]);
-        let mut at = a + (b - a) * ((self.height_mm - a.y) / (b.y - a.y));
-        at.y = self.height_mm;
-        let vertices = &mut self.cut.vertices;
-        *self.on_edge.entry(ends).or_insert_with(|| {
-            vertices.push(at);
-            vertices.len() as u32 - 1
-        })
-    }
+    let mut cut = TriangleMesh {
+        vertices,
+        triangles,
+    };
+    let loops = loops_at(&cut, height_mm);
+    fill(&mut cut, &loops, &-Vec3::y());
+    join_filled(&mut cut);
+    cut
 }
 
 /// Returns the loops of open edges at a height. Triangles may not agree yet, so edges have no direction.

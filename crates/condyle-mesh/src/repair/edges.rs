@@ -56,15 +56,6 @@ impl EdgeReport {
 }
 
 /// Reports open, non-manifold and inconsistent edges of a triangle mesh as it is.
-///
-/// ```
-/// use condyle_mesh::{TriangleMesh, Vec3, repair::edge_report};
-///
-/// let mut block = TriangleMesh::block(Vec3::zeros(), Vec3::repeat(1.0));
-/// assert!(edge_report(&block).is_closed());
-/// block.triangles.pop();
-/// assert_eq!(edge_report(&block).open_edges, 3);
-/// ```
 pub fn edge_report(mesh: &TriangleMesh) -> EdgeReport {
     let uses = edge_uses(mesh);
     let mut report = EdgeReport::default();

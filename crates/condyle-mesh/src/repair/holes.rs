@@ -33,6 +33,7 @@ pub(super) fn close_holes(mesh: &mut TriangleMesh, pieces: &[Piece], judge: &mut
         let area: Vec3 = spans
             .map(|(a, b)| (a - places[0]).cross(&(b - places[0])))
             .sum();
+        // The loop runs in the sense of the triangles around it, so that the filling faces the other way.
         if let Some(normal) = area.try_normalize(0.0).filter(|_| !matters) {
             fill(mesh, &[around], &-normal);
             filled = true;
@@ -142,6 +143,7 @@ fn add_polygon<'r>(mesh: &mut TriangleMesh, outer: &Ring, holes: impl Iterator<I
         vertices.extend(&hole.vertices);
         places.extend(&hole.places);
     }
+    // Ear cutting keeps all vertices of the loops, so that the filling fits their edges.
     let mut corners: Vec<u32> = Vec::new();
     Earcut::new().earcut(places.iter().copied(), &starts, &mut corners);
     for &[a, b, c] in corners.as_chunks().0 {

@@ -62,6 +62,7 @@ impl TouchMap {
     }
 
     pub(super) fn contains(&self, at_mm: &Vec3) -> bool {
+        // Without views, every defect matters: the rule errs towards touching.
         let Some(views) = &self.views else {
             return true;
         };
@@ -126,6 +127,7 @@ impl View {
                 let at = [self.middle(0, i), self.middle(1, k)];
                 let parts = [cross(at, b, c), cross(at, c, a), cross(at, a, b)];
                 let weights = parts.map(|part| part / all);
+                // A little generous, so that no line slips between two triangles.
                 if weights.iter().all(|&weight| weight >= -1e-9) {
                     let reach = weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2];
                     let cell = &mut self.reach_mm[i * self.cells[1] + k];
