@@ -36,6 +36,7 @@ use condyle_results::{
 
 use worn_surface::WornSurface;
 
+// Richardson's factors: the error that is left, from the change that a coarser or finer value makes.
 /// Error of a run from the change that twice the increments make: 1 / (1 - 1/2^2), second order.
 const FINER_INCREMENTS: f64 = 4.0 / 3.0;
 /// From the change that twice the slip tolerance makes: first order.

@@ -30,20 +30,17 @@ pub const KINEMATICS_PICTURE: &str = "kinematics";
 /// Files of `condyle plot`.
 pub const PLOTTED: AddedFiles = AddedFiles {
     folder: "pictures",
-    names: &{
-        let [wear, pressure, sliding, cross_shear, creep, set] = MAP_PICTURES;
-        [
-            wear,
-            pressure,
-            sliding,
-            cross_shear,
-            creep,
-            set,
-            SLIP_PATHS_PICTURE,
-            WEAR_PICTURE,
-            KINEMATICS_PICTURE,
-        ]
-    },
+    names: &[
+        MAP_PICTURES[0],
+        MAP_PICTURES[1],
+        MAP_PICTURES[2],
+        MAP_PICTURES[3],
+        MAP_PICTURES[4],
+        MAP_PICTURES[5],
+        SLIP_PATHS_PICTURE,
+        WEAR_PICTURE,
+        KINEMATICS_PICTURE,
+    ],
     endings: &["svg", "png"],
 };
 

@@ -23,7 +23,7 @@ pub enum DamagedFile {
     /// Other bytes.
     #[error(
         "{}: the file is damaged: its bytes are not those that the run wrote (its hash is in {CHECKSUMS}); put it back \
-         from a copy, or run the case anew with --force",
+         from a copy, or run the case again with --force",
         file.display()
     )]
     Changed {
@@ -32,19 +32,19 @@ pub enum DamagedFile {
     },
     /// Not there, or not to be read.
     #[error(
-        "{}: the run wrote this file, and it cannot be read: {source}; put it back from a copy, or run the case anew with \
+        "{}: the run wrote this file, and it cannot be read: {source}; put it back from a copy, or run the case again with \
          --force",
         file.display()
     )]
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// Why.
+        /// The cause.
         source: io::Error,
     },
 }
 
-/// Whether a file has the bytes that the run wrote; nothing is known of one that its folder has no hash of.
+/// Checks that a file has the bytes that the run wrote; accepts a file without a hash in its folder.
 ///
 /// # Errors
 /// One that was changed, or that is gone.
@@ -58,20 +58,20 @@ pub fn check_file(file: &Path) -> Result<(), DamagedFile> {
     }
 }
 
-/// Whether all files that a folder has a hash of are what the run wrote.
+/// Checks all files of a folder that have a hash.
 pub(super) fn check_all(folder: &Path) -> Result<(), DamagedFile> {
     let listed = listed(folder);
     let mut files = listed.iter();
     files.try_for_each(|(hash, name)| check(&folder.join(name), hash))
 }
 
-/// Whether files of this name have their hash written.
+/// Returns whether files of this name get a hash.
 pub(super) fn is_listed(name: &str) -> bool {
     let is_mesh = [".vtu", ".vtp"].iter().any(|ending| name.ends_with(ending));
     is_mesh && !name.contains('/')
 }
 
-/// Writes the hash of a file's bytes in place of the one it had.
+/// Writes the hash of a file's bytes, which replaces an earlier one.
 pub(super) fn write_checksum(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<()> {
     let mut lines = listed(folder);
     lines.retain(|(_, other)| other != name);
@@ -99,7 +99,7 @@ fn check(file: &Path, hash: &str) -> Result<(), DamagedFile> {
     })
 }
 
-/// Hash and name of every file that a folder has one of.
+/// Hash and name of every listed file of a folder.
 fn listed(folder: &Path) -> Vec<(String, String)> {
     let text = fs::read_to_string(folder.join(CHECKSUMS)).unwrap_or_default();
     let lines = text.lines().filter_map(|line| line.split_once(GAP));

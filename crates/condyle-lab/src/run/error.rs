@@ -1,4 +1,4 @@
-//! Why a run failed.
+//! Errors of runs.
 
 use std::{
     io,
@@ -13,7 +13,7 @@ use condyle_case::{
 use condyle_results::ResultsError;
 use thiserror::Error;
 
-/// Why a run failed.
+/// A failed run.
 #[derive(Debug, Error)]
 pub enum RunError {
     /// The case file.
@@ -25,12 +25,12 @@ pub enum RunError {
     /// The bodies that the case describes.
     #[error("{shown}")]
     Build {
-        /// Why.
+        /// The cause.
         source: Box<BuildError>,
-        /// The same at the key of the case that is behind it.
+        /// The same at the key of the case that causes it.
         shown: Problems,
     },
-    /// A mesh that went away.
+    /// A mesh that can no longer be read.
     #[error("a mesh of the case cannot be read: {0}; check the paths in the case")]
     Inputs(#[source] io::Error),
     /// The results folder.
@@ -39,28 +39,28 @@ pub enum RunError {
     /// The report.
     #[error(transparent)]
     Report(#[from] condyle_report::ReportError),
-    /// Two bodies that make no knee.
+    /// Bodies that do not settle on each other.
     #[error("{shown}")]
     Placement {
-        /// Why.
+        /// The cause.
         source: PlacementError,
-        /// The same at the key of the case that is behind it.
+        /// The same at the key of the case that causes it.
         shown: Problems,
     },
     /// A run that needs more memory than its case allows.
     #[error("{shown}")]
     Memory {
-        /// What it needs, GB.
+        /// The memory that it needs, GB.
         needed_gb: f64,
-        /// The same at the key of the case that is behind it.
+        /// The same at the key of the case that causes it.
         shown: Problems,
     },
     /// The physics.
     #[error("{source}{}", kept_in(out.as_deref()))]
     March {
-        /// Why.
+        /// The cause.
         source: MarchError,
-        /// Where the results so far are, if in a folder.
+        /// The folder of the results so far, if any.
         out: Option<PathBuf>,
     },
 }
@@ -75,7 +75,7 @@ impl From<ChangeError> for RunError {
 }
 
 impl RunError {
-    /// Bodies that `case` does not make.
+    /// The bodies of `case` cannot be built.
     pub(crate) fn of_build(case: &Case, source: BuildError) -> Self {
         Self::Build {
             shown: case.at_its_key(&source),
@@ -96,7 +96,7 @@ impl RunError {
         }
     }
 
-    /// Whether the physics could not be solved, rather than the input being wrong.
+    /// Returns whether the physics could not be solved, as opposed to bad input.
     pub fn is_physics(&self) -> bool {
         matches!(
             self,

@@ -2,8 +2,25 @@
 
 use condyle::{
     evolve::{March, MarchState, UpdateRecord},
-    machine::CycleRow,
+    machine::{CycleRow, knee::KNEE},
 };
+
+/// A joint replacement whose tests condyle runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Joint {
+    /// A total knee.
+    Knee,
+}
+
+impl Joint {
+    /// The joint's name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Knee => "knee",
+        }
+    }
+}
 
 /// Properties of a run that its march does not have.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,6 +60,11 @@ impl<'a> FinishedRun<'a> {
             last: state.updates.last()?,
             first_cycle: &state.activities.first()?.first_and_last.as_ref()?.0.rows,
         })
+    }
+
+    /// The joint; none of another mechanism.
+    pub fn joint(&self) -> Option<Joint> {
+        (*self.march.test().machine().mechanism == KNEE).then_some(Joint::Knee)
     }
 
     /// The state of the march.

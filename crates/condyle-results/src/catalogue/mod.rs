@@ -17,9 +17,9 @@ mod finished;
 mod part;
 mod scalar;
 
-pub use finished::{FinishedRun, RunFacts};
+pub use finished::{FinishedRun, Joint, RunFacts};
 pub use part::{PARTS, Part, PartKind};
-pub use scalar::{ErrorMethod, Joint, Prominence, Scalar, Section};
+pub use scalar::{ErrorMethod, Prominence, Scalar, Section};
 
 scalar::sections! {
     wear,
@@ -86,6 +86,12 @@ mod tests {
         ] {
             assert_eq!(scalar(key).map(Scalar::unit), Some(unit));
         }
+    }
+
+    #[test]
+    fn a_hip_has_wear_and_no_range_of_ap() {
+        assert!(MASS_LOSS_MG.applies_to(None) && !AP_RANGE_MM.applies_to(None));
+        assert!(AP_RANGE_MM.applies_to(Some(Joint::Knee)));
     }
 
     #[test]

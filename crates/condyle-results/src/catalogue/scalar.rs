@@ -2,24 +2,7 @@
 
 use condyle::parameter::split_unit;
 
-use super::finished::FinishedRun;
-
-/// A joint replacement whose tests condyle runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Joint {
-    /// A total knee.
-    Knee,
-}
-
-impl Joint {
-    /// The joint's name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Knee => "knee",
-        }
-    }
-}
+use super::finished::{FinishedRun, Joint};
 
 /// The places that show a number in addition to `summary.json`, the report's list and the Python and TypeScript types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -146,85 +129,69 @@ impl Scalar {
     }
 
     /// With a description in its first sentence, then its definition.
-    pub const fn about(self, about: &'static str) -> Self {
-        Self { about, ..self }
+    pub const fn about(mut self, about: &'static str) -> Self {
+        self.about = about;
+        self
     }
 
     /// Shown in large type.
-    pub const fn headline(self) -> Self {
-        Self {
-            prominence: Prominence::Headline,
-            ..self
-        }
+    pub const fn headline(mut self) -> Self {
+        self.prominence = Prominence::Headline;
+        self
     }
 
     /// Shown on the terminal, not in the tables of studies.
-    pub const fn printed(self) -> Self {
-        Self {
-            prominence: Prominence::Printed,
-            ..self
-        }
+    pub const fn printed(mut self) -> Self {
+        self.prominence = Prominence::Printed;
+        self
     }
 
     /// Shown in lists of all numbers only.
-    pub const fn listed(self) -> Self {
-        Self {
-            prominence: Prominence::Listed,
-            ..self
-        }
+    pub const fn listed(mut self) -> Self {
+        self.prominence = Prominence::Listed;
+        self
     }
 
     /// With an estimated discretisation error.
-    pub const fn estimated(self) -> Self {
-        Self {
-            error: ErrorMethod::Estimated,
-            ..self
-        }
+    pub const fn estimated(mut self) -> Self {
+        self.error = ErrorMethod::Estimated;
+        self
     }
 
     /// Without a discretisation error.
-    pub const fn exact(self) -> Self {
-        Self {
-            error: ErrorMethod::Exact,
-            ..self
-        }
+    pub const fn exact(mut self) -> Self {
+        self.error = ErrorMethod::Exact;
+        self
     }
 
     /// A whole number, which is exact.
-    pub const fn count(self) -> Self {
-        Self {
-            is_count: true,
-            ..self.exact()
-        }
+    pub const fn count(mut self) -> Self {
+        self.is_count = true;
+        self.exact()
     }
 
     /// A part of one, shown in %.
-    pub const fn share(self) -> Self {
-        Self {
-            is_share: true,
-            ..self
-        }
+    pub const fn share(mut self) -> Self {
+        self.is_share = true;
+        self
     }
 
     /// Of the knee only.
-    pub const fn of_knee(self) -> Self {
-        Self {
-            joints: &[Joint::Knee],
-            ..self
-        }
+    pub const fn of_knee(mut self) -> Self {
+        self.joints = &[Joint::Knee];
+        self
     }
 
     /// Of one cycle; `key` is that of the number of cycles before it.
-    pub const fn in_cycle(self, key: &'static str) -> Self {
-        Self {
-            cycle_key: Some(key),
-            ..self
-        }
+    pub const fn in_cycle(mut self, key: &'static str) -> Self {
+        self.cycle_key = Some(key);
+        self
     }
 
-    /// Returns the value for a run; none for a run that does not have it.
+    /// Returns the value for a run; none for a run that does not have it, such as one of another joint.
     pub fn compute(&self, run: &FinishedRun<'_>) -> Option<f64> {
         match self.compute {
+            _ if !self.applies_to(run.joint()) => None,
             Compute::Always(compute) => Some(compute(run)),
             Compute::Sometimes(compute) => compute(run),
         }
@@ -289,9 +256,9 @@ impl Scalar {
         (&about[..end], about[end..].trim_start())
     }
 
-    /// Returns whether tests of this joint have it.
-    pub fn applies_to(&self, joint: Joint) -> bool {
-        self.joints.is_empty() || self.joints.contains(&joint)
+    /// Returns whether tests of a joint have it; none is a joint that is not in the list.
+    pub fn applies_to(&self, joint: Option<Joint>) -> bool {
+        self.joints.is_empty() || joint.is_some_and(|joint| self.joints.contains(&joint))
     }
 }
 
