@@ -38,10 +38,18 @@ fn in_words(differences: &Differences) -> String {
     for note in &differences.notes {
         lines.line(format_args!("note: {note}"));
     }
-    add_settings(differences, &mut lines);
-    add_numbers(differences, &mut lines);
-    add_curves(differences, &mut lines);
-    add_maps(differences, &mut lines);
+    if !differences.settings.is_empty() {
+        add_settings(differences, &mut lines);
+    }
+    if !differences.numbers.is_empty() {
+        add_numbers(differences, &mut lines);
+    }
+    if !differences.curves.is_empty() {
+        add_curves(differences, &mut lines);
+    }
+    if !differences.maps.is_empty() {
+        add_maps(differences, &mut lines);
+    }
     if differences.is_none() {
         lines.line("nothing differs of what both have");
     }
@@ -49,9 +57,6 @@ fn in_words(differences: &Differences) -> String {
 }
 
 fn add_settings(differences: &Differences, lines: &mut Lines) {
-    if differences.settings.is_empty() {
-        return;
-    }
     lines.line("set otherwise, A and B");
     for one in &differences.settings {
         let said = |value: &Option<String>| value.clone().unwrap_or_else(|| "-".to_owned());
@@ -61,18 +66,13 @@ fn add_settings(differences: &Differences, lines: &mut Lines) {
 }
 
 fn add_numbers(differences: &Differences, lines: &mut Lines) {
-    if differences.numbers.is_empty() {
-        return;
-    }
     lines.line(format_args!(
         "{:<40}{:>12}{:>12}{:>12}{:>10}{:>10}  {}",
         "numbers, by size over errors", "A", "B", "B - A", "%", "errors", "that is"
     ));
     for one in &differences.numbers {
-        let percent = one.difference_percent;
-        let percent = percent.map_or_else(|| "-".to_owned(), |percent| format!("{percent:+.2}"));
-        let errors = one.errors();
-        let errors = errors.map_or_else(|| "-".to_owned(), |errors| digits(errors, 2));
+        let percent = or_dash(one.difference_percent, |percent| format!("{percent:+.2}"));
+        let errors = or_dash(one.errors(), |errors| digits(errors, 2));
         let difference = digits(one.difference, 4);
         let [first, second] = [one.first, one.second].map(|value| digits(value, 5));
         lines.line(format_args!(
@@ -84,17 +84,13 @@ fn add_numbers(differences: &Differences, lines: &mut Lines) {
 }
 
 fn add_curves(differences: &Differences, lines: &mut Lines) {
-    if differences.curves.is_empty() {
-        return;
-    }
     lines.line(format_args!(
         "{:<40}{:>12}{:>12}{:>12}{:>10}",
         "curves, by size over range", "rms", "% of range", "largest", "at %"
     ));
     for one in differences.curves.iter().take(MAX_CURVES) {
         let name = format!("{}, {} cycle", one.column, one.cycle);
-        let of_range = one.rms_percent_of_range;
-        let of_range = of_range.map_or_else(|| "-".to_owned(), |percent| format!("{percent:.2}"));
+        let of_range = or_dash(one.rms_percent_of_range, |percent| format!("{percent:.2}"));
         let [rms, largest] = [one.rms, one.largest].map(|value| digits(value, 4));
         lines.line(format_args!(
             "  {name:<38}{rms:>12}{of_range:>12}{largest:>12}{:>10.1}",
@@ -108,22 +104,22 @@ fn add_curves(differences: &Differences, lines: &mut Lines) {
 }
 
 fn add_maps(differences: &Differences, lines: &mut Lines) {
-    if differences.maps.is_empty() {
-        return;
-    }
     lines.line(format_args!(
         "{:<40}{:>12}{:>12}{:>12}  {}",
         "maps, by size over largest value", "largest", "%", "mean size", "at x, z, mm"
     ));
     for one in &differences.maps {
-        let percent = one.largest_percent;
-        let percent = percent.map_or_else(|| "-".to_owned(), |percent| format!("{percent:+.2}"));
+        let percent = or_dash(one.largest_percent, |percent| format!("{percent:+.2}"));
         let [largest, mean] = [one.largest, one.mean_absolute].map(|value| digits(value, 4));
         lines.line(format_args!(
             "  {:<38}{largest:>12}{percent:>12}{mean:>12}  {:.1}, {:.1}",
             one.field, one.x_mm, one.z_mm
         ));
     }
+}
+
+fn or_dash(value: Option<f64>, in_words: impl Fn(f64) -> String) -> String {
+    value.map_or_else(|| "-".to_owned(), in_words)
 }
 
 /// So many significant digits, without powers of ten where few zeros do.

@@ -28,10 +28,9 @@ use crate::{
 
 pub fn run(arguments: &Run) -> ExitCode {
     let options = RunOptions {
-        out: arguments
-            .out
-            .clone()
-            .unwrap_or_else(|| default_folder(arguments)),
+        out: arguments.out.clone().unwrap_or_else(|| {
+            PathBuf::from("results").join(arguments.case.file_stem().unwrap_or_default())
+        }),
         resume: arguments.resume,
         force: arguments.force,
         threads: usize::from(arguments.threads),
@@ -81,11 +80,6 @@ fn command_to_go_on(arguments: &Run, options: &RunOptions) -> String {
     format!("condyle run {case} --out {out} --resume{changes}")
 }
 
-/// `results/` and the case's name, in the current folder.
-fn default_folder(arguments: &Run) -> PathBuf {
-    PathBuf::from("results").join(arguments.case.file_stem().unwrap_or_default())
-}
-
 /// A flag that the first Ctrl-C (or SIGTERM) raises; a second ends the program at once.
 pub fn stop_on_interrupt() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
@@ -109,7 +103,11 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
         return output::print_beside(&output::json(summary), out);
     }
     let mut lines = Lines::default();
-    add_doubts(summary, &mut lines);
+    // Reasons to doubt the run come before its numbers.
+    for doubt in &summary.plausibility {
+        lines.line(format_args!("doubtful: {}", doubt.message));
+        lines.line(format_args!("          {}", doubt.advice));
+    }
     let wear_over_conventional = summary.get(&WEAR_OVER_CONVENTIONAL);
     law_table::add(&summary.wear_laws, wear_over_conventional, &mut lines);
     activity_table::add(&summary.activities, &mut lines);
@@ -119,7 +117,12 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     for (label, value) in rows {
         lines.line(format_args!("{label:<width$}{value}"));
     }
-    add_warnings(summary, &mut lines);
+    for (part, why) in summary.error.iter().flat_map(|error| &error.not_estimated) {
+        let part = part.replace('_', " ");
+        lines.line(format_args!(
+            "warning: the error from {part} could not be estimated: {why}"
+        ));
+    }
     lines.line(format_args!(
         "results in {}; open {}, and in ParaView {}",
         out.display(),
@@ -136,29 +139,6 @@ fn for_paraview(out: &Path) -> String {
     let there = files.filter(|file| file.exists());
     let named: Vec<String> = there.map(|file| file.display().to_string()).collect();
     named.join(", ")
-}
-
-/// Reasons to doubt the run come before its numbers.
-fn add_doubts(summary: &Summary, lines: &mut Lines) {
-    for doubt in &summary.plausibility {
-        lines.line(format_args!("doubtful: {}", doubt.message));
-        lines.line(format_args!("          {}", doubt.advice));
-    }
-}
-
-fn add_warnings(summary: &Summary, lines: &mut Lines) {
-    for (part, why) in not_estimated(summary) {
-        lines.line(format_args!(
-            "warning: the error from {part} could not be estimated: {why}"
-        ));
-    }
-}
-
-/// Parts of the error that have no estimate, and why.
-fn not_estimated(summary: &Summary) -> impl Iterator<Item = (String, &String)> {
-    let error = summary.error.iter();
-    let parts = error.flat_map(|error| &error.not_estimated);
-    parts.map(|(part, why)| (part.replace('_', " "), why))
 }
 
 /// A label and its value in words.

@@ -26,7 +26,7 @@ use crate::{
     run::{
         Clock,
         error::RunError,
-        prepare::{build, changed, mean_load_n, memory_mb, start},
+        prepare::{build, mean_load_n, memory_mb, start},
     },
 };
 
@@ -63,7 +63,7 @@ impl Preview {
     /// # Errors
     /// Those of a run that cannot start.
     pub fn of(case_path: &Path, changes: &[Assignment], threads: usize) -> Result<Self, RunError> {
-        Self::of_case(changed(case_path, changes)?, threads)
+        Self::of_case(Case::read_changed(case_path, changes)?, threads)
     }
 
     /// The same of a case that is read already.

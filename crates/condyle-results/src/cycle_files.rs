@@ -57,9 +57,6 @@ pub fn frame_name(body: &str, increment: usize) -> String {
 
 /// The articulating surface that a cycle pressed on, with the pressure at the end of an increment:
 /// `pressure_mpa` at the nodes, each the mean over the node's share of the surface.
-///
-/// # Errors
-/// None but those of [`compact_vtu_bytes`].
 pub fn insert_frame(
     march: &March,
     cycle: &SolvedCycle<'_>,
@@ -83,9 +80,6 @@ pub fn insert_frame(
 }
 
 /// The femur in the insert frame at a pose; `femur.vtu` is at the neutral one.
-///
-/// # Errors
-/// None but those of [`compact_vtu_bytes`].
 pub fn femur_vtu(femur: &TriangleMesh, pose: &Pose, side: Side) -> Result<Vec<u8>, MeshFileError> {
     let placed = femur_on_side(femur, pose, side);
     compact_vtu_bytes(&Grid::triangles(&placed.vertices, &placed.triangles), &[])

@@ -137,7 +137,7 @@ impl FolderState {
     }
 }
 
-/// The folder of a run.
+/// The folder of a run; its writers fail with [`ResultsError::Refused`].
 #[derive(Clone, Debug)]
 pub struct ResultsFolder {
     path: PathBuf,
@@ -304,17 +304,11 @@ impl ResultsFolder {
     }
 
     /// Writes how many seconds the run has taken so far.
-    ///
-    /// # Errors
-    /// [`ResultsError::Refused`].
     pub fn write_time_spent(&self, seconds: f64) -> Result<(), ResultsError> {
         self.replace(TIME_SPENT, format!("{seconds}\n").as_bytes())
     }
 
     /// Takes away what only a run that is not done needs.
-    ///
-    /// # Errors
-    /// [`ResultsError::Refused`].
     pub fn finish(&self) -> Result<(), ResultsError> {
         let file = self.file(TIME_SPENT);
         remove(&beside(&file))?;
@@ -327,17 +321,11 @@ impl ResultsFolder {
     }
 
     /// Writes the case as run.
-    ///
-    /// # Errors
-    /// [`ResultsError::Refused`].
     pub fn write_case(&self, toml: &str) -> Result<(), ResultsError> {
         self.replace("case.toml", toml.as_bytes())
     }
 
     /// Writes the femur as it stands at neutral, in the insert frame.
-    ///
-    /// # Errors
-    /// [`ResultsError::Refused`].
     pub fn write_femur(
         &self,
         march: &March,
@@ -350,9 +338,6 @@ impl ResultsFolder {
 
     /// Writes the cycle that the march has just solved, increment by increment, where it is the first or the
     /// last; to be done before [`Self::write_update`], so that a checkpoint never lacks it.
-    ///
-    /// # Errors
-    /// [`ResultsError::Refused`].
     pub fn write_cycles(
         &self,
         march: &March,
@@ -391,9 +376,6 @@ impl ResultsFolder {
 
     /// Writes the pressures of the cycle that the march has just solved, where it is the first or the last; to be
     /// done before [`Self::write_update`], as [`Self::write_cycles`].
-    ///
-    /// # Errors
-    /// [`ResultsError::Refused`].
     pub fn write_pressures(&self, march: &March) -> Result<(), ResultsError> {
         for cycle in KeptCycle::solved_by(march) {
             if let Some(table) = cycle_pressure_csv(march) {
@@ -405,9 +387,6 @@ impl ResultsFolder {
 
     /// Writes all that the march has found so far, and last of all the checkpoint: whatever it
     /// remembers is then already in the other files.
-    ///
-    /// # Errors
-    /// [`ResultsError::Refused`].
     pub fn write_update(
         &self,
         march: &March,
@@ -443,9 +422,6 @@ impl ResultsFolder {
     }
 
     /// Writes the summary.
-    ///
-    /// # Errors
-    /// [`ResultsError::Refused`].
     pub fn write_summary(&self, summary: &Summary) -> Result<(), ResultsError> {
         let mut text =
             serde_json::to_string_pretty(summary).expect("numbers and text always serialise");

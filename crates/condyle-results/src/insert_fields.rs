@@ -228,9 +228,6 @@ pub fn insert_file_name(update: usize) -> String {
 
 /// `insert_*.vtu`: the insert as worn so far, with the results of its last update at the nodes, in
 /// the knee of that side.
-///
-/// # Errors
-/// None but those of [`vtu_bytes`].
 pub fn insert_vtu(march: &March, side: Side) -> Result<Vec<u8>, MeshFileError> {
     let fields = InsertFields::of(march, side);
     let scalars = fields.scalars.iter().map(|(name, values)| PointArray {

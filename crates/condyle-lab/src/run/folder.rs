@@ -8,13 +8,12 @@ use condyle_case::{
     config::DataFile,
 };
 use condyle_results::{
-    FRAME_TRIANGLES, FolderLock, Found, ResultsError, ResultsFolder, Summary, femur_of_frames,
+    FRAME_TRIANGLES, FolderLock, Found, ResultsError, ResultsFolder, femur_of_frames,
 };
 
 use crate::run::{
     Listener, Outcome, RunOptions,
     error::RunError,
-    prepare::changed,
     running::{Run, RunContext, Start},
 };
 
@@ -44,7 +43,7 @@ pub fn run_changed(
     options: &RunOptions,
     on_event: &mut Listener<'_>,
 ) -> Result<Outcome, RunError> {
-    let case = changed(case_path, changes)?;
+    let case = Case::read_changed(case_path, changes)?;
     run_read(&case, Some(case_path), options, on_event)
 }
 
@@ -70,7 +69,12 @@ fn run_read(
     let inputs_blake3 = case.inputs_blake3().map_err(RunError::Inputs)?;
     let lock = ResultsFolder::lock(&options.out)?;
     let start_from = match found(case, case_path, options, &inputs_blake3)? {
-        Found::Done(summary) => return done_before(summary, options),
+        Found::Done(summary) => {
+            // It may have been stopped before it wrote the page; the same folder gives the same one.
+            condyle_report::write_report(&options.out)?;
+            ResultsFolder::existing(&options.out).finish()?;
+            return Ok(Outcome::DoneBefore(summary));
+        }
         Found::Checkpoint(checkpoint, spent_s) => Start::Resume(checkpoint, spent_s),
         Found::Case | Found::Nothing => Start::Fresh,
     };
@@ -86,7 +90,9 @@ fn run_read(
     let written = WrittenRun::new(options, lock, inputs_blake3, &run, is_fresh)?;
     let outcome = run.complete(&mut |run| written.write_update(run), on_event)?;
     if let Outcome::Done(summary) = &outcome {
-        written.write_end(summary)?;
+        written.folder.write_summary(summary)?;
+        condyle_report::write_report(written.folder.path())?;
+        written.folder.finish()?;
     }
     Ok(outcome)
 }
@@ -111,14 +117,6 @@ fn found(
     } else {
         ResultsFolder::free(out).map(|()| Found::Nothing)
     }
-}
-
-/// A run that is done already. It may have been stopped before it wrote the page; the same folder gives
-/// the same one.
-fn done_before(summary: Box<Summary>, options: &RunOptions) -> Result<Outcome, RunError> {
-    condyle_report::write_report(&options.out)?;
-    ResultsFolder::existing(&options.out).finish()?;
-    Ok(Outcome::DoneBefore(summary))
 }
 
 /// A run as it is written into its folder.
@@ -187,12 +185,5 @@ impl WrittenRun {
             .write_update(&run.march, side, &self.inputs_blake3)?;
         let spent_s = run.spent().as_secs_f64();
         Ok(self.folder.write_time_spent(spent_s)?)
-    }
-
-    /// Writes the summary and the page of a finished run.
-    fn write_end(&self, summary: &Summary) -> Result<(), RunError> {
-        self.folder.write_summary(summary)?;
-        condyle_report::write_report(self.folder.path())?;
-        Ok(self.folder.finish()?)
     }
 }

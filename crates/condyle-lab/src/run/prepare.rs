@@ -36,7 +36,7 @@ pub fn check_changed(
     changes: &[Assignment],
     threads: usize,
 ) -> Result<(Case, Vec<BuildWarning>), RunError> {
-    let case = changed(case_path, changes)?;
+    let case = Case::read_changed(case_path, changes)?;
     let built = build(&case, threads, &Cache::off())?;
     start(&case, built.test, &built.warnings)?;
     Ok((case, built.warnings))
@@ -49,11 +49,6 @@ pub fn check_changed(
 pub fn settled(case: &Case, threads: usize, cache: &Cache) -> Result<March, RunError> {
     let built = build(case, threads, cache)?;
     start(case, built.test, &built.warnings)
-}
-
-/// The case at `case_path` with some of its values changed.
-pub(crate) fn changed(case_path: &Path, changes: &[Assignment]) -> Result<Case, RunError> {
-    Ok(Case::read_changed(case_path, changes)?)
 }
 
 pub(crate) fn build(case: &Case, threads: usize, cache: &Cache) -> Result<Built, RunError> {
