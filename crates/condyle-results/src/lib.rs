@@ -35,6 +35,7 @@ pub use condyle::machine::{
     CycleQuantity, JointKind,
     knee::{KNEE, LATERAL, MEDIAL},
 };
+pub use condyle::parameter::split_unit;
 
 pub use activities::{ActivitySummary, kinematics_file};
 pub use added::{

@@ -1,39 +1,18 @@
 //! What a key of the summary says in words, for numbers that the report does not know.
 
-/// Endings of names and the units that people write for them, the longer before what they end with.
-const UNITS: [(&str, &str); 21] = [
-    ("_mm3_per_nm", "mm\u{b3}/(N\u{a0}m)"),
-    ("_mg_per_mm3", "mg/mm\u{b3}"),
-    ("_n_per_mm", "N/mm"),
-    ("_mm_per_s", "mm/s"),
-    ("_kg_m2", "kg\u{a0}m\u{b2}"),
-    ("_mm3", "mm\u{b3}"),
-    ("_mm2", "mm\u{b2}"),
-    ("_mm", "mm"),
-    ("_mpa", "MPa"),
-    ("_percent", "%"),
-    ("_cycles", "cycles"),
-    ("_deg", "degrees"),
-    ("_rad", "rad"),
-    ("_mg", "mg"),
-    ("_kg", "kg"),
-    ("_nm", "N\u{a0}m"),
-    ("_hz", "1/s"),
-    ("_mb", "MB"),
-    ("_gb", "GB"),
-    ("_n", "N"),
-    ("_s", "s"),
-];
+use condyle_results::split_unit;
+
 /// Parts of names that are written in capitals.
 const CAPITALS: [&str; 5] = ["ap", "ie", "ml", "vv", "is"];
 
 /// A key as a title and its unit: `ap_range_mm` is ("AP range", "mm").
-pub(super) fn in_words(key: &str) -> (String, &'static str) {
-    let ending = UNITS
-        .iter()
-        .find_map(|(ending, unit)| Some((key.strip_suffix(ending)?, *unit)));
-    let (name, unit) = ending.unwrap_or((key, ""));
+pub(super) fn in_words(key: &str) -> (String, String) {
+    let (name, unit) = match key.strip_suffix("_cycles") {
+        Some(name) => (name, Some("cycles")),
+        None => split_unit(key),
+    };
     let words: Vec<String> = name.split('_').map(word).collect();
+    let unit = with_powers(unit.unwrap_or_default()).replace(' ', "\u{a0}");
     (first_letter_large(&words.join(" ")), unit)
 }
 
@@ -71,7 +50,7 @@ mod tests {
             ("is", "IS", ""),
             ("peak_pressure_at_cycles", "Peak pressure at", "cycles"),
         ] {
-            assert_eq!(in_words(key), (title.to_owned(), unit));
+            assert_eq!(in_words(key), (title.to_owned(), unit.to_owned()));
         }
     }
 }

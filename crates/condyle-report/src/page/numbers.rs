@@ -175,7 +175,7 @@ fn unlisted(path: &str, key: &str, value: &Value) -> Vec<Listed> {
     let row = plain(value).map(|value| Listed {
         label,
         value,
-        unit: unit.to_owned(),
+        unit,
         meaning: format!("In summary.json: {path}"),
     });
     Vec::from_iter(row)
