@@ -186,12 +186,15 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_results",
             "condyle_mesh",
             "condyle_fem",
-            "condyle::machine::knee",
         ],
     ),
     (
         "condyle_report::figure",
-        &["condyle_report::number", "condyle_report::results"],
+        &[
+            "condyle_report::number",
+            "condyle_report::results",
+            "condyle_results::side",
+        ],
     ),
     ("condyle_report::plots", &["condyle_report::figure"]),
     ("condyle_report::png", &["condyle_report::figure"]),
@@ -206,6 +209,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::page",
             "condyle_report::results",
             "condyle_report::sheets",
+            "condyle_results",
         ],
     ),
     (
@@ -225,6 +229,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::figure",
             "condyle_report::file",
             "condyle_report::results",
+            "condyle_results::side",
             "condyle_fem",
         ],
     ),
@@ -246,8 +251,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::number",
             "condyle_report::results",
             "condyle_report::scene",
-            // What the summary says of each activity.
-            "condyle_results::activities",
+            "condyle::parameter",
             // The table of joints that the columns of kinematics.csv are made by.
             "condyle::machine::joint",
             "condyle::machine::knee",
@@ -260,6 +264,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "condyle_report::figure",
             "condyle_report::page",
             "condyle_report::results",
+            "condyle_results::side",
         ],
     ),
     (

@@ -30,7 +30,7 @@ use serde::Serialize;
 use crate::{
     markdown::aligned,
     pressure_law::fit::{Fit, Target},
-    run::{error::RunError, prepare::changed, running::march_watched},
+    run::{error::RunError, running::march_watched},
 };
 
 /// So many increments of stance are fitted to.
@@ -110,7 +110,7 @@ pub fn calibrate(
     request: &CalibrateRequest,
     tell: &mut dyn FnMut(&str),
 ) -> Result<CalibratedLaw, RunError> {
-    let case = changed(&request.case, &request.changes)?;
+    let case = Case::read_changed(&request.case, &request.changes)?;
     tell("the deformable insert");
     let mut recorded = Recorded::default();
     let deformable = run(&deformable(&case), &mut recorded)?;
@@ -151,7 +151,7 @@ impl CalibratedLaw {
 }
 
 fn held_out(path: &Path, table: &PressureTable) -> Result<HeldOut, RunError> {
-    let case = changed(path, &[])?;
+    let case = Case::read_changed(path, &[])?;
     let deformable = run_quietly(&deformable(&case))?;
     let calibrated = run_quietly(&with_table(&case, table.clone(), None))?;
     let before = run_quietly(&foundation(&case))?;
