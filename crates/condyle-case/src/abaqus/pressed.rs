@@ -149,7 +149,6 @@ impl Pressed<'_> {
         inp.surface_of_faces("ARTICULATING", &element_faces(mesh, &quads, 1))
     }
 
-    /// Writes the part of the femur that may touch, raised by `lift_mm`.
     fn femur<W: Write>(&self, lift_mm: f64, inp: &mut InpWriter<W>) -> io::Result<()> {
         let Bodies {
             femur,

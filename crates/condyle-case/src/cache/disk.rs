@@ -11,7 +11,7 @@ use std::{
 
 use super::keep::Keep;
 
-/// Version of how files are laid out.
+/// Version of the layout of files.
 const FORMAT: &str = "4";
 /// Length of the hash that guards a file's content.
 const HASH_LENGTH: usize = 32;
@@ -25,8 +25,7 @@ const MAX_BYTES: u64 = 300_000_000;
 /// A folder of results that are kept from run to run.
 ///
 /// A file is found by the hash of all that its content follows from: the inputs, and the program.
-/// A cache is never the reason of an error: what cannot be read is computed, and what cannot be
-/// written is not kept.
+/// A failure is never an error: what cannot be read is computed again, and what cannot be written is not kept.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cache {
     folder: Option<PathBuf>,
@@ -90,7 +89,6 @@ fn file(folder: &Path, what: &str, key: &blake3::Hash) -> PathBuf {
     folder.join(format!("{what}-{key}.{ENDING}"))
 }
 
-/// Hash of all that a result follows from.
 fn key(what: &str, inputs: &[&[u8]]) -> blake3::Hash {
     let mut hasher = blake3::Hasher::new();
     let program = [FORMAT, env!("CARGO_PKG_VERSION"), what].map(str::as_bytes);
@@ -102,8 +100,7 @@ fn key(what: &str, inputs: &[&[u8]]) -> blake3::Hash {
     hasher.finalize()
 }
 
-/// Size and date of the program's own file: built anew, it may compute something else under the
-/// same version.
+/// Returns size and date of the program's file: another build of the same version may compute other results.
 fn program_stamp() -> Vec<u8> {
     let file = env::current_exe().and_then(fs::metadata);
     let date = |file: &fs::Metadata| {
@@ -117,7 +114,7 @@ fn program_stamp() -> Vec<u8> {
     [length.to_le_bytes().as_slice(), &date.to_le_bytes()].concat()
 }
 
-/// The content of a file of that key; none if there is none, or a damaged one.
+/// Returns the content of a file of that key, unless it is damaged.
 fn read(file: &Path, key: &blake3::Hash) -> Option<Vec<u8>> {
     let bytes = fs::read(file).ok()?;
     let (hash, content) = bytes.split_at_checked(HASH_LENGTH)?;
@@ -128,8 +125,7 @@ fn read(file: &Path, key: &blake3::Hash) -> Option<Vec<u8>> {
     is_whole.then(|| content.to_vec())
 }
 
-/// Writes a file beside its place, under a name of its own, and puts it there in one step: of two
-/// runs at once each writes it whole.
+/// Writes a temporary file and renames it, so that two runs at once each write a whole file.
 fn write(folder: &Path, file: &Path, key: &blake3::Hash, content: &[u8]) -> io::Result<()> {
     fs::create_dir_all(folder)?;
     let mut beside = tempfile::NamedTempFile::new_in(folder)?;
@@ -139,7 +135,6 @@ fn write(folder: &Path, file: &Path, key: &blake3::Hash, content: &[u8]) -> io::
     remove_old(folder)
 }
 
-/// Removes all but the newest of the files that are kept.
 fn remove_old(folder: &Path) -> io::Result<()> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {

@@ -1,13 +1,12 @@
-//! Where results are kept, as bytes by what they follow from.
+//! Storage of results as bytes, by their inputs.
 
 use serde::{Serialize, de::DeserializeOwned};
 
 /// Keeps results from run to run.
 ///
-/// It is never the reason of an error: what it does not find is computed, and what it does not keep
-/// nobody misses.
+/// A failure is never an error: results that are not found are computed again.
 pub trait Keep: Sync {
-    /// What was kept under the name `what` for the same `inputs`.
+    /// Returns the content kept under the name `what` for the same `inputs`.
     fn find(&self, what: &str, inputs: &[&[u8]]) -> Option<Vec<u8>>;
 
     /// Keeps `content` under the name `what` for these `inputs`.
@@ -26,10 +25,7 @@ impl Keep for KeepNothing {
     fn keep(&self, _: &str, _: &[&[u8]], _: &[u8]) {}
 }
 
-/// What `make` makes of `inputs`, or what it made of them before; `what` is its name.
-///
-/// # Errors
-/// Those of `make`.
+/// Returns the kept result for these inputs, or that of `make`, which is then kept.
 pub(crate) fn kept<T: Serialize + DeserializeOwned, E>(
     keep: &dyn Keep,
     what: &str,

@@ -1,4 +1,4 @@
-//! What takes long to compute and never changes, kept for the next run.
+//! Cache of expensive results between runs.
 
 #[cfg(feature = "file-system")]
 mod disk;

@@ -1,4 +1,4 @@
-//! Activities: what the machine does in turn, each with inputs of its own.
+//! Activities of the machine, each with inputs of its own.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::config::{Item, Log, Section, Settings, TableItem, Writer, settings, w
 const WHOLE: f64 = 1e-3;
 
 settings! {
-    /// What an activity says beside its waveforms; what it leaves out is as `[machine]` has it.
+    /// The keys of an activity except its waveforms; the defaults are those of `[machine]`.
     ActivityKeys {
         /// Its name: small letters, digits and hyphens.
         name: String;
@@ -32,7 +32,7 @@ settings! {
     }
 }
 
-/// Something that the machine does over and over, with inputs of its own.
+/// A repeated motion of the machine with inputs of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Activity {
     /// Its name, share and numbers.
@@ -55,12 +55,12 @@ none. [Activities and creep](activities-and-creep.md) shows how.
 ";
 
 impl Activities {
-    /// Every activity.
+    /// Returns every activity.
     pub fn iter(&self) -> impl Iterator<Item = &Activity> {
         self.all.iter()
     }
 
-    /// Whether `[machine]` has the inputs itself.
+    /// Returns true if `[machine]` has the inputs.
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
@@ -142,7 +142,6 @@ impl Activity {
         Some(read)
     }
 
-    /// Reports a load that never presses.
     fn check_load(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<()> {
         let load = CaseChannel::load();
         let presses = |waveform: &Waveform| waveform.knots().iter().any(|knot| knot.value > 0.0);

@@ -146,7 +146,6 @@ impl Assignment {
         Ok(Self::new(&case.path_of_key(&self.key)?, self.text.clone()))
     }
 
-    /// The value in TOML.
     fn value(&self) -> String {
         match DeValue::parse(&self.text) {
             Ok(_) => self.text.clone(),
@@ -154,7 +153,6 @@ impl Assignment {
         }
     }
 
-    /// The key and the value as messages show them.
     pub(super) fn line(&self) -> String {
         format!("{} = {}", self.key, self.value())
     }
@@ -422,7 +420,6 @@ fn path_called(
     }
 }
 
-/// The last word of a dotted path.
 fn leaf(path: &str) -> &str {
     path.rsplit('.').next().unwrap_or(path)
 }

@@ -181,7 +181,6 @@ impl DeformableContact {
 }
 
 impl SofteningCurve {
-    /// Modulus of a confined layer at no pressure, MPa.
     pub(super) fn modulus_mpa(&self, poissons_ratio: f64) -> f64 {
         softening_modulus(
             self.softening_strain,
@@ -213,20 +212,13 @@ const CURVE: [(f64, f64); 4] = [
 
 /// A hardening curve that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum PlasticityReason {
-    /// The points are no curve.
+pub(crate) enum PlasticityReason {
     #[error("`hardening`: {0}")]
     Hardening(HardeningError),
-    /// The curve does not begin with the yield stress.
     #[error(
         "`hardening` starts at {found} MPa, and yield_stress_mpa is {yield_stress_mpa}: its first point must be [0.0, {yield_stress_mpa:?}]"
     )]
-    NotFromYield {
-        /// Stress of its first point, MPa.
-        found: f64,
-        /// The yield stress, MPa.
-        yield_stress_mpa: f64,
-    },
+    NotFromYield { found: f64, yield_stress_mpa: f64 },
 }
 
 impl Reason for PlasticityReason {

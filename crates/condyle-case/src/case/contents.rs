@@ -77,7 +77,6 @@ settings! {
 }
 
 impl Case {
-    /// Describes a case that may choose from `wear_laws`.
     pub(super) fn items_with(wear_laws: WearLaws) -> Vec<Item> {
         let mut items = Self::items();
         for item in &mut items {
@@ -98,7 +97,6 @@ impl Case {
         }
     }
 
-    /// The case as a file; waveforms by their names or by their points.
     pub(super) fn written(&self, names_waveforms: bool) -> String {
         let mut out = Writer::new(names_waveforms);
         self.write(&mut out);

@@ -24,22 +24,22 @@ impl Setting for Side {
 }
 
 settings! {
-    /// What stands above the first table of a case.
+    /// The keys above the first table of a case.
     Heading {
-        /// One line that says what the case is.
+        /// Title of the case, one line.
         title: String = "Untitled".to_owned();
-        /// Which knee; a left one is mirrored on the way in and out.
+        /// Side of the knee; a left one is mirrored on input and output.
         side: Side = Side::Right;
     }
 }
 
-/// Where x, y and z of a file point, in words of the body.
+/// Directions of x, y and z of a file, in anatomical words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axes {
     words: [&'static str; 3],
 }
 
-/// Why three words make no frame.
+/// Three words that are no frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum AxesError {
     /// Two words on one line.
@@ -53,11 +53,9 @@ pub enum AxesError {
 /// Axes that are no right-handed frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("`{key}`: {error}")]
-pub struct AxesReason {
-    /// The key that gives them.
-    pub key: &'static str,
-    /// Why.
-    pub error: AxesError,
+pub(crate) struct AxesReason {
+    pub(crate) key: &'static str,
+    pub(crate) error: AxesError,
 }
 
 impl Reason for AxesReason {
@@ -68,7 +66,6 @@ impl Reason for AxesReason {
     }
 }
 
-/// Words that say a direction.
 const WORDS: &[&str] = &[
     "anterior",
     "posterior",
@@ -116,7 +113,7 @@ impl Axes {
     }
 }
 
-/// Where a word points, in x anterior, y superior, z right.
+/// Returns the direction of a word in x anterior, y superior, z right.
 fn direction(word: &str, side: Side) -> Vec3 {
     let right = match side {
         Side::Right => Vec3::z(),
@@ -134,7 +131,7 @@ fn direction(word: &str, side: Side) -> Vec3 {
     }
 }
 
-/// The word of the direction that is nearest to one in x anterior, y superior, z right.
+/// Returns the word of the axis nearest to a direction in x anterior, y superior, z right.
 fn word(toward: Vec3) -> &'static str {
     let [forward, backward] = match toward.iamax() {
         0 => ["anterior", "posterior"],
@@ -197,7 +194,7 @@ choice! {
 }
 
 impl LengthUnit {
-    /// How many mm it has.
+    /// Returns its length in mm.
     pub fn in_mm(self) -> f64 {
         match self {
             Self::Millimetre => 1.0,

@@ -90,7 +90,6 @@ variants! {
 }
 
 impl Insert {
-    /// The axes of its mesh file, if there is one.
     pub(super) fn axes(&self) -> Option<&Axes> {
         match &self.shape {
             InsertShape::Mesh(mesh) => Some(&mesh.axes),

@@ -17,9 +17,8 @@ use crate::config::{DataFile, Problem, Problems, Reason};
 /// Values that are valid one by one but make no wear test together.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{message}")]
-pub struct CaseConflict {
-    /// Cause and remedy.
-    pub message: String,
+pub(crate) struct CaseConflict {
+    pub(crate) message: String,
 }
 
 impl Reason for CaseConflict {
@@ -142,7 +141,6 @@ impl KeyLocation {
     }
 }
 
-/// The axes of a body.
 fn axes_of(body: Body) -> KeyLocation {
     let table = match body {
         Body::Femur => "femur",

@@ -170,7 +170,6 @@ pub struct Freedom {
 /// The six freedoms, one a joint; the drive of each is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Freedoms {
-    /// In the order of the chain.
     rows: [Freedom; 6],
 }
 

@@ -1,4 +1,4 @@
-//! Drives, waveforms and activities that make no test.
+//! Drives, waveforms and activities that cannot be used.
 
 use thiserror::Error;
 
@@ -6,27 +6,18 @@ use crate::config::Reason;
 
 /// Why a drive or a waveform cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum DriveReason {
-    /// A waveform of a freedom that is driven otherwise.
+pub(crate) enum DriveReason {
     #[error("[{section}] is given, but the {freedom} freedom is {drive}: the two contradict")]
     UnusedWaveform {
-        /// The table of the waveform.
         section: String,
-        /// The freedom it would drive.
         freedom: &'static str,
-        /// How that is driven.
         drive: &'static str,
-        /// The drive the waveform is for.
         wanted: &'static str,
     },
-    /// A drive that no waveform exists for.
     #[error("the {freedom} freedom cannot be {drive}: a case has no waveform for that")]
     NoSuchDrive {
-        /// The freedom.
         freedom: &'static str,
-        /// As written.
         drive: &'static str,
-        /// Drives it can have.
         drives: String,
     },
 }
@@ -44,65 +35,29 @@ impl Reason for DriveReason {
 
 /// Why an activity cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum ActivityReason {
-    /// A name that is no word of a path and of a file.
+pub(crate) enum ActivityReason {
     #[error("an activity cannot be called \"{name}\"")]
-    Name {
-        /// As written.
-        name: String,
-    },
-    /// A name that an activity before has.
+    Name { name: String },
     #[error("two activities are called \"{name}\"")]
-    SameName {
-        /// As written.
-        name: String,
-    },
-    /// No word of how many cycles.
+    SameName { name: String },
     #[error("the activity \"{name}\" does not say how many of the cycles it is")]
-    NoShare {
-        /// Its name.
-        name: String,
-    },
-    /// Both a share and cycles of a sequence.
+    NoShare { name: String },
     #[error("the activity \"{name}\" has both a `share` and `cycles_in_sequence`")]
-    TwoShares {
-        /// Its name.
-        name: String,
-    },
-    /// A share among cycles of a sequence.
+    TwoShares { name: String },
     #[error("the activity \"{name}\" has a `share`, and another has `cycles_in_sequence`")]
-    Mixed {
-        /// Its name.
-        name: String,
-    },
-    /// Shares that are not all of the cycles.
+    Mixed { name: String },
     #[error("the shares of the activities sum up to {sum:.4} and not to 1")]
-    Sum {
-        /// What they sum up to.
-        sum: f64,
-    },
-    /// A waveform that it needs is not there.
+    Sum { sum: f64 },
     #[error("the activity \"{name}\" has no {}", if *is_load { "load" } else { table })]
     LacksInput {
-        /// Its name.
         name: String,
-        /// The table of the waveform.
         table: &'static str,
-        /// Whether it is what presses.
         is_load: bool,
     },
-    /// An axial force that is never more than nothing.
     #[error("the activity \"{name}\" has no load: its axial force is never above 0 N")]
-    NoLoad {
-        /// Its name.
-        name: String,
-    },
-    /// An input of the machine beside activities.
+    NoLoad { name: String },
     #[error("[machine.{table}] is given, but the machine does what each [[activity]] says")]
-    OfMachine {
-        /// The table of the waveform.
-        table: &'static str,
-    },
+    OfMachine { table: &'static str },
 }
 
 impl Reason for ActivityReason {

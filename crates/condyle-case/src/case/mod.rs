@@ -36,32 +36,30 @@ pub use build::{
 };
 pub use contact::{
     BacksideChoice, Contact, ContactModelChoice, DeformableContact, FoundationContact,
-    FrictionModelWord, J2Plasticity, PlasticityChoice, PlasticityReason, PressureLawChoice,
-    RestingBackside, SearchWord, SofteningCurve,
+    FrictionModelWord, J2Plasticity, PlasticityChoice, PressureLawChoice, RestingBackside,
+    SearchWord, SofteningCurve,
 };
 pub use contents::{Case, Origin, WearLaws, json_schema, schema_markdown};
 pub use femur::{
     CylinderFemur, Femur, FemurPlacement, FemurShape, GenericFemur, MeshFemur, SphereFemur,
 };
-pub use frame::{Axes, AxesError, AxesReason, Heading, LengthUnit, Side};
+pub use frame::{Axes, AxesError, Heading, LengthUnit, Side};
 pub use insert::{
     FlatInsert, GenericInsert, HexahedralInsert, Insert, InsertOrigin, InsertPlacement,
     InsertShape, MeshInsert,
 };
-pub use key_location::CaseConflict;
 pub use machine::{
     DriveWord, Freedom, Freedoms, Machine, MachineSettings, Preset, Rotation, Sign, Springs,
     StiffnessOf, Translation, Waveforms,
 };
-pub use machine_reason::{ActivityReason, DriveReason};
 pub use material::{
     Creep, CrossLinking, HighlyCrossLinked, LogarithmicCreep, Material, ModeratelyCrossLinked,
 };
-pub use pressure_table::{PressureTableReason, StrainTable, TableError};
+pub use pressure_table::{StrainTable, TableError};
 pub use reader::{CaseReader, template};
 pub use run_options::{Accuracy, Limits, Output};
 pub use schedule::{AutoUpdates, FixedUpdates, IntegratorWord, March, Time, Update};
-pub use waveform::{CaseChannel, InterpolationWord, WaveformReason};
+pub use waveform::{CaseChannel, InterpolationWord};
 pub use wear::{ConstantError, Wear};
 
 #[cfg(feature = "file-system")]

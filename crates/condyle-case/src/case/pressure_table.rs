@@ -8,17 +8,13 @@ use crate::config::{
     Section, Setting, Settings, WhereSilent, Writer, settings, within,
 };
 
-/// A way to give a pressure table.
 struct Form {
-    /// The word of the law that needs it.
     law: &'static str,
-    /// The keys of which one gives the points: those in the case file, and a CSV file.
+    /// Keys of the points in the case file and of a CSV file.
     ways: [&'static str; 2],
-    /// What the points are.
     doc: &'static str,
-    /// Header of a file of points.
     header: [&'static str; 2],
-    /// Units of the columns, and how their names end.
+    /// Units of the columns and the suffixes of their names.
     units: [(&'static str, &'static str); 2],
 }
 
@@ -61,16 +57,12 @@ pub struct StrainTable {
 /// Points that are not a pressure table.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("`{key}`: {}", in_words(.error, *.is_over_thickness))]
-pub struct PressureTableReason {
-    /// The key that gives them.
-    pub key: &'static str,
-    /// The points are overclosure over thickness.
-    pub is_over_thickness: bool,
-    /// The error.
-    pub error: PressureTableError,
+pub(crate) struct PressureTableReason {
+    pub(crate) key: &'static str,
+    pub(crate) is_over_thickness: bool,
+    pub(crate) error: PressureTableError,
 }
 
-/// The error, without a unit where the overclosure has none.
 fn in_words(error: &PressureTableError, is_over_thickness: bool) -> String {
     match error {
         PressureTableError::NotFromZero {

@@ -52,7 +52,6 @@ const RENAMED: &[(&str, &str)] = &[
     ),
 ];
 
-/// Returns the current path of a key.
 pub(super) fn current_path(path: &str) -> &str {
     let renamed = RENAMED.iter().find(|(old, _)| *old == path);
     renamed.map_or(path, |(_, new)| new)

@@ -14,7 +14,7 @@ use crate::config::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CaseChannel(&'static machine::Channel);
 
-/// A waveform with a name, as a CSV text.
+/// A shipped waveform, as a CSV text.
 pub(super) struct NamedWaveform {
     pub word: &'static str,
     pub file: &'static str,
@@ -81,7 +81,6 @@ impl CaseChannel {
         }
     }
 
-    /// The key of the points in the case file itself.
     pub(super) fn knots(self) -> Key {
         Key {
             name: self.knots_key(),
@@ -220,11 +219,9 @@ pub(super) const DEFAULT_WAVEFORM: &str = "iso-like";
 /// Points that are not a waveform.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("[{section}]: {error}")]
-pub struct WaveformReason {
-    /// The table of the waveform.
-    pub section: String,
-    /// The error.
-    pub error: WaveformError,
+pub(crate) struct WaveformReason {
+    pub(crate) section: String,
+    pub(crate) error: WaveformError,
 }
 
 impl Reason for WaveformReason {

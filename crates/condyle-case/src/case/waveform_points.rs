@@ -61,7 +61,6 @@ pub(super) fn write(channel: CaseChannel, waveform: &Waveform, out: &mut Writer)
     out.pairs(channel.knots_key(), &pairs);
 }
 
-/// Points as given.
 struct Samples {
     knots: Vec<Knot>,
     /// Place of each point in `source`.

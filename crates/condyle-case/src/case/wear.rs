@@ -39,7 +39,7 @@ pub enum ConstantError {
         name: &'static str,
         /// The value.
         value: f64,
-        /// What it can be.
+        /// Its range.
         limits: Limits,
     },
 }

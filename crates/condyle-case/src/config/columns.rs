@@ -1,4 +1,4 @@
-//! Columns of numbers in a CSV file, each with its place.
+//! Columns of numbers in a CSV file, with the place of each.
 
 use std::ops::Range;
 
@@ -7,14 +7,14 @@ use thiserror::Error;
 use super::problem::Placed;
 use super::reason::Reason;
 
-/// A CSV file: names of its columns, and rows of cells that are yet to be read as numbers.
+/// A CSV file: names of its columns, and rows of unparsed cells.
 pub(crate) struct Columns<'a> {
     text: &'a str,
     header: Vec<Range<usize>>,
     rows: Vec<Vec<Range<usize>>>,
 }
 
-/// A number and where it stands.
+/// A number and its place.
 pub(crate) struct Cell {
     pub value: f64,
     pub span: Range<usize>,
@@ -53,18 +53,16 @@ impl<'a> Columns<'a> {
         })
     }
 
-    /// Their names.
     pub(crate) fn names(&self) -> Vec<&'a str> {
         let name = |span: &Range<usize>| &self.text[span.clone()];
         self.header.iter().map(name).collect()
     }
 
-    /// Where the name of a column stands.
     pub(crate) fn name_span(&self, column: usize) -> Range<usize> {
         self.header[column].clone()
     }
 
-    /// The numbers of a column, or every cell that is none.
+    /// Returns the numbers of a column, or a problem for every other cell.
     pub(crate) fn numbers(&self, column: usize) -> Result<Vec<Cell>, Vec<Placed>> {
         let mut good = Vec::new();
         let mut bad = Vec::new();
@@ -77,8 +75,7 @@ impl<'a> Columns<'a> {
         if bad.is_empty() { Ok(good) } else { Err(bad) }
     }
 
-    /// The numbers of a column with the row of each, empty cells left out, or every cell that is
-    /// none.
+    /// Returns the numbers of a column with their rows, without empty cells, or a problem for every other cell.
     pub(crate) fn numbers_given(&self, column: usize) -> Result<Vec<(usize, Cell)>, Vec<Placed>> {
         let is_given = |row: &[Range<usize>]| row.get(column).is_none_or(|span| !span.is_empty());
         let rows = self.rows.iter().enumerate();
@@ -108,7 +105,6 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// The lines that are not blank.
 fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
     let mut start = 0;
     let span = move |line: &str| {
@@ -121,7 +117,6 @@ fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
         .filter(|line| !line.is_empty())
 }
 
-/// What stands between the commas of a line, without blanks around.
 fn cells(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
     let mut start = line.start;
     let cell = |cell: &str| {
@@ -133,7 +128,7 @@ fn cells(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
     text[line.clone()].split(',').map(cell).collect()
 }
 
-/// The names in a header: its cells without the `#` of a comment, each up to a blank.
+/// Returns the names in a header: its cells without the `#` of a comment, each up to a blank.
 fn names_in(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
     let after_hash = |span: Range<usize>| {
         let name = text[span.clone()].trim_start_matches(['#', ' ', '\t']);
@@ -146,65 +141,29 @@ fn names_in(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
 
 /// Why columns of numbers cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum ColumnReason {
-    /// A CSV file without a header.
+pub(crate) enum ColumnReason {
     #[error("{file} has no header that names its columns")]
-    NoHeader {
-        /// The file.
-        file: String,
-        /// What the header could be.
-        example: String,
-    },
-    /// A CSV file of one column.
+    NoHeader { file: String, example: String },
     #[error("{file} has one column where two or more are needed")]
-    OneColumn {
-        /// The file.
-        file: String,
-        /// What the header could be.
-        example: String,
-    },
-    /// A first column that is no place in the cycle.
+    OneColumn { file: String, example: String },
     #[error("the first column must be the percent of the cycle, this one is `{column}`")]
-    NoPercent {
-        /// Name of the first column.
-        column: String,
-    },
-    /// A header with another unit.
+    NoPercent { column: String },
     #[error("column `{column}` is in another unit than {unit}, which is needed here")]
     OtherUnit {
-        /// The column.
         column: String,
-        /// The unit that is needed.
         unit: &'static str,
-        /// How its name should end.
         suffix: &'static str,
     },
-    /// A column that is not there.
     #[error("there is no column `{column}` in {file}")]
     NoColumn {
-        /// As written.
         column: String,
-        /// The file.
         file: String,
-        /// Columns there are.
         columns: Vec<String>,
     },
-    /// More than one column to choose from.
     #[error("{file} has several columns and the case does not say which to take")]
-    WhichColumn {
-        /// The file.
-        file: String,
-        /// Columns there are.
-        columns: Vec<String>,
-    },
-    /// A row that is too short, or holds no number.
+    WhichColumn { file: String, columns: Vec<String> },
     #[error("`{text}` in column `{column}` is not a finite number")]
-    NotNumber {
-        /// As written; empty where the row is short.
-        text: String,
-        /// The column.
-        column: String,
-    },
+    NotNumber { text: String, column: String },
 }
 
 impl Reason for ColumnReason {

@@ -27,7 +27,7 @@ pub struct DataFile {
     files: Arc<dyn Files>,
     /// Absolute on a disk, its folder without `..` or links.
     path: PathBuf,
-    /// How a file that names it says where it is.
+    /// The path as a file that names it has it.
     written: PathBuf,
 }
 
@@ -52,8 +52,7 @@ impl DataFile {
         })
     }
 
-    /// The same as files in `folder`, an absolute path without links, are to name it: by its path
-    /// counted from there, where it has one.
+    /// Returns the file with its path relative to `folder`, an absolute path without links.
     #[cfg(feature = "file-system")]
     pub(crate) fn named_from(&self, folder: &Path) -> Self {
         let mut file = self.clone();
@@ -63,23 +62,23 @@ impl DataFile {
         file
     }
 
-    /// What it is kept in, and read from.
+    /// Returns the files that it is read from.
     pub fn files(&self) -> &dyn Files {
         self.files.as_ref()
     }
 
-    /// Where it is; absolute on a disk.
+    /// Returns its path, absolute on a disk.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Its name without its folder.
+    /// Returns its name without its folder.
     pub fn name(&self) -> String {
         let name = self.path.file_name().unwrap_or_default();
         name.to_string_lossy().into_owned()
     }
 
-    /// Its text, or the reason at the key `key` of `section` that names it.
+    /// Reads its text, or reports a problem at the key `key` of `section`.
     pub(crate) fn source(
         &self,
         section: &Section<'_>,

@@ -19,20 +19,20 @@ pub(crate) mod settings;
 mod suggest;
 mod writer;
 
-pub use columns::ColumnReason;
 pub use data_file::DataFile;
 pub use key::Limits;
 pub use problem::{Problem, Problems};
-pub use reason::{FileReason, KeyReason, Reason};
+pub use reason::Reason;
 pub use render::{RenderStyle, visible};
 pub use setting::{Level, Levels, Names, Points};
 
-pub(crate) use columns::{Cell, Columns};
+pub(crate) use columns::{Cell, ColumnReason, Columns};
 pub(crate) use document::{rename, set_value, take, value_at};
 pub(crate) use items::{Choices, Item, Offered, TableItem, check, keys};
 pub(crate) use key::{Key, Kind, WhereSilent, names, number, plain, quoted_list, within};
 pub(crate) use log::{Base, Log};
 pub(crate) use problem::{Placed, Source, read_source};
+pub(crate) use reason::KeyReason;
 pub(crate) use schema::{rows, sections, table_schema};
 pub(crate) use section::{Section, read_document, read_part};
 pub(crate) use setting::{Setting, choice, read_word, wrong_type};

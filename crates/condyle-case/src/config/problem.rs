@@ -46,7 +46,7 @@ impl Placed {
 /// One thing that is wrong, at its place.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    /// What is wrong.
+    /// Description of the problem as data.
     pub reason: Arc<dyn Reason>,
     pub(super) source: Option<Source>,
     pub(super) span: Option<Range<usize>>,

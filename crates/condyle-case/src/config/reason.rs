@@ -15,115 +15,64 @@ pub trait Reason: Error + Send + Sync + 'static {
 
 /// A key or a value that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum KeyReason {
-    /// Not TOML.
+pub(crate) enum KeyReason {
     #[error("this is not TOML: {message}")]
-    Syntax {
-        /// What the parser says.
-        message: String,
-    },
-    /// A key that does not exist.
+    Syntax { message: String },
     #[error("{section} has no key `{key}`")]
     UnknownKey {
-        /// As written.
         key: String,
-        /// The table it stands in.
         section: String,
-        /// A key that looks like it.
         near: Option<String>,
-        /// Every key there is.
         keys: Vec<String>,
     },
-    /// A key that exists with another unit.
     #[error("`{key}` is in another unit: the key is `{meant}`, in {unit}")]
     WrongUnit {
-        /// As written.
         key: String,
-        /// The key that is meant.
         meant: String,
-        /// Its unit.
         unit: &'static str,
-        /// The same value in that unit, where it is known.
         converted: Option<String>,
     },
-    /// A key that belongs to another choice.
     #[error("`{key}` belongs to {owner}, but this case has {chosen}")]
     OtherChoice {
-        /// As written.
         key: String,
-        /// Such as `shape = "mesh"`.
         owner: String,
-        /// Such as `shape = "generic"`.
         chosen: String,
     },
-    /// A value of another type.
     #[error("`{key}` must be {wanted}, this is {found}")]
     WrongType {
-        /// The key.
         key: String,
-        /// What it takes.
         wanted: String,
-        /// What it got.
         found: &'static str,
     },
-    /// A word that is none of the choices.
     #[error("`{key}` cannot be \"{word}\"")]
     UnknownWord {
-        /// The key.
         key: String,
-        /// As written.
         word: String,
-        /// A choice that looks like it.
         near: Option<String>,
-        /// Every choice.
         words: String,
     },
-    /// A number outside its range.
     #[error("`{key}` is {value}, outside its range")]
     OutOfRange {
-        /// The key.
         key: String,
-        /// As written.
         value: String,
-        /// The range with its unit.
         range: String,
     },
-    /// A key that must be there.
     #[error("{section} needs `{key}`")]
     MissingKey {
-        /// The key.
         key: String,
-        /// The table it is missing from.
         section: String,
-        /// What it takes.
         wanted: String,
     },
-    /// Two keys that exclude each other.
     #[error("{section} has both `{first}` and `{second}`, which say the same thing twice")]
     Both {
-        /// The table.
         section: String,
-        /// One key.
         first: String,
-        /// The other.
         second: String,
     },
-    /// None of the keys of which one is needed.
     #[error("{section} needs one of {keys}")]
-    NoneOf {
-        /// The table.
-        section: String,
-        /// The keys.
-        keys: String,
-    },
-    /// A key that means nothing without another.
+    NoneOf { section: String, keys: String },
     #[error("`{key}` means nothing here: it needs {needs}")]
-    Idle {
-        /// The key.
-        key: String,
-        /// What it needs.
-        needs: String,
-    },
+    Idle { key: String, needs: String },
 }
 
 impl Reason for KeyReason {
@@ -165,23 +114,11 @@ const SYNTAX_ADVICE: &str = "a line is `key = value`: text in quotes, a number w
 
 /// A file that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum FileReason {
-    /// A file that is not there.
+pub(crate) enum FileReason {
     #[error("`{key}`: there is no file {}", path.display())]
-    Missing {
-        /// The key that names it.
-        key: String,
-        /// Where it was looked for.
-        path: PathBuf,
-    },
-    /// A file that cannot be read.
+    Missing { key: String, path: PathBuf },
     #[error("the file {} cannot be read: {why}", path.display())]
-    Unreadable {
-        /// Which file.
-        path: PathBuf,
-        /// What the system says.
-        why: String,
-    },
+    Unreadable { path: PathBuf, why: String },
 }
 
 impl Reason for FileReason {

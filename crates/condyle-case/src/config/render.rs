@@ -11,7 +11,7 @@ use miette::{
 
 use super::problem::{Problem, Problems};
 
-/// How problems are shown.
+/// Style of rendered problems.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RenderStyle {
     /// ASCII without colour, the same everywhere: for logs, pipes and tests.
@@ -26,7 +26,7 @@ pub enum RenderStyle {
 /// Width of text that goes to no terminal, columns.
 const PLAIN_WIDTH: usize = 100;
 
-/// Problems shown at most. Each is looked for from the start of its file, and nobody reads on for longer.
+/// Largest number of problems shown: each is searched from the start of its file.
 const MAX_SHOWN: usize = 20;
 
 impl Problems {
@@ -49,7 +49,6 @@ impl Problems {
     }
 }
 
-/// What is said of the problems that are not shown, where there are `all`.
 fn of_the_rest(all: usize) -> String {
     match all.saturating_sub(MAX_SHOWN) {
         0 => String::new(),
@@ -66,12 +65,11 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// A problem as it is shown.
 #[derive(Debug)]
 pub(super) struct Shown<'a> {
     problem: &'a Problem,
     source: Option<NamedSource<String>>,
-    /// In the source as it is shown.
+    /// In the shown source.
     span: Option<Range<usize>>,
 }
 
@@ -134,8 +132,7 @@ pub fn visible(text: &str) -> String {
     shown
 }
 
-/// `text` with a stand-in of as many bytes for every character that steers a terminal, so that
-/// places in it stay where they are.
+/// Replaces every character that steers a terminal by one of as many bytes, so that places in the text remain valid.
 pub(super) fn masked(text: &str) -> String {
     let without_line_ends = |line: &str| line.trim_end_matches(['\r', '\n']).len();
     let mut shown = String::with_capacity(text.len());
@@ -156,21 +153,20 @@ fn stand_in(character: char) -> char {
     }
 }
 
-/// Control characters, and those that turn the direction of the text around them.
+/// Returns true for control characters and for those that change the direction of text.
 fn steers(character: char) -> bool {
     character.is_control()
         || matches!(character, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// Words longer than this are cut, characters.
+/// Length above which words are cut, and the length of the shown beginning, characters.
 const LONGEST_WORD: usize = 80;
-/// Of a word that is cut, so much of its start is shown.
 const SHOWN: usize = 60;
-/// Of a line that is cut, so many bytes before and after the place are shown.
+/// Shown bytes of a cut line before and after the place.
 const BEFORE: usize = 60;
 const AFTER: usize = 120;
 
-/// `text` with long words cut, each with its length.
+/// Cuts long words, and adds their length.
 pub(super) fn with_short_words(text: &str) -> String {
     let mut short = String::with_capacity(text.len().min(1000));
     for piece in text.split_inclusive(char::is_whitespace) {
@@ -186,7 +182,7 @@ pub(super) fn with_short_words(text: &str) -> String {
     short
 }
 
-/// `text` with long lines cut, that of the place to what is around it; the place in what is left.
+/// Cuts long lines, that of the place around it, and returns the text with the place in it.
 pub(super) fn with_short_lines(text: &str, place: &Range<usize>) -> (String, Range<usize>) {
     let mut short = String::with_capacity(text.len());
     let (mut at, mut moved) = (0, place.clone());
@@ -223,14 +219,13 @@ pub(super) fn with_short_lines(text: &str, place: &Range<usize>) -> (String, Ran
     (short, moved)
 }
 
-/// A place that began `from` bytes in, when that is `to` bytes in.
+/// Moves a place by the difference of two offsets.
 fn shifted(place: &Range<usize>, from: usize, to: usize) -> Range<usize> {
     let length = place.end.saturating_sub(place.start);
     let start = place.start - from + to;
     start..start + length
 }
 
-/// The start of the character at `at`, or the end of the text.
 fn floor(text: &str, at: usize) -> usize {
     let mut at = at.min(text.len());
     while !text.is_char_boundary(at) {

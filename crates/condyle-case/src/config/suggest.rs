@@ -34,7 +34,7 @@ const CONVERSIONS: &[(&str, &str, f64)] = &[
     ("_us", "_s", 1e-6),
 ];
 
-/// The likeliest reason why `section` has no `key` among `keys`.
+/// Returns the likeliest reason why `section` has no `key` among `keys`.
 pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&str]) -> KeyReason {
     wrong_unit(key, value, keys).unwrap_or_else(|| KeyReason::UnknownKey {
         key: key.to_owned(),
@@ -44,7 +44,6 @@ pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&st
     })
 }
 
-/// A key that exists, but with another unit at its end.
 fn wrong_unit(key: &str, value: &DeValue<'_>, keys: &[&str]) -> Option<KeyReason> {
     let same_quantity = |known: &&&str| {
         let (base, unit) = split_unit(known);
@@ -59,26 +58,23 @@ fn wrong_unit(key: &str, value: &DeValue<'_>, keys: &[&str]) -> Option<KeyReason
     })
 }
 
-/// The one of `keys` that is likely to be meant by `key`.
 pub(crate) fn likeliest(key: &str, keys: &[&str]) -> Option<String> {
     synonym(key, keys).or_else(|| nearest(key, keys.iter().copied()))
 }
 
-/// The one of `keys` that `key` is another word for, with or without a unit at its end.
+/// Returns the key for which `key` is a synonym, with or without a unit.
 fn synonym(key: &str, keys: &[&str]) -> Option<String> {
     let written = key.to_lowercase();
     let mut words = std::iter::once(written.as_str()).chain(bases(&written));
     words.find_map(|word| meant(word, keys)).map(str::to_owned)
 }
 
-/// `key` without each unit that its end could be.
 fn bases(key: &str) -> impl Iterator<Item = &str> {
     let foreign = CONVERSIONS.iter().map(|conversion| conversion.0);
     let own = std::iter::once(split_unit(key).0).filter(move |base| *base != key);
     own.chain(foreign.filter_map(|ending| key.strip_suffix(ending)))
 }
 
-/// The number in the unit of `meant`, as text.
 fn convert(key: &str, meant: &str, number: f64) -> Option<String> {
     let fits = |&&(from, to, _): &&(&str, &str, f64)| {
         key.strip_suffix(from)
@@ -89,10 +85,10 @@ fn convert(key: &str, meant: &str, number: f64) -> Option<String> {
     Some(plain(rounded))
 }
 
-/// Words less alike than this are not offered, 0 to 1.
+/// Similarity, 0 to 1, below which a word is not suggested.
 const ALIKE: f64 = 0.6;
 
-/// The one of `known` that looks most like `written`.
+/// Returns the word most similar to `written`.
 pub(crate) fn nearest<'a>(written: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     known
         .map(|word| (likeness(written, word), word))
@@ -101,7 +97,7 @@ pub(crate) fn nearest<'a>(written: &str, known: impl Iterator<Item = &'a str>) -
         .map(|(_, word)| word.to_owned())
 }
 
-/// How alike two words are: a key without its unit is as good as the key.
+/// Returns the similarity of two words; a key without its unit counts as the key.
 fn likeness(written: &str, known: &str) -> f64 {
     // A character has four bytes at most: this one is longer, and the comparison takes its length times the other's.
     if written.len() > 4 * 2 * known.len() {
@@ -113,8 +109,7 @@ fn likeness(written: &str, known: &str) -> f64 {
     whole.max(base)
 }
 
-/// What a person may write, in small letters and without a unit, and the key that is meant; where
-/// a word has several, the first that the table has.
+/// Synonyms of keys, in small letters and without a unit; of several keys, the first that a table has is meant.
 pub(crate) const SYNONYMS: &[(&str, &str)] = &[
     ("mu", "friction"),
     ("cof", "friction"),
@@ -144,7 +139,6 @@ pub(crate) const SYNONYMS: &[(&str, &str)] = &[
     ("knee", "side"),
 ];
 
-/// The one of `keys` that `word`, in small letters, is another word for.
 pub(super) fn meant<'a>(word: &str, keys: &[&'a str]) -> Option<&'a str> {
     let of_word = SYNONYMS.iter().filter(|(written, _)| *written == word);
     let mut there = of_word.filter_map(|(_, key)| keys.iter().find(|known| *known == key));

@@ -1,6 +1,5 @@
 //! Files written key by key, with the meaning of each key as a comment.
 
-/// A file being written.
 #[derive(Default)]
 pub(crate) struct Writer {
     text: String,
@@ -39,7 +38,6 @@ impl Writer {
         self.path.pop();
     }
 
-    /// Writes a comment on a line of its own.
     pub(crate) fn comment(&mut self, text: &str) {
         self.text.push_str(&format!("# {text}\n"));
     }

@@ -142,7 +142,6 @@ fn curve(
     Ok(MeasuredCurve { column, samples })
 }
 
-/// Name of the table of phases.
 pub(super) const PHASES: &str = "phases_percent";
 
 /// A named part of the gait cycle.

@@ -13,7 +13,7 @@ pub use gravimetric::{Gravimetric, GravimetricKeys, IntervalWord, Specimen};
 pub use kinematics::{
     AlignWord, COLUMNS, CycleWord, Kinematics, KinematicsKeys, MeasuredCurve, Phase, Sample,
 };
-pub use reason::MeasuredReason;
+use reason::MeasuredReason;
 pub use scan::{FitWord, Scan, ScanKeys};
 
 use std::path::Path;

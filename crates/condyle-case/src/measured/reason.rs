@@ -8,112 +8,53 @@ use crate::config::{Cell, Columns, Limits, Placed, Reason};
 
 /// Measured data that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum MeasuredReason {
-    /// A file that names no data.
+pub(crate) enum MeasuredReason {
     #[error("the file names no measured data")]
     Nothing,
-    /// A column that no run has.
     #[error("a run has no column `{column}` to compare with")]
     UnknownColumn {
-        /// Its name in the file.
         column: String,
-        /// A column that looks like it.
         near: Option<String>,
-        /// Every column there is.
         columns: String,
     },
-    /// A column that is in its file twice.
     #[error("the column `{column}` is in its file twice")]
-    RepeatedColumn {
-        /// Its name.
-        column: String,
-    },
-    /// A file with nothing to compare.
-    #[error("{file} has no column next to `{first}`")]
-    NoData {
-        /// The file.
-        file: String,
-        /// Its first column.
-        first: String,
-    },
-    /// A wrong first column.
+    RepeatedColumn { column: String },
     #[error("the first column must be `{wanted}`, this one is `{found}`")]
-    FirstColumn {
-        /// What it must be called.
-        wanted: &'static str,
-        /// As written.
-        found: String,
-    },
-    /// A column of masses without the unit in its name.
+    FirstColumn { wanted: &'static str, found: String },
     #[error("the name `{column}` does not end in the unit of a mass, _mg")]
-    NoMass {
-        /// Its name.
-        column: String,
-    },
-    /// Numbers that do not grow from row to row.
+    NoMass { column: String },
     #[error("`{column}` is {value}, after {before} in the row above: it must grow")]
     NotGrowing {
-        /// The column.
         column: String,
-        /// The number.
         value: f64,
-        /// The one before it.
         before: f64,
     },
-    /// A number outside its range.
     #[error("`{column}` is {value}: it must be {range}")]
     OutOfRange {
-        /// The column.
         column: String,
-        /// The number.
         value: f64,
-        /// What it can be, with its unit.
         range: &'static str,
     },
-    /// A column with too few numbers.
     #[error("`{column}` has {found} numbers where {needed} are needed")]
     TooFew {
-        /// The column.
         column: String,
-        /// Numbers it has.
         found: usize,
-        /// Numbers it needs.
         needed: usize,
     },
-    /// All columns are soak controls.
     #[error("every column of {file} is a soak control: there is no specimen")]
-    NoSpecimen {
-        /// The file.
-        file: String,
-    },
-    /// Too few weighings for a line with an interval.
+    NoSpecimen { file: String },
     #[error("{rows} weighings are left for the line, of which three are needed")]
-    TooFewWeighings {
-        /// Weighings after the first that count.
-        rows: usize,
-    },
-    /// A phase that is no part of a cycle.
+    TooFewWeighings { rows: usize },
     #[error("the phase `{name}` is {found}: it must be [start, end] in percent, 0 to 100")]
-    Phase {
-        /// Its name.
-        name: String,
-        /// As read.
-        found: String,
-    },
-    /// A range of a place that is empty.
+    Phase { name: String, found: String },
     #[error("`{key}` is [{low}, {high}]: the second must be the larger")]
     EmptyRange {
-        /// The key.
         key: &'static str,
-        /// First.
         low: f64,
-        /// Second.
         high: f64,
     },
-    /// A fit region that is not given.
     #[error("`fit = \"region\"` needs `fit_x_mm`, `fit_z_mm` or both")]
     NoRegion,
-    /// A scan that cannot be read.
     #[error("{0}")]
     Scan(String),
 }
@@ -129,7 +70,6 @@ impl Reason for MeasuredReason {
                 None => format!("remove it, or name it one of {columns}"),
             },
             Self::RepeatedColumn { .. } => "give each column a name of its own".to_owned(),
-            Self::NoData { .. } => "add a column of what was measured".to_owned(),
             Self::FirstColumn { wanted, .. } => {
                 format!("put `{wanted}` first, and name it so")
             }

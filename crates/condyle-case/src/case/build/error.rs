@@ -187,7 +187,7 @@ pub enum MeshFault {
         in_better_unit(Some(*better))
     )]
     WrongUnit {
-        /// Which body.
+        /// The body.
         body: Body,
         /// Its longest extent along an axis, mm.
         size_mm: f64,
@@ -404,7 +404,7 @@ pub enum MeshRemark {
         rounded(*size_mm)
     )]
     UnusualSize {
-        /// Which body.
+        /// The body.
         body: Body,
         /// Its longest extent along an axis, mm.
         size_mm: f64,

@@ -23,7 +23,7 @@ use super::rigid_motion::RigidMotion;
 use crate::cache::{Keep, kept};
 use condyle_mesh::formats::surface_bytes;
 
-/// A femoral surface, the axis it flexes about and where that starts over the insert.
+/// A femoral surface with its flexion axis and the start of that axis over the insert.
 pub(super) struct BuiltFemur {
     pub surface: Arc<FemoralSurface>,
     /// (x, y) in the femoral frame.
@@ -32,7 +32,7 @@ pub(super) struct BuiltFemur {
     pub start_mm: (f64, f64),
 }
 
-/// How the one-time work on a mesh is done.
+/// Options of the one-time work on a mesh.
 #[derive(Clone, Copy)]
 pub(super) struct Preparing<'a> {
     pub threads: usize,
@@ -41,7 +41,7 @@ pub(super) struct Preparing<'a> {
 }
 
 impl Femur {
-    /// The femur, which starts the cycle flexed by `flexion_rad`.
+    /// Builds the femur, which starts the cycle flexed by `flexion_rad`.
     pub(super) fn build(
         &self,
         side: Side,
@@ -92,7 +92,7 @@ impl Femur {
 }
 
 impl MeshFemur {
-    /// Its triangles as a checked shell, placed in the femoral frame of a right knee, mm.
+    /// Returns its triangles as a checked shell in the femoral frame of a right knee, mm.
     pub(crate) fn triangles(
         &self,
         placement: &FemurPlacement,
@@ -103,7 +103,7 @@ impl MeshFemur {
         Ok(self.moved(mesh, placement))
     }
 
-    /// Tells a component that lies otherwise than its axes say; `mesh` is as it lies in its file.
+    /// Checks the orientation of the component by its shape; `mesh` is in the frame of its file.
     fn check_orientation(
         &self,
         mesh: &TriangleMesh,
@@ -117,7 +117,7 @@ impl MeshFemur {
         Ok(())
     }
 
-    /// The flexion axis (x, y) in the femoral frame, of the component as it lies in its file.
+    /// Returns the flexion axis (x, y) of the unplaced component.
     fn axis_mm(&self, mesh: &TriangleMesh) -> (f64, f64) {
         match self.flexion_axis_mm {
             Some([x, y]) => (x, y),
@@ -125,7 +125,6 @@ impl MeshFemur {
         }
     }
 
-    /// Its triangles where the placement puts them.
     fn moved(&self, mesh: TriangleMesh, placement: &FemurPlacement) -> TriangleMesh {
         match placement.motion(self.axis_mm(&mesh)) {
             Some(motion) => motion.mesh(mesh),
@@ -133,7 +132,7 @@ impl MeshFemur {
         }
     }
 
-    /// What a placement follows from, the same bytes for the same one; none where the component stays.
+    /// Returns bytes that identify a placement; `None` if it moves nothing.
     fn placement_bytes(&self, placement: &FemurPlacement) -> Option<Vec<u8>> {
         let axis = self.flexion_axis_mm.into_iter().flatten();
         let numbers = placement.numbers().into_iter().chain(axis);
@@ -141,7 +140,7 @@ impl MeshFemur {
         placement.is_moved().then(bytes)
     }
 
-    /// The shell in its file and the field of that as it is placed, computed or kept from a run before.
+    /// Returns the unplaced shell and the field of the placed one, computed or kept from an earlier run.
     fn prepared(
         &self,
         placement: &FemurPlacement,
@@ -175,7 +174,6 @@ impl MeshFemur {
     }
 }
 
-/// The generic femur where `motion` takes it.
 fn placed(femur: GenericFemur, motion: Option<RigidMotion>) -> FemoralSurface {
     match motion {
         Some(motion) => {
@@ -185,7 +183,7 @@ fn placed(femur: GenericFemur, motion: Option<RigidMotion>) -> FemoralSurface {
     }
 }
 
-/// A place [x, z] of the insert frame, mirrored with a left knee.
+/// Mirrors a place [x, z] of the insert frame of a left knee.
 fn on_the_right([x, z]: [f64; 2], side: Side) -> (f64, f64) {
     match side {
         Side::Right => (x, z),
@@ -193,7 +191,7 @@ fn on_the_right([x, z]: [f64; 2], side: Side) -> (f64, f64) {
     }
 }
 
-/// Where the frame must be for the centre of the distal arc to stand over x = 0.
+/// Returns the place of the frame for which the centre of the distal arc is over x = 0.
 ///
 /// That centre lies (distal - posterior radius) from the origin, opposite to the transition.
 fn over_the_dish(shape: &GenericFemurShape, flexion_rad: f64) -> (f64, f64) {
@@ -224,7 +222,7 @@ fn check_node_count(file: &Path, mesh: &TriangleMesh, limits: &Limits) -> Result
     Err(BuildError::mesh(file, fault))
 }
 
-/// How far anterior of the frame's origin the flexion axis lies in the insert frame.
+/// Returns the distance of the flexion axis anterior of the frame's origin, in the insert frame.
 fn axis_ahead_mm(flexion_axis_mm: (f64, f64), flexion_rad: f64) -> f64 {
     let axis = Vec3::new(flexion_axis_mm.0, flexion_axis_mm.1, 0.0);
     let (sine, cosine) = flexion_rad.sin_cos();
@@ -234,7 +232,6 @@ fn axis_ahead_mm(flexion_axis_mm: (f64, f64), flexion_rad: f64) -> f64 {
 /// Triangles for a femur that is no mesh already, as many as Knight 2007 has: they come within a hundredth of a
 /// millimetre of its surface.
 pub const FEMUR_TRIANGLES: f64 = 25_000.0;
-/// Faces of an icosahedron.
 const ICOSAHEDRON: f64 = 20.0;
 
 impl Case {
@@ -267,7 +264,7 @@ fn generic(femur: &GenericFemur, about: f64) -> TriangleMesh {
     femur.surface_mesh(COARSE_MM * (coarse / about).sqrt())
 }
 
-/// A tube about the z axis, longer than any insert is wide.
+/// Returns a tube about the z axis, longer than any insert is wide.
 fn tube(radius_mm: f64) -> TriangleMesh {
     const HALF_LENGTH_MM: f64 = 60.0;
     const EDGE_MM: f64 = 1.5;
@@ -293,7 +290,7 @@ fn tube(radius_mm: f64) -> TriangleMesh {
     mesh
 }
 
-/// A ball about the origin: an icosahedron, its triangles cut in four again and again.
+/// Returns a ball about the origin by repeated subdivision of an icosahedron.
 fn sphere(radius_mm: f64, about: f64) -> TriangleMesh {
     let halvings = (about / ICOSAHEDRON).log(4.0).round() as usize;
     let mut ball = icosahedron();
@@ -337,14 +334,14 @@ fn icosahedron() -> TriangleMesh {
     }
 }
 
-/// Whether three corners of the icosahedron, whose edges are 2 long, are all neighbours.
+/// Returns true if three corners of the icosahedron, whose edges are 2 long, are neighbours.
 fn is_face([a, b, c]: &[Vec3; 3]) -> bool {
     [(a, b), (b, c), (c, a)]
         .iter()
         .all(|(one, other)| ((*one - *other).norm() - 2.0).abs() < 1e-9)
 }
 
-/// Every triangle cut in four at its middles, which `middle_of` puts between two corners.
+/// Divides every triangle in four at its midpoints, which `middle_of` places between two corners.
 pub(crate) fn in_four(
     mesh: &TriangleMesh,
     middle_of: impl Fn(&Vec3, &Vec3) -> Vec3,

@@ -26,7 +26,7 @@ use condyle_mesh::formats::{HexFile, parse_surface, read_hexahedra, surface_byte
 const FLAT_SIZE_MM: (f64, f64) = (46.0, 72.0);
 
 impl Case {
-    /// The insert of this case in a mesh of twice the edge.
+    /// Returns the insert of this case in a mesh with twice the edge length.
     ///
     /// # Errors
     /// In words: an insert that is read as hexahedra, or that has no such mesh.
@@ -44,7 +44,7 @@ impl Case {
         built.map_err(|why| why.to_string())
     }
 
-    /// How many triangles the file of its insert has; none where it is not made from triangles.
+    /// Returns the number of triangles in the file of its insert, if there is one.
     pub fn insert_triangle_count(&self) -> Option<usize> {
         let InsertShape::Mesh(insert) = &self.insert.shape else {
             return None;
@@ -55,7 +55,6 @@ impl Case {
         Some(mesh.triangles.len())
     }
 
-    /// An insert of any mesh, placed as that of this case.
     pub(super) fn built_insert(
         &self,
         insert: &Insert,
@@ -82,7 +81,7 @@ impl Case {
     }
 }
 
-/// What an insert is built with, besides its own keys.
+/// Settings of the case that an insert is built with.
 #[derive(Clone, Copy)]
 struct Surroundings<'a> {
     placement: &'a InsertPlacement,
@@ -201,7 +200,7 @@ fn from_mesh(
     Ok(built)
 }
 
-/// The insert without a tray that its file holds too; once it is alone, its shape tells how it lies.
+/// Removes a tray that is in the same file; the orientation is checked again for what remains.
 fn insert_alone(
     insert: &MeshInsert,
     shell: CheckedMesh,
@@ -242,14 +241,13 @@ fn from_hexahedra(
     Ok(geometry::Insert::new(file.mesh, &articulating, &backside)?)
 }
 
-/// The nodes of some quads, each once.
 fn corners(mesh: &HexMesh, quads: &[[u32; 4]]) -> Vec<Vec3> {
     let nodes: BTreeSet<u32> = quads.iter().flatten().copied().collect();
     let nodes = nodes.into_iter();
     nodes.map(|node| mesh.nodes[node as usize]).collect()
 }
 
-/// Moves nodes into the frame; where that mirrors, turns hexahedra and faces the right way again.
+/// Moves nodes into the frame, and restores the orientation of hexahedra and faces if that mirrors.
 fn place(file: &mut HexFile, placing: &Placing) {
     let nodes = &mut file.mesh.nodes;
     nodes
@@ -289,7 +287,7 @@ fn named(
 /// A face counts as seen from above or below if it leans by less than 60 degrees.
 const MIN_COSINE: f64 = 0.5;
 
-/// The faces of the boundary that look up (`up` 1) or down (-1).
+/// Returns the faces of the boundary that face up (`up` 1) or down (-1).
 fn facing(mesh: &HexMesh, up: f64) -> Vec<[u32; 4]> {
     let upward = |quad: &[u32; 4]| {
         let [a, b, c, d]: [Vec3; 4] = quad.map(|node| mesh.nodes[node as usize]);

@@ -10,15 +10,12 @@ use super::super::machine::{DriveWord, Freedom, Springs, StiffnessOf};
 use super::super::waveform::CaseChannel;
 use super::super::{activity, machine as case};
 
-/// A kilogram in tonnes.
 const TONNE_PER_KG: f64 = 1e-3;
-/// A kg m2 in tonne mm2.
 const TONNE_MM2_PER_KG_M2: f64 = 1e3;
-/// A newton metre in N mm.
 const NMM_PER_NM: f64 = 1e3;
 
 impl case::Machine {
-    /// The machine around an insert whose dishes are lowest at `low_point_mm`.
+    /// Builds the machine around an insert whose dishes are lowest at `low_point_mm`.
     pub(super) fn build(&self, low_point_mm: Vec3) -> Machine {
         let settings = &self.settings;
         let mut machine = Machine::new(&KNEE);
@@ -56,8 +53,7 @@ impl case::Machine {
         }
     }
 
-    /// The waveform of a channel in mm, rad, N or N mm, with the sign of its joint; nothing pushes a
-    /// joint without one.
+    /// Returns the waveform of a channel in mm, rad, N or N mm with the sign of its joint; zero without a channel.
     fn inside(&self, channel: Option<&'static condyle::machine::Channel>) -> Waveform {
         let channel = channel.map(CaseChannel::of);
         let given = channel.and_then(|channel| Some((channel, self.waveforms.get(channel)?)));
@@ -68,7 +64,7 @@ impl case::Machine {
         waveform.scaled(channel.of_machine().factor())
     }
 
-    /// The waveform as the case's own numbers change it, in the unit of files.
+    /// Applies offset and signs of the machine, in the unit of files.
     fn adjusted(&self, channel: CaseChannel, waveform: Waveform) -> Waveform {
         let settings = &self.settings;
         match channel.name() {
@@ -80,7 +76,6 @@ impl case::Machine {
     }
 }
 
-/// A spring to each side of the IE axis.
 fn springs(springs: &Springs) -> Vec<Spring> {
     let share = match springs.stiffness_of {
         StiffnessOf::Pair => 0.5,
@@ -99,13 +94,11 @@ fn springs(springs: &Springs) -> Vec<Spring> {
 
 #[cfg(feature = "file-system")]
 impl Case {
-    /// Flexion at the start of the cycle, whatever the bodies are.
     pub(in crate::case) fn start_flexion_rad(&self) -> f64 {
         start_flexion_rad(&self.first_machine().build(Vec3::zeros()))
     }
 }
 
-/// Flexion at the start of the cycle, rad.
 pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
     match &machine.joint(knee::FLEXION).drive {
         Drive::Prescribed(flexion) => flexion.at(0.0).0,
@@ -114,11 +107,11 @@ pub(super) fn start_flexion_rad(machine: &Machine) -> f64 {
     }
 }
 
-/// What the only activity is called where the case names none.
+/// Name of the only activity of a case without activities.
 const ONLY: &str = "gait";
 
 impl Case {
-    /// Every activity, of a machine around an insert whose dishes are lowest at `low_point_mm`.
+    /// Builds every activity around an insert whose dishes are lowest at `low_point_mm`.
     pub(super) fn built_activities(&self, low_point_mm: Vec3) -> Vec<Activity> {
         if self.activities.is_empty() {
             return vec![Activity::only(ONLY, self.machine.build(low_point_mm))];
@@ -132,7 +125,6 @@ impl Case {
         built.collect()
     }
 
-    /// The machine of the first activity.
     #[cfg(feature = "file-system")]
     pub(super) fn first_machine(&self) -> case::Machine {
         let first = self.activities.iter().next();
@@ -141,7 +133,6 @@ impl Case {
 }
 
 impl case::Machine {
-    /// The same machine with the inputs of an activity.
     fn doing(&self, activity: &activity::Activity) -> Self {
         let (mut machine, keys) = (self.clone(), &activity.keys);
         machine.waveforms = activity.waveforms.clone();

@@ -16,8 +16,8 @@ use crate::config::DataFile;
 /// the market, rounded down, to the largest, rounded up.
 const WHOLE_KNEE_MM: std::ops::RangeInclusive<f64> = 40.0..=120.0;
 
-/// Tells a body that lies, or is measured, otherwise than the case says: an error where it is certain. Whether it
-/// is seen to lie as the case says.
+/// Checks orientation and unit of a body by its shape: a certain mistake is an error, a likely one a warning. Returns true if
+/// the shape confirms the orientation.
 pub(super) fn check_orientation(
     body: Body,
     file: &DataFile,
@@ -48,7 +48,7 @@ pub(super) fn check_orientation(
     Ok(false)
 }
 
-/// Tells a femur, as it lies in a right knee, that looks like one of the other knee.
+/// Warns of a femur, in the frame of a right knee, that looks like one of the other knee.
 pub(super) fn check_side(
     file: &DataFile,
     mesh: &TriangleMesh,
@@ -62,7 +62,6 @@ pub(super) fn check_side(
     }
 }
 
-/// The same for an insert in hexahedra.
 pub(super) fn check_orientation_of_hexahedra(
     file: &DataFile,
     mesh: &HexMesh,
@@ -73,8 +72,7 @@ pub(super) fn check_orientation_of_hexahedra(
     check_orientation(Body::Insert, file, &boundary, placing, warnings)
 }
 
-/// A whole knee's body that is too small or too large for one is so for certain where another unit
-/// makes it right.
+/// Checks the size of a whole knee's body; a wrong size is certain if another unit corrects it.
 fn check_unit(
     body: Body,
     file: &DataFile,
@@ -99,20 +97,19 @@ fn check_unit(
     Ok(())
 }
 
-/// The unit that makes a body that is `size` long in it as long as a knee's, and how long, mm.
+/// Returns the unit in which a body of length `size` is as long as a knee's, and that length, mm.
 pub(crate) fn usual_unit(size: f64) -> Option<(LengthUnit, f64)> {
     let in_mm = |unit: LengthUnit| (unit, size * unit.in_mm());
     let is_usual = |(_, size_mm): &(LengthUnit, f64)| WHOLE_KNEE_MM.contains(size_mm);
     LengthUnit::ALL.iter().copied().map(in_mm).find(is_usual)
 }
 
-/// Longest extent along an axis.
 pub(crate) fn longest_mm(mesh: &TriangleMesh) -> f64 {
     let (low, high) = mesh.bounds();
     (high - low).max()
 }
 
-/// How a body lies that `turn` puts right.
+/// Describes the orientation of a body that `turn` corrects.
 fn lies(turn: &Mat3) -> &'static str {
     let up = turn * Vec3::y();
     let front = turn * Vec3::x();
@@ -133,7 +130,7 @@ pub(in crate::case) const MAX_ACROSS_MM: f64 = 2.5;
 /// place.
 const MAX_ALONG_MM: f64 = 10.0;
 
-/// A warning where the dishes lie off the origin of their file, wherever the case's own keys turn them.
+/// Returns a warning if the dishes lie off the origin of their file, whatever the placement.
 pub(super) fn off_centre(
     file: &DataFile,
     placement: &InsertPlacement,

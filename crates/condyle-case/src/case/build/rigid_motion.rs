@@ -1,4 +1,4 @@
-//! How a component is moved from where its file or its measures have it.
+//! Placement of components.
 
 use condyle::geometry::{Dishes, TriangleMesh};
 use condyle::{Mat3, Vec3};
@@ -6,7 +6,7 @@ use condyle::{Mat3, Vec3};
 use super::super::femur::FemurPlacement;
 use super::super::insert::{InsertOrigin, InsertPlacement};
 
-/// Distance between the places at which an insert's dishes are looked for, mm.
+/// Spacing of the points at which an insert's dishes are searched, mm.
 const LOOKED_AT_EVERY_MM: f64 = 0.5;
 
 /// p' = R p + t
@@ -17,7 +17,6 @@ pub(super) struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// A turn about the point `about_mm`, and a shift after it.
     fn about(about_mm: Vec3, rotation: Mat3, shift_mm: Vec3) -> Self {
         let shift_mm = about_mm - rotation * about_mm + shift_mm;
         Self { rotation, shift_mm }
@@ -33,7 +32,7 @@ impl RigidMotion {
 }
 
 impl InsertPlacement {
-    /// What turns the insert about the origin: Ry(rotation) Rx(-tilt) Rz(slope).
+    /// Returns the rotation about the origin, Ry(rotation) Rx(-tilt) Rz(slope).
     pub(super) fn rotation(&self) -> Mat3 {
         rotation(
             self.posterior_slope_deg,
@@ -42,7 +41,7 @@ impl InsertPlacement {
         )
     }
 
-    /// How the insert is moved whose dishes have their middle at `middle_mm`; none if it stays where its file has it.
+    /// Returns the motion of an insert whose dishes have their middle at `middle_mm`; `None` for no motion.
     pub(super) fn motion(&self, middle_mm: impl FnOnce() -> Vec3) -> Option<RigidMotion> {
         let origin_mm = match self.origin {
             InsertOrigin::File => Vec3::zeros(),
@@ -58,7 +57,7 @@ impl InsertPlacement {
 }
 
 impl FemurPlacement {
-    /// How the component is moved that flexes about (x, y) of the femoral frame; none if it stays.
+    /// Returns the motion of a component that flexes about (x, y) of the femoral frame; `None` for no motion.
     ///
     /// The component on its bone goes the other way than the bone over the component: Ry(-external) Rx(varus)
     /// Rz(-flexion).
@@ -78,7 +77,7 @@ impl FemurPlacement {
     }
 }
 
-/// First about z, then about x, then about y, all of them fixed; degrees.
+/// Returns the rotation about the fixed axes z, x, y, in this order.
 fn rotation(about_z_deg: f64, about_x_deg: f64, about_y_deg: f64) -> Mat3 {
     let (sz, cz) = about_z_deg.to_radians().sin_cos();
     let (sx, cx) = about_x_deg.to_radians().sin_cos();
@@ -89,12 +88,11 @@ fn rotation(about_z_deg: f64, about_x_deg: f64, about_y_deg: f64) -> Mat3 {
     about_y * about_x * about_z
 }
 
-/// Half-way between the dishes of an insert of triangles; its origin if it has none.
+/// Returns the midpoint between the dishes of an insert of triangles; the origin if it has none.
 pub(in crate::case) fn middle_of_mesh(mesh: &TriangleMesh) -> Vec3 {
     middle_of_points(&mesh.seen_from_above(LOOKED_AT_EVERY_MM))
 }
 
-/// The same of an articulating surface by its nodes.
 pub(super) fn middle_of_points(points: &[Vec3]) -> Vec3 {
     Dishes::of(points).map_or(Vec3::zeros(), |dishes| dishes.middle_mm())
 }

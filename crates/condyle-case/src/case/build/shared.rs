@@ -21,8 +21,7 @@ const MAX_KEPT: usize = 8;
 /// Inserts as elastic bodies that are kept, the newest: each has some hundred megabytes.
 const MAX_ELASTIC: usize = 2;
 
-/// Bodies that were built, for other cases that have the same: a case built beside others is that built alone, to
-/// the bit.
+/// Built bodies, shared by cases that have the same; sharing does not change a bit of a result.
 ///
 /// A mesh file must not change meanwhile.
 pub struct SharedBodies {
@@ -41,7 +40,7 @@ impl Default for SharedBodies {
     }
 }
 
-/// A body, with what was put right on the way to it.
+/// A body, with the warnings of its build.
 pub(super) type WithWarnings<T> = (Arc<T>, Vec<BuildWarning>);
 
 /// All that an insert follows from.
@@ -67,7 +66,7 @@ impl SharedBodies {
         self.inserts.found_or_made(InsertInputs::of(case), make)
     }
 
-    /// The law of a deformable insert, of which what is known of its compliance goes from case to case.
+    /// Returns the law of a deformable insert; its known compliance is shared among cases.
     pub(super) fn elastic<E>(
         &self,
         case: &Case,
@@ -95,7 +94,7 @@ impl SharedBodies {
     }
 }
 
-/// The newest of what was made, so many at most, each by what it was made of.
+/// The newest results by their inputs.
 struct Kept<I, T> {
     most: usize,
     made: Mutex<Vec<(I, WithWarnings<T>)>>,
@@ -107,7 +106,7 @@ impl<I: PartialEq, T> Kept<I, T> {
         Self { most, made }
     }
 
-    /// What was made of the same inputs, or is made now. Two that come at once may both make it.
+    /// Returns the result for the same inputs, made if necessary; two threads at once may both make it.
     fn found_or_made<E>(
         &self,
         inputs: I,
@@ -137,11 +136,11 @@ impl<I: PartialEq, T> Kept<I, T> {
     }
 }
 
-/// The name under which it is kept.
+/// Name of the kept compliance.
 const WHAT: &str = "compliance";
 
 impl Case {
-    /// Tells a law that knows nothing yet what was found of an insert's compliance before.
+    /// Loads the kept compliance of an insert into a law without one.
     ///
     /// # Errors
     /// An insert that is no elastic solid.

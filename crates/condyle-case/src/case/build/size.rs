@@ -8,15 +8,14 @@ use condyle::geometry::TriangleMesh;
 use super::super::frame::LengthUnit;
 use super::error::{BuildError, MeshFault, StrayPiece};
 
-/// No part of a knee is shorter, mm ...
+/// Smallest and largest length of a part of a knee, mm.
 const MIN_MM: f64 = 5.0;
-/// ... or longer.
 const MAX_MM: f64 = 500.0;
 /// Another unit is the right one if it makes the body this long, mm: as femoral components and
 /// inserts are, so that no two units do.
 const USUAL_MM: std::ops::RangeInclusive<f64> = 20.0..=200.0;
 
-/// Refuses triangles that reach farther, or less far, than a part of a knee.
+/// Refuses triangles of the wrong size for a part of a knee.
 pub(super) fn check_triangles(
     file: &Path,
     mesh: &TriangleMesh,
@@ -30,7 +29,6 @@ pub(super) fn check_triangles(
     })
 }
 
-/// The same of points.
 pub(super) fn check_points(
     file: &Path,
     points: &[Vec3],
@@ -56,7 +54,7 @@ fn is_possible(size_mm: f64) -> bool {
     (MIN_MM..=MAX_MM).contains(&size_mm)
 }
 
-/// Triangles that share vertices with one another and with no others.
+/// A connected set of triangles.
 struct Piece {
     triangles: usize,
     low: Vec3,
@@ -127,7 +125,7 @@ fn pieces(mesh: &TriangleMesh) -> Vec<Piece> {
     pieces
 }
 
-/// The vertex that stands for all that hang together with this one; ways there are shortened.
+/// Returns the representative of the vertices connected with this one, and shortens the path to it.
 fn root(parents: &mut [u32], mut vertex: u32) -> u32 {
     while parents[vertex as usize] != vertex {
         let parent = parents[vertex as usize];

@@ -7,11 +7,10 @@ use super::error::{BuildError, BuildWarning, MeshFault, MeshRemark};
 use super::meshes::checks_of_insert;
 use crate::config::DataFile;
 
-/// Digits of a height that is told, so that the one that is written is the one that was cut at.
+/// Resolution of reported heights: a copied height then cuts where the program did.
 const PER_MM: f64 = 100.0;
-/// What rounding leaves of a round number.
 const ROUNDING: f64 = 1e-6;
-/// A tray's plate is about so thick, mm: common, and no more than a hint.
+/// Usual thickness of a tray's plate, mm, as a hint.
 const USUAL_PLATE_MM: f64 = 4.0;
 
 /// The insert of a file, cut off its tray where the shape shows where that is.
@@ -65,13 +64,13 @@ pub(in crate::case) fn cut_at(
     Ok(CheckedMesh { left_out, ..cut })
 }
 
-/// The height to cut at: the next hundredth of a millimetre, so that nothing of the plate is left.
+/// Rounds a height to the next hundredth of a millimetre, so that nothing of the plate is left.
 pub(in crate::case) fn rounded_up(height_mm: f64) -> f64 {
     // Adding zero turns -0 into 0.
     (height_mm * PER_MM - ROUNDING).ceil() / PER_MM + 0.0
 }
 
-/// Which heights may be meant, in words: where there is nothing else, as thick as plates are.
+/// Lists the heights to choose from; without a ledge, that of a usual plate.
 pub(in crate::case) fn heights_to_write(plate_mm: f64, ledges_mm: &[f64]) -> String {
     let key = |height_mm: f64| format!("clip_below_mm = {:.2}", rounded_up(height_mm));
     let on_plate = if ledges_mm.is_empty() {

@@ -15,7 +15,7 @@ use crate::case::frame::{Axes, LengthUnit};
 use condyle_mesh::files::Disk;
 use condyle_mesh::formats::{parse_surface, surface_bytes};
 
-/// A body of the draft, and what its shape tells.
+/// A body of the draft, with the conclusions from its shape.
 pub(super) struct Concluded<'a> {
     body: Body,
     pub file: PathBuf,
@@ -66,7 +66,6 @@ impl<'a> Concluded<'a> {
         shared.unwrap_or_else(|| recognition.nearest())
     }
 
-    /// Its triangles in mm, x anterior, y superior, z right.
     fn placed(&self, lies: &Orientation) -> TriangleMesh {
         let rotation: Mat3 = lies.rotation();
         self.mesh.clone().mapped(|vertex| rotation * vertex)
@@ -139,7 +138,7 @@ impl<'a> Concluded<'a> {
     }
 }
 
-/// An insert without the tray that its file may hold too.
+/// An insert without the tray that may be in its file.
 pub(super) struct Alone {
     pub shell: CheckedMesh,
     underside: Underside,
@@ -159,7 +158,6 @@ impl Alone {
         Ok(Self { shell, underside })
     }
 
-    /// Whether the file held more than the insert.
     fn is_part(&self) -> bool {
         matches!(self.underside, Underside::Ledge { .. }) || !self.shell.left_out.is_empty()
     }

@@ -1,4 +1,4 @@
-//! The side of a draft, the origin of its insert, and why there is no draft.
+//! Side and origin of a draft.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use crate::case::frame::Side;
 use crate::config::Problems;
 use condyle_mesh::formats::MeshFileError;
 
-/// Which knee a case is of, and where that comes from.
+/// The side of the knee and the reason for it.
 pub(super) struct ConcludedSide {
     pub side: Side,
     pub remark: String,
@@ -43,10 +43,10 @@ impl ConcludedSide {
     }
 }
 
-/// An origin so far in front of the dishes' middle, or behind it, is not that of a machine, mm.
+/// Distance along x from the dishes' middle beyond which an origin is not that of a machine, mm.
 const FAR_ALONG_MM: f64 = 20.0;
 
-/// Where the origin of an insert frame is.
+/// The origin of an insert frame.
 pub(super) struct ConcludedOrigin {
     pub key: &'static str,
     pub remark: Option<String>,
@@ -76,7 +76,7 @@ impl ConcludedOrigin {
     }
 }
 
-/// Why no case can be drafted from two files.
+/// A draft that cannot be made.
 #[derive(Debug, Error)]
 pub enum DraftError {
     /// A file that cannot be read.
@@ -99,7 +99,7 @@ pub enum DraftError {
     NoUnit {
         /// The file.
         file: PathBuf,
-        /// Which body.
+        /// The body.
         body: Body,
         /// Its longest extent, in the unit of the file.
         size: f64,

@@ -17,12 +17,12 @@ use condyle::geometry::{GenericInsertShape, TriangleMesh};
 use condyle_mesh::repair::CheckedMesh;
 use std::path::Path;
 
-/// What a case is drafted from.
+/// Input of a draft.
 #[derive(Clone, Copy, Debug)]
 pub struct Draft<'a> {
-    /// Which simulator.
+    /// The simulator.
     pub preset: Preset,
-    /// Which knee; none to tell it from the femur.
+    /// The side of the knee; by default, that of the femur's shape.
     pub side: Option<Side>,
     /// Mesh of the femoral component.
     pub femur: &'a Path,
@@ -35,7 +35,7 @@ pub struct Draft<'a> {
 pub struct Drafted {
     /// The case file, with what was concluded and how sure it is as remarks.
     pub text: String,
-    /// What was concluded, one thing a line.
+    /// The conclusions, one a line.
     pub remarks: Vec<String>,
 }
 
@@ -80,7 +80,6 @@ impl Draft<'_> {
         )
     }
 
-    /// Where the femoral frame starts, in the frame of the knee that it is.
     fn start_mm(&self, femur: &TriangleMesh, insert: &TriangleMesh) -> (f64, f64) {
         let machine = format!("[machine]\npreset = \"{}\"\n", self.preset.word());
         let case = Case::parse(&machine, "machine", Path::new(""));
@@ -89,7 +88,6 @@ impl Draft<'_> {
     }
 }
 
-/// The keys of a table of the case that were concluded.
 fn keys_of(table: &str, body: &Concluded<'_>, lies: &Orientation) -> String {
     let file = quoted(&body.file.display().to_string());
     let [x, y, z] = Axes::of(&lies.rotation()).words();
@@ -104,7 +102,6 @@ fn with(mut remarks: Vec<String>, remark: Option<String>) -> Vec<String> {
     remarks
 }
 
-/// The thickness of an open insert, which has none of its own.
 fn thickness(insert: &CheckedMesh) -> String {
     if insert.closed {
         return String::new();
@@ -113,7 +110,6 @@ fn thickness(insert: &CheckedMesh) -> String {
     format!("thickness_mm = {thickness_mm:?}\n")
 }
 
-/// The case with remarks above the tables of its bodies.
 fn with_remarks(text: String, [femur, insert]: &[Vec<String>; 2]) -> String {
     let above = |table: &str, remarks: &[String]| {
         let lines: String = remarks.iter().map(|line| format!("# {line}\n")).collect();
