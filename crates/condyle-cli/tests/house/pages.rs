@@ -48,8 +48,11 @@ fn links_of_pages_lead_somewhere() {
     let mut broken = Vec::new();
     let metadata = cargo_metadata();
     let repositories = metadata["packages"].as_array().expect("are listed").iter();
-    let repository = repositories.filter_map(|package| package["repository"].as_str());
-    let published = format!("{}/blob/main/", repository.last().expect("one is named"));
+    let mut repository = repositories.filter_map(|package| package["repository"].as_str());
+    let published = format!(
+        "{}/blob/main/",
+        repository.next_back().expect("one is named")
+    );
     for page in text_files_ending(".md") {
         let folder = root().join(Path::new(&page.path).parent().unwrap_or(Path::new("")));
         for target in link_targets(&page) {
