@@ -8,8 +8,8 @@ use condyle_case::case::Assignment;
 use condyle_case::study::Study;
 use condyle_results::catalogue;
 use condyle_study::{
-    HeldFolder, Plan, Shard, Store, StudyEnd, StudyError, StudyOptions, Test, TestBench,
-    TestResult, merge, run_study, write_answers,
+    Plan, Shard, Store, StudyError, StudyEvent, StudyOptions, Test, TestBench, TestResult, merge,
+    run_study, write_answers,
 };
 use pyo3::prelude::*;
 
@@ -90,18 +90,20 @@ impl RawStudy {
         };
         let mut last = (0, 0);
         let ended = py.detach(|| {
-            run_study(&self.plan, &options, &mut |now| {
-                last = (now.kept, now.tests);
+            run_study(&self.plan, &options, &mut |event| {
+                if let StudyEvent::Progress(now) = event {
+                    last = (now.kept, now.tests);
+                }
                 callback.call("StudyProgress", last)
             })
         });
         if let Some(raised) = callback.raised {
             return Err(raised);
         }
-        match ended.map_err(errors::of_study)? {
-            StudyEnd::Done => Ok(()),
-            StudyEnd::Interrupted => Err(errors::exception("StudyInterrupted", last)),
-        }
+        ended.map_err(|error| match error {
+            StudyError::Interrupted => errors::exception("StudyInterrupted", last),
+            error => errors::of_study(error),
+        })
     }
 
     /// Runs the tests of these rows one after the other, and returns their results without storing them.
@@ -117,7 +119,7 @@ impl RawStudy {
 
     /// Locks the folder `out`, to store in it the results of tests that run elsewhere.
     fn hold(&self, out: PathBuf) -> PyResult<RawHeldStudy> {
-        let held = HeldFolder::take(&self.plan, &out).map_err(errors::of_study)?;
+        let held = Store::take(&self.plan, &out).map_err(errors::of_study)?;
         Ok(RawHeldStudy {
             held: Mutex::new(Some(held)),
         })
@@ -125,8 +127,7 @@ impl RawStudy {
 
     /// Merges the tests of `shards` into the folder `out`; returns how many it then holds.
     fn merge(&self, shards: Vec<PathBuf>, out: PathBuf) -> PyResult<u64> {
-        let done = merge(&self.plan, &shards, &out).map_err(errors::of_study)?;
-        Ok(done.kept)
+        merge(&self.plan, &shards, &out).map_err(errors::of_study)
     }
 
     /// Writes tables, pictures and page of the study in `out`, and returns its answers as JSON.
@@ -163,7 +164,7 @@ impl RawStudy {
 /// The locked folder of a study whose tests run elsewhere.
 #[pyclass(frozen, module = "condyle._condyle")]
 pub struct RawHeldStudy {
-    held: Mutex<Option<HeldFolder>>,
+    held: Mutex<Option<Store>>,
 }
 
 #[pymethods]
@@ -200,7 +201,7 @@ impl RawHeldStudy {
 }
 
 impl RawHeldStudy {
-    fn with<T>(&self, work: impl FnOnce(&HeldFolder) -> Result<T, StudyError>) -> PyResult<T> {
+    fn with<T>(&self, work: impl FnOnce(&Store) -> Result<T, StudyError>) -> PyResult<T> {
         let held = self.held.lock().expect("no thread panics with it");
         let held = held.as_ref();
         let held = held.ok_or_else(|| errors::bad_input("the study's folder was closed"))?;

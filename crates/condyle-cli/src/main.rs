@@ -6,7 +6,6 @@ mod calibrate;
 mod calibrate_wear;
 mod check;
 mod compare;
-mod converge;
 mod diff;
 mod exit;
 mod export;
@@ -19,10 +18,8 @@ mod progress;
 mod report;
 mod run;
 mod schema;
-mod sensitivity;
 mod standard_error;
 mod study;
-mod uncertainty;
 
 use std::process::ExitCode;
 
@@ -56,9 +53,9 @@ fn obey(command: Command) -> ExitCode {
         Command::Report(arguments) => report::report(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments),
         Command::Diff(arguments) => diff::diff(&arguments),
-        Command::Converge(arguments) => converge::converge(&arguments),
-        Command::Sensitivity(arguments) => sensitivity::sensitivity(&arguments),
-        Command::Uncertainty(arguments) => uncertainty::uncertainty(&arguments),
+        Command::Converge(arguments) => study::converge(&arguments),
+        Command::Sensitivity(arguments) => study::sensitivity(&arguments),
+        Command::Uncertainty(arguments) => study::uncertainty(&arguments),
         Command::Study(arguments) => study::study(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),

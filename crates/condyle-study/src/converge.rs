@@ -1,552 +1,359 @@
-//! A case run over finer and finer values of one of its numbers.
+//! Convergence: a case run over finer and finer values of one of its numbers.
 
-use condyle_results::catalogue;
 use std::{
     collections::BTreeMap,
-    fmt::Write,
-    fs, io,
-    ops::ControlFlow,
+    fs,
     path::{Path, PathBuf},
-    sync::{
-        Mutex,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
 };
 
 use condyle_case::{
     cache::Cache,
-    case::{Assignment, AssignmentError, Case, ChangeError},
-    config::Problems,
+    case::{Assignment, Case},
+    config::{Level, Levels},
+    study::{Design, FactorialKeys, Input, LevelKeys, Study, Variation},
 };
-use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, run_case};
+use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, aligned, run_case};
 use condyle_report::{Plot, plots_svg};
-use condyle_results::Summary;
+use condyle_results::{
+    Summary,
+    catalogue::{self, Scalar},
+};
 use serde::Serialize;
-use thiserror::Error;
 
-use crate::observed_order::{Extrapolation, extrapolate};
+use crate::{
+    answers::table,
+    engine::{Listener, Reporter, StudyEvent, run_all},
+    error::StudyError,
+    observed_order::{Extrapolation, extrapolate},
+    page::superscript,
+    plan::{Plan, Test},
+    store::holds_anything,
+};
 
-/// How a study of convergence is run.
+/// Options of a convergence study.
 #[derive(Clone, Debug)]
 pub struct ConvergeOptions {
     /// Folder for the study; every run gets a folder in it, such as `updates-10`.
     pub out: PathBuf,
     /// Runs at the same time; results do not depend on it.
     pub threads: usize,
-    /// Go on with the study that is in the folder.
+    /// Resume the study that is in the folder.
     pub resume: bool,
-    /// Where the one-time work on a mesh is kept for the next run; results do not depend on it.
+    /// Cache of the one-time work on a mesh; results do not depend on it.
     pub cache: Cache,
 }
 
-/// What happens while a study runs.
-#[derive(Clone, Debug)]
-pub enum ConvergeHappening<'a> {
-    /// In a run with this number.
-    In(&'a Planned, RunEvent<'a>),
-    /// A run is done.
-    Ran(&'a Planned, &'a Summary),
-}
-
-/// Hears of everything, from any thread, and may stop the study by breaking.
-pub type Listener<'a> = dyn Fn(&ConvergeHappening<'_>) -> ControlFlow<()> + Sync + 'a;
-
-/// How a study ended.
-#[derive(Clone, Debug)]
-pub enum Converged {
-    /// All runs are done.
-    Done(Convergence),
-    /// Somebody asked to stop; what was computed is kept, and can be gone on with.
-    Interrupted,
-}
-
-/// One run of a study.
+/// One run of a convergence study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// The number that was changed.
+    /// The value of the number.
     pub value: f64,
-    /// The same as written.
-    pub text: String,
-    /// Its run's folder, in that of the study.
+    /// Name of the run's folder in that of the study.
     pub folder: String,
-    /// What the run found.
+    /// The results of the run.
     pub summary: Summary,
 }
 
-/// The runs of a study, and what they tell.
+/// The runs of a convergence study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
-    /// Dotted path of the number that was changed.
+    /// Dotted path of the number.
     pub key: String,
-    /// The runs, from coarse to fine: two or more.
+    /// The runs from coarse to fine, two or more.
     pub points: Vec<Point>,
-    /// What the error goes with a power of, a value a run.
+    /// The step of each run: the error is proportional to a power of it.
     pub steps: Vec<f64>,
 }
 
-/// A result of a run that is compared.
-#[derive(Clone, Copy, Debug)]
-pub struct Quantity {
-    /// Its name in files, which ends in its unit.
-    pub name: &'static str,
-    /// Its name on the screen.
-    pub title: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
-    /// Where a summary has it.
-    pub of: fn(&Summary) -> f64,
+/// The results that are compared.
+fn compared() -> impl Iterator<Item = &'static Scalar> {
+    const KEYS: [&str; 5] = [
+        "mass_loss_mg",
+        "volume_loss_mm3",
+        "max_depth_mm",
+        "peak_pressure_mpa",
+        "peak_contact_area_mm2",
+    ];
+    KEYS.into_iter().filter_map(catalogue::scalar)
 }
 
-/// The results that are compared.
-pub const QUANTITIES: [Quantity; 5] = [
-    Quantity {
-        name: "mass_loss_mg",
-        title: "mass loss",
-        unit: "mg",
-        of: |summary| summary[&catalogue::MASS_LOSS_MG],
-    },
-    Quantity {
-        name: "volume_loss_mm3",
-        title: "volume loss",
-        unit: "mm3",
-        of: |summary| summary[&catalogue::VOLUME_LOSS_MM3],
-    },
-    Quantity {
-        name: "max_depth_mm",
-        title: "deepest wear",
-        unit: "mm",
-        of: |summary| summary[&catalogue::MAX_DEPTH_MM],
-    },
-    Quantity {
-        name: "peak_pressure_mpa",
-        title: "peak pressure",
-        unit: "MPa",
-        of: |summary| summary[&catalogue::PEAK_PRESSURE_MPA],
-    },
-    Quantity {
-        name: "peak_contact_area_mm2",
-        title: "largest area",
-        unit: "mm2",
-        of: |summary| summary[&catalogue::PEAK_CONTACT_AREA_MM2],
-    },
-];
+/// Runs the case at `case_path` over values written as `key=value,value,...`, each into a folder of its own, and writes
+/// `converge.csv`, `converge.json` and `converge.svg` next to them.
+///
+/// The key is a dotted path, such as `march.updates`, or the last word of one, with or without its unit. A count is finer
+/// where it is larger, any other number where it is smaller.
+///
+/// # Errors
+/// Everything that can be known of the input before it runs; a folder that cannot be used; the coarsest run that failed;
+/// [`StudyError::Interrupted`] if the listener breaks, after which the study can be resumed.
+pub fn converge(
+    case_path: &Path,
+    over: &str,
+    options: &ConvergeOptions,
+    listener: &mut Listener<'_>,
+) -> Result<Convergence, StudyError> {
+    let plan = plan(case_path, over)?;
+    let input = &plan.study().inputs[0];
+    let tests = || (0..plan.tests()).filter_map(|row| plan.test(row));
+    let mut cases = Vec::new();
+    for test in tests() {
+        let mut case = plan.case_of(&test)?;
+        // The study itself shows what its runs would otherwise estimate one by one.
+        case.accuracy.estimate = false;
+        cases.push(case);
+    }
+    if !options.resume && holds_anything(&options.out)? {
+        let problem =
+            "the folder is not empty; give another one with --out, or go on with --resume";
+        return Err(StudyError::folder(&options.out, problem));
+    }
+    let work = |test: &Test, reporter: &Reporter<'_, Ran>| {
+        let value = value_of(test);
+        let ran = run(
+            &cases[test.row as usize],
+            &folder_name(input, value),
+            options,
+            reporter,
+        );
+        if let Ok(Some(summary)) = &ran {
+            let (mass, depth) = (
+                summary[&catalogue::MASS_LOSS_MG],
+                summary[&catalogue::MAX_DEPTH_MM],
+            );
+            let message = format!(
+                "{} = {value}: {mass:.3} mg worn, {depth:.4} mm deep",
+                input.key
+            );
+            let _ = reporter.report(StudyEvent::Message(message));
+        }
+        ran
+    };
+    let mut points = Vec::new();
+    for (test, ran) in tests().zip(run_all(&plan, options.threads, &work, listener)?) {
+        let value = value_of(&test);
+        let ran = ran.map_err(|source| StudyError::RunWith {
+            number: format!("{} = {value}", input.key),
+            source: Box::new(source),
+        })?;
+        points.push(Point {
+            value,
+            folder: folder_name(input, value),
+            summary: *ran.ok_or(StudyError::Interrupted)?,
+        });
+    }
+    let step = |point: &Point| {
+        if input.is_whole {
+            1.0 / point.value
+        } else {
+            point.value
+        }
+    };
+    let convergence = Convergence {
+        key: input.key.clone(),
+        steps: points.iter().map(step).collect(),
+        points,
+    };
+    for (name, text) in [
+        ("converge.csv", convergence.csv()),
+        ("converge.json", convergence.json()),
+        ("converge.svg", convergence.svg()),
+    ] {
+        let path = options.out.join(name);
+        fs::write(&path, text).map_err(StudyError::refused(&path))?;
+    }
+    Ok(convergence)
+}
+
+/// One test for each value, from coarse to fine.
+fn plan(case_path: &Path, over: &str) -> Result<Plan, StudyError> {
+    let no_key = || {
+        let problem = format!("`{over}` is no key with values; write them as `updates=1,2,5,10`");
+        StudyError::Values(problem)
+    };
+    let (key, written) = over.split_once('=').ok_or_else(no_key)?;
+    let key = key.trim();
+    if key.is_empty() {
+        return Err(no_key());
+    }
+    let written = written.split(',').map(str::trim);
+    let written: Vec<&str> = written.filter(|value| !value.is_empty()).collect();
+    if written.len() < 2 {
+        let found = ["no value", "one value"][written.len()];
+        return Err(StudyError::Values(format!(
+            "`{key}` has {found} where two or more are needed to compare; write them as `{key}=10,20,40`"
+        )));
+    }
+    // A factorial design of one input is one test for each of its levels.
+    let mut study = Study::of_case(
+        case_path,
+        Design::FullFactorial(FactorialKeys { points: 2 }),
+    )?;
+    let path = study.case.path_of_number(key)?;
+    let is_whole = study.case.is_whole_number(&path);
+    let values = written.into_iter().map(|text| {
+        let number = Assignment::number(&path, text)?;
+        Ok(number.as_number().unwrap_or_default())
+    });
+    let mut values: Vec<f64> = values.collect::<Result<_, StudyError>>()?;
+    values.sort_by(|one, other| {
+        let by_size = one.total_cmp(other);
+        if is_whole { by_size } else { by_size.reverse() }
+    });
+    if let Some(pair) = values.windows(2).find(|pair| pair[0] == pair[1]) {
+        let value = pair[0];
+        return Err(StudyError::Values(format!(
+            "`{key}` has the value {value} twice; write each once"
+        )));
+    }
+    let levels = Levels(values.into_iter().map(Level::Number).collect());
+    let mut input = Input::new(&path, Variation::Levels(LevelKeys { levels }));
+    input.is_whole = is_whole;
+    study.inputs = vec![input];
+    Plan::of(study)
+}
+
+fn value_of(test: &Test) -> f64 {
+    match test.values[0] {
+        Some(Level::Number(value)) => value,
+        _ => f64::NAN,
+    }
+}
+
+/// The last word of the key and the value, such as `updates-10`.
+fn folder_name(input: &Input, value: f64) -> String {
+    format!("{}-{value}", last_word(&input.key))
+}
+
+fn last_word(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
+/// A summary, or none if the run was interrupted.
+type Ran = Result<Option<Box<Summary>>, RunError>;
+
+fn run(case: &Case, folder: &str, options: &ConvergeOptions, reporter: &Reporter<'_, Ran>) -> Ran {
+    let out = options.out.join(folder);
+    let options = RunOptions {
+        resume: options.resume && out.join("case.toml").exists(),
+        out,
+        force: false,
+        threads: 1,
+        cache: options.cache.clone(),
+    };
+    let mut on_event = |event: RunEvent<'_>| {
+        reporter.report(match event {
+            RunEvent::Warning(warning) => StudyEvent::Message(format!("warning: {warning}")),
+            _ => StudyEvent::Working,
+        })
+    };
+    match run_case(case, &options, &mut on_event)? {
+        Outcome::Done(summary) | Outcome::DoneBefore(summary) => Ok(Some(summary)),
+        Outcome::Interrupted(_) => Ok(None),
+    }
+}
 
 impl Convergence {
-    /// A result of every run.
-    pub fn values(&self, quantity: &Quantity) -> Vec<f64> {
-        let of = |point: &Point| (quantity.of)(&point.summary);
-        self.points.iter().map(of).collect()
+    fn values(&self, output: &Scalar) -> Vec<f64> {
+        let points = self.points.iter();
+        points.map(|point| point.summary[output]).collect()
     }
 
-    /// How far a result of every run lies above that of the finest, % of it.
-    pub fn differences_percent(&self, quantity: &Quantity) -> Vec<f64> {
-        let values = self.values(quantity);
+    /// Differences of a result from that of the finest run, % of it.
+    fn differences_percent(&self, output: &Scalar) -> Vec<f64> {
+        let values = self.values(output);
         let finest = values.last().copied().unwrap_or(f64::NAN);
         let difference = |value: &f64| 100.0 * (value / finest - 1.0);
         values.iter().map(difference).collect()
     }
 
-    /// What a result tends to.
-    pub fn extrapolation(&self, quantity: &Quantity) -> Extrapolation {
-        extrapolate(&self.steps, &self.values(quantity))
-    }
-}
-
-/// Runs every case of `plan` into a folder of its own, and writes what they tell into
-/// `converge.csv`, `converge.json` and `converge.svg` beside them.
-///
-/// # Errors
-/// A folder that cannot be used, or the error of the coarsest run that failed; the others are kept.
-pub fn converge(
-    plan: &ConvergePlan,
-    options: &ConvergeOptions,
-    listener: &Listener<'_>,
-) -> Result<Converged, ConvergeError> {
-    if !options.resume {
-        check_free(&options.out)?;
-    }
-    let mut points = Vec::new();
-    for (run, outcome) in plan.runs.iter().zip(run_all(plan, options, listener)) {
-        match outcome {
-            Ok(Some(summary)) => points.push(Point {
-                value: run.value,
-                text: run.number.text().to_owned(),
-                folder: folder_name(run),
-                summary: *summary,
-            }),
-            Ok(None) => return Ok(Converged::Interrupted),
-            Err(source) => {
-                let number = format!("{} = {}", plan.path, run.number.text());
-                let source = Box::new(source);
-                return Err(ConvergeError::Run { number, source });
-            }
-        }
-    }
-    let convergence = Convergence {
-        key: plan.path.clone(),
-        steps: points.iter().map(|point| plan.step(point.value)).collect(),
-        points,
-    };
-    convergence.write(&options.out)?;
-    Ok(Converged::Done(convergence))
-}
-
-/// A summary, or nothing where somebody asked to stop.
-type Ran = Result<Option<Box<Summary>>, RunError>;
-
-/// Runs all cases, the finest first because it tends to take longest; results in the plan's order.
-fn run_all(plan: &ConvergePlan, options: &ConvergeOptions, listener: &Listener<'_>) -> Vec<Ran> {
-    let outcomes: Vec<Mutex<Ran>> = plan.runs.iter().map(|_| Mutex::new(Ok(None))).collect();
-    let taken = AtomicUsize::new(0);
-    let work = || {
-        while let Some(left) = plan
-            .runs
-            .len()
-            .checked_sub(1 + taken.fetch_add(1, Ordering::Relaxed))
-        {
-            let ran = run_one(&plan.runs[left], options, listener);
-            let stop = matches!(ran, Ok(None));
-            *outcomes[left].lock().expect("no thread panics with it") = ran;
-            if stop {
-                return;
-            }
-        }
-    };
-    thread::scope(|scope| {
-        for _ in 0..options.threads.clamp(1, plan.runs.len()) {
-            scope.spawn(work);
-        }
-    });
-    let outcome = |ran: Mutex<Ran>| ran.into_inner().expect("no thread panics with it");
-    outcomes.into_iter().map(outcome).collect()
-}
-
-fn run_one(run: &Planned, options: &ConvergeOptions, listener: &Listener<'_>) -> Ran {
-    let out = options.out.join(folder_name(run));
-    let resume = options.resume && holds_a_run(&out);
-    let options = RunOptions {
-        out,
-        resume,
-        force: false,
-        threads: 1,
-        cache: options.cache.clone(),
-    };
-    let mut tell = |what: RunEvent<'_>| listener(&ConvergeHappening::In(run, what));
-    match run_case(&run.case, &options, &mut tell)? {
-        Outcome::Done(summary) | Outcome::DoneBefore(summary) => {
-            let _ = listener(&ConvergeHappening::Ran(run, &summary));
-            Ok(Some(summary))
-        }
-        Outcome::Interrupted { .. } => Ok(None),
-    }
-}
-
-fn holds_a_run(folder: &Path) -> bool {
-    folder.join("case.toml").exists()
-}
-
-/// The last word of the key and the value, such as `updates-10`.
-fn folder_name(run: &Planned) -> String {
-    let path = run.number.key();
-    let key = path.rsplit('.').next().unwrap_or(path);
-    format!("{key}-{}", run.value)
-}
-
-/// Why a study of convergence is not done.
-#[derive(Debug, Error)]
-pub enum ConvergeError {
-    /// The case file, as it is or with one of the values.
-    #[error(transparent)]
-    Case(#[from] Problems),
-    /// A key or a value that is none.
-    #[error(transparent)]
-    Assignment(#[from] AssignmentError),
-    /// Not written as a key with values.
-    #[error("`{written}` is no key with values; write them as `updates=1,2,5,10`")]
-    NotKeyAndValues {
-        /// As written.
-        written: String,
-    },
-    /// Fewer than two values.
-    #[error("`{key}` has {} where two or more are needed to compare; write them as `{key}=10,20,40`", if *found == 0 { "no value" } else { "one value" })]
-    TooFew {
-        /// The key as written.
-        key: String,
-        /// How many there are.
-        found: usize,
-    },
-    /// A value that stands twice.
-    #[error("`{key}` has the value {value} twice; write each once")]
-    Twice {
-        /// The key as written.
-        key: String,
-        /// The value.
-        value: f64,
-    },
-    /// A folder that holds something.
-    #[error("{}: the folder is not empty; give another one with --out, or go on with --resume", folder.display())]
-    NotEmpty {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// The system refused to read or write.
-    #[error("{}: {source}; check that the folder can be written and the disk is not full", path.display())]
-    Refused {
-        /// The file or folder.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// One of the runs.
-    #[error("{number}: {source}")]
-    Run {
-        /// The key and its value, such as `march.updates = 1`.
-        number: String,
-        /// Why.
-        source: Box<RunError>,
-    },
-}
-
-/// A case, once for each value of one of its numbers, from coarse to fine.
-#[derive(Clone, Debug)]
-pub struct ConvergePlan {
-    pub(crate) path: String,
-    pub(crate) is_whole: bool,
-    pub(crate) runs: Vec<Planned>,
-}
-
-/// A case with one number changed.
-#[derive(Clone, Debug)]
-pub struct Planned {
-    /// The number.
-    pub number: Assignment,
-    /// Its value.
-    pub value: f64,
-    /// The case with it.
-    pub case: Case,
-}
-
-impl ConvergePlan {
-    /// The case at `case_path` over values written as `key=value,value,...`.
-    ///
-    /// The key is a dotted path, such as `march.updates`, or the last word of one, with or without
-    /// its unit. A number that counts is finer where it is larger, any other where it is smaller.
-    ///
-    /// # Errors
-    /// Everything that can be known of the input before it runs.
-    pub fn new(case_path: &Path, written: &str) -> Result<Self, ConvergeError> {
-        let (key, values) = key_and_values(written)?;
-        let case = Case::read(case_path)?;
-        let path = case.path_of_number(key)?;
-        let mut runs = Vec::new();
-        for text in values {
-            let number = Assignment::number(&path, text)?;
-            let value = number.as_number().unwrap_or_default();
-            let changed = Case::read_changed(case_path, std::slice::from_ref(&number));
-            let mut case = changed.map_err(|error| match error {
-                ChangeError::Case(problems) => ConvergeError::from(problems),
-                ChangeError::Assignment(error) => error.into(),
-            })?;
-            // The study itself shows what its runs would otherwise estimate one by one.
-            case.accuracy.estimate = false;
-            runs.push(Planned {
-                number,
-                value,
-                case,
-            });
-        }
-        let is_whole = runs[0].case.is_whole_number(&path);
-        sort(&mut runs, is_whole);
-        if let Some(twice) = twice(&runs) {
-            let (key, value) = (key.to_owned(), twice);
-            return Err(ConvergeError::Twice { key, value });
-        }
-        Ok(Self {
-            path,
-            is_whole,
-            runs,
-        })
+    fn extrapolation(&self, output: &Scalar) -> Extrapolation {
+        extrapolate(&self.steps, &self.values(output))
     }
 
-    /// Dotted path of the key.
-    pub fn path(&self) -> &str {
-        &self.path
-    }
-
-    /// The runs, from coarse to fine.
-    pub fn runs(&self) -> &[Planned] {
-        &self.runs
-    }
-
-    /// What the error goes with a power of: a value, or one over it where it counts.
-    pub(crate) fn step(&self, value: f64) -> f64 {
-        if self.is_whole { 1.0 / value } else { value }
-    }
-}
-
-/// Whether `folder` may take a new study; nothing is made.
-pub(crate) fn check_free(folder: &Path) -> Result<(), ConvergeError> {
-    let mut entries = match fs::read_dir(folder) {
-        Ok(entries) => entries,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-        Err(source) => {
-            let path = folder.to_owned();
-            return Err(ConvergeError::Refused { path, source });
-        }
-    };
-    match entries.next() {
-        None => Ok(()),
-        Some(_) => Err(ConvergeError::NotEmpty {
-            folder: folder.to_owned(),
-        }),
-    }
-}
-
-fn key_and_values(written: &str) -> Result<(&str, Vec<&str>), ConvergeError> {
-    let no_key = || ConvergeError::NotKeyAndValues {
-        written: written.to_owned(),
-    };
-    let (key, values) = written.split_once('=').ok_or_else(no_key)?;
-    let key = key.trim();
-    if key.is_empty() {
-        return Err(no_key());
-    }
-    let mut values: Vec<&str> = values.split(',').map(str::trim).collect();
-    values.retain(|value| !value.is_empty());
-    if values.len() < 2 {
-        let (key, found) = (key.to_owned(), values.len());
-        return Err(ConvergeError::TooFew { key, found });
-    }
-    Ok((key, values))
-}
-
-fn sort(runs: &mut [Planned], is_whole: bool) {
-    let value = |run: &Planned| run.value;
-    runs.sort_by(|one, other| {
-        if is_whole {
-            value(one).total_cmp(&value(other))
-        } else {
-            value(other).total_cmp(&value(one))
-        }
-    });
-}
-
-fn twice(runs: &[Planned]) -> Option<f64> {
-    let values = runs.windows(2);
-    let mut same = values.filter(|pair| pair[0].value == pair[1].value);
-    Some(same.next()?[0].value)
-}
-
-/// The least that a plot shows, as a share of the finest value: less is the same to a reader.
-const MIN_SHOWN_SHARE: f64 = 1e-3;
-
-impl Convergence {
-    /// Writes the three files into `folder`.
-    pub(crate) fn write(&self, folder: &Path) -> Result<(), ConvergeError> {
-        for (name, text) in [
-            ("converge.csv", self.csv()),
-            ("converge.json", self.json()),
-            ("converge.svg", self.svg()),
-        ] {
-            let path = folder.join(name);
-            fs::write(&path, text).map_err(|source| ConvergeError::Refused { path, source })?;
-        }
-        Ok(())
-    }
-
-    /// A row a run, from coarse to fine.
+    /// A row for each run, from coarse to fine.
     fn csv(&self) -> String {
-        let names = QUANTITIES.map(|quantity| quantity.name);
-        let differences =
-            QUANTITIES.map(|quantity| format!("{}_difference_percent", base(&quantity)));
-        let mut text = format!(
-            "{},{},cycles_solved,{}\n",
-            self.key,
-            names.join(","),
-            differences.join(",")
-        );
-        let columns = QUANTITIES.map(|quantity| self.differences_percent(&quantity));
+        let keys: Vec<&str> = compared().map(|output| output.key).collect();
+        let differences: Vec<String> = compared()
+            .map(|output| format!("{}_difference_percent", output.stem()))
+            .collect();
+        let (keys, differences) = (keys.join(","), differences.join(","));
+        let mut text = format!("{},{keys},cycles_solved,{differences}\n", self.key);
+        let columns = |of: fn(&Self, &Scalar) -> Vec<f64>, row: usize| {
+            let cells: Vec<String> = compared()
+                .map(|output| of(self, output)[row].to_string())
+                .collect();
+            cells.join(",")
+        };
         for (row, point) in self.points.iter().enumerate() {
-            let values = QUANTITIES.map(|quantity| (quantity.of)(&point.summary).to_string());
-            let differences = columns.each_ref().map(|column| column[row].to_string());
-            writeln!(
-                text,
-                "{},{},{},{}",
-                point.value,
-                values.join(","),
-                point.summary[&catalogue::CYCLES_SOLVED],
-                differences.join(",")
-            )
-            .expect("writing to a string cannot fail");
+            let values = columns(Self::values, row);
+            let differences = columns(Self::differences_percent, row);
+            let (value, solved) = (point.value, point.summary[&catalogue::CYCLES_SOLVED]);
+            text += &format!("{value},{values},{solved},{differences}\n");
         }
         text
     }
 
     fn json(&self) -> String {
+        let by_key = |of: fn(&Self, &Scalar) -> Vec<f64>, row: usize| {
+            compared()
+                .map(|output| (output.key, of(self, output)[row]))
+                .collect()
+        };
+        let run = |(row, point): (usize, &'_ Point)| Run {
+            value: point.value,
+            folder: point.folder.clone(),
+            results: by_key(Self::values, row),
+            cycles_solved: point.summary[&catalogue::CYCLES_SOLVED],
+            differences_percent: by_key(Self::differences_percent, row),
+            inputs_blake3: point.summary.inputs_blake3.clone(),
+        };
+        let extrapolations = compared().map(|output| (output.key, self.extrapolation(output)));
         let file = File {
             version: env!("CARGO_PKG_VERSION"),
             key: &self.key,
             finest: self.points.last().map_or(f64::NAN, |point| point.value),
-            runs: (0..self.points.len()).map(|row| self.run(row)).collect(),
-            extrapolations: QUANTITIES
-                .iter()
-                .map(|quantity| (quantity.name, self.extrapolation(quantity)))
-                .collect(),
+            runs: self.points.iter().enumerate().map(run).collect(),
+            extrapolations: extrapolations.collect(),
         };
-        let mut text =
-            serde_json::to_string_pretty(&file).expect("numbers and text always serialise");
-        text.push('\n');
-        text
-    }
-
-    fn run(&self, row: usize) -> Run<'_> {
-        let point = &self.points[row];
-        Run {
-            value: point.value,
-            folder: &point.folder,
-            results: QUANTITIES
-                .iter()
-                .map(|quantity| (quantity.name, (quantity.of)(&point.summary)))
-                .collect(),
-            cycles_solved: point.summary[&catalogue::CYCLES_SOLVED],
-            differences_percent: QUANTITIES
-                .iter()
-                .map(|quantity| (quantity.name, self.differences_percent(quantity)[row]))
-                .collect(),
-            inputs_blake3: &point.summary.inputs_blake3,
-        }
+        let text = serde_json::to_string_pretty(&file);
+        text.expect("numbers and text always serialise") + "\n"
     }
 
     fn svg(&self) -> String {
         // Mass is volume times a constant: one plot for both.
-        let shown = QUANTITIES
-            .iter()
-            .filter(|quantity| quantity.name != "volume_loss_mm3");
-        let plots: Vec<Plot> = shown.map(|quantity| self.plot(quantity)).collect();
+        let shown = compared().filter(|output| output.key != "volume_loss_mm3");
+        let plots: Vec<Plot> = shown.map(|output| self.plot(output)).collect();
         let line = format!("a run for each value of {}", self.key);
         plots_svg("Convergence", &plots, ["extrapolated", &line])
     }
 
-    fn plot(&self, quantity: &Quantity) -> Plot {
-        let places = self.places();
-        let line: Vec<(f64, f64)> = places.iter().copied().zip(self.values(quantity)).collect();
+    fn plot(&self, output: &Scalar) -> Plot {
+        /// The smallest span of an axis, as a share of the finest value: readers cannot tell less apart.
+        const MIN_SHOWN_SHARE: f64 = 1e-3;
+        // Finer runs lie to the right, by the logarithm of their steps where they have one.
+        let has_logarithms = self.steps.iter().all(|step| *step > 0.0);
+        let place = |(number, step): (usize, &f64)| {
+            if has_logarithms {
+                -step.ln()
+            } else {
+                number as f64
+            }
+        };
+        let places: Vec<f64> = self.steps.iter().enumerate().map(place).collect();
+        let line: Vec<(f64, f64)> = places.iter().copied().zip(self.values(output)).collect();
         let finest = line.last().map_or(0.0, |point| point.1);
-        let across = [places[0], places[places.len() - 1]];
+        let ends = [places[0], places[places.len() - 1]];
+        let values = self.points.iter().map(|point| point.value.to_string());
         Plot {
-            title: first_upper(quantity.title),
-            unit: quantity.unit.replace('2', "\u{b2}").replace('3', "\u{b3}"),
+            title: output.label[..1].to_uppercase() + &output.label[1..],
+            unit: superscript(output.unit()),
             x_title: "",
-            x_marks: places
-                .iter()
-                .zip(&self.points)
-                .map(|(place, point)| (*place, mark(point)))
-                .collect(),
+            x_marks: places.iter().copied().zip(values).collect(),
             from_zero: false,
             least_span: MIN_SHOWN_SHARE * finest.abs().max(f64::MIN_POSITIVE),
-            reference: match self.extrapolation(quantity) {
+            reference: match self.extrapolation(output) {
                 Extrapolation::Converging { extrapolated, .. } => {
-                    across.map(|place| (place, extrapolated)).to_vec()
+                    ends.map(|place| (place, extrapolated)).to_vec()
                 }
                 _ => Vec::new(),
             },
@@ -554,50 +361,104 @@ impl Convergence {
         }
     }
 
-    /// Where each run stands from left to right: finer to the right, by the logarithm of its step.
-    fn places(&self) -> Vec<f64> {
-        if self.steps.iter().all(|step| *step > 0.0) {
-            self.steps.iter().map(|step| -step.ln()).collect()
-        } else {
-            (0..self.steps.len()).map(|place| place as f64).collect()
+    /// Tables in Markdown: results, differences from the finest run, and limits.
+    pub fn markdown(&self) -> String {
+        let key = last_word(&self.key);
+        let results: Vec<&Scalar> = compared().collect();
+        let titles: Vec<String> = results.iter().map(|output| output.title()).collect();
+        let head = |first: &str, last: Option<&str>| {
+            let titles = titles.iter().map(String::as_str);
+            let head = std::iter::once(first).chain(titles).chain(last);
+            head.map(str::to_owned).collect::<Vec<_>>()
+        };
+        let values: Vec<Vec<f64>> = results.iter().map(|output| self.values(output)).collect();
+        let differences = results
+            .iter()
+            .map(|output| self.differences_percent(output));
+        let differences: Vec<Vec<f64>> = differences.collect();
+        let limits: Vec<[String; 3]> = results
+            .iter()
+            .map(|output| in_words(self.extrapolation(output)))
+            .collect();
+        let mut runs = vec![head(key, Some("cycles solved"))];
+        let finest = self.points.last().map_or(f64::NAN, |point| point.value);
+        let from_finest = format!("difference from {key} = {finest}, %");
+        let mut off = vec![head(&from_finest, None)];
+        for (row, point) in self.points.iter().enumerate() {
+            let first = [point.value.to_string()];
+            let cells = values.iter().map(|values| significant(values[row]));
+            let solved = format!("{:.1}", point.summary[&catalogue::CYCLES_SOLVED]);
+            runs.push(first.iter().cloned().chain(cells).chain([solved]).collect());
+            let cells = differences.iter().map(|values| percent(values[row]));
+            off.push(first.iter().cloned().chain(cells).collect());
         }
+        let names = ["order", "extrapolated", "finest from it, %"];
+        let rows: Vec<(usize, &str)> = names.into_iter().enumerate().collect();
+        let first = ["as the steps go to zero"];
+        let mut tendency = table(&first, &rows, |(row, name)| {
+            let cells = limits.iter().map(|limit| limit[*row].clone());
+            [(*name).to_owned()].into_iter().chain(cells).collect()
+        });
+        tendency[0] = head(first[0], None);
+        [runs, off, tendency].map(|rows| aligned(&rows)).join("\n")
     }
 }
 
-/// What `converge.json` holds.
+/// Order, limit and error of the finest run.
+fn in_words(extrapolation: Extrapolation) -> [String; 3] {
+    let alone = |word: &str| [word.to_owned(), String::new(), String::new()];
+    match extrapolation {
+        Extrapolation::Converging {
+            order,
+            extrapolated,
+            finest_error_percent,
+        } => [
+            format!("{order:.2}"),
+            significant(extrapolated),
+            percent(finest_error_percent),
+        ],
+        Extrapolation::Slow { order } => {
+            [format!("{order:.2}"), "too slow".to_owned(), String::new()]
+        }
+        Extrapolation::Unchanged => alone("unchanged"),
+        Extrapolation::Oscillating => alone("oscillates"),
+        Extrapolation::Diverging => alone("diverges"),
+        Extrapolation::NoConstantRatio => alone("-"),
+    }
+}
+
+fn percent(value: f64) -> String {
+    format!("{value:+.3}")
+}
+
+/// A number with five significant digits.
+fn significant(value: f64) -> String {
+    let magnitude = match value {
+        0.0 => 0,
+        _ => value.abs().log10().floor() as i32,
+    };
+    let decimals = (4 - magnitude).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// The contents of `converge.json`.
 #[derive(Serialize)]
 struct File<'a> {
     version: &'static str,
     key: &'a str,
     finest: f64,
-    runs: Vec<Run<'a>>,
+    runs: Vec<Run>,
     extrapolations: BTreeMap<&'static str, Extrapolation>,
 }
 
 /// One run of `converge.json`.
 #[derive(Serialize)]
-struct Run<'a> {
+struct Run {
     value: f64,
-    folder: &'a str,
+    folder: String,
     #[serde(flatten)]
     results: BTreeMap<&'static str, f64>,
     cycles_solved: f64,
     differences_percent: BTreeMap<&'static str, f64>,
-    inputs_blake3: &'a str,
-}
-
-fn mark(point: &Point) -> String {
-    point.value.to_string()
-}
-
-/// The name of a quantity without its unit.
-fn base(quantity: &Quantity) -> &'static str {
-    let unit = quantity.name.rfind('_').unwrap_or(quantity.name.len());
-    &quantity.name[..unit]
-}
-
-fn first_upper(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().into_iter().flat_map(char::to_uppercase);
-    first.chain(letters).collect()
+    inputs_blake3: String,
 }

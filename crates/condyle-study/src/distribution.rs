@@ -1,4 +1,4 @@
-//! Values of an input by where they lie in its distribution.
+//! Values of an input by their places in its distribution.
 
 use condyle_case::{
     config::Level,
@@ -6,78 +6,79 @@ use condyle_case::{
 };
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Where a test has an input.
+/// The place of an input in a test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Place {
-    /// As the case has it.
-    AsItIs,
-    /// Where this share of its distribution lies below.
+    /// The value of the case.
+    OfCase,
+    /// The quantile of this share of its distribution.
     Share(f64),
-    /// This part of the way from its low end to its high one.
+    /// This part of the way from its low end to its high end.
     Along(f64),
 }
 
-/// A design goes so many standard deviations from the mean of a normal input where it needs an end.
+/// A normal input, which has no ends, ends here for a design that needs them: 95 % of its values lie between.
 const END_DEVIATIONS: f64 = 2.0;
 
-/// The value below which lies this share of all, 0 to 1.
-pub(crate) fn at_share(input: &Input, share: f64) -> Level {
+/// The quantile of this share; of levels, each has the same share.
+pub(crate) fn level_at_share(input: &Input, share: f64) -> Level {
     match &input.variation {
         Variation::Levels(keys) => {
             let count = keys.levels.0.len();
             let place = (share * count as f64) as usize;
             keys.levels.0[place.min(count - 1)].clone()
         }
-        other => input.level(number_at(other, share)),
+        other => input.level(quantile(other, share)),
     }
 }
 
-/// The value this part of the way from one end to the other: 0 is the low end, 1 the high one.
-pub(crate) fn along(input: &Input, part: f64) -> Level {
+/// The value this part of the way from the low end to the high end.
+pub(crate) fn level_along(input: &Input, part: f64) -> Level {
     match &input.variation {
-        Variation::Levels(_) => at_share(input, part),
+        Variation::Levels(_) => level_at_share(input, part),
         Variation::Normal(keys) => {
             let deviations = END_DEVIATIONS * (2.0 * part - 1.0);
             input.level(keys.mean.unwrap_or_default() + deviations * keys.standard_deviation)
         }
         other => {
-            let [low, high] = [0.0, 1.0].map(|share| number_at(other, share));
+            let [low, high] = [0.0, 1.0].map(|share| quantile(other, share));
             input.level(low + part * (high - low))
         }
     }
 }
 
-fn number_at(variation: &Variation, share: f64) -> f64 {
+fn quantile(variation: &Variation, share: f64) -> f64 {
     match variation {
         Variation::Uniform(keys) => keys.low + share * (keys.high - keys.low),
         Variation::Normal(keys) => {
-            keys.mean.unwrap_or_default() + keys.standard_deviation * deviations(share)
+            keys.mean.unwrap_or_default() + keys.standard_deviation * normal_quantile(share)
         }
-        Variation::TruncatedNormal(keys) => truncated(keys, share),
+        Variation::TruncatedNormal(keys) => truncated_normal(keys, share),
         Variation::Triangular(keys) => triangular(keys, share),
         Variation::Levels(_) => f64::NAN,
     }
 }
 
-/// How many standard deviations off a value is below which lies this share.
-pub(crate) fn deviations(share: f64) -> f64 {
+/// The quantile of the standard normal distribution.
+pub(crate) fn normal_quantile(share: f64) -> f64 {
     Normal::standard().inverse_cdf(share)
 }
 
-/// The share that lies below so many standard deviations.
-pub(crate) fn share_below(deviations: f64) -> f64 {
+/// The share of the standard normal distribution below a value.
+pub(crate) fn normal_share(deviations: f64) -> f64 {
     Normal::standard().cdf(deviations)
 }
 
-fn truncated(keys: &TruncatedKeys, share: f64) -> f64 {
+fn truncated_normal(keys: &TruncatedKeys, share: f64) -> f64 {
     let mean = keys.mean.unwrap_or_default();
-    let below = |value: f64| share_below((value - mean) / keys.standard_deviation);
+    let below = |value: f64| normal_share((value - mean) / keys.standard_deviation);
     let (least, most) = (below(keys.low), below(keys.high));
-    let value = mean + keys.standard_deviation * deviations(least + share * (most - least));
+    let value = mean + keys.standard_deviation * normal_quantile(least + share * (most - least));
+    // Rounding may lead beyond the ends, which the case may refuse.
     value.clamp(keys.low, keys.high)
 }
 
-/// Of a triangle with its top at the mode: F = (x - low)^2 / ((high - low) (mode - low)) below it, and so from above.
+/// Inverts F = (x - low)^2 / ((high - low) (mode - low)) below the mode, and the mirrored formula above it.
 fn triangular(keys: &TriangularKeys, share: f64) -> f64 {
     let (low, high) = (keys.low, keys.high);
     let mode = keys.mode.unwrap_or(f64::midpoint(low, high));
@@ -110,18 +111,21 @@ mod tests {
             low: 0.0,
             high: 2.0,
         };
-        assert!((truncated(&cut, 0.5) - 1.0).abs() < 1e-12);
-        assert_eq!((truncated(&cut, 0.0), truncated(&cut, 1.0)), (0.0, 2.0));
+        assert!((truncated_normal(&cut, 0.5) - 1.0).abs() < 1e-12);
+        assert_eq!(
+            (truncated_normal(&cut, 0.0), truncated_normal(&cut, 1.0)),
+            (0.0, 2.0)
+        );
         let normal = Variation::Normal(NormalKeys {
             mean: Some(3.0),
             standard_deviation: 2.0,
         });
         // 97.5 % of a normal distribution lie below 1.96 standard deviations.
-        assert!((number_at(&normal, 0.975) - (3.0 + 2.0 * 1.959_963_985)).abs() < 1e-8);
+        assert!((quantile(&normal, 0.975) - (3.0 + 2.0 * 1.959_963_985)).abs() < 1e-8);
         let uniform = Variation::Uniform(UniformKeys {
             low: 2.0,
             high: 4.0,
         });
-        assert_eq!(number_at(&uniform, 0.25), 2.5);
+        assert_eq!(quantile(&uniform, 0.25), 2.5);
     }
 }

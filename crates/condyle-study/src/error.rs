@@ -1,94 +1,91 @@
-//! Why a study is not done.
+//! The reasons why a study fails.
 
-use std::{io, path::PathBuf};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
-use condyle_case::config::Problems;
+use condyle_case::{case::AssignmentError, config::Problems};
 use condyle_lab::RunError;
 use condyle_report::ReportError;
 use condyle_results::ResultsError;
 use thiserror::Error;
 
-/// Why a study is not done.
+/// The reason why a study fails.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum StudyError {
     /// The study file or its case.
     #[error(transparent)]
     Study(#[from] Problems),
+    /// A key or a value to converge over that the case cannot take.
+    #[error(transparent)]
+    Assignment(#[from] AssignmentError),
+    /// Values to converge over that cannot be compared.
+    #[error("{0}")]
+    Values(String),
     /// A design with more inputs than its points have axes.
     #[error(
         "a {design} design takes {most} inputs at most, and the study has {inputs}; use kind = \"latin-hypercube\", or \
          let fewer inputs vary"
     )]
     TooManyInputs {
-        /// Its word.
+        /// The `kind` of the design.
         design: &'static str,
-        /// Inputs it takes.
+        /// Inputs that it takes.
         most: usize,
         /// Inputs of the study.
         inputs: usize,
     },
-    /// More tests than anybody waits for.
+    /// More tests than can be numbered or finished.
     #[error(
         "the study has {tests:.3e} tests, and {most:.0e} are the most; take fewer levels, points or inputs"
     )]
     TooManyTests {
         /// Tests of the study.
         tests: f64,
-        /// Tests at most.
+        /// The largest number allowed.
         most: f64,
     },
-    /// Correlations that contradict each other.
+    /// Correlations whose matrix is not positive definite.
     #[error("the correlations cannot all hold at once; make them weaker, or leave one out")]
     Contradiction,
-    /// A folder of another study.
-    #[error(
-        "{}: the folder holds another study{}; give another one with --out, or remove it",
-        folder.display(),
-        if *is_shard { ", or another shard of this one" } else { "" }
-    )]
-    OtherStudy {
+    /// A folder that the study cannot use.
+    #[error("{}: {problem}", folder.display())]
+    Folder {
         /// The folder.
         folder: PathBuf,
-        /// Whether only its shard is another.
-        is_shard: bool,
-    },
-    /// A folder without a study.
-    #[error("{}: the folder holds no study; give one that `condyle study` wrote", folder.display())]
-    NoStudy {
-        /// The folder.
-        folder: PathBuf,
-    },
-    /// A folder that holds something else.
-    #[error("{}: the folder is not empty and holds no study; give another one with --out", folder.display())]
-    NotEmpty {
-        /// The folder.
-        folder: PathBuf,
+        /// Its content, and the remedy.
+        problem: &'static str,
     },
     /// A row that the study does not have.
     #[error("the study has no row {row}; its rows are 0 to {}", tests - 1)]
     NoRow {
-        /// As given.
+        /// The row asked for.
         row: u64,
         /// Tests of the study.
         tests: u64,
     },
-    /// A row of a search that is not known before the rows above are.
+    /// A row of a search, whose inputs depend on the earlier rows.
     #[error("row {row} of a search is known once it has been tried; run the study first")]
     NotYet {
-        /// As given.
+        /// The row asked for.
         row: u64,
     },
-    /// A search is not cut into parts.
+    /// A search cannot be divided.
     #[error(
         "a search goes from test to test, and cannot be cut into shards; run it on one machine"
     )]
     NoShards,
+    /// The listener stopped the study; stored tests are kept.
+    #[error("interrupted")]
+    Interrupted,
     /// The database.
     #[error("{}: {source}; check that the disk is not full and the file can be written", path.display())]
     Store {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: rusqlite::Error,
     },
     /// The system refused to read or write.
@@ -96,7 +93,7 @@ pub enum StudyError {
     Refused {
         /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
     /// The folder is in use.
@@ -105,7 +102,31 @@ pub enum StudyError {
     /// The page.
     #[error(transparent)]
     Report(#[from] ReportError),
-    /// One test made into a whole run.
+    /// The case as it is, which every answer is relative to.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// A run whose results the study compares with those of the others.
+    #[error("{number}: {source}")]
+    RunWith {
+        /// The key and its value, such as `march.updates = 1`.
+        number: String,
+        /// The reason.
+        source: Box<RunError>,
+    },
+}
+
+impl StudyError {
+    pub(crate) fn folder(folder: &Path, problem: &'static str) -> Self {
+        let folder = folder.to_path_buf();
+        Self::Folder { folder, problem }
+    }
+
+    /// The error for a file or folder that the system refuses to read or write.
+    pub(crate) fn refused(path: &Path) -> impl Fn(io::Error) -> Self {
+        let path = path.to_path_buf();
+        move |source| Self::Refused {
+            path: path.clone(),
+            source,
+        }
+    }
 }

@@ -1,7 +1,10 @@
-//! Studies: a case run many times with changed values, the plan of its tests, their results and the answers.
+//! Studies: a case run many times with changed values.
+//!
+//! One engine runs the tests of a [`Plan`], which knows each by its number, on several threads. [`run_study`] stores their
+//! results in a [`Store`], from which [`write_answers`] computes tables, pictures and a page. [`sensitivity`],
+//! [`uncertainty`] and [`converge`] are plans made ready, with answers of their own.
 
 mod answers;
-mod chance;
 mod converge;
 mod design;
 mod distribution;
@@ -10,27 +13,21 @@ mod error;
 mod observed_order;
 mod page;
 mod plan;
+mod random;
 mod search;
-pub mod sensitivity;
+mod sensitivity;
+mod statistics;
 mod store;
-pub mod uncertainty;
+mod uncertainty;
 
 pub use crate::{
-    answers::{
-        Answers, FailedTests,
-        effects::{Effect, Elementary},
-        indices::Indices,
-        ranking::{Best, Designed, Front, Ranking},
-        spread::{Beyond, Spread},
-    },
-    converge::{
-        ConvergeError, ConvergeHappening, ConvergeOptions, ConvergePlan, Converged, Convergence,
-        Listener, Planned, Point, QUANTITIES, Quantity, converge,
-    },
-    engine::{Done, HeldFolder, Progress, StudyEnd, StudyOptions, TestBench, merge, run_study},
+    answers::Answers,
+    converge::{ConvergeOptions, Convergence, Point, converge},
+    engine::{Listener, Progress, StudyEvent, StudyOptions, TestBench, merge, run_study},
     error::StudyError,
-    observed_order::{Extrapolation, extrapolate},
-    page::{answer, write_answers},
+    page::write_answers,
     plan::{Plan, Shard, Test, TestResult},
-    store::{DATABASE, Store},
+    sensitivity::{Sensitivity, sensitivity},
+    store::Store,
+    uncertainty::{Uncertainty, UncertaintyOptions, uncertainty},
 };

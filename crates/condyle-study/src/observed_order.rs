@@ -1,32 +1,32 @@
-//! Observed order of convergence, and what the results tend to.
+//! Observed order of convergence and extrapolated results.
 
 use serde::Serialize;
 
 /// Steps whose ratios differ by less than this share are in constant ratio.
 const SAME_RATIO: f64 = 1e-6;
-/// A lower order than this is noise, and what it extrapolates to means nothing.
+/// A lower order than this is noise, and its extrapolation meaningless.
 const MIN_ORDER: f64 = 0.4;
 /// Results that differ by less than this share are the same: round-off.
 const SAME_RESULT: f64 = 1e-12;
 
-/// What three or more results on finer and finer steps tell of the exact one.
+/// The exact result as extrapolated from three or more results on finer and finer steps.
 ///
 /// With steps h r^2, h r, h and results f3, f2, f1 the order is
 /// p = ln((f3 - f2)/(f2 - f1)) / ln r, and the results tend to f1 + (f1 - f2)/(r^p - 1)
 /// [richardson1911, roache1994].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "tendency", rename_all = "snake_case")]
-pub enum Extrapolation {
+pub(crate) enum Extrapolation {
     /// The differences shrink, so that the results tend to a value.
     Converging {
         /// Observed order: the error goes with the step to this power.
         order: f64,
-        /// What the results tend to, in their unit.
+        /// The limit of the results, in their unit.
         extrapolated: f64,
-        /// How far the finest result lies above that, % of it; an estimate.
+        /// Estimated error of the finest result, % of the limit.
         finest_error_percent: f64,
     },
-    /// The differences shrink too slowly to say what the results tend to.
+    /// The differences shrink too slowly for an extrapolation.
     Slow {
         /// Observed order.
         order: f64,
@@ -45,7 +45,7 @@ pub enum Extrapolation {
 ///
 /// The three that count are the finest and the two at r and r^2 times its step, with the smallest
 /// r > 1 for which there are such.
-pub fn extrapolate(steps: &[f64], results: &[f64]) -> Extrapolation {
+pub(crate) fn extrapolate(steps: &[f64], results: &[f64]) -> Extrapolation {
     match finest_triple(steps) {
         Some((places, ratio)) => of_triple(places.map(|place| results[place]), ratio),
         None => Extrapolation::NoConstantRatio,

@@ -1,4 +1,4 @@
-//! The tests of a study, each by its number.
+//! The plan of a study: its tests, each found by its number alone.
 
 use std::{fmt, path::Path, str::FromStr};
 
@@ -8,25 +8,24 @@ use condyle_case::{
     study::{Design, Input, Study, Variation},
 };
 use condyle_lab::RunError;
-use condyle_results::catalogue;
+use condyle_results::catalogue::{self, Scalar};
 
 use crate::{
     design::{
-        Correlated, Saltelli, factorial_places, latin_places, morris_places, one_at_a_time_places,
+        Copula, Saltelli, factorial_places, latin_places, morris_places, one_at_a_time_places,
         sobol::{MAX_AXES, sobol_places},
     },
-    distribution::{Place, along, at_share},
+    distribution::{Place, level_along, level_at_share},
     error::StudyError,
 };
 
-/// Tests of a study, at most.
 const MAX_TESTS: f64 = 1e9;
 
-/// A study that is ready to be done.
+/// A checked study, ready to run.
 pub struct Plan {
     study: Study,
-    correlated: Option<Correlated>,
-    /// Tests of one design.
+    copula: Option<Copula>,
+    /// Tests of one of the designs that are compared.
     tests: u64,
     inputs_blake3: String,
 }
@@ -34,15 +33,15 @@ pub struct Plan {
 /// One test of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Test {
-    /// Its number.
+    /// The number of the test.
     pub row: u64,
-    /// Which of the designs that are compared it is of.
+    /// The place of its design among those that are compared.
     pub alternative: usize,
-    /// The value of every input; none where it is as the case has it.
+    /// The value of every input; none where the case's own value stays.
     pub values: Vec<Option<Level>>,
 }
 
-/// What a test found: its outputs in the order of [`catalogue::outputs`], or why it found nothing.
+/// The outputs of a test in the order of [`catalogue::outputs`], or the reason why it failed.
 pub type TestResult = Result<Vec<f64>, String>;
 
 impl Plan {
@@ -54,53 +53,67 @@ impl Plan {
         Self::of(Study::read(path)?)
     }
 
-    /// The tests of a study, if they can be chosen.
+    /// Plans the tests of a study.
     ///
     /// # Errors
-    /// More of them than anybody waits for, or more inputs than the design takes.
+    /// Too many tests or inputs, or correlations that contradict each other.
     pub fn of(study: Study) -> Result<Self, StudyError> {
         let inputs_blake3 = study.inputs_blake3().map_err(RunError::Inputs)?;
+        // As a real number, since a factorial design may exceed any integer.
         let tests = tests(&study);
         if tests * designs(&study) as f64 > MAX_TESTS {
             let most = MAX_TESTS;
             return Err(StudyError::TooManyTests { tests, most });
         }
-        check_axes(&study)?;
-        let correlated = if study.correlations.is_empty() {
-            None
-        } else {
-            let correlated = Correlated::new(study.inputs.len(), &study.correlations);
-            Some(correlated.ok_or(StudyError::Contradiction)?)
+        let inputs = study.inputs.len();
+        let most = match &study.design {
+            Design::Sobol(_) => MAX_AXES,
+            // A Saltelli design takes two independent values of each input from one point.
+            Design::Saltelli(_) => MAX_AXES / 2,
+            _ => usize::MAX,
         };
+        if inputs > most {
+            let design = study.design.word();
+            return Err(StudyError::TooManyInputs {
+                design,
+                most,
+                inputs,
+            });
+        }
+        let mut copula = None;
+        if !study.correlations.is_empty() {
+            let correlated = Copula::new(inputs, &study.correlations);
+            copula = Some(correlated.ok_or(StudyError::Contradiction)?);
+        }
         Ok(Self {
-            correlated,
+            copula,
             tests: tests as u64,
             inputs_blake3,
             study,
         })
     }
 
-    /// What the file says.
+    /// The study as its file describes it.
     pub fn study(&self) -> &Study {
         &self.study
     }
 
-    /// Hash of all that the tests follow from, in hexadecimal.
+    /// Hash of everything that the tests depend on, in hexadecimal.
     pub fn inputs_blake3(&self) -> &str {
         &self.inputs_blake3
     }
 
-    /// Tests in all; of a search, at most.
+    /// Number of all tests; for a search, the largest number allowed.
     pub fn tests(&self) -> u64 {
         self.tests * designs(&self.study) as u64
     }
 
-    /// Whether a test follows from those before it.
+    /// Whether tests depend on the results of earlier ones.
     pub fn is_search(&self) -> bool {
         matches!(self.study.design, Design::Optimise(_))
     }
 
-    /// Test `row`; none of a search, which knows a test only after those before it.
+    /// Test `row`; none of a search, where it depends on the results of earlier tests.
     pub fn test(&self, row: u64) -> Option<Test> {
         let designs = designs(&self.study) as u64;
         let (of_design, alternative) = (row / designs, (row % designs) as usize);
@@ -110,7 +123,7 @@ impl Plan {
                 let row = &self.study.rows[of_design as usize];
                 row.iter().cloned().map(Some).collect()
             }
-            _ => self.at(&self.places(of_design)),
+            _ => self.values_at(&self.places(of_design)),
         };
         Some(Test {
             row,
@@ -119,32 +132,31 @@ impl Plan {
         })
     }
 
-    /// The values of inputs at these places.
-    pub(crate) fn at(&self, places: &[Place]) -> Vec<Option<Level>> {
+    /// The values of the inputs at these places.
+    pub(crate) fn values_at(&self, places: &[Place]) -> Vec<Option<Level>> {
         let inputs = self.study.inputs.iter().zip(places);
         let value = |(input, place): (&Input, &Place)| match *place {
-            Place::AsItIs => None,
-            Place::Share(share) => Some(at_share(input, share)),
-            Place::Along(part) => Some(along(input, part)),
+            Place::OfCase => None,
+            Place::Share(share) => Some(level_at_share(input, share)),
+            Place::Along(part) => Some(level_along(input, part)),
         };
         inputs.map(value).collect()
     }
 
     fn places(&self, row: u64) -> Vec<Place> {
         let inputs = self.study.inputs.len();
+        let counts = |points| counts(&self.study, points);
         let mut places = match &self.study.design {
             Design::LatinHypercube(keys) => latin_places(row, self.tests, inputs, keys.seed),
             Design::Sobol(keys) => sobol_places(row, inputs, keys.seed),
             Design::Saltelli(keys) => Saltelli::places(row, inputs, keys.seed),
             Design::Morris(keys) => morris_places(row, inputs, keys.levels, keys.seed),
-            Design::FullFactorial(keys) => factorial_places(row, &counts(&self.study, keys.points)),
-            Design::OneAtATime(keys) => {
-                one_at_a_time_places(row, &counts(&self.study, keys.points))
-            }
+            Design::FullFactorial(keys) => factorial_places(row, &counts(keys.points)),
+            Design::OneAtATime(keys) => one_at_a_time_places(row, &counts(keys.points)),
             Design::Rows(_) | Design::Optimise(_) => Vec::new(),
         };
-        if let Some(correlated) = &self.correlated {
-            correlated.apply(&mut places);
+        if let Some(copula) = &self.copula {
+            copula.apply(&mut places);
         }
         places
     }
@@ -152,17 +164,17 @@ impl Plan {
     /// The case of a test.
     ///
     /// # Errors
-    /// Values that do not go together.
+    /// A combination of values that the case does not accept.
     pub fn case_of(&self, test: &Test) -> Result<Case, RunError> {
         Ok(self.study.changed_case(&self.assignments(test))?)
     }
 
-    /// What a test sets of the case.
+    /// The changes of the case in a test.
     pub fn assignments(&self, test: &Test) -> Vec<Assignment> {
         self.study.assignments(test.alternative, &test.values)
     }
 
-    /// The values of a test as the table has them: those of the case where it sets none.
+    /// The values of a test in the table: those of the case where the test sets none.
     pub(crate) fn written_values(&self, test: &Test) -> Vec<Option<Level>> {
         let inputs = self.study.inputs.iter().zip(&test.values);
         let value = |(input, value): (&Input, &Option<Level>)| {
@@ -171,7 +183,7 @@ impl Plan {
         inputs.map(value).collect()
     }
 
-    /// The design that a test is of; none where there is but one.
+    /// The name of the design of a test; none where no designs are compared.
     pub(crate) fn design_of(&self, test: &Test) -> Option<&str> {
         let design = self.study.alternatives.get(test.alternative)?;
         Some(&design.name)
@@ -187,12 +199,18 @@ impl Plan {
     }
 }
 
-/// Designs that are compared, at least the case itself.
+/// The value of an output among the outputs of a test.
+pub(crate) fn output_value(values: &[f64], output: &Scalar) -> f64 {
+    let place = catalogue::outputs().position(|one| one.key == output.key);
+    place.map_or(f64::NAN, |place| values[place])
+}
+
+/// Number of designs that are compared, one for the case alone.
 pub(crate) fn designs(study: &Study) -> usize {
     study.alternatives.len().max(1)
 }
 
-/// How many values each input has.
+/// Number of values of each input.
 fn counts(study: &Study, points: u64) -> Vec<u64> {
     let count = |input: &Input| match &input.variation {
         Variation::Levels(keys) => keys.levels.0.len() as u64,
@@ -201,7 +219,7 @@ fn counts(study: &Study, points: u64) -> Vec<u64> {
     study.inputs.iter().map(count).collect()
 }
 
-/// Tests of one design, as a number that may be too large for any.
+/// Number of tests of one design.
 fn tests(study: &Study) -> f64 {
     let inputs = study.inputs.len() as f64;
     let numbers = |points| counts(study, points).into_iter().map(|count| count as f64);
@@ -218,26 +236,7 @@ fn tests(study: &Study) -> f64 {
     }
 }
 
-/// Refuses more inputs than points of Sobol have axes.
-fn check_axes(study: &Study) -> Result<(), StudyError> {
-    let inputs = study.inputs.len();
-    let most = match &study.design {
-        Design::Sobol(_) => MAX_AXES,
-        Design::Saltelli(_) => MAX_AXES / 2,
-        _ => usize::MAX,
-    };
-    if inputs <= most {
-        return Ok(());
-    }
-    let design = study.design.word();
-    Err(StudyError::TooManyInputs {
-        design,
-        most,
-        inputs,
-    })
-}
-
-/// Every `of`-th test, from one of the first.
+/// Every `of`-th test of a study, from the `number`-th on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: u64,
@@ -254,12 +253,12 @@ impl Shard {
     }
 
     /// Whether a row is one of its tests.
-    pub fn has(&self, row: u64) -> bool {
+    pub(crate) fn has(&self, row: u64) -> bool {
         row % self.of == self.number - 1
     }
 
-    /// How many of so many tests are its own.
-    pub fn count(&self, tests: u64) -> u64 {
+    /// Number of its tests among so many.
+    pub(crate) fn count(&self, tests: u64) -> u64 {
         (tests + self.of - self.number) / self.of
     }
 }
@@ -288,6 +287,26 @@ impl FromStr for Shard {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn regress_the_columns_of_stored_studies_are_outputs() {
+        let keys: Vec<&str> = catalogue::outputs().map(|output| output.key).collect();
+        assert_eq!(
+            keys,
+            [
+                "mass_loss_mg",
+                "volume_loss_mm3",
+                "max_depth_mm",
+                "peak_pressure_mpa",
+                "first_cycle_peak_pressure_mpa",
+                "last_cycle_peak_pressure_mpa",
+                "peak_contact_area_mm2",
+                "ap_range_mm",
+                "ie_range_deg",
+                "medial_load_share",
+            ]
+        );
+    }
 
     #[test]
     fn every_test_belongs_to_one_shard() {

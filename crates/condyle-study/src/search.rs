@@ -1,91 +1,84 @@
-//! A search for the best within limits, from test to test.
-
-use std::ops::ControlFlow;
+//! A search for the optimum within limits, from generation to generation of tests.
 
 use condyle_case::study::{Bound, Design, OptimiseKeys};
-use condyle_results::catalogue::{self, Scalar};
+use condyle_results::catalogue;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::{
-    chance::Numbers,
-    distribution::Place,
-    distribution::deviations,
+    distribution::{Place, normal_quantile},
     error::StudyError,
-    plan::{Plan, Test, TestResult},
+    plan::{Plan, Test, TestResult, output_value},
+    random::Random,
 };
 
-/// A search ends where its steps are below this part of every range: less makes no other implant.
-const CLOSE: f64 = 1e-3;
+/// A search ends once its steps are below this part of every range: smaller changes make no other implant.
+const MIN_STEP: f64 = 1e-3;
 
-/// Gives what tests found, in their order, or a break if somebody asked to stop.
+/// Returns the results of tests in their order, or none if some of them are missing.
 pub(crate) type Evaluate<'a> =
-    dyn FnMut(Vec<Test>) -> Result<ControlFlow<(), Vec<TestResult>>, StudyError> + 'a;
+    dyn FnMut(&[Test]) -> Result<Option<Vec<TestResult>>, StudyError> + 'a;
 
-/// How a search ended.
+/// The state of a search at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Searched {
-    /// Generations tried.
     pub generations: u64,
-    /// Its largest step at the end, as a part of the ranges.
+    /// The largest step at the end, as a part of the ranges.
     pub step: f64,
-    /// Whether somebody asked to stop.
-    pub is_interrupted: bool,
 }
 
 impl Searched {
-    /// Whether it has closed in on one place.
+    /// Whether the search has converged to one place.
     pub fn is_converged(&self) -> bool {
-        self.step < CLOSE
+        self.step < MIN_STEP
     }
 }
 
-/// Searches by evolution, generation by generation (CMA-ES, Hansen 2016). The tests of a generation follow from what those
-/// before it found and from the seed: a search that is gone on with takes the same way.
-pub(crate) fn search(plan: &Plan, evaluate: &mut Evaluate<'_>) -> Result<Searched, StudyError> {
+/// Searches by CMA-ES (Hansen 2016), generation by generation. The tests of a generation depend on the results of the
+/// earlier ones and on the seed alone, so that a resumed search repeats its stored tests.
+///
+/// None for a study that is no search.
+pub(crate) fn search(
+    plan: &Plan,
+    evaluate: &mut Evaluate<'_>,
+) -> Result<Option<Searched>, StudyError> {
     let Design::Optimise(keys) = &plan.study().design else {
-        return Ok(Searched {
-            generations: 0,
-            step: 1.0,
-            is_interrupted: false,
-        });
+        return Ok(None);
     };
     let mut evolution = Evolution::new(plan.study().inputs.len(), keys.seed);
-    let size = evolution.size() as u64;
+    let size = evolution.rates.size as u64;
     let mut searched = Searched {
         generations: 0,
         step: evolution.largest_step(),
-        is_interrupted: false,
     };
     while !searched.is_converged() && (searched.generations + 1) * size <= keys.size {
         let points = evolution.ask();
-        let first = searched.generations * size;
-        let test = |(place, point): (u64, &Vec<f64>)| test(plan, first + place, point);
-        let tests = (0..).zip(&points).map(test).collect();
-        let ControlFlow::Continue(found) = evaluate(tests)? else {
-            searched.is_interrupted = true;
+        let test = |(row, point): (u64, &Vec<f64>)| {
+            let places: Vec<Place> = point.iter().copied().map(Place::Along).collect();
+            Test {
+                row,
+                alternative: 0,
+                values: plan.values_at(&places),
+            }
+        };
+        let tests: Vec<Test> = (searched.generations * size..)
+            .zip(&points)
+            .map(test)
+            .collect();
+        let Some(found) = evaluate(&tests)? else {
             break;
         };
-        evolution.tell(&points, &order(plan, keys, &found));
+        let worth = found.iter().map(|found| worth(plan, keys, found));
+        evolution.tell(&points, &order(&worth.collect::<Vec<_>>()));
         searched.generations += 1;
         searched.step = evolution.largest_step();
     }
-    Ok(searched)
+    Ok(Some(searched))
 }
 
-fn test(plan: &Plan, row: u64, point: &[f64]) -> Test {
-    let places: Vec<Place> = point.iter().copied().map(Place::Along).collect();
-    Test {
-        row,
-        alternative: 0,
-        values: plan.at(&places),
-    }
-}
-
-/// Places of tests, the best first: within the limits by what is minimised, then by how far they are beyond, then those
-/// that found nothing (Deb 2000).
-fn order(plan: &Plan, keys: &OptimiseKeys, found: &[TestResult]) -> Vec<usize> {
-    let worth: Vec<(f64, f64)> = found.iter().map(|found| worth(plan, keys, found)).collect();
-    let mut order: Vec<usize> = (0..found.len()).collect();
+/// The places of tests, the best first: those within the limits by the minimised output, then the others by their
+/// violation, then those that failed (Deb 2000).
+fn order(worth: &[(f64, f64)]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..worth.len()).collect();
     order.sort_by(|&one, &other| {
         let (one, other) = (worth[one], worth[other]);
         one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1))
@@ -93,32 +86,31 @@ fn order(plan: &Plan, keys: &OptimiseKeys, found: &[TestResult]) -> Vec<usize> {
     order
 }
 
-/// How far a test is beyond all limits, as parts of them, and what is minimised.
+/// The relative violation of all limits, and the minimised output.
 fn worth(plan: &Plan, keys: &OptimiseKeys, found: &TestResult) -> (f64, f64) {
-    let Ok(outputs) = found else {
+    let (Ok(outputs), Some(minimised)) = (found, catalogue::output(&keys.minimise)) else {
         return (f64::INFINITY, f64::INFINITY);
-    };
-    let value = |name: &str| {
-        let place = catalogue::outputs().position(|output: &Scalar| output.key == name);
-        place.map_or(f64::INFINITY, |place| outputs[place])
     };
     let beyond = |bound: &Bound| {
         let scale = bound.most.or(bound.least).unwrap_or(1.0).abs().max(1e-300);
-        bound.excess(value(bound.output.key)) / scale
+        bound.excess(output_value(outputs, bound.output)) / scale
     };
     let bounds = &plan.study().answers.bounds;
-    (bounds.iter().map(beyond).sum(), value(&keys.minimise))
+    (
+        bounds.iter().map(beyond).sum(),
+        output_value(outputs, minimised),
+    )
 }
 
 /// First step, as a part of the ranges: from the middle, the ends are within two.
 const FIRST_STEP: f64 = 0.3;
-/// Longest step, as a part of the ranges.
-const LONGEST_STEP: f64 = 1.0;
-/// Least of a variance, so that rounding leaves the matrix positive.
+/// Largest step, as a part of the ranges: a longer one would only be mirrored.
+const MAX_STEP: f64 = 1.0;
+/// Smallest variance: rounding must leave the covariance positive.
 const MIN_VARIANCE: f64 = 1e-20;
 
-/// A normal distribution that moves to where the better ones of its points are (Hansen 2016, with its notation and
-/// default constants). Points beyond the cube are mirrored into it.
+/// CMA-ES in the unit cube, with the notation and default constants of Hansen (2016). Points beyond the cube are mirrored
+/// into it.
 pub(crate) struct Evolution {
     mean: DVector<f64>,
     step: f64,
@@ -130,10 +122,11 @@ pub(crate) struct Evolution {
     rates: Rates,
 }
 
-/// How fast each part learns.
+/// Learning rates and sizes.
 struct Rates {
+    /// Points of a generation.
     size: usize,
-    /// Weights of the better half, the best first; their sum is 1.
+    /// Weights of the better half, the best first, with a sum of 1.
     weights: Vec<f64>,
     effective: f64,
     of_path: f64,
@@ -141,7 +134,7 @@ struct Rates {
     of_one: f64,
     of_many: f64,
     damping: f64,
-    /// How long a vector of normal numbers is on average.
+    /// Expected length of a standard normal vector.
     length: f64,
 }
 
@@ -186,12 +179,7 @@ impl Evolution {
         }
     }
 
-    /// Points of a generation.
-    pub fn size(&self) -> usize {
-        self.rates.size
-    }
-
-    /// The standard deviation along the axis that has the largest, as a part of the ranges.
+    /// The largest standard deviation along an axis, as a part of the ranges.
     pub fn largest_step(&self) -> f64 {
         self.step * self.covariance.diagonal().max().sqrt()
     }
@@ -203,16 +191,16 @@ impl Evolution {
             .eigenvalues
             .map(|value| value.max(MIN_VARIANCE).sqrt());
         let stretch = &eigen.eigenvectors * DMatrix::from_diagonal(&roots);
-        let mut numbers = Numbers::of_one(self.seed, self.generation);
+        let mut numbers = Random::stream(self.seed, self.generation);
         let mut point = |_| {
-            let normal = DVector::from_fn(self.mean.len(), |_, _| deviations(numbers.share()));
+            let normal = DVector::from_fn(self.mean.len(), |_, _| normal_quantile(numbers.share()));
             let point = &self.mean + self.step * (&stretch * normal);
             point.iter().copied().map(mirrored).collect()
         };
         (0..self.rates.size).map(&mut point).collect()
     }
 
-    /// Learns from the points of a generation, whose places `order` has, the best first.
+    /// Learns from the points of a generation; `order` has their places, the best first.
     pub fn tell(&mut self, points: &[Vec<f64>], order: &[usize]) {
         let rates = &self.rates;
         let step =
@@ -252,7 +240,7 @@ impl Evolution {
             + rates.of_one * path * path.transpose()
             + rates.of_many * many;
         let change = (rates.of_step / rates.damping * (length / rates.length - 1.0)).exp();
-        self.step = (self.step * change).min(LONGEST_STEP);
+        self.step = (self.step * change).min(MAX_STEP);
     }
 
     /// C^(-1/2) of a step.
@@ -276,17 +264,13 @@ fn mirrored(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The mean after a search for the least of (what a point is beyond its limit, its worth).
+    /// The mean after a minimisation of (violation, objective).
     fn found(axes: usize, seed: u64, worth: impl Fn(&[f64]) -> (f64, f64)) -> (Vec<f64>, f64) {
         let mut evolution = Evolution::new(axes, seed);
         for _ in 0..150 {
             let points = evolution.ask();
-            let mut order: Vec<usize> = (0..points.len()).collect();
-            order.sort_by(|&one, &other| {
-                let (one, other) = (worth(&points[one]), worth(&points[other]));
-                one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1))
-            });
-            evolution.tell(&points, &order);
+            let all: Vec<(f64, f64)> = points.iter().map(|point| worth(point)).collect();
+            evolution.tell(&points, &order(&all));
         }
         (
             evolution.mean.iter().copied().collect(),

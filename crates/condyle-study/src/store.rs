@@ -2,12 +2,13 @@
 
 use std::{
     fs,
-    io::{self, Write},
+    io::{self, BufWriter, Write},
     path::{Path, PathBuf},
     time::Duration,
 };
 
 use condyle_case::config::Level;
+use condyle_results::{FolderLock, ResultsFolder};
 use rusqlite::{
     Connection, params_from_iter,
     types::{Value, ValueRef},
@@ -18,85 +19,75 @@ use crate::{
     plan::{Plan, Shard, Test, TestResult},
 };
 
-/// Its name in the study's folder.
-pub const DATABASE: &str = "study.db";
-/// Changes when the tables do.
+/// Name of the file in the study's folder.
+pub(crate) const DATABASE: &str = "study.db";
+/// Version of the tables.
 const FORMAT: &str = "1";
-/// How long another process that reads may hold up a write.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// Time for which another process that reads may delay a write.
+const MAX_WAIT: Duration = Duration::from_secs(60);
 
-/// The database of a study.
+/// The database of a study; no other process can write into its folder while it is taken.
 pub struct Store {
     connection: Connection,
     path: PathBuf,
-}
-
-/// What is kept of a study besides its tests.
-pub(crate) struct Keeping<'a> {
-    pub plan: &'a Plan,
-    pub shard: Shard,
-}
-
-/// How a test ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Status {
-    Done,
-    Failed,
-}
-
-impl Status {
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Done => "done",
-            Self::Failed => "failed",
-        }
-    }
+    _lock: Option<FolderLock>,
 }
 
 impl Store {
-    /// The database of a study in `folder`, made if the folder is empty or not there; one of the same study is gone on
-    /// with.
+    /// Takes the folder `out` for a plan; folder and database are created if they do not exist.
     ///
     /// # Errors
-    /// A folder of another study, or with something else in it; a file that cannot be written.
-    pub(crate) fn open(folder: &Path, keeping: &Keeping<'_>) -> Result<Self, StudyError> {
-        let path = folder.join(DATABASE);
-        let is_new = !path.exists();
-        if is_new && holds_anything(folder)? {
-            let folder = folder.to_path_buf();
-            return Err(StudyError::NotEmpty { folder });
+    /// A folder of another study or of something else, one in use, or one that cannot be written.
+    pub fn take(plan: &Plan, out: &Path) -> Result<Self, StudyError> {
+        Self::take_shard(plan, Shard::WHOLE, out)
+    }
+
+    pub(crate) fn take_shard(plan: &Plan, shard: Shard, out: &Path) -> Result<Self, StudyError> {
+        fs::create_dir_all(out).map_err(StudyError::refused(out))?;
+        let lock = ResultsFolder::lock(out)?;
+        let path = out.join(DATABASE);
+        if !path.exists() && holds_anything(out)? {
+            return Err(StudyError::folder(
+                out,
+                "the folder is not empty and holds no study; give another one with --out",
+            ));
         }
-        fs::create_dir_all(folder).map_err(|source| StudyError::Refused {
-            path: folder.to_path_buf(),
-            source,
-        })?;
-        let store = Self::connected(path)?;
+        let mut store = Self::connect(path)?;
+        store._lock = lock;
         store.checked(|connection| {
-            // A commit survives the end of the program at once, and that of the machine soon.
+            // In this mode a commit survives the end of the program at once, and a power failure within seconds, for a
+            // fraction of the time of a synchronous commit.
             connection.execute_batch("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;")
         })?;
-        if store.is_empty()? {
-            store.create(keeping)?;
-        } else {
-            store.check_same(folder, keeping)?;
+        let tables = "SELECT count(*) FROM sqlite_schema WHERE name = 'study'";
+        let tables: i64 = store.checked(|one| one.query_row(tables, [], |row| row.get(0)))?;
+        if tables == 0 {
+            store.create(plan, shard)?;
+            return Ok(store);
+        }
+        store.check_tests(out, plan)?;
+        if store.fact("shard")? != Some(shard.to_string()) {
+            let problem = "the folder holds another study, or another shard of this one; give another one with --out, \
+                           or remove it";
+            return Err(StudyError::folder(out, problem));
         }
         Ok(store)
     }
 
-    /// The database of any study in `folder`, to be read.
+    /// Opens the database of any study in `folder` for reading.
     ///
     /// # Errors
     /// A folder without a study.
     pub fn read(folder: &Path) -> Result<Self, StudyError> {
         let path = folder.join(DATABASE);
         if !path.is_file() {
-            let folder = folder.to_path_buf();
-            return Err(StudyError::NoStudy { folder });
+            let problem = "the folder holds no study; give one that `condyle study` wrote";
+            return Err(StudyError::folder(folder, problem));
         }
-        Self::connected(path)
+        Self::connect(path)
     }
 
-    /// The database of `plan` that is in `folder`.
+    /// Opens the database of `plan` in `folder`.
     ///
     /// # Errors
     /// A folder without a study, or with another one than `plan`.
@@ -106,18 +97,22 @@ impl Store {
         Ok(store)
     }
 
-    fn connected(path: PathBuf) -> Result<Self, StudyError> {
+    fn connect(path: PathBuf) -> Result<Self, StudyError> {
         let connection = Connection::open(&path).map_err(|source| StudyError::Store {
             path: path.clone(),
             source,
         })?;
-        let store = Self { connection, path };
-        store.checked(|connection| connection.busy_timeout(PATIENCE))?;
+        let store = Self {
+            connection,
+            path,
+            _lock: None,
+        };
+        store.checked(|connection| connection.busy_timeout(MAX_WAIT))?;
         Ok(store)
     }
 
-    /// What `work` does with the connection, with the file named where it cannot.
-    pub(crate) fn checked<T>(
+    /// Adds the name of the file to errors of `work`.
+    fn checked<T>(
         &self,
         work: impl FnOnce(&Connection) -> rusqlite::Result<T>,
     ) -> Result<T, StudyError> {
@@ -127,140 +122,159 @@ impl Store {
         })
     }
 
-    fn is_empty(&self) -> Result<bool, StudyError> {
-        let count = "SELECT count(*) FROM sqlite_schema WHERE name = 'study'";
-        let count: i64 = self.checked(|one| one.query_row(count, [], |row| row.get(0)))?;
-        Ok(count == 0)
-    }
-
-    /// Makes the tables in one step.
-    fn create(&self, keeping: &Keeping<'_>) -> Result<(), StudyError> {
-        let table = table(keeping.plan);
-        let facts = facts(keeping);
+    /// Creates the tables in one transaction.
+    fn create(&self, plan: &Plan, shard: Shard) -> Result<(), StudyError> {
+        let study = plan.study();
+        let (inputs, outputs) = plan.columns();
+        let mut columns = vec!["\"row\" INTEGER PRIMARY KEY".to_owned()];
+        if !study.alternatives.is_empty() {
+            columns.push("\"design\" TEXT NOT NULL".to_owned());
+        }
+        columns.extend(["\"status\" TEXT NOT NULL", "\"reason\" TEXT"].map(str::to_owned));
+        columns.extend(inputs.iter().map(|key| quoted(key)));
+        columns.extend(outputs.iter().map(|key| format!("{} REAL", quoted(key))));
+        let tables = format!(
+            "CREATE TABLE study (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+             CREATE TABLE tests ({});",
+            columns.join(", ")
+        );
+        let facts = [
+            ("format", FORMAT),
+            ("version", env!("CARGO_PKG_VERSION")),
+            ("inputs_blake3", plan.inputs_blake3()),
+            ("shard", &shard.to_string()),
+            ("tests", &plan.tests().to_string()),
+            ("study.toml", &study.text),
+        ];
         self.checked(|connection| {
             let transaction = connection.unchecked_transaction()?;
-            transaction.execute_batch(&table)?;
+            transaction.execute_batch(&tables)?;
             for (name, value) in facts {
-                transaction.execute("INSERT INTO study VALUES (?1, ?2)", [name, value.as_str()])?;
+                transaction.execute("INSERT INTO study VALUES (?1, ?2)", [name, value])?;
             }
             transaction.commit()
         })
-    }
-
-    fn check_same(&self, folder: &Path, keeping: &Keeping<'_>) -> Result<(), StudyError> {
-        self.check_tests(folder, keeping.plan)?;
-        let same = self.fact("shard")? == Some(keeping.shard.to_string());
-        let (folder, is_shard) = (folder.to_path_buf(), true);
-        if same {
-            Ok(())
-        } else {
-            Err(StudyError::OtherStudy { folder, is_shard })
-        }
     }
 
     /// Refuses a database of other tests.
     fn check_tests(&self, folder: &Path, plan: &Plan) -> Result<(), StudyError> {
         let is_format = self.fact("format")?.as_deref() == Some(FORMAT);
-        let same = self.fact("inputs_blake3")?.as_deref() == Some(plan.inputs_blake3());
-        let (folder, is_shard) = (folder.to_path_buf(), false);
-        if is_format && same {
-            Ok(())
-        } else {
-            Err(StudyError::OtherStudy { folder, is_shard })
+        let is_same = self.fact("inputs_blake3")?.as_deref() == Some(plan.inputs_blake3());
+        if is_format && is_same {
+            return Ok(());
         }
+        let problem = "the folder holds another study; give another one with --out, or remove it";
+        Err(StudyError::folder(folder, problem))
     }
 
     fn fact(&self, name: &str) -> Result<Option<String>, StudyError> {
         let query = "SELECT value FROM study WHERE name = ?1";
-        self.checked(|connection| {
-            let found = connection.query_row(query, [name], |row| row.get(0));
-            match found {
-                Err(rusqlite::Error::QueryReturnedNoRows) => Ok(None),
-                found => found.map(Some),
-            }
-        })
+        self.first_row(query, name, |row| row.get(0))
     }
 
-    /// Which of so many tests are kept.
-    pub(crate) fn kept(&self, tests: u64) -> Result<Vec<bool>, StudyError> {
+    /// The first row that a query finds, if it finds one.
+    fn first_row<T>(
+        &self,
+        query: &str,
+        parameter: impl rusqlite::ToSql,
+        read: impl FnOnce(&rusqlite::Row<'_>) -> rusqlite::Result<T>,
+    ) -> Result<Option<T>, StudyError> {
+        self.checked(
+            |connection| match connection.query_row(query, [parameter], read) {
+                Err(rusqlite::Error::QueryReturnedNoRows) => Ok(None),
+                found => found.map(Some),
+            },
+        )
+    }
+
+    /// The numbers of the tests that are not stored.
+    ///
+    /// # Errors
+    /// A search, whose tests are unknown before they are due.
+    pub fn missing(&self, plan: &Plan) -> Result<Vec<u64>, StudyError> {
+        if plan.is_search() {
+            return Err(StudyError::NoShards);
+        }
+        let mut stored = vec![false; plan.tests() as usize];
         self.checked(|connection| {
-            let mut kept = vec![false; tests as usize];
             let mut statement = connection.prepare("SELECT \"row\" FROM tests")?;
             let mut rows = statement.query([])?;
             while let Some(row) = rows.next()? {
-                if let Some(one) = kept.get_mut(row.get::<_, i64>(0)? as usize) {
+                if let Some(one) = stored.get_mut(row.get::<_, i64>(0)? as usize) {
                     *one = true;
                 }
             }
-            Ok(kept)
-        })
+            Ok(())
+        })?;
+        let rows = (0..).zip(stored);
+        Ok(rows.filter(|(_, is)| !is).map(|(row, _)| row).collect())
     }
 
-    /// Keeps what tests found, all in one step.
+    /// Stores the results of tests in one transaction; a test that is stored already does not change.
+    ///
+    /// # Errors
+    /// A full disk.
     pub fn keep(&self, plan: &Plan, found: &[(Test, TestResult)]) -> Result<(), StudyError> {
+        let rows: Vec<Vec<Value>> = found
+            .iter()
+            .map(|(test, result)| cells(plan, test, result))
+            .collect();
+        let Some(first) = rows.first() else {
+            return Ok(());
+        };
+        let places = vec!["?"; first.len()].join(", ");
+        let insert = format!("INSERT OR IGNORE INTO tests VALUES ({places})");
         self.checked(|connection| {
             let transaction = connection.unchecked_transaction()?;
-            {
-                let mut statement = transaction.prepare(&insert(plan))?;
-                for (test, result) in found {
-                    statement.execute(params_from_iter(cells(plan, test, result)))?;
-                }
+            let mut statement = transaction.prepare(&insert)?;
+            for row in rows {
+                statement.execute(params_from_iter(row))?;
             }
+            drop(statement);
             transaction.commit()
         })
     }
 
-    /// The outputs of a test that is done; none of one that failed or is not there.
+    /// The result of a test; none of one that is not stored.
     pub(crate) fn outputs(&self, row: u64, plan: &Plan) -> Result<Option<TestResult>, StudyError> {
         let (_, outputs) = plan.columns();
-        let query = format!(
-            "SELECT reason, {} FROM tests WHERE \"row\" = ?1",
-            quoted(&outputs)
-        );
-        self.checked(|connection| {
-            let mut statement = connection.prepare(&query)?;
-            let mut rows = statement.query([row as i64])?;
-            let Some(row) = rows.next()? else {
-                return Ok(None);
-            };
-            let reason: Option<String> = row.get(0)?;
-            let values: rusqlite::Result<Vec<Option<f64>>> =
-                (1..=outputs.len()).map(|place| row.get(place)).collect();
-            let values: Option<Vec<f64>> = values?.into_iter().collect();
-            Ok(Some(values.ok_or_else(|| reason.unwrap_or_default())))
+        let query = select(&outputs, ", reason");
+        self.first_row(&query, row as i64, |cells| {
+            let values = (0..outputs.len()).map(|place| cells.get(place));
+            let values: rusqlite::Result<Option<Vec<f64>>> = values.collect();
+            let reason: Option<String> = cells.get(outputs.len())?;
+            Ok(values?.ok_or_else(|| reason.unwrap_or_default()))
         })
     }
 
-    /// Test `row` with the inputs that are kept of it: the only place that has those of a search.
+    /// The results of several tests; none if one of them is not stored.
+    pub(crate) fn outputs_of(
+        &self,
+        tests: &[Test],
+        plan: &Plan,
+    ) -> Result<Option<Vec<TestResult>>, StudyError> {
+        let found = tests.iter().map(|test| self.outputs(test.row, plan));
+        found.collect()
+    }
+
+    /// Test `row` with its stored inputs, which for a search are stored nowhere else.
     ///
     /// # Errors
-    /// A test that is not kept.
+    /// A test that is not stored.
     pub fn test(&self, row: u64, plan: &Plan) -> Result<Test, StudyError> {
         let (inputs, _) = plan.columns();
-        let query = format!("SELECT {} FROM tests WHERE \"row\" = ?1", quoted(&inputs));
-        let values = self.checked(|connection| {
-            let found = connection.query_row(&query, [row as i64], |cells| {
-                (0..inputs.len())
-                    .map(|place| cells.get::<_, f64>(place))
-                    .collect()
-            });
-            match found {
-                Err(rusqlite::Error::QueryReturnedNoRows) => Ok(None),
-                found => found.map(Some),
-            }
+        let values = self.first_row(&select(&inputs, ""), row as i64, |cells| {
+            let values = (0..inputs.len()).map(|place| cells.get(place).map(Level::Number));
+            values.map(|value| value.map(Some)).collect()
         })?;
-        let values: Vec<f64> = values.ok_or(StudyError::NotYet { row })?;
         Ok(Test {
             row,
             alternative: 0,
-            values: values
-                .into_iter()
-                .map(|value| Some(Level::Number(value)))
-                .collect(),
+            values: values.ok_or(StudyError::NotYet { row })?,
         })
     }
 
-    /// Puts the tests of the database at `other` beside these; those that are here already stay.
+    /// Adds the tests of another database; tests that are stored here already stay.
     pub(crate) fn take_all(&self, other: &Path) -> Result<(), StudyError> {
         self.checked(|connection| {
             connection.execute(
@@ -271,166 +285,17 @@ impl Store {
             connection.execute_batch("DETACH DATABASE other")
         })
     }
-}
 
-fn holds_anything(folder: &Path) -> Result<bool, StudyError> {
-    match fs::read_dir(folder) {
-        // The lock of the folder is ours.
-        Ok(entries) => Ok(entries.flatten().any(|entry| entry.file_name() != "in_use")),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-        Err(source) => {
-            let path = folder.to_path_buf();
-            Err(StudyError::Refused { path, source })
-        }
-    }
-}
-
-/// A name as SQL has it.
-pub(crate) fn name(name: &str) -> String {
-    format!("\"{}\"", name.replace('"', "\"\""))
-}
-
-pub(crate) fn quoted(names: &[&str]) -> String {
-    let quoted: Vec<String> = names.iter().copied().map(name).collect();
-    quoted.join(", ")
-}
-
-fn has_designs(plan: &Plan) -> bool {
-    !plan.study().alternatives.is_empty()
-}
-
-fn table(plan: &Plan) -> String {
-    let (inputs, outputs) = plan.columns();
-    let inputs: String = inputs
-        .iter()
-        .map(|key| format!("{}, ", name(key)))
-        .collect();
-    let outputs: Vec<String> = outputs
-        .iter()
-        .map(|output| format!("{} REAL", name(output)))
-        .collect();
-    let design = if has_designs(plan) {
-        "\"design\" TEXT NOT NULL, "
-    } else {
-        ""
-    };
-    format!(
-        "CREATE TABLE study (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-         CREATE TABLE tests (\"row\" INTEGER PRIMARY KEY, {design}\"status\" TEXT NOT NULL, \"reason\" TEXT, \
-         {inputs}{});",
-        outputs.join(", ")
-    )
-}
-
-fn insert(plan: &Plan) -> String {
-    let (inputs, outputs) = plan.columns();
-    let count = 3 + usize::from(has_designs(plan)) + inputs.len() + outputs.len();
-    format!(
-        "INSERT OR IGNORE INTO tests VALUES ({})",
-        vec!["?"; count].join(", ")
-    )
-}
-
-fn facts(keeping: &Keeping<'_>) -> [(&'static str, String); 6] {
-    let study = keeping.plan.study();
-    [
-        ("format", FORMAT.to_owned()),
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("inputs_blake3", keeping.plan.inputs_blake3().to_owned()),
-        ("shard", keeping.shard.to_string()),
-        ("tests", keeping.plan.tests().to_string()),
-        ("study.toml", study.text.clone()),
-    ]
-}
-
-fn cells(plan: &Plan, test: &Test, result: &TestResult) -> Vec<Value> {
-    let status = if result.is_ok() {
-        Status::Done
-    } else {
-        Status::Failed
-    };
-    let text = |text: &str| Value::Text(text.to_owned());
-    let reason = result
-        .as_ref()
-        .err()
-        .map_or(Value::Null, |reason| text(reason));
-    let mut cells = vec![Value::Integer(test.row as i64)];
-    cells.extend(plan.design_of(test).map(text));
-    cells.extend([text(status.word()), reason]);
-    cells.extend(plan.written_values(test).into_iter().map(as_sql));
-    let (_, outputs) = plan.columns();
-    cells.extend((0..outputs.len()).map(|place| {
-        let value = result.as_ref().ok().map(|values| values[place]);
-        value
-            .filter(|value| value.is_finite())
-            .map_or(Value::Null, Value::Real)
-    }));
-    cells
-}
-
-fn as_sql(level: Option<Level>) -> Value {
-    match level {
-        Some(Level::Number(number)) => Value::Real(number),
-        Some(Level::Word(word)) => Value::Text(word),
-        None => Value::Null,
-    }
-}
-
-/// A column of the table, a value a test; of a test that failed or is not there, not a number.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Column {
-    /// Of words the place of each among `words`.
-    pub values: Vec<f64>,
-    /// In the order of the alphabet; none where all are numbers.
-    pub words: Vec<String>,
-}
-
-impl Store {
-    /// The column called `called` of every test that is done.
-    pub(crate) fn column(&self, plan: &Plan, called: &str) -> Result<Column, StudyError> {
-        let words = self.words(called)?;
-        let query = format!(
-            "SELECT \"row\", {} FROM tests WHERE status = 'done'",
-            name(called)
-        );
-        self.checked(|connection| {
-            let mut values = vec![f64::NAN; plan.tests() as usize];
-            let mut statement = connection.prepare(&query)?;
-            let mut rows = statement.query([])?;
-            while let Some(row) = rows.next()? {
-                let value = match row.get_ref(1)? {
-                    ValueRef::Real(number) => number,
-                    ValueRef::Integer(whole) => whole as f64,
-                    ValueRef::Text(text) => {
-                        let text = String::from_utf8_lossy(text);
-                        words
-                            .iter()
-                            .position(|word| *word == text)
-                            .map_or(f64::NAN, |place| place as f64)
-                    }
-                    ValueRef::Null | ValueRef::Blob(_) => f64::NAN,
-                };
-                if let Some(place) = values.get_mut(row.get::<_, i64>(0)? as usize) {
-                    *place = value;
-                }
-            }
-            Ok(Column { values, words })
-        })
+    /// Number of stored tests.
+    ///
+    /// # Errors
+    /// A database that cannot be read.
+    pub fn count(&self) -> Result<u64, StudyError> {
+        let count = |row: &rusqlite::Row<'_>| row.get::<_, i64>(0);
+        self.checked(|one| Ok(one.query_row("SELECT count(*) FROM tests", [], count)? as u64))
     }
 
-    fn words(&self, called: &str) -> Result<Vec<String>, StudyError> {
-        let column = name(called);
-        let query = format!(
-            "SELECT DISTINCT {column} FROM tests WHERE typeof({column}) = 'text' ORDER BY {column}"
-        );
-        self.checked(|connection| {
-            let mut statement = connection.prepare(&query)?;
-            let words = statement.query_map([], |row| row.get(0))?;
-            words.collect()
-        })
-    }
-
-    /// Tests that failed: how many by each reason, the most frequent first.
+    /// Tests that failed by their reasons, the most frequent first.
     pub(crate) fn reasons(&self) -> Result<Vec<(String, u64)>, StudyError> {
         let query = "SELECT coalesce(reason, ''), count(*) AS many FROM tests WHERE status = 'failed' \
                      GROUP BY reason ORDER BY many DESC, reason";
@@ -442,28 +307,59 @@ impl Store {
         })
     }
 
-    /// Tests that are kept.
-    pub fn count(&self) -> Result<u64, StudyError> {
+    /// The column called `name` for every test that is done.
+    pub(crate) fn column(&self, plan: &Plan, name: &str) -> Result<Column, StudyError> {
+        let column = quoted(name);
         self.checked(|connection| {
-            let count = |row: &rusqlite::Row<'_>| row.get::<_, i64>(0);
-            Ok(connection.query_row("SELECT count(*) FROM tests", [], count)? as u64)
+            let words = format!(
+                "SELECT DISTINCT {column} FROM tests WHERE typeof({column}) = 'text' ORDER BY {column}"
+            );
+            let mut statement = connection.prepare(&words)?;
+            let words = statement.query_map([], |row| row.get(0))?;
+            let words: Vec<String> = words.collect::<rusqlite::Result<_>>()?;
+            let mut values = vec![f64::NAN; plan.tests() as usize];
+            let query = format!("SELECT \"row\", {column} FROM tests WHERE status = 'done'");
+            let mut statement = connection.prepare(&query)?;
+            let mut rows = statement.query([])?;
+            while let Some(row) = rows.next()? {
+                let value = match row.get_ref(1)? {
+                    ValueRef::Real(number) => number,
+                    ValueRef::Integer(whole) => whole as f64,
+                    ValueRef::Text(text) => {
+                        let place = words.iter().position(|word| word.as_bytes() == text);
+                        place.map_or(f64::NAN, |place| place as f64)
+                    }
+                    ValueRef::Null | ValueRef::Blob(_) => f64::NAN,
+                };
+                if let Some(place) = values.get_mut(row.get::<_, i64>(0)? as usize) {
+                    *place = value;
+                }
+            }
+            Ok(Column { values, words })
         })
     }
-}
 
-impl Store {
-    /// Writes every test that is kept, in the order of their numbers: the same bytes whoever ran them, and in which order.
+    /// Writes every stored test in the order of the rows: the bytes depend neither on machines nor on the order of runs.
     ///
     /// # Errors
-    /// A database that cannot be read; what `out` says.
+    /// A database that cannot be read; the inner error is that of `out`.
     pub fn write_csv(&self, out: &mut dyn Write) -> Result<io::Result<()>, StudyError> {
         self.checked(|connection| {
             let mut statement = connection.prepare("SELECT * FROM tests ORDER BY \"row\"")?;
-            let names: Vec<String> = statement.column_names().map(cell).collect();
+            let names: Vec<String> = statement.column_names().map(csv_cell).collect();
             let mut written = writeln!(out, "{}", names.join(","));
             let mut rows = statement.query([])?;
             while let Some(row) = rows.next()? {
-                let cells = (0..names.len()).map(|place| Ok(text(row.get_ref(place)?)));
+                let cells = (0..names.len()).map(|place| {
+                    Ok(match row.get_ref(place)? {
+                        ValueRef::Null => String::new(),
+                        ValueRef::Integer(whole) => whole.to_string(),
+                        ValueRef::Real(number) => number.to_string(),
+                        ValueRef::Text(bytes) | ValueRef::Blob(bytes) => {
+                            csv_cell(&String::from_utf8_lossy(bytes))
+                        }
+                    })
+                });
                 let cells: Vec<String> = cells.collect::<rusqlite::Result<_>>()?;
                 written = written.and_then(|()| writeln!(out, "{}", cells.join(",")));
                 if written.is_err() {
@@ -473,19 +369,82 @@ impl Store {
             Ok(written)
         })
     }
-}
 
-fn text(value: ValueRef<'_>) -> String {
-    match value {
-        ValueRef::Null => String::new(),
-        ValueRef::Integer(whole) => whole.to_string(),
-        ValueRef::Real(number) => number.to_string(),
-        ValueRef::Text(bytes) | ValueRef::Blob(bytes) => cell(&String::from_utf8_lossy(bytes)),
+    /// Writes the table into a file.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn export_csv(&self, path: &Path) -> Result<(), StudyError> {
+        let refused = StudyError::refused(path);
+        let mut out = BufWriter::new(fs::File::create(path).map_err(&refused)?);
+        self.write_csv(&mut out)?.map_err(&refused)?;
+        out.flush().map_err(&refused)
     }
 }
 
-/// A cell of CSV, in quotes where it must be.
-fn cell(text: &str) -> String {
+/// A column of the table, a value for each test; NaN for a test that failed or is missing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Column {
+    /// For words, the place of each among `words`.
+    pub values: Vec<f64>,
+    /// The words in alphabetical order; empty for numbers.
+    pub words: Vec<String>,
+}
+
+/// Whether a folder exists and holds anything besides the lock of a study or run.
+pub(crate) fn holds_anything(folder: &Path) -> Result<bool, StudyError> {
+    match fs::read_dir(folder) {
+        Ok(mut entries) => {
+            Ok(entries.any(|entry| entry.is_ok_and(|one| one.file_name() != "in_use")))
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(source) => Err(StudyError::refused(folder)(source)),
+    }
+}
+
+/// A name as SQL quotes it.
+fn quoted(name: &str) -> String {
+    format!("\"{}\"", name.replace('"', "\"\""))
+}
+
+/// A query of these columns of one test.
+fn select(columns: &[&str], more: &str) -> String {
+    let columns: Vec<String> = columns.iter().map(|name| quoted(name)).collect();
+    format!(
+        "SELECT {}{more} FROM tests WHERE \"row\" = ?1",
+        columns.join(", ")
+    )
+}
+
+fn cells(plan: &Plan, test: &Test, result: &TestResult) -> Vec<Value> {
+    let text = |text: &str| Value::Text(text.to_owned());
+    let mut cells = vec![Value::Integer(test.row as i64)];
+    cells.extend(plan.design_of(test).map(text));
+    cells.extend(match result {
+        Ok(_) => [text("done"), Value::Null],
+        Err(reason) => [text("failed"), text(reason)],
+    });
+    cells.extend(
+        plan.written_values(test)
+            .into_iter()
+            .map(|level| match level {
+                Some(Level::Number(number)) => Value::Real(number),
+                Some(Level::Word(word)) => Value::Text(word),
+                None => Value::Null,
+            }),
+    );
+    let (_, outputs) = plan.columns();
+    cells.extend((0..outputs.len()).map(|place| {
+        let value = result.as_ref().ok().map(|values| values[place]);
+        value
+            .filter(|value| value.is_finite())
+            .map_or(Value::Null, Value::Real)
+    }));
+    cells
+}
+
+/// A cell of CSV, quoted where needed.
+fn csv_cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

@@ -15,7 +15,7 @@ use std::{
 use condyle_case::cache::Cache;
 use serde::Serialize;
 
-use condyle_study::{ConvergeOptions, ConvergePlan, Converged, Listener, converge};
+use condyle_study::{ConvergeOptions, Listener, converge};
 
 use findings::Findings;
 use runs::{Ran, read_back, reference};
@@ -53,14 +53,14 @@ struct File<'a> {
 
 /// Runs everything, writes the tables and the pictures, and returns the table in Markdown.
 ///
-/// `listener` is called on every event of every run, and stops the study by breaking.
+/// `listener` receives the events of all runs, and stops the study by breaking.
 ///
 /// # Errors
 /// Returns an error for a bad case, unsolved physics, and files that cannot be written.
 pub fn study(
     files: &StudyFiles,
     stamp: &Stamp,
-    listener: &Listener<'_>,
+    listener: &mut Listener<'_>,
 ) -> Result<String, StudyError> {
     let out = files.runs.join("force");
     let force = run(&files.force_case, UPDATES, &out, listener)?;
@@ -89,9 +89,8 @@ fn run(
     case: &Path,
     over: &str,
     out: &Path,
-    listener: &Listener<'_>,
+    listener: &mut Listener<'_>,
 ) -> Result<Vec<Ran>, StudyError> {
-    let plan = ConvergePlan::new(case, over)?;
     let options = ConvergeOptions {
         out: out.to_owned(),
         // One at a time: their times are part of the table.
@@ -99,10 +98,7 @@ fn run(
         resume: false,
         cache: Cache::off(),
     };
-    match converge(&plan, &options, listener)? {
-        Converged::Done(convergence) => read_back(convergence, out),
-        Converged::Interrupted => Err(StudyError::Interrupted),
-    }
+    read_back(converge(case, over, &options, listener)?, out)
 }
 
 fn json(stamp: &Stamp, findings: &Findings, rows: &[PaperFigure]) -> String {

@@ -1,10 +1,9 @@
 //! The table of Knight et al. 2007, run by `validation/knight-2007/run`.
 
-use condyle_results::catalogue;
 use std::{env, ops::ControlFlow, path::PathBuf, process::ExitCode};
 
 use condyle_knight_2007::{Stamp, StudyFiles, study};
-use condyle_study::ConvergeHappening;
+use condyle_study::StudyEvent;
 
 const USAGE: &str =
     "usage: knight_2007 FORCE.toml DISPLACEMENT.toml EMPTY_FOLDER_FOR_RUNS OUT_FOLDER COMMIT DATE";
@@ -22,7 +21,7 @@ fn main() -> ExitCode {
         runs: PathBuf::from(runs),
         out: PathBuf::from(out),
     };
-    match study(&files, &Stamp { commit, date }, &report) {
+    match study(&files, &Stamp { commit, date }, &mut report) {
         Ok(table) => {
             print!("{table}");
             ExitCode::SUCCESS
@@ -34,13 +33,9 @@ fn main() -> ExitCode {
     }
 }
 
-fn report(on_event: &ConvergeHappening<'_>) -> ControlFlow<()> {
-    if let ConvergeHappening::Ran(run, summary) = on_event {
-        let (path, text) = (run.number.key(), run.number.text());
-        eprintln!(
-            "{path} = {text}: {:.3} mg worn",
-            summary[&catalogue::MASS_LOSS_MG]
-        );
+fn report(event: &StudyEvent) -> ControlFlow<()> {
+    if let StudyEvent::Message(message) = event {
+        eprintln!("{message}");
     }
     ControlFlow::Continue(())
 }

@@ -9,7 +9,7 @@ use std::{
 
 use condyle_report::{Plot, ReportError, Results, plots_svg};
 use condyle_results::Summary;
-use condyle_study::{ConvergeError, Convergence};
+use condyle_study::Convergence;
 use thiserror::Error;
 
 /// The reasons why the study fails.
@@ -17,7 +17,7 @@ use thiserror::Error;
 pub enum StudyError {
     /// The runs.
     #[error(transparent)]
-    Converge(#[from] ConvergeError),
+    Converge(#[from] condyle_study::StudyError),
     /// The results of a run.
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -37,9 +37,6 @@ pub enum StudyError {
         /// Why.
         source: io::Error,
     },
-    /// The listener stopped the study.
-    #[error("interrupted")]
-    Interrupted,
 }
 
 /// A run, read back from its folder.

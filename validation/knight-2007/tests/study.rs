@@ -47,7 +47,7 @@ fn stamp() -> Stamp {
 #[test]
 fn every_figure_of_the_paper_has_its_row_and_the_files_are_there() {
     let folder = tempfile::tempdir().expect("a folder can be made");
-    let table = study(&files(folder.path()), &stamp(), &|_| {
+    let table = study(&files(folder.path()), &stamp(), &mut |_| {
         ControlFlow::Continue(())
     })
     .expect("the runs work");
@@ -92,7 +92,7 @@ fn runs_that_are_there_already_are_not_written_over() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let files = files(folder.path());
     fs::create_dir_all(files.runs.join("force/mine")).expect("a folder can be made");
-    let error = study(&files, &stamp(), &|_| ControlFlow::Continue(()))
+    let error = study(&files, &stamp(), &mut |_| ControlFlow::Continue(()))
         .expect_err("the folder is not empty");
     assert!(matches!(error, StudyError::Converge(_)), "{error}");
     assert!(
@@ -105,7 +105,7 @@ fn runs_that_are_there_already_are_not_written_over() {
 fn a_study_can_be_stopped() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let files = files(folder.path());
-    let stopped = study(&files, &stamp(), &|_| ControlFlow::Break(()));
+    let stopped = study(&files, &stamp(), &mut |_| ControlFlow::Break(()));
     let error = stopped.expect_err("it was stopped");
     assert_eq!(error.to_string(), "interrupted");
     assert!(!folder.path().join("results.md").exists());

@@ -1,31 +1,32 @@
-//! What is asked of a study.
+//! The outputs of a study, and the questions about them.
+
+use condyle_results::catalogue::{self, Scalar};
 
 use super::declared::{AnswersKeys, BoundKeys};
 use super::reason::StudyReason;
 use crate::config::{Log, Section, Settings, likeliest, names};
-use condyle_results::catalogue::{self, Scalar};
 
-/// What is asked of a study.
+/// The questions that a study answers.
 #[derive(Clone, Debug)]
 pub struct Answers {
-    /// Outputs that answers and pictures are about, one or more.
+    /// Outputs in answers and pictures, one or more.
     pub outputs: Vec<&'static Scalar>,
-    /// The output that designs are ranked by, the least first.
+    /// The output that designs are ranked by; smaller is better.
     pub rank_by: &'static Scalar,
-    /// Two outputs that are both to be small.
+    /// Two outputs to be minimised together.
     pub pareto: Option<[&'static Scalar; 2]>,
-    /// What outputs must keep to.
+    /// The limits of outputs.
     pub bounds: Vec<Bound>,
 }
 
-/// What an output must keep to.
+/// The limits of an output.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
     /// The output.
     pub output: &'static Scalar,
-    /// Least that is allowed.
+    /// The smallest value allowed.
     pub least: Option<f64>,
-    /// Most that is allowed.
+    /// The largest value allowed.
     pub most: Option<f64>,
 }
 
@@ -37,12 +38,8 @@ impl Answers {
         let keys = AnswersKeys::read_checked(&root.table("answers", log), log)?;
         let section = root.table("answers", log);
         let mut output = |key: &str, name: &String| output(name, key, &section, log);
-        let outputs: Option<Vec<_>> = keys
-            .outputs
-            .0
-            .iter()
-            .map(|name| output("outputs", name))
-            .collect();
+        let outputs = keys.outputs.0.iter();
+        let outputs: Option<Vec<_>> = outputs.map(|name| output("outputs", name)).collect();
         let rank_by = keys.rank_by.map(|name| output("rank_by", &name));
         let pareto: Option<Option<Vec<_>>> = keys
             .pareto
@@ -81,7 +78,7 @@ impl Bound {
         })
     }
 
-    /// How far a value is beyond what is allowed; 0 inside.
+    /// The distance of a value beyond the limits; 0 within them.
     pub fn excess(&self, value: f64) -> f64 {
         let above = self.most.map_or(0.0, |most| value - most);
         let below = self.least.map_or(0.0, |least| least - value);
@@ -89,7 +86,7 @@ impl Bound {
     }
 }
 
-/// The output called `name` by the key `key`.
+/// The output that the key `key` names.
 pub(super) fn output(
     name: &str,
     key: &str,
@@ -99,11 +96,10 @@ pub(super) fn output(
     let found = catalogue::output(name);
     if found.is_none() {
         let all: Vec<&str> = catalogue::outputs().map(|output| output.key).collect();
-        let (name, near, outputs) = (name.to_owned(), likeliest(name, &all), all.join(", "));
         let reason = StudyReason::UnknownOutput {
-            name,
-            near,
-            outputs,
+            name: name.to_owned(),
+            near: likeliest(name, &all),
+            outputs: all.join(", "),
         };
         log.problem(section.value_span(key), reason);
     }

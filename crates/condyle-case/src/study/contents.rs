@@ -1,53 +1,109 @@
-//! All that a study says.
+//! The contents of a study.
 
+use std::io;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::alternative::Alternative;
 use super::answers::Answers;
-use super::correlation::Correlation;
 use super::declared::{Design, Variation};
 use super::input::Input;
-use super::tried::assignment;
 use crate::case::{Assignment, Case, CaseReader, ChangeError};
-use crate::config::Level;
+use crate::config::{Level, Problems, Settings, Writer};
+use condyle_results::catalogue;
 
 /// A study as its file describes it, checked, with every default filled in.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// Shown on the page; may be empty.
+    /// Heading of the page; may be empty.
     pub title: String,
-    /// Where the case is.
+    /// The case file.
     pub case_path: PathBuf,
-    /// The case as it is.
+    /// The case without changes.
     pub case: Case,
-    /// Which tests are done.
+    /// The choice of the tests.
     pub design: Design,
-    /// What varies, in the order of the file.
+    /// The varied inputs, in the order of the file.
     pub inputs: Vec<Input>,
-    /// Inputs that go together.
+    /// Correlated inputs.
     pub correlations: Vec<Correlation>,
-    /// Designs that are compared; none where there is but the case.
+    /// Designs that are compared; none for the case alone.
     pub alternatives: Vec<Alternative>,
-    /// What is asked.
+    /// The questions.
     pub answers: Answers,
-    /// Of a study of given rows the values of each test, an input after the other.
+    /// For tests given row by row, the values of each test in the order of the inputs.
     pub rows: Vec<Vec<Level>>,
-    /// The file itself.
+    /// The text of the file.
     pub text: String,
     pub(super) folder: PathBuf,
     pub(super) cases: CaseReader,
 }
 
+/// One of several designs, each tested under the same disturbances.
+#[derive(Clone, Debug)]
+pub struct Alternative {
+    /// Its name.
+    pub name: String,
+    /// Its changes of the case.
+    pub set: Vec<Assignment>,
+    pub(super) span: Range<usize>,
+}
+
+impl Alternative {
+    /// A design that no file describes.
+    pub fn new(name: String, set: Vec<Assignment>) -> Self {
+        let span = 0..0;
+        Self { name, set, span }
+    }
+}
+
+/// Two correlated inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correlation {
+    /// Their places among the inputs.
+    pub inputs: [usize; 2],
+    /// Correlation of their normal scores.
+    pub coefficient: f64,
+}
+
 impl Study {
-    /// What one test sets of the case: the design's keys, then the inputs'. An input without a value stays as it is.
+    /// A study of the case at `case_path` that no file describes; it varies nothing yet.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the case.
+    pub fn of_case(case_path: &Path, design: Design) -> Result<Self, Problems> {
+        let cases = CaseReader::default();
+        let outputs: Vec<_> = catalogue::outputs().collect();
+        Ok(Self {
+            title: String::new(),
+            case_path: case_path.to_path_buf(),
+            case: cases.read(case_path)?,
+            design,
+            inputs: Vec::new(),
+            correlations: Vec::new(),
+            alternatives: Vec::new(),
+            answers: Answers {
+                rank_by: outputs[0],
+                outputs,
+                pareto: None,
+                bounds: Vec::new(),
+            },
+            rows: Vec::new(),
+            text: String::new(),
+            folder: PathBuf::new(),
+            cases,
+        })
+    }
+
+    /// The changes of the case in one test: those of the design, then the inputs'. An input without a value sets nothing.
     pub fn assignments(&self, alternative: usize, values: &[Option<Level>]) -> Vec<Assignment> {
         let of_design = self.alternatives.get(alternative);
         let design = of_design.into_iter().flat_map(|design| design.set.clone());
         let inputs = self.inputs.iter().zip(values);
         let set = |(input, value): (&Input, &Option<Level>)| {
-            Some(assignment(&self.folder, &input.key, value.as_ref()?))
+            let value = value.as_ref();
+            value.map_or_else(Vec::new, |value| input.assignments(&self.folder, value))
         };
-        design.chain(inputs.filter_map(set)).collect()
+        design.chain(inputs.flat_map(set)).collect()
     }
 
     /// The case with some of its values changed.
@@ -58,40 +114,77 @@ impl Study {
         self.cases.read_changed(&self.case_path, changes)
     }
 
-    /// The value of an input in the case as it is; none where the case leaves it out.
+    /// The value of an input in the case without changes; none where the case leaves it out.
     pub fn value_of_case(&self, input: &Input) -> Option<Level> {
-        let number = self
-            .case
-            .number_at_or_written(&input.key)
-            .map(Level::Number);
+        let number = self.case.number_at_or_written(&input.key);
+        let number = number.map(Level::Number);
         number.or_else(|| self.case.word_at(&input.key).map(Level::Word))
     }
 
-    /// Files that its levels name, where they are.
-    pub fn files(&self) -> Vec<PathBuf> {
-        let levels = |input: &Input| match &input.variation {
-            Variation::Levels(keys) => keys.levels.0.clone(),
-            _ => Vec::new(),
-        };
-        let named = self.inputs.iter().filter(|input| input.is_file());
-        let all = named.flat_map(levels);
-        let column = |place: usize| self.rows.iter().map(move |row| row[place].clone());
-        let of_rows = self.inputs.iter().enumerate();
-        let of_rows = of_rows.filter(|(_, input)| input.is_file());
-        let rows = of_rows.flat_map(|(place, _)| column(place));
-        let mut files: Vec<PathBuf> = all
-            .chain(rows)
-            .filter_map(|level| self.file(&level))
-            .collect();
+    /// Hash of the case, its meshes, the variations and the design, in hexadecimal.
+    ///
+    /// The questions and the places of files do not count; for a search the minimised output and the limits do, since its
+    /// tests depend on them.
+    ///
+    /// # Errors
+    /// A file that can no longer be read.
+    pub fn inputs_blake3(&self) -> io::Result<String> {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.case.inputs_blake3()?.as_bytes());
+        hasher.update(self.in_words().as_bytes());
+        for file in self.files() {
+            let bytes = self.cases.files().read(&file)?;
+            hasher.update(blake3::hash(&bytes).as_bytes());
+        }
+        Ok(hasher.finalize().to_hex().to_string())
+    }
+
+    /// Files that its levels name, sorted by their paths.
+    fn files(&self) -> Vec<PathBuf> {
+        let mut files = Vec::new();
+        for (place, input) in self.inputs.iter().enumerate() {
+            if !input.is_file() {
+                continue;
+            }
+            let levels: &[Level] = match &input.variation {
+                Variation::Levels(keys) => &keys.levels.0,
+                _ => &[],
+            };
+            for level in levels.iter().chain(self.rows.iter().map(|row| &row[place])) {
+                if let Level::Word(written) = level {
+                    files.push(self.folder.join(written));
+                }
+            }
+        }
         files.sort();
         files.dedup();
         files
     }
 
-    fn file(&self, level: &Level) -> Option<PathBuf> {
-        match level {
-            Level::Word(written) => Some(Path::join(&self.folder, written)),
-            Level::Number(_) => None,
+    fn in_words(&self) -> String {
+        let mut out = Writer::default();
+        for input in &self.inputs {
+            out.line(&input.key, "");
+            input.variation.write(&mut out);
+            for scaled in &input.scaled {
+                out.line(&format!("{scaled:?}"), "");
+            }
         }
+        match &self.design {
+            Design::Rows(_) => out.line(&format!("{:?}", self.rows), ""),
+            Design::Optimise(keys) => {
+                keys.write(&mut out);
+                let bounds = self.answers.bounds.iter();
+                let bound = bounds.map(|bound| (bound.output.key, bound.least, bound.most));
+                out.line(&format!("{:?}", bound.collect::<Vec<_>>()), "");
+            }
+            design => design.write(&mut out),
+        }
+        out.line(&format!("{:?}", self.correlations), "");
+        for design in &self.alternatives {
+            let set: Vec<String> = design.set.iter().map(Assignment::to_string).collect();
+            out.line(&design.name, &set.join(", "));
+        }
+        out.into_text()
     }
 }

@@ -1,4 +1,4 @@
-//! What a study file is made of.
+//! The keys of a study file.
 
 use crate::config::{DataFile, Levels, Names, settings, variants, within};
 
@@ -14,15 +14,15 @@ settings! {
         title: String = String::new();
     }
 
-    /// What every input has.
+    /// The keys of every input.
     InputKeys {
         /// Dotted path of a key of the case, such as contact.friction.
         key: String;
-        /// What it is called in tables and pictures; its key if not given.
+        /// Its name in tables and pictures; its key if not given.
         name: String = String::new();
     }
 
-    /// Equally likely everywhere.
+    /// Uniform.
     UniformKeys {
         /// Least.
         low: f64;
@@ -38,7 +38,7 @@ settings! {
         standard_deviation: f64, in within(1e-300, 1e300);
     }
 
-    /// Normal, but never outside of two values.
+    /// Normal, truncated at two values.
     TruncatedKeys {
         /// Mean of the whole normal distribution; the value of the case if not given.
         mean: Option<f64> = None;
@@ -50,7 +50,7 @@ settings! {
         high: f64;
     }
 
-    /// Likelier the nearer to one value.
+    /// Triangular around the likeliest value.
     TriangularKeys {
         /// Least.
         low: f64;
@@ -66,11 +66,11 @@ settings! {
         levels: Levels;
     }
 
-    /// How many tests, and of which chance.
+    /// A random sample.
     SampleKeys {
-        /// Tests; of a Saltelli design its base, of which every test is done again with each input changed.
+        /// Number of tests; for a Saltelli design, of its bases, each of which takes as many tests as there are inputs, and two.
         size: u64 = 100, in within(2.0, MAX_TESTS);
-        /// Of the chance: the same seed gives the same tests.
+        /// Seed of the random numbers: the same seed gives the same tests.
         seed: u64 = 1, in within(0.0, 9e15);
     }
 
@@ -80,7 +80,7 @@ settings! {
         walks: u64 = 20, in within(2.0, MAX_TESTS);
         /// Values of an input, an even number.
         levels: u64 = 4, in within(2.0, 1000.0);
-        /// Of the chance: the same seed gives the same tests.
+        /// Seed of the random numbers: the same seed gives the same tests.
         seed: u64 = 1, in within(0.0, 9e15);
     }
 
@@ -90,23 +90,23 @@ settings! {
         points: u64 = 3, in within(2.0, 1000.0);
     }
 
-    /// The tests themselves.
+    /// Tests given row by row.
     RowsKeys {
         /// CSV file: the first line has keys of the case, every other line their values in one test.
         file: DataFile;
     }
 
-    /// A search for the best.
+    /// A search for the optimum.
     OptimiseKeys {
-        /// The output that is to be least, as far as the limits allow.
+        /// The output to be minimised within the limits.
         minimise: String = "mass_loss_mg".to_owned();
-        /// Tests, at most.
+        /// Largest number of tests.
         size: u64 = 400, in within(10.0, 1e6);
-        /// Of the chance: the same seed gives the same tests.
+        /// Seed of the random numbers: the same seed gives the same tests.
         seed: u64 = 1, in within(0.0, 9e15);
     }
 
-    /// Two inputs that go together.
+    /// Two correlated inputs.
     CorrelationKeys {
         /// Their two keys.
         keys: Names;
@@ -114,47 +114,47 @@ settings! {
         coefficient: f64, in within(-0.999, 0.999);
     }
 
-    /// One of several designs, each tried under the same disturbances.
+    /// One of several designs, each tested under the same disturbances.
     AlternativeKeys {
         /// Its name.
         name: String;
-        /// What it sets of the case, each as `key=value`.
+        /// Its changes of the case, each as `key=value`.
         set: Names;
     }
 
-    /// What an output must keep to.
+    /// The limits of an output.
     BoundKeys {
         /// The output.
         output: String;
-        /// Least that is allowed.
+        /// The smallest value allowed.
         least: Option<f64> = None;
-        /// Most that is allowed.
+        /// The largest value allowed.
         most: Option<f64> = None;
     }
 
-    /// What is asked.
+    /// The questions.
     AnswersKeys {
-        /// Outputs that answers and pictures are about; the table has all of them.
+        /// Outputs in answers and pictures; the table has all of them.
         outputs: Names = Names(["mass_loss_mg", "max_depth_mm", "peak_pressure_mpa"].map(str::to_owned).to_vec());
-        /// The output that designs are ranked by, the least first; the first of `outputs` if not given.
+        /// The output that designs are ranked by, smaller is better; the first of `outputs` if not given.
         rank_by: Option<String> = None;
-        /// Two outputs that are both to be small; the first two of `outputs` if not given.
+        /// Two outputs to be minimised together; the first two of `outputs` if not given.
         pareto: Option<Names> = None;
     }
 }
 
 variants! {
-    /// How an input varies.
+    /// The variation of an input.
     Variation by
-    /// How its values are distributed.
+    /// Distribution of its values.
     distribution = "uniform" {
-        /// Equally likely everywhere.
+        /// Uniform.
         Uniform(UniformKeys) = "uniform",
         /// Normal.
         Normal(NormalKeys) = "normal",
-        /// Normal, but never outside of two values.
+        /// Normal, truncated at two values.
         TruncatedNormal(TruncatedKeys) = "truncated-normal",
-        /// Likelier the nearer to one value.
+        /// Triangular around the likeliest value.
         Triangular(TriangularKeys) = "triangular",
         /// One of a few values.
         Levels(LevelKeys) = "levels",
@@ -162,15 +162,15 @@ variants! {
 }
 
 variants! {
-    /// Which tests are done.
+    /// The choice of the tests.
     Design by
-    /// How tests are chosen.
+    /// Kind of the choice.
     kind = "latin-hypercube" {
-        /// Of every input one value lies in each of as many equally likely slices.
+        /// Latin hypercube: one value of every input lies in each of as many equally likely slices as there are tests.
         LatinHypercube(SampleKeys) = "latin-hypercube",
-        /// Points of Sobol, scrambled by Owen's method.
+        /// Sobol points, scrambled by Owen's method.
         Sobol(SampleKeys) = "sobol",
-        /// Points of Sobol, each again with every input changed: for Sobol's indices.
+        /// Pairs of Sobol points, mixed for each input: for Sobol indices.
         Saltelli(SampleKeys) = "saltelli",
         /// Walks through the inputs: for the elementary effects of Morris.
         Morris(MorrisKeys) = "morris",
@@ -178,9 +178,9 @@ variants! {
         FullFactorial(FactorialKeys) = "full-factorial",
         /// The case as it is, and each value of each input with all others as they are.
         OneAtATime(FactorialKeys) = "one-at-a-time",
-        /// Those of a CSV file.
+        /// The rows of a CSV file.
         Rows(RowsKeys) = "rows",
-        /// Those that a search for the best asks for.
+        /// A search for the optimum.
         Optimise(OptimiseKeys) = "optimise",
     }
 }

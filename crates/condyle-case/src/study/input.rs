@@ -1,113 +1,159 @@
-//! One input of a study.
+//! The inputs of a study.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::path::Path;
 
-use super::declared::{InputKeys, Variation};
+use super::declared::{InputKeys, LevelKeys, Variation};
 use super::reason::StudyReason;
-use crate::case::Case;
-use crate::config::{Level, Log, Section, Settings, check};
+use crate::case::{Assignment, Case};
+use crate::config::{DataFile, Level, Levels, Log, Placed, Section, Settings, check};
 
-/// So many standard deviations from its mean, a normal input must still be allowed: of a million values 63 lie beyond.
+/// A normal input must be accepted up to this many standard deviations from its mean: of a million values 63 lie beyond.
 const NORMAL_REACH: f64 = 4.0;
 
-/// So many levels are all tried.
-const FEW: usize = 64;
+/// Up to this many levels, all are tried on the case.
+const FEW_LEVELS: usize = 64;
 
 /// One input of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Dotted path of its key.
     pub key: String,
-    /// What it is called.
+    /// Its name in tables and pictures.
     pub name: String,
-    /// How it varies.
+    /// The distribution of its values.
     pub variation: Variation,
-    /// Whether it counts something: values are then rounded.
+    /// True if its values are whole numbers.
     pub is_whole: bool,
+    /// The keys that a value counts standard deviations of; empty where it is the value of `key` itself.
+    pub scaled: Vec<ScaledKey>,
     pub(super) span: Range<usize>,
 }
 
-impl Input {
-    /// Reads one `[[vary]]` of a study of `case`.
-    pub(super) fn read(section: &Section<'_>, case: &Case, log: &mut Log<'_>) -> Option<Self> {
-        let keys = InputKeys::read(section, log);
-        let variation = variation(section, log);
-        let span = section.value_span("key");
-        let mut keys = keys?;
-        keys.key = case.path_of_key(&keys.key).unwrap_or(keys.key);
-        let variation = filled(variation?, &keys.key, case, &span, log)?;
-        check_order(&variation, section, log)?;
-        Some(Self {
-            name: if keys.name.is_empty() {
-                keys.key.clone()
-            } else {
-                keys.name
-            },
-            is_whole: case.is_whole_number(&keys.key),
-            key: keys.key,
-            variation,
-            span,
-        })
-    }
+/// A key whose value an input moves by standard deviations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScaledKey {
+    /// Dotted path of the key.
+    pub key: &'static str,
+    /// Its value at no deviation.
+    pub mean: f64,
+    /// One standard deviation, in the unit of the key.
+    pub standard_deviation: f64,
+}
 
-    /// One whose values are given row by row.
-    pub(super) fn of_rows(
-        key: &str,
-        column: impl Iterator<Item = Level>,
-        span: Range<usize>,
-        case: &Case,
-    ) -> Self {
-        use super::declared::LevelKeys;
-        use crate::config::Levels;
-        let levels = Levels(telling(column));
+impl Input {
+    /// An input of real numbers that no file describes.
+    pub fn new(key: &str, variation: Variation) -> Self {
         Self {
             key: key.to_owned(),
             name: key.to_owned(),
-            variation: Variation::Levels(LevelKeys { levels }),
-            is_whole: case.is_whole_number(key),
-            span,
+            variation,
+            is_whole: false,
+            scaled: Vec::new(),
+            span: 0..0,
         }
     }
 
-    /// Whether its values are names of files.
-    pub fn is_file(&self) -> bool {
+    /// Reads one `[[vary]]` of a study of `case`.
+    pub(super) fn read(section: &Section<'_>, case: &Case, log: &mut Log<'_>) -> Option<Self> {
+        let keys = InputKeys::read(section, log);
+        // Levels need no word for their distribution.
+        let is_levels =
+            section.value("levels").is_some() && section.value("distribution").is_none();
+        let variation = if is_levels {
+            section.check_keys(&["key", "name", "levels"], log);
+            Variation::read_as("levels", section, log)
+        } else {
+            let items = [InputKeys::items(), Variation::items()].concat();
+            check(section, &items, log);
+            Variation::read(section, log)
+        };
+        let span = section.value_span("key");
+        let keys = keys?;
+        let key = case.path_of_key(&keys.key).unwrap_or(keys.key);
+        let variation = with_middle(variation?, &key, case, &span, log)?;
+        check_order(&variation, section, log)?;
+        Some(Self {
+            name: if keys.name.is_empty() {
+                key.clone()
+            } else {
+                keys.name
+            },
+            is_whole: case.is_whole_number(&key),
+            span,
+            ..Self::new(&key, variation)
+        })
+    }
+
+    /// The changes of the case for a value; files are relative to `folder`, that of the study.
+    pub fn assignments(&self, folder: &Path, level: &Level) -> Vec<Assignment> {
+        let number = |number: f64| {
+            if number.fract() == 0.0 && number.abs() < 1e15 {
+                format!("{number:.0}")
+            } else {
+                format!("{number:?}")
+            }
+        };
+        if let (Level::Number(deviations), false) = (level, self.scaled.is_empty()) {
+            let scaled = self.scaled.iter().map(|scaled| {
+                let value = scaled.mean + scaled.standard_deviation * deviations;
+                Assignment::new(scaled.key, format!("{:?}", rounded(value)))
+            });
+            return scaled.collect();
+        }
+        let value = match level {
+            Level::Number(value) => number(*value),
+            Level::Word(word) if self.is_file() => folder.join(word).display().to_string(),
+            Level::Word(word) => word.clone(),
+        };
+        vec![Assignment::new(&self.key, value)]
+    }
+
+    pub(super) fn is_file(&self) -> bool {
         self.key.rsplit('.').next() == Some("file")
     }
 
-    /// Whether it takes any number of a range, rather than one of a few values.
-    pub fn is_continuous(&self) -> bool {
+    pub(super) fn is_continuous(&self) -> bool {
         !matches!(self.variation, Variation::Levels(_))
     }
 
-    /// Values that the case must take if it is to take all: the ends of a distribution, or its levels, of many those that tell of all.
+    /// Values that the case must accept to accept all: the ends of a distribution, or levels.
     pub(super) fn ends(&self) -> Vec<Level> {
-        let numbers = |ends: [f64; 2]| ends.map(|end| self.level(end)).to_vec();
-        match &self.variation {
-            Variation::Uniform(keys) => numbers([keys.low, keys.high]),
+        let (low, high) = match &self.variation {
+            Variation::Uniform(keys) => (keys.low, keys.high),
+            Variation::TruncatedNormal(keys) => (keys.low, keys.high),
+            Variation::Triangular(keys) => (keys.low, keys.high),
             Variation::Normal(keys) => {
                 let reach = NORMAL_REACH * keys.standard_deviation;
                 let mean = keys.mean.unwrap_or_default();
-                numbers([mean - reach, mean + reach])
+                (mean - reach, mean + reach)
             }
-            Variation::TruncatedNormal(keys) => numbers([keys.low, keys.high]),
-            Variation::Triangular(keys) => numbers([keys.low, keys.high]),
-            Variation::Levels(keys) if keys.levels.0.len() <= FEW => keys.levels.0.clone(),
-            Variation::Levels(keys) => telling(keys.levels.0.iter().cloned()),
-        }
+            Variation::Levels(keys) if keys.levels.0.len() <= FEW_LEVELS => {
+                return keys.levels.0.clone();
+            }
+            Variation::Levels(keys) => return decisive(keys.levels.0.iter().cloned()),
+        };
+        [low, high].map(|end| self.level(end)).to_vec()
     }
 
-    /// A number as this input takes it, to twelve digits: sums of decimal numbers end in ones that nobody wrote.
+    /// A number as this input takes it.
     pub fn level(&self, number: f64) -> Level {
-        if self.is_whole {
-            return Level::Number(number.round());
-        }
-        Level::Number(format!("{number:.11e}").parse().unwrap_or(number))
+        Level::Number(if self.is_whole {
+            number.round()
+        } else {
+            rounded(number)
+        })
     }
 }
 
-/// The least and the most of numbers, and every word.
-fn telling(levels: impl Iterator<Item = Level>) -> Vec<Level> {
+/// A number to twelve digits: sums of decimal numbers end in digits that nobody wrote.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.11e}").parse().unwrap_or(number)
+}
+
+/// The smallest and the largest number, and every word: if the case accepts these, it accepts all.
+fn decisive(levels: impl Iterator<Item = Level>) -> Vec<Level> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut words, mut seen) = (Vec::new(), BTreeSet::new());
     for level in levels {
@@ -126,23 +172,8 @@ fn telling(levels: impl Iterator<Item = Level>) -> Vec<Level> {
     words
 }
 
-/// How an input varies; levels need no word for that.
-fn variation(section: &Section<'_>, log: &mut Log<'_>) -> Option<Variation> {
-    let is_levels = section.value("levels").is_some() && section.value("distribution").is_none();
-    if is_levels {
-        section.check_keys(&["key", "name", "levels"], log);
-        return Variation::read_as("levels", section, log);
-    }
-    check(
-        section,
-        &[InputKeys::items(), Variation::items()].concat(),
-        log,
-    );
-    Variation::read(section, log)
-}
-
-/// With the value of the case where the file gives no mean.
-fn filled(
+/// Adds the value of the case where the file gives no mean or mode.
+fn with_middle(
     mut variation: Variation,
     key: &str,
     case: &Case,
@@ -164,7 +195,7 @@ fn filled(
     Some(variation)
 }
 
-/// Reports ends that are the wrong way round, and a likeliest value outside of them.
+/// Reports reversed ends, and a mode outside of them.
 fn check_order(variation: &Variation, section: &Section<'_>, log: &mut Log<'_>) -> Option<()> {
     let (low, high, mode) = match variation {
         Variation::Uniform(keys) => (keys.low, keys.high, None),
@@ -182,4 +213,82 @@ fn check_order(variation: &Variation, section: &Section<'_>, log: &mut Log<'_>) 
     };
     log.problem(section.value_span("high"), reason);
     None
+}
+
+/// Reads the inputs and the values of each test from the CSV file that `section` names.
+pub(super) fn read_rows(
+    section: &Section<'_>,
+    file: &DataFile,
+    case: &Case,
+    log: &mut Log<'_>,
+) -> Option<(Vec<Input>, Vec<Vec<Level>>)> {
+    let source = file.source(section, "file", log)?;
+    let (keys, rows) = log.noted(&source, split(source.inner()))?;
+    let span = section.value_span("file");
+    super::read::check_count("inputs", keys.len(), span.clone(), log)?;
+    let input = |(place, key): (usize, &String)| {
+        let levels = decisive(rows.iter().map(|row: &Vec<Level>| row[place].clone()));
+        let levels = Levels(levels);
+        Input {
+            is_whole: case.is_whole_number(key),
+            span: span.clone(),
+            ..Input::new(key, Variation::Levels(LevelKeys { levels }))
+        }
+    };
+    let inputs = keys.iter().enumerate().map(input).collect();
+    Some((inputs, rows))
+}
+
+/// The keys and the rows of values.
+type Table = (Vec<String>, Vec<Vec<Level>>);
+
+/// Reads a CSV text, or reports every row that does not fit.
+fn split(text: &str) -> Result<Table, Vec<Placed>> {
+    let mut lines = lines(text);
+    let Some(head) = lines.next() else {
+        return Err(vec![Placed::new(0..0, StudyReason::NoRows)]);
+    };
+    let cells = |line: &Range<usize>| -> Vec<String> {
+        let cells = text[line.clone()].split(',');
+        cells
+            .map(|cell| cell.trim().trim_matches('"').to_owned())
+            .collect()
+    };
+    let level = |cell: String| match cell.parse::<f64>() {
+        Ok(number) if number.is_finite() => Level::Number(number),
+        Ok(_) | Err(_) => Level::Word(cell),
+    };
+    let keys = cells(&head);
+    let (mut rows, mut wrong) = (Vec::new(), Vec::new());
+    for line in lines {
+        let row = cells(&line);
+        if row.len() == keys.len() && row.iter().all(|cell| !cell.is_empty()) {
+            rows.push(row.into_iter().map(level).collect());
+        } else {
+            let (found, wanted) = (row.len(), keys.len());
+            wrong.push(Placed::new(line, StudyReason::WrongShape { found, wanted }));
+        }
+    }
+    if rows.is_empty() && wrong.is_empty() {
+        wrong.push(Placed::new(head, StudyReason::NoRows));
+    }
+    if wrong.is_empty() {
+        Ok((keys, rows))
+    } else {
+        Err(wrong)
+    }
+}
+
+/// The lines that are neither blank nor comments.
+fn lines(text: &str) -> impl Iterator<Item = Range<usize>> + '_ {
+    let mut start = 0;
+    let spans = text.split_inclusive('\n').map(move |line| {
+        let span = start..start + line.trim_end().len();
+        start += line.len();
+        span
+    });
+    spans.filter(|span| {
+        let line = text[span.clone()].trim_start();
+        !line.is_empty() && !line.starts_with('#')
+    })
 }

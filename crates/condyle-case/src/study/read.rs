@@ -1,25 +1,26 @@
-//! The whole of a study file.
+//! Reading of a study file.
 
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::alternative::Alternative;
 use super::answers::{Answers, output};
-use super::contents::Study;
-use super::correlation::Correlation;
-use super::count::check_count;
-use super::declared::{Design, HeadingKeys, Variation};
-use super::input::Input;
+use super::contents::{Alternative, Correlation, Study};
+use super::declared::{AlternativeKeys, CorrelationKeys, Design, HeadingKeys, Variation};
+use super::input::{Input, read_rows};
 use super::reason::StudyReason;
-use super::rows::{Rows, read_rows};
-use super::tried::Trial;
-use crate::case::{Case, CaseReader};
-use crate::config::{Base, Log, Problems, Section, Settings, read_document, read_source};
+use crate::case::{Assignment, Case, CaseReader, ChangeError};
+use crate::config::{
+    Base, Level, Log, Problems, Section, Settings, names, read_document, read_source,
+};
 use condyle_mesh::files::{Disk, Files};
 
-/// Values that are tried on the case before the first test, at most: a thousand files of rows would take a while, and what the
-/// case does not take is then the row's reason.
+/// Values that are tried on the case before the first test: thousands of files would take a while, and values beyond
+/// these fail as rows.
 const MAX_TRIED: usize = 512;
+
+/// Inputs of a study, and designs that it compares: each costs a reading of the case.
+const MAX_LISTED: usize = 256;
 
 const TABLES: &[&str] = &[
     "case",
@@ -73,32 +74,19 @@ fn read_study(
     let case_path = heading.case.path().to_path_buf();
     let case = cases.read(&case_path);
     let case = case.map_err(|problems| log.of_other_file(&problems)).ok()?;
-    let Rows { inputs, rows } = inputs(root, &design, &case, log)?;
-    let alternatives = alternatives(root, log)?;
-    let correlations = correlations(root, &inputs, log)?;
-    let folder = folder
-        .canonicalize()
-        .unwrap_or_else(|_| folder.to_path_buf());
-    let trial = Trial {
-        cases: &cases,
-        case_path: &case_path,
-        folder: &folder,
-    };
-    check_twice(&inputs, log);
-    inputs.iter().fold(MAX_TRIED, |left, input| {
-        trial.check_input(input, &inputs, left, log)
-    });
-    alternatives
-        .iter()
-        .for_each(|one| trial.check_alternative(one, log));
-    check_fit(
-        &section,
-        &design,
-        &inputs,
-        (!correlations.is_empty(), !alternatives.is_empty()),
+    let (inputs, rows) = inputs(root, &design, &case, log)?;
+    let alternatives = listed(root, "alternative", log, alternative)?;
+    check_count(
+        "designs",
+        alternatives.len(),
+        root.key_span("alternative"),
         log,
-    );
-    Some(Study {
+    )?;
+    let correlations = listed(root, "correlation", log, |section, log| {
+        correlation(section, &inputs, log)
+    })?;
+    let absolute = folder.canonicalize();
+    let study = Study {
         title: heading.title,
         case_path,
         case,
@@ -109,58 +97,121 @@ fn read_study(
         answers: answers?,
         rows,
         text: String::new(),
-        folder,
+        folder: absolute.unwrap_or_else(|_| folder.to_path_buf()),
         cases,
-    })
+    };
+    check_twice(&study.inputs, log);
+    let mut left = MAX_TRIED;
+    for input in &study.inputs {
+        study.check_input(input, &mut left, log);
+    }
+    for alternative in &study.alternatives {
+        if let Some((why, advice)) = study.refusal(&alternative.set) {
+            let name = alternative.name.clone();
+            let reason = StudyReason::AlternativeRefused { name, why, advice };
+            log.problem(alternative.span.clone(), reason);
+        }
+    }
+    study.check_design(&section, log);
+    Some(study)
 }
 
-/// What varies: every `[[vary]]`, or the columns of a file of rows.
-fn inputs(root: &Section<'_>, design: &Design, case: &Case, log: &mut Log<'_>) -> Option<Rows> {
-    let listed = root.list("vary", log)?;
+/// The tables of a list, or none if one of them has a problem.
+fn listed<T>(
+    root: &Section<'_>,
+    name: &str,
+    log: &mut Log<'_>,
+    read: impl Fn(&Section<'_>, &mut Log<'_>) -> Option<T>,
+) -> Option<Vec<T>> {
+    let listed = root.list(name, log)?;
+    let read: Vec<Option<T>> = listed.iter().map(|one| read(one, log)).collect();
+    read.into_iter().collect()
+}
+
+/// Reports a list that is too long.
+pub(super) fn check_count(
+    what: &'static str,
+    count: usize,
+    span: Range<usize>,
+    log: &mut Log<'_>,
+) -> Option<()> {
+    if count <= MAX_LISTED {
+        return Some(());
+    }
+    let most = MAX_LISTED;
+    log.problem(span, StudyReason::TooMany { what, count, most });
+    None
+}
+
+/// Reads every `[[vary]]`, or the columns of a file of rows.
+fn inputs(
+    root: &Section<'_>,
+    design: &Design,
+    case: &Case,
+    log: &mut Log<'_>,
+) -> Option<(Vec<Input>, Vec<Vec<Level>>)> {
+    let count = root.list("vary", log)?.len();
     if let Design::Rows(keys) = design {
-        if !listed.is_empty() {
+        if count > 0 {
             log.problem(root.key_span("vary"), StudyReason::RowsAndVary);
         }
         return read_rows(&root.table("design", log), &keys.file, case, log);
     }
-    check_count("inputs", listed.len(), root.key_span("vary"), log)?;
-    let read: Vec<Option<Input>> = listed
-        .iter()
-        .map(|one| Input::read(one, case, log))
-        .collect();
-    let is_ranking = root.value("alternative").is_some();
-    if listed.is_empty() && !is_ranking {
+    check_count("inputs", count, root.key_span("vary"), log)?;
+    let inputs = listed(root, "vary", log, |one, log| Input::read(one, case, log));
+    if count == 0 && root.value("alternative").is_none() {
         log.problem(0..0, StudyReason::NothingVaries);
         return None;
     }
-    let inputs: Option<Vec<Input>> = read.into_iter().collect();
-    Some(Rows {
-        inputs: inputs?,
-        rows: Vec::new(),
+    Some((inputs?, Vec::new()))
+}
+
+/// Reads one `[[alternative]]`.
+fn alternative(section: &Section<'_>, log: &mut Log<'_>) -> Option<Alternative> {
+    let known: Vec<&str> = names(&AlternativeKeys::keys()).collect();
+    section.check_keys(&known, log);
+    let keys = AlternativeKeys::read(section, log)?;
+    let mut set = Vec::new();
+    for written in &keys.set.0 {
+        match Assignment::parse(written) {
+            Ok(one) => set.push(one),
+            Err(error) => {
+                let why = error.to_string();
+                log.problem(section.value_span("set"), StudyReason::NotSet { why });
+            }
+        }
+    }
+    Some(Alternative {
+        name: keys.name,
+        set,
+        span: section.value_span("name"),
     })
 }
 
-fn alternatives(root: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Alternative>> {
-    let listed = root.list("alternative", log)?;
-    check_count("designs", listed.len(), root.key_span("alternative"), log)?;
-    let read: Vec<_> = listed
-        .iter()
-        .map(|one| Alternative::read(one, log))
-        .collect();
-    read.into_iter().collect()
-}
-
-fn correlations(
-    root: &Section<'_>,
-    inputs: &[Input],
-    log: &mut Log<'_>,
-) -> Option<Vec<Correlation>> {
-    let listed = root.list("correlation", log)?;
-    let read: Vec<_> = listed
-        .iter()
-        .map(|one| Correlation::read(one, inputs, log))
-        .collect();
-    read.into_iter().collect()
+/// Reads one `[[correlation]]` between two of `inputs`.
+fn correlation(section: &Section<'_>, inputs: &[Input], log: &mut Log<'_>) -> Option<Correlation> {
+    let known: Vec<&str> = names(&CorrelationKeys::keys()).collect();
+    section.check_keys(&known, log);
+    let keys = CorrelationKeys::read(section, log)?;
+    let span = section.value_span("keys");
+    let [one, other] = &keys.keys.0[..] else {
+        log.problem(span, StudyReason::NotTwoKeys);
+        return None;
+    };
+    let mut place = |key: &String| {
+        let is_input = |input: &Input| input.key == *key && input.is_continuous();
+        let found = inputs.iter().position(is_input);
+        if found.is_none() {
+            let key = key.clone();
+            log.problem(span.clone(), StudyReason::NotVaried { key });
+        }
+        found
+    };
+    let (one, other) = (place(one), place(other));
+    Some(Correlation {
+        inputs: [one?, other?],
+        coefficient: keys.coefficient,
+    })
 }
 
 fn check_twice(inputs: &[Input], log: &mut Log<'_>) {
@@ -172,46 +223,86 @@ fn check_twice(inputs: &[Input], log: &mut Log<'_>) {
     }
 }
 
-/// Reports a design that does not fit what the study has.
-fn check_fit(
-    section: &Section<'_>,
-    design: &Design,
-    inputs: &[Input],
-    (correlates, ranks): (bool, bool),
-    log: &mut Log<'_>,
-) {
-    let span = section.value_span("kind");
-    let word = design.word();
-    let samples = matches!(design, Design::LatinHypercube(_) | Design::Sobol(_));
-    if correlates && !samples {
-        log.problem(span.clone(), StudyReason::CannotCorrelate { design: word });
-    }
-    if ranks
-        && matches!(
-            design,
-            Design::Optimise(_) | Design::Saltelli(_) | Design::Morris(_)
-        )
-    {
-        log.problem(span.clone(), StudyReason::CannotRank { design: word });
-    }
-    match design {
-        Design::Optimise(keys) => {
-            output(&keys.minimise, "minimise", section, log);
-            let is_range =
-                |input: &Input| matches!(input.variation, Variation::Uniform(_)) && !input.is_whole;
-            if let Some(input) = inputs.iter().find(|input| !is_range(input)) {
-                let key = input.key.clone();
-                log.problem(input.span.clone(), StudyReason::NoRange { key });
+impl Study {
+    /// Reports an end of an input that the case does not accept, neither alone nor with the others at one of their ends.
+    /// At most `left` values are tried.
+    fn check_input(&self, input: &Input, left: &mut usize, log: &mut Log<'_>) {
+        let ends = input.ends();
+        let tried = ends.len().min(*left);
+        *left -= tried;
+        for level in ends.into_iter().take(tried) {
+            let own = input.assignments(&self.folder, &level);
+            let Some((why, advice)) = self.refusal(&own) else {
+                continue;
+            };
+            // A value that needs another key, such as a constant of another law, may be accepted together with it.
+            let others = self.inputs.iter().filter(|other| other.key != input.key);
+            let mut all = Vec::new();
+            for other in others {
+                let first = other.ends().into_iter().next();
+                all.extend(first.map(|level| other.assignments(&self.folder, &level)));
+            }
+            all.push(own);
+            if self.refusal(&all.concat()).is_some() {
+                let reason = StudyReason::Refused {
+                    key: input.key.clone(),
+                    value: level,
+                    why,
+                    advice,
+                };
+                log.problem(input.span.clone(), reason);
+                break;
             }
         }
-        Design::Morris(keys) if keys.levels % 2 == 1 => {
-            log.problem(
-                section.value_span("levels"),
-                StudyReason::OddLevels {
-                    levels: keys.levels,
-                },
-            );
+    }
+
+    /// The reason why the case does not accept changes, and the remedy.
+    fn refusal(&self, set: &[Assignment]) -> Option<(String, Option<String>)> {
+        match self.changed_case(set) {
+            Ok(_) => None,
+            Err(ChangeError::Assignment(error)) => Some((error.to_string(), None)),
+            Err(ChangeError::Case(problems)) => {
+                let first = problems.problems().first()?;
+                Some((first.to_string(), first.reason.advice()))
+            }
         }
-        _ => {}
+    }
+
+    /// Reports a design that does not suit the inputs.
+    fn check_design(&self, section: &Section<'_>, log: &mut Log<'_>) {
+        let span = section.value_span("kind");
+        let design = self.design.word();
+        let is_sample = matches!(self.design, Design::LatinHypercube(_) | Design::Sobol(_));
+        if !self.correlations.is_empty() && !is_sample {
+            log.problem(span.clone(), StudyReason::CannotCorrelate { design });
+        }
+        if !self.alternatives.is_empty()
+            && matches!(
+                self.design,
+                Design::Optimise(_) | Design::Saltelli(_) | Design::Morris(_)
+            )
+        {
+            log.problem(span, StudyReason::CannotRank { design });
+        }
+        match &self.design {
+            Design::Optimise(keys) => {
+                output(&keys.minimise, "minimise", section, log);
+                let is_range = |input: &&Input| {
+                    matches!(input.variation, Variation::Uniform(_)) && !input.is_whole
+                };
+                if let Some(input) = self.inputs.iter().find(|input| !is_range(input)) {
+                    let key = input.key.clone();
+                    log.problem(input.span.clone(), StudyReason::NoRange { key });
+                }
+            }
+            Design::Morris(keys) if keys.levels % 2 == 1 => {
+                let levels = keys.levels;
+                log.problem(
+                    section.value_span("levels"),
+                    StudyReason::OddLevels { levels },
+                );
+            }
+            _ => {}
+        }
     }
 }

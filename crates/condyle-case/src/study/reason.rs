@@ -1,160 +1,83 @@
-//! What only a study can have wrong.
+//! Problems that only a study can have.
 
 use thiserror::Error;
 
 use crate::config::{Level, Reason};
 
-/// Why a study cannot be done.
+/// A problem of a study, at its place in the file.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum StudyReason {
-    /// Nothing varies.
+pub(super) enum StudyReason {
     #[error("the study varies nothing")]
     NothingVaries,
-    /// More inputs or designs than anybody means.
     #[error("the study has {count} {what}, and {most} are the most")]
     TooMany {
-        /// Of what.
         what: &'static str,
-        /// How many.
         count: usize,
-        /// How many there may be.
         most: usize,
     },
-    /// A value that the case does not take.
-    #[error("the case does not take `{key} = {}`: {why}", text(value))]
-    Refused {
-        /// The key.
-        key: String,
-        /// The value.
-        value: Level,
-        /// What is said of it.
-        why: String,
-        /// What to do, where the case says so.
-        advice: Option<String>,
-    },
-    /// A design that the case does not take.
-    #[error("the case does not take the design `{name}`: {why}")]
-    AlternativeRefused {
-        /// Its name.
-        name: String,
-        /// What is said of it.
-        why: String,
-        /// What to do, where the case says so.
-        advice: Option<String>,
-    },
-    /// A change of a design that is none.
-    #[error("{why}")]
-    NotSet {
-        /// What is said of it.
-        why: String,
-    },
-    /// A key that varies twice.
-    #[error("`{key}` varies twice")]
-    Twice {
-        /// The key.
-        key: String,
-    },
-    /// No value in the middle.
-    #[error("the case has no number at `{key}` to go out from")]
-    NoMiddle {
-        /// The key.
-        key: String,
-    },
-    /// A range that is empty.
-    #[error("the range from {low} to {high} is empty")]
-    EmptyRange {
-        /// As written.
-        low: f64,
-        /// As written.
-        high: f64,
-    },
-    /// A likeliest value that cannot occur.
-    #[error("the likeliest value {mode} is not between {low} and {high}")]
-    ModeOutside {
-        /// The likeliest value.
-        mode: f64,
-        /// Least.
-        low: f64,
-        /// Most.
-        high: f64,
-    },
-    /// A correlation of other than two keys.
-    #[error("a correlation is between two keys")]
-    NotTwoKeys,
-    /// A correlation of what does not vary.
-    #[error("`{key}` is no input with a distribution")]
-    NotVaried {
-        /// The key.
-        key: String,
-    },
-    /// A design whose inputs know nothing of each other.
-    #[error("inputs of a {design} design cannot be correlated")]
-    CannotCorrelate {
-        /// Its word.
-        design: &'static str,
-    },
-    /// A design that is not for comparing others.
-    #[error("designs cannot be compared by a {design} design")]
-    CannotRank {
-        /// Its word.
-        design: &'static str,
-    },
-    /// A search over something else than a range.
-    #[error("a search needs a range, and `{key}` has none")]
-    NoRange {
-        /// The key.
-        key: String,
-    },
-    /// Levels that cannot be halved.
-    #[error("a Morris design has an even number of levels, not {levels}")]
-    OddLevels {
-        /// As written.
-        levels: u64,
-    },
-    /// Rows, and inputs beside them.
-    #[error("a study of given rows has its inputs in the file")]
-    RowsAndVary,
-    /// A file without rows.
-    #[error("the file has no rows")]
-    NoRows,
-    /// A row with too few or too many cells.
-    #[error("this row has {found} cells where the first line has {wanted}, or an empty one")]
-    WrongShape {
-        /// Cells it has.
-        found: usize,
-        /// Cells it needs.
-        wanted: usize,
-    },
-    /// An output that a run does not have.
-    #[error("a run has no output `{name}`")]
-    UnknownOutput {
-        /// As written.
-        name: String,
-        /// One that looks like it.
-        near: Option<String>,
-        /// Every one.
-        outputs: String,
-    },
-    /// No output at all.
-    #[error("the study asks for no output")]
-    NoOutput,
-    /// A limit that limits nothing.
-    #[error("a limit needs `least`, `most` or both")]
-    NoBound,
-}
-
-fn text(level: &Level) -> String {
-    match level {
+    #[error("the case does not take `{key} = {}`: {why}", match value {
         Level::Number(number) => number.to_string(),
         Level::Word(word) => format!("{word:?}"),
-    }
+    })]
+    Refused {
+        key: String,
+        value: Level,
+        why: String,
+        advice: Option<String>,
+    },
+    #[error("the case does not take the design `{name}`: {why}")]
+    AlternativeRefused {
+        name: String,
+        why: String,
+        advice: Option<String>,
+    },
+    #[error("{why}")]
+    NotSet { why: String },
+    #[error("`{key}` varies twice")]
+    Twice { key: String },
+    #[error("the case has no number at `{key}` to go out from")]
+    NoMiddle { key: String },
+    #[error("the range from {low} to {high} is empty")]
+    EmptyRange { low: f64, high: f64 },
+    #[error("the likeliest value {mode} is not between {low} and {high}")]
+    ModeOutside { mode: f64, low: f64, high: f64 },
+    #[error("a correlation is between two keys")]
+    NotTwoKeys,
+    #[error("`{key}` is no input with a distribution")]
+    NotVaried { key: String },
+    #[error("inputs of a {design} design cannot be correlated")]
+    CannotCorrelate { design: &'static str },
+    #[error("designs cannot be compared by a {design} design")]
+    CannotRank { design: &'static str },
+    #[error("a search needs a range, and `{key}` has none")]
+    NoRange { key: String },
+    #[error("a Morris design has an even number of levels, not {levels}")]
+    OddLevels { levels: u64 },
+    #[error("a study of given rows has its inputs in the file")]
+    RowsAndVary,
+    #[error("the file has no rows")]
+    NoRows,
+    #[error("this row has {found} cells where the first line has {wanted}, or an empty one")]
+    WrongShape { found: usize, wanted: usize },
+    #[error("a run has no output `{name}`")]
+    UnknownOutput {
+        name: String,
+        near: Option<String>,
+        outputs: String,
+    },
+    #[error("the study asks for no output")]
+    NoOutput,
+    #[error("a limit needs `least`, `most` or both")]
+    NoBound,
 }
 
 impl Reason for StudyReason {
     fn advice(&self) -> Option<String> {
         let advice = match self {
             Self::Refused { advice, .. } => {
-                return Some(advice.clone().unwrap_or_else(|| OTHER_VALUES.to_owned()));
+                let other = "choose values that the case takes; a normal distribution is tried at four standard deviations, \
+                             and a truncated-normal one ends where you say";
+                return Some(advice.clone().unwrap_or_else(|| other.to_owned()));
             }
             Self::AlternativeRefused { advice, .. } => return advice.clone(),
             Self::NothingVaries => {
@@ -197,6 +120,3 @@ impl Reason for StudyReason {
         Some(advice.to_owned())
     }
 }
-
-const OTHER_VALUES: &str = "choose values that the case takes; a normal distribution is tried at four standard deviations, and \
-    a truncated-normal one ends where you say";

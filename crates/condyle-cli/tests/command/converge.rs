@@ -181,7 +181,7 @@ fn a_key_that_is_none_is_refused() {
     assert_refused("updatse=1,2", &words);
     let words = [
         "[march] has no key `updatse`",
-        "case.toml with march.updatse = 1:7:1",
+        "case.toml with march.updatse = 2:7:1",
         "^^^^^^^",
         "did you mean `updates`?",
     ];

@@ -79,7 +79,7 @@ fn the_tables_say_what_the_numbers_hang_on_and_from_where() {
         said.out
     );
     assert!(said.out.contains("saikko2005"), "{}", said.out);
-    assert!(said.err.contains("5 of 5 runs"), "{}", said.err);
+    assert!(said.err.contains("5 of 5 tests"), "{}", said.err);
 }
 
 #[test]

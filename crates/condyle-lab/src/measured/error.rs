@@ -1,4 +1,4 @@
-//! Why a run and a measurement cannot be compared.
+//! The reasons why a run and a measurement cannot be compared.
 
 use std::path::PathBuf;
 
@@ -37,7 +37,7 @@ pub enum CompareError {
         /// Its name.
         column: &'static str,
     },
-    /// A column of which no part can be compared.
+    /// A column without any part that can be compared.
     #[error(
         "the measured points of `{column}` are all more than {gap} % of the cycle apart, so nothing \
          is compared; raise largest_gap_percent in [kinematics], or leave the column out"
@@ -57,7 +57,7 @@ pub enum CompareError {
         /// Weighings that count and that the run reaches.
         weighings: usize,
     },
-    /// A scan that lies elsewhere.
+    /// A scan that starts too far from the insert.
     #[error(
         "only {near} of {points} points of the scan come near the insert where they are to be laid \
          onto it; check length_unit, axes, start_mm and the fit region in [surface]"
@@ -68,7 +68,7 @@ pub enum CompareError {
         /// Points of the scan.
         points: usize,
     },
-    /// A scan whose place is not fixed by its shape.
+    /// A scan whose shape does not fix its place.
     #[error(
         "the surface that the scan is laid onto does not fix its place: it can slide or turn along \
          itself; scan more of the insert, or fit all of it (fit = \"all\" in [surface])"
@@ -110,7 +110,7 @@ pub enum CompareError {
     Write {
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The reason.
         source: std::io::Error,
     },
 }

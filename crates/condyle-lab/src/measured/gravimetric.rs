@@ -1,4 +1,4 @@
-//! Predicted against weighed wear.
+//! Comparison of predicted wear with weighed specimens.
 
 use condyle_case::measured::{Gravimetric, IntervalWord, Specimen};
 use condyle_report::Table;
@@ -10,23 +10,22 @@ use crate::measured::CompareError;
 /// Wear rates are per this many cycles.
 const MILLION: f64 = 1e6;
 
-/// Wear by weighing, corrected by soak controls, against the predicted one. Rates are in mg per
-/// million cycles.
+/// Weighed wear, corrected by soak controls, and predicted wear. Rates are in mg per million cycles.
 #[derive(Clone, Debug, Serialize)]
 pub struct GravimetricComparison {
     /// Confidence of every interval, percent.
     pub confidence_percent: f64,
-    /// Weighings before this many cycles are not in the lines.
+    /// Weighings before this many cycles are left out of the lines.
     pub fit_from_cycles: f64,
-    /// Soak controls; 0 means that nothing was corrected.
+    /// Number of soak controls; without any, nothing is corrected.
     pub soak_controls: usize,
-    /// A row for each weighing, the first included.
+    /// All weighings, the first included.
     pub weighings: Vec<Weighing>,
     /// A line for each specimen.
     pub specimens: Vec<Rate>,
     /// One line through the weighings of all specimens.
     pub all: Rate,
-    /// Mean of the specimens' rates, and its interval with each specimen as one observation.
+    /// Mean of the specimens' rates, with each specimen as one observation.
     pub mean_of_specimens: Rate,
     /// From the specimen that wears least to the one that wears most.
     pub range_of_specimens_mg_per_million_cycles: Interval,
@@ -40,12 +39,12 @@ pub struct GravimetricComparison {
     pub inside_interval_of_weighings: bool,
     /// Whether it lies within the interval of the mean of the specimens; none for one specimen.
     pub inside_interval_of_specimens: Option<bool>,
-    /// What calibration aims at.
+    /// The rate that calibration aims at.
     #[serde(skip)]
-    pub aim: IntervalWord,
+    aim: IntervalWord,
 }
 
-/// Masses at one stop of the simulator.
+/// The losses at one stop of the simulator.
 #[derive(Clone, Debug, Serialize)]
 pub struct Weighing {
     /// Cycles done.
@@ -63,15 +62,15 @@ pub struct Weighing {
 /// A wear rate.
 #[derive(Clone, Debug, Serialize)]
 pub struct Rate {
-    /// What it is of.
+    /// The specimen, or the description of a mean.
     pub name: String,
     /// Slope of the line.
     pub mg_per_million_cycles: f64,
-    /// Where the line is at the start of the test, mg; none for a mean of rates.
+    /// The line at the start of the test, mg; none for a mean of rates.
     pub intercept_mg: Option<f64>,
-    /// Its interval, where there are enough points.
+    /// The interval, where there are enough points.
     pub interval_mg_per_million_cycles: Option<Interval>,
-    /// Part of the variance that the line explains.
+    /// The part of the variance that the line explains.
     pub r_squared: Option<f64>,
 }
 
@@ -80,19 +79,44 @@ pub(crate) fn compare(
     measured: &Gravimetric,
     run: &Table,
 ) -> Result<GravimetricComparison, CompareError> {
-    let predicted = predicted_curve(run)?;
-    let weighings = weighings(measured, &predicted);
-    let confidence = measured.keys.confidence_percent / 100.0;
-    let specimens = each_specimen(measured, &weighings, confidence);
-    let all = pooled(&weighings, confidence)?;
-    let mean_of_specimens = mean_rate(&specimens, confidence);
-    let predicted = predicted_rate(&weighings, confidence)?;
+    let weighings = weighings(measured, run)?;
+    let keys = &measured.keys;
+    let confidence = keys.confidence_percent / 100.0;
+    let specimens = measured.specimens.iter().enumerate();
+    let specimens = specimens.filter_map(|(index, specimen)| {
+        let losses = counted(&weighings).map(|one| (one.cycles, one.loss_mg[index]));
+        Rate::of_line(&specimen.name, &losses.collect::<Vec<_>>(), confidence)
+    });
+    let specimens: Vec<Rate> = specimens.collect();
+    let all = Rate::of_line("all weighings", &all_losses(&weighings), confidence);
+    let all = all.ok_or(CompareError::NoColumn { column: "cycles" })?;
+    let predicted =
+        counted(&weighings).filter_map(|one| Some((one.cycles, one.predicted_loss_mg?)));
+    let predicted: Vec<(f64, f64)> = predicted.collect();
+    let too_short = CompareError::RunTooShort {
+        weighings: predicted.len(),
+    };
+    let predicted = Rate::of_line("predicted", &predicted, confidence).ok_or(too_short)?;
+    let rates: Vec<f64> = specimens
+        .iter()
+        .map(|one| one.mg_per_million_cycles)
+        .collect();
+    let range = Interval {
+        low: rates.iter().copied().fold(f64::INFINITY, f64::min),
+        high: rates.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    };
+    let mean_of_specimens = Rate {
+        name: "mean of the specimens".to_owned(),
+        mg_per_million_cycles: mean(&rates),
+        intercept_mg: None,
+        interval_mg_per_million_cycles: mean_interval(&rates, confidence),
+        r_squared: None,
+    };
     let rate = predicted.mg_per_million_cycles;
-    let range = range(&specimens);
     let inside = |of: &Rate| of.interval_mg_per_million_cycles.map(|i| i.holds(rate));
     Ok(GravimetricComparison {
-        confidence_percent: measured.keys.confidence_percent,
-        fit_from_cycles: measured.keys.fit_from_cycles,
+        confidence_percent: keys.confidence_percent,
+        fit_from_cycles: keys.fit_from_cycles,
         soak_controls: measured.soaks.len(),
         predicted_above_measured_percent: 100.0 * (rate / all.mg_per_million_cycles - 1.0),
         inside_range_of_specimens: range.holds(rate),
@@ -104,84 +128,62 @@ pub(crate) fn compare(
         all,
         mean_of_specimens,
         predicted,
-        aim: measured.keys.interval,
+        aim: keys.interval,
     })
 }
 
 impl GravimetricComparison {
     /// The measured rate that calibration aims at, with its interval.
-    pub fn aim(&self) -> &Rate {
+    pub(crate) fn aim(&self) -> &Rate {
         match self.aim {
             IntervalWord::Weighings => &self.all,
             IntervalWord::Specimens => &self.mean_of_specimens,
         }
     }
 
-    /// The measured rate that calibration aims at, with what its scatter tells: the mean of the specimens' rates, or the
-    /// line through all weighings.
+    /// The measured rate that calibration aims at, with its scatter.
     pub(crate) fn observation(&self) -> Observation {
         let rate = self.aim().mg_per_million_cycles;
-        let (weight, squares, points, used) = match self.aim {
-            IntervalWord::Specimens => {
-                let off = self
-                    .specimens
-                    .iter()
-                    .map(|one| (one.mg_per_million_cycles - rate).powi(2));
-                (
-                    self.specimens.len() as f64,
-                    off.sum(),
-                    self.specimens.len(),
-                    1,
-                )
-            }
-            IntervalWord::Weighings => self.observed_line(),
-        };
-        Observation {
-            rate,
-            weight,
-            squares,
-            freedom: points.saturating_sub(used),
+        if self.counts_specimens() {
+            let rates = self.specimens.iter().map(|one| one.mg_per_million_cycles);
+            return Observation {
+                rate,
+                weight: self.specimens.len() as f64,
+                squares: rates.map(|one| (one - rate).powi(2)).sum(),
+                freedom: self.specimens.len().saturating_sub(1),
+            };
         }
-    }
-
-    /// Spread in time, squares off the line as those of its slope, points, and what the line takes of them.
-    fn observed_line(&self) -> (f64, f64, usize, usize) {
-        const OF_A_LINE: usize = 2;
+        // The line through all weighings: its slope is as good as the weighings are spread in time.
         let points = in_millions(&all_losses(&self.weighings));
         let middle = mean(&points.iter().map(|point| point.0).collect::<Vec<_>>());
         let spread: f64 = points.iter().map(|point| (point.0 - middle).powi(2)).sum();
         let error = Line::through(&points).and_then(|line| line.slope_standard_error);
-        let freedom = points.len().saturating_sub(OF_A_LINE) as f64;
-        let squares = error.map_or(0.0, |error| error * error * freedom * spread);
-        (spread, squares, points.len(), OF_A_LINE)
+        let freedom = points.len().saturating_sub(2);
+        Observation {
+            rate,
+            weight: spread,
+            squares: error.map_or(0.0, |error| error * error * freedom as f64 * spread),
+            freedom,
+        }
     }
 
-    /// Whether it is specimens that intervals count, and not weighings.
+    /// Whether intervals count specimens rather than weighings.
     pub(crate) fn counts_specimens(&self) -> bool {
         self.aim == IntervalWord::Specimens
     }
 
-    /// Whether both give intervals of one kind.
+    /// Whether both have intervals of one kind.
     pub(crate) fn has_intervals_like(&self, other: &Self) -> bool {
         self.aim == other.aim && self.confidence_percent == other.confidence_percent
     }
 
     /// Rate of a predicted loss given as (cycles, mg), by the same regression at the same cycles.
     pub(crate) fn rate_of(&self, predicted: &[(f64, f64)]) -> Option<f64> {
-        let counted = self.weighings.iter().filter(|weighing| weighing.in_line);
-        let points: Vec<(f64, f64)> = counted
+        let points: Vec<(f64, f64)> = counted(&self.weighings)
             .filter_map(|weighing| Some((weighing.cycles, at(predicted, weighing.cycles)?)))
             .collect();
         Line::through(&points).map(|line| line.slope * MILLION)
     }
-}
-
-/// Predicted loss as (cycles, mg), from nothing at the start.
-fn predicted_curve(run: &Table) -> Result<Vec<(f64, f64)>, CompareError> {
-    let column = |column| run.column(column).ok_or(CompareError::NoColumn { column });
-    let (cycles, masses) = (column("cycles")?, column("mass_loss_mg")?);
-    let points = cycles.iter().copied().zip(masses.iter().copied());
-    Ok(std::iter::once((0.0, 0.0)).chain(points).collect())
 }
 
 /// The loss at a number of cycles, linear between updates; none after the last.
@@ -195,7 +197,11 @@ fn at(curve: &[(f64, f64)], cycles: f64) -> Option<f64> {
     Some(y0 + (cycles - x0) / (x - x0) * (y - y0))
 }
 
-fn weighings(measured: &Gravimetric, predicted: &[(f64, f64)]) -> Vec<Weighing> {
+fn weighings(measured: &Gravimetric, run: &Table) -> Result<Vec<Weighing>, CompareError> {
+    let column = |column| run.column(column).ok_or(CompareError::NoColumn { column });
+    let (cycles, masses) = (column("cycles")?, column("mass_loss_mg")?);
+    let points = cycles.iter().copied().zip(masses.iter().copied());
+    let predicted: Vec<(f64, f64)> = std::iter::once((0.0, 0.0)).chain(points).collect();
     let start = measured.cycles.first().copied().unwrap_or_default();
     let gain = |specimen: &Specimen, row: usize| specimen.masses_mg[row] - specimen.masses_mg[0];
     let weighing = |(row, &cycles): (usize, &f64)| {
@@ -206,27 +212,12 @@ fn weighings(measured: &Gravimetric, predicted: &[(f64, f64)]) -> Vec<Weighing> 
             cycles,
             soak_gain_mg,
             loss_mg: measured.specimens.iter().map(loss).collect(),
-            predicted_loss_mg: since(predicted, start, cycles),
+            predicted_loss_mg: at(&predicted, cycles)
+                .and_then(|loss| Some(loss - at(&predicted, start)?)),
             in_line: row > 0 && cycles >= measured.keys.fit_from_cycles,
         }
     };
-    measured.cycles.iter().enumerate().map(weighing).collect()
-}
-
-/// Predicted loss between two numbers of cycles.
-fn since(predicted: &[(f64, f64)], start: f64, cycles: f64) -> Option<f64> {
-    Some(at(predicted, cycles)? - at(predicted, start)?)
-}
-
-fn each_specimen(measured: &Gravimetric, weighings: &[Weighing], confidence: f64) -> Vec<Rate> {
-    let rate = |(index, specimen): (usize, &Specimen)| {
-        let points: Vec<(f64, f64)> = counted(weighings)
-            .map(|weighing| (weighing.cycles, weighing.loss_mg[index]))
-            .collect();
-        Rate::of_line(&specimen.name, &points, confidence)
-    };
-    let all = measured.specimens.iter().enumerate();
-    all.filter_map(rate).collect()
+    Ok(measured.cycles.iter().enumerate().map(weighing).collect())
 }
 
 fn counted(weighings: &[Weighing]) -> impl Iterator<Item = &Weighing> {
@@ -247,11 +238,6 @@ impl Rate {
     }
 }
 
-fn pooled(weighings: &[Weighing], confidence: f64) -> Result<Rate, CompareError> {
-    let rate = Rate::of_line("all weighings", &all_losses(weighings), confidence);
-    rate.ok_or(CompareError::NoColumn { column: "cycles" })
-}
-
 /// Losses of all specimens at all weighings that count, as (cycles, mg).
 fn all_losses(weighings: &[Weighing]) -> Vec<(f64, f64)> {
     let each = |weighing: &Weighing| {
@@ -266,53 +252,18 @@ fn in_millions(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points.iter().map(|(x, y)| (x / MILLION, *y)).collect()
 }
 
-fn mean_rate(specimens: &[Rate], confidence: f64) -> Rate {
-    let rates: Vec<f64> = specimens
-        .iter()
-        .map(|rate| rate.mg_per_million_cycles)
-        .collect();
-    Rate {
-        name: "mean of the specimens".to_owned(),
-        mg_per_million_cycles: mean(&rates),
-        intercept_mg: None,
-        interval_mg_per_million_cycles: mean_interval(&rates, confidence),
-        r_squared: None,
-    }
+/// A line y = slope x + intercept through points, by least squares in y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Line {
+    slope: f64,
+    intercept: f64,
+    /// None for two points.
+    slope_standard_error: Option<f64>,
+    r_squared: f64,
+    points: usize,
 }
 
-fn range(specimens: &[Rate]) -> Interval {
-    let rates = || specimens.iter().map(|rate| rate.mg_per_million_cycles);
-    Interval {
-        low: rates().fold(f64::INFINITY, f64::min),
-        high: rates().fold(f64::NEG_INFINITY, f64::max),
-    }
-}
-
-fn predicted_rate(weighings: &[Weighing], confidence: f64) -> Result<Rate, CompareError> {
-    let points: Vec<(f64, f64)> = counted(weighings)
-        .filter_map(|weighing| Some((weighing.cycles, weighing.predicted_loss_mg?)))
-        .collect();
-    Rate::of_line("predicted", &points, confidence).ok_or(CompareError::RunTooShort {
-        weighings: points.len(),
-    })
-}
-
-/// A line y = slope x + intercept through points, by least squares.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Line {
-    /// Rise of y for each unit of x.
-    pub slope: f64,
-    /// y at x = 0.
-    pub intercept: f64,
-    /// Standard error of the slope; none for two points.
-    pub slope_standard_error: Option<f64>,
-    /// Part of the variance of y that the line explains, 0 to 1.
-    pub r_squared: f64,
-    /// Points.
-    pub points: usize,
-}
-
-/// An interval that holds a quantity with some confidence.
+/// A confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
     /// Lower end.
@@ -323,11 +274,11 @@ pub struct Interval {
 
 impl Interval {
     /// Whether `value` lies inside, the ends included.
-    pub fn holds(&self, value: f64) -> bool {
+    pub(crate) fn holds(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    /// `middle` and as much on either side.
+    /// The interval that reaches `half` to either side of `middle`.
     pub(crate) fn around(middle: f64, half: f64) -> Self {
         Self {
             low: middle - half,
@@ -337,8 +288,8 @@ impl Interval {
 }
 
 impl Line {
-    /// The line of least squares in y; none for fewer than two points, or all at one x.
-    pub fn through(points: &[(f64, f64)]) -> Option<Self> {
+    /// None for fewer than two points, or all at one x.
+    fn through(points: &[(f64, f64)]) -> Option<Self> {
         let mean = |of: fn(&(f64, f64)) -> f64| mean(&points.iter().map(of).collect::<Vec<_>>());
         let (x, y) = (mean(|point| point.0), mean(|point| point.1));
         let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
@@ -364,13 +315,8 @@ impl Line {
         })
     }
 
-    /// y on the line.
-    pub fn at(&self, x: f64) -> f64 {
-        self.slope * x + self.intercept
-    }
-
     /// Interval of the slope by Student's t with two degrees of freedom fewer than points.
-    pub fn slope_interval(&self, confidence: f64) -> Option<Interval> {
+    fn slope_interval(&self, confidence: f64) -> Option<Interval> {
         let half = student(confidence, self.points.checked_sub(2)?)? * self.slope_standard_error?;
         Some(Interval::around(self.slope, half))
     }
@@ -391,22 +337,21 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// How many standard errors a two-sided interval reaches to either side.
+/// Half the width of a two-sided interval, in standard errors.
 pub(crate) fn student(confidence: f64, freedom: usize) -> Option<f64> {
     let distribution = StudentsT::new(0.0, 1.0, freedom as f64).ok()?;
     Some(distribution.inverse_cdf(f64::midpoint(1.0, confidence)))
 }
 
-/// A measured rate, and what its scatter tells.
+/// A measured rate and its scatter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Observation {
-    /// The rate.
     pub(crate) rate: f64,
-    /// How much it counts: the number of specimens, or the spread of the weighings in time.
+    /// The number of specimens, or the spread of the weighings in time.
     pub(crate) weight: f64,
-    /// Sum of squares of what it is the mean or the line of, each from it, in the square of the rate's unit.
+    /// Sum of the squared deviations from the mean or the line, in the square of the rate's unit.
     pub(crate) squares: f64,
-    /// How many of these squares are free.
+    /// Degrees of freedom of that sum.
     pub(crate) freedom: usize,
 }
 
@@ -499,7 +444,7 @@ mod tests {
         assert!(Line::through(&[(1.0, 2.0)]).is_none());
         assert!(Line::through(&[(1.0, 2.0), (1.0, 3.0)]).is_none());
         let line = Line::through(&[(1.0, 2.0), (3.0, 3.0)]).unwrap();
-        assert_eq!((line.slope, line.intercept, line.at(5.0)), (0.5, 1.5, 4.0));
+        assert_eq!((line.slope, line.intercept), (0.5, 1.5));
         assert!(line.slope_interval(0.95).is_none());
     }
 }

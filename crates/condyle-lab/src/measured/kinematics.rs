@@ -1,20 +1,19 @@
-//! Predicted against measured kinematics.
+//! Comparison of predicted with measured kinematics.
 
-use condyle_case::measured::{AlignWord, CycleWord, Kinematics, MeasuredCurve, Phase, Sample};
+use condyle_case::measured::{AlignWord, CycleWord, Kinematics, MeasuredCurve, Sample};
 use condyle_report::Table;
 use serde::Serialize;
 
 use crate::measured::{CompareError, gravimetric::mean};
 
-/// How far a predicted cycle is from a measured one. Errors are predicted minus measured, in the
-/// unit of their column.
+/// A predicted and a measured cycle. Errors are predicted minus measured, in the unit of their column.
 #[derive(Clone, Debug, Serialize)]
 pub struct KinematicsComparison {
-    /// Which cycle of the run: "first" or "last".
+    /// The cycle of the run: "first" or "last".
     pub cycle: &'static str,
     /// Cycles done before it.
     pub cycles_before: f64,
-    /// Whether the mean difference was taken out before the errors: "mean" or "none".
+    /// The alignment before the errors: "mean" subtracts the mean difference, "none" nothing.
     pub align: &'static str,
     /// A row for each measured column.
     pub columns: Vec<ColumnComparison>,
@@ -39,21 +38,21 @@ pub struct ColumnComparison {
     pub compared: usize,
     /// Instants of the run's cycle.
     pub instants: usize,
-    /// (percent, predicted, measured less what alignment takes out) at the instants compared.
+    /// (percent, predicted, aligned measured) at the instants compared.
     #[serde(skip)]
     pub points: Vec<[f64; 3]>,
 }
 
-/// How large errors are.
+/// The size of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Errors {
     /// Mean of the absolute errors.
     pub mean_absolute: f64,
     /// Root of the mean square.
     pub rms: f64,
-    /// The error that is largest in absolute value, with its sign.
+    /// The error with the largest absolute value.
     pub largest: f64,
-    /// Where it is, percent of the cycle.
+    /// Its instant, percent of the cycle.
     pub largest_at_percent: f64,
 }
 
@@ -62,9 +61,9 @@ pub struct Errors {
 pub struct PhaseErrors {
     /// Its name.
     pub phase: String,
-    /// Where it starts, percent of the cycle.
+    /// Its start, percent of the cycle.
     pub start_percent: f64,
-    /// Where it ends.
+    /// Its end, percent of the cycle.
     pub end_percent: f64,
     /// None where nothing was measured in it.
     pub errors: Option<Errors>,
@@ -141,7 +140,16 @@ fn column(
             .iter_mut()
             .for_each(|point| point[2] += mean_difference);
     }
-    let phases = measured.phases.iter().map(|phase| in_phase(phase, &points));
+    let phases = measured.phases.iter().map(|phase| {
+        // The end of the cycle is the start of the next.
+        let inside = points.iter().filter(|point| phase.holds(point[0] % 100.0));
+        PhaseErrors {
+            phase: phase.name.clone(),
+            start_percent: phase.start_percent,
+            end_percent: phase.end_percent,
+            errors: errors(&inside.copied().collect::<Vec<_>>()),
+        }
+    });
     Ok(ColumnComparison {
         column: curve.column,
         mean_difference,
@@ -159,18 +167,6 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> f64 {
     values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
 }
 
-fn in_phase(phase: &Phase, points: &[[f64; 3]]) -> PhaseErrors {
-    // The end of the cycle is the start of the next.
-    let inside = |point: &&[f64; 3]| phase.holds(point[0] % 100.0);
-    let inside: Vec<[f64; 3]> = points.iter().filter(inside).copied().collect();
-    PhaseErrors {
-        phase: phase.name.clone(),
-        start_percent: phase.start_percent,
-        end_percent: phase.end_percent,
-        errors: errors(&inside),
-    }
-}
-
 fn errors(points: &[[f64; 3]]) -> Option<Errors> {
     let error = |[_, predicted, measured]: &[f64; 3]| predicted - measured;
     let largest = points
@@ -185,13 +181,13 @@ fn errors(points: &[[f64; 3]]) -> Option<Errors> {
     })
 }
 
-/// One gait cycle, percent.
+/// A cycle, percent.
 const CYCLE: f64 = 100.0;
-/// Two instants nearer than this are one, percent.
+/// Closer instants are the same, percent.
 const SAME: f64 = 1e-9;
 
-/// The value at an instant: linear between the points around it, through the seam of the cycle
-/// where no point stands at both of its ends; none where these are more than `largest_gap` apart.
+/// The value at an instant, linear between the neighbouring points, across the end of the cycle where no points are at
+/// both of its ends; none where the neighbours are more than `largest_gap` apart.
 pub(crate) fn value_at(samples: &[Sample], percent: f64, largest_gap: f64) -> Option<f64> {
     if let Some(sample) = samples.iter().find(|s| (s.percent - percent).abs() < SAME) {
         return Some(sample.value);
@@ -202,7 +198,7 @@ pub(crate) fn value_at(samples: &[Sample], percent: f64, largest_gap: f64) -> Op
     (gap <= largest_gap + SAME).then_some(before.value + share * (after.value - before.value))
 }
 
-/// The points before and after an instant, moved by a cycle where they lie beyond its seam.
+/// The neighbouring points, moved by a cycle where they lie beyond its end.
 fn around(samples: &[Sample], percent: f64) -> Option<(Sample, Sample)> {
     let after = samples.partition_point(|sample| sample.percent < percent);
     let moved = |sample: &Sample, by: f64| Sample {

@@ -1,7 +1,7 @@
-//! A run held against what a laboratory measured.
+//! Comparison of runs with measurements of a laboratory.
 //!
-//! [`compare`] reads a results folder and a file of measured data, and says how far apart they are:
-//! motions over the cycle, wear by weighing, and the worn surface.
+//! [`compare`] reads a results folder and a file of measured data, and compares motions over the cycle, wear by weighing,
+//! and the worn surface.
 
 pub(crate) mod calibrate;
 mod error;
@@ -20,15 +20,15 @@ pub use error::CompareError;
 
 pub use crate::measured::{
     calibrate::{
-        CalibrateError, CalibratedConstant, CalibratedTest, Calibration, CalibrationRequest, Found,
-        OneTest, Prediction, Trial, WearFactor, calibrate,
+        CalibrateError, CalibratedConstant, CalibratedTest, Calibration, CalibrationRequest,
+        Estimate, Prediction, Trial, calibrate,
     },
-    gravimetric::{GravimetricComparison, Interval, Line, Rate, Weighing},
+    gravimetric::{GravimetricComparison, Interval, Rate, Weighing},
     kinematics::{ColumnComparison, Errors, KinematicsComparison, PhaseErrors},
     surface::{NodeDepths, SurfaceComparison, SurfaceErrors, register::Registration},
 };
 
-/// A run against measured data; a part that was not measured is `None`.
+/// A comparison of a run with measured data; parts that were not measured are `None`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
     /// Motions and loads.
@@ -42,10 +42,10 @@ pub struct Comparison {
     pub side: Side,
 }
 
-/// Holds the run in `results` against the measured data that the file `measured` names.
+/// Compares the run in `results` with the measured data of the file `measured`.
 ///
 /// # Errors
-/// Either cannot be read, or they have nothing to be compared by.
+/// Either cannot be read, or they have nothing in common.
 pub fn compare(results: &Path, measured: &Path) -> Result<Comparison, CompareError> {
     let run = Results::read(results)?;
     let measured = Measured::read(measured, run.side)?;

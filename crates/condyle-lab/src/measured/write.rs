@@ -1,7 +1,6 @@
 //! A comparison as files: numbers as JSON and CSV, pictures as SVG.
 
 use std::{
-    fmt::Write,
     fs,
     path::{Path, PathBuf},
 };
@@ -21,13 +20,13 @@ use crate::measured::{
 };
 
 impl Comparison {
-    /// `compare.json`: everything but the curves and the map, units in the names.
+    /// `compare.json`: everything but the curves and the map.
     pub fn json(&self) -> String {
         let text = serde_json::to_string_pretty(self);
         text.expect("numbers and text always serialise") + "\n"
     }
 
-    /// Writes the files into `folder`, which is made if it is not there; gives their paths.
+    /// Writes the files into `folder`, which is created if needed, and returns their paths.
     ///
     /// # Errors
     /// The folder or a file cannot be written.
@@ -68,35 +67,36 @@ impl Comparison {
 
 impl KinematicsComparison {
     fn svg(&self) -> String {
-        let curve = |column: &crate::measured::kinematics::ColumnComparison| ComparedCurve {
-            column: column.column,
-            points: column.points.clone(),
-        };
-        let curves: Vec<ComparedCurve> = self.columns.iter().map(curve).collect();
+        let columns = self.columns.iter();
+        let curves: Vec<ComparedCurve> = columns
+            .map(|column| ComparedCurve {
+                column: column.column,
+                points: column.points.clone(),
+            })
+            .collect();
         let title = format!("Motion in the {} cycle, measured and predicted", self.cycle);
         compared_kinematics_svg(&title, &curves)
     }
 
-    /// What was measured, less what alignment takes out: a row an instant of the run's cycle, a column a measured column; a
-    /// cell is empty where nothing was measured.
+    /// The aligned measurement, a row for each instant of the run's cycle and a column for each measured one; empty where
+    /// nothing was measured.
     fn csv(&self) -> String {
-        let mut text = String::from("cycles,percent");
-        for column in &self.columns {
-            text += ",";
-            text += column.column;
-        }
-        text += "\n";
+        let columns: String = self
+            .columns
+            .iter()
+            .map(|one| format!(",{}", one.column))
+            .collect();
+        let mut text = format!("cycles,percent{columns}\n");
         let points = self.columns.iter().flat_map(|column| &column.points);
         let mut percents: Vec<f64> = points.map(|point| point[0]).collect();
         percents.sort_by(f64::total_cmp);
         percents.dedup();
         for percent in percents {
-            write!(text, "{},{percent}", self.cycles_before)
-                .expect("writing to a string cannot fail");
+            text += &format!("{},{percent}", self.cycles_before);
             for column in &self.columns {
-                let there = column.points.iter().find(|point| point[0] == percent);
-                let measured = there.map_or_else(String::new, |point| point[2].to_string());
-                write!(text, ",{measured}").expect("writing to a string cannot fail");
+                let point = column.points.iter().find(|point| point[0] == percent);
+                let measured = point.map_or_else(String::new, |point| point[2].to_string());
+                text += &format!(",{measured}");
             }
             text += "\n";
         }
@@ -105,56 +105,46 @@ impl KinematicsComparison {
 }
 
 impl GravimetricComparison {
-    /// What was weighed, soak-corrected: a row a weighing, a column a specimen.
+    /// The soak-corrected losses, a row for each weighing and a column for each specimen.
     fn csv(&self) -> String {
-        let mut text = String::from("cycles");
-        for specimen in 1..=self.specimens.len() {
-            write!(text, ",specimen_{specimen}_mg").expect("writing to a string cannot fail");
-        }
-        text += "\n";
+        let specimens = 1..=self.specimens.len();
+        let head: String = specimens.map(|one| format!(",specimen_{one}_mg")).collect();
+        let mut text = format!("cycles{head}\n");
         for weighing in &self.weighings {
             let losses = weighing.loss_mg.iter().map(|loss| format!(",{loss}"));
-            let losses: String = losses.collect();
-            writeln!(text, "{}{losses}", weighing.cycles).expect("writing to a string cannot fail");
+            text += &format!("{}{}\n", weighing.cycles, losses.collect::<String>());
         }
         text
     }
 
     fn svg(&self) -> String {
+        let weighings = || self.weighings.iter();
         let specimen = |index: usize| {
-            let point = |weighing: &crate::measured::gravimetric::Weighing| {
-                (weighing.cycles, weighing.loss_mg[index])
-            };
-            self.weighings.iter().map(point).collect()
+            let points = weighings().map(|weighing| (weighing.cycles, weighing.loss_mg[index]));
+            points.collect()
         };
-        let predicted = self
-            .weighings
-            .iter()
-            .filter_map(|weighing| Some((weighing.cycles, weighing.predicted_loss_mg?)));
-        compared_wear_svg(&ComparedWear {
-            specimens: (0..self.specimens.len()).map(specimen).collect(),
-            line: self.ends_of_line(),
-            predicted: predicted.collect(),
-        })
-    }
-
-    /// The line through all weighings, from the first that counts to the last.
-    fn ends_of_line(&self) -> [(f64, f64); 2] {
-        let counted = || self.weighings.iter().filter(|weighing| weighing.in_line);
-        let at = |weighing: Option<&crate::measured::gravimetric::Weighing>| {
+        let predicted = weighings().filter_map(|one| Some((one.cycles, one.predicted_loss_mg?)));
+        // The line through all weighings, from the first that counts to the last.
+        let counted = || weighings().filter(|weighing| weighing.in_line);
+        let ends = [counted().next(), counted().next_back()];
+        let line = ends.map(|weighing| {
             let cycles = weighing.map_or(0.0, |weighing| weighing.cycles);
             let start = self.all.intercept_mg.unwrap_or_default();
             (
                 cycles,
                 start + self.all.mg_per_million_cycles * cycles / 1e6,
             )
-        };
-        [at(counted().next()), at(counted().next_back())]
+        });
+        compared_wear_svg(&ComparedWear {
+            specimens: (0..self.specimens.len()).map(specimen).collect(),
+            line,
+            predicted: predicted.collect(),
+        })
     }
 }
 
 impl SurfaceComparison {
-    /// A row a node that the scan covers.
+    /// A row for each node that the scan covers.
     fn csv(&self) -> String {
         let mut text = String::from("x_mm,y_mm,z_mm,predicted_mm,scanned_mm,difference_mm\n");
         let SurfaceFields { nodes, fields, .. } = &self.fields;
@@ -164,8 +154,7 @@ impl SurfaceComparison {
                 && scanned.is_finite()
             {
                 let (x, y, z) = (node.x, node.y, node.z);
-                writeln!(text, "{x},{y},{z},{predicted},{scanned},{difference}")
-                    .expect("writing to a string cannot fail");
+                text += &format!("{x},{y},{z},{predicted},{scanned},{difference}\n");
             }
         }
         text

@@ -15,51 +15,53 @@ use nalgebra::{DMatrix, DVector, Rotation3};
 const PARTS: [f64; 9] = [0.03, 0.08, 0.15, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0];
 /// The table goes up to this pressure at least.
 const MIN_PEAK_MPA: f64 = 1.0;
-/// What a bend of the table counts beside a relative error of pressure and area, so that points which no pose feels
-/// lie between the others.
+/// Weight of the curvature of the table against relative errors of pressure and area: it places points that no pose
+/// reaches between the others.
 const BEND: f64 = 0.01;
-/// Step of the differences in the logarithm of strain.
+/// Step of the finite differences in the logarithm of strain.
 const STEP: f64 = 1e-3;
-/// Most rounds of the fit.
-const ROUNDS: usize = 15;
-/// A round that makes the sum of squares less by no more than this part of it is the last.
+/// Iterations of the fit.
+const MAX_ROUNDS: usize = 15;
+/// The fit ends with an iteration that reduces the sum of squares by a smaller part than this.
 const MIN_GAIN: f64 = 1e-4;
-/// What is put in for an increment that a table does not carry.
+/// Residual of an increment whose forces a table does not carry: far above any relative error.
 const NOT_CARRIED: f64 = 10.0;
 
 /// A fit of a pressure table on the bodies of a deformable insert.
 pub(crate) struct Fit<'a> {
     pub bodies: Bodies<'a>,
-    /// The foundation but for its law.
+    /// The foundation; its pressure law is replaced.
     pub foundation: Foundation,
     pub targets: &'a [Target],
 }
 
-/// A table with what it does.
-struct Tried {
+/// A table, by its parameters, and its residuals.
+struct Trial {
     /// Logarithms of the strain from each point to the next.
     logarithms: DVector<f64>,
     residuals: DVector<f64>,
     lower_mm: Vec<[f64; MAX_REGIONS]>,
 }
 
-impl Tried {
+impl Trial {
     fn squares(&self) -> f64 {
         self.residuals.norm_squared()
     }
 }
 
 impl Fit<'_> {
-    /// The table with the least squares of the relative errors of peak pressure and area, where every region carries
-    /// the force that it carries on the deformable insert: by Levenberg's and Marquardt's method, from a straight line.
+    /// The table with the least squares of the relative errors of peak pressure and area, where every region carries the
+    /// force that it carries on the deformable insert: by the Levenberg-Marquardt method, from the linear law.
+    ///
+    /// The parameters are logarithms of strain increments, so that every table rises.
     pub fn table(&self, modulus_mpa: f64) -> PressureTable {
         let pressures = self.pressures_mpa();
         let start = pressures.windows(2);
         let start = start.map(|pair| ((pair[1] - pair[0]) / modulus_mpa).ln());
         let start = DVector::from_iterator(PARTS.len(), start);
-        let mut best = self.tried(start, &vec![[0.0; MAX_REGIONS]; self.targets.len()]);
+        let mut best = self.trial(start, &vec![[0.0; MAX_REGIONS]; self.targets.len()]);
         let mut damping = 1e-2;
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             let Some(next) = self.improved(&best, &mut damping) else {
                 break;
             };
@@ -72,17 +74,18 @@ impl Fit<'_> {
         self.table_of(&best.logarithms)
     }
 
-    /// A table with less squares; none where none is found.
-    fn improved(&self, best: &Tried, damping: &mut f64) -> Option<Tried> {
+    /// A table with a smaller sum of squares; none where none is found.
+    fn improved(&self, best: &Trial, damping: &mut f64) -> Option<Trial> {
         let slopes = self.slopes(best);
         let (normal, gradient) = (slopes.tr_mul(&slopes), slopes.tr_mul(&best.residuals));
         for _ in 0..8 {
             let mut damped = normal.clone();
             for i in 0..damped.nrows() {
+                // Scaled by the diagonal; the constant keeps parameters without an effect in place.
                 damped[(i, i)] += *damping * (normal[(i, i)] + 1e-6);
             }
             let step = damped.cholesky()?.solve(&gradient);
-            let next = self.tried(&best.logarithms - step, &best.lower_mm);
+            let next = self.trial(&best.logarithms - step, &best.lower_mm);
             if next.squares() < best.squares() {
                 *damping *= 0.2;
                 return Some(next);
@@ -92,19 +95,19 @@ impl Fit<'_> {
         None
     }
 
-    /// Derivatives of the residuals by the logarithms.
-    fn slopes(&self, at: &Tried) -> DMatrix<f64> {
+    /// Derivatives of the residuals, by forward differences.
+    fn slopes(&self, at: &Trial) -> DMatrix<f64> {
         let columns: Vec<DVector<f64>> = (0..at.logarithms.len())
             .map(|i| {
                 let mut logarithms = at.logarithms.clone();
                 logarithms[i] += STEP;
-                (self.tried(logarithms, &at.lower_mm).residuals - &at.residuals) / STEP
+                (self.trial(logarithms, &at.lower_mm).residuals - &at.residuals) / STEP
             })
             .collect();
         DMatrix::from_columns(&columns)
     }
 
-    fn tried(&self, logarithms: DVector<f64>, near_mm: &[[f64; MAX_REGIONS]]) -> Tried {
+    fn trial(&self, logarithms: DVector<f64>, near_mm: &[[f64; MAX_REGIONS]]) -> Trial {
         let carried = self.carried(&self.table_of(&logarithms), near_mm);
         let mut residuals = Vec::new();
         for (carried, target) in carried.iter().zip(self.targets) {
@@ -120,14 +123,14 @@ impl Fit<'_> {
         residuals.extend(self.bends(&logarithms).map(|bend| weight * bend));
         let lower_mm = carried.iter().zip(near_mm);
         let lower_mm = lower_mm.map(|(carried, near)| carried.map_or(*near, |it| it.lower_mm));
-        Tried {
+        Trial {
             lower_mm: lower_mm.collect(),
             residuals: DVector::from_vec(residuals),
             logarithms,
         }
     }
 
-    /// Peak and area under the forces of the targets with a table, from starts that are near.
+    /// Peak and area under the forces of the targets with a table, starting from nearby depths.
     pub fn carried(
         &self,
         table: &PressureTable,
@@ -143,7 +146,7 @@ impl Fit<'_> {
         carried.collect()
     }
 
-    /// Changes of the logarithm of the slope from each piece of the table to the next.
+    /// Second differences of the logarithm of the slope along the table.
     fn bends(&self, logarithms: &DVector<f64>) -> impl Iterator<Item = f64> {
         let pressures = self.pressures_mpa();
         let pieces = pressures.windows(2).zip(logarithms.iter());
@@ -176,18 +179,18 @@ impl Fit<'_> {
     }
 }
 
-/// Forces on the sides are met to this, N.
+/// Tolerance of the forces on the regions, N.
 const FORCE_TOLERANCE_N: f64 = 0.05;
-/// A side that carries less is as if it carried nothing, N.
+/// A region that carries less counts as unloaded, N.
 const MIN_FORCE_N: f64 = 1.0;
-/// Most iterations until they are.
-const ITERATIONS: usize = 30;
-/// By how much the femur is lowered to see how stiff the sides are, mm.
+/// Iterations of the balance.
+const MAX_ITERATIONS: usize = 30;
+/// Lowering of the femur by which the stiffness of the regions is found, mm.
 const PROBE_MM: f64 = 1e-4;
-/// How far the femur moves at most in an iteration, mm.
-const FARTHEST_MM: f64 = 0.03;
+/// Largest motion of the femur in an iteration, mm.
+const MAX_STEP_MM: f64 = 0.03;
 
-/// What a deformable insert does in an increment.
+/// The state of a deformable insert in an increment.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
     pub percent: f64,
@@ -196,21 +199,21 @@ pub(crate) struct Target {
     pub region_force_n: [f64; MAX_REGIONS],
     pub area_mm2: f64,
     pub peak_mpa: f64,
-    /// Where the force of every region acts, z, mm.
+    /// The z at which the force of every region acts, mm.
     pub arms_mm: [f64; MAX_REGIONS],
 }
 
-/// How a foundation carries the same forces.
+/// The state of a foundation under the same forces.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Carried {
     pub area_mm2: f64,
     pub peak_mpa: f64,
-    /// By how much the femur is lower over every region than on the deformable insert, mm.
+    /// Lowering of the femur over every region from its pose on the deformable insert, mm.
     pub lower_mm: [f64; MAX_REGIONS],
 }
 
 impl Target {
-    /// Those of a cycle solved on a deformable insert.
+    /// The targets of a cycle solved on a deformable insert.
     pub fn of(cycle: &SolvedCycle<'_>) -> Vec<Self> {
         let of_one = |(increment, row): (usize, &condyle::machine::CycleRow)| Self {
             percent: row.percent,
@@ -227,23 +230,23 @@ impl Target {
         self.region_force_n.iter().sum()
     }
 
-    /// Axial force of a foundation where the femur is on the deformable insert, N.
+    /// Axial force of a foundation at the pose on the deformable insert, N.
     pub fn force_at_same_pose_n(&self, contact: &mut dyn ContactModel) -> f64 {
-        forces(&land(contact, &self.pose)).iter().sum()
+        forces(&evaluate(contact, &self.pose)).iter().sum()
     }
 
-    /// A number of every region, the mean weighted by force.
+    /// The mean over the regions, weighted by force.
     pub fn mean_by_force(&self, of_regions: [f64; MAX_REGIONS]) -> f64 {
         let pairs = self.region_force_n.iter().zip(of_regions);
         pairs.map(|(force_n, of)| force_n * of).sum::<f64>() / self.force_n()
     }
 
-    /// Takes where the forces act from a contact that presses at this pose.
+    /// Takes the points of action from the contact at this pose.
     pub fn with_arms(mut self, contact: &mut dyn ContactModel, positions: &[Vec3]) -> Self {
-        let landing = land(contact, &self.pose);
-        let forces = forces(&landing);
+        let result = evaluate(contact, &self.pose);
+        let forces = forces(&result);
         let mut moments = [0.0; MAX_REGIONS];
-        for node in &landing.touched {
+        for node in &result.touched {
             let z = positions[node.node as usize].z;
             moments[usize::from(node.region)] -= z * node.force_n.y;
         }
@@ -255,40 +258,40 @@ impl Target {
         self
     }
 
-    /// The foundation with the femur lowered and tilted until every region carries its force, from a start that is
-    /// near; none where it does not come to that.
+    /// Lowers and tilts the femur until every region carries its force, starting from nearby depths; none where that does
+    /// not converge.
     pub fn carried(
         &self,
         contact: &mut dyn ContactModel,
         near_mm: [f64; MAX_REGIONS],
     ) -> Option<Carried> {
         let mut lower_mm = near_mm;
-        for _ in 0..ITERATIONS {
-            let landing = land(contact, &self.lowered(lower_mm));
-            let found = forces(&landing);
+        for _ in 0..MAX_ITERATIONS {
+            let result = evaluate(contact, &self.lowered(lower_mm));
+            let found = forces(&result);
             let missing = self.missing_n(found);
             if missing
                 .iter()
                 .all(|missing| missing.abs() < FORCE_TOLERANCE_N)
             {
                 return Some(Carried {
-                    area_mm2: landing.touched.iter().map(|node| node.covered_mm2).sum(),
-                    peak_mpa: landing.peak_pressure_mpa,
+                    area_mm2: result.touched.iter().map(|node| node.covered_mm2).sum(),
+                    peak_mpa: result.peak_pressure_mpa,
                     lower_mm,
                 });
             }
             let probe = lower_mm.map(|lower| lower + PROBE_MM);
-            let more = forces(&land(contact, &self.lowered(probe)));
+            let more = forces(&evaluate(contact, &self.lowered(probe)));
             for region in 0..MAX_REGIONS {
                 let stiffness = (more[region] - found[region]) / PROBE_MM;
                 let step = missing[region] / stiffness.max(1.0);
-                lower_mm[region] += step.clamp(-FARTHEST_MM, FARTHEST_MM);
+                lower_mm[region] += step.clamp(-MAX_STEP_MM, MAX_STEP_MM);
             }
         }
         None
     }
 
-    /// What regions that carry something are short of, N.
+    /// Missing force of each loaded region, N.
     fn missing_n(&self, found_n: [f64; MAX_REGIONS]) -> [f64; MAX_REGIONS] {
         std::array::from_fn(|region| {
             let wanted_n = self.region_force_n[region];
@@ -300,12 +303,12 @@ impl Target {
         })
     }
 
-    /// The pose with the femur lowered over every region by so much.
+    /// The pose with the femur lowered over every region.
     fn lowered(&self, lower_mm: [f64; MAX_REGIONS]) -> Pose {
         let ([left, right], [left_arm, right_arm]) = (lower_mm, self.arms_mm);
         let mut forces = self.region_force_n.iter();
         let is_on_both = forces.all(|force| *force > MIN_FORCE_N);
-        // A side that carries nothing goes along with the other.
+        // An unloaded region follows the other one.
         let (tilt, middle) = if is_on_both && (right_arm - left_arm).abs() > 1.0 {
             let tilt = (right - left) / (right_arm - left_arm);
             (tilt, left - tilt * left_arm)
@@ -322,16 +325,16 @@ impl Target {
     }
 }
 
-fn land(contact: &mut dyn ContactModel, pose: &Pose) -> ContactResult {
+fn evaluate(contact: &mut dyn ContactModel, pose: &Pose) -> ContactResult {
     let motion = RelativeMotion::at_rest(*pose);
     contact.respond(&motion);
     contact.evaluate(&motion)
 }
 
 /// Part of the axial force on every region of the surface, N.
-fn forces(landing: &ContactResult) -> [f64; MAX_REGIONS] {
+fn forces(result: &ContactResult) -> [f64; MAX_REGIONS] {
     let mut forces_n = [0.0; MAX_REGIONS];
-    for node in &landing.touched {
+    for node in &result.touched {
         forces_n[usize::from(node.region)] -= node.force_n.y;
     }
     forces_n

@@ -1,17 +1,16 @@
-//! A pressure table with which the elastic foundation follows the deformable insert.
+//! A pressure table with which the elastic foundation reproduces the peak pressure and area of the deformable insert.
 
 pub(crate) mod fit;
 
-use condyle_results::catalogue;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use condyle::{
     contact::{
-        Bodies, ContactLaw, ContactMemory, ContactModel, Foundation, MAX_REGIONS, PressureLaw,
-        PressureTable, confined_modulus,
+        Bodies, ContactLaw, ContactMemory, Foundation, MAX_REGIONS, PressureLaw, PressureTable,
+        confined_modulus,
     },
     evolve::March,
-    geometry::{ArticulatingSurface, Insert},
+    geometry::Insert,
     machine::{
         CycleRow, JointIndex,
         knee::{AP, IE, KNEE},
@@ -24,7 +23,10 @@ use condyle_case::{
         PressureLawChoice, SharedBodies, StrainTable, TableError,
     },
 };
-use condyle_results::Summary;
+use condyle_results::{
+    Summary,
+    catalogue::{MASS_LOSS_MG, MAX_DEPTH_MM, WALL_S},
+};
 use serde::Serialize;
 
 use crate::{
@@ -33,76 +35,69 @@ use crate::{
     run::{error::RunError, running::march_watched},
 };
 
-/// So many increments of stance are fitted to.
-const FITTED: usize = 40;
+/// Increments of stance that the table is fitted to.
+const MAX_FITTED: usize = 40;
+/// Increments with at least this part of the cycle's highest axial force are stance.
+const STANCE: f64 = 0.2;
 
-/// What is calibrated.
+/// A request for a calibration.
 #[derive(Clone, Debug)]
 pub struct CalibrateRequest {
     /// The case file.
     pub case: PathBuf,
-    /// What is changed of it.
+    /// Changes of the case.
     pub changes: Vec<Assignment>,
-    /// Cases that the table was not fitted to, on which it is tried.
+    /// Cases that the table is tried on without being fitted to them.
     pub held_out: Vec<PathBuf>,
 }
 
-/// What a foundation and the deformable insert do under the same forces, or at the same pose.
+/// The foundation and the deformable insert in one increment, under the same forces or at the same pose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CalibratedIncrement {
-    /// Place in the cycle, %.
-    pub percent: f64,
-    /// Axial force, N.
-    pub axial_force_n: f64,
-    /// Peak pressure of the deformable insert, MPa.
-    pub deformable_peak_mpa: f64,
-    /// Of the foundation under the same forces, MPa.
-    pub peak_mpa: f64,
-    /// Contact area of the deformable insert, mm2.
-    pub deformable_area_mm2: f64,
-    /// Of the foundation under the same forces, mm2.
-    pub area_mm2: f64,
-    /// Force of the foundation where the femur is as deep as in the deformable insert, N.
-    pub force_at_same_approach_n: f64,
-    /// By how much deeper the femur lies in the foundation under the same force, mm.
-    pub deeper_mm: f64,
+struct FittedIncrement {
+    percent: f64,
+    axial_force_n: f64,
+    deformable_peak_mpa: f64,
+    peak_mpa: f64,
+    deformable_area_mm2: f64,
+    area_mm2: f64,
+    /// Force of the foundation where the femur is as deep as in the deformable insert.
+    force_at_same_approach_n: f64,
+    /// Additional depth of the femur in the foundation under the same force.
+    deeper_mm: f64,
 }
 
-/// A calibrated pressure law and what is left.
+/// A calibrated pressure law and its remaining errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CalibratedLaw {
     /// Points of overclosure over thickness, and pressure, MPa.
-    pub table: Vec<(f64, f64)>,
-    /// By how much the peak pressure is off in stance at most, in the first cycle and the last, %.
+    table: Vec<(f64, f64)>,
+    /// Largest error of the peak pressure in stance, in the first cycle and the last, %, rounded up to a tenth.
     pub peak_error_percent: f64,
-    /// The increments that it was fitted to.
-    pub increments: Vec<CalibratedIncrement>,
-    /// A run with it, beside the deformable insert.
-    pub left: Left,
-    /// A run with the law of the case, or the linear one if the case is that of a deformable insert.
-    pub left_before: Left,
-    /// Runs of cases that it was not fitted to.
-    pub held_out: Vec<HeldOut>,
+    increments: Vec<FittedIncrement>,
+    /// Errors of a run with the table.
+    left: RunErrors,
+    /// Errors of a run with the law of the case, or the linear one if the case is that of a deformable insert.
+    left_before: RunErrors,
+    held_out: Vec<HeldOut>,
     /// The case with the table.
     #[serde(skip)]
     pub case: Case,
 }
 
-/// A case that a table was not fitted to.
+/// A case that the table was not fitted to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct HeldOut {
-    /// The case file.
-    pub case: PathBuf,
-    /// With the table.
-    pub left: Left,
-    /// With the case's own law.
-    pub left_before: Left,
+struct HeldOut {
+    case: PathBuf,
+    /// Errors with the table.
+    left: RunErrors,
+    /// Errors with the case's own law.
+    left_before: RunErrors,
 }
 
-/// Fits a pressure table with which the foundation of a case presses, under the forces of the first cycle of its first
-/// activity, as its deformable insert does; then runs both.
+/// Fits a pressure table with which the foundation of a case presses as its deformable insert does, under the forces of
+/// the first cycle of its first activity; then runs both.
 ///
-/// `tell` hears of what is begun.
+/// `tell` receives the name of each step as it begins.
 ///
 /// # Errors
 /// A case that cannot be run, with one model or the other.
@@ -113,56 +108,52 @@ pub fn calibrate(
     let case = Case::read_changed(&request.case, &request.changes)?;
     tell("the deformable insert");
     let mut recorded = Recorded::default();
-    let deformable = run(&deformable(&case), &mut recorded)?;
+    let deformable = with_deformable(&case);
+    let deformable = run(&deformable, &mut |march| recorded.see(march))?;
     tell("the fit");
     let (table, increments) = recorded.fitted(&case, &deformable.march);
     tell("the foundation with the table");
-    let mut calibrated = with_table(&case, table.clone(), None);
-    let left = Left::between(&run_quietly(&calibrated)?, &deformable);
-    let left_before = Left::between(&run_quietly(&foundation(&case))?, &deformable);
-    let worst = |cycle: &CycleLeft| cycle.peak_pressure.most_percent;
-    let peak_error_percent = worst(&left.first_cycle).max(worst(&left.last_cycle));
-    // As it is said, rather than to the last bit.
-    let said = (peak_error_percent * 10.0).ceil() / 10.0;
-    calibrated = with_table(&case, table.clone(), Some(said));
-    let held_out = request.held_out.iter().map(|path| {
+    let (left, left_before) = errors(&case, &table, &deformable)?;
+    let worst = |cycle: &CycleErrors| cycle.peak_pressure.most_percent;
+    let worst = worst(&left.first_cycle).max(worst(&left.last_cycle));
+    let peak_error_percent = (worst * 10.0).ceil() / 10.0;
+    let mut held_out = Vec::new();
+    for path in &request.held_out {
         tell(&format!("{}", path.display()));
-        held_out(path, &table)
-    });
+        let case = Case::read_changed(path, &[])?;
+        let deformable = run(&with_deformable(&case), &mut |_| ())?;
+        let (left, left_before) = errors(&case, &table, &deformable)?;
+        held_out.push(HeldOut {
+            case: path.to_owned(),
+            left,
+            left_before,
+        });
+    }
     Ok(CalibratedLaw {
-        peak_error_percent: said,
+        peak_error_percent,
         increments,
         left,
         left_before,
-        held_out: held_out.collect::<Result<_, _>>()?,
+        held_out,
         table: table.points().to_vec(),
-        case: calibrated,
+        case: with_table(&case, table, Some(peak_error_percent)),
     })
 }
 
-impl CalibratedLaw {
-    /// The table as a CSV file for `[contact.foundation] strain_table_file`.
-    pub fn to_csv(&self) -> String {
-        match self.case.contact.law() {
-            Some(PressureLawChoice::TabulatedStrain(table)) => table.to_csv(),
-            _ => String::new(),
-        }
-    }
+/// Errors of the foundation with a table, and with the law of the case.
+fn errors(
+    case: &Case,
+    table: &PressureTable,
+    deformable: &Ran,
+) -> Result<(RunErrors, RunErrors), RunError> {
+    let error_of = |case: &Case| -> Result<RunErrors, RunError> {
+        Ok(RunErrors::between(&run(case, &mut |_| ())?, deformable))
+    };
+    let left = error_of(&with_table(case, table.clone(), None))?;
+    Ok((left, error_of(&with_foundation(case))?))
 }
 
-fn held_out(path: &Path, table: &PressureTable) -> Result<HeldOut, RunError> {
-    let case = Case::read_changed(path, &[])?;
-    let deformable = run_quietly(&deformable(&case))?;
-    let calibrated = run_quietly(&with_table(&case, table.clone(), None))?;
-    let before = run_quietly(&foundation(&case))?;
-    Ok(HeldOut {
-        case: path.to_owned(),
-        left: Left::between(&calibrated, &deformable),
-        left_before: Left::between(&before, &deformable),
-    })
-}
-
-fn deformable(case: &Case) -> Case {
+fn with_deformable(case: &Case) -> Case {
     let mut case = case.clone();
     if case.contact.deformable().is_none() {
         case.contact.model = ContactModelChoice::Deformable(DeformableContact::ELASTIC);
@@ -170,7 +161,8 @@ fn deformable(case: &Case) -> Case {
     case
 }
 
-fn foundation(case: &Case) -> Case {
+/// The case with a foundation and its own law, or the linear one.
+fn with_foundation(case: &Case) -> Case {
     let law = case.contact.law().cloned();
     with_law(case, law.unwrap_or(PressureLawChoice::Linear))
 }
@@ -183,32 +175,29 @@ fn with_law(case: &Case, law: PressureLawChoice) -> Case {
 
 fn with_table(case: &Case, points: PressureTable, peak_error_percent: Option<f64>) -> Case {
     let error = TableError { peak_error_percent };
-    with_law(
-        case,
-        PressureLawChoice::TabulatedStrain(StrainTable { points, error }),
-    )
+    let table = StrainTable { points, error };
+    with_law(case, PressureLawChoice::TabulatedStrain(table))
 }
 
-/// What the first cycle on a deformable insert was, and on what.
+/// A finished march and its summary.
+pub(crate) struct Ran {
+    pub march: March,
+    pub summary: Summary,
+}
+
+fn run(case: &Case, watch: &mut dyn FnMut(&March)) -> Result<Ran, RunError> {
+    let (march, summary) = march_watched(case, &Cache::of_user(), &SharedBodies::default(), watch)?;
+    Ok(Ran { march, summary })
+}
+
+/// The insert before it wears, and its first cycle.
 #[derive(Default)]
 struct Recorded {
     insert: Option<Insert>,
     targets: Vec<Target>,
 }
 
-fn run_quietly(case: &Case) -> Result<Ran, RunError> {
-    run(case, &mut Recorded::default())
-}
-
-/// Runs a case to its end.
-fn run(case: &Case, recorded: &mut Recorded) -> Result<Ran, RunError> {
-    let watch = &mut |march: &March| recorded.see(march);
-    let (march, summary) = march_watched(case, &Cache::of_user(), &SharedBodies::default(), watch)?;
-    Ok(Ran { march, summary })
-}
-
 impl Recorded {
-    /// Keeps the insert before it wears, and the first cycle.
     fn see(&mut self, march: &March) {
         if self.insert.is_none() {
             self.insert = Some(march.insert().clone());
@@ -218,8 +207,8 @@ impl Recorded {
         }
     }
 
-    /// The table that is fitted to some increments of stance, and what it does in them.
-    fn fitted(&self, case: &Case, march: &March) -> (PressureTable, Vec<CalibratedIncrement>) {
+    /// The table fitted to some increments of stance, and its errors in them.
+    fn fitted(&self, case: &Case, march: &March) -> (PressureTable, Vec<FittedIncrement>) {
         let insert = self.insert.as_ref().expect("a run has an insert");
         let surface = insert.surface();
         let bodies = Bodies {
@@ -229,12 +218,19 @@ impl Recorded {
         };
         let material = &case.material;
         let modulus_mpa = confined_modulus(material.youngs_modulus_mpa, material.poissons_ratio);
-        let mut law = foundation(case).foundation();
+        let mut law = with_foundation(case).foundation();
         law.pressure = PressureLaw::Linear { modulus_mpa };
-        // Forces are met more exactly than extrapolated samples give them.
+        // Forces are balanced more exactly than extrapolated samples of the femur allow.
         law.sample_reuse_mm = 0.0;
-        let targets =
-            self.few_that_are_carried(law.contact(bodies, ContactMemory::default()), &surface);
+        let mut contact = law.contact(bodies, ContactMemory::default());
+        let few = self.few_of_stance().into_iter();
+        let armed = few.map(|target| target.with_arms(contact.as_mut(), &surface.positions));
+        let mut targets: Vec<Target> = armed.collect();
+        targets.retain(|target| {
+            let carried = target.carried(contact.as_mut(), [0.0; MAX_REGIONS]);
+            carried.is_some()
+        });
+        drop(contact);
         let fit = Fit {
             bodies,
             foundation: law,
@@ -245,37 +241,18 @@ impl Recorded {
         (table, increments)
     }
 
-    /// Few increments of stance whose forces a foundation carries, with where they act.
-    fn few_that_are_carried(
-        &self,
-        mut contact: Box<dyn ContactModel + '_>,
-        surface: &ArticulatingSurface,
-    ) -> Vec<Target> {
-        let few = self.few_of_stance().into_iter();
-        let armed = few.map(|target| target.with_arms(contact.as_mut(), &surface.positions));
-        let mut armed: Vec<Target> = armed.collect();
-        armed.retain(|target| {
-            target
-                .carried(contact.as_mut(), [0.0; MAX_REGIONS])
-                .is_some()
-        });
-        armed
-    }
-
-    /// Increments of stance, evenly.
+    /// Evenly spaced increments of stance.
     fn few_of_stance(&self) -> Vec<Target> {
         let highest_n = self.targets.iter().map(Target::force_n).fold(0.0, f64::max);
-        let stance = || {
-            let targets = self.targets.iter();
-            targets.filter(|target| is_stance(target.force_n(), highest_n))
-        };
-        let every = stance().count().div_ceil(FITTED).max(1);
-        stance().step_by(every).cloned().collect()
+        let targets = self.targets.iter();
+        let stance = targets.filter(|target| target.force_n() >= STANCE * highest_n);
+        let every = stance.clone().count().div_ceil(MAX_FITTED).max(1);
+        stance.step_by(every).cloned().collect()
     }
 }
 
-/// What a table does in the increments that it was fitted to.
-fn increments(fit: &Fit<'_>, table: &PressureTable) -> Vec<CalibratedIncrement> {
+/// The errors of a table in the increments that it was fitted to.
+fn increments(fit: &Fit<'_>, table: &PressureTable) -> Vec<FittedIncrement> {
     let near = vec![[0.0; MAX_REGIONS]; fit.targets.len()];
     let carried = fit.carried(table, &near);
     let law = Foundation {
@@ -284,10 +261,10 @@ fn increments(fit: &Fit<'_>, table: &PressureTable) -> Vec<CalibratedIncrement> 
     };
     let mut contact = law.contact(fit.bodies, ContactMemory::default());
     let pairs = fit.targets.iter().zip(carried);
-    let told = pairs.filter_map(|(target, carried)| {
+    let increments = pairs.filter_map(|(target, carried)| {
         let carried = carried?;
         let force_n = target.force_at_same_pose_n(contact.as_mut());
-        Some(CalibratedIncrement {
+        Some(FittedIncrement {
             percent: target.percent,
             axial_force_n: target.force_n(),
             deformable_peak_mpa: target.peak_mpa,
@@ -298,102 +275,66 @@ fn increments(fit: &Fit<'_>, table: &PressureTable) -> Vec<CalibratedIncrement> 
             deeper_mm: target.mean_by_force(carried.lower_mm),
         })
     });
-    told.collect()
+    increments.collect()
 }
 
-/// An increment with at least this part of the cycle's highest axial force is one of stance.
-const STANCE: f64 = 0.2;
-
-/// What a number is off by over the increments of stance, %.
+/// Errors of a number over the increments of stance, %.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct OffInStance {
-    /// Root of the mean square.
-    pub mean_percent: f64,
+struct StanceErrors {
+    /// Root mean square.
+    mean_percent: f64,
     /// The largest, without its sign.
-    pub most_percent: f64,
+    most_percent: f64,
     /// Of the highest value of the cycle, with its sign.
-    pub of_highest_percent: f64,
+    of_highest_percent: f64,
 }
 
-/// What a cycle of the rigid model is off by.
+/// Errors of a cycle of the foundation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct CycleLeft {
-    /// Peak pressure.
-    pub peak_pressure: OffInStance,
-    /// Contact area.
-    pub contact_area: OffInStance,
-    /// Root of the mean square over the whole cycle, mm.
-    pub ap_mm: f64,
-    /// The same, degrees.
-    pub ie_deg: f64,
+struct CycleErrors {
+    peak_pressure: StanceErrors,
+    contact_area: StanceErrors,
+    /// Root mean square over the whole cycle.
+    ap_mm: f64,
+    ie_deg: f64,
 }
 
-/// What a run of the rigid model is off by.
+/// Errors of a run of the foundation, relative to the deformable insert.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Left {
-    /// The first cycle.
-    pub first_cycle: CycleLeft,
-    /// The last cycle solved.
-    pub last_cycle: CycleLeft,
-    /// Mass lost on the deformable insert, mg.
-    pub deformable_mass_loss_mg: f64,
-    /// Mass lost with the foundation, mg.
-    pub mass_loss_mg: f64,
-    /// What that is off by, %.
-    pub mass_loss_percent: f64,
-    /// Deepest wear on the deformable insert, mm.
-    pub deformable_max_depth_mm: f64,
-    /// Deepest wear with the foundation, mm.
-    pub max_depth_mm: f64,
-    /// What that is off by, %.
-    pub max_depth_percent: f64,
-    /// Seconds of the solver on the deformable insert.
-    pub deformable_wall_s: f64,
-    /// Seconds of the solver with the foundation.
-    pub wall_s: f64,
+struct RunErrors {
+    first_cycle: CycleErrors,
+    last_cycle: CycleErrors,
+    deformable_mass_loss_mg: f64,
+    mass_loss_mg: f64,
+    mass_loss_percent: f64,
+    deformable_max_depth_mm: f64,
+    max_depth_mm: f64,
+    max_depth_percent: f64,
+    deformable_wall_s: f64,
+    wall_s: f64,
 }
 
-/// A march that is done, and what it came to.
-pub(crate) struct Ran {
-    pub march: March,
-    pub summary: Summary,
-}
-
-impl Left {
-    /// What is left between two runs that are done.
-    pub(crate) fn between(foundation: &Ran, deformable: &Ran) -> Self {
+impl RunErrors {
+    fn between(foundation: &Ran, deformable: &Ran) -> Self {
         let (found, wanted) = (&foundation.summary, &deformable.summary);
-        let cycles = first_and_last(&foundation.march)
-            .into_iter()
-            .zip(first_and_last(&deformable.march));
-        let [first_cycle, last_cycle] = <[CycleLeft; 2]>::try_from(
-            cycles
-                .map(|(found, wanted)| CycleLeft::between(found, wanted))
-                .collect::<Vec<_>>(),
-        )
-        .expect("a first and a last cycle");
+        let [first, last] = first_and_last(&foundation.march);
+        let [wanted_first, wanted_last] = first_and_last(&deformable.march);
         Self {
-            first_cycle,
-            last_cycle,
-            deformable_mass_loss_mg: wanted[&catalogue::MASS_LOSS_MG],
-            mass_loss_mg: found[&catalogue::MASS_LOSS_MG],
-            mass_loss_percent: off_percent(
-                found[&catalogue::MASS_LOSS_MG],
-                wanted[&catalogue::MASS_LOSS_MG],
-            ),
-            deformable_max_depth_mm: wanted[&catalogue::MAX_DEPTH_MM],
-            max_depth_mm: found[&catalogue::MAX_DEPTH_MM],
-            max_depth_percent: off_percent(
-                found[&catalogue::MAX_DEPTH_MM],
-                wanted[&catalogue::MAX_DEPTH_MM],
-            ),
-            deformable_wall_s: wanted[&catalogue::WALL_S],
-            wall_s: found[&catalogue::WALL_S],
+            first_cycle: CycleErrors::between(first, wanted_first),
+            last_cycle: CycleErrors::between(last, wanted_last),
+            deformable_mass_loss_mg: wanted[&MASS_LOSS_MG],
+            mass_loss_mg: found[&MASS_LOSS_MG],
+            mass_loss_percent: error_percent(found[&MASS_LOSS_MG], wanted[&MASS_LOSS_MG]),
+            deformable_max_depth_mm: wanted[&MAX_DEPTH_MM],
+            max_depth_mm: found[&MAX_DEPTH_MM],
+            max_depth_percent: error_percent(found[&MAX_DEPTH_MM], wanted[&MAX_DEPTH_MM]),
+            deformable_wall_s: wanted[&WALL_S],
+            wall_s: found[&WALL_S],
         }
     }
 }
 
-impl CycleLeft {
+impl CycleErrors {
     fn between(found: &[CycleRow], wanted: &[CycleRow]) -> Self {
         let distance = |joint: JointIndex| {
             let pairs = found.iter().zip(wanted);
@@ -403,8 +344,8 @@ impl CycleLeft {
             (squares.sum::<f64>() / wanted.len() as f64).sqrt()
         };
         Self {
-            peak_pressure: off_in_stance(found, wanted, |row| row.peak_pressure_mpa),
-            contact_area: off_in_stance(found, wanted, |row| row.contact_area_mm2),
+            peak_pressure: stance_errors(found, wanted, |row| row.peak_pressure_mpa),
+            contact_area: stance_errors(found, wanted, |row| row.contact_area_mm2),
             ap_mm: distance(AP),
             ie_deg: distance(IE),
         }
@@ -414,67 +355,62 @@ impl CycleLeft {
 /// Rows of the first activity's first and last cycle.
 fn first_and_last(march: &March) -> [&[CycleRow]; 2] {
     let cycles = march.state().activities[0].first_and_last.as_ref();
-    let (first, last) = cycles.expect("a march that is done has solved cycles");
+    let (first, last) = cycles.expect("a finished march has solved cycles");
     [&first.rows, &last.rows]
 }
 
-/// Which rows of a cycle are of stance.
-pub(crate) fn is_stance(force_n: f64, highest_n: f64) -> bool {
-    force_n >= STANCE * highest_n
-}
-
-fn off_in_stance(
+fn stance_errors(
     found: &[CycleRow],
     wanted: &[CycleRow],
     value: fn(&CycleRow) -> f64,
-) -> OffInStance {
+) -> StanceErrors {
     let highest =
         |rows: &[CycleRow], value: fn(&CycleRow) -> f64| rows.iter().map(value).fold(0.0, f64::max);
     let highest_n = highest(wanted, |row| row.axial_force_n);
     let pairs = found.iter().zip(wanted);
-    let stance = pairs.filter(|(_, wanted)| is_stance(wanted.axial_force_n, highest_n));
+    let stance = pairs.filter(|(_, wanted)| wanted.axial_force_n >= STANCE * highest_n);
     let off: Vec<f64> = stance
-        .map(|(found, wanted)| off_percent(value(found), value(wanted)))
+        .map(|(found, wanted)| error_percent(value(found), value(wanted)))
         .collect();
     let squares: f64 = off.iter().map(|off| off * off).sum();
-    OffInStance {
+    StanceErrors {
         mean_percent: (squares / off.len() as f64).sqrt(),
         most_percent: off.iter().fold(0.0, |most, off| off.abs().max(most)),
-        of_highest_percent: off_percent(highest(found, value), highest(wanted, value)),
+        of_highest_percent: error_percent(highest(found, value), highest(wanted, value)),
     }
 }
 
-fn off_percent(found: f64, wanted: f64) -> f64 {
+fn error_percent(found: f64, wanted: f64) -> f64 {
     100.0 * (found / wanted - 1.0)
 }
 
 impl CalibratedLaw {
-    /// The page: what is left of a run, increment by increment, on other cases, and the table.
+    /// The table as a CSV file for `[contact.foundation] strain_table_file`.
+    pub fn to_csv(&self) -> String {
+        match self.case.contact.law() {
+            Some(PressureLawChoice::TabulatedStrain(table)) => table.to_csv(),
+            _ => String::new(),
+        }
+    }
+
+    /// A page in Markdown: the errors of a run, by increment, and on other cases, and the table.
     pub fn markdown(&self) -> String {
-        let mut page = String::from("# Calibrated pressure law\n\n");
-        page += &format!(
-            "With this table the peak pressure of the rigid model is off by {} % at most in stance, in the first cycle and the last.\n\n",
+        let mut page = format!(
+            "# Calibrated pressure law\n\nWith this table the peak pressure of the rigid model is off by {} % at most in \
+             stance, in the first cycle and the last.\n\n",
             self.peak_error_percent
         );
         page += "Off the deformable insert, with the law before and with the table; stance has a fifth of the highest axial force and more:\n\n";
         page += &self.table_of_left();
         if !self.held_out.is_empty() {
             page += "\nCases that the table was not fitted to, with their own law and with the table:\n";
-            page += &self.held_out.iter().map(of_held_out).collect::<String>();
+        }
+        for held_out in &self.held_out {
+            let case = held_out.case.display();
+            let table = table_of_errors(&held_out.left_before, &held_out.left);
+            page += &format!("\n`{case}`\n\n{table}");
         }
         page += "\nUnder the forces of the deformable insert, where it was fitted (unworn):\n\n";
-        page += &self.table_of_increments();
-        page += "\nThe table:\n\n";
-        page += &self.table_of_points();
-        page
-    }
-
-    /// What is left, as a table.
-    pub fn table_of_left(&self) -> String {
-        of_left(&self.left_before, &self.left)
-    }
-
-    fn table_of_increments(&self) -> String {
         let head = [
             "% of cycle",
             "axial force, N",
@@ -486,105 +422,79 @@ impl CalibratedLaw {
             "deeper by, mm",
         ];
         let mut rows = vec![head.map(str::to_owned).to_vec()];
-        rows.extend(self.increments.iter().map(of_increment));
-        aligned(&rows)
-    }
-
-    fn table_of_points(&self) -> String {
+        rows.extend(self.increments.iter().map(|increment| {
+            vec![
+                format!("{:.1}", increment.percent),
+                format!("{:.0}", increment.axial_force_n),
+                format!("{:.2}", increment.deformable_peak_mpa),
+                format!("{:.2}", increment.peak_mpa),
+                format!("{:.1}", increment.deformable_area_mm2),
+                format!("{:.1}", increment.area_mm2),
+                format!("{:.0}", increment.force_at_same_approach_n),
+                format!("{:+.4}", increment.deeper_mm),
+            ]
+        }));
+        page += &aligned(&rows);
+        page += "\nThe table:\n\n";
         let head = ["overclosure over thickness", "pressure, MPa"];
         let mut rows = vec![head.map(str::to_owned).to_vec()];
         let points = self.table.iter();
         rows.extend(points.map(|(d, p)| vec![format!("{d:.6}"), format!("{p:.3}")]));
-        aligned(&rows)
+        page + &aligned(&rows)
+    }
+
+    /// The errors of a run with the law before and with the table, in Markdown.
+    pub fn table_of_left(&self) -> String {
+        table_of_errors(&self.left_before, &self.left)
     }
 }
 
-fn of_increment(increment: &CalibratedIncrement) -> Vec<String> {
-    vec![
-        format!("{:.1}", increment.percent),
-        format!("{:.0}", increment.axial_force_n),
-        format!("{:.2}", increment.deformable_peak_mpa),
-        format!("{:.2}", increment.peak_mpa),
-        format!("{:.1}", increment.deformable_area_mm2),
-        format!("{:.1}", increment.area_mm2),
-        format!("{:.0}", increment.force_at_same_approach_n),
-        format!("{:+.4}", increment.deeper_mm),
-    ]
-}
-
-fn of_held_out(held_out: &HeldOut) -> String {
-    let case = held_out.case.display();
-    let table = of_left(&held_out.left_before, &held_out.left);
-    format!("\n`{case}`\n\n{table}")
-}
-
-fn of_left(before: &Left, after: &Left) -> String {
-    let [mut rows, after] = [before, after].map(|left| {
-        let [mut said, of_run] = [of_cycles(left), of_run(left)];
-        said.extend(of_run);
-        said
-    });
-    for (row, after) in rows.iter_mut().zip(after) {
-        row.extend(after.into_iter().skip(1));
+fn table_of_errors(before: &RunErrors, after: &RunErrors) -> String {
+    let mut rows = vec![["", "law before", "table"].map(str::to_owned).to_vec()];
+    for ((name, before), (_, after)) in in_words(before).into_iter().zip(in_words(after)) {
+        rows.push(vec![name.to_owned(), before, after]);
     }
-    rows.insert(0, ["", "law before", "table"].map(str::to_owned).to_vec());
     aligned(&rows)
 }
 
-/// What is left of the first and the last cycle.
-fn of_cycles(left: &Left) -> Vec<Vec<String>> {
-    let (first, last) = (&left.first_cycle, &left.last_cycle);
-    vec![
-        row(
+/// The names and the texts of the errors of a run.
+fn in_words(errors: &RunErrors) -> [(&'static str, String); 9] {
+    let in_stance = |off: StanceErrors| {
+        let (mean, most, highest) = (off.mean_percent, off.most_percent, off.of_highest_percent);
+        format!("{mean:.1} % (most {most:.1} %, of the highest {highest:+.1} %)")
+    };
+    let (first, last) = (&errors.first_cycle, &errors.last_cycle);
+    let (wall_s, deformable_s) = (errors.wall_s, errors.deformable_wall_s);
+    [
+        (
             "peak pressure in stance, first cycle",
             in_stance(first.peak_pressure),
         ),
-        row("the same, last cycle", in_stance(last.peak_pressure)),
-        row(
+        ("the same, last cycle", in_stance(last.peak_pressure)),
+        (
             "contact area in stance, first cycle",
             in_stance(first.contact_area),
         ),
-        row("the same, last cycle", in_stance(last.contact_area)),
-        row("AP, first cycle", format!("{:.3} mm", first.ap_mm)),
-        row("IE, first cycle", format!("{:.3} degrees", first.ie_deg)),
+        ("the same, last cycle", in_stance(last.contact_area)),
+        ("AP, first cycle", format!("{:.3} mm", first.ap_mm)),
+        ("IE, first cycle", format!("{:.3} degrees", first.ie_deg)),
+        (
+            "mass lost",
+            format!(
+                "{:+.2} % ({:.2} mg, {:.2} on the deformable insert)",
+                errors.mass_loss_percent, errors.mass_loss_mg, errors.deformable_mass_loss_mg
+            ),
+        ),
+        (
+            "deepest wear",
+            format!(
+                "{:+.2} % ({:.4} mm, {:.4} on the deformable insert)",
+                errors.max_depth_percent, errors.max_depth_mm, errors.deformable_max_depth_mm
+            ),
+        ),
+        (
+            "time",
+            format!("{wall_s:.2} s ({deformable_s:.2} s on the deformable insert)"),
+        ),
     ]
-}
-
-/// What is left of the whole run.
-fn of_run(left: &Left) -> Vec<Vec<String>> {
-    let beside = |percent: f64, found: String, wanted: String| {
-        format!("{percent:+.2} % ({found}, {wanted} on the deformable insert)")
-    };
-    let mass = beside(
-        left.mass_loss_percent,
-        format!("{:.2} mg", left.mass_loss_mg),
-        format!("{:.2}", left.deformable_mass_loss_mg),
-    );
-    let depth = beside(
-        left.max_depth_percent,
-        format!("{:.4} mm", left.max_depth_mm),
-        format!("{:.4}", left.deformable_max_depth_mm),
-    );
-    let (wall_s, deformable_s) = (left.wall_s, left.deformable_wall_s);
-    let time = format!("{wall_s:.2} s ({deformable_s:.2} s on the deformable insert)");
-    vec![
-        row("mass lost", mass),
-        row("deepest wear", depth),
-        row("time", time),
-    ]
-}
-
-fn row(what: &str, said: String) -> Vec<String> {
-    vec![what.to_owned(), said]
-}
-
-fn in_stance(off: OffInStance) -> String {
-    let OffInStance {
-        mean_percent,
-        most_percent,
-        of_highest_percent,
-    } = off;
-    format!(
-        "{mean_percent:.1} % (most {most_percent:.1} %, of the highest {of_highest_percent:+.1} %)"
-    )
 }

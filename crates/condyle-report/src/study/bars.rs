@@ -1,14 +1,14 @@
-//! Bars from one value to another, one below the other: tornado, indices, ranking.
+//! Horizontal bars: tornado, indices, ranking.
 
 use crate::figure::{Axis, alone, escape};
 use crate::number::significant;
 
 const WIDTH: f64 = 760.0;
-/// Where bars begin: names stand to the left.
+/// Room for the names, to the left of the bars.
 const LEFT: f64 = 270.0;
 const RIGHT: f64 = 70.0;
 const TOP: f64 = 44.0;
-/// From one bar to the next, px.
+/// Distance of the bars, px.
 const PITCH: f64 = 26.0;
 const THICK: f64 = 14.0;
 const MAX_INTERVALS: usize = 6;
@@ -16,24 +16,24 @@ const MAX_INTERVALS: usize = 6;
 /// One bar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
-    /// What stands to the left.
+    /// The label.
     pub name: String,
-    /// From here to there.
+    /// Both ends.
     pub span: [f64; 2],
-    /// An interval drawn as a thin line over it.
+    /// An interval, drawn as a thin line over the bar.
     pub interval: Option<[f64; 2]>,
 }
 
-/// Bars one below the other.
+/// A picture of bars.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bars {
-    /// What they show.
+    /// The heading.
     pub title: String,
-    /// Its unit; may be empty.
+    /// Unit of the values; may be empty.
     pub unit: String,
-    /// A value that all are held against.
+    /// A vertical line for comparison.
     pub middle: Option<f64>,
-    /// From the top.
+    /// The bars from the top.
     pub bars: Vec<Bar>,
 }
 
@@ -41,7 +41,10 @@ pub struct Bars {
 pub fn bars_svg(bars: &Bars) -> String {
     let axis = axis(bars);
     let bottom = TOP + PITCH * bars.bars.len() as f64;
-    let title = heading(bars);
+    let mut title = escape(&bars.title);
+    if !bars.unit.is_empty() {
+        title += &format!(r#"<tspan class="unit">, {}</tspan>"#, escape(&bars.unit));
+    }
     let mut body = format!(r#"<text x="0" y="16" class="title">{title}</text>"#);
     for tick in axis.ticks() {
         let (x, label) = (to_x(&axis, tick), axis.label(tick));
@@ -57,23 +60,12 @@ pub fn bars_svg(bars: &Bars) -> String {
         let x = to_x(&axis, middle);
         body += &format!(r#"<path class="axis" d="M{x:.1} {TOP}V{bottom}"/>"#);
     }
-    alone(&bars.title, &described(bars), (WIDTH, bottom + 26.0), &body)
-}
-
-fn heading(bars: &Bars) -> String {
-    let title = escape(&bars.title);
-    match bars.unit.as_str() {
-        "" => title,
-        unit => format!(r#"{title}<tspan class="unit">, {}</tspan>"#, escape(unit)),
-    }
-}
-
-fn described(bars: &Bars) -> String {
-    let told = bars.bars.iter().map(|bar| {
+    let described = bars.bars.iter().map(|bar| {
         let [low, high] = bar.span.map(|end| significant(end, 4));
         format!("{}: {low} to {high}", bar.name)
     });
-    told.collect::<Vec<_>>().join("; ")
+    let described = described.collect::<Vec<_>>().join("; ");
+    alone(&bars.title, &described, (WIDTH, bottom + 26.0), &body)
 }
 
 fn axis(bars: &Bars) -> Axis {

@@ -1,14 +1,14 @@
-//! How outputs are distributed, with their percentiles and limits.
+//! Histograms of outputs with their percentiles and limits.
 
 use crate::figure::{Axis, Curve, Panel, sheet};
 
 const SIZE: (f64, f64) = (480.0, 232.0);
 const COLUMNS: usize = 2;
 const MAX_INTERVALS: usize = 6;
-/// Slices at most.
+/// Largest number of slices.
 const MAX_SLICES: usize = 60;
 
-/// How an output is distributed.
+/// The distribution of an output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distribution {
     /// The output.
@@ -17,9 +17,9 @@ pub struct Distribution {
     pub unit: String,
     /// All values, smallest first.
     pub sorted: Vec<f64>,
-    /// Values that are marked: percentiles.
+    /// Marked percentiles.
     pub marks: Vec<f64>,
-    /// What it must keep to.
+    /// Its limits.
     pub limits: Vec<f64>,
 }
 
@@ -89,7 +89,7 @@ fn ends(one: &Distribution) -> (f64, f64) {
     if low <= high { (low, high) } else { (0.0, 1.0) }
 }
 
-/// Percent of the values in slices of one width, by the root of their number.
+/// The outline of a histogram, % of the values in each slice; the number of slices is the root of that of the values.
 fn outline(sorted: &[f64]) -> Vec<(f64, f64)> {
     let (Some(low), Some(high)) = (sorted.first(), sorted.last()) else {
         return Vec::new();

@@ -6,16 +6,16 @@ use crate::error::ReportError;
 use crate::file::write_text;
 use crate::sheets::Sheets;
 
-/// What the page of a study shows.
+/// The contents of a study's page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudyPage {
-    /// Its heading.
+    /// The heading.
     pub title: String,
-    /// What was done, in a sentence or two.
+    /// A summary in a sentence or two.
     pub lede: String,
-    /// Each with a heading, and rows of which the first is the head.
+    /// Headings and rows; the first row is the head.
     pub tables: Vec<(String, Vec<Vec<String>>)>,
-    /// Names of the files, what they show, and their texts.
+    /// Names of the files, captions, and texts.
     pub pictures: Vec<(&'static str, String, String)>,
 }
 

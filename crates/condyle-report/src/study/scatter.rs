@@ -1,19 +1,19 @@
-//! Clouds of tests: scatter matrix, main effects, Pareto front.
+//! Scatter plots of tests: scatter matrix, main effects, Pareto front.
 
 use crate::figure::{Axis, Curve, Panel, sheet};
 
 const MAX_INTERVALS: usize = 4;
 
-/// Points, and a line through or along them.
-#[derive(Clone, Debug, PartialEq)]
+/// A scatter plot with a line.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cloud {
-    /// What goes up.
+    /// Title of the vertical axis.
     pub title: String,
-    /// Its unit.
+    /// Unit of the vertical axis.
     pub unit: String,
-    /// What goes to the right.
+    /// Title of the horizontal axis.
     pub across: String,
-    /// Ticks of the horizontal axis, where and their texts; round numbers if empty.
+    /// Places and texts of the ticks of the horizontal axis; round numbers if empty.
     pub marks: Vec<(f64, String)>,
     /// The points; may be empty.
     pub points: Vec<(f64, f64)>,
@@ -21,7 +21,7 @@ pub struct Cloud {
     pub line: Vec<(f64, f64)>,
 }
 
-/// The text of an SVG file with the clouds in rows of `columns`; `keys` says what points and line are.
+/// The text of an SVG file with the clouds in rows of `columns`; `keys` names points and line.
 pub fn clouds_svg(title: &str, clouds: &[Cloud], columns: usize, keys: [&str; 2]) -> String {
     let size = if columns > 2 {
         (236.0, 206.0)
@@ -45,7 +45,7 @@ pub fn clouds_svg(title: &str, clouds: &[Cloud], columns: usize, keys: [&str; 2]
     sheet(title, &names.join("; "), &panels, columns.max(1), &used)
 }
 
-/// How far the clouds of one output reach at most: with axes of that length, what moves it little looks so.
+/// The largest vertical span of the plots of one output: on axes of that length, small effects look small.
 fn span_of(clouds: &[Cloud], title: &str) -> f64 {
     let own = clouds.iter().filter(|cloud| cloud.title == title);
     let span = |cloud: &Cloud| {
@@ -90,7 +90,7 @@ fn panel(index: usize, cloud: &Cloud, span: f64, size: (f64, f64)) -> Panel {
     }
 }
 
-/// The last word of a key, or what fits under a small picture; two of one that says little alone.
+/// The last word of a key, or two where the last is common to many keys, cut to fit under a small picture.
 fn short(across: &str) -> String {
     const LONGEST: usize = 28;
     let mut words = across.rsplit('.');
@@ -109,7 +109,7 @@ fn short(across: &str) -> String {
         .collect()
 }
 
-/// Round numbers; around marks, a little room.
+/// An axis of round numbers, or of the marks with some room around them.
 fn across(cloud: &Cloud, low: f64, high: f64) -> Axis {
     if cloud.marks.is_empty() {
         let span = 1e-9 * low.abs().max(high.abs()).max(1e-9);
@@ -132,7 +132,7 @@ fn curve(class: &'static str, points: &[(f64, f64)], dots: bool) -> Curve {
     }
 }
 
-/// The points with a gap after each, so that no line joins them.
+/// The points with a gap after each, so that no line connects them.
 fn apart(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points
         .iter()

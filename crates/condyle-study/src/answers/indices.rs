@@ -1,41 +1,39 @@
-//! Sobol's indices.
+//! Sobol indices.
 
 use condyle_case::study::Design;
-use condyle_results::catalogue::Scalar;
 use serde::Serialize;
 
 use crate::{
-    answers::spread::{Named, mean, middle},
-    chance::Numbers,
-    plan::Plan,
+    answers::Data,
+    random::Random,
+    statistics::{central_interval, mean},
 };
 
-/// Samples of the bases by which intervals are found.
+/// Bootstrap samples of the bases.
 const RESAMPLES: u64 = 500;
-/// Of their chance: intervals are the same whenever they are found.
+/// Seed of these samples: intervals are the same whenever they are computed.
 const SEED: u64 = 20_080_101;
 
-/// What part of the variance of an output is due to an input.
+/// The parts of the variance of an output that an input explains.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Indices {
-    /// The output.
+pub(crate) struct Indices {
     pub output: &'static str,
     /// The key of the input.
     pub input: String,
     /// By the input alone.
     pub first: f64,
-    /// The 95 % interval of that, by bootstrap.
+    /// The 95 % interval, by bootstrap.
     pub first_interval: [f64; 2],
-    /// By the input alone and together with others.
+    /// By the input alone and by its interactions.
     pub total: f64,
-    /// The 95 % interval of that, by bootstrap.
     pub total_interval: [f64; 2],
-    /// Bases all of whose tests are done.
+    /// Bases with all tests done.
     pub bases: usize,
 }
 
-pub(crate) fn all(plan: &Plan, outputs: &[Named<'_, Scalar>]) -> Vec<Indices> {
-    let study = plan.study();
+/// The indices of a Saltelli design; none of others.
+pub(crate) fn indices(data: &Data<'_>) -> Vec<Indices> {
+    let study = data.plan.study();
     if !matches!(study.design, Design::Saltelli(_)) {
         return Vec::new();
     }
@@ -44,12 +42,14 @@ pub(crate) fn all(plan: &Plan, outputs: &[Named<'_, Scalar>]) -> Vec<Indices> {
         .iter()
         .map(|input| input.key.as_str())
         .collect();
-    let of = |output: &Named<'_, Scalar>| of_output(output.of.key, &keys, &output.column.values);
-    outputs.iter().flat_map(of).collect()
+    let outputs = data.outputs.iter();
+    outputs
+        .flat_map(|(output, values)| of_output(output.key, &keys, values))
+        .collect()
 }
 
 fn of_output(output: &'static str, inputs: &[&str], values: &[f64]) -> Vec<Indices> {
-    let bases = Bases::of(inputs.len(), values);
+    let bases = Bases::new(inputs.len(), values);
     let all: Vec<usize> = (0..bases.0.len()).collect();
     let resamples: Vec<Vec<usize>> = (0..RESAMPLES)
         .map(|number| bases.resample(number))
@@ -64,21 +64,21 @@ fn of_output(output: &'static str, inputs: &[&str], values: &[f64]) -> Vec<Indic
             output,
             input: (*input).to_owned(),
             first,
-            first_interval: middle(firsts),
+            first_interval: central_interval(firsts),
             total,
-            total_interval: middle(totals),
+            total_interval: central_interval(totals),
             bases: bases.0.len(),
         }
     };
     inputs.iter().enumerate().map(index).collect()
 }
 
-/// What the tests of every base found, less the mean of all: a, each changed one, b.
+/// The outputs of every base (A, A with each input from B, B) less the mean of all.
 struct Bases(Vec<Vec<f64>>);
 
 impl Bases {
-    /// Those whose tests are all done. The mean is taken out since the estimate by the first bases would scatter with it.
-    fn of(inputs: usize, values: &[f64]) -> Self {
+    /// The bases with all tests done. Subtracting the mean reduces the scatter of the estimate of the first index.
+    fn new(inputs: usize, values: &[f64]) -> Self {
         let whole = values.chunks_exact(inputs + 2);
         let mut whole: Vec<Vec<f64>> = whole
             .filter(|base| base.iter().all(|value| value.is_finite()))
@@ -93,14 +93,14 @@ impl Bases {
         Self(whole)
     }
 
-    /// As many bases, drawn with return.
+    /// As many bases, drawn with replacement.
     fn resample(&self, number: u64) -> Vec<usize> {
-        let mut numbers = Numbers::of_one(SEED, number);
+        let mut numbers = Random::stream(SEED, number);
         let count = self.0.len();
-        (0..count).map(|_| numbers.place(count)).collect()
+        (0..count).map(|_| numbers.index(count)).collect()
     }
 
-    /// First and total index of an input by some bases:
+    /// First and total index of an input from some bases:
     /// S = mean(b (c - a)) / V (Saltelli et al. 2010), T = mean((a - c)^2) / 2 V (Jansen 1999).
     fn indices(&self, input: usize, bases: &[usize]) -> (f64, f64) {
         let count = bases.len() as f64;
@@ -128,7 +128,7 @@ mod tests {
 
     use crate::{design::Saltelli, distribution::Place};
 
-    fn indices(inputs: usize, bases: u64, of: impl Fn(&[f64]) -> f64) -> Vec<Indices> {
+    fn found(inputs: usize, bases: u64, of: impl Fn(&[f64]) -> f64) -> Vec<Indices> {
         let value = |row| {
             let places = Saltelli::places(row, inputs, 1);
             let shares = places.into_iter().map(|place| match place {
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn verify_indices_of_ishigami() {
         let (a, b) = (7.0, 0.1);
-        let found = indices(3, 16_384, |shares| {
+        let found = found(3, 16_384, |shares| {
             let x: Vec<f64> = shares
                 .iter()
                 .map(|share| PI * (2.0 * share - 1.0))
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn verify_indices_of_the_g_function() {
         let weights: [f64; 6] = [0.0, 0.5, 3.0, 9.0, 99.0, 99.0];
-        let found = indices(6, 4096, |shares| {
+        let found = found(6, 4096, |shares| {
             let factor = |(x, a): (&f64, &f64)| ((4.0 * x - 2.0).abs() + a) / (1.0 + a);
             shares.iter().zip(&weights).map(factor).product()
         });

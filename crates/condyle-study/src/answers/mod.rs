@@ -1,4 +1,4 @@
-//! What the tests of a study tell.
+//! The answers of a study, computed from its stored tests.
 
 pub(crate) mod effects;
 pub(crate) mod indices;
@@ -14,56 +14,76 @@ use crate::{
         effects::{Effect, Elementary},
         indices::Indices,
         ranking::{Best, Front, Ranking},
-        spread::{Named, Spread},
+        spread::Spread,
     },
     error::StudyError,
     plan::Plan,
-    store::Store,
+    store::{Column, Store},
 };
 
-/// What the tests of a study tell; `answers.json` has all of it.
+/// The answers of a study; serialised, they are `answers.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Answers {
-    /// Of the study.
-    pub title: String,
-    /// How tests were chosen.
-    pub design: &'static str,
-    /// Tests in all; of a search, at most.
-    pub tests: u64,
-    /// Tests that are kept.
-    pub kept: u64,
-    /// Tests that failed, by their reasons.
-    pub failed: Vec<FailedTests>,
-    /// How each output is distributed.
-    pub spreads: Vec<Spread>,
-    /// How each output goes with each input.
-    pub effects: Vec<Effect>,
-    /// Elementary effects of a Morris design.
-    pub elementary: Vec<Elementary>,
-    /// Sobol's indices of a Saltelli design.
-    pub indices: Vec<Indices>,
-    /// How the designs compare.
-    pub ranking: Option<Ranking>,
-    /// Tests than which none is better in both of two outputs.
-    pub front: Option<Front>,
-    /// What a search found.
-    pub best: Option<Best>,
+    pub(crate) title: String,
+    pub(crate) design: &'static str,
+    tests: u64,
+    pub(crate) kept: u64,
+    pub(crate) failed: Vec<FailedTests>,
+    pub(crate) spreads: Vec<Spread>,
+    pub(crate) effects: Vec<Effect>,
+    pub(crate) elementary: Vec<Elementary>,
+    pub(crate) indices: Vec<Indices>,
+    pub(crate) ranking: Option<Ranking>,
+    pub(crate) front: Option<Front>,
+    pub(crate) best: Option<Best>,
 }
 
-/// Tests that failed for one reason.
+/// The number of tests that failed for one reason.
 #[derive(Clone, Debug, Serialize)]
-pub struct FailedTests {
-    /// What was said.
-    pub reason: String,
-    /// How many.
-    pub tests: u64,
+pub(crate) struct FailedTests {
+    reason: String,
+    pub(crate) tests: u64,
+}
+
+/// The table of a study that answers are computed from.
+pub(crate) struct Data<'a> {
+    pub plan: &'a Plan,
+    pub inputs: Vec<Column>,
+    /// The outputs asked about, with a value for each test.
+    pub outputs: Vec<(&'static Scalar, Vec<f64>)>,
+    /// Whether each test is done and within every limit.
+    pub within: Vec<bool>,
+}
+
+impl<'a> Data<'a> {
+    fn read(plan: &'a Plan, store: &Store) -> Result<Self, StudyError> {
+        let study = plan.study();
+        let values = |output: &Scalar| -> Result<Vec<f64>, StudyError> {
+            Ok(store.column(plan, output.key)?.values)
+        };
+        let mut within = vec![true; plan.tests() as usize];
+        for bound in &study.answers.bounds {
+            for (within, value) in within.iter_mut().zip(values(bound.output)?) {
+                *within &= bound.excess(value) == 0.0 && value.is_finite();
+            }
+        }
+        let inputs = study.inputs.iter();
+        let inputs = inputs.map(|input| store.column(plan, &input.key));
+        let outputs = study.answers.outputs.iter();
+        let outputs = outputs.map(|output| values(output).map(|values| (*output, values)));
+        Ok(Self {
+            plan,
+            inputs: inputs.collect::<Result<_, _>>()?,
+            outputs: outputs.collect::<Result<_, _>>()?,
+            within,
+        })
+    }
 }
 
 impl Answers {
-    /// What the tests in `store` tell.
-    pub(crate) fn of(plan: &Plan, store: &Store) -> Result<Self, StudyError> {
+    pub(crate) fn read(plan: &Plan, store: &Store) -> Result<Self, StudyError> {
         let study = plan.study();
-        let outputs = outputs(plan, store)?;
+        let data = Data::read(plan, store)?;
         let failed = store.reasons()?.into_iter();
         Ok(Self {
             title: study.title.clone(),
@@ -73,37 +93,207 @@ impl Answers {
             failed: failed
                 .map(|(reason, tests)| FailedTests { reason, tests })
                 .collect(),
-            spreads: outputs
+            spreads: data
+                .outputs
                 .iter()
-                .map(|output| Spread::of(plan, output))
+                .map(|(output, values)| Spread::new(plan, output, values))
                 .collect(),
-            effects: effects::all(plan, store, &outputs)?,
-            elementary: effects::all_elementary(plan, &outputs),
-            indices: indices::all(plan, &outputs),
-            ranking: Ranking::of(plan, store)?,
-            front: Front::of(plan, store)?,
-            best: Best::of(plan, store)?,
+            effects: effects::effects(&data),
+            elementary: effects::elementary_effects(&data),
+            indices: indices::indices(&data),
+            ranking: Ranking::read(&data, store)?,
+            front: Front::read(&data, store)?,
+            best: Best::read(&data, store)?,
         })
     }
-}
 
-impl Answers {
     /// Effects of inputs on an output, the largest first.
     pub(crate) fn effects_on(&self, output: &str) -> Vec<&Effect> {
         let own = self.effects.iter().filter(|one| one.output == output);
         largest_first(own, |one| one.span)
     }
 
-    /// Elementary effects of inputs on an output, the largest first.
-    pub(crate) fn elementary_on(&self, output: &str) -> Vec<&Elementary> {
-        let own = self.elementary.iter().filter(|one| one.output == output);
-        largest_first(own, |one| one.mu_star)
+    /// Elementary effects on the first output, the largest first.
+    pub(crate) fn largest_elementary(&self) -> Vec<&Elementary> {
+        let first = self.elementary.first().map(|one| one.output);
+        let own = self.elementary.iter();
+        largest_first(own.filter(|one| Some(one.output) == first), |one| {
+            one.mu_star
+        })
     }
 
-    /// Sobol's indices of an output, the largest total first.
-    pub(crate) fn indices_of(&self, output: &str) -> Vec<&Indices> {
-        let own = self.indices.iter().filter(|one| one.output == output);
-        largest_first(own, |one| one.total)
+    /// Sobol indices of the first output, the largest total first.
+    pub(crate) fn largest_indices(&self) -> Vec<&Indices> {
+        let first = self.indices.first().map(|one| one.output);
+        let own = self.indices.iter();
+        largest_first(own.filter(|one| Some(one.output) == first), |one| one.total)
+    }
+
+    pub(crate) fn failed_tests(&self) -> u64 {
+        self.failed.iter().map(|failed| failed.tests).sum()
+    }
+
+    /// Tables in Markdown, short enough for a terminal.
+    pub fn markdown(&self) -> String {
+        let tables = self.tables();
+        let mut parts: Vec<String> = tables.iter().map(|(_, rows)| aligned(rows)).collect();
+        if let Some(first) = self.failed.first() {
+            let (failed, kept, own) = (self.failed_tests(), self.kept, first.tests);
+            let reason = &first.reason;
+            let failed =
+                format!("{failed} of {kept} tests failed, {own} of them because of: {reason}\n");
+            parts.insert(1, failed);
+        }
+        if let Some(best) = &self.best {
+            let (generations, step) = (best.generations, percent(best.step));
+            let end = format!("after {generations} generations its steps are {step} of the ranges");
+            parts.push(if best.is_converged {
+                format!("The search has converged: {end}.\n")
+            } else {
+                format!("The search has not converged: {end}. Allow more tests.\n")
+            });
+        }
+        parts.join("\n")
+    }
+
+    /// Tables with their headings; the first row of each is its head.
+    pub(crate) fn tables(&self) -> Vec<(String, Vec<Vec<String>>)> {
+        let tables = [
+            ("Outputs", self.table_of_spreads()),
+            ("Ranking", self.table_of_designs()),
+            ("Sobol indices", self.table_of_indices()),
+            ("Elementary effects of Morris", self.table_of_elementary()),
+            ("Effects of inputs", self.table_of_effects()),
+            ("Best", self.table_of_best()),
+        ];
+        let filled = tables.into_iter().filter(|(_, rows)| !rows.is_empty());
+        filled.map(|(name, rows)| (name.to_owned(), rows)).collect()
+    }
+
+    fn table_of_spreads(&self) -> Vec<Vec<String>> {
+        let head = [
+            "output",
+            "unit",
+            "least",
+            "5 %",
+            "median",
+            "95 %",
+            "most",
+            "mean",
+            "SD",
+            "beyond its limit",
+        ];
+        table(&head, &self.spreads, |spread| {
+            let [_, p5, _, p50, _, p95, _] = spread.percentiles;
+            let beyond = spread.beyond.iter().map(|beyond| {
+                let [low, high] = beyond.interval.map(percent);
+                format!("{} ({low} to {high})", percent(beyond.share))
+            });
+            let (least, most) = (spread.least, spread.most);
+            let numbers = [
+                least,
+                p5,
+                p50,
+                p95,
+                most,
+                spread.mean,
+                spread.standard_deviation,
+            ];
+            let mut row = vec![spread.title.to_owned(), spread.unit.to_owned()];
+            row.extend(numbers.map(shown));
+            row.push(beyond.collect::<Vec<_>>().join(", "));
+            row
+        })
+    }
+
+    fn table_of_designs(&self) -> Vec<Vec<String>> {
+        let Some(ranking) = &self.ranking else {
+            return Vec::new();
+        };
+        let mean = format!("{}, {}", ranking.title, ranking.unit);
+        let head = ["design", &mean, "SD", "within limits", "best"];
+        let mut rows = table(&head, &ranking.designs, |design| {
+            vec![
+                design.name.clone(),
+                shown(design.mean),
+                shown(design.standard_deviation),
+                percent(design.within_limits),
+                percent(design.best),
+            ]
+        });
+        for (place, other) in ranking.designs.iter().enumerate() {
+            rows[0].push(format!("beats {}", other.name));
+            for (own, design) in ranking.designs.iter().enumerate() {
+                let share = (own != place).then(|| percent(design.beats[place]));
+                rows[own + 1].push(share.unwrap_or_else(|| "-".to_owned()));
+            }
+        }
+        rows
+    }
+
+    fn table_of_indices(&self) -> Vec<Vec<String>> {
+        let range = |[low, high]: [f64; 2]| format!("{low:.3} to {high:.3}");
+        let all = self.largest_indices();
+        let input = format!("input, by {}", all.first().map_or("", |one| one.output));
+        table_of_most(&[&input, "first", "95 %", "total", "95 %"], &all, |index| {
+            vec![
+                index.input.clone(),
+                format!("{:.3}", index.first),
+                range(index.first_interval),
+                format!("{:.3}", index.total),
+                range(index.total_interval),
+            ]
+        })
+    }
+
+    fn table_of_elementary(&self) -> Vec<Vec<String>> {
+        let all = self.largest_elementary();
+        let input = format!("input, by {}", all.first().map_or("", |one| one.output));
+        table_of_most(&[&input, "mu*", "mu", "sigma"], &all, |effect| {
+            let half = shown(effect.mu_star_half_interval);
+            vec![
+                effect.input.clone(),
+                format!("{} +/- {half}", shown(effect.mu_star)),
+                shown(effect.mu),
+                shown(effect.sigma),
+            ]
+        })
+    }
+
+    /// For designs without a table of their own.
+    fn table_of_effects(&self) -> Vec<Vec<String>> {
+        if !self.indices.is_empty() || !self.elementary.is_empty() || self.best.is_some() {
+            return Vec::new();
+        }
+        let output = self.effects.first().map_or("", |one| one.output);
+        let all = self.effects_on(output);
+        let (moves, dash) = (format!("moves {output} by"), || "-".to_owned());
+        let head = ["input", &moves, "by chance up to", "rank correlation"];
+        table_of_most(&head, &all, |effect| {
+            let correlation = effect.rank_correlation.map(|one| format!("{one:+.2}"));
+            vec![
+                effect.name.clone(),
+                shown(effect.span),
+                effect.span_by_chance.map_or_else(dash, shown),
+                correlation.unwrap_or_else(dash),
+            ]
+        })
+    }
+
+    fn table_of_best(&self) -> Vec<Vec<String>> {
+        let Some(best) = &self.best else {
+            return Vec::new();
+        };
+        let head = match best.row {
+            Some(row) => format!("least {}: row {row}", best.minimised),
+            None => "no test keeps every limit".to_owned(),
+        };
+        let inputs = best.inputs.iter();
+        let inputs = inputs.map(|(key, value)| (key.as_str(), *value));
+        let values: Vec<_> = inputs.chain(best.outputs.iter().copied()).collect();
+        table(&[&head, "value"], &values, |(name, value)| {
+            vec![(*name).to_owned(), shown(*value)]
+        })
     }
 }
 
@@ -113,55 +303,30 @@ fn largest_first<'a, T>(own: impl Iterator<Item = &'a T>, size: impl Fn(&T) -> f
     own
 }
 
-fn outputs<'a>(plan: &Plan, store: &Store) -> Result<Vec<Named<'a, Scalar>>, StudyError> {
-    let outputs = plan.study().answers.outputs.iter();
-    let named = |of: &&'static Scalar| {
-        let column = store.column(plan, of.key)?;
-        Ok(Named { of: *of, column })
-    };
-    outputs.map(named).collect()
+/// The head and a row for each of `all`.
+pub(crate) fn table<T>(
+    head: &[&str],
+    all: &[T],
+    row: impl Fn(&T) -> Vec<String>,
+) -> Vec<Vec<String>> {
+    let head = head.iter().map(|&title| title.to_owned()).collect();
+    std::iter::once(head).chain(all.iter().map(row)).collect()
 }
 
-/// Rows of a table of inputs at most; the page has all.
-const MAX_ROWS: usize = 12;
-
-/// A heading, and rows of which the first is the head.
-type Table = (String, Vec<Vec<String>>);
-
-impl Answers {
-    /// Tables in Markdown, short enough for a terminal.
-    pub fn markdown(&self) -> String {
-        let tables = self.tables();
-        let mut parts: Vec<String> = tables.iter().map(|(_, rows)| aligned(rows)).collect();
-        parts.insert(1, failed(self).unwrap_or_default());
-        parts.push(self.best.as_ref().map(how_it_ended).unwrap_or_default());
-        parts.retain(|part| !part.is_empty());
-        parts.join("\n")
+/// The same of the inputs that matter most, all of which the page has in its pictures; empty where there are none.
+fn table_of_most<T>(
+    head: &[&str],
+    all: &[&T],
+    row: impl Fn(&T) -> Vec<String>,
+) -> Vec<Vec<String>> {
+    const MAX_ROWS: usize = 12;
+    if all.is_empty() {
+        return Vec::new();
     }
-
-    /// Tables with their headings, the first row of each its head.
-    pub(crate) fn tables(&self) -> Vec<Table> {
-        let parts = [
-            Some(spreads(self)),
-            self.ranking.as_ref().map(ranking),
-            indices(self),
-            elementary(self),
-            effects(self),
-            self.best.as_ref().map(best),
-        ];
-        parts.into_iter().flatten().collect()
-    }
+    table(head, &all[..all.len().min(MAX_ROWS)], |one| row(one))
 }
 
-fn table(heading: &str, head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Table {
-    let head = head.iter().map(|title| (*title).to_owned()).collect();
-    (
-        heading.to_owned(),
-        std::iter::once(head).chain(rows).collect(),
-    )
-}
-
-/// Four significant digits.
+/// A number with four significant digits.
 pub(crate) fn shown(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value:.0}");
@@ -172,187 +337,4 @@ pub(crate) fn shown(value: f64) -> String {
 
 fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
-}
-
-fn range([low, high]: [f64; 2]) -> String {
-    format!("{low:.3} to {high:.3}")
-}
-
-fn spreads(answers: &Answers) -> Table {
-    let head = [
-        "output",
-        "unit",
-        "least",
-        "5 %",
-        "median",
-        "95 %",
-        "most",
-        "mean",
-        "SD",
-        "beyond its limit",
-    ];
-    let rows = answers.spreads.iter().map(|spread| {
-        let [_, p5, _, p50, _, p95, _] = spread.percentiles.map(shown);
-        let beyond = spread.beyond.iter().map(|beyond| {
-            let [low, high] = beyond.interval.map(percent);
-            format!("{} ({low} to {high})", percent(beyond.share))
-        });
-        let (mean, deviation) = (shown(spread.mean), shown(spread.standard_deviation));
-        let beyond: Vec<String> = beyond.collect();
-        let names = [
-            spread.title.to_owned(),
-            spread.unit.to_owned(),
-            shown(spread.least),
-        ];
-        let numbers = [
-            p5,
-            p50,
-            p95,
-            shown(spread.most),
-            mean,
-            deviation,
-            beyond.join(", "),
-        ];
-        names.into_iter().chain(numbers).collect()
-    });
-    table("Outputs", &head, rows)
-}
-
-fn failed(answers: &Answers) -> Option<String> {
-    let failed: u64 = answers.failed.iter().map(|failed| failed.tests).sum();
-    let first = answers.failed.first()?;
-    Some(format!(
-        "{failed} of {} tests failed, {} of them since: {}\n",
-        answers.kept, first.tests, first.reason
-    ))
-}
-
-fn ranking(ranking: &Ranking) -> Table {
-    let mean = format!("{}, {}", ranking.title, ranking.unit);
-    let against = ranking
-        .designs
-        .iter()
-        .map(|design| format!("beats {}", design.name));
-    let fixed = [
-        "design".to_owned(),
-        mean,
-        "SD".to_owned(),
-        "within limits".to_owned(),
-        "best".to_owned(),
-    ];
-    let head: Vec<String> = fixed.into_iter().chain(against).collect();
-    let rows = ranking.designs.iter().enumerate().map(|(own, design)| {
-        let beats = design.beats.iter().enumerate().map(|(other, share)| {
-            if own == other {
-                "-".to_owned()
-            } else {
-                percent(*share)
-            }
-        });
-        let fixed = [
-            design.name.clone(),
-            shown(design.mean),
-            shown(design.standard_deviation),
-            percent(design.within_limits),
-            percent(design.best),
-        ];
-        fixed.into_iter().chain(beats).collect()
-    });
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    table("Ranking", &head, rows)
-}
-
-fn indices(answers: &Answers) -> Option<Table> {
-    let output = answers.indices.first()?.output;
-    let own = answers.indices_of(output);
-    let rows = own.into_iter().take(MAX_ROWS).map(|index| {
-        vec![
-            index.input.clone(),
-            format!("{:.3}", index.first),
-            range(index.first_interval),
-            format!("{:.3}", index.total),
-            range(index.total_interval),
-        ]
-    });
-    let input = format!("input, by {output}");
-    Some(table(
-        "Indices of Sobol",
-        &[input.as_str(), "first", "95 %", "total", "95 %"],
-        rows,
-    ))
-}
-
-fn elementary(answers: &Answers) -> Option<Table> {
-    let output = answers.elementary.first()?.output;
-    let own = answers.elementary_on(output);
-    let rows = own.into_iter().take(MAX_ROWS).map(|effect| {
-        vec![
-            effect.input.clone(),
-            format!(
-                "{} +/- {}",
-                shown(effect.mu_star),
-                shown(effect.mu_star_half_interval)
-            ),
-            shown(effect.mu),
-            shown(effect.sigma),
-        ]
-    });
-    let input = format!("input, by {output}");
-    Some(table(
-        "Elementary effects of Morris",
-        &[input.as_str(), "mu*", "mu", "sigma"],
-        rows,
-    ))
-}
-
-/// Of designs that have no table of their own.
-fn effects(answers: &Answers) -> Option<Table> {
-    let output = answers.effects.first()?.output;
-    if !answers.indices.is_empty() || !answers.elementary.is_empty() || answers.best.is_some() {
-        return None;
-    }
-    let own = answers.effects_on(output);
-    let rows = own.into_iter().take(MAX_ROWS).map(|effect| {
-        let correlation = effect.rank_correlation.map(|one| format!("{one:+.2}"));
-        vec![
-            effect.name.clone(),
-            shown(effect.span),
-            effect.span_by_chance.map_or_else(|| "-".to_owned(), shown),
-            correlation.unwrap_or_else(|| "-".to_owned()),
-        ]
-    });
-    let head = [
-        "input".to_owned(),
-        format!("moves {output} by"),
-        "by chance up to".to_owned(),
-        "rank correlation".to_owned(),
-    ];
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    Some(table("What moves it", &head, rows))
-}
-
-fn best(best: &Best) -> Table {
-    let head = match best.row {
-        Some(row) => format!("least {}: row {row}", best.minimised),
-        None => "no test keeps every limit".to_owned(),
-    };
-    let inputs = best
-        .inputs
-        .iter()
-        .map(|(key, value)| (key.as_str(), *value));
-    let rows = inputs.chain(best.outputs.iter().copied());
-    let rows = rows.map(|(name, value)| vec![name.to_owned(), shown(value)]);
-    table("Best", &[head.as_str(), "value"], rows)
-}
-
-fn how_it_ended(best: &Best) -> String {
-    let (generations, step) = (best.generations, percent(best.step));
-    if best.is_converged {
-        return format!(
-            "The search closed in after {generations} generations: its steps are {step} of the ranges.\n"
-        );
-    }
-    format!(
-        "The search has not closed in: after {generations} generations its steps are {step} of the ranges. Allow more tests.\n"
-    )
 }

@@ -1,4 +1,4 @@
-//! Which tests are done: every test by its number alone, whatever was done before.
+//! Designs: the places of the inputs in every test, each found by the number of the test alone.
 
 pub(crate) mod sobol;
 
@@ -6,12 +6,12 @@ use condyle_case::study::Correlation;
 use nalgebra::DMatrix;
 
 use crate::{
-    chance::{Numbers, mixed},
     design::sobol::sobol_places,
-    distribution::{Place, deviations, share_below},
+    distribution::{Place, normal_quantile, normal_share},
+    random::{Random, mixed},
 };
 
-/// Where test `row` has its inputs, of which input `i` has `counts[i]` values: the last input changes fastest.
+/// Every combination of values, `counts[i]` of input `i`; the last input changes fastest.
 pub(crate) fn factorial_places(row: u64, counts: &[u64]) -> Vec<Place> {
     let mut rest = row;
     let mut places: Vec<Place> = Vec::with_capacity(counts.len());
@@ -23,9 +23,9 @@ pub(crate) fn factorial_places(row: u64, counts: &[u64]) -> Vec<Place> {
     places
 }
 
-/// Where test `row` has its inputs: first all as they are, then each in turn at its values.
+/// First all inputs as the case has them, then each in turn at its values.
 pub(crate) fn one_at_a_time_places(row: u64, counts: &[u64]) -> Vec<Place> {
-    let mut places = vec![Place::AsItIs; counts.len()];
+    let mut places = vec![Place::OfCase; counts.len()];
     let Some(mut rest) = row.checked_sub(1) else {
         return places;
     };
@@ -39,30 +39,30 @@ pub(crate) fn one_at_a_time_places(row: u64, counts: &[u64]) -> Vec<Place> {
     places
 }
 
-/// Value `number` of `count`, from end to end.
+/// Value `number` of `count` evenly spaced ones.
 fn along(number: u64, count: u64) -> Place {
     Place::Along(number as f64 / (count - 1).max(1) as f64)
 }
 
-/// Where test `row` of `tests` has its inputs: along each, one test lies in each of as many equal slices (McKay, Beckman
-/// and Conover 1979).
+/// A Latin hypercube: for each input, one test lies in each of `tests` slices of equal probability (McKay, Beckman and
+/// Conover 1979).
 pub(crate) fn latin_places(row: u64, tests: u64, inputs: usize, seed: u64) -> Vec<Place> {
     let place = |input: usize| {
-        let mut numbers = Numbers::of_one(seed, input as u64);
+        let mut numbers = Random::stream(seed, input as u64);
         let slice = Permutation::new(tests, &mut numbers).at(row);
-        let within = Numbers::of_one(numbers.next(), row).share();
+        let within = Random::stream(numbers.next(), row).share();
         Place::Share((slice as f64 + within) / tests as f64)
     };
     (0..inputs).map(place).collect()
 }
 
-/// Rounds of the network; four make a good cipher of one whose rounds are good (Luby and Rackoff 1988).
+/// Rounds of the network: four suffice with good rounds (Luby and Rackoff 1988), and these are simple ones.
 const ROUNDS: usize = 6;
 
-/// All numbers below a count in an order of chance; each is found without the others.
+/// A random permutation of the numbers below a count, each found without the others.
 ///
-/// A Feistel network permutes the numbers of an even count of bits whatever its rounds are; what it puts beyond the count
-/// goes through it again until it lies below.
+/// A Feistel network permutes the numbers of an even count of bits whatever its rounds are; a result beyond the count is
+/// permuted again until it lies below (cycle walking).
 pub(crate) struct Permutation {
     count: u64,
     half_bits: u32,
@@ -70,7 +70,7 @@ pub(crate) struct Permutation {
 }
 
 impl Permutation {
-    pub fn new(count: u64, numbers: &mut Numbers) -> Self {
+    pub fn new(count: u64, numbers: &mut Random) -> Self {
         let bits = u64::BITS - (count.max(2) - 1).leading_zeros();
         Self {
             count,
@@ -79,16 +79,16 @@ impl Permutation {
         }
     }
 
-    /// The number at `place`, which lies below the count.
+    /// The number at `place` below the count.
     pub fn at(&self, place: u64) -> u64 {
-        let mut found = self.through(place);
+        let mut found = self.permuted(place);
         while found >= self.count {
-            found = self.through(found);
+            found = self.permuted(found);
         }
         found
     }
 
-    fn through(&self, value: u64) -> u64 {
+    fn permuted(&self, value: u64) -> u64 {
         let mask = (1 << self.half_bits) - 1;
         let halves = (value >> self.half_bits, value & mask);
         let (left, right) = self.keys.iter().fold(halves, |(left, right), key| {
@@ -98,12 +98,12 @@ impl Permutation {
     }
 }
 
-/// Makes inputs that know nothing of each other go together: of their normal scores z it takes L z, where L L^T is the
-/// matrix of correlations.
-pub(crate) struct Correlated(DMatrix<f64>);
+/// A Gaussian copula: correlates independent inputs by replacing their normal scores z by L z, where L L^T is the matrix
+/// of correlations.
+pub(crate) struct Copula(DMatrix<f64>);
 
-impl Correlated {
-    /// None where the correlations contradict each other.
+impl Copula {
+    /// None if the matrix of correlations is not positive definite.
     pub fn new(inputs: usize, correlations: &[Correlation]) -> Option<Self> {
         let mut matrix = DMatrix::identity(inputs, inputs);
         for correlation in correlations {
@@ -114,11 +114,11 @@ impl Correlated {
         Some(Self(matrix.cholesky()?.unpack()))
     }
 
-    /// The same places, correlated. An input that goes with no other stays where it is, to the bit.
+    /// Correlates places. An input without a correlation keeps its place to the last bit.
     pub fn apply(&self, places: &mut [Place]) {
         let score = |place: &Place| match place {
-            Place::Share(share) => deviations(*share),
-            Place::AsItIs | Place::Along(_) => 0.0,
+            Place::Share(share) => normal_quantile(*share),
+            Place::OfCase | Place::Along(_) => 0.0,
         };
         let scores: Vec<f64> = places.iter().map(score).collect();
         for (row, place) in places.iter_mut().enumerate() {
@@ -130,12 +130,12 @@ impl Correlated {
                 .iter()
                 .zip(&scores)
                 .map(|(factor, score)| factor * score);
-            *place = Place::Share(share_below(sum.sum()));
+            *place = Place::Share(normal_share(sum.sum()));
         }
     }
 }
 
-/// One walk: from a point on a grid, every input steps once, in an order of chance (Morris 1991).
+/// A walk: from a random point of a grid, every input steps once, in random order (Morris 1991).
 pub(crate) struct Walk {
     start: Vec<f64>,
     steps: Vec<f64>,
@@ -143,14 +143,15 @@ pub(crate) struct Walk {
 }
 
 impl Walk {
-    /// Walk `number` over `levels` of each input, an even number; a step is levels / (2 (levels - 1)) of the way.
+    /// Walk `number` over an even number of `levels` of each input. A step covers levels / (2 (levels - 1)) of the range,
+    /// so that all levels are equally likely.
     pub fn new(number: u64, inputs: usize, levels: u64, seed: u64) -> Self {
-        let mut numbers = Numbers::of_one(seed, number);
+        let mut numbers = Random::stream(seed, number);
         let (half, last) = (levels / 2, (levels - 1) as f64);
         let mut start = Vec::with_capacity(inputs);
         let mut steps = Vec::with_capacity(inputs);
         for _ in 0..inputs {
-            let low = numbers.place(half as usize) as f64;
+            let low = numbers.index(half as usize) as f64;
             let is_up = numbers.share() < 0.5;
             let step = half as f64 / last;
             start.push(if is_up { low / last } else { low / last + step });
@@ -165,7 +166,7 @@ impl Walk {
         }
     }
 
-    /// The input that steps from test `step` of the walk to the next, and how far.
+    /// The input that steps from test `step` of the walk to the next, and its signed step.
     pub fn step(&self, step: usize) -> (usize, f64) {
         let input = self.order[step];
         (input, self.steps[input])
@@ -183,41 +184,40 @@ impl Walk {
     }
 }
 
-/// Where test `row` has its inputs.
+/// The walks of Morris, each of one test more than there are inputs.
 pub(crate) fn morris_places(row: u64, inputs: usize, levels: u64, seed: u64) -> Vec<Place> {
     let tests = inputs as u64 + 1;
     Walk::new(row / tests, inputs, levels, seed).at((row % tests) as usize)
 }
 
-/// A base test of a Saltelli design, and what is changed of it.
+/// A test of a Saltelli design: every base is two points A and B, and A again with each input from B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Saltelli {
-    /// The base itself.
     A,
-    /// The base with one input from the other one.
+    /// A with this input from B.
     Changed(usize),
-    /// The other one.
     B,
 }
 
 impl Saltelli {
-    /// The number of the base of a row, and which of its tests it is.
+    /// The number of the base of a row, and the test of that base.
     pub fn of(row: u64, inputs: usize) -> (u64, Self) {
         let tests = inputs as u64 + 2;
-        let which = match (row % tests) as usize {
+        let test = match (row % tests) as usize {
             0 => Self::A,
             place if place <= inputs => Self::Changed(place - 1),
             _ => Self::B,
         };
-        (row / tests, which)
+        (row / tests, test)
     }
 
-    /// Where that test has the inputs (Saltelli et al. 2010): of two points of Sobol side by side.
+    /// The places of the inputs (Saltelli et al. 2010): A and B are the halves of one Sobol point of twice the dimension,
+    /// which keeps them independent.
     pub fn places(row: u64, inputs: usize, seed: u64) -> Vec<Place> {
-        let (base, which) = Self::of(row, inputs);
+        let (base, test) = Self::of(row, inputs);
         let both = sobol_places(base, 2 * inputs, seed);
         let (a, b) = both.split_at(inputs);
-        match which {
+        match test {
             Self::A => a.to_vec(),
             Self::B => b.to_vec(),
             Self::Changed(input) => {
@@ -232,7 +232,7 @@ impl Saltelli {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Place::{Along, AsItIs};
+    use Place::{Along, OfCase};
 
     #[test]
     fn every_value_meets_every_other() {
@@ -247,9 +247,9 @@ mod tests {
         let all: Vec<Vec<Place>> = (0..6)
             .map(|row| one_at_a_time_places(row, &[2, 3]))
             .collect();
-        assert_eq!(all[0], [AsItIs, AsItIs]);
-        assert_eq!(all[2], [Along(1.0), AsItIs]);
-        assert_eq!(all[4], [AsItIs, Along(0.5)]);
+        assert_eq!(all[0], [OfCase, OfCase]);
+        assert_eq!(all[2], [Along(1.0), OfCase]);
+        assert_eq!(all[4], [OfCase, Along(0.5)]);
     }
 
     fn shares(tests: u64, inputs: usize, seed: u64) -> Vec<Vec<f64>> {
@@ -299,7 +299,7 @@ mod tests {
     #[test]
     fn verify_every_number_comes_once() {
         for count in [1, 2, 3, 10, 100, 4097] {
-            let order = Permutation::new(count, &mut Numbers::of(count));
+            let order = Permutation::new(count, &mut Random::stream(count, 0));
             let mut all: Vec<u64> = (0..count).map(|place| order.at(place)).collect();
             all.sort_unstable();
             assert_eq!(all, (0..count).collect::<Vec<_>>());
@@ -315,7 +315,7 @@ mod tests {
 
     #[test]
     fn verify_scores_have_the_correlation_and_others_stay() {
-        let correlated = Correlated::new(3, &[of(0.8)]).unwrap();
+        let correlated = Copula::new(3, &[of(0.8)]).unwrap();
         let mut sum = 0.0;
         let count = 4096;
         for row in 0..count {
@@ -324,7 +324,7 @@ mod tests {
             correlated.apply(&mut places);
             assert_eq!(before[..2], places[..2]);
             let score = |place: Place| match place {
-                Place::Share(share) => deviations(share),
+                Place::Share(share) => normal_quantile(share),
                 _ => f64::NAN,
             };
             sum += score(places[0]) * score(places[2]);
@@ -340,7 +340,7 @@ mod tests {
             coefficient,
         };
         let all = [pair([0, 1], 0.9), pair([1, 2], 0.9), pair([0, 2], -0.9)];
-        assert!(Correlated::new(3, &all).is_none());
+        assert!(Copula::new(3, &all).is_none());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Why no constants could be found.
+//! The reasons why no constants of a wear law can be found.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::super::error::CompareError;
 use crate::RunError;
 
-/// Why no constants of a wear law could be found.
+/// The reason why no constants of a wear law can be found.
 #[derive(Debug, Error)]
 pub enum CalibrateError {
     /// The comparison with the weighings.
@@ -18,10 +18,10 @@ pub enum CalibrateError {
     /// The case of a results folder, or one to predict.
     #[error(transparent)]
     Case(#[from] Problems),
-    /// A constant that the law has not, or a value that it cannot have.
+    /// A value that a constant cannot have.
     #[error("no constants can be found: {0}")]
     Constant(#[from] ConstantError),
-    /// A name that is no constant of the law.
+    /// An unknown constant.
     #[error("the wear law \"{law}\" has no constant `{name}`; it has {known}")]
     UnknownConstant {
         /// Word of the law.
@@ -72,7 +72,7 @@ pub enum CalibrateError {
         /// Constants asked for.
         constants: usize,
     },
-    /// Constants that change all rates alike, or none.
+    /// Constants whose effects on the rates cannot be separated.
     #[error(
         "these tests do not tell the constants apart: some change of them leaves every rate as it is; give tests that \
          differ more in what the law goes by, or fewer --constant"
@@ -83,7 +83,7 @@ pub enum CalibrateError {
     Run {
         /// The constants.
         constants: String,
-        /// Why.
+        /// The reason.
         source: Box<RunError>,
     },
     /// The physics with other constants.
@@ -91,7 +91,7 @@ pub enum CalibrateError {
     March {
         /// The constants.
         constants: String,
-        /// Why.
+        /// The reason.
         source: MarchError,
     },
     /// Measured data without weighings.

@@ -1,4 +1,4 @@
-//! Least squares of a model that takes seconds to ask, and how sure what it finds is.
+//! Least squares of a model that takes seconds to evaluate, and the covariance of its parameters.
 
 use condyle_case::case::{ConstantError, Wear};
 use nalgebra::{DMatrix, DVector};
@@ -8,55 +8,50 @@ use crate::measured::{
     gravimetric::{Observation, student},
 };
 
-/// Steps that would change no rate by more than this part of it are not made.
+/// The search ends when a step would change no rate by more than this part of it.
 const SETTLED: f64 = 1e-3;
-/// Steps at most; nearly linear as rates are, two or three are enough.
+/// Largest number of steps; rates are nearly linear, and two or three suffice.
 const MAX_STEPS: usize = 12;
 /// A step changes no parameter by more than this factor.
-const LONGEST_STEP: f64 = 5.0;
-/// First differences, as a part of the parameter: well above what increments and updates leave in a rate.
+const MAX_STEP_FACTOR: f64 = 5.0;
+/// Step of the first differences, as a part of the parameter: well above the discretisation noise of a rate.
 const DIFFERENCE: f64 = 0.05;
-/// Singular values that are this much smaller than the largest tell nothing.
-const SINGULAR: f64 = 1e-6;
+/// Smallest singular value of the slopes, relative to the largest, that determines the parameters.
+const MIN_SINGULAR: f64 = 1e-6;
 
-/// Where a search begins.
+/// The start of a search.
 pub(crate) struct Start {
-    /// The parameters.
     pub(crate) at: Vec<f64>,
-    /// What each can be.
+    /// Least and most of each parameter.
     pub(crate) limits: Vec<[f64; 2]>,
-    /// Whether rates go nearly in proportion to the only parameter, so that the first slope needs no run.
+    /// Whether rates are nearly proportional to the only parameter, so that the first slope needs no run.
     pub(crate) in_proportion: bool,
 }
 
-/// What least squares find.
+/// The result of least squares.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
-    /// The parameters.
     pub(crate) at: Vec<f64>,
-    /// The rates that they give.
     pub(crate) rates: Vec<f64>,
-    /// How sure they are; none where nothing is left over to tell.
+    /// None without degrees of freedom.
     pub(crate) spread: Option<Spread>,
 }
 
-/// How sure parameters are.
+/// The uncertainty of the parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct Spread {
     /// Scatter of one observation of weight 1, as a part of its rate.
     pub(crate) scatter: f64,
-    /// Observations less parameters.
     pub(crate) freedom: usize,
-    /// How many standard errors an interval reaches to either side.
+    /// Half the width of an interval, in standard errors.
     pub(crate) quantile: f64,
-    /// Of the parameters.
     pub(crate) covariance: DMatrix<f64>,
-    /// By how much each parameter is changed to either side for a slope.
+    /// Change of each parameter to either side by which slopes are found.
     pub(crate) half: Vec<f64>,
 }
 
 impl Spread {
-    /// Half the interval of something with these slopes in the parameters.
+    /// Half the interval of a quantity with these slopes in the parameters.
     pub(crate) fn half_interval(&self, slopes: &[f64]) -> f64 {
         let slopes = DVector::from_column_slice(slopes);
         self.quantile
@@ -66,15 +61,14 @@ impl Spread {
     }
 }
 
-/// Rates of the tests by the parameters.
+/// The rates of the tests as a function of the parameters.
 pub(crate) type Model<'a> = dyn FnMut(&[f64]) -> Result<Vec<f64>, CalibrateError> + 'a;
 
 /// The parameters with the least sum of weight (predicted / measured - 1)^2, by Gauss and Newton's iteration with
 /// Broyden's slopes.
 ///
-/// Scatter counts in proportion to the rate, and is the same part of it in all tests. It is told by what the specimens
-/// or weighings of each test scatter, and by what the tests differ from the model together: a law that does not fit
-/// gets a wider interval.
+/// The relative scatter is the same in all tests. It is pooled from the scatter of the specimens or weighings within each
+/// test and from the residuals of the tests: a law that does not fit gets a wider interval.
 pub(crate) fn fit(
     model: &mut Model<'_>,
     start: Start,
@@ -137,7 +131,7 @@ impl<'a> Search<'a> {
         Ok(search)
     }
 
-    /// Rates, or differences of them, as parts of the measured ones, each by the root of its weight.
+    /// Rates, or differences of them, relative to the measured ones, times the root of their weights.
     fn weighed(&self, rates: &[f64]) -> DVector<f64> {
         let all = rates.iter().zip(self.observations);
         let weighed = all.map(|(rate, of)| of.weight.sqrt() * rate / of.rate);
@@ -185,7 +179,7 @@ impl<'a> Search<'a> {
         Ok(self.weighed(&slopes.collect::<Vec<_>>()))
     }
 
-    /// Steps until another one would change nothing.
+    /// Steps until another one would change no rate.
     fn settle(&mut self, model: &mut Model<'_>) -> Result<(), CalibrateError> {
         let mut part = 1.0;
         let mut change = f64::INFINITY;
@@ -205,18 +199,18 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The step to the least squares, were all slopes to stay.
+    /// The Gauss-Newton step.
     fn step(&self) -> Result<DVector<f64>, CalibrateError> {
         let parts = self.slopes.clone().svd(true, true);
         let [most, least] = [parts.singular_values.max(), parts.singular_values.min()];
-        if least.is_nan() || least <= SINGULAR * most {
+        if least.is_nan() || least <= MIN_SINGULAR * most {
             return Err(CalibrateError::NotTold);
         }
         let step = parts.solve(&-self.residuals(&self.rates), 0.0);
         step.map_err(|_| CalibrateError::NotTold)
     }
 
-    /// The largest part of its rate by which a step changes any.
+    /// The largest relative change of a rate in a step.
     fn change_of(&self, step: &DVector<f64>) -> f64 {
         let change = &self.slopes * step;
         let parts = change.iter().zip(self.observations);
@@ -225,7 +219,7 @@ impl<'a> Search<'a> {
             .fold(0.0, f64::max)
     }
 
-    /// Tries a step, learns the slopes along it, and keeps it if it is for the better.
+    /// Tries a step, updates the slopes along it by Broyden's formula, and keeps it if it reduces the residuals.
     fn go(&mut self, model: &mut Model<'_>, step: &DVector<f64>) -> Result<bool, CalibrateError> {
         let at: Vec<f64> = (0..self.at.len())
             .map(|number| self.after(number, step[number]))
@@ -248,31 +242,31 @@ impl<'a> Search<'a> {
         Ok(better)
     }
 
-    /// A parameter after a step, which is cut where it is too long or leads out of the limits.
+    /// A parameter after a step, shortened where it is too long or leaves the limits.
     fn after(&self, number: usize, step: f64) -> f64 {
         let (was, [least, most]) = (self.at[number], self.limits[number]);
         let sign = was.signum();
         let cut = if was == 0.0 {
             step
         } else {
-            let [shortest, longest] = [was.abs() / LONGEST_STEP, was.abs() * LONGEST_STEP];
+            let [shortest, longest] = [was.abs() / MAX_STEP_FACTOR, was.abs() * MAX_STEP_FACTOR];
             sign * (sign * (was + step)).clamp(shortest, longest)
         };
         cut.clamp(least, most)
     }
 
-    /// How sure the parameters are by the slopes as they are known.
+    /// The uncertainty of the parameters by the present slopes.
     fn spread(&self, confidence: f64) -> Result<Option<Spread>, CalibrateError> {
         let within = |of: &Observation| of.squares / (of.rate * of.rate);
         let inside: f64 = self.observations.iter().map(within).sum();
-        let beside = self.residuals(&self.rates).norm_squared();
+        let between = self.residuals(&self.rates).norm_squared();
         let freedom =
             self.observations.iter().map(|of| of.freedom).sum::<usize>() + self.observations.len();
         let freedom = freedom - self.at.len();
         let Some(quantile) = student(confidence, freedom) else {
             return Ok(None);
         };
-        let variance = (inside + beside) / freedom as f64;
+        let variance = (inside + between) / freedom as f64;
         let inverse = (self.slopes.transpose() * &self.slopes).try_inverse();
         let covariance = inverse.ok_or(CalibrateError::NotTold)? * variance;
         let half = |number: usize| {
@@ -288,7 +282,7 @@ impl<'a> Search<'a> {
         }))
     }
 
-    /// The same by slopes across the interval itself.
+    /// The same by slopes across the interval itself: Broyden's slopes are exact only along the steps made.
     fn with_slopes_across(
         &mut self,
         model: &mut Model<'_>,
@@ -306,7 +300,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// What a change of a parameter is held against; one that is 0 has a unit of 1.
+/// The scale of changes of a parameter; 1 for one that is 0.
 fn size(parameter: f64) -> f64 {
     if parameter == 0.0 {
         1.0
@@ -315,36 +309,35 @@ fn size(parameter: f64) -> f64 {
     }
 }
 
-/// A law, and what of it may change.
+/// A law and its free parameters.
 pub(crate) struct Free {
-    /// With the constants that the search begins from.
+    /// The law at the start of the search.
     pub(crate) law: Wear,
-    what: What,
+    free: Parameters,
 }
 
-enum What {
-    /// How much it wears, whatever the cycle.
+enum Parameters {
+    /// The amount of wear, whatever the cycle.
     Level,
     /// These constants, by their places among all.
     Constants(Vec<usize>),
 }
 
 impl Free {
-    /// The constants of these names, or how much the law wears if there are none.
+    /// The constants of these names, or the amount of wear if there are none.
     pub(crate) fn new(law: Wear, names: &[String]) -> Result<Self, CalibrateError> {
         if names.is_empty() {
-            let what = What::Level;
-            return Ok(Self { law, what });
+            let free = Parameters::Level;
+            return Ok(Self { law, free });
         }
         let places: Result<Vec<_>, _> = names.iter().map(|name| place(&law, name)).collect();
-        let what = What::Constants(places?);
-        Ok(Self { law, what })
+        let free = Parameters::Constants(places?);
+        Ok(Self { law, free })
     }
 
-    /// Where the search begins: a parameter is a constant over what it is at first, or just how many times as much the
-    /// law wears.
+    /// The start of the search: a parameter is a constant relative to its first value, or the relative amount of wear.
     pub(crate) fn start(&self) -> Start {
-        let What::Constants(places) = &self.what else {
+        let Parameters::Constants(places) = &self.free else {
             return Start {
                 at: vec![1.0],
                 limits: vec![[0.0, f64::INFINITY]],
@@ -367,9 +360,9 @@ impl Free {
 
     /// The law with these parameters.
     pub(crate) fn law(&self, at: &[f64]) -> Result<Wear, ConstantError> {
-        match &self.what {
-            What::Level => self.law.scaled(at[0]),
-            What::Constants(places) => {
+        match &self.free {
+            Parameters::Level => self.law.scaled(at[0]),
+            Parameters::Constants(places) => {
                 let names = places
                     .iter()
                     .map(|&place| self.law.kind().parameters[place].name);
@@ -385,11 +378,11 @@ impl Free {
         }
     }
 
-    /// The constants at parameters that may lie beyond what the law can have, each where it ends at the latest.
+    /// The constants at parameters that may lie beyond the limits of the law, each clamped to its limits.
     pub(crate) fn constants_near(&self, at: &[f64]) -> Vec<f64> {
-        let constants = match &self.what {
-            What::Level => (self.law.kind().scaled)(self.law.constants(), at[0].max(0.0)),
-            What::Constants(places) => {
+        let constants = match &self.free {
+            Parameters::Level => (self.law.kind().scaled)(self.law.constants(), at[0].max(0.0)),
+            Parameters::Constants(places) => {
                 let mut constants = self.law.constants().to_vec();
                 for (&place, value) in places.iter().zip(at) {
                     constants[place] = value * self.unit(place);
@@ -402,31 +395,33 @@ impl Free {
         inside.collect()
     }
 
-    /// Whether the constant of that place changes.
+    /// Whether the constant at `place` depends on the parameters.
     pub(crate) fn changes(&self, place: usize) -> bool {
-        match &self.what {
-            What::Level => {
+        match &self.free {
+            Parameters::Level => {
                 (self.law.kind().scaled)(self.law.constants(), 2.0)[place]
                     != self.law.constants()[place]
             }
-            What::Constants(places) => places.contains(&place),
+            Parameters::Constants(places) => places.contains(&place),
         }
     }
 
-    /// The parameter that a constant goes by.
+    /// The parameter of the constant at `place`.
     pub(crate) fn parameter_of(&self, place: usize) -> usize {
-        match &self.what {
-            What::Level => 0,
-            What::Constants(places) => places.iter().position(|&own| own == place).unwrap_or(0),
+        match &self.free {
+            Parameters::Level => 0,
+            Parameters::Constants(places) => {
+                places.iter().position(|&own| own == place).unwrap_or(0)
+            }
         }
     }
 
-    /// Whether it is how much the law wears that changes.
+    /// Whether the amount of wear is the parameter.
     pub(crate) fn is_level(&self) -> bool {
-        matches!(self.what, What::Level)
+        matches!(self.free, Parameters::Level)
     }
 
-    /// What a parameter of 1 is.
+    /// The constant at a parameter of 1.
     fn unit(&self, place: usize) -> f64 {
         let size = self.law.constants()[place].abs();
         if size > 0.0 { size } else { 1.0 }
@@ -449,7 +444,7 @@ fn place(law: &Wear, name: &str) -> Result<usize, CalibrateError> {
     })
 }
 
-/// Constants of a law as a case gives them.
+/// The constants of a law as a case writes them.
 pub(crate) fn in_words(law: &Wear) -> String {
     let parameters = law.kind().parameters.iter().zip(law.constants());
     let words: Vec<String> = parameters

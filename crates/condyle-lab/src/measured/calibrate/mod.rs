@@ -1,4 +1,4 @@
-//! The constants of a wear law with which predictions wear as fast as specimens did, and how sure they are.
+//! The constants of a wear law that reproduce the wear of weighed specimens, with their intervals.
 
 mod error;
 mod fit;
@@ -27,19 +27,19 @@ use crate::{
     run::prepare::{build, start},
 };
 
-/// What is calibrated by what.
+/// A request for a calibration.
 #[derive(Clone, Debug, Default)]
 pub struct CalibrationRequest {
     /// Results folders, each with a file of measured data.
     pub tests: Vec<(PathBuf, PathBuf)>,
-    /// Names of the constants that are found; how much the law wears, whatever the cycle, if there are none.
+    /// Names of the constants to find; if there are none, the amount of wear whatever the cycle.
     pub constants: Vec<String>,
-    /// Cases that are predicted with them.
+    /// Cases to predict with them.
     pub predict: Vec<PathBuf>,
 }
 
 impl CalibrationRequest {
-    /// The tests of paths that are by turns results folders and measured data.
+    /// Pairs paths that alternate between results folders and measured data.
     ///
     /// # Errors
     /// An odd number of paths.
@@ -62,50 +62,48 @@ pub struct Calibration {
     pub law: &'static str,
     /// Confidence of every interval, percent.
     pub confidence_percent: f64,
-    /// Each constant that was found.
+    /// The constants found.
     pub constants: Vec<CalibratedConstant>,
-    /// How many times as much as in the first run the law wears; none where single constants were found.
-    pub times_as_much: Option<Found>,
-    /// Each test.
+    /// The amount of wear relative to the first run; none where single constants were found.
+    pub times_as_much: Option<Estimate>,
+    /// The tests.
     pub tests: Vec<CalibratedTest>,
-    /// Scatter of a specimen around what is predicted, percent of the rate; none where weighings are what is counted, or
-    /// where nothing is left to tell.
+    /// Scatter of a specimen around the prediction, percent of the rate; none where weighings are counted, or without
+    /// degrees of freedom.
     pub scatter_percent: Option<f64>,
-    /// Observations less what was found from them.
+    /// Observations less parameters.
     pub degrees_of_freedom: usize,
-    /// Why there are no intervals, if there are none.
+    /// The reason for missing intervals.
     pub without_interval: Option<&'static str>,
     /// Cases predicted with these constants.
     pub predictions: Vec<Prediction>,
-    /// What was measured in a calibration by one test.
     #[serde(flatten)]
-    pub one_test: Option<OneTest>,
-    /// The factor of Archard's law.
+    one_test: Option<OneTest>,
     #[serde(flatten)]
-    pub wear_factor: Option<WearFactor>,
-    /// All constants that were run, in this order; the first are those of the first results folder.
-    pub trials: Vec<Trial>,
+    wear_factor: Option<WearFactor>,
+    /// All constants that were run; the first are those of the first results folder.
+    trials: Vec<Trial>,
 }
 
 /// A value and its interval.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Found {
+pub struct Estimate {
     /// The value.
     pub value: f64,
-    /// Its interval; none where nothing is left to tell.
+    /// The interval; none without degrees of freedom.
     pub interval: Option<Interval>,
 }
 
 /// A constant that was found.
 #[derive(Clone, Debug, Serialize)]
 pub struct CalibratedConstant {
-    /// Its name, with the unit.
+    /// Name and unit.
     pub name: &'static str,
-    /// That of the first run.
+    /// The value of the first run.
     pub run_with: f64,
-    /// As found.
+    /// The value found.
     #[serde(flatten)]
-    pub found: Found,
+    pub found: Estimate,
 }
 
 /// A test that constants were found from.
@@ -115,7 +113,7 @@ pub struct CalibratedTest {
     pub results: PathBuf,
     /// The measured data.
     pub measured: PathBuf,
-    /// What the measured rate is.
+    /// Description of the measured rate.
     pub measured_by: String,
     /// The measured rate.
     pub measured_mg_per_million_cycles: f64,
@@ -132,44 +130,38 @@ pub struct CalibratedTest {
 pub struct Prediction {
     /// The case file.
     pub case: PathBuf,
-    /// Cycles of it.
+    /// Cycles of the case.
     pub cycles: f64,
     /// Mass lost, mg.
     pub mass_loss_mg: f64,
-    /// Its interval by that of the constants: of the mean of such specimens, not of one specimen.
+    /// Interval of the mean of such specimens, not of one specimen.
     pub interval_mg: Option<Interval>,
 }
 
-/// What was measured in a calibration by one test.
+/// The measured rate, at the top of the results of a calibration by one test.
 #[derive(Clone, Debug, Serialize)]
-pub struct OneTest {
-    /// Measured rate that the prediction was made to match.
-    pub measured_mg_per_million_cycles: f64,
-    /// What that rate is.
-    pub measured_by: String,
-    /// Its interval; none where it is of one specimen alone.
-    pub interval_mg_per_million_cycles: Option<Interval>,
+struct OneTest {
+    measured_mg_per_million_cycles: f64,
+    measured_by: String,
+    interval_mg_per_million_cycles: Option<Interval>,
 }
 
-/// The factor of Archard's law.
+/// The factor of Archard's law, at the top of the results.
 #[derive(Clone, Debug, Serialize)]
-pub struct WearFactor {
-    /// Factor of the first case that was run.
-    pub run_with_mm3_per_nm: f64,
-    /// Factor found.
-    pub wear_factor_mm3_per_nm: f64,
-    /// Its interval.
-    pub wear_factor_interval_mm3_per_nm: Option<Interval>,
+struct WearFactor {
+    run_with_mm3_per_nm: f64,
+    wear_factor_mm3_per_nm: f64,
+    wear_factor_interval_mm3_per_nm: Option<Interval>,
 }
 
-/// Finds the constants of the law of the results folders for the weighings beside each, by running their cases again;
-/// `tried` hears of every run.
+/// Finds the constants of the law of the results folders that reproduce the weighings, by running their cases again;
+/// `tried` receives every run.
 ///
 /// More wear conforms the surfaces and so changes the wear that follows, so that rates are only nearly in proportion to
 /// how much a law wears: least squares by iteration, until a step changes no rate by more than 0.1 %.
 ///
 /// # Errors
-/// No weighings, no wear, tests that do not tell the constants, or a run that fails.
+/// No weighings, no wear, tests that do not determine the constants, or a run that fails.
 pub fn calibrate(
     request: &CalibrationRequest,
     tried: &mut dyn FnMut(&Trial),
@@ -197,7 +189,7 @@ pub fn calibrate(
     let each = request.predict.iter().zip(&predicted);
     let predictions = each.map(|(path, case)| predict(path, case, &free, &fit));
     let predictions = predictions.collect::<Result<_, _>>()?;
-    Ok(told(&tests, &free, &fit, predictions, trials))
+    Ok(results(&tests, &free, &fit, predictions, trials))
 }
 
 fn read(pairs: &[(PathBuf, PathBuf)]) -> Result<Vec<Test>, CalibrateError> {
@@ -234,46 +226,44 @@ fn trial(tests: &[Test], law: &Wear) -> Result<Trial, CalibrateError> {
     })
 }
 
-/// What a case loses with the constants found, and how far that is sure.
+/// Predicts a case with the constants found.
 fn predict(path: &Path, case: &Case, free: &Free, fit: &Fit) -> Result<Prediction, CalibrateError> {
     let lost = |at: &[f64]| -> Result<(f64, f64), CalibrateError> {
         let losses = losses(case, &free.law(at)?)?;
         Ok(losses.last().copied().unwrap_or_default())
     };
     let (cycles, mass_loss_mg) = lost(&fit.at)?;
-    let interval = fit.spread.as_ref().map(|spread| {
-        let slope = |number: usize| {
-            let beside = |by: f64| {
+    let mut interval_mg = None;
+    if let Some(spread) = &fit.spread {
+        let mut slopes = Vec::new();
+        for (number, half) in spread.half.iter().enumerate() {
+            let mass_mg_at = |by: f64| {
                 let mut at = fit.at.clone();
                 at[number] += by;
                 lost(&at).map(|(_, mass_mg)| mass_mg)
             };
-            let half = spread.half[number];
-            Ok((beside(half)? - beside(-half)?) / (2.0 * half))
-        };
-        let slopes: Vec<f64> = (0..fit.at.len())
-            .map(slope)
-            .collect::<Result<_, CalibrateError>>()?;
-        let around = Interval::around(mass_loss_mg, spread.half_interval(&slopes));
-        Ok::<_, CalibrateError>(from_nothing(around))
-    });
+            slopes.push((mass_mg_at(*half)? - mass_mg_at(-half)?) / (2.0 * half));
+        }
+        let half = spread.half_interval(&slopes);
+        interval_mg = Some(not_below_zero(Interval::around(mass_loss_mg, half)));
+    }
     Ok(Prediction {
         case: path.to_owned(),
         cycles,
         mass_loss_mg,
-        interval_mg: interval.transpose()?,
+        interval_mg,
     })
 }
 
-/// Nothing wears less than nothing.
-fn from_nothing(interval: Interval) -> Interval {
+/// Wear is never negative.
+fn not_below_zero(interval: Interval) -> Interval {
     Interval {
         low: interval.low.max(0.0),
         ..interval
     }
 }
 
-fn told(
+fn results(
     tests: &[Test],
     free: &Free,
     fit: &Fit,
@@ -282,14 +272,29 @@ fn told(
 ) -> Calibration {
     let constants = constants(free, fit);
     let spread = fit.spread.as_ref();
+    let of_test = |(test, &rate): (&Test, &f64)| {
+        let aim = test.weighed.aim();
+        CalibratedTest {
+            results: test.results.clone(),
+            measured: test.measured.clone(),
+            measured_by: aim.name.clone(),
+            measured_mg_per_million_cycles: aim.mg_per_million_cycles,
+            interval_mg_per_million_cycles: aim.interval_mg_per_million_cycles,
+            fitted_mg_per_million_cycles: rate,
+            fitted_above_measured_percent: 100.0 * (rate / aim.mg_per_million_cycles - 1.0),
+        }
+    };
+    let calibrated: Vec<CalibratedTest> = tests.iter().zip(&fit.rates).map(of_test).collect();
+    let factor = constants
+        .iter()
+        .find(|one| one.name == Archard::WEAR_FACTOR.name);
     Calibration {
         law: free.law.kind().word,
         confidence_percent: tests[0].weighed.confidence_percent,
-        times_as_much: free.is_level().then(|| Found {
+        times_as_much: free.is_level().then(|| Estimate {
             value: fit.at[0],
-            interval: ends(fit, 0).map(from_nothing),
+            interval: interval_of(fit, 0).map(not_below_zero),
         }),
-        tests: tests.iter().zip(&fit.rates).map(|(test, &rate)| of_test(test, rate)).collect(),
         scatter_percent: spread
             .filter(|_| tests[0].weighed.counts_specimens())
             .map(|spread| 100.0 * spread.scatter),
@@ -299,18 +304,27 @@ fn told(
              specimens, or more often",
         ),
         predictions,
-        one_test: match tests {
-            [test] => Some(one_test(test)),
+        one_test: match &calibrated[..] {
+            [test] => Some(OneTest {
+                measured_mg_per_million_cycles: test.measured_mg_per_million_cycles,
+                measured_by: test.measured_by.clone(),
+                interval_mg_per_million_cycles: test.interval_mg_per_million_cycles,
+            }),
             _ => None,
         },
-        wear_factor: wear_factor(&constants),
+        tests: calibrated,
+        wear_factor: factor.map(|factor| WearFactor {
+            run_with_mm3_per_nm: factor.run_with,
+            wear_factor_mm3_per_nm: factor.found.value,
+            wear_factor_interval_mm3_per_nm: factor.found.interval,
+        }),
         constants,
         trials,
     }
 }
 
 /// The interval of a parameter.
-fn ends(fit: &Fit, number: usize) -> Option<Interval> {
+fn interval_of(fit: &Fit, number: usize) -> Option<Interval> {
     let spread = fit.spread.as_ref()?;
     let slopes: Vec<f64> = (0..fit.at.len())
         .map(|own| f64::from(u8::from(own == number)))
@@ -333,7 +347,7 @@ fn constants(free: &Free, fit: &Fit) -> Vec<CalibratedConstant> {
             at[number] = end;
             free.constants_near(&at)[place]
         };
-        let interval = ends(fit, number).map(|ends| {
+        let interval = interval_of(fit, number).map(|ends| {
             let [one, other] = [at_end(ends.low), at_end(ends.high)];
             Interval {
                 low: one.min(other),
@@ -343,7 +357,7 @@ fn constants(free: &Free, fit: &Fit) -> Vec<CalibratedConstant> {
         CalibratedConstant {
             name: parameter.name,
             run_with: free.law.constants()[place],
-            found: Found {
+            found: Estimate {
                 value: values[place],
                 interval,
             },
@@ -352,48 +366,11 @@ fn constants(free: &Free, fit: &Fit) -> Vec<CalibratedConstant> {
     changed.map(constant).collect()
 }
 
-fn of_test(test: &Test, rate: f64) -> CalibratedTest {
-    let aim = test.weighed.aim();
-    CalibratedTest {
-        results: test.results.clone(),
-        measured: test.measured.clone(),
-        measured_by: aim.name.clone(),
-        measured_mg_per_million_cycles: aim.mg_per_million_cycles,
-        interval_mg_per_million_cycles: aim.interval_mg_per_million_cycles,
-        fitted_mg_per_million_cycles: rate,
-        fitted_above_measured_percent: 100.0 * (rate / aim.mg_per_million_cycles - 1.0),
-    }
-}
-
-fn one_test(test: &Test) -> OneTest {
-    let aim = test.weighed.aim();
-    OneTest {
-        measured_mg_per_million_cycles: aim.mg_per_million_cycles,
-        measured_by: aim.name.clone(),
-        interval_mg_per_million_cycles: aim.interval_mg_per_million_cycles,
-    }
-}
-
-/// What of Archard's law was found.
-fn wear_factor(constants: &[CalibratedConstant]) -> Option<WearFactor> {
-    let mut all = constants.iter();
-    let factor = all.find(|constant| constant.name == Archard::WEAR_FACTOR.name)?;
-    Some(WearFactor {
-        run_with_mm3_per_nm: factor.run_with,
-        wear_factor_mm3_per_nm: factor.found.value,
-        wear_factor_interval_mm3_per_nm: factor.found.interval,
-    })
-}
-
-/// A run, and the weighings that it is to meet.
+/// A run, and the weighings that it is to reproduce.
 pub(crate) struct Test {
-    /// The results folder.
     pub(crate) results: PathBuf,
-    /// The measured data.
     pub(crate) measured: PathBuf,
-    /// The case that was run.
     pub(crate) case: Case,
-    /// Both held against each other.
     pub(crate) weighed: GravimetricComparison,
 }
 
@@ -407,7 +384,6 @@ pub struct Trial {
 }
 
 impl Test {
-    /// Reads a results folder and measured data.
     pub(crate) fn read(results: &Path, measured: &Path) -> Result<Self, CalibrateError> {
         let comparison = compare(results, measured)?;
         Ok(Self {
@@ -418,7 +394,7 @@ impl Test {
         })
     }
 
-    /// An error where there is nothing to make a prediction of, or by.
+    /// Refuses specimens or runs without wear.
     pub(crate) fn check(&self) -> Result<(), CalibrateError> {
         let mg_per_million_cycles = self.weighed.aim().mg_per_million_cycles;
         if mg_per_million_cycles <= 0.0 || !mg_per_million_cycles.is_finite() {
@@ -435,7 +411,7 @@ impl Test {
         Ok(())
     }
 
-    /// Its rate with another law, in memory; that of the folder where the law is the same.
+    /// The rate with another law, run in memory; that of the folder where the law is the same.
     pub(crate) fn rate(&self, law: &Wear) -> Result<f64, CalibrateError> {
         if *law == self.case.wear {
             return Ok(self.weighed.predicted.mg_per_million_cycles);
@@ -445,7 +421,7 @@ impl Test {
     }
 }
 
-/// Mass lost after each update of a case with another law, as (cycles, mg), from nothing at the start.
+/// Mass lost after each update of a case with another law, as (cycles, mg), from zero at the start.
 pub(crate) fn losses(case: &Case, law: &Wear) -> Result<Vec<(f64, f64)>, CalibrateError> {
     let mut case = case.clone();
     case.wear = law.clone();

@@ -1,4 +1,4 @@
-//! Predicted against scanned wear.
+//! Comparison of predicted wear with a scanned surface.
 
 pub(crate) mod register;
 
@@ -19,7 +19,6 @@ use crate::measured::{
 
 pub use crate::measured::surface::register::Registration;
 
-/// Name of the field of wear in the meshes of a run.
 const DEPTH: &str = "wear_depth_mm";
 
 /// Registers a scan onto the worn insert of a results folder, and compares depths.
@@ -75,21 +74,20 @@ fn surface(folder: &Path, update: usize) -> Result<SurfaceFields, CompareError> 
     Ok(SurfaceFields::of_mesh(&file.mesh, &file.point_data, &path)?)
 }
 
-/// What a scan of an unloaded insert shows beside wear.
 const CREEP: &str = "a scan of an unloaded insert shows wear and about half of the creep; the \
     prediction is wear alone, so scanned depths are expected to be larger where pressure was high";
-/// Depth above which a place counts as part of a scar, as a share of the deepest predicted.
+/// A place deeper than this share of the largest predicted depth is part of a scar.
 const SCAR_SHARE: f64 = 0.05;
-/// A motion fixed less well than this is worth a word, mm.
-const WEAK_MM: f64 = 0.02;
-/// A scan that covers less than this share of the surface is worth a word.
-const LITTLE: f64 = 0.9;
+/// A registration with a larger standard error is noted, mm.
+const MAX_STANDARD_ERROR_MM: f64 = 0.02;
+/// A scan that covers a smaller share of the surface is noted.
+const MIN_COVERED: f64 = 0.9;
 
-/// How far a scanned surface is from the predicted one. Depths are measured from the unworn
-/// surface along its normal; differences are scanned minus predicted.
+/// Scanned and predicted depths, both measured from the unworn surface along its normal. Differences are scanned minus
+/// predicted.
 #[derive(Clone, Debug, Serialize)]
 pub struct SurfaceComparison {
-    /// How the scan was laid onto the prediction.
+    /// The motion that laid the scan onto the prediction.
     pub registration: Registration,
     /// Points of the scan.
     pub scan_points: usize,
@@ -111,7 +109,7 @@ pub struct SurfaceComparison {
     pub predicted_volume_mm3: f64,
     /// Scanned volume over the same area.
     pub scanned_volume_mm3: f64,
-    /// What to keep in mind.
+    /// Remarks on the interpretation.
     pub notes: Vec<String>,
     /// The unworn surface with the three fields `predicted_mm`, `scanned_mm`, `difference_mm`, NaN
     /// where the scan does not reach.
@@ -119,7 +117,7 @@ pub struct SurfaceComparison {
     pub fields: SurfaceFields,
 }
 
-/// How far two surfaces are apart, weighted by area; scanned minus predicted.
+/// Differences of two surfaces, weighted by area; scanned minus predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SurfaceErrors {
     /// Mean difference.
@@ -128,7 +126,7 @@ pub struct SurfaceErrors {
     pub mean_absolute_mm: f64,
     /// Root of the mean square.
     pub rms_mm: f64,
-    /// Area that these are taken over.
+    /// The area of the places compared.
     pub area_mm2: f64,
 }
 
@@ -156,7 +154,10 @@ pub(crate) fn summarised(
     registration: Registration,
     scan: &Scan,
 ) -> Result<SurfaceComparison, CompareError> {
-    let nodes = covered(compared);
+    let both = |node: &usize| {
+        compared.scanned_mm[*node].is_finite() && compared.predicted_mm[*node].is_finite()
+    };
+    let nodes: Vec<usize> = (0..compared.scanned_mm.len()).filter(both).collect();
     let place = |node: &usize| place(unworn, compared, *node);
     let all: Vec<NodeDepths> = nodes.iter().map(place).collect();
     let largest = |of: fn(&NodeDepths) -> f64| {
@@ -181,8 +182,21 @@ pub(crate) fn summarised(
     };
     let everywhere = errors(compared, &nodes);
     let covered_area_share = everywhere.area_mm2 / area;
+    let mut notes = vec![CREEP.to_owned()];
+    let standard_error_mm = registration.weakest_standard_error_mm;
+    if standard_error_mm > MAX_STANDARD_ERROR_MM {
+        notes.push(format!(
+            "the fitted surface leaves one motion of the scan uncertain by {standard_error_mm:.3} mm (standard error)"
+        ));
+    }
+    if covered_area_share < MIN_COVERED {
+        let percent = 100.0 * covered_area_share;
+        notes.push(format!(
+            "the scan covers {percent:.0} % of the articulating surface"
+        ));
+    }
     Ok(SurfaceComparison {
-        notes: notes(&registration, covered_area_share),
+        notes,
         registration,
         scan_points: scan.points.len(),
         covered_area_share,
@@ -196,13 +210,6 @@ pub(crate) fn summarised(
         scanned_volume_mm3: volume(&compared.scanned_mm),
         fields: fields(unworn, compared),
     })
-}
-
-fn covered(compared: &Compared) -> Vec<usize> {
-    let both = |node: &usize| {
-        compared.scanned_mm[*node].is_finite() && compared.predicted_mm[*node].is_finite()
-    };
-    (0..compared.scanned_mm.len()).filter(both).collect()
 }
 
 fn place(unworn: &SurfaceFields, compared: &Compared, node: usize) -> NodeDepths {
@@ -250,45 +257,26 @@ fn fields(unworn: &SurfaceFields, compared: &Compared) -> SurfaceFields {
     }
 }
 
-fn notes(registration: &Registration, covered: f64) -> Vec<String> {
-    let mut notes = vec![CREEP.to_owned()];
-    if registration.weakest_standard_error_mm > WEAK_MM {
-        notes.push(format!(
-            "the fitted surface leaves one motion of the scan uncertain by {:.3} mm (standard error)",
-            registration.weakest_standard_error_mm
-        ));
-    }
-    if covered < LITTLE {
-        notes.push(format!(
-            "the scan covers {:.0} % of the articulating surface",
-            100.0 * covered
-        ));
-    }
-    notes
-}
-
-/// Scanned depth at a node is that of points up to this many of their spacings away.
+/// Radius of the points that determine the scanned depth at a node, in spacings of the points.
 const SPACINGS: f64 = 1.5;
-/// Places of which the spacing is taken.
+/// Points from which the spacing is found; more cost time and gain nothing.
 const MAX_FOR_SPACING: usize = 2000;
-/// Smaller determinants of a fit, relative to its weight, leave the slope open.
+/// Smallest determinant of a plane's normal equations, relative to their weight, that determines its slope.
 const MIN_DETERMINANT: f64 = 1e-3;
 
-/// Depths at the nodes of the unworn surface, mm, NaN where the scan does not reach.
+/// Depths at the nodes of the unworn surface; NaN where the scan does not reach.
 pub(crate) struct Compared {
     pub predicted_mm: Vec<f64>,
     pub scanned_mm: Vec<f64>,
-    /// Area that a node stands for, mm2.
+    /// Share of the area of each node.
     pub areas_mm2: Vec<f64>,
 }
 
-/// A place of the unworn surface, and the scanned depth there.
+/// A place of the unworn surface with the scanned depth.
 type Sounding = GeomWithData<[f64; 3], f64>;
 
-/// Both depths at every node.
-///
-/// Predicted is the depth of the worn node below the unworn surface; scanned is what the depths of
-/// the points around say, so that both are measured alike.
+/// Both depths at every node: that of the worn node below the unworn surface, and that of the scanned points around it,
+/// so that both are measured alike.
 pub(crate) fn compared(
     unworn: &SurfaceFields,
     sheet: &Sheet<'_>,
@@ -345,28 +333,27 @@ fn spacing_mm(soundings: &[Sounding]) -> f64 {
     let tree = RTree::bulk_load(soundings.to_vec());
     let every = soundings.len().div_ceil(MAX_FOR_SPACING).max(1);
     let next = |sounding: &Sounding| {
-        let [_, next] = two_nearest(&tree, *sounding.geom())?;
-        Some((Vec3::from(next) - Vec3::from(*sounding.geom())).norm())
+        let place = *sounding.geom();
+        // The nearest one is the sounding itself.
+        let next = tree.nearest_neighbor_iter(place).nth(1)?;
+        Some((Vec3::from(*next.geom()) - Vec3::from(place)).norm())
     };
     let mut distances: Vec<f64> = soundings.iter().step_by(every).filter_map(next).collect();
     distances.sort_by(f64::total_cmp);
     distances.get(distances.len() / 2).copied().unwrap_or(0.0)
 }
 
-fn two_nearest(tree: &RTree<Sounding>, place: [f64; 3]) -> Option<[[f64; 3]; 2]> {
-    let mut nearest = tree.nearest_neighbor_iter(place).map(|found| *found.geom());
-    Some([nearest.next()?, nearest.next()?])
-}
-
-/// The depth at a node: the plane of weighted least squares through the soundings around, or
-/// their weighted mean where they leave its slope open; none where there are none.
+/// The depth at a node by the plane of weighted least squares through the soundings around it, or by their weighted mean
+/// where they do not determine its slope; none without soundings.
 fn sounded(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<f64> {
     let place = [node.x, node.y, node.z];
     let mut matrix = Mat3::zeros();
     let mut right_side = Vec3::zeros();
     for sounding in tree.locate_within_distance(place, radius * radius) {
         let away = (Vec3::from(*sounding.geom()) - node) / radius;
-        let weight = fading(away.norm());
+        // Wendland's function: 1 at the node, smoothly 0 at the radius.
+        let part = away.norm();
+        let weight = (1.0 - part).max(0.0).powi(4) * (4.0 * part + 1.0);
         // Steep surfaces are rare on an insert, so x and z stand for directions along it.
         let row = Vec3::new(1.0, away.x, away.z);
         matrix += row * row.transpose() * weight;
@@ -379,11 +366,6 @@ fn sounded(tree: &RTree<Sounding>, node: &Vec3, radius: f64) -> Option<f64> {
     let is_fixed = matrix.determinant() > MIN_DETERMINANT * weight.powi(3);
     let plane = matrix.cholesky().filter(|_| is_fixed);
     Some(plane.map_or(right_side.x / weight, |plane| plane.solve(&right_side).x))
-}
-
-/// Wendland's function: 1 at the node, smoothly 0 at the radius.
-fn fading(part: f64) -> f64 {
-    (1.0 - part).max(0.0).powi(4) * (4.0 * part + 1.0)
 }
 
 /// A quarter of each face for each of its nodes.

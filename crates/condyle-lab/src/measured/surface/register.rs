@@ -1,4 +1,4 @@
-//! Laying a scan onto the predicted surface: iterated closest points, point to plane.
+//! Registration of a scan on the predicted surface: iterated closest points, point to plane.
 
 use condyle::{
     Mat3, Vec3,
@@ -12,27 +12,27 @@ use serde::Serialize;
 
 use crate::measured::CompareError;
 
-/// Points of the scan that are laid onto the surface; more of them cost time and gain nothing.
+/// Points of the scan that are registered; more cost time and gain nothing.
 const MAX_POINTS: usize = 8000;
-/// A scan starts within this distance of its place, mm.
+/// Distance within which points find the surface at the start, mm.
 const REACH_MM: f64 = 15.0;
-/// The reach becomes shorter by this factor at every step, down to `farthest_mm`.
+/// Factor of that distance from step to step, down to `farthest_mm`: it excludes what does not belong to the surface.
 const REACH_SHRINKS: f64 = 0.8;
-/// Steps at most.
+/// Largest number of steps.
 const MAX_STEPS: usize = 300;
-/// A step shorter than this, at the scan's radius of gyration, is none, mm.
+/// A shorter step, at the scan's radius of gyration, ends the registration, mm.
 const REST_MM: f64 = 1e-6;
-/// A last step up to this is small enough where the points keep changing sides, mm.
+/// Largest last step accepted where points keep moving between facets, mm.
 const NEARLY_REST_MM: f64 = 1e-3;
-/// Normals may lean from each other by 60 degrees.
+/// Cosine of the largest angle between the normals of scan and surface, 60 degrees.
 pub(crate) const MIN_COSINE: f64 = 0.5;
-/// Residuals beyond this many scales have no weight: 95 % efficient for normal noise.
+/// Residuals beyond this many scales have no weight; 95 % efficient for normal noise.
 const TUKEY: f64 = 4.685;
-/// From the median of absolute residuals to the standard deviation of normal noise.
+/// Standard deviation of normal noise over the median of its absolute values.
 const SCALE_OF_MEDIAN: f64 = 1.4826;
 /// Smallest scale of residuals, mm: round-off of a scan without noise.
 const MIN_SCALE_MM: f64 = 1e-7;
-/// A motion that the surface resists less than this part of the most resisted one is free.
+/// A motion with a smaller eigenvalue, relative to the largest, is not determined by the surface.
 const MIN_RESISTANCE: f64 = 1e-7;
 
 /// A rigid motion from the scan as given (axes, unit and `start_mm` applied) to the prediction.
@@ -44,36 +44,34 @@ pub struct Registration {
     pub translation_mm: [f64; 3],
     /// Angle of the rotation.
     pub angle_deg: f64,
-    /// How far the middle of the fitted points was moved.
+    /// Motion of the middle of the fitted points.
     pub shift_mm: f64,
     /// Points fitted, those without weight left out.
     pub points: usize,
-    /// Root of the weighted mean square of what is left between scan and prediction, along the
-    /// normal, where they were laid onto each other.
+    /// Weighted root mean square of the remaining distances along the normals.
     pub residual_rms_mm: f64,
-    /// Standard error of the motion that the surface fixes least, at the radius of gyration of the
-    /// fitted points; for independent noise.
+    /// Standard error of the least determined motion, at the radius of gyration of the fitted points, for independent
+    /// noise.
     pub weakest_standard_error_mm: f64,
     /// Steps made.
     pub steps: usize,
-    /// The same motion.
     #[serde(skip)]
     motion: Isometry3<f64>,
 }
 
 impl Registration {
-    /// A point of the scan in its place.
-    pub fn moved(&self, point: &Vec3) -> Vec3 {
+    /// A registered point.
+    pub(crate) fn moved(&self, point: &Vec3) -> Vec3 {
         self.motion.transform_point(&(*point).into()).coords
     }
 
-    /// A direction of the scan in its place.
-    pub fn turned(&self, direction: &Vec3) -> Vec3 {
+    /// A registered direction.
+    pub(crate) fn turned(&self, direction: &Vec3) -> Vec3 {
         self.motion.transform_vector(direction)
     }
 }
 
-/// Lays a scan onto `target`, whose nodes are worn by `depth`.
+/// Registers a scan on `target`, whose nodes are worn by `depth`.
 pub(crate) fn register(
     scan: &Scan,
     target: &Sheet<'_>,
@@ -104,7 +102,7 @@ pub(crate) fn register(
     })
 }
 
-/// Whether a place of the prediction is one that scans are laid onto.
+/// Whether a place of the prediction is used for the registration.
 fn fits(keys: &ScanKeys, foot: &Foot, depth: &[f64]) -> bool {
     let within = |range: Option<[f64; 2]>, value: f64| {
         range.is_none_or(|[low, high]| (low..=high).contains(&value))
@@ -118,13 +116,13 @@ fn fits(keys: &ScanKeys, foot: &Foot, depth: &[f64]) -> bool {
     }
 }
 
-/// The points of a scan that are laid onto the surface, with their normals.
+/// The registered points of a scan with their normals.
 struct Places {
     points: Vec<Vec3>,
     normals: Option<Vec<Vec3>>,
 }
 
-/// A point of the scan, and what it is to come to.
+/// A point of the scan, and its distance from the surface.
 struct Pair {
     point: Vec3,
     normal: Vec3,
@@ -221,7 +219,7 @@ impl Fit {
         weight
     }
 
-    /// The motion that takes most of the residuals away; none where the surface leaves one free.
+    /// The motion that minimises the residuals; none where the surface does not determine it.
     fn step(&self) -> Option<Isometry3<f64>> {
         let resistances = self.matrix.symmetric_eigenvalues();
         if resistances.min() <= MIN_RESISTANCE * resistances.max() {
@@ -234,13 +232,10 @@ impl Fit {
         Some(Isometry3::from_parts(Translation3::from(shift), rotation))
     }
 
-    /// How far a motion moves the points, about.
+    /// The approximate length of a motion of the points.
     fn length_of(&self, motion: &Isometry3<f64>) -> f64 {
-        motion.rotation.angle() * self.gyration_mm + self.shift_of(motion)
-    }
-
-    fn shift_of(&self, motion: &Isometry3<f64>) -> f64 {
-        (motion.transform_point(&self.middle.into()).coords - self.middle).norm()
+        let shift = motion.transform_point(&self.middle.into()).coords - self.middle;
+        motion.rotation.angle() * self.gyration_mm + shift.norm()
     }
 
     fn registration(&self, motion: Isometry3<f64>, steps: usize) -> Registration {
@@ -280,7 +275,7 @@ fn tukey(residual: f64) -> f64 {
     }
 }
 
-/// Shares of a triangle smaller than this are none: the place is on its opposite edge.
+/// A place with a smaller share of a corner is on the opposite edge.
 const ON_EDGE: f64 = 1e-9;
 
 /// A surface with a search tree over its triangles.
@@ -291,7 +286,7 @@ pub(crate) struct Sheet<'a> {
     is_border: Vec<bool>,
 }
 
-/// The place of a surface that belongs to a point.
+/// The nearest place of a surface to a point.
 pub(crate) struct Foot {
     /// Corners of the triangle.
     pub corners: [u32; 3],
@@ -350,11 +345,12 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// The place that belongs to a point; none for a surface without triangles.
+    /// The nearest place to a point; none for a surface without triangles.
     pub fn foot(&self, point: &Vec3) -> Option<Foot> {
         let nearest = self.tree.nearest_neighbor([point.x, point.y, point.z])?;
         let corners = self.mesh.triangles[nearest.number];
         let foot = self.curved.foot(nearest.number, point);
+        // On the border, each corner is on it or has no share.
         let held_by_border =
             |i: usize| foot.weights[i] < ON_EDGE || self.is_border[corners[i] as usize];
         Some(Foot {
@@ -378,7 +374,7 @@ pub(crate) fn triangulated(surface: &SurfaceFields) -> TriangleMesh {
     TriangleMesh::of_quads(surface.nodes.clone(), surface.quads.iter().copied())
 }
 
-/// Which nodes have an edge of a single triangle.
+/// Whether each node has an edge of a single triangle.
 fn borders(mesh: &TriangleMesh) -> Vec<bool> {
     let edge = |a: u32, b: u32| (a.min(b), a.max(b));
     let edges = |&[a, b, c]: &[u32; 3]| [edge(a, b), edge(b, c), edge(c, a)];

@@ -1,0 +1,415 @@
+//! The scatter of a test whose inputs vary from laboratory to laboratory and from specimen to specimen.
+
+use std::{collections::BTreeMap, ops::ControlFlow, path::Path};
+
+use condyle::{evolve::March, geometry::TriangleMesh, parameter::unit_of};
+use condyle_case::{
+    cache::Cache,
+    case::Case,
+    config::Level,
+    study::{Design, Input, SampleKeys, ScaledKey, Study, TruncatedKeys, Variation},
+};
+use condyle_lab::{
+    InMemory, Outcome, RunError, RunKeeper, aligned, run_in_memory as run_with_error,
+};
+use condyle_results::{
+    LawWear, Summary,
+    catalogue::{self, Scalar},
+};
+use serde::Serialize;
+
+use crate::{
+    answers::table,
+    engine::{Listener, TestBench, run_in_memory},
+    error::StudyError,
+    plan::{Plan, TestResult, output_value},
+    statistics::{central_interval, correlation, extent, mean, standard_deviation},
+};
+
+/// Values this many standard deviations from the mean do not occur: such parts and set-ups are rejected.
+const MAX_DEVIATIONS: f64 = 3.0;
+
+/// All inputs that scatter: the name, the keys, which move together and of which a case may have some, one standard
+/// deviation as a part of the value or as a step in the unit of the key, and its source. The source of a deviation that was
+/// not measured states the assumption.
+const SCATTERS: &str = include_str!("scatters.csv");
+
+/// An input that scatters from test to test.
+struct Scatter {
+    name: &'static str,
+    keys: Vec<&'static str>,
+    is_part: bool,
+    deviation: f64,
+    source: &'static str,
+}
+
+fn scatters() -> impl Iterator<Item = Scatter> {
+    records(SCATTERS).map(|[name, keys, by, deviation, source]| Scatter {
+        name,
+        keys: keys.split(' ').collect(),
+        is_part: by == "part",
+        deviation: deviation.parse().expect("a number"),
+        source,
+    })
+}
+
+/// The records of a table that the crate includes, without its head.
+pub(crate) fn records<const N: usize>(
+    table: &'static str,
+) -> impl Iterator<Item = [&'static str; N]> {
+    table.lines().skip(1).map(|line| {
+        let fields: Result<[&str; N], _> = line.split(';').collect::<Vec<_>>().try_into();
+        fields.expect("a field for each column")
+    })
+}
+
+impl Scatter {
+    /// One standard deviation in words, such as `2 %` or `0.5 mm`.
+    fn deviation(&self) -> String {
+        if self.is_part {
+            return format!("{} %", (1e3 * self.deviation).round() / 10.0);
+        }
+        let unit = unit_of(self.keys[0]).unwrap_or_default();
+        format!("{} {unit}", self.deviation)
+    }
+
+    /// The input of a study whose values count standard deviations; without keys if the case has none.
+    fn input(&self, case: &Case) -> Input {
+        let variation = Variation::TruncatedNormal(TruncatedKeys {
+            mean: Some(0.0),
+            standard_deviation: 1.0,
+            low: -MAX_DEVIATIONS,
+            high: MAX_DEVIATIONS,
+        });
+        let scaled = self.keys.iter().filter_map(|&key| {
+            let mean = case.number_at_or_written(key)?;
+            let scale = if self.is_part { mean } else { 1.0 };
+            let standard_deviation = scale * self.deviation;
+            (standard_deviation != 0.0).then_some(ScaledKey {
+                key,
+                mean,
+                standard_deviation,
+            })
+        });
+        let mut input = Input::new(self.name, variation);
+        input.scaled = scaled.collect();
+        input
+    }
+}
+
+/// Options of a study of uncertainty.
+#[derive(Clone, Copy, Debug)]
+pub struct UncertaintyOptions {
+    /// Tests with scattered inputs, at least 2.
+    pub runs: u64,
+    /// Seed of the inputs.
+    pub seed: u64,
+    /// Tests at the same time; results do not depend on it.
+    pub threads: usize,
+}
+
+/// The uncertainty of the results of a case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Uncertainty {
+    /// Tests that are done.
+    runs: usize,
+    /// The reasons of those that failed.
+    not_run: Vec<String>,
+    seed: u64,
+    inputs: Vec<Share>,
+    /// Inputs for which the case has no key.
+    left_out: Vec<&'static str>,
+    /// The results, by their keys.
+    numbers: BTreeMap<&'static str, Spread>,
+}
+
+/// An input that scatters, and its part of the variance.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Share {
+    name: &'static str,
+    /// One standard deviation, with its unit.
+    standard_deviation: String,
+    source: &'static str,
+    /// 100 times the square of the correlation with each result; 0 of fewer than three tests.
+    variance_percent: BTreeMap<&'static str, f64>,
+}
+
+/// The scatter of a result, in its unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Spread {
+    /// The result of the case without changes.
+    value: f64,
+    /// Its discretisation error; none where the case does not ask for it.
+    discretisation: Option<f64>,
+    mean: f64,
+    standard_deviation: f64,
+    /// The 2.5th percentile.
+    low: f64,
+    /// The 97.5th percentile.
+    high: f64,
+    /// The smallest and the largest wear of all wear laws on the histories of the case.
+    laws: Option<[f64; 2]>,
+}
+
+/// The results that sensitivity and uncertainty are about.
+pub(crate) fn compared() -> impl Iterator<Item = &'static Scalar> {
+    const KEYS: [&str; 5] = [
+        "mass_loss_mg",
+        "max_depth_mm",
+        "peak_pressure_mpa",
+        "ap_range_mm",
+        "ie_range_deg",
+    ];
+    KEYS.into_iter().filter_map(catalogue::scalar)
+}
+
+/// Runs the case at `case_path` without changes, with its estimate of the error, and again with scattered inputs: a Latin
+/// hypercube of independent normal distributions, truncated at three standard deviations. Nothing is written.
+///
+/// # Errors
+/// A case that cannot be run without changes. A test with scattered inputs that fails is counted among the results.
+pub fn uncertainty(
+    case_path: &Path,
+    options: UncertaintyOptions,
+    listener: &mut Listener<'_>,
+) -> Result<Uncertainty, StudyError> {
+    let UncertaintyOptions {
+        runs: size,
+        seed,
+        threads,
+    } = options;
+    let sample = Design::LatinHypercube(SampleKeys { size, seed });
+    let mut study = Study::of_case(case_path, sample)?;
+    let as_given = with_error(&study.case)?;
+    let (mut kept, mut left_out) = (Vec::new(), Vec::new());
+    for scatter in scatters() {
+        let input = scatter.input(&study.case);
+        let set = input.assignments(Path::new(""), &Level::Number(0.0));
+        // A key with a value may still belong to another machine or law than the case's.
+        if set.is_empty() || study.changed_case(&set).is_err() {
+            left_out.push(scatter.name);
+        } else {
+            study.inputs.push(input);
+            kept.push(scatter);
+        }
+    }
+    let plan = Plan::of(study)?;
+    let found = run_in_memory(&plan, &TestBench::default(), threads, listener)?;
+    Ok(Uncertainty::new(
+        &plan, &as_given, &kept, left_out, seed, &found,
+    ))
+}
+
+/// The summary of a case, with its estimate of the error if it asks for one.
+fn with_error(case: &Case) -> Result<Summary, RunError> {
+    struct KeepNothing;
+    impl RunKeeper for KeepNothing {
+        fn settled(&mut self, _: &March, _: &TriangleMesh) {}
+        fn updated(&mut self, _: &March) {}
+    }
+    let how = InMemory {
+        threads: 1,
+        cache: Cache::of_user(),
+        wear_law: None,
+    };
+    let go_on = &mut |_: condyle_lab::RunEvent<'_>| ControlFlow::Continue(());
+    match run_with_error(case, &how, &mut KeepNothing, go_on)? {
+        Outcome::Done(summary) | Outcome::DoneBefore(summary) => Ok(*summary),
+        Outcome::Interrupted(_) => unreachable!("the listener never stops it"),
+    }
+}
+
+impl Uncertainty {
+    fn new(
+        plan: &Plan,
+        as_given: &Summary,
+        scatters: &[Scatter],
+        left_out: Vec<&'static str>,
+        seed: u64,
+        found: &[TestResult],
+    ) -> Self {
+        let done = || {
+            let rows = (0..).filter_map(|row| plan.test(row)).zip(found);
+            rows.filter_map(|(test, found)| Some((test, found.as_ref().ok()?)))
+        };
+        let column = |output: &Scalar| -> Vec<f64> {
+            done()
+                .map(|(_, values)| output_value(values, output))
+                .collect()
+        };
+        let share = |(place, scatter): (usize, &Scatter)| {
+            let deviations = done().map(|(test, _)| match test.values[place] {
+                Some(Level::Number(deviations)) => deviations,
+                _ => f64::NAN,
+            });
+            let deviations: Vec<f64> = deviations.collect();
+            let percent = |output: &'static Scalar| {
+                let correlation = correlation(&deviations, &column(output));
+                (output.key, 100.0 * correlation.unwrap_or_default().powi(2))
+            };
+            Share {
+                name: scatter.name,
+                standard_deviation: scatter.deviation(),
+                source: scatter.source,
+                variance_percent: compared().map(percent).collect(),
+            }
+        };
+        let spread = |output: &'static Scalar| {
+            let values = column(output);
+            (output.key, Spread::new(output, as_given, values))
+        };
+        Self {
+            runs: done().count(),
+            not_run: found
+                .iter()
+                .filter_map(|found| found.clone().err())
+                .collect(),
+            seed,
+            inputs: scatters.iter().enumerate().map(share).collect(),
+            left_out,
+            numbers: compared().map(spread).collect(),
+        }
+    }
+
+    /// Tables in Markdown: the results, and the inputs that they depend on.
+    pub fn markdown(&self) -> String {
+        let head = [
+            "number",
+            "value",
+            "discretisation",
+            "inputs, 1 SD",
+            "95 % of runs",
+            "wear laws",
+        ];
+        let results: Vec<&Scalar> = compared().collect();
+        let numbers = table(&head, &results, |output| {
+            let spread = &self.numbers[output.key];
+            let shown = |value: f64| output.text(value);
+            let range = |[low, high]: [f64; 2]| format!("{} to {}", shown(low), shown(high));
+            let plus_minus = |value: f64| format!("+/- {}", shown(value));
+            let dash = || "-".to_owned();
+            vec![
+                output.title(),
+                shown(spread.value),
+                spread.discretisation.map_or_else(dash, plus_minus),
+                plus_minus(spread.standard_deviation),
+                range([spread.low, spread.high]),
+                spread.laws.map_or_else(dash, range),
+            ]
+        });
+        let mut inputs: Vec<&Share> = self.inputs.iter().collect();
+        let of_mass = |input: &Share| input.variance_percent["mass_loss_mg"];
+        inputs.sort_by(|one, other| of_mass(other).total_cmp(&of_mass(one)));
+        let head = [
+            "input",
+            "1 SD",
+            "of mass variance",
+            "of depth variance",
+            "from",
+        ];
+        let inputs = table(&head, &inputs, |input| {
+            let percent = |name| format!("{:.0} %", input.variance_percent[name]);
+            vec![
+                input.name.to_owned(),
+                input.standard_deviation.clone(),
+                percent("mass_loss_mg"),
+                percent("max_depth_mm"),
+                input.source.to_owned(),
+            ]
+        });
+        format!(
+            "{}\n{}\n{}",
+            aligned(&numbers),
+            self.notes(),
+            aligned(&inputs)
+        )
+    }
+
+    fn notes(&self) -> String {
+        // The standard deviation of a sample of n scatters by 1 / sqrt(2 (n - 1)) of itself.
+        let known = 100.0 / (2.0 * (self.runs as f64 - 1.0).max(1.0)).sqrt();
+        let mut text = format!(
+            "{} runs, seed {}: standard deviations are known to {known:.0} %.\n",
+            self.runs, self.seed
+        );
+        if let Some(reason) = self.not_run.first() {
+            let count = self.not_run.len();
+            text += &format!(
+                "Not among them: {count} that could not be run, the first because of: {reason}\n"
+            );
+        }
+        if !self.left_out.is_empty() {
+            text += &format!("This case has no key for: {}.\n", self.left_out.join(", "));
+        }
+        text
+    }
+}
+
+impl Spread {
+    fn new(output: &Scalar, as_given: &Summary, values: Vec<f64>) -> Self {
+        let error = as_given.error.as_ref();
+        let laws = |of: fn(&LawWear) -> f64| {
+            let laws = as_given.wear_laws.iter().map(of);
+            (!as_given.wear_laws.is_empty()).then(|| extent(laws))
+        };
+        let laws = match output.key {
+            "mass_loss_mg" => laws(|law| law.mass_loss_mg),
+            "max_depth_mm" => laws(|law| law.max_depth_mm),
+            _ => None,
+        };
+        let (mean, standard_deviation) = (mean(&values), standard_deviation(&values));
+        let [low, high] = central_interval(values);
+        Self {
+            value: as_given[output],
+            discretisation: error.map(|error| error[output].in_unit.total),
+            mean,
+            standard_deviation,
+            low,
+            high,
+            laws,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(name: &str, text: &str, deviations: f64) -> Vec<String> {
+        let case = Case::parse(text, "case", Path::new("")).unwrap();
+        let scatter = scatters().find(|scatter| scatter.name == name);
+        let input = scatter.unwrap().input(&case);
+        let level = Level::Number(deviations);
+        let set = input.assignments(Path::new(""), &level).into_iter();
+        set.map(|set| set.to_string()).collect()
+    }
+
+    #[test]
+    fn all_keys_of_a_scatter_move_together() {
+        let set = set("stiffness of springs", "", 2.0);
+        assert_eq!(set.len(), 2, "{set:?}");
+        assert!(set[0].contains("37.18"), "{set:?}");
+        let deviation = |name: &str| {
+            let scatter = scatters().find(|scatter| scatter.name == name);
+            scatter.unwrap().deviation()
+        };
+        assert_eq!(deviation("stiffness of springs"), "5 %");
+        assert_eq!(deviation("wear factor"), "5.4 %");
+        assert_eq!(deviation("thickness"), "0.05 mm");
+    }
+
+    #[test]
+    fn the_factor_of_cross_linking_scatters_where_the_insert_is_cross_linked() {
+        let off = |text: &str| set("cross-linked over conventional", text, -1.0);
+        assert!(off("").is_empty());
+        let [one] = &off("[material]\ncross_linking = \"high\"\n")[..] else {
+            panic!("one key");
+        };
+        assert!(one.contains("0.168"), "{one}");
+    }
+
+    #[test]
+    fn what_is_nothing_has_no_part_of_itself() {
+        assert!(set("friction", "[contact]\nfriction = 0.0\n", 1.0).is_empty());
+    }
+}
