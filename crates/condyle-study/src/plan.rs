@@ -113,8 +113,11 @@ impl Plan {
         matches!(self.study.design, Design::Optimise(_))
     }
 
-    /// Test `row`; none of a search, where it depends on the results of earlier tests.
+    /// Test `row`; none beyond the last, and none of a search, where it depends on the results of earlier tests.
     pub fn test(&self, row: u64) -> Option<Test> {
+        if row >= self.tests() {
+            return None;
+        }
         let designs = designs(&self.study) as u64;
         let (of_design, alternative) = (row / designs, (row % designs) as usize);
         let values = match &self.study.design {

@@ -229,7 +229,8 @@ impl Uncertainty {
         found: &[TestResult],
     ) -> Self {
         let done = || {
-            let rows = (0..).filter_map(|row| plan.test(row)).zip(found);
+            let rows = (0..plan.tests()).filter_map(|row| plan.test(row));
+            let rows = rows.zip(found);
             rows.filter_map(|(test, found)| Some((test, found.as_ref().ok()?)))
         };
         let column = |output: &Scalar| -> Vec<f64> {
