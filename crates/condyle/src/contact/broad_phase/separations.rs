@@ -103,20 +103,6 @@ impl Eight {
         self.radius_mm = radius_mm.to_array();
         clear_mm.not_above_zero() | radius_mm.not_above_zero()
     }
-
-    /// Copies the bounds of the blocks with a bit in `which`.
-    fn take_over(&mut self, mut which: u32, others: &Self) {
-        while which != 0 {
-            let i = which.trailing_zeros() as usize;
-            self.clear_mm[i] = others.clear_mm[i];
-            for axis in 0..3 {
-                self.slope[axis][i] = others.slope[axis][i];
-            }
-            self.loss[i] = others.loss[i];
-            self.radius_mm[i] = others.radius_mm[i];
-            which &= which - 1;
-        }
-    }
 }
 
 impl Separations {
@@ -169,9 +155,18 @@ impl Separations {
             {
                 let mut known = eights[number].clone();
                 let motion = step.motion(&places.middles);
-                let apart = may_touch & !known.carry(&motion, step.lost_mm(places));
-                bounds.take_over(apart, &known);
+                let mut apart = may_touch & !known.carry(&motion, step.lost_mm(places));
                 may_touch &= !apart;
+                while apart != 0 {
+                    let i = apart.trailing_zeros() as usize;
+                    bounds.clear_mm[i] = known.clear_mm[i];
+                    for axis in 0..3 {
+                        bounds.slope[axis][i] = known.slope[axis][i];
+                    }
+                    bounds.loss[i] = known.loss[i];
+                    bounds.radius_mm[i] = known.radius_mm[i];
+                    apart &= apart - 1;
+                }
             }
             while may_touch != 0 {
                 candidates.push((number * LANES_F32) as u32 + may_touch.trailing_zeros());

@@ -93,9 +93,14 @@ impl<'a> NearBlocks<'a> {
             let at = block as usize;
             let shares = &self.blocks[at];
             let was_near = self.near_at[at] + 1 == self.number;
-            let reuses = was_near && self.cached[at].reaches(&place, self.reuse_mm);
+            let last = &self.cached[at];
+            let motion = place - last.place;
+            let reuses =
+                was_near && dot(&motion, &motion).greatest() <= self.reuse_mm * self.reuse_mm;
             let cached = if reuses {
-                self.cached[at].extrapolated(place)
+                // To second order, with the curvature of the sample.
+                let sample = last.sample.moved(&motion);
+                CachedSample { place, sample }
             } else {
                 CachedSample::at(femur, place, shares.spread_mm2)
             };
@@ -139,20 +144,6 @@ impl CachedSample {
     #[inline(always)]
     pub fn at(femur: &FemoralSurface, place: Vector<F64x4>, spread_mm2: F64x4) -> Self {
         let sample = femur.sample(&place, spread_mm2);
-        Self { place, sample }
-    }
-
-    /// Returns whether `place` is near enough for the sample to be extrapolated there.
-    #[inline(always)]
-    fn reaches(&self, place: &Vector<F64x4>, reuse_mm: f64) -> bool {
-        let motion = place - self.place;
-        dot(&motion, &motion).greatest() <= reuse_mm * reuse_mm
-    }
-
-    /// Extrapolates the sample to `place`, to second order.
-    #[inline(always)]
-    fn extrapolated(&self, place: Vector<F64x4>) -> Self {
-        let sample = self.sample.moved(&(place - self.place));
         Self { place, sample }
     }
 }

@@ -91,7 +91,15 @@ impl Compliance {
         let all = self.source.tiles();
         // Between the two locks another thread may have added some of them.
         tiles.retain(|&tile| !near.knows(all[tile][0]));
-        near.make_room(tiles.iter().map(|&tile| all[tile].len()));
+        // Room for all at once: rows that grow by themselves take twice the memory.
+        let new_rows = tiles
+            .iter()
+            .map(|&tile| all[tile].len().next_multiple_of(ROWS));
+        near.room = (near.rows.len() + new_rows.sum::<usize>()) / ROWS;
+        let room = near.room;
+        for row in &mut near.rows {
+            row.reserve_exact(room - row.len());
+        }
         for tile in tiles {
             near.add(tile, all, |one, other| self.source.between(one, other));
         }
@@ -233,16 +241,6 @@ impl NearMatrix {
                 let mixed = one.mul_add(of_one, *other * of_other);
                 line.extend_from_slice(&mixed.to_array());
             }
-        }
-    }
-
-    /// Reserves room for tiles of so many nodes that are about to be added: rows that grow by themselves take twice the
-    /// memory.
-    fn make_room(&mut self, nodes: impl Iterator<Item = usize>) {
-        let more: usize = nodes.map(|nodes| nodes.next_multiple_of(ROWS)).sum();
-        self.room = (self.rows.len() + more) / ROWS;
-        for row in &mut self.rows {
-            row.reserve_exact(self.room - row.len());
         }
     }
 

@@ -19,10 +19,7 @@ use nalgebra::DVector;
 use super::{
     complementarity::Candidate,
     elastic_surface::ElasticSurface,
-    history::{
-        ByActivity, ByIncrement, LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads, farthest_mm,
-        field,
-    },
+    history::{ByActivity, ByIncrement, LoadHistory, SETTLED_MM, SurfaceLoads, farthest_mm, field},
 };
 use crate::{
     contact::{
@@ -117,33 +114,6 @@ impl RestingInsert {
         self.set_mm[node as usize].unwrap_or_default()
     }
 
-    /// Finds the equilibrium under loads, and returns how far that moves nodes of the surface from the trial, mm.
-    fn settle_under(
-        &mut self,
-        loads: &[NodeLoad],
-        near: impl Iterator<Item = u32>,
-    ) -> Result<f64, NotBorne> {
-        let forces_n = self.surface.forces_on_tray(&self.tray, loads);
-        let (stuck_mm, from_mm) = (&self.left_mm, &self.searched_mm);
-        let found = self
-            .tray
-            .rest(self.friction, stuck_mm, &forces_n, from_mm)?;
-        let tried: Vec<(u32, f64)> = near.map(|node| (node, self.set_mm(node))).collect();
-        let tried_mm = std::mem::replace(&mut self.tried_mm, found.moved_mm.clone());
-        self.set_mm.fill(None);
-        let moved = tried
-            .into_iter()
-            .map(|(node, tried_mm)| (self.set_mm(node) - tried_mm).abs());
-        let moved_mm = moved.fold(0.0, f64::max);
-        if moved_mm > SETTLED_MM {
-            self.tried_mm = self.turns.next(&tried_mm, &found.moved_mm);
-            self.set_mm.fill(None);
-        }
-        self.searched_mm.clone_from(&found.searched_mm);
-        self.found = Some(found);
-        Ok(moved_mm)
-    }
-
     /// Resets the trial to the position in which the backside was left, displaced by `way_mm`.
     fn reset_trial(&mut self, way_mm: Option<&[f64]>) {
         self.tried_mm.clone_from(&self.left_mm);
@@ -211,8 +181,28 @@ impl LoadHistory for RestingInsert {
         points.map(|point| point[2]).fold(0.0, f64::max)
     }
 
+    /// Finds the equilibrium under the loads, and returns how far that moves nodes of the surface from the trial, mm.
     fn settle(&mut self, under: &SurfaceLoads<'_>) -> Result<f64, NotBorne> {
-        self.settle_under(under.loads, under.near())
+        let forces_n = self.surface.forces_on_tray(&self.tray, under.loads);
+        let (stuck_mm, from_mm) = (&self.left_mm, &self.searched_mm);
+        let found = self
+            .tray
+            .rest(self.friction, stuck_mm, &forces_n, from_mm)?;
+        let tried = under.near().map(|node| (node, self.set_mm(node)));
+        let tried: Vec<(u32, f64)> = tried.collect();
+        let tried_mm = std::mem::replace(&mut self.tried_mm, found.moved_mm.clone());
+        self.set_mm.fill(None);
+        let moved = tried
+            .into_iter()
+            .map(|(node, tried_mm)| (self.set_mm(node) - tried_mm).abs());
+        let moved_mm = moved.fold(0.0, f64::max);
+        if moved_mm > SETTLED_MM {
+            self.tried_mm = self.turns.next(&tried_mm, &found.moved_mm);
+            self.set_mm.fill(None);
+        }
+        self.searched_mm.clone_from(&found.searched_mm);
+        self.found = Some(found);
+        Ok(moved_mm)
     }
 
     fn accept(&mut self, _: &RelativeMotion, _: &ContactPatch<'_>) {

@@ -12,7 +12,7 @@ pub(crate) use influence::Influence;
 
 use std::{collections::BTreeMap, fmt::Debug, sync::Arc};
 
-use condyle_fem::{ElasticSolid, Material, MaterialPoint, Strain};
+use condyle_fem::{Material, MaterialPoint, Strain};
 
 use super::{
     complementarity::Candidate,
@@ -258,14 +258,6 @@ impl<M: Material> PlasticInsert<M> {
         sums
     }
 
-    fn solid(&self) -> &ElasticSolid {
-        self.surface.solid()
-    }
-
-    fn influence(&self) -> &Influence {
-        self.surface.influence()
-    }
-
     fn committed_points(&self, element: u32) -> [M::Point; POINTS] {
         self.committed.get(&element).copied().unwrap_or_default()
     }
@@ -280,7 +272,7 @@ impl<M: Material> PlasticInsert<M> {
         let set_mm = self.surface.along_normals(&self.moved_mm);
         self.set_mm.clone_from(&set_mm);
         self.committed_set_mm = Arc::new(set_mm);
-        let (solid, influence) = (self.solid(), self.influence());
+        let (solid, influence) = (self.surface.solid(), self.surface.influence());
         let yield_mpa = self.material.initial_yield_stress();
         let use_of = |element: usize| {
             let nodes = solid.mesh().hexes[element].map(|node| self.moved_mm[node as usize]);
@@ -311,14 +303,14 @@ impl<M: Material> PlasticInsert<M> {
                 is_near[other as usize] = true;
             }
         }
-        let stacks = self.influence().stacks.iter().zip(&is_near);
+        let stacks = self.surface.influence().stacks.iter().zip(&is_near);
         let below = stacks.filter(|(_, is_near)| **is_near);
         let mut below: Vec<u32> = below.flat_map(|(stack, _)| stack).copied().collect();
         below.extend(self.committed.keys());
         below.sort_unstable();
         below.dedup();
         self.load_nodes(loads, &below);
-        let influence = self.influence();
+        let influence = self.surface.influence();
         let yield_mpa = self.material.initial_yield_stress();
         let is_near_yield = |element: &u32| {
             let mean = &influence.means[*element as usize];
@@ -357,14 +349,14 @@ impl<M: Material> PlasticInsert<M> {
 
     /// Returns the displacements of the nodes of an element, with `more_mm` of some.
     fn nodes_of(&self, element: u32, more_mm: &ByTile) -> [Vec3; 8] {
-        let hex = self.solid().mesh().hexes[element as usize];
-        let influence = self.influence();
+        let hex = self.surface.solid().mesh().hexes[element as usize];
+        let influence = self.surface.influence();
         hex.map(|node| self.loaded_mm[node as usize] + influence.of_node(more_mm, node))
     }
 
     /// Returns the elements that flow, flowed in the trial state, or are near it; none if none flows.
     fn searched(&self, evaluated: &[u32]) -> Vec<u32> {
-        let (solid, influence) = (self.solid(), self.influence());
+        let (solid, influence) = (self.surface.solid(), self.surface.influence());
         let mut flows = !self.trial.is_empty();
         let mut searched = Vec::new();
         for &element in evaluated {
@@ -385,9 +377,11 @@ impl<M: Material> PlasticInsert<M> {
     /// The displacements under the flow and the flow under the displacements are found in turns, accelerated by Anderson's
     /// mixing of the plastic strains.
     fn sweep(&mut self, elements: &[u32]) -> Result<ByTile, NotBorne> {
-        let hexes = &self.solid().mesh().hexes;
+        let hexes = &self.surface.solid().mesh().hexes;
         let nodes = elements.iter().flat_map(|&element| hexes[element as usize]);
-        let mut tiles: Vec<u32> = nodes.map(|node| self.influence().tile_of(node)).collect();
+        let mut tiles: Vec<u32> = nodes
+            .map(|node| self.surface.influence().tile_of(node))
+            .collect();
         tiles.sort_unstable();
         tiles.dedup();
         let shear_modulus = self.material.elastic().shear_modulus();
@@ -398,7 +392,7 @@ impl<M: Material> PlasticInsert<M> {
         }
         let (mut mixing, mut tried) = (Mixing::default(), self.strains(elements));
         for _ in 0..MAX_SWEEPS {
-            let moved_mm = self.influence().moved(&self.forces(), &tiles);
+            let moved_mm = self.surface.influence().moved(&self.forces(), &tiles);
             let mut changed: f64 = 0.0;
             for &element in elements {
                 changed = changed.max(self.flow_element(element, &moved_mm));
@@ -432,10 +426,10 @@ impl<M: Material> PlasticInsert<M> {
     /// Updates the flow of an element whose nodes are displaced by the flow around it, and returns how far that is from the
     /// plastic strain tried.
     fn flow_element(&mut self, element: u32, moved_mm: &ByTile) -> f64 {
-        let (solid, before) = (self.solid(), self.committed_points(element));
+        let (solid, before) = (self.surface.solid(), self.committed_points(element));
         let trial = self.trial[&element];
         let nodes = self.nodes_of(element, moved_mm);
-        let own = self.influence().element(solid, element);
+        let own = self.surface.influence().element(solid, element);
         let flowed = own.flow(solid, &self.material, &nodes, [&trial, &before]);
         let apart = flowed.iter().zip(&trial);
         let apart = apart
@@ -450,7 +444,7 @@ impl<M: Material> PlasticInsert<M> {
 
     /// Returns the forces of the flow in the present increment.
     fn forces(&self) -> ByTile {
-        let (solid, influence) = (self.solid(), self.influence());
+        let (solid, influence) = (self.surface.solid(), self.surface.influence());
         let mut forces = ByTile::new();
         for (&element, points) in &self.trial {
             let before = self.committed_points(element);
@@ -470,7 +464,7 @@ impl<M: Material> PlasticInsert<M> {
     /// Adds the displacements of surface nodes along their inward normals by forces inside, by reciprocity: a force moves a
     /// surface node as far as a unit load there moves the node of the force.
     fn add_set(&self, forces: &ByTile, near: impl Iterator<Item = u32>, set_mm: &mut [f64]) {
-        let influence = self.influence();
+        let influence = self.surface.influence();
         let mut tiles: Vec<u32> = near
             .map(|node| self.surface.normal().tile_of(node))
             .collect();

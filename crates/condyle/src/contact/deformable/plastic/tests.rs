@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use condyle_fem::{Elastic, ElasticPlastic, Hardening, PlasticPoint, PlasticSolid};
+use condyle_fem::{Elastic, ElasticPlastic, ElasticSolid, Hardening, PlasticPoint, PlasticSolid};
 
 use super::*;
 use crate::{
