@@ -80,7 +80,7 @@ impl<'a> ContactPatch<'a> {
 
     /// Evaluates the `traction` on every near block, and returns the wrench on the insert about the femur's origin, in the
     /// femoral frame, and the load-weighted mean slip of every region.
-    pub fn press(
+    pub fn evaluate(
         &mut self,
         mut traction: impl FnMut(usize, &NearBlock, &ShareBlock) -> Tractions4,
     ) -> (Wrench<body::Insert, body::Femur>, [Vec3; MAX_REGIONS]) {

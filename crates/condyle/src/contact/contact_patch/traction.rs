@@ -30,7 +30,7 @@ pub(crate) struct Tractions4 {
     pub pressure_mpa: F64x4,
     /// Areas of the shares, mm2; their product with the pressure is the load L, N.
     pub area_mm2: F64x4,
-    /// Areas of the parts of the shares that press, mm2.
+    /// Areas of the parts of the shares in contact, mm2.
     pub covered_mm2: F64x4,
     /// Derivatives of the loads by the motion of the femur's material there, N/mm.
     pub load_by_motion: Vector<F64x4>,

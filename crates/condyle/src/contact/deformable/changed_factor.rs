@@ -43,7 +43,7 @@ pub(crate) struct ChangedFactor {
     /// y, and whether it is that of the present overclosures.
     forward: Vec<Eight>,
     is_forward_known: bool,
-    is_pressing: Vec<bool>,
+    is_in_contact: Vec<bool>,
     sides: Vec<Eight>,
     side: Vec<f64>,
 }
@@ -61,7 +61,7 @@ impl ChangedFactor {
             small: Vec::new(),
             forward: Vec::new(),
             is_forward_known: false,
-            is_pressing: vec![false; node_count],
+            is_in_contact: vec![false; node_count],
             sides: Vec::new(),
             side: Vec::new(),
         }
@@ -71,17 +71,17 @@ impl ChangedFactor {
         self.is_forward_known = false;
     }
 
-    pub fn press(&mut self, nodes: &[u32], compliance: &NearMatrix) {
+    pub fn set_contact(&mut self, nodes: &[u32], compliance: &NearMatrix) {
         for &node in nodes {
-            self.is_pressing[node as usize] = true;
+            self.is_in_contact[node as usize] = true;
         }
         let left = self.nodes.iter();
-        let left = left.filter(|&&node| !self.is_pressing[node as usize]);
+        let left = left.filter(|&&node| !self.is_in_contact[node as usize]);
         let new = nodes.iter();
         let new = new.filter(|&&node| self.row_of[node as usize] == NONE);
         let changed: Vec<u32> = left.chain(new).copied().collect();
         for &node in nodes {
-            self.is_pressing[node as usize] = false;
+            self.is_in_contact[node as usize] = false;
         }
         let is_new = |node: &&u32| !self.kept.contains(&Some(**node));
         let new: Vec<u32> = changed.iter().filter(is_new).copied().collect();

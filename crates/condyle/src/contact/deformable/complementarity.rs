@@ -25,11 +25,11 @@ const MAX_ROUNDS: u32 = 500;
 /// response before; then without those that pull, and with those that overlap. Exchanging all of these at once takes few
 /// rounds but may cycle; Murty's rule, which exchanges one at a time, is slow but ends. So block exchanges are tried as
 /// long as they reduce the number of wrong nodes (Portugal, Judice and Vicente 1994).
-pub(crate) struct Pressing {
+pub(crate) struct ContactSet {
     /// For every surface node, whether it was in contact at the last response.
-    pressed_before: Vec<bool>,
+    was_in_contact: Vec<bool>,
     /// For every candidate, whether it is in the trial set.
-    is_pressing: Vec<bool>,
+    is_in_contact: Vec<bool>,
     /// The nodes of the trial set, and their places among the candidates.
     places: Vec<usize>,
     nodes: Vec<u32>,
@@ -44,11 +44,11 @@ pub(crate) struct Pressing {
     clearances: Clearances,
 }
 
-impl Pressing {
+impl ContactSet {
     pub fn new(node_count: usize) -> Self {
         Self {
-            pressed_before: vec![false; node_count],
-            is_pressing: Vec::new(),
+            was_in_contact: vec![false; node_count],
+            is_in_contact: Vec::new(),
             places: Vec::new(),
             nodes: Vec::new(),
             overclosures: vec![zero(); node_count],
@@ -94,31 +94,31 @@ impl Pressing {
                 std::slice::from_ref(last)
             };
             for &place in exchanged {
-                self.is_pressing[place] = !self.is_pressing[place];
+                self.is_in_contact[place] = !self.is_in_contact[place];
             }
         }
         // The derivatives are needed of the solution only.
         self.factor
             .loads_by_motion(&self.nodes, &self.overclosures, &mut self.loads);
         for &node in &self.nodes {
-            self.pressed_before[node as usize] = true;
+            self.was_in_contact[node as usize] = true;
         }
         self.places.iter().copied().zip(&self.loads)
     }
 
     /// Starts with the candidates that were in contact before; if there is none, with all that overlap.
     fn start(&mut self, candidates: &[Candidate]) {
-        let pressed_before = |candidate: &Candidate| self.pressed_before[candidate.node as usize];
-        self.is_pressing.clear();
-        self.is_pressing
-            .extend(candidates.iter().map(pressed_before));
+        let was_in_contact = |candidate: &Candidate| self.was_in_contact[candidate.node as usize];
+        self.is_in_contact.clear();
+        self.is_in_contact
+            .extend(candidates.iter().map(was_in_contact));
         for &node in &self.nodes {
-            self.pressed_before[node as usize] = false;
+            self.was_in_contact[node as usize] = false;
         }
-        if !self.is_pressing.contains(&true) {
+        if !self.is_in_contact.contains(&true) {
             let overlaps = |candidate: &Candidate| candidate.overclosed_mm() > 0.0;
-            self.is_pressing.clear();
-            self.is_pressing.extend(candidates.iter().map(overlaps));
+            self.is_in_contact.clear();
+            self.is_in_contact.extend(candidates.iter().map(overlaps));
         }
     }
 
@@ -126,10 +126,10 @@ impl Pressing {
     fn load(&mut self, candidates: &[Candidate], compliance: &NearMatrix) {
         let (places, nodes) = (&mut self.places, &mut self.nodes);
         places.clear();
-        places.extend((0..candidates.len()).filter(|&place| self.is_pressing[place]));
+        places.extend((0..candidates.len()).filter(|&place| self.is_in_contact[place]));
         nodes.clear();
         nodes.extend(places.iter().map(|&place| candidates[place].node));
-        self.factor.press(nodes, compliance);
+        self.factor.set_contact(nodes, compliance);
         self.factor
             .loads(nodes, &self.overclosures, &mut self.loads_n);
         self.clearances.take(nodes, &self.loads_n, compliance);
@@ -147,7 +147,8 @@ impl Pressing {
                 break;
             }
             for (place, candidate) in candidates.iter().enumerate() {
-                if self.is_pressing[place] || self.clearances.may_overlap(candidate) != is_likely {
+                if self.is_in_contact[place] || self.clearances.may_overlap(candidate) != is_likely
+                {
                     continue;
                 }
                 let row = compliance.row(candidate.node);

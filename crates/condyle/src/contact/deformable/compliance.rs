@@ -299,7 +299,7 @@ impl NearMatrix {
     }
 }
 
-/// Unit loads on nodes of a solid, each along a direction of its own, and the compliance between them.
+/// Unit loads on nodes of a solid, each along a given direction, and the compliance between them.
 ///
 /// The loads of a tile are half-solved when they are first needed, and kept. A load of one tile moves that of another by
 /// the product of their half-solutions.

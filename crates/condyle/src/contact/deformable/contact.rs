@@ -8,7 +8,7 @@ use std::{array::from_fn, sync::Arc};
 
 use super::{
     cholesky::{Eight, get},
-    complementarity::{Candidate, Pressing},
+    complementarity::{Candidate, ContactSet},
     compliance::Compliance,
     edge_and_peak::NodePressures,
     history::{LoadHistory, NodeLoad, SETTLED_MM, SurfaceLoads},
@@ -42,7 +42,7 @@ pub(crate) struct DeformableContact<'a> {
     friction: Coulomb,
     patch: ContactPatch<'a>,
     compliance: Arc<Compliance>,
-    pressing: Pressing,
+    contact_set: ContactSet,
     /// The blocks near the femur, the nodes that may touch, and the place of each of these: number among the blocks, and
     /// lane.
     near: Vec<NearBlock>,
@@ -76,7 +76,7 @@ impl<'a> DeformableContact<'a> {
             -vector_from_lanes(|lane| &bodies.surface.normals[block.nodes[lane] as usize])
         };
         Self {
-            pressing: Pressing::new(compliance.node_count()),
+            contact_set: ContactSet::new(compliance.node_count()),
             compliance,
             near: Vec::new(),
             candidates: Vec::new(),
@@ -135,7 +135,7 @@ impl<'a> DeformableContact<'a> {
         let nodes = self.candidates.iter().map(|candidate| candidate.node);
         let compliance = self.compliance.near(nodes);
         self.node_loads.clear();
-        for (place, load) in self.pressing.solve(&self.candidates, &compliance) {
+        for (place, load) in self.contact_set.solve(&self.candidates, &compliance) {
             let (number, lane) = self.lanes[place];
             for (at, numbers) in loads[number].iter_mut().enumerate() {
                 numbers[lane] = get(load, at);
@@ -196,7 +196,7 @@ impl ContactModel for DeformableContact<'_> {
         self.find_candidates(&motion.pose, &pose);
         let (loads, friction) = (self.find_loads(), self.friction);
         let along = &self.along;
-        let (mut wrench, mean_slip) = self.patch.press(|place, near, shares| {
+        let (mut wrench, mean_slip) = self.patch.evaluate(|place, near, shares| {
             along[place].tractions(&loads[place], near, shares.area_mm2, &twist, friction)
         });
         for history in &mut self.histories {

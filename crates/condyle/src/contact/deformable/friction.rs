@@ -46,7 +46,7 @@ pub(crate) struct ElasticFriction<'a> {
     last_end: LoadsAlong,
     /// The last response: the femur's pose, the nodes in contact, and the loads along the surface.
     pose: Pose,
-    pressed: Vec<ContactNode>,
+    contact: Vec<ContactNode>,
     loaded_nodes: Vec<u32>,
     loads: StickSlip,
     /// The derivatives of those loads by a motion of the femur in its frame, once the tangent was asked for.
@@ -78,7 +78,7 @@ impl<'a> ElasticFriction<'a> {
             start_mm: vec![f64::NAN; compliance.node_count()],
             last_end: LoadsAlong::new(),
             pose: Pose::identity(),
-            pressed: Vec::new(),
+            contact: Vec::new(),
             loaded_nodes: Vec::new(),
             loads: StickSlip::default(),
             by_motion: RefCell::default(),
@@ -104,9 +104,9 @@ impl<'a> ElasticFriction<'a> {
     }
 
     /// Solves for the loads along the surface with the femur at a pose.
-    fn solve(&mut self, pose: &Pose, pressed: Vec<ContactNode>) {
+    fn solve(&mut self, pose: &Pose, contact: Vec<ContactNode>) {
         self.by_motion.get_mut().clear();
-        self.set_contact(pose, pressed);
+        self.set_contact(pose, contact);
         let compliance = Arc::clone(&self.compliance);
         let compliance = compliance.near(self.asked());
         let nodes = self.friction_nodes(&compliance);
@@ -116,8 +116,8 @@ impl<'a> ElasticFriction<'a> {
         self.spread();
     }
 
-    fn set_contact(&mut self, pose: &Pose, pressed: Vec<ContactNode>) {
-        for before in std::mem::replace(&mut self.pressed, pressed) {
+    fn set_contact(&mut self, pose: &Pose, contact: Vec<ContactNode>) {
+        for before in std::mem::replace(&mut self.contact, contact) {
             self.sticks[before.node as usize] = false;
         }
         self.pose = *pose;
@@ -134,7 +134,7 @@ impl<'a> ElasticFriction<'a> {
 
     /// Returns the loads of the last response, without nodes that carry none.
     fn loads_now(&self) -> LoadsAlong {
-        let nodes = self.pressed.iter().map(|pressed| pressed.node);
+        let nodes = self.contact.iter().map(|node| node.node);
         let loads = nodes.map(|node| (node, self.loads_n[node as usize]));
         let mut loads: LoadsAlong = loads.filter(|(_, load_n)| *load_n != [0.0; 2]).collect();
         loads.sort_unstable_by_key(|&(node, _)| node);
@@ -143,10 +143,10 @@ impl<'a> ElasticFriction<'a> {
 
     /// Returns the unit loads whose compliance is needed.
     fn asked(&self) -> impl Iterator<Item = u32> {
-        let pressed = self.pressed.iter().map(|pressed| pressed.node);
+        let contact = self.contact.iter().map(|node| node.node);
         let held = self.start.loads.iter().chain(&self.last_end);
         let held = held.map(|&(node, _)| node);
-        pressed.chain(held).flat_map(along_surface)
+        contact.chain(held).flat_map(along_surface)
     }
 
     /// Returns the nodes in contact, each with its limit and the motion of the femur past it since it carried no load;
@@ -164,21 +164,21 @@ impl<'a> ElasticFriction<'a> {
             }
             *known
         };
-        let friction_node = |pressed: &ContactNode| {
-            let node = pressed.node as usize;
+        let friction_node = |touched: &ContactNode| {
+            let node = touched.node as usize;
             let place = &self.surface.positions[node];
             // The material of the femur that is at the node now, and where it was at the start.
             let moved = place - start.to_insert(&self.pose.to_femur(place));
             let along = self.surface.directions(node).map(|along| along.dot(&moved));
-            let before = along_surface(pressed.node).map(&mut start_mm);
+            let before = along_surface(touched.node).map(&mut start_mm);
             FrictionNode {
-                node: pressed.node,
-                limit_n: self.coefficient * pressed.force_n,
+                node: touched.node,
+                limit_n: self.coefficient * touched.force_n,
                 reach_mm: [along[0] + before[0], along[1] + before[1]],
                 load_n: self.loads_n[node],
             }
         };
-        self.pressed.iter().map(friction_node).collect()
+        self.contact.iter().map(friction_node).collect()
     }
 
     /// Returns the screws of the two directions of a node in the femoral frame, the directions turned there by the transpose
@@ -221,21 +221,21 @@ impl LoadHistory for ElasticFriction<'_> {
 
     fn tangent(&self) -> Option<Mat6> {
         let mut tangent = Mat6::zeros();
-        let Some(start) = self.start.pose.filter(|_| !self.pressed.is_empty()) else {
+        let Some(start) = self.start.pose.filter(|_| !self.contact.is_empty()) else {
             return Some(tangent);
         };
-        let change = |pressed: &ContactNode| {
-            let moved = self.screws(pressed.node as usize, &start.rotation);
+        let change = |touched: &ContactNode| {
+            let moved = self.screws(touched.node as usize, &start.rotation);
             ByMotion {
                 reach_mm: moved.map(|screw| eight(&screw)),
-                limit_n: eight(&(pressed.by_motion * self.coefficient)),
+                limit_n: eight(&(touched.by_motion * self.coefficient)),
             }
         };
-        let changes: Vec<ByMotion> = self.pressed.iter().map(change).collect();
+        let changes: Vec<ByMotion> = self.contact.iter().map(change).collect();
         let compliance = self.compliance.near(self.asked());
         let loads = self.loads.by_motion(&changes, &compliance);
-        for (pressed, loads) in self.pressed.iter().zip(&loads) {
-            let screws = self.screws(pressed.node as usize, &self.pose.rotation);
+        for (touched, loads) in self.contact.iter().zip(&loads) {
+            let screws = self.screws(touched.node as usize, &self.pose.rotation);
             for (screw, load) in screws.iter().zip(loads) {
                 tangent += screw * six(load).transpose();
             }
@@ -249,16 +249,16 @@ impl LoadHistory for ElasticFriction<'_> {
     fn accept(&mut self, motion: &RelativeMotion, patch: &ContactPatch<'_>) {
         let (from, pose) = (&patch.pose, &motion.pose);
         let moved = FrameChange::to_femur(from).twist(&Twist::between(from, pose));
-        let pressed = patch.nodes(&moved);
+        let contact = patch.nodes(&moved);
         let by_motion = self.by_motion.take();
         if by_motion.is_empty() {
-            self.solve(pose, pressed);
+            self.solve(pose, contact);
         } else {
             let changes = by_motion.iter();
             let changes_n: Vec<Pair> = changes
                 .map(|loads| [0, 1].map(|k| six(&loads[k]).dot(&moved.numbers())))
                 .collect();
-            self.set_contact(pose, pressed);
+            self.set_contact(pose, contact);
             let compliance = Arc::clone(&self.compliance);
             let compliance = compliance.near(self.asked());
             let nodes = self.friction_nodes(&compliance);

@@ -243,8 +243,8 @@ impl Deformable {
         Ok(surface)
     }
 
-    /// Returns the surface to use for an insert after a contact has left `state`, and the field of the state that tells
-    /// the next contact which one that is; none for the unworn insert.
+    /// Returns the surface to use for an insert after a contact has left `state`, and the mesh nodes to store for the next
+    /// contact if that is not the surface of the unworn insert.
     fn surface_after(
         &self,
         insert: &Insert,

@@ -164,7 +164,7 @@ impl ContactModel for FoundationContact<'_> {
             },
         );
         let law = self.law;
-        let (wrench, mean_slip) = self.patch.press(|place, near, shares| {
+        let (wrench, mean_slip) = self.patch.evaluate(|place, near, shares| {
             law.tractions(&near.cached, &slopes[place], shares, &pose, &twist)
         });
         Response::new(change.wrench_back(&wrench), mean_slip, self)

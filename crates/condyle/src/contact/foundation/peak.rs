@@ -80,19 +80,19 @@ impl PeakSearch<'_> {
             .faces()
             .patch(top, NODES_ONE_SIDED)
             .split_off(patch.len());
-        let mut pressing = patch;
-        pressing.extend(self.sampled(&farther));
-        pressing.retain(|at| at.node == top || at.mean > 0.0);
+        let mut in_contact = patch;
+        in_contact.extend(self.sampled(&farther));
+        in_contact.retain(|at| at.node == top || at.mean > 0.0);
         let missed = fit.worst_miss(
             &self.bodies.surface.shares[top as usize],
-            self.means(&pressing),
+            self.means(&in_contact),
         );
-        let (highest, mean) = (fit.highest(), pressing[0].mean);
+        let (highest, mean) = (fit.highest(), in_contact[0].mean);
         if missed <= MISSED_OF_RISE * (highest - mean) {
             return highest;
         }
-        let of_pressing = self.fit(&pressing).map_or(mean, |fit| fit.highest());
-        highest.min(of_pressing.max(mean))
+        let of_contact = self.fit(&in_contact).map_or(mean, |fit| fit.highest());
+        highest.min(of_contact.max(mean))
     }
 
     /// Fits a quadratic over a patch; none if it misses the mean of the first node.
