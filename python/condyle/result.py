@@ -54,7 +54,8 @@ class Result(Summary):
         def __getattr__(self, name: str) -> Any:
             if name in self.__dict__.get("summary", {}):
                 return self.summary[name]
-            reason = "; the run is not done and has no summary yet" if name in Result.__annotations__ else ""
+            is_known = name in Summary.__annotations__
+            reason = f"; {'this run' if self.summary else 'a run that is not done'} does not have it" if is_known else ""
             raise AttributeError(f"a result has no {name}{reason}")
 
     @property

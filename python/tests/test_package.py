@@ -82,6 +82,13 @@ def test_pyright_is_content_with_the_examples() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def test_pyright_rejects_an_attribute_that_no_result_has(tmp_path: Path) -> None:
+    (tmp_path / "wrong.py").write_text("import condyle\n\nprint(condyle.run('').mass_los_mg)\n")
+    command = [sys.executable, "-m", "pyright", "--pythonpath", sys.executable, "wrong.py"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 1 and '"mass_los_mg"' in done.stdout, done.stdout + done.stderr
+
+
 @pytest.mark.parametrize("example", sorted((ROOT / "python" / "examples").glob("*.py")), ids=lambda path: path.stem)
 def test_examples_run(example: Path, tmp_path: Path) -> None:
     subprocess.run([sys.executable, example], check=True, cwd=tmp_path, capture_output=True)

@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 
 import condyle
+from condyle._summary import Summary
 
 
-def test_every_number_of_the_summary_is_documented(result: condyle.Result) -> None:
-    documented = set(condyle.Result.__annotations__)
-    assert documented == set(result.summary)
-    assert all(getattr(result, name) == result.summary[name] for name in documented)
+def test_every_entry_of_the_summary_is_a_typed_attribute(result: condyle.Result) -> None:
+    assert set(result.summary) <= set(Summary.__annotations__)
+    assert all(getattr(result, name) == value for name, value in result.summary.items())
+    assert type(result.updates) is int and type(result.mass_loss_mg) is float
+    with pytest.raises(AttributeError, match=r"a result has no mass_los_mg$"):
+        _ = result.mass_los_mg  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match="no backside_lift_mm; this run does not have it"):
+        _ = result.backside_lift_mm
 
 
 def test_a_column_is_a_view(result: condyle.Result) -> None:

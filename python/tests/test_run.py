@@ -35,7 +35,7 @@ def test_a_callback_stops_a_run_which_goes_on_to_the_same_numbers(small: condyle
     assert stopped.value.updates == 2 and stopped.value.cycles < stopped.value.of_cycles
     begun = condyle.open(tmp_path)
     assert not begun.is_done and len(begun.wear.array) == 2
-    with pytest.raises(AttributeError, match="not done"):
+    with pytest.raises(AttributeError, match="a run that is not done does not have it"):
         _ = begun.mass_loss_mg
     done = condyle.run(small, out=tmp_path, resume=True)
     assert np.array_equal(done.wear.array, whole.wear.array)
