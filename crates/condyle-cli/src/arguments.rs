@@ -380,7 +380,6 @@ fn presets() -> impl TypedValueParser<Value = Preset> {
         .try_map(|word| Preset::from_word(&word).ok_or("it is none of the presets"))
 }
 
-/// A place in a cycle.
 fn percent(word: &str) -> Result<f64, String> {
     let percent: f64 = word.parse().map_err(|_| "it must be a number".to_owned())?;
     if (0.0..=100.0).contains(&percent) {

@@ -47,7 +47,6 @@ pub fn compare(arguments: &Compare) -> ExitCode {
     output::print_beside(lines.text(), &out)
 }
 
-/// `compare` in the results folder.
 fn default_folder(arguments: &Compare) -> PathBuf {
     arguments.results.join(COMPARED.folder)
 }

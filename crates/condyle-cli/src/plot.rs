@@ -17,7 +17,6 @@ use crate::{
     standard_error::tell,
 };
 
-/// True if this build writes PNG.
 const MAKES_PNG: bool = cfg!(feature = "png");
 
 pub fn plot(arguments: &Plot) -> ExitCode {
@@ -53,7 +52,6 @@ pub fn plot(arguments: &Plot) -> ExitCode {
     output::print(lines.text())
 }
 
-/// Names and bytes of all files.
 fn files(arguments: &Plot, pictures: &[Picture]) -> Vec<(PathBuf, Vec<u8>)> {
     let is_asked = |format| arguments.format.is_empty() || arguments.format.contains(&format);
     let mut files = Vec::new();

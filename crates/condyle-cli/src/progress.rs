@@ -7,7 +7,6 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::standard_error::tell;
 
-/// Ticks of the bar for the whole test.
 const TICKS: f64 = 1000.0;
 
 /// Shows how far a run has come, on standard error.
@@ -62,6 +61,7 @@ impl Progress {
 
     fn start(&mut self, reached: Reached) {
         self.of_cycles = reached.of_cycles;
+        // A log gets plain lines: a bar would fill it with control characters.
         if stderr().is_terminal() {
             let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}")
                 .unwrap_or_else(|_| ProgressStyle::default_bar());

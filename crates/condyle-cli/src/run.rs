@@ -85,6 +85,7 @@ pub fn stop_on_interrupt() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let set = ctrlc::set_handler(move || {
+        // The first signal waits for the end of an increment, which may take long: the second does not wait.
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(exit::INTERRUPTED));
         }
@@ -132,7 +133,6 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     output::print_beside(lines.text(), out)
 }
 
-/// The files of a run that ParaView plays.
 fn for_paraview(out: &Path) -> String {
     let series = ["insert.pvd", "cycle_first.pvd", "cycle_last.pvd"];
     let files = series.map(|name| out.join(name)).into_iter();
@@ -141,7 +141,6 @@ fn for_paraview(out: &Path) -> String {
     named.join(", ")
 }
 
-/// A label and its value in words.
 type SummaryLine = (&'static str, String);
 
 /// The numbers of the catalogue, then creep and the parts of the error.

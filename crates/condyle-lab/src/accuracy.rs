@@ -49,7 +49,6 @@ const MISSED: f64 = 1.0;
 /// wear of second, and twice the updates leave a third of the error, so that half of them make three times of it.
 const HALF_THE_UPDATES: f64 = -1.0 / 2.0;
 
-/// The reason why a part has no estimate.
 enum Without {
     /// The user asked to stop.
     Stopped,
@@ -72,13 +71,11 @@ type Peaks = [f64; 2];
 /// The peaks of the first cycle, and its ranges of AP and IE; or errors of them, %.
 type FirstCycle = [f64; 4];
 
-/// Errors by a cycle on the way, %.
 struct OnTheWay {
     wear: OfWear,
     peaks: Peaks,
 }
 
-/// The estimate of one part.
 struct PartEstimate {
     wear: Stated<OfWear>,
     /// Of the later cycle on the way.
@@ -87,7 +84,6 @@ struct PartEstimate {
 }
 
 impl PartEstimate {
-    /// Of every number of the summary.
     fn errors(self, summary: &Summary) -> QuantityErrors {
         let [mass, depth] = each(self.wear);
         let [later_pressure, later_area] = each(self.later);
@@ -162,7 +158,6 @@ fn with_contact(test: WearTest, contact: Arc<dyn ContactLaw>) -> WearTest {
     WearTest { contact, ..test }
 }
 
-/// Returns whether a peak is not of the first cycle.
 fn has_later_peak(summary: &Summary) -> bool {
     summary[&PEAK_PRESSURE_CYCLE] > 0.0 || summary[&PEAK_CONTACT_AREA_CYCLE] > 0.0
 }
@@ -197,7 +192,6 @@ struct Again<'a> {
     /// Steps on the way that represent all; one if both are the same.
     snapshots: Vec<&'a Snapshot>,
     worn: WornSurface,
-    /// The powers of the rates with which volume loss and maximum depth grow.
     growth: OfWear,
     watch: &'a mut dyn FnMut() -> ControlFlow<()>,
 }
@@ -221,6 +215,7 @@ impl<'a> Again<'a> {
         WearTest {
             schedule: Schedule::fixed(1.0, 1),
             comparison_laws: Vec::new(),
+            // A cycle solved again compares wear; comparison laws and creep would only take time.
             creep: None,
             ..self.march.test().clone()
         }
@@ -408,7 +403,6 @@ impl<'a> Again<'a> {
         Ok(errors(factor, first_cycle(march.state()), base.first))
     }
 
-    /// A test from its start, its first cycle solved.
     fn started(&mut self, test: WearTest) -> Found<March> {
         let march = March::start(test)?.in_motion(&self.first.1);
         self.solved(march)
@@ -436,7 +430,6 @@ impl<'a> Again<'a> {
     }
 }
 
-/// A part without any estimate.
 fn unknown(why: &str) -> PartEstimate {
     PartEstimate {
         wear: Err(why.to_owned()),
@@ -457,6 +450,7 @@ fn told(on_the_way: Stated<OnTheWay>, first: Stated<FirstCycle>) -> PartEstimate
 /// Errors in %: `factor` times by how much `now` differs from what it was; nothing of what does not change.
 fn errors<const N: usize>(factor: f64, now: [f64; N], reference: [f64; N]) -> [f64; N] {
     std::array::from_fn(|i| {
+        // Both may be 0, of which the quotient is NaN.
         if now[i] == reference[i] {
             return 0.0;
         }
@@ -464,12 +458,10 @@ fn errors<const N: usize>(factor: f64, now: [f64; N], reference: [f64; N]) -> [f
     })
 }
 
-/// Highest pressure and largest area of the cycles of an update.
 fn peaks_of(update: &UpdateRecord) -> Peaks {
     [update.peak_pressure_mpa, update.peak_contact_area_mm2]
 }
 
-/// The peaks of the first cycle of a march.
 fn first_peaks(state: &MarchState) -> Peaks {
     state.updates.first().map_or([0.0; 2], peaks_of)
 }
@@ -485,6 +477,7 @@ fn first_cycle(state: &MarchState) -> FirstCycle {
 
 fn snapshots(state: &MarchState) -> Vec<&Snapshot> {
     let mut snapshots: Vec<&Snapshot> = state.snapshots.iter().flatten().collect();
+    // Of a short march both snapshots are of one step.
     snapshots.dedup_by(|a, b| a.depths == b.depths);
     snapshots
 }

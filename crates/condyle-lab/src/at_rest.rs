@@ -51,6 +51,7 @@ impl AtRest {
         let surface = march.insert().surface();
         let bodies = march.bodies(&surface);
         let mut contact = test.contact.contact(bodies, ContactMemory::default());
+        // The response settles the contact; the evaluation after it reads its pressures.
         contact.respond(&motion);
         let landing = contact.evaluate(&motion);
         let sum = |value: fn(&TouchedNode) -> f64| landing.touched.iter().map(value).sum::<f64>();

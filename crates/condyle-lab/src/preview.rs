@@ -208,7 +208,6 @@ fn defects(file: Option<&str>, warnings: &[String]) -> Vec<String> {
     of_file.map(str::to_owned).collect()
 }
 
-/// Least value at the nodes around a dish.
 fn least_around(dish: &Vec3, places: &[Vec3], values: &[f64]) -> f64 {
     let is_near = |place: &Vec3| (place - dish).norm() < AROUND_DISH_MM;
     let near = places
@@ -260,6 +259,7 @@ fn solving_s(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
     };
     let increments = march.test().time.increments as f64;
     let evaluations = updates * CYCLES_AN_UPDATE * increments * EVALUATIONS_AN_INCREMENT;
+    // The estimate of the error solves cycles again, with finer increments and a coarser mesh: about 60 % more.
     let again = if case.accuracy.estimate { 1.6 } else { 1.0 };
     again * evaluations * evaluation_s(march, at_rest)
 }
@@ -297,9 +297,11 @@ fn lowered(contact: &mut dyn ContactModel, at_rest: &AtRest, load_n: f64) -> Pos
         let response = contact.respond(&RelativeMotion::at_rest(pose));
         let missing_n = load_n + response.wrench.force.y;
         let stiffness_n_per_mm = response.tangent().by_pose.matrix[(4, 4)].abs();
+        // Within 5 % the time of an evaluation no longer changes; without contact there is no stiffness to divide by.
         if missing_n.abs() < 0.05 * load_n || stiffness_n_per_mm < 1.0 {
             break;
         }
+        // A stiffness at little contact is far too small: a full step would push the femur through the insert.
         pose.translation.y -= (missing_n / stiffness_n_per_mm).clamp(-0.1, 0.1);
     }
     pose

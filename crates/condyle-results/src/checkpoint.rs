@@ -6,7 +6,6 @@ use thiserror::Error;
 
 /// First bytes of a checkpoint; the last is the version of what follows.
 const MAGIC: &[u8; 20] = b"condyle checkpoint \x0c";
-/// Length of the hash that guards the content.
 const HASH_LENGTH: usize = 32;
 
 /// A march on its way, with the inputs it belongs to.

@@ -12,9 +12,7 @@ use thiserror::Error;
 
 use super::replace::replace_file;
 
-/// Name of the file.
 pub(super) const CHECKSUMS: &str = "checksums";
-/// Between hash and name.
 const GAP: &str = "  ";
 
 /// A mesh of a run that is no longer what the run wrote.
@@ -58,14 +56,12 @@ pub fn check_file(file: &Path) -> Result<(), DamagedFile> {
     }
 }
 
-/// Checks all files of a folder that have a hash.
 pub(super) fn check_all(folder: &Path) -> Result<(), DamagedFile> {
     let listed = listed(folder);
     let mut files = listed.iter();
     files.try_for_each(|(hash, name)| check(&folder.join(name), hash))
 }
 
-/// Returns whether files of this name get a hash.
 pub(super) fn is_listed(name: &str) -> bool {
     let is_mesh = [".vtu", ".vtp"].iter().any(|ending| name.ends_with(ending));
     is_mesh && !name.contains('/')
@@ -99,7 +95,6 @@ fn check(file: &Path, hash: &str) -> Result<(), DamagedFile> {
     })
 }
 
-/// Hash and name of every listed file of a folder.
 fn listed(folder: &Path) -> Vec<(String, String)> {
     let text = fs::read_to_string(folder.join(CHECKSUMS)).unwrap_or_default();
     let lines = text.lines().filter_map(|line| line.split_once(GAP));

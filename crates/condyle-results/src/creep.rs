@@ -99,6 +99,7 @@ impl ScanLine {
         };
         let (cycles, depth) = (mean(&|scan| scan.0), mean(&|scan| scan.1));
         let spread = mean(&|scan| (scan.0 - cycles).powi(2));
+        // Scans at one number of cycles have no slope.
         if scans.len() < 2 || spread == 0.0 {
             return None;
         }

@@ -117,6 +117,7 @@ const FRAME_CELL_MM: f64 = 2.0;
 
 /// The femur as the frames show it: a fine mesh is written hundreds of times, and so coarsened.
 pub fn femur_of_frames(femur: TriangleMesh) -> TriangleMesh {
+    // A mesh little larger than the aim is kept: clustering would lose shape and save little.
     if femur.triangles.len() as f64 > 1.5 * FRAME_TRIANGLES {
         return femur.clustered(FRAME_CELL_MM);
     }

@@ -15,7 +15,6 @@ pub fn joint_range(rows: &[CycleRow], joint: JointIndex) -> f64 {
     KNEE.joint(joint).kind().in_files(high - low)
 }
 
-/// Medial part of the axial force, weighted by force.
 pub(super) fn medial_load_share(rows: &[CycleRow]) -> f64 {
     let medial: f64 = rows.iter().map(|row| row.region_force_n[MEDIAL]).sum();
     let whole: f64 = rows.iter().map(|row| row.axial_force_n).sum();

@@ -81,6 +81,7 @@ impl ErrorParts {
             Part::Mesh => self.mesh = error,
             Part::SlipTolerance => self.slip_tolerance = error,
         }
+        // The parts have different causes and are taken as independent: their squares add.
         let parts = self.parts().into_iter().filter_map(|(_, part)| part);
         self.total = parts.map(|part| part * part).sum::<f64>().sqrt();
     }

@@ -128,7 +128,6 @@ pub enum FolderState {
 }
 
 impl FolderState {
-    /// The error of the folder at `path` in this state.
     pub(super) fn of(self, path: &Path) -> ResultsError {
         ResultsError::Folder {
             folder: path.to_owned(),
@@ -261,6 +260,7 @@ impl ResultsFolder {
             let version = checkpoint.version;
             return Err(FolderState::OtherVersion { version }.of(path));
         }
+        // Before the checkpoint is used: a damaged mesh of an earlier update would stay in the series.
         check_all(&folder.path)?;
         let last = checkpoint.state.updates.last();
         let done = last.is_some_and(|last| last.cycles >= cycles);
@@ -296,6 +296,7 @@ impl ResultsFolder {
     fn time_spent_s(&self) -> f64 {
         let text = fs::read_to_string(self.file(TIME_SPENT)).unwrap_or_default();
         let seconds = text.trim().parse().unwrap_or(0.0);
+        // `inf` and `nan` parse as numbers.
         if f64::is_finite(seconds) {
             seconds
         } else {
@@ -412,6 +413,7 @@ impl ResultsFolder {
         if let Some(paths) = slip_paths_csv(march, side) {
             self.replace("slip_paths.csv", paths.as_bytes())?;
         }
+        // Last and durably: everything that the checkpoint remembers is on the disk before it.
         let checkpoint = Checkpoint {
             inputs_blake3: inputs_blake3.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),

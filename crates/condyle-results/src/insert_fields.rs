@@ -24,7 +24,6 @@ pub struct InsertFields {
     pub articulating: Vec<u8>,
 }
 
-/// What the fields of an insert are computed from.
 struct Source<'a> {
     march: &'a March,
     mesh: &'a HexMesh,
@@ -190,6 +189,7 @@ fn directions(march: &March, side: Side, count: usize) -> Vec<[f64; 3]> {
 /// Values at the `surface` nodes as values at all nodes, elsewhere `none`.
 fn spread<T: Copy>(surface: &[u32], values: &[T], none: T, nodes: usize) -> Vec<T> {
     let mut all = vec![none; nodes];
+    // VTK has one array for all nodes of a mesh: nodes off the surface get a value too.
     for (&node, &value) in surface.iter().zip(values) {
         all[node as usize] = value;
     }

@@ -57,7 +57,6 @@ impl Side {
     }
 }
 
-/// A point of the insert frame, mm.
 pub(super) fn point_on_side(point: &Vec3, side: Side) -> Vec3 {
     match side {
         Side::Right => *point,
@@ -87,7 +86,6 @@ pub(super) fn triangle_on_side([a, b, c]: [u32; 3], side: Side) -> [u32; 3] {
     }
 }
 
-/// The mesh as it lies in the knee of that side.
 pub(super) fn mesh_on_side(mesh: &HexMesh, side: Side) -> HexMesh {
     match side {
         Side::Right => mesh.clone(),

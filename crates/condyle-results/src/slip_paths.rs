@@ -43,6 +43,7 @@ fn places(positions: &[Vec3], depth_mm: &[f64]) -> Vec<usize> {
                 positions,
                 [middle.x + AROUND_MM * x, middle.z + AROUND_MM * z],
             );
+            // On a coarse mesh one node may be nearest to several places.
             if !nodes.contains(&node) {
                 nodes.push(node);
             }
@@ -51,7 +52,6 @@ fn places(positions: &[Vec3], depth_mm: &[f64]) -> Vec<usize> {
     nodes
 }
 
-/// The node nearest to a place seen from above.
 fn nearest(positions: &[Vec3], [x, z]: [f64; 2]) -> usize {
     let distance = |node: usize| (positions[node].x - x).hypot(positions[node].z - z);
     let nodes = 0..positions.len();

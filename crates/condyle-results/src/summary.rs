@@ -128,6 +128,7 @@ impl Serialize for Summary {
                 self.write_part(part.key, &mut map)?;
             }
             match self.get(scalar) {
+                // A double holds whole numbers up to 2^53: no count is rounded.
                 Some(value) if scalar.is_count => {
                     map.serialize_entry(scalar.key, &(value as u64))?;
                 }

@@ -89,7 +89,6 @@ impl ResultsFolder {
         files.flat_map(|file| [beside(&file), file]).collect()
     }
 
-    /// The motions of the activities that the case of the run lists.
     fn kinematics_of_activities(&self) -> Vec<String> {
         let case = fs::read_to_string(self.path().join("case.toml")).unwrap_or_default();
         let names = listed_in(&case).into_iter().enumerate();
@@ -112,7 +111,6 @@ impl ResultsFolder {
     }
 }
 
-/// The names of what is in a folder; none where there is no such folder.
 fn names_in(folder: &Path) -> impl Iterator<Item = String> + use<> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.file_name().into_string().ok())
@@ -127,7 +125,6 @@ fn is_numbered(name: &str, body: &str) -> bool {
     number.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// Returns whether `file` is one of `files`, by any path.
 fn is_among(file: &Path, files: &[PathBuf]) -> bool {
     let place = |path: &Path| fs::canonicalize(path).ok();
     let found = place(file);

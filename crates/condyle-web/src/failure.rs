@@ -6,9 +6,7 @@ use condyle_case::config::{Problem, Problems};
 use condyle_lab::RunError;
 use serde::Serialize;
 
-/// Bad input, as the command's exit code.
 const BAD_INPUT: u8 = 2;
-/// The physics could not be solved.
 const PHYSICS: u8 = 3;
 
 /// A failed call.

@@ -51,7 +51,6 @@ impl Recorder {
         }
     }
 
-    /// Adds the tables of a results folder.
     fn add_tables(&mut self, march: &March) {
         let activity = &march.state().activities[0];
         let mechanism = march.test().machine().mechanism;

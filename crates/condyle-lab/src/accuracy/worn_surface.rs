@@ -123,7 +123,6 @@ impl Paraboloid {
     }
 }
 
-/// Square of the distance of two places.
 fn apart2([a, b]: [f64; 2], [x, z]: [f64; 2]) -> f64 {
     (a - x).powi(2) + (b - z).powi(2)
 }

@@ -16,7 +16,6 @@ use super::finished::{Finished, SolvedCycle};
 /// Nearer than this to the rim a foundation over-estimates pressure, and that of an elastic body has no limit, mm: about the reach of its neighbours that it
 /// does not have there.
 const NEAR_RIM_MM: f64 = 1.5;
-/// Part of the worn volume that may be there, %.
 const MAX_AT_RIM_PERCENT: f64 = 1.0;
 /// Yield stress of UHMWPE, MPa (approximate: facts remembered, not read).
 const YIELD_MPA: f64 = 14.0;
@@ -33,7 +32,6 @@ const MIN_THICKNESS_MM: f64 = 6.0;
 /// Depth of the scar's edge, as a part of the deepest wear.
 const SCAR: f64 = 0.1;
 
-/// Wear within 1.5 mm of the rim.
 pub(crate) fn wear_at_rim(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let depth_mm = &finished.march.fields().wear_depth_mm;
     let (mut whole, mut at_rim) = (0.0, 0.0);
@@ -184,7 +182,6 @@ pub(crate) fn insert_rocks(finished: &Finished<'_>) -> Option<PlausibilityWarnin
     })
 }
 
-/// Little polyethylene left under the scar.
 pub(crate) fn thin_polyethylene(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let fields = finished.march.fields();
     let in_scar = finished.summary[&MAX_DEPTH_MM] * SCAR;
@@ -212,7 +209,6 @@ const NEAR_MM: f64 = 1.5;
 /// Instants of a cycle that are looked at, at most.
 const INSTANTS: usize = 50;
 
-/// A condyle beyond the rim.
 struct Beyond {
     percent: f64,
     side: &'static str,
@@ -248,6 +244,7 @@ fn beyond(finished: &Finished<'_>, cycle: &SolvedCycle<'_>) -> Vec<Beyond> {
         finished.march.state().zero_mm,
         test.flexion_axis_mm,
     );
+    // A gap at every node is slow: a coarse sample of the cycle is enough for a share in %.
     let every = cycle.rows.len().div_ceil(INSTANTS).max(1);
     let looked_at: Vec<Pose> = cycle
         .rows

@@ -102,7 +102,6 @@ fn rim_of(insert: &Insert) -> Vec<[u32; 2]> {
     at_end.map(|(edge, _)| edge).collect()
 }
 
-/// Distance of a place from a straight line between two others, mm.
 fn distance_mm(place: &Vec3, [from, to]: &[Vec3; 2]) -> f64 {
     let along = to - from;
     let part = (place - from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);

@@ -45,16 +45,13 @@ const FARTHEST_MM: f64 = 10.0;
 
 /// A load of the machine that contact and springs do not balance.
 struct Missed {
-    /// Part of the cycle, %.
     percent: f64,
     /// Most of the load that is missed, N or N mm.
     most: f64,
-    /// The largest load, N or N mm.
     load: f64,
     cycle: &'static str,
 }
 
-/// Loads that contact and springs do not balance.
 pub(crate) fn not_reached(finished: &Finished<'_>) -> Vec<PlausibilityWarning> {
     let missed = APPLIED.iter().filter_map(|applied| {
         let cycles = finished.cycles();
@@ -123,12 +120,14 @@ fn missing(
     index: JointIndex,
     waveform: &Waveform,
 ) -> f64 {
+    // The axial joint is balanced by contact alone, so that what the contact lacks is missed.
     if index == IS {
         return load(waveform, &rows[row]).abs() - rows[row].axial_force_n;
     }
     let (count, joint) = (rows.len(), machine.joint(index));
     let at = |row: usize| index.of(&rows[row % count].positions);
     let (before, now, after) = (at(row + count - 1), at(row), at(row + 1));
+    // Central differences over the periodic cycle.
     let per_s = machine.frequency_hz * count as f64;
     let rate = (after - before) / 2.0 * per_s;
     let acceleration = (after - 2.0 * now + before) * per_s * per_s;

@@ -70,13 +70,13 @@ const MAX_ADDED_INERTIA: f64 = 1.0;
 const MAX_RELAXED: f64 = 0.2;
 /// Part of the depth's error that is due to updates, %: up to there the estimates of random designs held.
 const MAX_OF_UPDATES_PERCENT: f64 = 2.0;
-/// Discretisation error of mass and depth, %.
 const MAX_ERROR_PERCENT: f64 = 5.0;
 
 /// The volume by depth times area compared with that of the mesh.
 pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let [depth, mesh] =
         [&VOLUME_LOSS_MM3, &VOLUME_LOSS_MESH_MM3].map(|volume| finished.summary[volume]);
+    // Of a run without wear both are 0: MIN_POSITIVE makes that 0 % instead of NaN.
     let percent = 100.0 * (depth - mesh).abs() / depth.max(mesh).max(f64::MIN_POSITIVE);
     (percent > COUNTS_PERCENT).then(|| PlausibilityWarning {
         check: "counts_of_volume".to_owned(),
@@ -91,7 +91,6 @@ pub(crate) fn counts_of_volume(finished: &Finished<'_>) -> Option<PlausibilityWa
     })
 }
 
-/// The worst element of any update.
 pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let quality = finished.summary[&WORST_QUALITY];
     (quality < MIN_QUALITY).then(|| PlausibilityWarning {
@@ -108,12 +107,10 @@ pub(crate) fn mesh_quality(finished: &Finished<'_>) -> Option<PlausibilityWarnin
     })
 }
 
-/// The discretisation error of the mass.
 pub(crate) fn error_of_mass(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     large_error("error_of_mass", &MASS_LOSS_MG, finished)
 }
 
-/// The discretisation error of the depth.
 pub(crate) fn error_of_depth(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     large_error("error_of_depth", &MAX_DEPTH_MM, finished)
 }
@@ -169,7 +166,6 @@ pub(crate) fn updates_too_few(finished: &Finished<'_>) -> Option<PlausibilityWar
     })
 }
 
-/// Inertia that explicit steps were given.
 pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let added = finished.summary.get(&ADDED_INERTIA)?;
     (added > MAX_ADDED_INERTIA).then(|| PlausibilityWarning {
@@ -187,7 +183,6 @@ pub(crate) fn added_inertia(finished: &Finished<'_>) -> Option<PlausibilityWarni
     })
 }
 
-/// Updates whose cycle did not repeat itself.
 pub(crate) fn cycles_not_repeating(finished: &Finished<'_>) -> Option<PlausibilityWarning> {
     let count = finished.summary[&CYCLES_NOT_REPEATING];
     (count > 0.0).then(|| PlausibilityWarning {

@@ -75,7 +75,6 @@ impl From<ChangeError> for RunError {
 }
 
 impl RunError {
-    /// The bodies of `case` cannot be built.
     pub(crate) fn of_build(case: &Case, source: BuildError) -> Self {
         Self::Build {
             shown: case.at_its_key(&source),
@@ -83,7 +82,6 @@ impl RunError {
         }
     }
 
-    /// A run of `case` that needs too much memory.
     pub(crate) fn memory(case: &Case, needed_gb: f64) -> Self {
         let allowed_gb = case.limits.memory_gb;
         let message = format!(

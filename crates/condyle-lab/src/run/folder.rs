@@ -119,7 +119,6 @@ fn found(
     }
 }
 
-/// A run as it is written into its folder.
 struct WrittenRun {
     folder: ResultsFolder,
     /// Held until the run has ended.
@@ -174,7 +173,6 @@ impl WrittenRun {
         folder.write_case(&case.to_toml_in(folder.path()))
     }
 
-    /// Writes the results so far.
     fn write_update(&self, run: &Run<'_>) -> Result<(), RunError> {
         let side = run.case.heading.side;
         if let Some(femur) = &self.in_frames {

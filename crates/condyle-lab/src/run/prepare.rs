@@ -166,6 +166,7 @@ pub(crate) fn memory_mb(case: &Case, march: &March, at_rest: &AtRest) -> f64 {
     // The area of a contact on a foundation goes with the root of its load.
     let larger = (mean_load_n(march) / at_rest.axial_force_n).max(1.0).sqrt();
     let most = march.insert().surface_nodes().len() as f64;
+    // No more nodes can touch than there are.
     let touched = (at_rest.touched.len() as f64 * larger).min(most);
     memory_mb_touching(case, march, touched, EVER_NEAR * at_rest.nodes_near as f64)
 }

@@ -15,7 +15,6 @@ use crate::run::{
     prepare::{build_sharing, check_so_far, start},
 };
 
-/// The state from which a run starts.
 pub(crate) enum Start {
     /// From its first cycle.
     Fresh,
@@ -36,7 +35,6 @@ pub(crate) struct RunContext<'a> {
     pub wear_law: Option<&'a NamedLaw>,
 }
 
-/// A run on its way.
 pub(crate) struct Run<'a> {
     pub case: &'a Case,
     pub march: March,
@@ -70,6 +68,7 @@ impl<'a> Run<'a> {
         }
         let march = match start_from {
             Start::Resume(checkpoint, spent_s) => {
+                // A negative or huge time, of a file that somebody edited, counts as none.
                 clock.spent += Duration::try_from_secs_f64(spent_s).unwrap_or_default();
                 clock.time(|| March::resume(built.test, checkpoint.state))
             }
@@ -146,7 +145,7 @@ impl<'a> Run<'a> {
             })?;
             flow = self.updated(is_updated, keep, on_event)?;
         }
-        // Whoever stops a run that is done has stopped nothing.
+        // A stop after the last update stops nothing.
         if self.march.is_done() {
             flow = ControlFlow::Continue(());
         }

@@ -51,12 +51,10 @@ scalars! { "Contact";
         .listed();
 }
 
-/// The number and record of the first update with the peak pressure.
 fn peak_pressure<'a>(run: &FinishedRun<'a>) -> (usize, &'a UpdateRecord) {
     run.largest(|update| update.peak_pressure_mpa)
 }
 
-/// The number and record of the first update with the largest area.
 fn largest_area<'a>(run: &FinishedRun<'a>) -> (usize, &'a UpdateRecord) {
     run.largest(|update| update.peak_contact_area_mm2)
 }

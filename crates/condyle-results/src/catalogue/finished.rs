@@ -75,6 +75,7 @@ impl<'a> FinishedRun<'a> {
     /// The number and record of the first update with the largest `value`.
     pub fn largest(&self, value: fn(&UpdateRecord) -> f64) -> (usize, &'a UpdateRecord) {
         let updates = self.state().updates.iter().enumerate();
+        // Strictly larger, so that of equal updates the first counts; `max_by` would return the last.
         updates.fold((0, self.first), |largest, update| {
             if value(update.1) > value(largest.1) {
                 update
