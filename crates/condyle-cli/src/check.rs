@@ -2,7 +2,7 @@
 
 use std::{fs, process::ExitCode};
 
-use condyle_lab::{AtRest, Expected, FemurFacts, InsertFacts, Preview};
+use condyle_lab::{AtRest, BodyFacts, Expected, InsertFacts, Preview};
 
 use crate::{
     arguments::Check,
@@ -59,7 +59,7 @@ fn in_words(arguments: &Check, preview: &Preview) -> String {
     lines.text().to_owned()
 }
 
-fn rows_of_femur(femur: &FemurFacts) -> Vec<Row> {
+fn rows_of_femur(femur: &BodyFacts) -> Vec<Row> {
     let of = named(femur.shape, femur.file.as_ref(), femur.triangles);
     let mut rows = vec![("femur", of), ("  size AP, SI, ML", size(femur.size_mm))];
     rows.extend(row_of_defects(femur.file.is_some(), &femur.defects));
@@ -67,9 +67,10 @@ fn rows_of_femur(femur: &FemurFacts) -> Vec<Row> {
 }
 
 fn rows_of_insert(insert: &InsertFacts) -> Vec<Row> {
-    let of = named(insert.shape, insert.file.as_ref(), insert.triangles);
-    let mut rows = vec![("insert", of), ("  size AP, SI, ML", size(insert.size_mm))];
-    rows.extend(row_of_defects(insert.file.is_some(), &insert.defects));
+    let body = &insert.body;
+    let of = named(body.shape, body.file.as_ref(), body.triangles);
+    let mut rows = vec![("insert", of), ("  size AP, SI, ML", size(body.size_mm))];
+    rows.extend(row_of_defects(body.file.is_some(), &body.defects));
     let mesh = format!(
         "{} hexahedra, {} surface nodes, worst quality {:.3}",
         insert.hexahedra, insert.surface_nodes, insert.worst_quality

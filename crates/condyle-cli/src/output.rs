@@ -42,7 +42,7 @@ fn write(text: &str) -> io::Result<()> {
 /// A reader that has closed the pipe, such as `head`, is no error.
 fn forgive_a_closed_pipe(error: io::Error) -> io::Result<()> {
     match error.kind() {
-        // The rest of the output is not wanted any more.
+        // The reader needs no more output.
         ErrorKind::BrokenPipe => Ok(()),
         _ => Err(error),
     }

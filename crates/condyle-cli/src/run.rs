@@ -38,7 +38,7 @@ pub fn run(arguments: &Run) -> ExitCode {
     };
     let stop = stop_on_interrupt();
     let mut progress = Progress::new();
-    let outcome = condyle_lab::run_changed(
+    let outcome = condyle_lab::run(
         &arguments.case,
         &arguments.changes.set,
         &options,

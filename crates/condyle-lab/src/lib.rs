@@ -12,12 +12,12 @@ mod run;
 pub use crate::{
     at_rest::AtRest,
     markdown::aligned,
-    preview::{Expected, FemurFacts, InsertFacts, Preview},
+    preview::{BodyFacts, Expected, InsertFacts, Preview},
     run::{
         Outcome, Reached, RunEvent, RunOptions,
         error::RunError,
-        folder::{run, run_case, run_changed},
-        prepare::{check, check_changed, settled},
+        folder::{run, run_case},
+        prepare::settled,
         running::{InMemory, RunKeeper, batch_run, run_in_memory},
     },
 };

@@ -40,7 +40,7 @@ pub struct Preview {
     /// Corrections and doubts of the input.
     pub warnings: Vec<String>,
     /// The femoral component.
-    pub femur: FemurFacts,
+    pub femur: BodyFacts,
     /// The insert.
     pub insert: InsertFacts,
     /// The settled femur on the insert.
@@ -78,10 +78,15 @@ impl Preview {
         let triangles = case.femur_triangles(march.test(), FEMUR_TRIANGLES);
         let triangles = triangles.map_err(|source| RunError::of_build(&case, source))?;
         let at_rest = AtRest::of(&march);
-        let (femur, insert) = (
-            FemurFacts::of(&case, &triangles, &warnings),
-            InsertFacts::of(&case, &march, &warnings),
+        let file = case.femur.file();
+        let femur = BodyFacts::of(
+            case.femur.shape.word(),
+            file,
+            triangles.bounds(),
+            file.map(|_| triangles.triangles.len()),
+            &warnings,
         );
+        let insert = InsertFacts::of(&case, &march, &warnings);
         Ok(Self {
             title: case.heading.title.clone(),
             side: case.heading.side.word(),
@@ -123,39 +128,10 @@ impl Preview {
 /// So far around the lowest place of a dish it is thinnest under the femur, mm.
 const AROUND_DISH_MM: f64 = 10.0;
 
-/// The femoral component.
+/// A body and its source.
 #[derive(Debug, Serialize)]
-pub struct FemurFacts {
-    /// Its source.
-    pub shape: &'static str,
-    /// Its file without the folder, if it has one.
-    pub file: Option<String>,
-    /// Size antero-posterior, supero-inferior and medio-lateral, mm.
-    pub size_mm: [f64; 3],
-    /// Triangles of its mesh; none of a shape by measures.
-    pub triangles: Option<usize>,
-    /// Defects of its file.
-    pub defects: Vec<String>,
-}
-
-impl FemurFacts {
-    fn of(case: &Case, mesh: &TriangleMesh, warnings: &[String]) -> Self {
-        let file = case.femur.file().map(DataFile::name);
-        let (low, high) = mesh.bounds();
-        Self {
-            shape: case.femur.shape.word(),
-            size_mm: (high - low).into(),
-            triangles: file.as_ref().map(|_| mesh.triangles.len()),
-            defects: defects(file.as_deref(), warnings),
-            file,
-        }
-    }
-}
-
-/// The insert as it is meshed.
-#[derive(Debug, Serialize)]
-pub struct InsertFacts {
-    /// Its source.
+pub struct BodyFacts {
+    /// The word for its shape in the case.
     pub shape: &'static str,
     /// Its file without the folder, if it has one.
     pub file: Option<String>,
@@ -165,6 +141,36 @@ pub struct InsertFacts {
     pub triangles: Option<usize>,
     /// Defects of its file.
     pub defects: Vec<String>,
+}
+
+impl BodyFacts {
+    fn of(
+        shape: &'static str,
+        file: Option<&DataFile>,
+        (low, high): (Vec3, Vec3),
+        triangles: Option<usize>,
+        warnings: &[String],
+    ) -> Self {
+        let file = file.map(DataFile::name);
+        // The warnings of a file start with its name.
+        let start = file.as_ref().map(|file| format!("{file}: "));
+        let own = |said: &String| said.strip_prefix(start.as_deref()?).map(str::to_owned);
+        Self {
+            shape,
+            size_mm: (high - low).into(),
+            triangles,
+            defects: warnings.iter().filter_map(own).collect(),
+            file,
+        }
+    }
+}
+
+/// The insert as it is meshed.
+#[derive(Debug, Serialize)]
+pub struct InsertFacts {
+    /// The body.
+    #[serde(flatten)]
+    pub body: BodyFacts,
     /// Hexahedra.
     pub hexahedra: usize,
     /// Nodes of the articulating surface.
@@ -180,32 +186,24 @@ pub struct InsertFacts {
 impl InsertFacts {
     fn of(case: &Case, march: &March, warnings: &[String]) -> Self {
         let insert = march.test().insert.as_ref();
-        let file = case.insert.file().map(DataFile::name);
         let (mesh, places) = (insert.mesh(), insert.surface().positions);
-        let (low, high) = bounds(&mesh.nodes);
         let dishes = Dishes::of(&places);
         let thickness = |dish: Vec3| least_around(&dish, &places, insert.thickness_mm());
         Self {
-            shape: case.insert.shape.word(),
-            size_mm: (high - low).into(),
-            triangles: case.insert_triangle_count(),
-            defects: defects(file.as_deref(), warnings),
+            body: BodyFacts::of(
+                case.insert.shape.word(),
+                case.insert.file(),
+                bounds(&mesh.nodes),
+                case.insert_triangle_count(),
+                warnings,
+            ),
             hexahedra: mesh.hexes.len(),
             surface_nodes: places.len(),
             worst_quality: mesh.worst_quality(),
             dish_thickness_mm: dishes.map(|d| [d.medial_mm, d.lateral_mm].map(thickness)),
             dishes_middle_mm: dishes.map(|dishes| dishes.middle_mm().into()),
-            file,
         }
     }
-}
-
-/// The warnings of a file, without its name at their start.
-fn defects(file: Option<&str>, warnings: &[String]) -> Vec<String> {
-    let Some(file) = file else { return Vec::new() };
-    let start = format!("{file}: ");
-    let of_file = warnings.iter().filter_map(|said| said.strip_prefix(&start));
-    of_file.map(str::to_owned).collect()
 }
 
 fn least_around(dish: &Vec3, places: &[Vec3], values: &[f64]) -> f64 {

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use condyle_case::cache::Cache;
-use condyle_lab::{Outcome, RunError, RunEvent, RunOptions, check, run};
+use condyle_lab::{Outcome, Preview, RunError, RunEvent, RunOptions, run};
 use condyle_results::Checkpoint;
 use tempfile::TempDir;
 
@@ -47,7 +47,7 @@ fn run_until(
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    run(case, options, &mut on_event).unwrap_or_else(|error| panic!("{error}"))
+    run(case, &[], options, &mut on_event).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Every file but the summary, which alone has the wall time.
@@ -157,7 +157,7 @@ fn a_run_of_another_version_is_not_gone_on_with() {
     checkpoint.version = "0.0.1".to_owned();
     fs::write(&file, checkpoint.to_bytes()).unwrap();
     let mut go_on = |_: RunEvent<'_>| ControlFlow::Continue(());
-    let error = run(&case, &options(out, true), &mut go_on).unwrap_err();
+    let error = run(&case, &[], &options(out, true), &mut go_on).unwrap_err();
     let said = error.to_string();
     assert!(
         said.contains("begun by condyle 0.0.1") && said.contains("run the case again"),
@@ -169,10 +169,12 @@ fn a_run_of_another_version_is_not_gone_on_with() {
 #[test]
 fn check_goes_as_far_as_a_run_before_its_first_cycle() {
     let (_folder, case) = bench(CASE);
-    assert!(check(&case, 1).is_ok());
+    assert!(Preview::of(&case, &[], 1).is_ok());
     let apart = "[femur]\nshape = \"sphere\"\nstart_mm = [90.0, 0.0]\n";
     let (_folder, case) = bench(&format!("{apart}{CASE}"));
-    let error = check(&case, 1).unwrap_err();
+    let Err(error) = Preview::of(&case, &[], 1) else {
+        panic!("it has no file");
+    };
     assert!(matches!(error, RunError::Placement { .. }));
     let problem = &error.in_case().expect("it has a place").problems()[0];
     assert_eq!(problem.line_and_column(), Some((3, 12)));

@@ -17,27 +17,15 @@ use crate::run::{
     running::{Run, RunContext, Start},
 };
 
-/// Runs the case at `case_path`.
+/// Runs the case at `case_path`, with some of its values changed.
 ///
-/// `on_event` hears of everything and may stop the run by breaking; the updates done are then on
+/// `on_event` receives every event and may stop the run by breaking; the updates done are then on
 /// the disk, and a run with `resume` gives the same bytes as one never stopped. A run that
 /// cannot start makes no folder, and one that is done is left as it is.
 ///
 /// # Errors
-/// A bad case, a folder that cannot be used, or physics that cannot be solved.
+/// A bad case, a change that cannot be made, a folder that cannot be used, or physics that cannot be solved.
 pub fn run(
-    case_path: &Path,
-    options: &RunOptions,
-    on_event: &mut Listener<'_>,
-) -> Result<Outcome, RunError> {
-    run_changed(case_path, &[], options, on_event)
-}
-
-/// Runs the case at `case_path` with some of its values changed, as [`run`] does.
-///
-/// # Errors
-/// As [`run`], and a change that cannot be made.
-pub fn run_changed(
     case_path: &Path,
     changes: &[Assignment],
     options: &RunOptions,

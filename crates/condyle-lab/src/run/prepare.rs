@@ -9,38 +9,11 @@ use condyle::{
 };
 use condyle_case::{
     cache::Cache,
-    case::{
-        Assignment, BuildError, BuildWarning, Built, Case, Limits, MeshFault, MeshRemark,
-        SharedBodies,
-    },
+    case::{BuildError, BuildWarning, Built, Case, Limits, MeshFault, MeshRemark, SharedBodies},
     config::DataFile,
 };
 
 use crate::{at_rest::AtRest, run::error::RunError};
-
-/// Checks the case at `case_path` as far as a run would go before its first cycle: the file, the
-/// meshes, and that the femur settles on the insert. Returns the case, and corrections and doubts of its input.
-///
-/// # Errors
-/// Those of a run that cannot start.
-pub fn check(case_path: &Path, threads: usize) -> Result<(Case, Vec<BuildWarning>), RunError> {
-    check_changed(case_path, &[], threads)
-}
-
-/// Checks the case at `case_path` with some of its values changed, as [`check`] does.
-///
-/// # Errors
-/// As [`check`], and a change that cannot be made.
-pub fn check_changed(
-    case_path: &Path,
-    changes: &[Assignment],
-    threads: usize,
-) -> Result<(Case, Vec<BuildWarning>), RunError> {
-    let case = Case::read_changed(case_path, changes)?;
-    let built = build(&case, threads, &Cache::off())?;
-    start(&case, built.test, &built.warnings)?;
-    Ok((case, built.warnings))
-}
 
 /// The bodies of a case with the femur settled on the insert, before any cycle.
 ///
