@@ -1,13 +1,10 @@
 //! Activities of the machine, each with inputs of its own.
 
-use std::ops::Range;
-
 use condyle::machine::Waveform;
 
 use super::machine::{Freedoms, Machine, Sign, Waveforms};
-use super::machine_reason::ActivityReason;
 use super::waveform::{CaseChannel, waveform_items};
-use crate::config::{Item, Log, Section, Settings, TableItem, Writer, settings, within};
+use crate::config::{Fault, Item, Log, Section, Settings, TableItem, Writer, settings, within};
 
 /// Shares whose sum is so near to 1 are whole: thirds are written with a few digits.
 const WHOLE: f64 = 1e-3;
@@ -134,26 +131,18 @@ impl Activity {
             check_inputs(section, name, freedoms, log)?;
             Waveforms::read(section, freedoms, log)
         });
-        let read = Self {
-            keys: keys?,
-            waveforms: waveforms?,
-        };
-        read.check_load(section, log)?;
-        Some(read)
-    }
-
-    fn check_load(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<()> {
+        let (keys, waveforms) = (keys?, waveforms?);
         let load = CaseChannel::load();
         let presses = |waveform: &Waveform| waveform.knots().iter().any(|knot| knot.value > 0.0);
-        if self.waveforms.get(load).is_none_or(presses) {
-            return Some(());
+        if !waveforms.get(load).is_none_or(presses) {
+            let name = &keys.name;
+            let message =
+                format!("the activity \"{name}\" has no load: its axial force is never above 0 N");
+            let fault = Fault::new(message, "give it an axial force that presses");
+            log.problem(section.key_span(load.name()), fault);
+            return None;
         }
-        let name = self.keys.name.clone();
-        log.problem(
-            section.key_span(load.name()),
-            ActivityReason::NoLoad { name },
-        );
-        None
+        Some(Self { keys, waveforms })
     }
 }
 
@@ -164,18 +153,22 @@ fn check_inputs(
     freedoms: &Freedoms,
     log: &mut Log<'_>,
 ) -> Option<()> {
-    let needed: Vec<CaseChannel> = freedoms.channels().collect();
-    let lacking = needed
-        .into_iter()
-        .filter(|channel| section.value(channel.name()).is_none());
     let mut complete = Some(());
-    for channel in lacking {
-        let reason = ActivityReason::LacksInput {
-            name: name.to_owned(),
-            table: channel.name(),
-            is_load: channel == CaseChannel::load(),
+    for channel in freedoms.channels() {
+        let table = channel.name();
+        if section.value(table).is_some() {
+            continue;
+        }
+        let (what, none) = if channel == CaseChannel::load() {
+            ("load", "")
+        } else {
+            (table, ", or its `waveform = \"none\"`")
         };
-        log.problem(section.span(), reason);
+        let fault = Fault::new(
+            format!("the activity \"{name}\" has no {what}"),
+            format!("write its [activity.{table}]{none}: nothing is taken from another activity"),
+        );
+        log.problem(section.span(), fault);
         complete = None;
     }
     complete
@@ -186,51 +179,57 @@ fn check_names(sections: &[Section<'_>], all: &[Activity], log: &mut Log<'_>) {
     for (number, (section, activity)) in sections.iter().zip(all).enumerate() {
         let name = &activity.keys.name;
         let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-        let place = section.value_span("name");
-        if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(is_word) {
-            let name = name.clone();
-            log.problem(place, ActivityReason::Name { name });
+        let fault = if name.is_empty() || name.len() > LONGEST_NAME || !name.chars().all(is_word) {
+            let advice = "write 1 to 40 small letters, digits and hyphens, such as \"stairs\"";
+            Fault::new(format!("an activity cannot be called \"{name}\""), advice)
         } else if all[..number].iter().any(|other| other.keys.name == *name) {
-            let name = name.clone();
-            log.problem(place, ActivityReason::SameName { name });
-        }
+            let message = format!("two activities are called \"{name}\"");
+            Fault::new(message, "give each its own name")
+        } else {
+            continue;
+        };
+        log.problem(section.value_span("name"), fault);
     }
 }
 
 /// Names become parts of file names.
 const LONGEST_NAME: usize = 40;
 
-/// Reports activities that do not say how many of the cycles they are, and shares that are not all of them.
+/// Reports activities without a share or with two, and shares that do not sum up to 1.
 fn check_shares(sections: &[Section<'_>], all: &[Activity], log: &mut Log<'_>) {
-    let mut said = true;
-    let by_sequence = all
-        .iter()
-        .any(|activity| activity.keys.cycles_in_sequence.is_some());
+    let has_cycles = |activity: &Activity| activity.keys.cycles_in_sequence.is_some();
+    let by_sequence = all.iter().any(has_cycles);
+    let mut complete = true;
     for (section, activity) in sections.iter().zip(all) {
-        let ActivityKeys {
-            share,
-            cycles_in_sequence,
-            name,
-            ..
-        } = &activity.keys;
-        let name = name.clone();
-        let place = place_of_share(section);
-        match (share, cycles_in_sequence) {
-            (None, None) => log.problem(section.span(), ActivityReason::NoShare { name }),
-            (Some(_), Some(_)) => log.problem(place, ActivityReason::TwoShares { name }),
-            (Some(_), None) if by_sequence => log.problem(place, ActivityReason::Mixed { name }),
+        let name = &activity.keys.name;
+        let (message, advice) = match (activity.keys.share, has_cycles(activity)) {
+            (None, false) => (
+                format!("the activity \"{name}\" does not say how many of the cycles it is"),
+                "write `share = 0.15`, or in all of them `cycles_in_sequence = 3`",
+            ),
+            (Some(_), true) => (
+                format!("the activity \"{name}\" has both a `share` and `cycles_in_sequence`"),
+                "leave one of them out",
+            ),
+            (Some(_), false) if by_sequence => (
+                format!(
+                    "the activity \"{name}\" has a `share`, and another has `cycles_in_sequence`"
+                ),
+                "give all of them the one or the other",
+            ),
             _ => continue,
-        }
-        said = false;
+        };
+        log.problem(section.value_span("share"), Fault::new(message, advice));
+        complete = false;
     }
     let sum: f64 = all.iter().map(Activity::part).sum();
-    if let (Some(last), true) = (sections.last(), said && !by_sequence)
+    if let (Some(last), true) = (sections.last(), complete && !by_sequence)
         && (sum - 1.0).abs() > WHOLE
     {
-        log.problem(place_of_share(last), ActivityReason::Sum { sum });
+        let fault = Fault::new(
+            format!("the shares of the activities sum up to {sum:.4} and not to 1"),
+            "change them so that they do, or write `cycles_in_sequence`",
+        );
+        log.problem(last.value_span("share"), fault);
     }
-}
-
-fn place_of_share(section: &Section<'_>) -> Range<usize> {
-    section.value_span("share")
 }

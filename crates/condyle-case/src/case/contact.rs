@@ -4,10 +4,9 @@ use condyle::contact::{
     Backside, Deformable, Foundation, FrictionModel, PressureTable, Search, softening_modulus,
 };
 use condyle_fem::{Elastic, ElasticPlastic, Hardening, HardeningError};
-use thiserror::Error;
 
 use super::pressure_table::StrainTable;
-use crate::config::{Log, Points, Reason, Section, choice, settings, variants, within};
+use crate::config::{Fault, Log, Points, Section, choice, settings, variants, within};
 
 choice! {
     /// Friction of a deformable insert.
@@ -210,23 +209,6 @@ const CURVE: [(f64, f64); 4] = [
     (0.0619, 26.9),
 ];
 
-/// A hardening curve that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub(crate) enum PlasticityReason {
-    #[error("`hardening`: {0}")]
-    Hardening(HardeningError),
-    #[error(
-        "`hardening` starts at {found} MPa, and yield_stress_mpa is {yield_stress_mpa}: its first point must be [0.0, {yield_stress_mpa:?}]"
-    )]
-    NotFromYield { found: f64, yield_stress_mpa: f64 },
-}
-
-impl Reason for PlasticityReason {
-    fn advice(&self) -> Option<String> {
-        None
-    }
-}
-
 impl PlasticityChoice {
     /// Returns the law with the insert's material: each choice creates its own.
     pub(crate) fn with_material(&self, law: Deformable, elastic: Elastic) -> Deformable {
@@ -259,17 +241,19 @@ impl J2Plasticity {
     }
 
     fn check(&self, section: &Section<'_>, log: &mut Log<'_>) {
-        let mut report = |point, reason| log.problem(section.item_span("hardening", point), reason);
+        let mut report = |point, message: String| {
+            let fault = Fault::new(format!("`hardening`{message}"), "");
+            log.problem(section.item_span("hardening", point), fault);
+        };
         let yield_stress_mpa = self.yield_stress_mpa;
         let first = self.hardening.as_ref().and_then(|points| points.0.first());
         match (self.hardening(), first) {
-            (Err(error), _) => report(error.point, PlasticityReason::Hardening(error)),
+            (Err(error), _) => report(error.point, format!(": {error}")),
             (Ok(_), Some(&(_, found))) if found != yield_stress_mpa => {
-                let reason = PlasticityReason::NotFromYield {
-                    found,
-                    yield_stress_mpa,
-                };
-                report(0, reason);
+                let message = format!(
+                    " starts at {found} MPa, and yield_stress_mpa is {yield_stress_mpa}: its first point must be [0.0, {yield_stress_mpa:?}]"
+                );
+                report(0, message);
             }
             (Ok(_), _) => {}
         }

@@ -5,7 +5,7 @@ use thiserror::Error;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::config::{Key, Kind, Log, Reason, Setting, choice, read_word, settings, wrong_type};
+use crate::config::{Fault, Key, Kind, Log, Setting, choice, read_word, settings, wrong_type};
 
 pub use condyle_results::Side;
 
@@ -48,22 +48,6 @@ pub enum AxesError {
     /// A mirrored frame.
     #[error("these axes are left-handed, which would mirror the shape")]
     LeftHanded,
-}
-
-/// Axes that are no right-handed frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("`{key}`: {error}")]
-pub(crate) struct AxesReason {
-    pub(crate) key: &'static str,
-    pub(crate) error: AxesError,
-}
-
-impl Reason for AxesReason {
-    fn advice(&self) -> Option<String> {
-        const ADVICE: &str = "name where x, y and z of the file point; the third is the cross \
-            product of the first two, such as [\"anterior\", \"superior\", \"right\"]";
-        Some(ADVICE.to_owned())
-    }
 }
 
 const WORDS: &[&str] = &[
@@ -175,7 +159,9 @@ fn three<'a, 'i>(array: &'a toml::de::DeArray<'i>) -> Option<[&'a Spanned<DeValu
 /// Reports axes that are no right-handed frame on a `side` knee.
 pub(crate) fn check_axes(axes: &Axes, side: Side, span: std::ops::Range<usize>, log: &mut Log<'_>) {
     if let Err(error) = axes.rotation(side) {
-        log.problem(span, AxesReason { key: "axes", error });
+        let advice = "name where x, y and z of the file point; the third is the cross product of the first two, such as \
+            [\"anterior\", \"superior\", \"right\"]";
+        log.problem(span, Fault::new(format!("`axes`: {error}"), advice));
     }
 }
 

@@ -6,26 +6,12 @@ use std::ops::Range;
 
 use condyle::evolve::PlacementError;
 use condyle::machine::knee;
-use thiserror::Error;
 
 use super::build::{Body, BuildError, BuildWarning, MeshRemark};
 use super::contents::Case;
 use super::machine::DriveWord;
 use super::run_options::Limits;
-use crate::config::{DataFile, Problem, Problems, Reason};
-
-/// Values that are valid one by one but make no wear test together.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{message}")]
-pub(crate) struct CaseConflict {
-    pub(crate) message: String,
-}
-
-impl Reason for CaseConflict {
-    fn advice(&self) -> Option<String> {
-        None
-    }
-}
+use crate::config::{DataFile, Fault, Problem, Problems};
 
 /// A table of a case and those of its keys that may be at fault, the likeliest first.
 struct KeyLocation {
@@ -122,9 +108,8 @@ impl Case {
     fn errors_at(&self, errors: &[(KeyLocation, String)]) -> Problems {
         let source = &self.origin.source;
         let problem = |(location, message): &(KeyLocation, String)| {
-            let message = message.clone();
             let (key, span) = location.place(&self.origin.places);
-            Problem::at(source, span, key.as_deref(), CaseConflict { message })
+            Problem::at(source, span, key.as_deref(), Fault::new(message, ""))
         };
         Problems::new(errors.iter().map(problem).collect(), source)
     }

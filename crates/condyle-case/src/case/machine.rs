@@ -5,12 +5,11 @@ use condyle::machine::{JointDescription, JointIndex, JointKind, Waveform};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::machine_reason::{ActivityReason, DriveReason};
 use super::waveform::{CaseChannel, waveform_items};
 use super::waveform_points;
 use crate::config::{
-    Item, Key, KeyReason, Kind, Log, Section, Setting, Settings, TableItem, Writer, choice, keys,
-    number, quoted_list, rows, settings, within, wrong_type,
+    Fault, Item, Key, KeyReason, Kind, Log, Section, Setting, Settings, TableItem, Writer, choice,
+    keys, number, quoted_list, rows, settings, within, wrong_type,
 };
 
 choice! {
@@ -246,12 +245,12 @@ impl Freedom {
         };
         let drive = drive.unwrap_or(preset.drive(joint.name));
         if !drive.fits(joint) {
-            let reason = DriveReason::NoSuchDrive {
-                freedom: joint.name,
-                drive: drive.word(),
-                drives: quoted_list(&DriveWord::words_for(joint)),
-            };
-            log.problem(section.value_span("drive"), reason);
+            let (freedom, word) = (joint.name, drive.word());
+            let fault = Fault::new(
+                format!("the {freedom} freedom cannot be {word}: a case has no waveform for that"),
+                format!("it can be {}", quoted_list(&DriveWord::words_for(joint))),
+            );
+            log.problem(section.value_span("drive"), fault);
         }
         if drive != DriveWord::Locked && locked_at != 0.0 {
             let key = match joint.kind() {
@@ -394,13 +393,15 @@ impl Waveforms {
                     } else {
                         DriveWord::Loaded
                     };
-                    let reason = DriveReason::UnusedWaveform {
-                        section: format!("{}.{}", machine.path(), channel.name()),
-                        freedom: joint.name,
-                        drive: freedom.drive.word(),
-                        wanted: wanted.word(),
-                    };
-                    log.problem(machine.key_span(channel.name()), reason);
+                    let table = format!("[{}.{}]", machine.path(), channel.name());
+                    let (name, drive, wanted) = (joint.name, freedom.drive.word(), wanted.word());
+                    let fault = Fault::new(
+                        format!(
+                            "{table} is given, but the {name} freedom is {drive}: the two contradict"
+                        ),
+                        format!("remove {table}, or make the freedom `drive = \"{wanted}\"`"),
+                    );
+                    log.problem(machine.key_span(channel.name()), fault);
                 }
             }
         }
@@ -472,7 +473,13 @@ impl Settings for Machine {
         for channel in CaseChannel::all() {
             let table = channel.name();
             if section.value(table).is_some() {
-                log.problem(section.key_span(table), ActivityReason::OfMachine { table });
+                let fault = Fault::new(
+                    format!(
+                        "[machine.{table}] is given, but the machine does what each [[activity]] says"
+                    ),
+                    format!("move it into the activities, as [activity.{table}]"),
+                );
+                log.problem(section.key_span(table), fault);
             }
         }
         Self::read_with(&section, |_, _, _| Some(Waveforms::default()), log)

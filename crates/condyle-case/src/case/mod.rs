@@ -15,7 +15,6 @@ mod frame;
 mod insert;
 mod key_location;
 mod machine;
-mod machine_reason;
 mod material;
 mod pressure_table;
 mod reader;

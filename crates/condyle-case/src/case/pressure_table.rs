@@ -1,11 +1,10 @@
 //! The pressure table of a case: points in the case itself, or in a CSV file.
 
 use condyle::contact::{PressureTable, PressureTableError};
-use thiserror::Error;
 
 use crate::config::{
-    Cell, ColumnReason, Columns, DataFile, Item, Key, KeyReason, Kind, Log, Placed, Points, Reason,
-    Section, Setting, Settings, WhereSilent, Writer, settings, within,
+    Cell, Columns, DataFile, Fault, Item, Key, KeyReason, Kind, Log, Placed, Points, Section,
+    Setting, Settings, WhereSilent, Writer, other_unit, settings, within,
 };
 
 struct Form {
@@ -52,33 +51,6 @@ pub struct StrainTable {
     pub points: PressureTable,
     /// Their error.
     pub error: TableError,
-}
-
-/// Points that are not a pressure table.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("`{key}`: {}", in_words(.error, *.is_over_thickness))]
-pub(crate) struct PressureTableReason {
-    pub(crate) key: &'static str,
-    pub(crate) is_over_thickness: bool,
-    pub(crate) error: PressureTableError,
-}
-
-fn in_words(error: &PressureTableError, is_over_thickness: bool) -> String {
-    match error {
-        PressureTableError::NotFromZero {
-            overclosure_mm: strain,
-            pressure_mpa,
-        } if is_over_thickness => format!(
-            "a pressure table starts at overclosure over thickness 0 and pressure 0 MPa, this one at {strain} and {pressure_mpa} MPa"
-        ),
-        error => error.to_string(),
-    }
-}
-
-impl Reason for PressureTableReason {
-    fn advice(&self) -> Option<String> {
-        None
-    }
 }
 
 impl Settings for PressureTable {
@@ -188,12 +160,18 @@ impl Form {
         out.pairs(self.ways[0], table.points());
     }
 
-    fn reason(&self, key: &'static str, error: PressureTableError) -> PressureTableReason {
-        PressureTableReason {
-            key,
-            is_over_thickness: self.law == BY_STRAIN.law,
-            error,
-        }
+    fn fault(&self, key: &str, error: &PressureTableError) -> Fault {
+        let words = match error {
+            // The message of the error has the unit of an overclosure, which a strain has not.
+            PressureTableError::NotFromZero {
+                overclosure_mm: strain,
+                pressure_mpa,
+            } if self.law == BY_STRAIN.law => format!(
+                "a pressure table starts at overclosure over thickness 0 and pressure 0 MPa, this one at {strain} and {pressure_mpa} MPa"
+            ),
+            error => error.to_string(),
+        };
+        Fault::new(format!("`{key}`: {words}"), "")
     }
 
     fn inline(&self, section: &Section<'_>, log: &mut Log<'_>) -> Option<PressureTable> {
@@ -201,7 +179,7 @@ impl Form {
         let Points(points) = Points::read(section.value(key.name)?, &key, log)?;
         let table = PressureTable::new(points).map_err(|error| {
             let place = section.item_span(key.name, point_of(&error));
-            log.problem(place, self.reason(key.name, error));
+            log.problem(place, self.fault(key.name, &error));
         });
         table.ok()
     }
@@ -224,7 +202,7 @@ impl Form {
         PressureTable::new(points).map_err(|error| {
             let cell = overclosures.get(point_of(&error));
             let at = cell.map_or(0..0, |cell| cell.span.clone());
-            vec![Placed::new(at, self.reason(self.ways[1], error))]
+            vec![Placed::new(at, self.fault(self.ways[1], &error))]
         })
     }
 
@@ -232,13 +210,10 @@ impl Form {
         let names = columns.names();
         let problem = |index: usize| {
             let (unit, suffix) = self.units[index];
-            let column = names[index].to_owned();
-            let reason = ColumnReason::OtherUnit {
-                column,
-                unit,
-                suffix,
-            };
-            Placed::new(columns.name_span(index), reason)
+            Placed::new(
+                columns.name_span(index),
+                other_unit(names[index], unit, suffix),
+            )
         };
         let wrong = |&index: &usize| names[index] != self.header[index];
         let problems: Vec<Placed> = (0..2).filter(wrong).map(problem).collect();

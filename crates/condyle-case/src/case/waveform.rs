@@ -1,13 +1,12 @@
 //! Waveforms of the machine: the named ones, their tables in a case, and their keys.
 
 use condyle::machine::knee::KNEE;
-use condyle::machine::{self, ChannelUnit, Interpolation, WaveformError};
+use condyle::machine::{self, ChannelUnit, Interpolation};
 use condyle::parameter::unit_of;
-use thiserror::Error;
 
 use crate::config::{
-    DataFile, Item, Key, Kind, Limits, Reason, Settings, TableItem, WhereSilent, choice, keys,
-    rows, settings, within,
+    DataFile, Item, Key, Kind, Limits, Settings, TableItem, WhereSilent, choice, keys, rows,
+    settings, within,
 };
 
 /// A waveform of the machine, as a case has it.
@@ -215,21 +214,6 @@ settings! {
 
 /// The waveform of a case that gives none.
 pub(super) const DEFAULT_WAVEFORM: &str = "iso-like";
-
-/// Points that are not a waveform.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("[{section}]: {error}")]
-pub(crate) struct WaveformReason {
-    pub(crate) section: String,
-    pub(crate) error: WaveformError,
-}
-
-impl Reason for WaveformReason {
-    fn advice(&self) -> Option<String> {
-        let may_drift = matches!(self.error, WaveformError::Seam { .. });
-        may_drift.then(|| "or, for a measured cycle, set `remove_drift = true`".to_owned())
-    }
-}
 
 const WAVEFORMS: &str = "\
 One of `waveform`, `file` or the points themselves. A freedom takes the waveform that its drive \

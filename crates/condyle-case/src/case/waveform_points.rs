@@ -7,12 +7,10 @@ use condyle::machine::{Interpolation, Knot, Waveform, WaveformError, low_passed,
 use condyle::parameter::unit_of;
 use miette::NamedSource;
 
-use super::waveform::{
-    CaseChannel, DEFAULT_WAVEFORM, InterpolationWord, WaveformReason, WaveformSource,
-};
+use super::waveform::{CaseChannel, DEFAULT_WAVEFORM, InterpolationWord, WaveformSource};
 use crate::config::{
-    ColumnReason, Columns, DataFile, KeyReason, Log, Placed, Points, Section, Settings, Source,
-    Writer, nearest, plain, quoted_list,
+    Columns, DataFile, Fault, KeyReason, Log, Placed, Points, Section, Settings, Source, Writer,
+    nearest, no_column, other_unit, plain, quoted_list,
 };
 
 /// Reads the waveform of `channel` from its table in `machine`.
@@ -36,8 +34,14 @@ pub(super) fn read(
         },
         Err((error, knots)) => {
             let span = place(point_of(&error, &knots)).unwrap_or(section.span());
-            let section = section.path().to_owned();
-            log.placed(text, Placed::new(span, WaveformReason { section, error }));
+            let drifts = matches!(error, WaveformError::Seam { .. });
+            let advice = if drifts {
+                "or, for a measured cycle, set `remove_drift = true`"
+            } else {
+                ""
+            };
+            let fault = Fault::new(format!("[{}]: {error}", section.path()), advice);
+            log.placed(text, Placed::new(span, fault));
             None
         }
     }
@@ -163,35 +167,32 @@ fn from_file(
         None => (names.len() == 2).then_some(0),
     };
     let Some(index) = index.map(|index| index + 1) else {
-        let columns = names[1..].iter().map(|&name| name.to_owned()).collect();
-        let (key, file) = (
-            if column.is_some() { "column" } else { "file" },
-            file.name(),
-        );
-        let reason = match column {
-            Some(column) => ColumnReason::NoColumn {
-                column: column.to_owned(),
-                file,
-                columns,
-            },
-            None => ColumnReason::WhichColumn { file, columns },
+        let (columns, file) = (&names[1..], file.name());
+        let (key, fault) = match column {
+            Some(column) => ("column", no_column(column, &file, columns)),
+            None => {
+                let message =
+                    format!("{file} has several columns and the case does not say which to take");
+                let advice = format!("add `column = `, one of {}", columns.join(", "));
+                ("file", Fault::new(message, advice))
+            }
         };
-        log.problem(section.value_span(key), reason);
+        log.problem(section.value_span(key), fault);
         return None;
     };
     let mut problems = Vec::new();
     if !is_percent(names[0]) {
-        let column = names[0].to_owned();
-        let reason = ColumnReason::NoPercent { column };
-        problems.push(Placed::new(columns.name_span(0), reason));
+        let first = names[0];
+        let fault = Fault::new(
+            format!("the first column must be the percent of the cycle, this one is `{first}`"),
+            "name it `percent`, and let it run from 0 to 100",
+        );
+        problems.push(Placed::new(columns.name_span(0), fault));
     }
-    if header_unit(names[index]) != unit_of(channel.knots_key()) {
-        let reason = ColumnReason::OtherUnit {
-            column: names[index].to_owned(),
-            unit: unit_of(channel.knots_key()).unwrap_or_default(),
-            suffix,
-        };
-        problems.push(Placed::new(columns.name_span(index), reason));
+    let unit = unit_of(channel.knots_key());
+    if header_unit(names[index]) != unit {
+        let fault = other_unit(names[index], unit.unwrap_or_default(), suffix);
+        problems.push(Placed::new(columns.name_span(index), fault));
     }
     let read = if problems.is_empty() {
         column_points(&columns, index)

@@ -2,10 +2,8 @@
 
 use std::ops::Range;
 
-use thiserror::Error;
-
 use super::problem::Placed;
-use super::reason::Reason;
+use super::reason::Fault;
 
 /// A CSV file: names of its columns, and rows of unparsed cells.
 pub(crate) struct Columns<'a> {
@@ -34,15 +32,23 @@ impl<'a> Columns<'a> {
         let start = lines.iter().position(is_data).unwrap_or(lines.len());
         let columns = lines.get(start).map_or(2, |line| cells(text, line).len());
         if columns < 2 {
-            let (file, example) = (file.to_owned(), example.to_owned());
-            let reason = ColumnReason::OneColumn { file, example };
-            return Err(Placed::new(lines[start].clone(), reason));
+            let fault = Fault::new(
+                format!("{file} has one column where two or more are needed"),
+                format!("put commas between the columns, as in `{example}`"),
+            );
+            return Err(Placed::new(lines[start].clone(), fault));
         }
         let named = |line: &&Range<usize>| cells(text, line).len() == columns;
         let Some(header) = lines[..start].iter().rev().find(named) else {
-            let (file, example) = (file.to_owned(), example.to_owned());
             let first = lines.first().cloned().unwrap_or(0..0);
-            return Err(Placed::new(first, ColumnReason::NoHeader { file, example }));
+            let advice = format!(
+                "write one above the numbers, with the unit in the name, such as `{example}`"
+            );
+            let fault = Fault::new(
+                format!("{file} has no header that names its columns"),
+                advice,
+            );
+            return Err(Placed::new(first, fault));
         };
         let is_row = |line: &&Range<usize>| !text[(*line).clone()].trim_start().starts_with('#');
         let rows = lines[start..].iter().filter(is_row);
@@ -64,24 +70,24 @@ impl<'a> Columns<'a> {
 
     /// Returns the numbers of a column, or a problem for every other cell.
     pub(crate) fn numbers(&self, column: usize) -> Result<Vec<Cell>, Vec<Placed>> {
-        let mut good = Vec::new();
-        let mut bad = Vec::new();
-        for row in &self.rows {
-            match self.number(row, column) {
-                Ok(cell) => good.push(cell),
-                Err(problem) => bad.push(problem),
-            }
-        }
-        if bad.is_empty() { Ok(good) } else { Err(bad) }
+        let read = self.collected(self.rows.iter().enumerate(), column)?;
+        Ok(read.into_iter().map(|(_, cell)| cell).collect())
     }
 
     /// Returns the numbers of a column with their rows, without empty cells, or a problem for every other cell.
     pub(crate) fn numbers_given(&self, column: usize) -> Result<Vec<(usize, Cell)>, Vec<Placed>> {
         let is_given = |row: &[Range<usize>]| row.get(column).is_none_or(|span| !span.is_empty());
         let rows = self.rows.iter().enumerate();
-        let mut good = Vec::new();
-        let mut bad = Vec::new();
-        for (index, row) in rows.filter(|(_, row)| is_given(row)) {
+        self.collected(rows.filter(|(_, row)| is_given(row)), column)
+    }
+
+    fn collected<'r>(
+        &self,
+        rows: impl Iterator<Item = (usize, &'r Vec<Range<usize>>)>,
+        column: usize,
+    ) -> Result<Vec<(usize, Cell)>, Vec<Placed>> {
+        let (mut good, mut bad) = (Vec::new(), Vec::new());
+        for (index, row) in rows {
             match self.number(row, column) {
                 Ok(cell) => good.push((index, cell)),
                 Err(problem) => bad.push(problem),
@@ -97,9 +103,10 @@ impl<'a> Columns<'a> {
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Cell { value, span }),
             Ok(_) | Err(_) => {
-                let column = self.names()[column].to_owned();
-                let text = text.to_owned();
-                Err(Placed::new(span, ColumnReason::NotNumber { text, column }))
+                let column = self.names()[column];
+                let message = format!("`{text}` in column `{column}` is not a finite number");
+                let fault = Fault::new(message, "write a number there, or remove the row");
+                Err(Placed::new(span, fault))
             }
         }
     }
@@ -139,53 +146,20 @@ fn names_in(text: &str, line: &Range<usize>) -> Vec<Range<usize>> {
     cells(text, line).into_iter().map(after_hash).collect()
 }
 
-/// Why columns of numbers cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub(crate) enum ColumnReason {
-    #[error("{file} has no header that names its columns")]
-    NoHeader { file: String, example: String },
-    #[error("{file} has one column where two or more are needed")]
-    OneColumn { file: String, example: String },
-    #[error("the first column must be the percent of the cycle, this one is `{column}`")]
-    NoPercent { column: String },
-    #[error("column `{column}` is in another unit than {unit}, which is needed here")]
-    OtherUnit {
-        column: String,
-        unit: &'static str,
-        suffix: &'static str,
-    },
-    #[error("there is no column `{column}` in {file}")]
-    NoColumn {
-        column: String,
-        file: String,
-        columns: Vec<String>,
-    },
-    #[error("{file} has several columns and the case does not say which to take")]
-    WhichColumn { file: String, columns: Vec<String> },
-    #[error("`{text}` in column `{column}` is not a finite number")]
-    NotNumber { text: String, column: String },
+/// Returns the fault of a column that the `file` does not have among `columns`.
+pub(crate) fn no_column(column: &str, file: &str, columns: &[&str]) -> Fault {
+    Fault::new(
+        format!("there is no column `{column}` in {file}"),
+        format!("it has {}", columns.join(", ")),
+    )
 }
 
-impl Reason for ColumnReason {
-    fn advice(&self) -> Option<String> {
-        Some(match self {
-            Self::NoHeader { example, .. } => format!(
-                "write one above the numbers, with the unit in the name, such as `{example}`"
-            ),
-            Self::OneColumn { example, .. } => {
-                format!("put commas between the columns, as in `{example}`")
-            }
-            Self::NoPercent { .. } => "name it `percent`, and let it run from 0 to 100".to_owned(),
-            Self::OtherUnit { suffix, unit, .. } => {
-                format!("let its name end in `{suffix}`, with values in {unit}")
-            }
-            Self::NoColumn { columns, .. } => format!("it has {}", columns.join(", ")),
-            Self::WhichColumn { columns, .. } => {
-                format!("add `column = `, one of {}", columns.join(", "))
-            }
-            Self::NotNumber { .. } => "write a number there, or remove the row".to_owned(),
-        })
-    }
+/// Returns the fault of a column in another unit.
+pub(crate) fn other_unit(column: &str, unit: &str, suffix: &str) -> Fault {
+    Fault::new(
+        format!("column `{column}` is in another unit than {unit}, which is needed here"),
+        format!("let its name end in `{suffix}`, with values in {unit}"),
+    )
 }
 
 #[cfg(test)]

@@ -26,13 +26,13 @@ pub use reason::Reason;
 pub use render::{RenderStyle, visible};
 pub use setting::{Level, Levels, Names, Points};
 
-pub(crate) use columns::{Cell, ColumnReason, Columns};
+pub(crate) use columns::{Cell, Columns, no_column, other_unit};
 pub(crate) use document::{rename, set_value, take, value_at};
 pub(crate) use items::{Choices, Item, Offered, TableItem, check, keys};
 pub(crate) use key::{Key, Kind, WhereSilent, names, number, plain, quoted_list, within};
 pub(crate) use log::{Base, Log};
 pub(crate) use problem::{Placed, Source, read_source};
-pub(crate) use reason::KeyReason;
+pub(crate) use reason::{Fault, KeyReason};
 pub(crate) use schema::{rows, sections, table_schema};
 pub(crate) use section::{Section, read_document, read_part};
 pub(crate) use setting::{Setting, choice, read_word, wrong_type};

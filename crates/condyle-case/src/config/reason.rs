@@ -13,6 +13,27 @@ pub trait Reason: Error + Send + Sync + 'static {
     fn advice(&self) -> Option<String>;
 }
 
+/// A problem and its remedy in words.
+#[derive(Clone, Debug, Error)]
+#[error("{message}")]
+pub(crate) struct Fault {
+    message: String,
+    advice: String,
+}
+
+impl Fault {
+    pub(crate) fn new(message: impl Into<String>, advice: impl Into<String>) -> Self {
+        let (message, advice) = (message.into(), advice.into());
+        Self { message, advice }
+    }
+}
+
+impl Reason for Fault {
+    fn advice(&self) -> Option<String> {
+        (!self.advice.is_empty()).then(|| self.advice.clone())
+    }
+}
+
 /// A key or a value that cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum KeyReason {

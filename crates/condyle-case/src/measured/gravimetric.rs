@@ -1,8 +1,8 @@
 //! Measured masses: a CSV file of specimens and soak controls, as ISO 14243-2 weighs them.
 
-use super::reason::{MeasuredReason, growing, misnamed_first, outside, repeated, unless};
+use super::columns::{growing, misnamed_first, outside, repeated, unless};
 use crate::config::{
-    ColumnReason, Columns, DataFile, Log, Names, Placed, Section, Settings, choice, settings,
+    Columns, DataFile, Fault, Log, Names, Placed, Section, Settings, choice, no_column, settings,
     within,
 };
 
@@ -73,8 +73,11 @@ impl Gravimetric {
         let is_counted = |cycles: &&f64| **cycles >= keys.fit_from_cycles;
         let rows = cycles.iter().skip(1).filter(is_counted).count();
         if rows < MIN_WEIGHINGS {
-            let reason = MeasuredReason::TooFewWeighings { rows };
-            log.problem(section.value_span("file"), reason);
+            let fault = Fault::new(
+                format!("{rows} weighings are left for the line, of which three are needed"),
+                "add weighings, or lower `fit_from_cycles`; the first row starts the test, and its loss of 0 does not count",
+            );
+            log.problem(section.value_span("file"), fault);
             return None;
         }
         let (mut specimens, mut soaks) = (Vec::new(), Vec::new());
@@ -111,12 +114,8 @@ fn soak_columns(
         Some(controls) => {
             for name in &controls.0 {
                 let Some(index) = (1..names.len()).find(|&index| names[index] == name) else {
-                    let reason = ColumnReason::NoColumn {
-                        column: name.clone(),
-                        file: keys.file.name(),
-                        columns: names[1..].iter().map(|&name| name.to_owned()).collect(),
-                    };
-                    log.problem(section.value_span("soak_controls"), reason);
+                    let fault = no_column(name, &keys.file.name(), &names[1..]);
+                    log.problem(section.value_span("soak_controls"), fault);
                     return None;
                 };
                 soaks.push(index);
@@ -125,8 +124,11 @@ fn soak_columns(
     }
     if soaks.len() + 1 >= names.len() {
         let file = keys.file.name();
-        let reason = MeasuredReason::NoSpecimen { file };
-        log.problem(section.value_span("soak_controls"), reason);
+        let fault = Fault::new(
+            format!("every column of {file} is a soak control: there is no specimen"),
+            "name the soak controls in `soak_controls`, and leave the specimens out of it",
+        );
+        log.problem(section.value_span("soak_controls"), fault);
         return None;
     }
     Some(soaks)
@@ -156,9 +158,9 @@ fn weighed(columns: &Columns<'_>) -> Result<(Vec<f64>, Vec<Specimen>), Vec<Place
 fn specimen(columns: &Columns<'_>, index: usize) -> Result<Specimen, Vec<Placed>> {
     let column = columns.names()[index];
     let Some(name) = column.strip_suffix("_mg") else {
-        let column = column.to_owned();
-        let reason = MeasuredReason::NoMass { column };
-        return Err(vec![Placed::new(columns.name_span(index), reason)]);
+        let message = format!("the name `{column}` does not end in the unit of a mass, _mg");
+        let fault = Fault::new(message, "let its name end in `_mg`, with masses in mg");
+        return Err(vec![Placed::new(columns.name_span(index), fault)]);
     };
     let cells = columns.numbers(index)?;
     let limits = within(1.0, f64::INFINITY);

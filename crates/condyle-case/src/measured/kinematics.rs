@@ -2,9 +2,9 @@
 
 use condyle::machine::knee::KNEE;
 
-use super::reason::{MeasuredReason, growing, misnamed_first, repeated, too_few, unless};
+use super::columns::{growing, misnamed_first, repeated, too_few, unless};
 use crate::config::{
-    Cell, Columns, DataFile, Log, Placed, Section, Settings, choice, names, nearest, number,
+    Cell, Columns, DataFile, Fault, Log, Placed, Section, Settings, choice, names, nearest, number,
     settings, within,
 };
 
@@ -101,12 +101,14 @@ fn curves(text: &str, file: &str) -> Result<Vec<MeasuredCurve>, Vec<Placed>> {
         match COLUMNS.iter().find(|column| *column == name) {
             Some(column) => known.push((index, *column)),
             None => {
-                let reason = MeasuredReason::UnknownColumn {
-                    column: (*name).to_owned(),
-                    near: nearest(name, COLUMNS.iter().copied()),
-                    columns: COLUMNS.join(", "),
+                let all = COLUMNS.join(", ");
+                let advice = match nearest(name, COLUMNS.iter().copied()) {
+                    Some(near) => format!("did you mean `{near}`? It can be {all}"),
+                    None => format!("remove it, or name it one of {all}"),
                 };
-                problems.push(Placed::new(columns.name_span(index), reason));
+                let message = format!("a run has no column `{name}` to compare with");
+                let fault = Fault::new(message, advice);
+                problems.push(Placed::new(columns.name_span(index), fault));
             }
         }
     }
@@ -132,7 +134,8 @@ fn curve(
     let cells = columns.numbers_given(index)?;
     if cells.len() < MIN_SAMPLES {
         let span = columns.name_span(index);
-        return Err(vec![too_few(column, cells.len(), MIN_SAMPLES, span)]);
+        let fault = too_few(column, cells.len(), MIN_SAMPLES);
+        return Err(vec![Placed::new(span, fault)]);
     }
     let sample = |(row, cell): &(usize, Cell)| Sample {
         percent: percents[*row],
@@ -201,11 +204,13 @@ fn read_phases(kinematics: &Section<'_>, log: &mut Log<'_>) -> Option<Vec<Phase>
             }
             _ => {
                 let given: Vec<f64> = numbers.into_iter().flatten().collect();
-                let reason = MeasuredReason::Phase {
-                    name: name.to_owned(),
-                    found: format!("{given:?}"),
-                };
-                log.problem(section.value_span(name), reason);
+                let fault = Fault::new(
+                    format!(
+                        "the phase `{name}` is {given:?}: it must be [start, end] in percent, 0 to 100"
+                    ),
+                    "write it as `\"mid stance\" = [10, 30]`",
+                );
+                log.problem(section.value_span(name), fault);
             }
         }
     }

@@ -3,9 +3,9 @@
 //! The file names any of three: kinematics, gravimetric wear, and a scan of the worn surface. Its
 //! problems are reported as those of a case are: all at once, each with a caret under its place.
 
+mod columns;
 mod gravimetric;
 mod kinematics;
-mod reason;
 mod scan;
 
 pub use crate::config::Names;
@@ -13,14 +13,13 @@ pub use gravimetric::{Gravimetric, GravimetricKeys, IntervalWord, Specimen};
 pub use kinematics::{
     AlignWord, COLUMNS, CycleWord, Kinematics, KinematicsKeys, MeasuredCurve, Phase, Sample,
 };
-use reason::MeasuredReason;
 pub use scan::{FitWord, Scan, ScanKeys};
 
 use std::path::Path;
 use std::sync::Arc;
 
 use crate::case::Side;
-use crate::config::{Base, Log, Problems, Section, read_document, read_source};
+use crate::config::{Base, Fault, Log, Problems, Section, read_document, read_source};
 #[cfg(feature = "file-system")]
 use condyle_mesh::files::Disk;
 use condyle_mesh::files::Files;
@@ -55,7 +54,8 @@ fn read_tables(root: &Section<'_>, side: Side, log: &mut Log<'_>) -> Option<Meas
     root.check_keys(TABLES, log);
     let given = |name: &str| root.value(name).is_some();
     if !TABLES.iter().any(|name| given(name)) {
-        log.problem(0..0, MeasuredReason::Nothing);
+        let advice = "add one of [kinematics], [gravimetric] and [surface], each with `file = `";
+        log.problem(0..0, Fault::new("the file names no measured data", advice));
         return None;
     }
     let kinematics = given("kinematics").then(|| Kinematics::read(root, log));

@@ -2,10 +2,10 @@
 
 use condyle::Vec3;
 
-use super::reason::{MeasuredReason, too_few};
+use super::columns::too_few;
 use crate::case::{Axes, LengthUnit, Side, check_axes};
 use crate::config::{
-    Cell, ColumnReason, Columns, DataFile, KeyReason, Log, Placed, Section, Settings, choice,
+    Cell, Columns, DataFile, Fault, KeyReason, Log, Placed, Section, Settings, choice, no_column,
     settings, within,
 };
 use condyle_mesh::formats::read_surface;
@@ -101,8 +101,11 @@ fn surface(
     let in_mm = keys.length_unit.in_mm();
     let mesh = read_surface(keys.file.files(), keys.file.path());
     let mesh = mesh.map_err(|error| {
-        let reason = MeasuredReason::Scan(error.to_string());
-        log.problem(section.value_span("file"), reason);
+        let advice = "export the scan again as STL, PLY, or CSV with the columns x_mm,y_mm,z_mm";
+        log.problem(
+            section.value_span("file"),
+            Fault::new(error.to_string(), advice),
+        );
     });
     let mesh = mesh.ok()?;
     let vertices = mesh.vertices.iter().map(|vertex| vertex * in_mm);
@@ -116,19 +119,16 @@ fn rows(text: &str, file: &str) -> Result<Vec<Vec3>, Vec<Placed>> {
     let mut found: Vec<Vec<Cell>> = Vec::new();
     for name in COORDINATES {
         let Some(index) = names.iter().position(|column| *column == name) else {
-            let reason = ColumnReason::NoColumn {
-                column: name.to_owned(),
-                file: file.to_owned(),
-                columns: names.iter().map(|&name| name.to_owned()).collect(),
-            };
-            return Err(vec![Placed::new(columns.name_span(0), reason)]);
+            let fault = no_column(name, file, &names);
+            return Err(vec![Placed::new(columns.name_span(0), fault)]);
         };
         found.push(columns.numbers(index)?);
     }
     let count = found[0].len();
     if count < MIN_POINTS {
         let span = columns.name_span(0);
-        return Err(vec![too_few(COORDINATES[0], count, MIN_POINTS, span)]);
+        let fault = too_few(COORDINATES[0], count, MIN_POINTS);
+        return Err(vec![Placed::new(span, fault)]);
     }
     let point = |row: usize| Vec3::from_fn(|axis, _| found[axis][row].value);
     Ok((0..count).map(point).collect())
@@ -139,8 +139,9 @@ fn check_region(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) {
     for (key, range) in ranges {
         let Some([low, high]) = range else { continue };
         if low >= high {
-            let reason = MeasuredReason::EmptyRange { key, low, high };
-            log.problem(section.value_span(key), reason);
+            let message = format!("`{key}` is [{low}, {high}]: the second must be the larger");
+            let fault = Fault::new(message, "write the smaller one first");
+            log.problem(section.value_span(key), fault);
         }
         if keys.fit != FitWord::Region {
             let (key, needs) = (key.to_owned(), "`fit = \"region\"`".to_owned());
@@ -149,6 +150,10 @@ fn check_region(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) {
     }
     let none = ranges.iter().all(|(_, range)| range.is_none());
     if keys.fit == FitWord::Region && none {
-        log.problem(section.value_span("fit"), MeasuredReason::NoRegion);
+        let fault = Fault::new(
+            "`fit = \"region\"` needs `fit_x_mm`, `fit_z_mm` or both",
+            "add one, such as `fit_x_mm = [-20, 20]`",
+        );
+        log.problem(section.value_span("fit"), fault);
     }
 }
