@@ -60,7 +60,11 @@ impl<'a> Footprint<'a> {
         };
         let may_stand = |through: &Option<Through>| footprint.may_stand(*through);
         let holds: Vec<bool> = through.iter().map(may_stand).collect();
-        footprint.holds = without_teeth(&samples, &without_details(&samples, &holds));
+        // An opening and a closing by a square remove narrow parts, and fill narrow gaps.
+        let grown = |of: &[bool]| spread(&samples, of, DETAIL_SAMPLES, true);
+        let shrunk = |of: &[bool]| spread(&samples, of, DETAIL_SAMPLES, false);
+        let opened = grown(&shrunk(&holds));
+        footprint.holds = without_teeth(&samples, &shrunk(&grown(&opened)));
         footprint
     }
 
@@ -125,14 +129,6 @@ fn samples_around(shell: &TriangleMesh, edge_mm: f64) -> ColumnGrid {
             cells[1] as usize + 2 * MARGIN_SAMPLES,
         ),
     }
-}
-
-/// Removes narrow parts of the samples that hold, and fills narrow gaps: an opening and a closing by a square.
-fn without_details(samples: &ColumnGrid, holds: &[bool]) -> Vec<bool> {
-    let grown = |of: &[bool]| spread(samples, of, DETAIL_SAMPLES, true);
-    let shrunk = |of: &[bool]| spread(samples, of, DETAIL_SAMPLES, false);
-    let opened = grown(&shrunk(holds));
-    shrunk(&grown(&opened))
 }
 
 /// Removes teeth: narrow parts that stick out of the rest and are long.

@@ -220,37 +220,30 @@ const MAX_ROUNDS: usize = 400;
 /// Moves material from the upper to the lower end of steep parts of the backside, such as
 /// the wall of a recess for a clip, until none is too steep. The volume stays.
 fn ease_steps(plan: &Plan, columns: &mut [Column]) {
+    let corners = plan.quads.iter().flat_map(|quad| {
+        let at = move |corner: usize| quad[corner % 4] as usize;
+        (0..4).map(move |corner| (at(corner), [at(corner + 1), at(corner + 3)]))
+    });
     for _ in 0..MAX_ROUNDS {
         let mut was_steep = false;
-        for quad in &plan.quads {
-            for corner in 0..4 {
-                let ends = [quad[(corner + 1) % 4], quad[(corner + 3) % 4]];
-                was_steep |= ease(plan, columns, quad[corner], ends);
+        for (corner, ends) in corners.clone() {
+            let rises = ends.map(|end| columns[end].0 - columns[corner].0);
+            let [a, b] = ends.map(|end| plan.places_mm[end] - plan.places_mm[corner]);
+            let [a2, b2] = [a, b].map(|along| along[0].powi(2) + along[1].powi(2));
+            // Squares of the area over that seen from above, and of the sine of the corner seen from above.
+            let area2 = (1.0 + rises[0] * rises[0] / a2) * (1.0 + rises[1] * rises[1] / b2);
+            let twice_area = turn(&a, &b);
+            let sine2 = twice_area * twice_area / (a2 * b2);
+            if area2 > FLAT && sine2 < MIN_JACOBIAN * MIN_JACOBIAN * area2 {
+                was_steep = true;
+                for (end, rise) in ends.into_iter().zip(rises) {
+                    columns[corner].0 += MOVED * rise;
+                    columns[end].0 -= MOVED * rise;
+                }
             }
         }
         if !was_steep {
             return;
         }
     }
-}
-
-/// Eases the two sides of a corner if they are too steep, and returns whether they are.
-fn ease(plan: &Plan, columns: &mut [Column], corner: u32, ends: [u32; 2]) -> bool {
-    let corner = corner as usize;
-    let ends = ends.map(|end| end as usize);
-    let rises = ends.map(|end| columns[end].0 - columns[corner].0);
-    let [a, b] = ends.map(|end| plan.places_mm[end] - plan.places_mm[corner]);
-    let [a2, b2] = [a, b].map(|along| along[0].powi(2) + along[1].powi(2));
-    // Squares of the area over that seen from above, and of the sine of the corner seen from above.
-    let area2 = (1.0 + rises[0] * rises[0] / a2) * (1.0 + rises[1] * rises[1] / b2);
-    let twice_area = turn(&a, &b);
-    let sine2 = twice_area * twice_area / (a2 * b2);
-    let is_steep = area2 > FLAT && sine2 < MIN_JACOBIAN * MIN_JACOBIAN * area2;
-    if is_steep {
-        for (end, rise) in ends.into_iter().zip(rises) {
-            columns[corner].0 += MOVED * rise;
-            columns[end].0 -= MOVED * rise;
-        }
-    }
-    is_steep
 }

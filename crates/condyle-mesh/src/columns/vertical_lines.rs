@@ -132,19 +132,39 @@ impl Bridges {
         spanned: &[usize],
         height: impl Fn(usize) -> Option<[f64; 2]>,
     ) {
+        let per_row = samples.cells.1 + 1;
+        let along_z = |row: usize| {
+            let around = samples.around(row);
+            around.filter(move |other| other / per_row == row / per_row)
+        };
         let mut heights = BTreeMap::new();
         for &sample in spanned {
-            for other in samples_within_a_cell(samples, sample) {
-                let is_outside = spanned.binary_search(&other).is_err();
-                if let Some(own) = is_outside.then(|| height(other)).flatten() {
-                    heights.insert(other, own);
+            // The corners of the four cells around it, and more along z.
+            for row in samples.around(sample).chain([sample]) {
+                for other in along_z(row).chain([row]) {
+                    let is_outside = spanned.binary_search(&other).is_err();
+                    if let Some(own) = is_outside.then(|| height(other)).flatten() {
+                        heights.insert(other, own);
+                    }
                 }
             }
         }
-        let mean = mean(heights.values());
-        heights.extend(spanned.iter().map(|&sample| (sample, mean)));
+        let start = mean(heights.values());
+        heights.extend(spanned.iter().map(|&sample| (sample, start)));
         for _ in 0..MAX_ROUNDS.min(MAX_SETTLED / spanned.len().max(1)) {
-            if settle(&mut heights, samples, spanned) < SETTLED_MM {
+            let mut largest_move: f64 = 0.0;
+            for &sample in spanned {
+                let around = samples.around(sample);
+                let known: Vec<[f64; 2]> =
+                    around.filter_map(|n| heights.get(&n).copied()).collect();
+                let (mean, before) = (mean(known.iter()), heights[&sample]);
+                let here = [0, 1].map(|end| before[end] + OVER_RELAXED * (mean[end] - before[end]));
+                for end in [0, 1] {
+                    largest_move = largest_move.max((here[end] - before[end]).abs());
+                }
+                heights.insert(sample, here);
+            }
+            if largest_move < SETTLED_MM {
                 break;
             }
         }
@@ -177,36 +197,6 @@ impl Bridges {
             upward: 1.0,
         })
     }
-}
-
-/// Moves every spanned height to the mean of its neighbours; returns the largest move, mm.
-fn settle(heights: &mut BTreeMap<usize, [f64; 2]>, samples: &ColumnGrid, spanned: &[usize]) -> f64 {
-    let mut largest: f64 = 0.0;
-    for &sample in spanned {
-        let around = samples.around(sample);
-        let known: Vec<[f64; 2]> = around.filter_map(|n| heights.get(&n).copied()).collect();
-        let (mean, before) = (mean(known.iter()), heights[&sample]);
-        let here = [0, 1].map(|end| before[end] + OVER_RELAXED * (mean[end] - before[end]));
-        heights.insert(sample, here);
-        for end in [0, 1] {
-            largest = largest.max((here[end] - before[end]).abs());
-        }
-    }
-    largest
-}
-
-/// Returns the samples at the corners of the four cells around one, and the second ones along z.
-fn samples_within_a_cell(
-    samples: &ColumnGrid,
-    sample: usize,
-) -> impl Iterator<Item = usize> + use<'_> {
-    let per_row = samples.cells.1 + 1;
-    let along_z = move |row: usize| {
-        let around = samples.around(row);
-        around.filter(move |other| other / per_row == row / per_row)
-    };
-    let rows = samples.around(sample).chain([sample]);
-    rows.flat_map(move |row| along_z(row).chain([row]))
 }
 
 fn mean<'a>(heights: impl Iterator<Item = &'a [f64; 2]>) -> [f64; 2] {

@@ -185,39 +185,34 @@ fn split(bytes: &[u8]) -> (String, Option<&[u8]>, bool) {
 
 /// Returns the start of a tag that is longer than any of a mesh.
 fn long_tag(xml: &str) -> Option<usize> {
+    const NO_TAGS: [(&str, &str); 3] = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
     let mut at = 0;
     while let Some(found) = xml[at..].find('<') {
         let start = at + found;
-        let (length, is_tag) = markup(&xml[start..]);
-        if is_tag && length > MAX_TAG_BYTES {
+        let markup = &xml[start..];
+        if let Some((_, close)) = NO_TAGS.iter().find(|(open, _)| markup.starts_with(open)) {
+            let end = markup.find(close);
+            at = end.map_or(xml.len(), |end| start + end + close.len());
+            continue;
+        }
+        // A `>` between quotes does not end the tag.
+        let mut quote = None;
+        let end = markup.bytes().position(|byte| match quote {
+            Some(open) => {
+                quote = Some(open).filter(|_| byte != open);
+                false
+            }
+            None => {
+                quote = Some(byte).filter(|byte| matches!(byte, b'"' | b'\''));
+                byte == b'>'
+            }
+        });
+        at = end.map_or(xml.len(), |end| start + end + 1);
+        if at - start > MAX_TAG_BYTES {
             return Some(start);
         }
-        at = start + length;
     }
     None
-}
-
-/// Returns the length of the markup at the start of `xml`, and whether it is a tag with attributes.
-fn markup(xml: &str) -> (usize, bool) {
-    for (open, close) in [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")] {
-        if xml.starts_with(open) {
-            let end = xml.find(close).map_or(xml.len(), |at| at + close.len());
-            return (end, false);
-        }
-    }
-    // A `>` between quotes does not end the tag.
-    let mut quote = None;
-    let end = xml.bytes().position(|byte| match quote {
-        Some(open) => {
-            quote = Some(open).filter(|_| byte != open);
-            false
-        }
-        None => {
-            quote = Some(byte).filter(|byte| matches!(byte, b'"' | b'\''));
-            byte == b'>'
-        }
-    });
-    (end.map_or(xml.len(), |end| end + 1), true)
 }
 
 /// Decodes the arrays of a file.

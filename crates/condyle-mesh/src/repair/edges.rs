@@ -182,7 +182,12 @@ fn agreeing_pieces(mesh: &TriangleMesh, uses: &[EdgeUse]) -> (Vec<Piece>, Vec<Ve
     let (mut pieces, mut one_sided) = (Vec::new(), Vec::new());
     for seed in 0..count as u32 {
         if is_turned[seed as usize].is_none() {
-            let mut clash = |pair| one_sided.push(middle_of_shared_edge(mesh, pair));
+            let mut clash = |[one, other]: [u32; 2]| {
+                let [one, other] = [one, other].map(|t| mesh.triangles[t as usize]);
+                let shared = one.into_iter().filter(|vertex| other.contains(vertex));
+                let ends: Vec<Vec3> = shared.map(|v| mesh.vertices[v as usize]).collect();
+                one_sided.push(ends.iter().sum::<Vec3>() / ends.len() as f64);
+            };
             pieces.push(flood(seed, &neighbours, &mut is_turned, &mut clash));
         }
     }
@@ -253,15 +258,6 @@ fn flood(
         turned,
         triangles,
     }
-}
-
-/// Returns the middle of the edge that two triangles share.
-fn middle_of_shared_edge(mesh: &TriangleMesh, [one, other]: [u32; 2]) -> Vec3 {
-    let other = mesh.triangles[other as usize];
-    let corners = mesh.triangles[one as usize].into_iter();
-    let shared = corners.filter(|vertex| other.contains(vertex));
-    let ends: Vec<Vec3> = shared.map(|v| mesh.vertices[v as usize]).collect();
-    ends.iter().sum::<Vec3>() / ends.len() as f64
 }
 
 #[cfg(test)]

@@ -191,7 +191,13 @@ const MAX_COLLAPSE_ROUNDS: usize = 8;
 pub(super) fn collapse_slivers(mesh: &mut TriangleMesh, thinnest: f64) -> Vec<Vec3> {
     let mut places = Vec::new();
     for _ in 0..MAX_COLLAPSE_ROUNDS {
-        let collapsed = collapse_some(mesh, thinnest);
+        let is_short = |[a, b]: &[u32; 2]| {
+            let way = mesh.vertices[*b as usize] - mesh.vertices[*a as usize];
+            way.norm_squared() < thinnest * thinnest
+        };
+        let all = mesh.triangles.iter().flat_map(sides);
+        let short: BTreeSet<[u32; 2]> = all.filter(is_short).collect();
+        let collapsed = collapse_some(mesh, short);
         if collapsed.is_empty() {
             break;
         }
@@ -200,14 +206,8 @@ pub(super) fn collapse_slivers(mesh: &mut TriangleMesh, thinnest: f64) -> Vec<Ve
     places
 }
 
-/// Collapses short edges that are not next to one another.
-fn collapse_some(mesh: &mut TriangleMesh, thinnest: f64) -> Vec<Vec3> {
-    let is_short = |[a, b]: &[u32; 2]| {
-        let way = mesh.vertices[*b as usize] - mesh.vertices[*a as usize];
-        way.norm_squared() < thinnest * thinnest
-    };
-    let all = mesh.triangles.iter().flat_map(sides);
-    let short: BTreeSet<[u32; 2]> = all.filter(is_short).collect();
+/// Collapses those of some short edges that are not next to one another.
+fn collapse_some(mesh: &mut TriangleMesh, short: BTreeSet<[u32; 2]>) -> Vec<Vec3> {
     let mut places = Vec::new();
     if short.is_empty() {
         return places;
