@@ -1,6 +1,5 @@
 //! The condyle command: words to calls, nothing else.
 
-mod activity_table;
 mod arguments;
 mod calibrate;
 mod calibrate_wear;
@@ -9,7 +8,6 @@ mod compare;
 mod diff;
 mod exit;
 mod export;
-mod law_table;
 mod new;
 mod output;
 mod plot;
@@ -17,6 +15,7 @@ mod processor;
 mod progress;
 mod report;
 mod run;
+mod run_tables;
 mod schema;
 mod standard_error;
 mod study;

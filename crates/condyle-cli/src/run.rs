@@ -18,11 +18,11 @@ use condyle_results::{
 };
 
 use crate::{
-    activity_table,
     arguments::Run,
-    exit, law_table,
+    exit,
     output::{self, Lines},
     progress::{self, Progress},
+    run_tables,
     standard_error::tell,
 };
 
@@ -110,8 +110,8 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
         lines.line(format_args!("          {}", doubt.advice));
     }
     let wear_over_conventional = summary.get(&WEAR_OVER_CONVENTIONAL);
-    law_table::add(&summary.wear_laws, wear_over_conventional, &mut lines);
-    activity_table::add(&summary.activities, &mut lines);
+    run_tables::add_laws(&summary.wear_laws, wear_over_conventional, &mut lines);
+    run_tables::add_activities(&summary.activities, &mut lines);
     let rows = rows(summary);
     let labels = rows.iter().map(|(label, _)| label.len());
     let width = labels.max().unwrap_or_default() + 2;

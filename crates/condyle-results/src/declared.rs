@@ -20,7 +20,7 @@ pub fn results_schema() -> String {
         properties.insert(scalar.key.to_owned(), schema_of(scalar));
         required.extend(scalar.is_always_there().then_some(scalar.key));
     }
-    for part in &PARTS {
+    for part in PARTS {
         let mut schema = match part.kind {
             PartKind::Text => json!({"type": "string"}),
             PartKind::Texts => json!({"type": "array", "items": {"type": "string"}}),
@@ -86,7 +86,7 @@ pub fn python_types() -> String {
         };
         add(scalar.key, kind, &(scalar.description().to_owned() + &unit));
     }
-    for part in &PARTS {
+    for part in PARTS {
         let kind = match part.kind {
             PartKind::Text => "str",
             PartKind::Texts => "list[str]",

@@ -1,16 +1,16 @@
 //! The pose of the femur in the insert frame: at neutral, and at every increment of the first and the last cycle.
 
-use std::fmt::Write;
-
 use condyle::{
-    evolve::{CycleRecord, March},
+    evolve::March,
     machine::knee::{FLEXION, IE, KNEE, VV},
     spatial::Pose,
 };
 use serde::{Deserialize, Serialize};
 
-use super::side::Side;
-use super::side::pose_on_side;
+use super::{
+    side::{Side, pose_on_side},
+    tables::{line, rows_of},
+};
 
 /// The pose in which the femur settles under the load at the start of the cycle, where AP, ML and IS read zero: a
 /// point p of the femoral frame is at R p + t in the insert frame, each of the knee's own side.
@@ -50,25 +50,15 @@ pub fn femur_pose_csv(march: &March, side: Side) -> String {
     let mut text = String::from(
         "cycles,percent,origin_x_mm,origin_y_mm,origin_z_mm,r_xx,r_xy,r_xz,r_yx,r_yy,r_yz,r_zx,r_zy,r_zz\n",
     );
-    if let Some((first, last)) = &march.state().activities[0].first_and_last {
-        add_cycle(&mut text, march, first, side);
-        if last.cycles != first.cycles {
-            add_cycle(&mut text, march, last, side);
-        }
+    let cycles = march.state().activities[0].first_and_last.as_ref();
+    for (cycles, row) in rows_of(cycles) {
+        let pose = pose_on_side(&march.pose_at(&row.positions), side);
+        let rotation = rows(&pose);
+        let numbers = pose.translation.iter().chain(rotation.as_flattened());
+        let cells = [&cycles, &row.percent].into_iter().chain(numbers);
+        text += &line(cells.map(f64::to_string));
     }
     text
-}
-
-fn add_cycle(text: &mut String, march: &March, record: &CycleRecord, side: Side) {
-    for row in &record.rows {
-        let pose = pose_on_side(&march.pose_at(&row.positions), side);
-        write!(text, "{},{}", record.cycles, row.percent).expect("writing to a string cannot fail");
-        let rotation = rows(&pose);
-        for number in pose.translation.iter().chain(rotation.as_flattened()) {
-            write!(text, ",{number}").expect("writing to a string cannot fail");
-        }
-        text.push('\n');
-    }
 }
 
 fn rows(pose: &Pose) -> [[f64; 3]; 3] {

@@ -1,10 +1,8 @@
 //! `wear.csv` and `kinematics.csv`.
 
-use std::fmt::Write;
-
 use condyle::{
     evolve::{CreepRecord, CycleRecord, UpdateRecord},
-    machine::Mechanism,
+    machine::{CycleRow, Mechanism},
 };
 
 /// A column of `wear.csv`.
@@ -109,7 +107,7 @@ pub fn wear_csv(updates: &[UpdateRecord]) -> String {
     text
 }
 
-fn line(cells: impl Iterator<Item = String>) -> String {
+pub(super) fn line(cells: impl Iterator<Item = String>) -> String {
     cells.collect::<Vec<_>>().join(",") + "\n"
 }
 
@@ -120,29 +118,26 @@ pub fn kinematics_csv(
     mechanism: &Mechanism,
     cycles: Option<&(CycleRecord, CycleRecord)>,
 ) -> String {
-    let mut text = String::from("cycles,percent");
-    for &quantity in mechanism.columns {
-        text.push(',');
-        text.push_str(mechanism.column(quantity));
-    }
-    text.push('\n');
-    if let Some((first, last)) = cycles {
-        add_cycle(&mut text, mechanism, first);
-        if last.cycles != first.cycles {
-            add_cycle(&mut text, mechanism, last);
-        }
+    let columns = mechanism.columns.iter();
+    let columns = columns.map(|&quantity| mechanism.column(quantity));
+    let names = ["cycles", "percent"].into_iter().chain(columns);
+    let mut text = line(names.map(str::to_owned));
+    for (cycles, row) in rows_of(cycles) {
+        let values = mechanism.columns.iter();
+        let values = values.map(|&quantity| mechanism.value(quantity, row));
+        let cells = [cycles, row.percent].into_iter().chain(values);
+        text += &line(cells.map(|value| value.to_string()));
     }
     text
 }
 
-fn add_cycle(text: &mut String, mechanism: &Mechanism, record: &CycleRecord) {
-    for row in &record.rows {
-        let values = mechanism.columns.iter();
-        let values = values.map(|&quantity| mechanism.value(quantity, row));
-        write!(text, "{},{}", record.cycles, row.percent).expect("writing to a string cannot fail");
-        for value in values {
-            write!(text, ",{value}").expect("writing to a string cannot fail");
-        }
-        text.push('\n');
-    }
+/// The rows of the first and the last cycle with the cycles before each, once where both are the same.
+pub(super) fn rows_of(
+    cycles: Option<&(CycleRecord, CycleRecord)>,
+) -> impl Iterator<Item = (f64, &CycleRow)> {
+    let both = cycles.into_iter().flat_map(|(first, last)| {
+        let last = Some(last).filter(|last| last.cycles != first.cycles);
+        [first].into_iter().chain(last)
+    });
+    both.flat_map(|record| record.rows.iter().map(|row| (record.cycles, row)))
 }

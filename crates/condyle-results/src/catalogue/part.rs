@@ -32,77 +32,43 @@ pub struct Part {
     pub before: Option<&'static Scalar>,
 }
 
-const fn part(
-    key: &'static str,
-    kind: PartKind,
-    before: Option<&'static Scalar>,
-    about: &'static str,
-) -> Part {
-    Part {
-        key,
-        kind,
-        is_always_there: true,
-        about,
-        before,
-    }
+/// Declares [`PARTS`]: key and type, the runs that have it, the number that it stands before, and a description.
+macro_rules! parts {
+    ($($key:ident: $kind:ident in $runs:ident before $before:expr, $about:literal;)+) => {
+        /// All parts, in the order of the file.
+        pub static PARTS: &[Part] = &[$(Part {
+            key: stringify!($key),
+            kind: PartKind::$kind,
+            is_always_there: is_in!($runs),
+            about: $about,
+            before: $before,
+        }),+];
+    };
 }
 
-const fn sometimes(part: Part) -> Part {
-    Part {
-        is_always_there: false,
-        ..part
-    }
+macro_rules! is_in {
+    (all) => {
+        true
+    };
+    (some) => {
+        false
+    };
 }
 
-/// All parts, in the order of the file.
-pub static PARTS: [Part; 9] = [
-    part(
-        "plausibility",
-        PartKind::Objects,
-        Some(&CYCLES),
-        "Reasons to doubt the numbers, the worst first, each with `message` and `advice`.",
-    ),
-    part(
-        "error",
-        PartKind::ObjectOrNull,
-        Some(&WEAR_OVER_CONVENTIONAL),
-        "Estimated discretisation errors by their parts; null if the case does not ask for them.",
-    ),
-    part(
-        "wear_laws",
-        PartKind::Objects,
-        Some(&WEAR_OVER_CONVENTIONAL),
-        "Wear by every law for the same histories, that of the run first; only that one moved the surface.",
-    ),
-    sometimes(part(
-        "activities",
-        PartKind::Objects,
-        Some(&PEAK_PRESSURE_MPA),
-        "Motion, loads and wear of each of several activities.",
-    )),
-    sometimes(part(
-        "creep",
-        PartKind::Object,
-        Some(&PEAK_PRESSURE_MPA),
-        "Creep of an insert that creeps, and its separation from wear.",
-    )),
-    part(
-        "neutral_pose",
-        PartKind::Object,
-        Some(&UPDATES),
-        "Pose of the settled femur in the insert frame: there AP, ML and IS read zero.",
-    ),
-    part(
-        "warnings",
-        PartKind::Texts,
-        Some(&WALL_S),
-        "Corrections and doubts of the input.",
-    ),
-    part("version", PartKind::Text, None, "Version of condyle."),
-    part(
-        "inputs_blake3",
-        PartKind::Text,
-        None,
-        "Hash of case and meshes.",
-    ),
-];
+parts! {
+    plausibility: Objects in all before Some(&CYCLES),
+        "Reasons to doubt the numbers, the worst first, each with `message` and `advice`.";
+    error: ObjectOrNull in all before Some(&WEAR_OVER_CONVENTIONAL),
+        "Estimated discretisation errors by their parts; null if the case does not ask for them.";
+    wear_laws: Objects in all before Some(&WEAR_OVER_CONVENTIONAL),
+        "Wear by every law for the same histories, that of the run first; only that one moved the surface.";
+    activities: Objects in some before Some(&PEAK_PRESSURE_MPA),
+        "Motion, loads and wear of each of several activities.";
+    creep: Object in some before Some(&PEAK_PRESSURE_MPA),
+        "Creep of an insert that creeps, and its separation from wear.";
+    neutral_pose: Object in all before Some(&UPDATES),
+        "Pose of the settled femur in the insert frame: there AP, ML and IS read zero.";
+    warnings: Texts in all before Some(&WALL_S), "Corrections and doubts of the input.";
+    version: Text in all before None, "Version of condyle.";
+    inputs_blake3: Text in all before None, "Hash of case and meshes.";
+}

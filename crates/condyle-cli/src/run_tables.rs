@@ -1,11 +1,11 @@
-//! Wear by every law, printed before the numbers of a run.
+//! Tables that are printed before the numbers of a run: wear by every law, and each of several activities.
 
-use condyle_results::LawWear;
+use condyle_results::{ActivitySummary, LawWear};
 
 use crate::output::Lines;
 
 /// Adds the table if there is more than one law, then the factor of a cross-linked insert.
-pub fn add(laws: &[LawWear], wear_over_conventional: Option<f64>, lines: &mut Lines) {
+pub fn add_laws(laws: &[LawWear], wear_over_conventional: Option<f64>, lines: &mut Lines) {
     if laws.len() >= 2 {
         add_table(laws, lines);
     }
@@ -19,7 +19,7 @@ pub fn add(laws: &[LawWear], wear_over_conventional: Option<f64>, lines: &mut Li
 fn add_table(laws: &[LawWear], lines: &mut Lines) {
     lines.line("   wear by law, same cycles    mg/Mcycles        mg        mm   outside of fit");
     for law in laws {
-        lines.line(row(law));
+        lines.line(row_of_law(law));
     }
     if laws.iter().any(|law| law.approximate) {
         lines.line(
@@ -28,7 +28,7 @@ fn add_table(laws: &[LawWear], lines: &mut Lines) {
     }
 }
 
-fn row(law: &LawWear) -> String {
+fn row_of_law(law: &LawWear) -> String {
     let mark = if law.approximate { '~' } else { ' ' };
     let name = if law.moved_the_surface {
         format!("{} (this run)", law.law)
@@ -43,6 +43,34 @@ fn row(law: &LawWear) -> String {
     format!(
         "   {mark} {name:<25}{:>11.2}{:>10.2}{:>10.4}   {outside}",
         law.mass_loss_mg_per_million_cycles, law.mass_loss_mg, law.max_depth_mm
+    )
+}
+
+/// Adds the table; nothing for a case with one activity.
+pub fn add_activities(activities: &[ActivitySummary], lines: &mut Lines) {
+    if activities.is_empty() {
+        return;
+    }
+    lines.line(
+        "   by activity          cycles %   wear mg    peak MPa     mm2       N   AP mm  IE deg",
+    );
+    for activity in activities {
+        lines.line(row_of_activity(activity));
+    }
+    lines.line("   wear is shared out by pressure times sliding at each place; AP, IE and N are of first cycles");
+}
+
+fn row_of_activity(activity: &ActivitySummary) -> String {
+    format!(
+        "   {:<20} {:>8.2} {:>9.2} {:>11.1} {:>7.0} {:>7.0} {:>7.2} {:>7.2}",
+        activity.name,
+        100.0 * activity.share_of_cycles,
+        activity.mass_loss_mg,
+        activity.peak_pressure_mpa,
+        activity.peak_contact_area_mm2,
+        activity.peak_axial_force_n,
+        activity.ap_range_mm,
+        activity.ie_range_deg
     )
 }
 
@@ -64,9 +92,9 @@ mod tests {
     }
 
     #[test]
-    fn columns_stand_under_their_heads() {
+    fn columns_of_laws_stand_under_their_heads() {
         let mut lines = Lines::default();
-        add(
+        add_laws(
             &[law("archard", true), law("kang", false)],
             None,
             &mut lines,
@@ -87,7 +115,43 @@ mod tests {
     #[test]
     fn a_law_alone_needs_no_table() {
         let mut lines = Lines::default();
-        add(&[law("archard", true)], None, &mut lines);
+        add_laws(&[law("archard", true)], None, &mut lines);
         assert_eq!(lines.text(), "");
+    }
+
+    #[test]
+    fn columns_of_activities_stand_under_their_heads() {
+        let stairs = ActivitySummary {
+            name: "stairs".to_owned(),
+            share_of_cycles: 0.15,
+            kinematics_file: "kinematics_stairs.csv".to_owned(),
+            mass_loss_mg: 12.34,
+            volume_loss_mm3: 13.27,
+            volume_loss_alone_mm3: 13.27,
+            peak_pressure_mpa: 21.5,
+            peak_contact_area_mm2: 310.4,
+            peak_axial_force_n: 3391.2,
+            ap_range_mm: 7.25,
+            ie_range_deg: 8.5,
+            medial_load_share: 0.6,
+        };
+        let mut lines = Lines::default();
+        add_activities(&[stairs], &mut lines);
+        let rows: Vec<&str> = lines.text().lines().collect();
+        let end = |row: usize, words: &str| rows[row].find(words).map(|at| at + words.len());
+        let columns = [
+            ("15.00", "cycles %"),
+            ("12.34", "wear mg"),
+            ("21.5", "peak MPa"),
+        ];
+        let more = [
+            ("310", "mm2"),
+            ("3391", " N"),
+            ("7.25", "AP mm"),
+            ("8.50", "IE deg"),
+        ];
+        for (value, head) in columns.into_iter().chain(more) {
+            assert_eq!(end(1, value), end(0, head), "{head}");
+        }
     }
 }
