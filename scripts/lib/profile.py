@@ -18,12 +18,12 @@ BASE = 0x555555554000
 PARTS = [
     (
         "femur: its distance field, once",
-        r"condyle-mesh/src/curved_mesh|(closest_point|weighted) .*condyle-mesh/src/triangle|(new|in_cell|with_cells_beside) .*geometry/smooth_field|geometry/smooth_field/(gaps|far_gaps|second_differences)",
+        r"condyle-mesh/src/curved_mesh|(closest_point|weighted) .*condyle-mesh/src/triangle|(new|in_cell|with_neighbours) .*geometry/smooth_field|geometry/smooth_field/grid",
     ),
     ("contact: broad phase", r"contact/broad_phase"),
     (
         "contact: samples of the femur",
-        r"sample_candidates .*foundation/contact|foundation/cached_sample|geometry/(smooth_field|surface_sample|curvature_bounds|generic_femur|torus|femoral_surface)",
+        r"sample_candidates .*foundation/contact|foundation/cached_sample|geometry/(smooth_field|surface_sample|generic_femur|torus|femoral_surface)",
     ),
     ("contact: press", r"foundation/(active_block|mean_overclosure|traction|sums)"),
     ("contact: tangent", r"foundation/tangent_sum|tangent .*foundation/contact"),
@@ -32,9 +32,9 @@ PARTS = [
     ("contact: rest", r"contact/foundation"),
     (
         "histories and wear",
-        r"contact/history|condyle/src/wear/|evolve/(rates|interval|step|extrapolated_step|exponential_step|accumulated_error)|(gather|land) .*machine/simulator",
+        r"contact/history|condyle/src/wear/|evolve/(rates|step|next_step|step_rules|accumulated_error)|record .*machine/simulator",
     ),
-    ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|faces_around|node_blocks)"),
+    ("surface: normals, areas and averages", r"geometry/(articulating_surface|share|connectivity)"),
     ("mesh: the inside follows", r"condyle-fem/src/(follow|neighbours)"),
     ("mesh: quality and volume", r"condyle-fem/src/"),
     ("insert: made, worn, its thickness", r"geometry/|condyle-mesh/|condyle-case/"),

@@ -1,23 +1,23 @@
 //! The volume that Archard's law wears, whatever the shape.
 
-use std::{cell::RefCell, f64::consts::PI, path::Path};
+use std::{f64::consts::PI, path::Path};
 
 use condyle::{
     contact::Foundation,
     evolve::March,
     geometry::FemoralSurface,
-    machine::{Chain, Simulator, SolverCounters},
+    machine::{Chain, Simulator},
 };
 
 use crate::{
     Case, Row,
     drives::to_and_fro,
     law::THICKNESS_MM,
-    marched::{bodies_of, case_in, going_on, marched, started},
+    marched::{bodies_of, case_in, marched, run_on, started},
+    observed::Observed,
     plate::rubbing,
-    pressed::{block, contact_of},
+    pressed::block,
     quadrature::integral,
-    recorder::Recorder,
     rub_test::{MM_PER_M, Rub, WEAR_FACTOR_MM3_PER_NM},
 };
 
@@ -101,7 +101,7 @@ fn of_a_knee() -> Vec<Row> {
     let (march, law) = started(&knee());
     let rubbed_nm = rubbed_nmm(&march, &law) / MM_PER_M;
     let exact = WEAR_FACTOR_MM3_PER_NM * rubbed_nm * CYCLES;
-    let (depth, mesh) = volumes_mm3(&going_on(march));
+    let (depth, mesh) = volumes_mm3(&run_on(march));
     vec![
         Row::relative("generic knee: volume", "mm3", exact, depth, 1e-4),
         Row::relative(
@@ -126,19 +126,20 @@ fn knee() -> condyle_case::case::Case {
 fn rubbed_nmm(march: &March, law: &Foundation) -> f64 {
     let (test, surface) = (march.test(), march.insert().surface());
     let machine = test.machine();
-    let rubbed = RefCell::default();
-    let contact = contact_of(law, bodies_of(march, &surface));
-    let mut contact = Recorder::new(contact, law, &rubbed);
+    let mut contact = Observed::new(law, bodies_of(march, &surface));
     let chain = Chain::new(machine, march.state().zero_mm, test.flexion_axis_mm);
     let mut simulator = Simulator::new(machine, &chain, &mut contact, &test.time);
     let mut watch = |_| std::ops::ControlFlow::Continue(());
     let start = march.state().activities[0].machine;
-    let solved = simulator.cycle(&start, &mut SolverCounters::default(), &mut watch);
+    let solved = simulator.cycle(&start, &mut watch);
     assert!(solved.expect("a solved cycle").is_continue());
-    let rubbed = rubbed.take();
     let step_s = 1.0 / (machine.frequency_hz * test.time.increments as f64);
-    let last_cycle = &rubbed[rubbed.len() - test.time.increments..];
-    last_cycle.iter().sum::<f64>() * step_s
+    let last = contact.instants.len() - test.time.increments;
+    let last_cycle = contact.instants[last..].iter();
+    last_cycle
+        .map(|instant| instant.rubbed_nmm_per_s)
+        .sum::<f64>()
+        * step_s
 }
 
 #[cfg(test)]

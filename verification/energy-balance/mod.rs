@@ -10,7 +10,7 @@ use crate::{
     Case, Row,
     convergence::order_of_errors,
     default_case::{DefaultCase, Solved},
-    witness::Instant,
+    observed::Instant,
 };
 
 pub(crate) const CASE: Case = Case {

@@ -1,6 +1,6 @@
-//! The default case's gait cycle on the unworn insert, solved as finely as one likes.
+//! The default case's gait cycle on the unworn insert, solved at any resolution.
 
-use std::{cell::RefCell, ops::ControlFlow, path::Path};
+use std::{ops::ControlFlow, path::Path};
 
 use condyle::{
     contact::Foundation,
@@ -12,10 +12,10 @@ use condyle::{
 
 use crate::{
     marched::{bodies_of, case_in, started},
-    witness::{Instant, Witness},
+    observed::{Instant, Observed},
 };
 
-/// How near the end of a cycle must lie to its start, mm.
+/// Largest distance between the ends of a repeating cycle, mm.
 const REPEATS_MM: f64 = 1e-5;
 /// The same of rotations, rad.
 const REPEATS_RAD: f64 = 1e-7;
@@ -28,7 +28,7 @@ pub(crate) struct DefaultCase {
 
 /// A cycle that repeats itself.
 pub(crate) struct Solved {
-    /// One an increment.
+    /// One per increment.
     pub rows: Vec<CycleRow>,
     /// The contact at the end of every increment.
     pub contact: Vec<Instant>,
@@ -67,21 +67,20 @@ impl DefaultCase {
             repeat_tolerance_rad: REPEATS_RAD,
             ..test.time
         };
-        let seen = RefCell::new(Vec::new());
         let surface = self.march.insert().surface();
-        let mut contact = Witness::new(&self.law, bodies_of(&self.march, &surface), &seen);
+        let mut contact = Observed::new(&self.law, bodies_of(&self.march, &surface));
         let mut simulator = Simulator::new(test.machine(), &chain, &mut contact, &time);
-        let mut counters = SolverCounters::default();
         let mut watch = |_| ControlFlow::Continue(());
         let cycle = simulator
-            .cycle(&self.start(), &mut counters, &mut watch)
+            .cycle(&self.start(), &mut watch)
             .expect("a shipped case is solved")
             .continue_value()
             .expect("nobody stops it");
         assert!(cycle.repeats, "no cycle repeats itself");
+        let counters = simulator.counters;
         Solved {
             rows: cycle.rows,
-            contact: last_of_each_place(&seen.take(), increments),
+            contact: last_of_each_place(&contact.instants, increments),
             counters,
         }
     }

@@ -1,9 +1,11 @@
-//! Cases with known answers that condyle is held against.
+//! Cases with known solutions.
 //!
-//! Every case has a folder beside this one: a README that says what is exact, and a function that
+//! Every case has a folder next to this one: a README that describes the exact solution, and a function that
 //! returns rows of exact and computed values. To add one: its folder, its module and its line in
 //! [`CASES`], then `cargo run --release -p condyle-verification -- --page`.
 
+#[cfg(test)]
+mod assertions;
 mod ball;
 #[cfg(doctest)]
 mod book;
@@ -12,21 +14,18 @@ mod convergence;
 mod default_case;
 mod drives;
 mod foundation_rows;
-#[cfg(test)]
-mod held;
 mod law;
 mod machine;
 mod marched;
 mod number;
+mod observed;
 mod page;
 mod plate;
 mod pressed;
 mod quadrature;
-mod recorder;
 mod round_solids;
 mod row;
 mod rub_test;
-mod witness;
 
 #[path = "../archard-ball-on-flat/mod.rs"]
 mod archard_ball_on_flat;

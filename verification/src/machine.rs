@@ -4,8 +4,8 @@ use condyle::{
     Vec3,
     contact::{ContactModel, ContactResult, Linearization, MAX_REGIONS, Response, Tangent},
     machine::{
-        Chain, Cycle, Drive, JointKind, Machine, MachineState, Simulator, SolverCounters, Spring,
-        TimeSettings, knee::KNEE,
+        Chain, Cycle, Drive, JointKind, Machine, MachineState, Simulator, Spring, TimeSettings,
+        knee::KNEE,
     },
     spatial::{RelativeMotion, Wrench, WrenchByTwist},
 };
@@ -75,7 +75,7 @@ pub(crate) fn cycle(
     let start = MachineState::at_rest(machine, [0.0; 6]);
     let mut watch = |_| ControlFlow::Continue(());
     simulator
-        .cycle(&start, &mut SolverCounters::default(), &mut watch)
+        .cycle(&start, &mut watch)
         .expect("a solved cycle")
         .continue_value()
         .expect("nobody stops it")

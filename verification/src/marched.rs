@@ -1,6 +1,6 @@
 //! Wear tests run to their end.
 
-use std::{ops::ControlFlow, path::Path};
+use std::path::Path;
 
 use condyle::{
     contact::{Bodies, Foundation},
@@ -41,15 +41,11 @@ pub(crate) fn bodies_of<'a>(march: &'a March, surface: &'a ArticulatingSurface) 
 
 /// A test with all its updates done.
 pub(crate) fn marched(test: WearTest) -> March {
-    going_on(March::start(test).expect("a knee"))
+    run_on(March::start(test).expect("a knee"))
 }
 
-/// A march gone on to its end.
-pub(crate) fn going_on(mut march: March) -> March {
-    while !march.is_done() {
-        let mut watch = |_| ControlFlow::Continue(());
-        let update = march.update(&mut watch).expect("a solved update");
-        assert!(update.is_continue(), "nobody stops it");
-    }
+/// A march run to its end.
+pub(crate) fn run_on(mut march: March) -> March {
+    march.run().expect("solved updates");
     march
 }

@@ -53,11 +53,11 @@ pub(crate) fn moving(place: Vec3, velocity: Vec3) -> RelativeMotion {
 /// Lets the contact respond to a motion.
 pub(crate) fn press(contact: &mut dyn ContactModel, motion: &RelativeMotion) -> Pressed {
     let force_n = contact.respond(motion).wrench.force;
-    let landing = contact.evaluate(motion);
+    let evaluated = contact.evaluate(motion);
     Pressed {
         force_n,
-        area_mm2: landing.touched.iter().map(|node| node.covered_mm2).sum(),
-        peak_pressure_mpa: landing.peak_pressure_mpa,
+        area_mm2: evaluated.touched.iter().map(|node| node.covered_mm2).sum(),
+        peak_pressure_mpa: evaluated.peak_pressure_mpa,
     }
 }
 

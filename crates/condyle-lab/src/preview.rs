@@ -187,7 +187,7 @@ impl InsertFacts {
     fn of(case: &Case, march: &March, warnings: &[String]) -> Self {
         let insert = march.test().insert.as_ref();
         let (mesh, places) = (insert.mesh(), insert.surface().positions);
-        let dishes = Dishes::of(&places);
+        let dishes = Dishes::find(&places);
         let thickness = |dish: Vec3| least_around(&dish, &places, insert.thickness_mm());
         Self {
             body: BodyFacts::of(

@@ -5,7 +5,7 @@ use std::{ops::ControlFlow, path::Path};
 use condyle::{
     contact::ContactMemory,
     evolve::March,
-    machine::{Chain, Cycle, Simulator, SolverCounters, TimeSettings, knee::AP},
+    machine::{Chain, Cycle, Simulator, TimeSettings, knee::AP},
 };
 use condyle_case::case::Case;
 
@@ -22,12 +22,8 @@ fn cycle(march: &March, increments: usize, increment_error_mm: f64) -> Cycle {
     let bodies = march.bodies(&surface);
     let mut contact = test.contact.contact(bodies, ContactMemory::default());
     let mut simulator = Simulator::new(test.machine(), &chain, contact.as_mut(), &time);
-    let (mut counters, mut watch) = (SolverCounters::default(), |_| ControlFlow::Continue(()));
-    let solved = simulator.cycle(
-        &march.state().activities[0].machine,
-        &mut counters,
-        &mut watch,
-    );
+    let start = &march.state().activities[0].machine;
+    let solved = simulator.cycle(start, &mut |_| ControlFlow::Continue(()));
     let solved = solved.expect("the default case is solved");
     solved.continue_value().expect("nobody stops it")
 }

@@ -7,7 +7,7 @@ use condyle::{
     contact::{ContactMemory, ContactModel},
     evolve::{March, WearTest},
     geometry::ArticulatingSurface,
-    machine::{Chain, MachineState, Simulator, SolverCounters, TimeSettings},
+    machine::{Chain, MachineState, Simulator, TimeSettings},
 };
 use condyle_case::case::Case;
 
@@ -66,9 +66,8 @@ fn in_motion(march: &March) -> MachineState {
     let mut simulator = simulator(test, &chain, contact.as_mut(), &test.time);
     let mut state = march.state().activities[0].machine;
     for to in ends(test.time.increments) {
-        let counters = &mut SolverCounters::default();
         state = simulator
-            .step(&state, to, counters, &mut |_| ())
+            .step(&state, to, &mut |_| ())
             .expect("a shipped case is solved");
     }
     MachineState {
@@ -92,13 +91,12 @@ fn near_the_solution_every_residual_is_the_square_of_the_one_before() {
     let (mut worst_per_n, mut pairs) = (0.0_f64, 0);
     for to in ends(time.increments) {
         let mut lengths_n = Vec::new();
-        let mut counters = SolverCounters::default();
         state = simulator
-            .step(&state, to, &mut counters, &mut |length_n| {
+            .step(&state, to, &mut |length_n| {
                 lengths_n.push(length_n);
             })
             .expect("it converges to the last digits");
-        assert_eq!(counters.halvings, 0, "at {to}: {lengths_n:?}");
+        assert_eq!(simulator.counters.halvings, 0, "at {to}: {lengths_n:?}");
         for pair in lengths_n.windows(2).filter(|pair| pair[0] < NEAR_N) {
             let [before, after] = [pair[0], pair[1]];
             let left = after - SINGLE * before - ROUNDING_N;
@@ -123,12 +121,13 @@ struct Solved {
 impl Solved {
     /// A cycle from `state`, and where it ends.
     fn cycle(simulator: &mut Simulator<'_>, mut state: MachineState) -> (Self, MachineState) {
-        let (mut solved, mut counters) = (Self::default(), SolverCounters::default());
+        let mut solved = Self::default();
         for to in ends(simulator.time.increments) {
-            let before = counters;
+            let before = simulator.counters;
             state = simulator
-                .step(&state, to, &mut counters, &mut |_| ())
+                .step(&state, to, &mut |_| ())
                 .expect("a shipped case is solved");
+            let counters = simulator.counters;
             let corrections = counters.newton_iterations - before.newton_iterations;
             let evaluations = counters.contact_evaluations - before.contact_evaluations;
             solved.at_once += usize::from(evaluations == 1);

@@ -199,9 +199,9 @@ fn assert_small_steps_are_exact(name: &str) {
     let chain = Chain::new(test.machine(), state.zero_mm, test.flexion_axis_mm);
     let mut walked = anew(&march, &surface, &law);
     let mut simulator = Simulator::new(test.machine(), &chain, walked.as_mut(), &test.time);
-    let (start, mut counters) = (&state.activities[0].machine, SolverCounters::default());
+    let start = &state.activities[0].machine;
     let rows = simulator
-        .cycle(start, &mut counters, &mut |_| ControlFlow::Continue(()))
+        .cycle(start, &mut |_| ControlFlow::Continue(()))
         .expect("a solved cycle")
         .continue_value()
         .expect("nobody stops it")

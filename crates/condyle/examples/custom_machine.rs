@@ -66,12 +66,12 @@ const JOINTS: [JointDescription; 6] = [
     },
 ];
 
-const TURN: JointIndex = JointIndex::named("turn", &JOINTS);
-const TILT: JointIndex = JointIndex::named("tilt", &JOINTS);
-const ROLL: JointIndex = JointIndex::named("roll", &JOINTS);
-const FORE: JointIndex = JointIndex::named("fore", &JOINTS);
-const ASIDE: JointIndex = JointIndex::named("aside", &JOINTS);
-const PRESS: JointIndex = JointIndex::named("press", &JOINTS);
+const TURN: JointIndex = JointIndex::ALL[0];
+const TILT: JointIndex = JointIndex::ALL[1];
+const ROLL: JointIndex = JointIndex::ALL[2];
+const FORE: JointIndex = JointIndex::ALL[3];
+const ASIDE: JointIndex = JointIndex::ALL[4];
+const PRESS: JointIndex = JointIndex::ALL[5];
 
 static BALL_ON_DISC: Mechanism = Mechanism {
     joints: JOINTS,

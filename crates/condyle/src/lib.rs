@@ -29,7 +29,7 @@
 //! let axial_n = wave(&[(0.0, -300.0), (15.0, -2000.0), (45.0, -1500.0), (65.0, -300.0)])?;
 //! machine.joint_mut(knee::IS).drive = Drive::Loaded(axial_n);
 //!
-//! // Polyethylene as an elastic foundation, with a friction of 0.07 that is fully developed at some mm/s.
+//! // Polyethylene as an elastic foundation with a friction coefficient of 0.07, regularised over 1 mm/s.
 //! let modulus_mpa = confined_modulus(463.0, 0.46);
 //! let test = WearTest {
 //!     femur: Arc::new(FemoralSurface::Generic(femur)),
@@ -61,8 +61,8 @@
 //!
 //! # How the parts fit together
 //!
-//! A [`WearTest`](evolve::WearTest) is a value. It holds the bodies, the laws and the activities; clone it to
-//! change one of them, and run the clones on other threads. A [`March`](evolve::March) runs it: it solves one
+//! A [`WearTest`](evolve::WearTest) is a value. It holds the bodies, the laws and the activities; to vary one of
+//! them, clone it, and run the clones on other threads. A [`March`](evolve::March) runs it: it solves one
 //! cycle of every activity that repeats, wears the insert by an interval of such cycles, and starts again on the
 //! new surface.
 //!
@@ -75,14 +75,14 @@
 //! | creep | [`creep`] | [`LeePienkowski`](creep::LeePienkowski) |
 //! | the march over cycles | [`evolve`] | [`Schedule`](evolve::Schedule) |
 //!
-//! The programs in `examples/` teach one part each: `rigid_test`, then `custom_wear_law`, `contact_at_a_pose` and
+//! Each program in `examples/` shows one part: `rigid_test`, then `custom_wear_law`, `contact_at_a_pose` and
 //! `custom_machine`.
 //!
 //! # Units and frames
 //!
 //! Millimetre, newton, second, MPa, tonne and radian everywhere. The insert frame has x anterior, y superior and z
 //! lateral (a right knee). Tibial motions are those of the insert in the machine; the sign of a load is that of the
-//! motion it pushes. A gap is positive where the bodies are apart. `NOTATION.md` in the repository has the details.
+//! motion it causes. A gap is positive where the bodies are apart. `NOTATION.md` in the repository has the details.
 //!
 //! The crate opens no files, prints nothing and has no global state; results are the same bytes on every run and
 //! any number of threads.
@@ -93,7 +93,7 @@ pub mod creep;
 pub mod evolve;
 pub mod geometry;
 pub mod machine;
-pub mod number;
+mod number;
 pub mod parameter;
 pub mod prelude;
 pub mod spatial;

@@ -3,19 +3,19 @@
 /// A constant of a law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// Its name, which ends in its unit unless it is a pure number: `wear_factor_mm3_per_nm`.
+    /// Name, which ends in the unit unless it is a pure number: `wear_factor_mm3_per_nm`.
     pub name: &'static str,
-    /// A description in one sentence.
+    /// Description in one sentence.
     pub about: &'static str,
-    /// The value unless another is given.
+    /// Default value.
     pub default: f64,
-    /// The least value allowed ...
+    /// Smallest permitted value.
     pub least: f64,
-    /// ... and the most; both limits included.
+    /// Largest permitted value.
     pub most: f64,
-    /// The source of the default: a key of `references.bib`, or `choice`.
+    /// Source of the default: a key of `references.bib`, or `choice`.
     pub source: &'static str,
-    /// The certainty of the default.
+    /// Certainty of the default.
     pub known: Known,
 }
 
@@ -31,7 +31,7 @@ pub enum Known {
 }
 
 impl Parameter {
-    /// Returns whether `value` lies within the limits; NaN never does.
+    /// Whether `value` is within the limits; NaN never is.
     pub fn allows(&self, value: f64) -> bool {
         (self.least..=self.most).contains(&value)
     }

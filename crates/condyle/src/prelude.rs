@@ -1,4 +1,4 @@
-//! The names that a wear test is put together from: `use condyle::prelude::*;`.
+//! The names that most programs need: `use condyle::prelude::*;`.
 
 pub use crate::{
     Vec3,

@@ -1,10 +1,9 @@
-//! Poses, twists and wrenches that say of what they are and in which frame.
+//! Poses, twists and wrenches, typed by body and frame.
 //!
-//! There are two bodies: the [insert](body::Insert) and the [femur](body::Femur). Each carries a frame, and
-//! so a body's name stands for its frame too. A quantity's type says what it is of and where its
-//! numbers are read: [`Twist<Femur, Insert>`](Twist) is the femur's motion past the insert in the insert frame,
-//! [`Wrench<Insert, Femur>`](Wrench) acts on the insert and is written in the femoral frame. Only a wrench on a body
-//! does work on a twist of that same body, so a forgotten sign or frame does not compile:
+//! There are two bodies: the [insert](body::Insert) and the [femur](body::Femur). Each carries a frame of the same
+//! name. A quantity's type states its body and its frame: [`Twist<Femur, Insert>`](Twist) is the femur's motion past
+//! the insert in the insert frame, [`Wrench<Insert, Femur>`](Wrench) acts on the insert and is expressed in the femoral
+//! frame. Only a wrench on a body does work on a twist of the same body, so a forgotten sign or frame does not compile:
 //!
 //! ```compile_fail
 //! use condyle::spatial::{Twist, Wrench, body::{Femur, Insert}};
@@ -16,16 +15,42 @@
 //! use condyle::{Vec3, spatial::{Twist, Wrench, body::{Femur, Insert}}};
 //! let on_insert = Wrench::<Insert, Insert>::new(Vec3::zeros(), Vec3::new(0.0, -100.0, 0.0));
 //! let sinking = Twist::<Femur, Insert>::new(Vec3::zeros(), Vec3::new(0.0, -2.0, 0.0));
-//! // What presses the insert down by 100 N pushes the femur up: it takes 200 N mm/s from it.
+//! // A force of 100 N down on the insert pushes the femur up and takes 200 N mm/s from it.
 //! assert_eq!(on_insert.reaction().power(&sinking), -200.0);
 //! ```
 
-pub mod body;
+pub mod body {
+    //! The bodies of a joint, as markers in types.
+
+    use std::fmt::Debug;
+
+    /// A body, and the frame that is fixed to it.
+    pub trait Body: Copy + Debug + PartialEq + Send + Sync + 'static {
+        /// The body that it articulates with.
+        type Other: Body<Other = Self>;
+    }
+
+    /// The bearing: the tibial insert of a knee.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Insert {}
+
+    /// The counterface: the femoral component of a knee.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Femur {}
+
+    impl Body for Insert {
+        type Other = Femur;
+    }
+
+    impl Body for Femur {
+        type Other = Insert;
+    }
+}
 
 use std::{
     iter::Sum,
     marker::PhantomData,
-    ops::{Add, AddAssign, Mul},
+    ops::{Add, Mul},
 };
 
 use crate::{
@@ -34,7 +59,7 @@ use crate::{
 };
 use body::{Body, Femur, Insert};
 
-/// Six numbers: three of turning or of a moment, then three of shifting or of a force.
+/// Six numbers: three angular ones or a moment, then three linear ones or a force.
 pub type Vec6 = nalgebra::Vector6<f64>;
 /// A derivative of six numbers by six others.
 pub type Mat6 = nalgebra::Matrix6<f64>;
@@ -59,18 +84,12 @@ impl<In: Body, Of: Body> Pose<In, Of> {
         }
     }
 
-    /// One frame on the other.
+    /// The pose of coincident frames.
     pub fn identity() -> Self {
         Self::new(Mat3::identity(), Vec3::zeros())
     }
 
-    /// A point of the frame of `In` as seen from `Of`, mm.
-    #[inline]
-    pub fn inverse_point(&self, point: &Vec3) -> Vec3 {
-        self.rotation.tr_mul(&(point - self.translation))
-    }
-
-    /// A point of the frame of `Of` as seen from `In`, mm.
+    /// Converts a point from the frame of `Of` to the frame of `In`, mm.
     pub fn point(&self, point: &Vec3) -> Vec3 {
         self.rotation * point + self.translation
     }
@@ -85,13 +104,13 @@ impl<In: Body, Of: Body> Pose<In, Of> {
 }
 
 impl Pose<Insert, Femur> {
-    /// A point of the insert frame seen from the femoral frame, mm.
+    /// Converts a point of the insert frame to the femoral frame, mm.
     #[inline]
     pub fn to_femur(&self, point: &Vec3) -> Vec3 {
-        self.inverse_point(point)
+        self.rotation.tr_mul(&(point - self.translation))
     }
 
-    /// A point of the femoral frame seen from the insert frame, mm.
+    /// Converts a point of the femoral frame to the insert frame, mm.
     pub fn to_insert(&self, point: &Vec3) -> Vec3 {
         self.point(point)
     }
@@ -107,7 +126,7 @@ pub struct RelativeMotion {
 }
 
 impl RelativeMotion {
-    /// A femur that stands still at a pose.
+    /// A femur at rest at a pose.
     pub fn at_rest(pose: Pose) -> Self {
         let twist = Twist::zero();
         Self { pose, twist }
@@ -116,43 +135,29 @@ impl RelativeMotion {
 
 /// The motion of the body `Of` past the other one, in the frame of `In`.
 ///
-/// It is a rate (rad/s, mm/s), a short motion (rad, mm), or the screw of a joint: the motion for each
+/// It is a rate (rad/s, mm/s), a small motion (rad, mm), or the screw of a joint: the motion per
 /// unit of its position. The velocity of the material at p is v + w x p.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twist<Of: Body = Femur, In: Body = Insert> {
     /// Angular part w, rad/s or rad.
     pub angular: Vec3,
-    /// Linear part v, that of the material of `Of` at the origin of `In`, mm/s or mm.
+    /// Linear part v: the motion of the material of `Of` at the origin of `In`, mm/s or mm.
     pub linear: Vec3,
     bodies: PhantomData<(Of, In)>,
 }
 
 impl<Of: Body, In: Body> Twist<Of, In> {
-    /// A twist from its angular and its linear part.
-    pub fn new(angular: Vec3, linear: Vec3) -> Self {
-        Self {
-            angular,
-            linear,
-            bodies: PhantomData,
-        }
-    }
-
-    /// No motion.
-    pub fn zero() -> Self {
-        Self::new(Vec3::zeros(), Vec3::zeros())
-    }
-
-    /// The screw of a turn about an axis with a unit `direction` through `centre`, mm.
+    /// The screw of a rotation about an axis with a unit `direction` through `centre`, mm.
     pub fn about(direction: Vec3, centre: Vec3) -> Self {
         Self::new(direction, centre.cross(&direction))
     }
 
-    /// The screw of a shift along a unit `direction`.
+    /// The screw of a translation along a unit `direction`.
     pub fn along(direction: Vec3) -> Self {
         Self::new(Vec3::zeros(), direction)
     }
 
-    /// The Lie bracket: how this screw turns `other`, which it carries, for each unit of position.
+    /// The Lie bracket: the derivative of `other`, which this screw carries, by its position.
     pub fn bracket(&self, other: &Self) -> Self {
         Self::new(
             self.angular.cross(&other.angular),
@@ -162,6 +167,7 @@ impl<Of: Body, In: Body> Twist<Of, In> {
 
     /// The finite motion along a screw by `position`, rad or mm: its exponential.
     pub fn exponential(&self, position: f64) -> Pose<Of, Of> {
+        // A screw without rotation has no centre.
         if self.angular == Vec3::zeros() {
             return Pose::new(Mat3::identity(), self.linear * position);
         }
@@ -170,7 +176,7 @@ impl<Of: Body, In: Body> Twist<Of, In> {
         Pose::new(rotation, centre - rotation * centre)
     }
 
-    /// The screw as it stands once `pose` has carried it along.
+    /// Returns the screw carried along by `pose`.
     pub fn carried(&self, pose: &Pose<In, Of>) -> Self {
         let turned = pose.rotation * self.angular;
         Self::new(
@@ -178,26 +184,13 @@ impl<Of: Body, In: Body> Twist<Of, In> {
             pose.rotation * self.linear + pose.translation.cross(&turned),
         )
     }
-
-    /// The six numbers side by side.
-    pub fn numbers(&self) -> Vec6 {
-        let (w, v) = (&self.angular, &self.linear);
-        Vec6::new(w.x, w.y, w.z, v.x, v.y, v.z)
-    }
-
-    /// From six numbers side by side.
-    pub fn from_numbers(numbers: &Vec6) -> Self {
-        Self::new(
-            numbers.fixed_rows::<3>(0).into(),
-            numbers.fixed_rows::<3>(3).into(),
-        )
-    }
 }
 
 impl Twist<Femur, Insert> {
-    /// The short motion from one pose to another.
+    /// The small motion from one pose to another.
     pub fn between(from: &Pose, to: &Pose) -> Self {
         let turned = to.rotation * from.rotation.transpose();
+        // The antisymmetric part of the rotation: exact to second order in the angle.
         let turn = Vec3::new(
             turned[(2, 1)] - turned[(1, 2)],
             turned[(0, 2)] - turned[(2, 0)],
@@ -205,20 +198,6 @@ impl Twist<Femur, Insert> {
         ) / 2.0;
         let shift = to.translation - from.translation - turn.cross(&from.translation);
         Self::new(turn, shift)
-    }
-}
-
-impl<Of: Body, In: Body> Add for Twist<Of, In> {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self::new(self.angular + other.angular, self.linear + other.linear)
-    }
-}
-
-impl<Of: Body, In: Body> AddAssign for Twist<Of, In> {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
     }
 }
 
@@ -247,20 +226,6 @@ pub struct Wrench<On: Body = Insert, In: Body = Insert> {
 }
 
 impl<On: Body, In: Body> Wrench<On, In> {
-    /// A wrench from its moment, N mm, and its force, N.
-    pub fn new(moment: Vec3, force: Vec3) -> Self {
-        Self {
-            moment,
-            force,
-            bodies: PhantomData,
-        }
-    }
-
-    /// No load.
-    pub fn zero() -> Self {
-        Self::new(Vec3::zeros(), Vec3::zeros())
-    }
-
     /// Returns the wrench on the other body: action equals reaction.
     pub fn reaction(&self) -> Wrench<On::Other, In> {
         Wrench::new(-self.moment, -self.force)
@@ -272,8 +237,8 @@ impl<On: Body, In: Body> Wrench<On, In> {
         twist.numbers().dot(&self.numbers())
     }
 
-    /// The wrench whose power on any screw is this one's on the bracket of `carrying` with that screw: how the load
-    /// on a joint changes as another turns it.
+    /// The wrench whose power on any screw is this one's power on the bracket of `carrying` with that screw: the
+    /// derivative of the load on a joint by the position of the joint that carries it.
     ///
     /// W . \[a, b\] = (m x a_w + f x a_v) . b_w + (f x a_w) . b_v.
     pub fn on_bracket_with(&self, carrying: &Twist<On, In>) -> Self {
@@ -281,29 +246,53 @@ impl<On: Body, In: Body> Wrench<On, In> {
         let (turn, shift) = (&carrying.angular, &carrying.linear);
         Self::new(m.cross(turn) + f.cross(shift), f.cross(turn))
     }
-
-    /// The six numbers side by side.
-    pub fn numbers(&self) -> Vec6 {
-        let (m, f) = (&self.moment, &self.force);
-        Vec6::new(m.x, m.y, m.z, f.x, f.y, f.z)
-    }
-
-    /// From six numbers side by side.
-    pub fn from_numbers(numbers: &Vec6) -> Self {
-        Self::new(
-            numbers.fixed_rows::<3>(0).into(),
-            numbers.fixed_rows::<3>(3).into(),
-        )
-    }
 }
 
-impl<On: Body, In: Body> Add for Wrench<On, In> {
-    type Output = Self;
+/// Implements the common part of twists and wrenches.
+macro_rules! six_numbers {
+    ($name:ident, $angular:ident, $linear:ident) => {
+        impl<Of: Body, In: Body> $name<Of, In> {
+            #[doc = concat!("Creates it from `", stringify!($angular), "` and `", stringify!($linear), "`.")]
+            pub fn new($angular: Vec3, $linear: Vec3) -> Self {
+                Self {
+                    $angular,
+                    $linear,
+                    bodies: PhantomData,
+                }
+            }
 
-    fn add(self, other: Self) -> Self {
-        Self::new(self.moment + other.moment, self.force + other.force)
-    }
+            /// All six numbers zero.
+            pub fn zero() -> Self {
+                Self::new(Vec3::zeros(), Vec3::zeros())
+            }
+
+            /// Returns the six numbers.
+            pub fn numbers(&self) -> Vec6 {
+                let (a, l) = (&self.$angular, &self.$linear);
+                Vec6::new(a.x, a.y, a.z, l.x, l.y, l.z)
+            }
+
+            /// Creates it from six numbers.
+            pub fn from_numbers(numbers: &Vec6) -> Self {
+                Self::new(
+                    numbers.fixed_rows::<3>(0).into(),
+                    numbers.fixed_rows::<3>(3).into(),
+                )
+            }
+        }
+
+        impl<Of: Body, In: Body> Add for $name<Of, In> {
+            type Output = Self;
+
+            fn add(self, other: Self) -> Self {
+                Self::new(self.$angular + other.$angular, self.$linear + other.$linear)
+            }
+        }
+    };
 }
+
+six_numbers!(Twist, angular, linear);
+six_numbers!(Wrench, moment, force);
 
 /// Derivative of a wrench on the insert by a twist of the femur, both in the frame of `In`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -322,7 +311,7 @@ impl<In: Body> WrenchByTwist<In> {
         }
     }
 
-    /// A wrench that does not change.
+    /// The derivative of a constant wrench.
     pub fn zero() -> Self {
         Self::new(Mat6::zeros())
     }
@@ -336,13 +325,13 @@ impl<In: Body> Mul<&Twist<Femur, In>> for &WrenchByTwist<In> {
     }
 }
 
-/// Takes twists from the insert frame to the femoral frame, and wrenches back.
+/// Converts twists from the insert frame to the femoral frame, and wrenches back.
 ///
-/// It is the 6 by 6 matrix A that turns a twist taken at the insert's origin into one taken at the
-/// femur's. Power is the same in both frames, so A' takes wrenches back, and A' D A a derivative D of
+/// It is the 6 by 6 matrix A from a twist at the insert's origin to one at the
+/// femur's. Power is the same in both frames, so A' converts wrenches back, and A' D A a derivative D of
 /// one by the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrameChange {
+pub(crate) struct FrameChange {
     matrix: Mat6,
 }
 
@@ -353,35 +342,29 @@ impl FrameChange {
         let mut matrix = Mat6::zeros();
         matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
         matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&turn);
-        let lever = -turn * cross_matrix(&pose.translation);
+        let lever = -turn * pose.translation.cross_matrix();
         matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&lever);
         Self { matrix }
     }
 
-    /// A twist of the femur in its own frame.
+    /// Converts a twist of the femur to its own frame.
     pub fn twist(&self, twist: &Twist<Femur, Insert>) -> Twist<Femur, Femur> {
         Twist::from_numbers(&(self.matrix * twist.numbers()))
     }
 
-    /// A wrench on the insert back in the insert frame.
+    /// Converts a wrench on the insert back to the insert frame.
     pub fn wrench_back(&self, wrench: &Wrench<Insert, Femur>) -> Wrench<Insert, Insert> {
         Wrench::from_numbers(&self.matrix.tr_mul(&wrench.numbers()))
     }
 
-    /// A derivative of the one by the other back in the insert frame.
+    /// Converts a derivative of the one by the other back to the insert frame.
     pub fn derivative_back(&self, by: &WrenchByTwist<Femur>) -> WrenchByTwist<Insert> {
         WrenchByTwist::new(self.matrix.tr_mul(&by.matrix) * self.matrix)
     }
 }
 
-/// The matrix \[v\] with \[v\] w = v x w.
-#[inline]
-fn cross_matrix(v: &Vec3) -> Mat3 {
-    Mat3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
-}
-
 /// A pose of the femur in the insert for four points at a time.
-pub struct Pose4 {
+pub(crate) struct Pose4 {
     /// Columns of R.
     columns: [Vector<F64x4>; 3],
     translation: Vector<F64x4>,
@@ -397,20 +380,20 @@ impl Pose4 {
         }
     }
 
-    /// Points of the insert frame seen from the femoral frame.
+    /// Converts points of the insert frame to the femoral frame.
     #[inline(always)]
     pub fn to_femur(&self, point: &Vector<F64x4>) -> Vector<F64x4> {
         self.turn_to_femur(&(point - self.translation))
     }
 
-    /// Vectors of the insert frame seen from the femoral frame.
+    /// Converts vectors of the insert frame to the femoral frame.
     #[inline(always)]
     pub fn turn_to_femur(&self, vector: &Vector<F64x4>) -> Vector<F64x4> {
         let [x, y, z] = &self.columns;
         Vector::new(dot(x, vector), dot(y, vector), dot(z, vector))
     }
 
-    /// Vectors of the femoral frame seen from the insert frame.
+    /// Converts vectors of the femoral frame to the insert frame.
     #[inline(always)]
     pub fn turn_to_insert(&self, vector: &Vector<F64x4>) -> Vector<F64x4> {
         let [x, y, z] = &self.columns;
@@ -419,7 +402,7 @@ impl Pose4 {
 }
 
 /// A twist of the femur in its own frame, for four points at a time.
-pub struct Twist4 {
+pub(crate) struct Twist4 {
     angular: Vector<F64x4>,
     linear: Vector<F64x4>,
 }

@@ -97,8 +97,8 @@ fn under(
     (high_mm - low_mm, contact.evaluate(&motion))
 }
 
-fn covered_mm2(landing: &ContactResult) -> f64 {
-    landing.touched.iter().map(|node| node.covered_mm2).sum()
+fn covered_mm2(evaluated: &ContactResult) -> f64 {
+    evaluated.touched.iter().map(|node| node.covered_mm2).sum()
 }
 
 #[test]
@@ -108,9 +108,9 @@ fn verify_hertz_on_a_half_space_of_the_default_elements() {
     let mut contact = pair.contact(&law);
     for (x, z) in [(0.0, 0.0), (0.3, 0.1), (0.5, 0.5), (0.2, -0.4)] {
         let force_n = down_n(contact.as_mut(), &over([x, RADIUS_MM - 0.408, z]));
-        let (depth_mm, landing) = under(contact.as_mut(), (x, z), RADIUS_MM, 1000.0);
-        let radius_mm = (covered_mm2(&landing) / PI).sqrt();
-        let peak_mpa = landing.peak_pressure_mpa;
+        let (depth_mm, evaluated) = under(contact.as_mut(), (x, z), RADIUS_MM, 1000.0);
+        let radius_mm = (covered_mm2(&evaluated) / PI).sqrt();
+        let peak_mpa = evaluated.peak_pressure_mpa;
         println!("{x} {z}: {force_n:.1} N, {depth_mm:.4} mm, {radius_mm:.3} mm, {peak_mpa:.2} MPa");
         assert!((force_n / 1000.0 - 1.0).abs() < 0.01, "{force_n}");
         assert!((depth_mm / 0.408 - 1.0).abs() < 0.01, "{depth_mm}");
@@ -142,10 +142,10 @@ fn off_an_even_pressure(aside_mm: f64) -> (f64, Vec<f64>) {
     let mut contact = pair.contact(&law);
     let motion = over([0.0, radius_mm - depth_mm, 0.0]);
     let force_n = down_n(contact.as_mut(), &motion);
-    let landing = contact.evaluate(&motion);
-    assert_eq!(landing.touched.len(), pair.surface.positions.len());
+    let evaluated = contact.evaluate(&motion);
+    assert_eq!(evaluated.touched.len(), pair.surface.positions.len());
     let even_mpa = MODULUS_MPA * depth_mm / thickness_mm;
-    let pressures = landing.touched.iter().map(|node| node.pressure_mpa);
+    let pressures = evaluated.touched.iter().map(|node| node.pressure_mpa);
     let off = pressures.map(|mpa| mpa / even_mpa - 1.0).collect();
     (force_n / (even_mpa * 15.0 * 12.0) - 1.0, off)
 }
@@ -194,10 +194,10 @@ fn verify_a_cylinder_on_a_thick_block_against_hertz() {
     let mut contact = pair.contact(&law);
     let motion = over([0.0, radius_mm - 0.35, 0.0]);
     contact.respond(&motion);
-    let landing = contact.evaluate(&motion);
+    let evaluated = contact.evaluate(&motion);
     let positions = &pair.surface.positions;
     let middle = || {
-        let touched = landing.touched.iter();
+        let touched = evaluated.touched.iter();
         touched.filter(|node| positions[node.node as usize].z.abs() < 1e-9)
     };
     let width_mm = length_mm / 16.0;
@@ -326,9 +326,9 @@ fn verify_a_ball_on_bonded_layers_from_thick_to_thin() {
         {
             let motion = over([0.0, radius_mm - depth_mm, 0.0]);
             let found_n = down_n(contact.as_mut(), &motion);
-            let landing = contact.evaluate(&motion);
-            let found_mm = (covered_mm2(&landing) / PI).sqrt();
-            let peak = landing.peak_pressure_mpa / peak_mpa;
+            let evaluated = contact.evaluate(&motion);
+            let found_mm = (covered_mm2(&evaluated) / PI).sqrt();
+            let peak = evaluated.peak_pressure_mpa / peak_mpa;
             let off = [found_n / force_n, found_mm / contact_mm, peak];
             let off = off.map(|ratio| 100.0 * (ratio - 1.0));
             println!(
@@ -349,8 +349,12 @@ fn cross_a_linear_foundation_presses_harder_and_sinks_less() {
     let laws: [&dyn ContactLaw; 2] = [&elastic, &foundation];
     let found = laws.map(|law| {
         let mut contact = pair.contact(law);
-        let (depth_mm, landing) = under(contact.as_mut(), (0.0, 0.0), radius_mm, 1000.0);
-        [landing.peak_pressure_mpa, covered_mm2(&landing), depth_mm]
+        let (depth_mm, evaluated) = under(contact.as_mut(), (0.0, 0.0), radius_mm, 1000.0);
+        [
+            evaluated.peak_pressure_mpa,
+            covered_mm2(&evaluated),
+            depth_mm,
+        ]
     });
     let ratios: [f64; 3] = std::array::from_fn(|i| found[1][i] / found[0][i]);
     println!("{found:?} {ratios:?}");
@@ -410,9 +414,9 @@ fn an_answer_does_not_depend_on_what_was_asked_of_the_compliance() {
     let landed = |law: &Deformable| {
         let mut contact = pair.contact(law);
         contact.respond(&motion);
-        let landing = contact.evaluate(&motion);
+        let evaluated = contact.evaluate(&motion);
         let state = contact.into_memory().state;
-        (landing.touched, landing.peak_pressure_mpa, state)
+        (evaluated.touched, evaluated.peak_pressure_mpa, state)
     };
     assert!(pair.contact(&used).respond(&elsewhere).wrench.force.y < 0.0);
     assert_eq!(landed(&alone), landed(&used));

@@ -59,9 +59,9 @@ fn mean_and_peak(
     let turn = Mat3::from(Rotation3::new(Vec3::y() * turn_rad));
     let motion = RelativeMotion::at_rest(Pose::new(turn, place));
     contact.respond(&motion);
-    let landing = contact.evaluate(&motion);
-    let means = landing.touched.iter().map(|node| node.pressure_mpa);
-    [means.fold(0.0, f64::max), landing.peak_pressure_mpa]
+    let evaluated = contact.evaluate(&motion);
+    let means = evaluated.touched.iter().map(|node| node.pressure_mpa);
+    [means.fold(0.0, f64::max), evaluated.peak_pressure_mpa]
 }
 
 /// The ball over a layer, `deep_mm` into it, away from a node in the middle.

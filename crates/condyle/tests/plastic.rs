@@ -59,12 +59,12 @@ impl Pair {
         self.law.contact(bodies, memory)
     }
 
-    fn loads(&self, landing: &ContactResult) -> Vec<(u32, f64)> {
+    fn loads(&self, evaluated: &ContactResult) -> Vec<(u32, f64)> {
         let load = |node: &condyle::contact::TouchedNode| {
             let normal = self.surface.normals[node.node as usize];
             (node.node, -normal.dot(&node.force_n))
         };
-        landing.touched.iter().map(load).collect()
+        evaluated.touched.iter().map(load).collect()
     }
 }
 
@@ -88,8 +88,8 @@ fn press(contact: &mut dyn ContactModel, depth_mm: f64) -> ContactResult {
     contact.evaluate(&motion)
 }
 
-fn force_n(landing: &ContactResult) -> f64 {
-    -landing
+fn force_n(evaluated: &ContactResult) -> f64 {
+    -evaluated
         .touched
         .iter()
         .map(|node| node.force_n.y)
@@ -125,12 +125,12 @@ fn verify_stress_under_a_ball_against_hertz() {
         let pair = Pair::new(ratio, None);
         let mut contact = pair.contact(ContactState::default());
         let depth_mm = 0.09;
-        let landing = press(contact.as_mut(), depth_mm);
-        let force_n = force_n(&landing);
+        let evaluated = press(contact.as_mut(), depth_mm);
+        let force_n = force_n(&evaluated);
         let modulus = contact_modulus(ratio);
         let radius_mm = (0.75 * force_n * RADIUS_MM / modulus).cbrt();
         let peak_mpa = 1.5 * force_n / (PI * radius_mm * radius_mm);
-        let loads = pair.loads(&landing);
+        let loads = pair.loads(&evaluated);
         let under = pair
             .law
             .under_surface(&pair.insert, &ContactState::default(), 0, &loads)
@@ -175,11 +175,11 @@ fn verify_first_yield_below_the_surface_and_shakedown_on_the_second_press() {
     let exact_n = PI.powi(3) * RADIUS_MM.powi(2) * peak_mpa.powi(3) / (6.0 * modulus.powi(2));
     let mut depth_mm = 0.06;
     let first_n = loop {
-        let landing = press(contact.as_mut(), depth_mm);
+        let evaluated = press(contact.as_mut(), depth_mm);
         contact = {
             let state = contact.into_memory().state;
             if !plastic_strains(&state).is_empty() {
-                break force_n(&landing);
+                break force_n(&evaluated);
             }
             pair.contact(state)
         };
@@ -248,15 +248,15 @@ fn verify_a_ball_deep_in_yield_against_axisymmetric_finite_elements() {
     let mut contact = pair.contact(ContactState::default());
     let mut depth_mm = 0.0;
     for (deepest_mm, exact_n) in exact_n {
-        let landing = loop {
+        let evaluated = loop {
             depth_mm += 0.005;
-            let landing = press(contact.as_mut(), depth_mm);
+            let evaluated = press(contact.as_mut(), depth_mm);
             if depth_mm > deepest_mm - 1e-9 {
-                break landing;
+                break evaluated;
             }
         };
-        let force_n = force_n(&landing);
-        let area_mm2: f64 = landing.touched.iter().map(|node| node.covered_mm2).sum();
+        let force_n = force_n(&evaluated);
+        let area_mm2: f64 = evaluated.touched.iter().map(|node| node.covered_mm2).sum();
         let elastic_n = 4.0 / 3.0 * contact_modulus(ratio) * (RADIUS_MM * depth_mm.powi(3)).sqrt();
         println!(
             "{depth_mm:.3} mm: {force_n:.2} N, axisymmetric {exact_n} N, elastic {elastic_n:.1} N; mean pressure {:.2} Y",

@@ -6,7 +6,7 @@ use condyle::{
     contact::{ContactCache, ContactMemory, ContactModel, ContactResult, ContactState, Response},
     evolve::{March, WearTest},
     geometry::ArticulatingSurface,
-    machine::{Chain, Drive, Simulator, SolverCounters, Waveform, knee},
+    machine::{Chain, Drive, Simulator, Waveform, knee},
     spatial::RelativeMotion,
 };
 use condyle_case::case::Case;
@@ -98,7 +98,7 @@ impl<'a> Gait<'a> {
         simulator.warm_starts.clone_from(&own.warm_starts);
         let watch = &mut |_| ControlFlow::Continue(());
         let cycle = simulator
-            .cycle(&own.machine, &mut SolverCounters::default(), watch)
+            .cycle(&own.machine, watch)
             .unwrap_or_else(|error| panic!("{error}"));
         cycle
             .continue_value()

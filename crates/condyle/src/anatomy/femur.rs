@@ -1,92 +1,69 @@
-//! What tells the top, the front and the right of a femoral component.
+//! Signs of the top, the front and the right of a femoral component, and of its side.
 
 use super::{
-    numbers::{beyond, mean},
     orientation::Orientation,
-    views::{Picture, Views, part},
+    views::{Picture, Views, beyond, mean, part},
 };
+use crate::{Vec3, geometry::TriangleMesh};
 
-/// Deeper than this beside the condyles there is no surface to speak of.
+/// Depth between the condyles beyond which there is no surface.
 const DEEPEST_RECESS: f64 = 0.2;
-/// Left and right may stand out differently by this much and still be called the same.
+/// Largest difference between left and right that counts as symmetric.
 const LEVEL: f64 = 0.05;
 
-/// What a femoral component shows if it lies as an orientation says, lengths as shares of its longest extent.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FemurSigns {
-    /// Share of it that has no mirror image on the other side.
-    asymmetry: f64,
-    /// How much more its shadow from the side holds water than turned any other way, -1 to 1.
-    open_above: f64,
-    /// How deep the surface lies between the condyles where they are lowest.
-    two_condyles: f64,
-    /// How much deeper it lies between them behind than in front, -1 to 1: there the notch, here the trochlea.
-    notch_behind: f64,
-    /// Where neither end is bridged, how much more steeply the condyles rise behind than in front.
-    curl_behind: f64,
+/// Returns the score of an orientation of a femoral component, and whether it shows the signs of every whole
+/// component; if not, the score is meaningless. Lengths are shares of the longest extent.
+pub(super) fn fit(views: &Views, orientation: &Orientation) -> (f64, bool) {
+    let Orientation {
+        anterior,
+        superior,
+        right,
+    } = *orientation;
+    let below = views.picture(superior.reversed(), anterior, right);
+    let front = views.picture(anterior, superior, right);
+    let behind = views.picture(anterior.reversed(), superior, right);
+    // Share of it without a mirror image on the other side.
+    let asymmetry = [&below, &front, &behind]
+        .map(|seen| seen.asymmetry(LEVEL))
+        .iter()
+        .sum::<f64>()
+        / 3.0;
+    // Amount by which its silhouette from the side, a box open above, holds more water than in other rotations, -1 to 1.
+    let side = |up, along| views.picture(right, up, along).water();
+    let others = [
+        side(superior.reversed(), anterior),
+        side(anterior, superior),
+        side(anterior.reversed(), superior),
+    ];
+    let (water, other) = (
+        side(superior, anterior),
+        others.into_iter().fold(0.0, f64::max),
+    );
+    let open_above = (water - other) / water.max(other).max(MIN_WATER);
+    // Depth between the condyles where they are lowest.
+    let two_condyles = at_the_lowest(&below);
+    // Amount by which it is deeper between them behind, at the notch, than in front, at the trochlea, -1 to 1.
+    let from_below = recess(&below, 0.0, 0.4) - recess(&below, 0.6, 1.0);
+    let from_the_ends = recess(&behind, 0.0, 0.6) - recess(&front, 0.0, 0.6);
+    let notch_behind = (from_below + from_the_ends) / 2.0;
+    // Where neither end is bridged, amount by which the condyles rise more steeply behind than in front.
+    let unbridged = least_recess(&below, 0.0, 0.4).min(least_recess(&below, 0.6, 1.0));
+    let curl_behind =
+        beyond(unbridged, MIN_UNBRIDGED) / (1.0 - MIN_UNBRIDGED) * curl_behind(&below);
+    let score = -10.0 * asymmetry
+        + 4.0 * open_above
+        + 20.0 * two_condyles
+        + 8.0 * notch_behind
+        + 20.0 * curl_behind.clamp(-0.15, 0.15);
+    (score, asymmetry < 0.5 && two_condyles > 0.05 && score > 5.0)
 }
 
-impl FemurSigns {
-    pub(super) fn of(views: &Views, orientation: &Orientation) -> Self {
-        let Orientation {
-            anterior,
-            superior,
-            right,
-        } = *orientation;
-        let below = views.picture(superior.reversed(), anterior, right);
-        let front = views.picture(anterior, superior, right);
-        let behind = views.picture(anterior.reversed(), superior, right);
-        let side = |up, along| views.picture(right, up, along);
-        let others = [
-            side(superior.reversed(), anterior),
-            side(anterior, superior),
-            side(anterior.reversed(), superior),
-        ];
-        let upright = side(superior, anterior);
-        let from_below = recess(&below, 0.0, 0.4) - recess(&below, 0.6, 1.0);
-        let from_the_ends = recess(&behind, 0.0, 0.6) - recess(&front, 0.0, 0.6);
-        let unbridged = least_recess(&below, 0.0, 0.4).min(least_recess(&below, 0.6, 1.0));
-        Self {
-            asymmetry: [&below, &front, &behind]
-                .map(|seen| seen.asymmetry(LEVEL))
-                .iter()
-                .sum::<f64>()
-                / 3.0,
-            open_above: more_water(&upright, &others),
-            two_condyles: at_the_lowest(&below),
-            notch_behind: (from_below + from_the_ends) / 2.0,
-            curl_behind: beyond(unbridged, MIN_UNBRIDGED) / (1.0 - MIN_UNBRIDGED)
-                * curl_behind(&below),
-        }
-    }
-
-    /// Whether it shows what every femoral component of a whole knee does; if not, its score means nothing.
-    pub(super) fn is_a_femur(&self) -> bool {
-        self.asymmetry < 0.5 && self.two_condyles > 0.05 && self.score() > 5.0
-    }
-
-    /// How well all this fits a femoral component; each sign counts up to a limit, beyond which it proves no more.
-    pub(super) fn score(&self) -> f64 {
-        -10.0 * self.asymmetry
-            + 4.0 * self.open_above
-            + 20.0 * self.two_condyles
-            + 8.0 * self.notch_behind
-            + 20.0 * self.curl_behind.clamp(-0.15, 0.15)
-    }
-}
-
-/// A trochlea, however deep its groove, leaves less than this share of the deepest recess.
+/// Upper bound of the recess over a trochlea, however deep its groove, as a share of the deepest.
 const MIN_UNBRIDGED: f64 = 0.7;
-/// Least share of the shadow's area that counts as held water.
+/// Smallest share of the silhouette's area that counts as held water.
 const MIN_WATER: f64 = 0.02;
 
-fn more_water(upright: &Picture, others: &[Picture]) -> f64 {
-    let water = upright.water();
-    let other = others.iter().map(Picture::water).fold(0.0, f64::max);
-    (water - other) / water.max(other).max(MIN_WATER)
-}
-
-/// How deep the surface seen from below lies in the middle of a row, below both sides of it.
+/// Depth of the middle of a row, seen from below, relative to both sides.
 fn recess_of(below: &Picture, row: usize) -> Option<f64> {
     let highest = |from, to| below.across(row, from, to).reduce(f64::max);
     let sides = highest(0.05, 0.4)?.min(highest(0.6, 0.95)?);
@@ -121,11 +98,10 @@ fn at_the_lowest(below: &Picture) -> f64 {
     )
 }
 
-/// Rows count as lowest that lie no higher than this above the lowest.
+/// Height above the lowest row within which rows count as lowest.
 const FLAT: f64 = 0.003;
 
-/// How much more steeply the lower outline, seen from the side, rises behind its lowest rows than in
-/// front of them.
+/// Difference between the slopes of the lower outline, seen from the side, behind and in front of its lowest rows.
 ///
 /// The sagittal radius of the condyles falls from distal to posterior in every design.
 fn curl_behind(below: &Picture) -> f64 {
@@ -146,4 +122,114 @@ fn curl_behind(below: &Picture) -> f64 {
             .filter(|&away| away > 0)
             .filter_map(steeper),
     )
+}
+
+/// Smallest lead of a flange that identifies the side, as a share of the longest extent: 1 mm for a knee.
+const MIN_LEAD: f64 = 0.013;
+/// Front part of the length that contains the flanges.
+const FRONT: f64 = 0.35;
+
+/// Returns the lead of the right flange of a femoral component's trochlea over the left one, mm;
+/// negative where the left one leads, none where they are alike.
+///
+/// The lateral flange holds the patella and is larger in every design with a left and a right version. The lead is
+/// measured forwards from the line behind both posterior condyles, and upwards from the
+/// line below both distal ones, as a surgeon does: it does not change if the component is rotated or tilted by a few
+/// degrees. `femur` in mm, x anterior, y superior, z right.
+pub fn flange_lead_mm(femur: &TriangleMesh) -> Option<f64> {
+    let (low, high) = femur.bounds();
+    let middle_z = (low.z + high.z) / 2.0;
+    let [behind, below] = [0, 1].map(|axis| Line::across(femur, axis, middle_z));
+    let in_front = |vertex: &&Vec3| vertex.x > high.x - FRONT * (high.x - low.x);
+    let mut reach = [[f64::NEG_INFINITY; 2]; 2];
+    for vertex in femur.vertices.iter().filter(in_front) {
+        let of_side = &mut reach[usize::from(vertex.z > middle_z)];
+        of_side[0] = of_side[0].max(vertex.x - behind.at(vertex.z));
+        of_side[1] = of_side[1].max(vertex.y - below.at(vertex.z));
+    }
+    let [left, right] = reach.map(|[ahead, up]| ahead + up);
+    let lead = right - left;
+    (lead.is_finite() && lead.abs() > MIN_LEAD * (high - low).max()).then_some(lead)
+}
+
+/// A line that touches both condyles from below or from behind, as a height over z.
+struct Line {
+    height: f64,
+    slope: f64,
+    middle_z: f64,
+}
+
+impl Line {
+    /// Through the lowest place along `axis` on either side of the middle.
+    fn across(femur: &TriangleMesh, axis: usize, middle_z: f64) -> Self {
+        let lowest = |is_right: bool| {
+            let side = femur
+                .vertices
+                .iter()
+                .filter(|v| (v.z > middle_z) == is_right);
+            let ends = side.map(|vertex| (vertex[axis], vertex.z));
+            ends.min_by(|a, b| a.0.total_cmp(&b.0))
+                .unwrap_or((f64::NAN, f64::NAN))
+        };
+        let (left, right) = (lowest(false), lowest(true));
+        let slope = (right.0 - left.0) / (right.1 - left.1);
+        let height = left.0 + slope * (middle_z - left.1);
+        Self {
+            height,
+            slope,
+            middle_z,
+        }
+    }
+
+    fn at(&self, z: f64) -> f64 {
+        self.height + self.slope * (z - self.middle_z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Mat3,
+        geometry::{GenericFemur, GenericFemurShape},
+    };
+
+    fn symmetric() -> TriangleMesh {
+        GenericFemur::new(GenericFemurShape::default()).surface_mesh(1.0)
+    }
+
+    /// The front of the right half further ahead.
+    fn with_a_flange(by_mm: f64) -> TriangleMesh {
+        symmetric().mapped(|v| {
+            let is_flange = v.x > 15.0 && v.z > 0.0;
+            v + Vec3::x() * if is_flange { by_mm } else { 0.0 }
+        })
+    }
+
+    #[test]
+    fn a_symmetric_femur_shows_no_side() {
+        assert_eq!(flange_lead_mm(&symmetric()), None);
+    }
+
+    #[test]
+    fn a_flange_is_found_on_its_side_however_the_femur_is_rotated_or_tilted() {
+        let lead = flange_lead_mm(&with_a_flange(2.5)).unwrap();
+        assert!((lead - 2.5).abs() < 1e-9);
+        let mirrored = with_a_flange(2.5).mapped(|v| Vec3::new(v.x, v.y, -v.z));
+        assert_eq!(flange_lead_mm(&mirrored), Some(-lead));
+        for (x, y) in [(0.07, 0.0), (-0.07, 0.0), (0.0, 0.07), (0.0, -0.07)] {
+            let turn = Mat3::identity() + Vec3::new(x, y, 0.0).cross_matrix();
+            let turned = flange_lead_mm(&with_a_flange(2.5).mapped(|v| turn * v)).unwrap();
+            assert!((turned - lead).abs() < 0.3, "{turned}");
+        }
+    }
+
+    #[test]
+    fn a_mesh_with_one_side_only_shows_none() {
+        let sliver = TriangleMesh {
+            vertices: vec![Vec3::zeros(), Vec3::x(), Vec3::y()],
+            triangles: vec![[0, 1, 2]],
+        };
+        assert_eq!(flange_lead_mm(&sliver), None);
+    }
 }

@@ -1,72 +1,47 @@
-//! What tells the top, the front and the right of an insert.
+//! Signs of the top, the front and the right of an insert.
 
 use super::{
-    numbers::{beyond, mean, median},
     orientation::Orientation,
-    views::{Picture, Views, part},
+    views::{Picture, Views, beyond, mean, median, part},
 };
 
-/// What an insert shows if it lies as `orientation` says, each as a share of its longest extent.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct InsertSigns {
-    /// How much less high than long it is, as the logarithm of the ratio.
-    thin: f64,
-    /// How much wider than long it is, as the logarithm of the ratio.
-    wide: f64,
-    /// How much higher the eminence is than both dishes beside it.
-    eminence: f64,
-    /// How much higher the dishes' ends are than their middles.
-    hollow: f64,
-    /// How much farther the middle of the back is cut out than that of the front.
-    notch: f64,
-    /// How much thicker the front ends of the dishes are than their back ends: none of an open surface, since nothing says how
-    /// it leans.
-    lip: f64,
+/// Returns the score of an orientation of an insert, and whether it shows the signs of every insert of a whole knee; if
+/// not, the score is meaningless. Each sign counts up to a limit. Lengths are shares of the longest extent.
+pub(super) fn fit(views: &Views, orientation: &Orientation) -> (f64, bool) {
+    let Orientation {
+        anterior,
+        superior,
+        right,
+    } = *orientation;
+    let above = views.picture(superior, anterior, right);
+    let below = views.picture(superior.reversed(), anterior, right);
+    let (length, width, height) = (
+        views.cells(anterior),
+        views.cells(right),
+        views.cells(superior),
+    );
+    let thin = (length.min(width) / height).ln();
+    let wide = (width / length).ln();
+    let eminence = eminence(&above);
+    // Height of the dishes' ends over their middles.
+    let (front, back, middle) = dish_heights(&above, None);
+    let hollow = front.min(back) - middle;
+    // Depth of the cut-out in the middle of the back over that of the front.
+    let notch = cut_out(&above, false) - cut_out(&above, true);
+    // Thickness of the front ends of the dishes over that of the back ends: 0 for an open surface, whose tilt is unknown.
+    let (thick_front, thick_back, _) = dish_heights(&above, Some(&below));
+    let lip = thick_front - thick_back;
+    let score = 3.0 * thin.clamp(-1.0, 1.0)
+        + 6.0 * wide.clamp(-0.5, 0.5)
+        + 60.0 * eminence.clamp(-0.1, 0.1)
+        + 60.0 * hollow.clamp(-0.1, 0.1)
+        + 25.0 * beyond(notch, 0.08).clamp(-0.1, 0.1)
+        + 80.0 * beyond(lip, 0.02).clamp(-0.03, 0.03);
+    let is_insert = thin > 0.3 && wide > 0.1 && eminence > 0.02 && hollow > 0.005;
+    (score, is_insert)
 }
 
-impl InsertSigns {
-    pub(super) fn of(views: &Views, orientation: &Orientation) -> Self {
-        let Orientation {
-            anterior,
-            superior,
-            right,
-        } = *orientation;
-        let above = views.picture(superior, anterior, right);
-        let (length, width, height) = (
-            views.cells(anterior),
-            views.cells(right),
-            views.cells(superior),
-        );
-        let below = views.picture(superior.reversed(), anterior, right);
-        let (front, back, middle) = dish_heights(&above, None);
-        let (thick_front, thick_back, _) = dish_heights(&above, Some(&below));
-        Self {
-            thin: (length.min(width) / height).ln(),
-            wide: (width / length).ln(),
-            eminence: eminence(&above),
-            hollow: front.min(back) - middle,
-            notch: cut_out(&above, false) - cut_out(&above, true),
-            lip: thick_front - thick_back,
-        }
-    }
-
-    /// Whether it shows what every insert of a whole knee does; if not, its score means nothing.
-    pub(super) fn is_an_insert(&self) -> bool {
-        self.thin > 0.3 && self.wide > 0.1 && self.eminence > 0.02 && self.hollow > 0.005
-    }
-
-    /// How well all this fits an insert; each sign counts up to a limit, beyond which it proves no more.
-    pub(super) fn score(&self) -> f64 {
-        3.0 * self.thin.clamp(-1.0, 1.0)
-            + 6.0 * self.wide.clamp(-0.5, 0.5)
-            + 60.0 * self.eminence.clamp(-0.1, 0.1)
-            + 60.0 * self.hollow.clamp(-0.1, 0.1)
-            + 25.0 * beyond(self.notch, 0.08).clamp(-0.1, 0.1)
-            + 80.0 * beyond(self.lip, 0.02).clamp(-0.03, 0.03)
-    }
-}
-
-/// How much higher the middle stands than what is beside it, in the middle half of the length.
+/// Height of the middle over both sides of it, in the middle half of the length.
 fn eminence(above: &Picture) -> f64 {
     let rows = part(above.rows, 0.25, 0.75);
     mean(rows.filter_map(|row| {
@@ -76,7 +51,7 @@ fn eminence(above: &Picture) -> f64 {
     }))
 }
 
-/// Heights of the front ends, the back ends and the middles of the dishes; thicknesses, if it is seen from below as well.
+/// Heights of the front ends, the back ends and the middles of the dishes; thicknesses with the view from below.
 fn dish_heights(above: &Picture, below: Option<&Picture>) -> (f64, f64, f64) {
     let columns = || part(above.columns, 0.2, 0.4).chain(part(above.columns, 0.6, 0.8));
     let at = |from, to| {
@@ -93,13 +68,13 @@ fn dish_heights(above: &Picture, below: Option<&Picture>) -> (f64, f64, f64) {
     (at(0.85, 1.0), at(0.0, 0.15), at(0.35, 0.65))
 }
 
-/// The first row that is seen in a column, and the one behind the last.
+/// The first row that is seen in a column, and one past the last.
 fn seen_rows(picture: &Picture, column: usize) -> Option<(usize, usize)> {
     let first = (0..picture.rows).find(|&row| picture.height(row, column).is_some())?;
     Some((first, picture.top(column)))
 }
 
-/// How much farther the middle is cut out than the dishes beside it, from the front or from the back.
+/// Depth of the cut-out in the middle over that of the dishes, from the front or from the back.
 fn cut_out(above: &Picture, from_front: bool) -> f64 {
     let empty = |column: usize| {
         let (first, end) = seen_rows(above, column).unwrap_or((above.rows, 0));

@@ -1,23 +1,21 @@
-//! Which way up, and which way round, a femoral component and an insert lie: told from their shapes.
+//! Orientation and side of a femoral component and an insert, recognised from their shapes.
 //!
-//! Each of the 24 orientations is scored by signs that anatomy gives to every design, seen from the
-//! body's six sides: of a femur the box that is open above, two condyles with the notch between them
-//! behind and the trochlea in front; of an insert two dishes beside an eminence on a flat backside,
-//! wider than long, cut out behind, with the higher lip in front. What is symmetric is not told.
-//! Which knee a femoral component is of is shown by the flanges of its trochlea, where they differ.
+//! Each of the 24 orientations is scored by signs that every design shows in the views of the
+//! body's six sides: a femur is a box open above, with two condyles, the notch between them
+//! behind and the trochlea in front; an insert has two dishes and an eminence on a flat backside, is
+//! wider than long, cut out behind, and has the higher lip in front. A symmetric shape leaves orientations open.
+//! The flanges of a femoral component's trochlea, where they differ, show the side.
 
 mod femur;
-mod flange;
 mod insert;
-mod numbers;
 mod orientation;
 mod recognition;
 mod start;
+#[cfg(test)]
+mod tests;
 mod views;
 
-pub use flange::flange_lead_mm;
+pub use femur::flange_lead_mm;
 pub use orientation::Orientation;
 pub use recognition::{Recognition, Sureness};
 pub use start::start_over_the_dishes_mm;
-#[cfg(test)]
-mod tests;

@@ -1,4 +1,4 @@
-//! The 24 ways in which a body may lie along the axes of a frame.
+//! The 24 orientations of a body along the axes of a frame.
 
 use crate::{Mat3, Vec3};
 
@@ -7,27 +7,29 @@ use crate::{Mat3, Vec3};
 pub(super) struct AxisDirection {
     /// 0 for x, 1 for y, 2 for z.
     pub axis: usize,
-    /// Whether it points along the axis, and not against it.
+    /// Along the axis, and not against it.
     pub is_forward: bool,
 }
 
 impl AxisDirection {
-    const ALL: [Self; 6] = {
-        const fn along(axis: usize) -> AxisDirection {
-            AxisDirection {
-                axis,
-                is_forward: true,
-            }
+    const X: Self = Self::along(0);
+    const Y: Self = Self::along(1);
+    const Z: Self = Self::along(2);
+    const ALL: [Self; 6] = [
+        Self::X,
+        Self::X.reversed(),
+        Self::Y,
+        Self::Y.reversed(),
+        Self::Z,
+        Self::Z.reversed(),
+    ];
+
+    const fn along(axis: usize) -> Self {
+        Self {
+            axis,
+            is_forward: true,
         }
-        [
-            along(0),
-            along(0).reversed(),
-            along(1),
-            along(1).reversed(),
-            along(2),
-            along(2).reversed(),
-        ]
-    };
+    }
 
     pub(super) const fn reversed(self) -> Self {
         Self {
@@ -42,7 +44,7 @@ impl AxisDirection {
     }
 }
 
-/// Where anterior, superior and right of a body point in the frame that it is given in.
+/// The directions of anterior, superior and right of a body in its given frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Orientation {
     pub(super) anterior: AxisDirection,
@@ -51,14 +53,14 @@ pub struct Orientation {
 }
 
 impl Orientation {
-    /// x anterior, y superior, z right: that of a body whose axes are right.
+    /// x anterior, y superior, z right: the convention of the ISB.
     pub const ISB: Self = Self {
-        anterior: AxisDirection::ALL[0],
-        superior: AxisDirection::ALL[2],
-        right: AxisDirection::ALL[4],
+        anterior: AxisDirection::X,
+        superior: AxisDirection::Y,
+        right: AxisDirection::Z,
     };
 
-    /// All 24 that are right-handed.
+    /// Returns the 24 right-handed orientations.
     pub fn all() -> impl Iterator<Item = Self> {
         let pairs = AxisDirection::ALL
             .into_iter()
@@ -77,7 +79,7 @@ impl Orientation {
             })
     }
 
-    /// The rotation that takes a point of the given frame to x anterior, y superior, z right.
+    /// Returns the rotation of a point of the given frame to x anterior, y superior, z right.
     pub fn rotation(&self) -> Mat3 {
         let rows = [self.anterior, self.superior, self.right].map(|axis| axis.unit().transpose());
         Mat3::from_rows(&rows)

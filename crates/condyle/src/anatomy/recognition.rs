@@ -1,58 +1,49 @@
-//! Which of the 24 orientations a body has, and how sure that is.
+//! The recognition of a body's orientation from its shape.
 
-use super::{femur::FemurSigns, insert::InsertSigns, orientation::Orientation, views::Views};
+use super::{femur, insert, orientation::Orientation, views::Views};
 use crate::geometry::TriangleMesh;
 
-/// So much better another orientation must fit for the given one to be likely wrong. The right one of
-/// some hundred shapes, whole, cut, leaning and noisy, never came so far behind.
+/// Lead in score of another orientation that makes the given one likely wrong. The right orientation of
+/// about a hundred shapes, whole, cut, leaning and noisy, was never so far behind.
 const LIKELY_MARGIN: f64 = 2.0;
-/// The same for it to be wrong for certain: more than any one sign can tell.
+/// Lead that makes it certainly wrong: more than any one sign can contribute.
 const CERTAIN_MARGIN: f64 = 6.0;
 
-/// Two that differ by less fit equally well.
+/// Difference in score below which two orientations fit equally well.
 const EQUAL_MARGIN: f64 = 0.5;
 
-/// How the 24 orientations fit a body, told from its shape alone.
+/// The scores of the 24 orientations of a body, from its shape alone.
 #[derive(Clone, Debug)]
 pub struct Recognition {
     /// The best first.
     scores: Vec<(Orientation, f64)>,
 }
 
-/// How sure it is that a body lies otherwise than it is said to.
+/// The certainty that an orientation is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Sureness {
-    /// Some signs say so.
+    /// Some signs contradict it.
     Likely,
-    /// Several signs that hold for every design say so.
+    /// Several signs that hold for every design contradict it.
     Certain,
 }
 
 impl Recognition {
-    /// Recognises a femoral component; none if the shape is not that of a whole one, so that nothing
-    /// can be told.
+    /// Recognises a femoral component; none if the shape is not a whole component.
     pub fn of_femur(mesh: &TriangleMesh) -> Option<Self> {
-        let views = Views::new(mesh)?;
-        Self::of(|orientation| {
-            let signs = FemurSigns::of(&views, orientation);
-            (signs.score(), signs.is_a_femur())
-        })
+        Self::new(mesh, femur::fit)
     }
 
-    /// Recognises an insert, closed or an open articulating surface; none if the shape is not that of
-    /// two dishes, so that nothing can be told.
+    /// Recognises an insert, closed or an open articulating surface; none if the shape does not have two dishes.
     pub fn of_insert(mesh: &TriangleMesh) -> Option<Self> {
-        let views = Views::new(mesh)?;
-        Self::of(|orientation| {
-            let signs = InsertSigns::of(&views, orientation);
-            (signs.score(), signs.is_an_insert())
-        })
+        Self::new(mesh, insert::fit)
     }
 
     /// None if the best is not plausible.
-    fn of(fit: impl Fn(&Orientation) -> (f64, bool)) -> Option<Self> {
+    fn new(mesh: &TriangleMesh, fit: impl Fn(&Views, &Orientation) -> (f64, bool)) -> Option<Self> {
+        let views = Views::new(mesh)?;
         let mut fits: Vec<_> = Orientation::all()
-            .map(|orientation| (orientation, fit(&orientation)))
+            .map(|orientation| (orientation, fit(&views, &orientation)))
             .collect();
         fits.sort_by(|(_, (a, _)), (_, (b, _))| b.total_cmp(a));
         let is_plausible = fits
@@ -66,7 +57,7 @@ impl Recognition {
         })
     }
 
-    /// Those that fit best and cannot be told from one another, best first.
+    /// Returns the orientations that fit best and cannot be distinguished, best first.
     pub fn best(&self) -> impl Iterator<Item = Orientation> {
         let highest = self.scores[0].1;
         let is_close = move |(_, score): &&(Orientation, f64)| highest - score < LIKELY_MARGIN;
@@ -76,7 +67,7 @@ impl Recognition {
             .map(|(orientation, _)| *orientation)
     }
 
-    /// How sure it is that the body does not lie as `orientation` says; none if it may.
+    /// Returns the certainty that `orientation` is wrong; none if it may be right.
     pub fn against(&self, orientation: &Orientation) -> Option<Sureness> {
         let highest = self.scores[0].1;
         let (_, score) = self.scores.iter().find(|(one, _)| one == orientation)?;
@@ -89,9 +80,10 @@ impl Recognition {
         }
     }
 
-    /// Of those that fit as well as the best, the one that takes the smallest turn from x anterior,
-    /// y superior, z right.
+    /// Returns the orientation with the smallest rotation from x anterior, y superior, z right of those that fit as well
+    /// as the best.
     pub fn nearest(&self) -> Orientation {
+        // The trace of a rotation is 1 + 2 cos(angle).
         let least_turn = |orientation: &Orientation| orientation.rotation().trace();
         let highest = self.scores[0].1;
         let is_equal = |(_, score): &&(Orientation, f64)| highest - score < EQUAL_MARGIN;
@@ -107,7 +99,7 @@ impl Recognition {
         .unwrap_or(Orientation::ISB)
     }
 
-    /// How sure it is that all but the best are wrong; none if another may be right.
+    /// Returns the certainty that all but the best are wrong; none if another may be right.
     pub fn sureness(&self) -> Option<Sureness> {
         let second = self.scores[1].0;
         self.against(&second)

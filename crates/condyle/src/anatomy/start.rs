@@ -1,20 +1,19 @@
-//! Where the femur starts over the insert.
+//! The start position of the femur over the insert.
 
 use super::{
-    numbers::{mean, median},
     orientation::Orientation,
-    views::{Picture, Views, part},
+    views::{Picture, Views, mean, median, part},
 };
 use crate::{Mat3, geometry::TriangleMesh};
 
-/// A dish, or a condyle, is as low as its lowest row where it is no higher than this share of the
-/// body's longest extent above it: on a flat one the middle of the flat part counts.
+/// Height above the lowest row of a dish or a condyle within which rows are averaged, as a share of the
+/// body's longest extent: on a flat one the middle of the flat part counts.
 const FLAT: f64 = 0.003;
 
-/// Where the femoral frame starts in the insert frame, (x, z), mm: with the lowest points of the
-/// condyles over those of the dishes, and one's middle over the other's.
+/// Returns the start position of the femoral frame in the insert frame, (x, z), mm: the lowest points of the
+/// condyles over those of the dishes, and the middle of one body over that of the other.
 ///
-/// Both bodies in mm, x anterior, y superior, z right; the femur turns by `flexion_rad` first. None of
+/// Both bodies in mm, x anterior, y superior, z right; the femur is flexed by `flexion_rad` first. None for
 /// bodies without extent.
 pub fn start_over_the_dishes_mm(
     femur: &TriangleMesh,
@@ -37,8 +36,8 @@ pub fn start_over_the_dishes_mm(
     Some((dish_x - condyle_x, middle_z(insert) - middle_z(&femur)))
 }
 
-/// The row at which both sides stand out farthest towards the viewer, or away (`sign` -1), from the
-/// middle of the first; the ends do not count, where an insert may be bevelled.
+/// The row at which both sides are highest towards the viewer, or lowest (`sign` -1); the ends do not count, where an
+/// insert may be bevelled.
 fn farthest_row(picture: &Picture, sign: f64) -> f64 {
     let side = |from, to| {
         let height = |row: usize| median(picture.across(row, from, to)).map(|height| sign * height);

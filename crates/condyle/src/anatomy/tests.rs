@@ -29,7 +29,7 @@ fn turned(mesh: &TriangleMesh, orientation: &Orientation) -> TriangleMesh {
     mesh.clone().mapped(|vertex| back * vertex)
 }
 
-fn told(mesh: &TriangleMesh, recognise: fn(&TriangleMesh) -> Option<Recognition>) -> usize {
+fn rejected(mesh: &TriangleMesh, recognise: fn(&TriangleMesh) -> Option<Recognition>) -> usize {
     let in_each = |orientation: Orientation| recognise(&turned(mesh, &orientation)).unwrap();
     let all = Orientation::all().map(in_each);
     all.filter(|recognition| recognition.against(&Orientation::ISB).is_some())
@@ -39,7 +39,7 @@ fn told(mesh: &TriangleMesh, recognise: fn(&TriangleMesh) -> Option<Recognition>
 #[test]
 fn a_femur_lying_any_other_way_is_told_and_the_right_one_is_not() {
     let femur = generic_femur();
-    assert_eq!(told(&femur, Recognition::of_femur), 23);
+    assert_eq!(rejected(&femur, Recognition::of_femur), 23);
     let right = Recognition::of_femur(&femur).unwrap();
     assert_eq!(right.against(&Orientation::ISB), None);
 }
@@ -47,7 +47,7 @@ fn a_femur_lying_any_other_way_is_told_and_the_right_one_is_not() {
 #[test]
 fn an_insert_with_equal_ends_is_told_but_for_back_to_front() {
     let insert = generic_insert();
-    assert_eq!(told(&insert, Recognition::of_insert), 22);
+    assert_eq!(rejected(&insert, Recognition::of_insert), 22);
     let right = Recognition::of_insert(&insert).unwrap();
     assert_eq!(right.against(&Orientation::ISB), None);
     assert_eq!(right.best().count(), 2);
@@ -72,10 +72,10 @@ fn neither_size_nor_place_nor_cutting_nor_side_matters() {
         [|v| v / 1000.0, |v| v * 12.0, |v| Vec3::new(v.x, v.y, -v.z)];
     for change in changes {
         let femur = generic_femur().mapped(|v| change(v) + shift);
-        assert_eq!(told(&femur, Recognition::of_femur), 23);
+        assert_eq!(rejected(&femur, Recognition::of_femur), 23);
     }
     let coarse = GenericFemur::new(GenericFemurShape::default()).surface_mesh(4.0);
-    assert_eq!(told(&coarse, Recognition::of_femur), 23);
+    assert_eq!(rejected(&coarse, Recognition::of_femur), 23);
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn shapes_of_no_knee_are_not_accused() {
     assert!(Recognition::of_insert(&generic_femur()).is_none());
 }
 
-/// One condyle, or one dish, is a knee's as well, and told neither right nor wrong.
+/// One condyle or one dish could be part of a knee, and is neither accepted nor rejected.
 #[test]
 fn one_side_alone_is_not_accused() {
     let half = |mut mesh: TriangleMesh| {

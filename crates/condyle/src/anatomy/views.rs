@@ -3,22 +3,21 @@
 use super::orientation::AxisDirection;
 use crate::{Vec3, geometry::TriangleMesh};
 
-/// Cells along the longest extent of a body: of some 1 mm on a knee's.
+/// Cells along the longest extent of a body: about 1 mm for a knee.
 const CELLS: f64 = 72.0;
 
-/// Lowest and highest place of a body along an axis, where a line along it meets the body.
+/// Lowest and highest point of a body on a line along an axis.
 type Span = Option<(f64, f64)>;
 
 /// A body seen along the three axes of its frame, on a grid. Lengths are shares of its longest
 /// extent, so that no unit is needed.
 ///
-/// Only what lines meet counts, so that it does not matter how the surface is cut into triangles,
-/// which way they face, or what lies inside.
+/// Only the outer points on the lines count, so that the triangulation, its orientation and the inside do not matter.
 pub(super) struct Views {
     low: Vec3,
     size: f64,
     cells: [usize; 3],
-    /// Seen along each axis; the other two follow it in cyclic order, the second runs fastest.
+    /// One grid per axis of view; the other two axes follow in cyclic order, the second runs fastest.
     spans: [Vec<Span>; 3],
 }
 
@@ -62,23 +61,24 @@ impl Views {
                 let [of_a, of_b, of_c] = weights.map(|weight| weight / area);
                 if of_a >= 0.0 && of_b >= 0.0 && of_c >= 0.0 {
                     let height = of_a * at_a + of_b * at_b + of_c * at_c;
-                    widen(&mut self.spans[axis][i * self.cells[v] + k], height);
+                    let span = &mut self.spans[axis][i * self.cells[v] + k];
+                    let (low, high) = span.unwrap_or((height, height));
+                    *span = Some((low.min(height), high.max(height)));
                 }
             }
         }
     }
 
-    /// Where a place along an axis lies that is so many cells from the low end.
+    /// Position along an axis, mm, at a number of cells from the low end.
     pub(super) fn place(&self, axis: usize, cells: f64) -> f64 {
         self.low[axis] + cells / CELLS * self.size
     }
 
-    /// Cells along a direction.
     pub(super) fn cells(&self, direction: AxisDirection) -> f64 {
         self.cells[direction.axis] as f64
     }
 
-    /// The body seen by who looks against `toward`: rows go on along `rows`, columns along `columns`.
+    /// The view against `toward`: rows along `rows`, columns along `columns`.
     pub(super) fn picture(
         &self,
         toward: AxisDirection,
@@ -111,7 +111,7 @@ impl Views {
     }
 }
 
-/// Where the cell number `at` in a direction stands along the axis.
+/// Number along the axis of cell `at` in a direction.
 fn place(direction: AxisDirection, at: usize, count: usize) -> usize {
     if direction.is_forward {
         at
@@ -133,12 +133,7 @@ fn between(ends: [f64; 3], count: usize) -> std::ops::Range<usize> {
     low.ceil().max(0.0) as usize..last.min(count)
 }
 
-fn widen(span: &mut Span, height: f64) {
-    let (low, high) = span.unwrap_or((height, height));
-    *span = Some((low.min(height), high.max(height)));
-}
-
-/// A body seen from one side: how far each cell stands out towards the viewer.
+/// A body seen from one side: the height of each cell towards the viewer.
 pub(super) struct Picture {
     pub rows: usize,
     pub columns: usize,
@@ -146,23 +141,21 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// None where nothing is seen.
     pub(super) fn height(&self, row: usize, column: usize) -> Option<f64> {
         self.heights[row * self.columns + column]
     }
 
-    /// What is seen in a row from one share of the width to another.
+    /// Heights in a row from one share of the width to another.
     pub(super) fn across(&self, row: usize, from: f64, to: f64) -> impl Iterator<Item = f64> {
         part(self.columns, from, to).filter_map(move |column| self.height(row, column))
     }
 
-    /// What is seen in a column from one share of the length to another.
+    /// Heights in a column from one share of the length to another.
     pub(super) fn along(&self, column: usize, from: f64, to: f64) -> impl Iterator<Item = f64> {
         part(self.rows, from, to).filter_map(move |row| self.height(row, column))
     }
 
-    /// Share of what is seen that is not matched by its mirror image with left for right: nothing there,
-    /// or `off` higher or lower.
+    /// Share of the cells without a match in the mirror image, left for right, within `off`.
     pub(super) fn asymmetry(&self, off: f64) -> f64 {
         let (mut seen, mut unmatched) = (0.0, 0.0);
         for row in 0..self.rows {
@@ -180,8 +173,8 @@ impl Picture {
         unmatched / f64::max(seen, 1.0)
     }
 
-    /// Share of the picture's area that water would fill if it rained down the columns: what lies
-    /// below some of the shadow on both sides.
+    /// Share of the picture's area that water would fill in rain along the columns: cells
+    /// above the silhouette and below parts of it on both sides.
     pub(super) fn water(&self) -> f64 {
         let tops: Vec<usize> = (0..self.columns).map(|column| self.top(column)).collect();
         let highest = |tops: &[usize]| tops.iter().copied().max().unwrap_or(0);
@@ -193,7 +186,7 @@ impl Picture {
         filled as f64 / (self.rows * self.columns) as f64
     }
 
-    /// How many rows lie below the last that is seen in a column.
+    /// One past the last row that is seen in a column.
     pub(super) fn top(&self, column: usize) -> usize {
         let seen = |row: &usize| self.height(*row, column).is_some();
         (0..self.rows).rev().find(seen).map_or(0, |row| row + 1)
@@ -204,4 +197,22 @@ impl Picture {
 pub(super) fn part(count: usize, from: f64, to: f64) -> std::ops::Range<usize> {
     let at = |share: f64| (share * count as f64).round() as usize;
     at(from)..at(to).max(at(from) + 1).min(count)
+}
+
+/// The mean, zero of none.
+pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / f64::max(count, 1.0)
+}
+
+/// The median, none of none.
+pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
+/// The part of a value beyond a band about zero.
+pub(super) fn beyond(value: f64, band: f64) -> f64 {
+    value - value.clamp(-band, band)
 }

@@ -1,25 +1,25 @@
-//! What the length of the steps costs in accuracy.
+//! The error that the length of the steps causes.
 
 use serde::{Deserialize, Serialize};
 
 use super::{
     rates::{mean_over_volume, volume_mm3, weight_of_depth},
-    step::{StepRecord, StepStart, WearStep},
-    step_rules::{counted, left},
+    step::{StepStart, WearStep},
+    step_rules::{counted, mean_decay},
 };
 
 /// Estimated error of a march from the length of its steps alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct AccumulatedError {
-    /// Volume that the exact march would have worn more, mm3.
+    /// Volume of the exact march less this one, mm3.
     pub volume_mm3: f64,
-    /// How much deeper the exact march would be where it is deepest, mm; known with the last step.
+    /// Maximum depth of the exact march less this one, mm; known with the last step.
     pub max_depth_mm: f64,
 }
 
 impl AccumulatedError {
-    /// With the step that led to `start` added, now that what a cycle wears at its end is known:
-    /// the trapezoidal rule against what the step took.
+    /// Adds the error of the step that led to `start`, now that the rates at its end are known:
+    /// the trapezoidal rule less the step.
     pub(super) fn after(self, start: StepStart<'_>) -> Self {
         let Some(last) = start.last else {
             return self;
@@ -33,72 +33,57 @@ impl AccumulatedError {
         }
     }
 
-    /// With the last step added: what is predicted against what it takes.
+    /// Adds the error of the last step: the predicted wear less the step.
     pub(super) fn with_last(self, start: StepStart<'_>, step: &WearStep) -> Self {
         let area_mm2 = &start.rates.area_mm2;
         let predicted_mm3 = volume_mm3(area_mm2, &step.predicted_mm);
-        let error_mm = error_after(start, step);
+        let depths = start.worn_mm.iter().zip(&step.depth_mm);
+        let weights: Vec<f64> = depths
+            .map(|(worn, more)| weight_of_depth(worn + more))
+            .collect();
+        let error_after = |node: usize| {
+            let relaxed = counted(start.rates, node) * step.interval;
+            step.error_mm[node] * (-relaxed).exp() + step.predicted_mm[node] - step.depth_mm[node]
+        };
+        let errors_mm: Vec<f64> = (0..step.depth_mm.len()).map(error_after).collect();
         Self {
             volume_mm3: self.volume_mm3 + predicted_mm3 - volume_mm3(area_mm2, &step.depth_mm),
-            max_depth_mm: mean_over_volume(
-                area_mm2,
-                &deep(start.worn_mm, &step.depth_mm),
-                &error_mm,
-            ),
+            max_depth_mm: mean_over_volume(area_mm2, &weights, &errors_mm),
         }
     }
 }
 
-/// How much deeper the exact march would be at every node after `step`, mm.
-fn error_after(start: StepStart<'_>, step: &WearStep) -> Vec<f64> {
-    let after = |node: usize| {
-        let relaxed = counted(start.rates, node) * step.interval;
-        step.error_mm[node] * (-relaxed).exp() + step.predicted_mm[node] - step.depth_mm[node]
-    };
-    (0..step.depth_mm.len()).map(after).collect()
-}
-
-/// How much every node counts for the maximum depth.
-fn deep(worn_mm: &[f64], more_mm: &[f64]) -> Vec<f64> {
-    let depths = worn_mm.iter().zip(more_mm).map(|(worn, more)| worn + more);
-    depths.map(weight_of_depth).collect()
-}
-
-/// How much deeper the exact march would be at every node by now, mm.
+/// Depth of the exact march less this one at every node now, mm.
 ///
-/// What the last step should have worn follows from where the femur turned out to sink, by the
-/// equation of [`super::step_rules::exponential`]. By the same equation an error made earlier has faded.
+/// The exact wear of the last step follows from the motion by which the femur sank, by the
+/// equation of [`super::step_rules::exponential`]. By the same equation earlier errors decay.
 pub(super) fn accumulated_error_mm(start: StepStart<'_>) -> Vec<f64> {
-    let at = |node: usize| match start.last {
-        None => 0.0,
-        Some(last) => {
-            let rate = start.rates.depth_per_cycle_mm[node];
-            error_at(last, node, rate, counted(start.rates, node))
-        }
+    let nodes = 0..start.worn_mm.len();
+    let Some(last) = start.last else {
+        return nodes.map(|_| 0.0).collect();
     };
-    (0..start.worn_mm.len()).map(at).collect()
-}
-
-/// The same at a node that relaxes by `counted` a cycle and now wears by `rate`.
-fn error_at(last: &StepRecord, node: usize, rate: f64, counted: f64) -> f64 {
-    let relaxed = counted * last.interval;
-    let left = left(relaxed);
-    let before = last.depth_per_cycle_mm[node];
-    // (1 - left) / relaxed, which is 1/2 where nothing relaxes.
-    let late = if relaxed > 0.0 {
-        (1.0 - left) / relaxed
-    } else {
-        0.5
+    let at = |node: usize| {
+        let rate = start.rates.depth_per_cycle_mm[node];
+        let relaxed = counted(start.rates, node) * last.interval;
+        let decay = mean_decay(relaxed);
+        let before = last.depth_per_cycle_mm[node];
+        // Its limit without relaxation is 1/2.
+        let late = if relaxed > 0.0 {
+            (1.0 - decay) / relaxed
+        } else {
+            0.5
+        };
+        last.error_mm[node] * (-relaxed).exp()
+            + decay * (last.interval * before - last.depth_mm[node])
+            + late * last.interval * (rate - before)
     };
-    last.error_mm[node] * (-relaxed).exp()
-        + left * (last.interval * before - last.depth_mm[node])
-        + late * last.interval * (rate - before)
+    nodes.map(at).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::rates::Rates;
+    use crate::evolve::{StepRecord, rates::Rates};
 
     fn rates(depth_per_cycle_mm: f64, relaxation: f64) -> Rates {
         Rates {

@@ -6,10 +6,7 @@ use super::{
     rates::{mean_cycles, volume_mm3, worn},
     step::SolvedStep,
 };
-use crate::{
-    machine::Cycle,
-    wear::{SharedCycle, WearLaw},
-};
+use crate::wear::{SharedCycle, WearLaw};
 
 /// Wear and contact of an activity so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -26,12 +23,9 @@ pub struct ActivityWear {
     pub peak_contact_area_mm2: f64,
 }
 
-/// Returns the wear of each of several activities in a step; nothing for a single one, which causes all.
-pub(super) fn wear_of_each(
-    law: &dyn WearLaw,
-    interval: &SolvedStep<'_>,
-    solved: &[Cycle],
-) -> Vec<ActivityWear> {
+/// Returns the wear of each of several activities in a step; nothing for a single one, which causes all wear.
+pub(super) fn wear_of_each(law: &dyn WearLaw, interval: &SolvedStep<'_>) -> Vec<ActivityWear> {
+    let solved = interval.cycles;
     if solved.len() < 2 {
         return Vec::new();
     }
@@ -50,6 +44,7 @@ fn part_mm3(interval: &SolvedStep<'_>, (share, history): SharedCycle<'_>) -> f64
     let part = |node: usize| {
         let all = interval.mean[node].pressure_slip_mpa_mm;
         let own = share * history.sums(node).pressure_slip_mpa_mm;
+        // Nodes that no activity loads have a depth of 0; the bound avoids 0/0.
         interval.step.depth_mm[node] * own / all.max(f64::MIN_POSITIVE)
     };
     let depth_mm: Vec<f64> = (0..interval.mean.len()).map(part).collect();
@@ -72,7 +67,6 @@ fn alone_mm3(
 }
 
 impl ActivityWear {
-    /// Adds the wear of a further step.
     pub(super) fn and(self, more: Self) -> Self {
         Self {
             volume_mm3: self.volume_mm3 + more.volume_mm3,

@@ -1,38 +1,36 @@
-//! What other laws would have worn by the histories of a march, and what of its own law was out of range.
+//! The wear by other laws for comparison, and the part of a law's wear outside the range of its fit.
 
 use serde::{Deserialize, Serialize};
 
 use super::rates::{volume_mm3, worn};
 use crate::wear::{MeanCycle, NamedLaw, NodeWear, WearLaw};
 
-/// What a law would have worn so far, had its wear not moved the surface.
+/// The wear by a law so far on the surface of the march, which it does not change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ComparisonLaw {
-    /// The word for the law.
+    /// Name of the law.
     pub word: String,
     /// Depth at every surface node, mm.
     pub depth_mm: Vec<f64>,
     /// Volume, from depth times area, mm3.
     pub volume_mm3: f64,
-    /// What of the volume is outside of what the law was fitted to, mm3; none where that is not known.
+    /// Part of the volume outside the range to which the law was fitted, mm3; none if that is unknown.
     pub outside_mm3: Option<f64>,
-    /// What a cycle of the last update wore by it; none before the first.
+    /// Wear per cycle at the last update; none before the first.
     last: Option<CycleByLaw>,
 }
 
-/// What a cycle wears by a law.
+/// Wear per cycle by a law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct CycleByLaw {
-    /// Cycles of the update's interval.
     interval: f64,
     /// Depth at every surface node, mm.
     depth_mm: Vec<f64>,
-    /// Volume outside of what the law was fitted to, mm3.
+    /// Volume outside the range to which the law was fitted, mm3.
     outside_mm3: Option<f64>,
 }
 
 impl ComparisonLaw {
-    /// A law that has worn nothing yet.
     pub(super) fn new(law: &NamedLaw, node_count: usize) -> Self {
         Self {
             word: law.word.to_owned(),
@@ -43,15 +41,14 @@ impl ComparisonLaw {
         }
     }
 
-    /// Deepest wear, mm.
+    /// Maximum depth of wear, mm.
     pub fn max_depth_mm(&self) -> f64 {
         self.depth_mm.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Adds an interval of cycles like these, whose rates go on changing as they did over the last one.
+    /// Adds an interval of such cycles, whose rates continue to change as over the last one.
     ///
-    /// That is Adams and Bashforth's rule, of second order. It is stable here, since what this law wears
-    /// changes no pressure.
+    /// Adams and Bashforth's rule, of second order, is stable here, since the wear by this law changes no pressure.
     pub(super) fn add(
         &mut self,
         law: &dyn WearLaw,
@@ -59,7 +56,14 @@ impl ComparisonLaw {
         area_mm2: &[f64],
         interval: f64,
     ) {
-        let now = CycleByLaw::of(law, cycles, area_mm2, interval);
+        let worn = worn(law, cycles);
+        let depth_mm: Vec<f64> = worn.iter().map(|worn| worn.depth_mm).collect();
+        let now = CycleByLaw {
+            outside_mm3: outside_mm3(&worn, area_mm2, &depth_mm),
+            interval,
+            depth_mm,
+        };
+        // Without a last interval, last = now: Euler's method.
         let step = |now: f64, last: f64, last_interval: f64| {
             interval * now + interval * interval / (2.0 * last_interval) * (now - last)
         };
@@ -83,19 +87,7 @@ impl ComparisonLaw {
     }
 }
 
-impl CycleByLaw {
-    fn of(law: &dyn WearLaw, cycles: &[MeanCycle<'_>], area_mm2: &[f64], interval: f64) -> Self {
-        let worn = worn(law, cycles);
-        let depth_mm: Vec<f64> = worn.iter().map(|worn| worn.depth_mm).collect();
-        Self {
-            outside_mm3: outside_mm3(&worn, area_mm2, &depth_mm),
-            interval,
-            depth_mm,
-        }
-    }
-}
-
-/// What of these depths is outside of what their law was fitted to, mm3; none where that is not known.
+/// Part of the volume of these depths outside the range to which their law was fitted, mm3; none if that is unknown.
 pub(super) fn outside_mm3(worn: &[NodeWear], area_mm2: &[f64], depth_mm: &[f64]) -> Option<f64> {
     let outside = |(worn, &depth_mm): (&NodeWear, &f64)| {
         if depth_mm == 0.0 {
@@ -107,7 +99,6 @@ pub(super) fn outside_mm3(worn: &[NodeWear], area_mm2: &[f64], depth_mm: &[f64])
     Some(volume_mm3(area_mm2, &outside?))
 }
 
-/// The sum of two volumes, if both are known.
 pub(super) fn sum(volume_mm3: Option<f64>, more_mm3: Option<f64>) -> Option<f64> {
     Some(volume_mm3? + more_mm3?)
 }
@@ -141,33 +132,33 @@ mod tests {
     fn verify_rates_that_change_evenly_are_summed_exactly() {
         // Archard's rate is r = 2.64e-10 x 10 (6 - n / 1000), n the cycles, from the second interval on.
         let law = WEAR_LAWS[0].with_defaults();
-        let mut beside = ComparisonLaw::new(&law, 1);
-        let add = |beside: &mut ComparisonLaw, pressure_mpa, interval| {
+        let mut law_wear = ComparisonLaw::new(&law, 1);
+        let add = |law_wear: &mut ComparisonLaw, pressure_mpa, interval| {
             let history = history(pressure_mpa);
             let shared = [(1.0, &history)];
             let cycles = [MeanCycle::new(&shared, 0, 2.0)];
-            beside.add(law.law.as_ref(), &cycles, &[2.0], interval);
+            law_wear.add(law.law.as_ref(), &cycles, &[2.0], interval);
         };
-        add(&mut beside, 6.0, 1000.0);
+        add(&mut law_wear, 6.0, 1000.0);
         let first = 2.64e-9 * 6.0 * 1000.0;
-        assert!((beside.max_depth_mm() / first - 1.0).abs() < 1e-12);
-        add(&mut beside, 5.0, 2000.0);
+        assert!((law_wear.max_depth_mm() / first - 1.0).abs() < 1e-12);
+        add(&mut law_wear, 5.0, 2000.0);
         let second = 2.64e-9 * (5.0 + 3.0) / 2.0 * 2000.0;
-        assert!((beside.max_depth_mm() / (first + second) - 1.0).abs() < 1e-12);
-        assert!((beside.volume_mm3 / (2.0 * (first + second)) - 1.0).abs() < 1e-12);
-        assert_eq!(beside.outside_mm3, None);
+        assert!((law_wear.max_depth_mm() / (first + second) - 1.0).abs() < 1e-12);
+        assert!((law_wear.volume_mm3 / (2.0 * (first + second)) - 1.0).abs() < 1e-12);
+        assert_eq!(law_wear.outside_mm3, None);
     }
 
     #[test]
-    fn volume_outside_is_told_where_a_law_says_what_it_was_fitted_to() {
+    fn volume_outside_the_range_of_a_fit_is_reported() {
         let kind = WEAR_LAWS.iter().find(|kind| kind.word == "directional");
-        let law = kind.expect("is there").with_defaults();
-        let mut beside = ComparisonLaw::new(&law, 1);
+        let law = kind.expect("it exists").with_defaults();
+        let mut law_wear = ComparisonLaw::new(&law, 1);
         let history = history(6.0);
         let shared = [(1.0, &history)];
         let cycles = [MeanCycle::new(&shared, 0, 2.0)];
-        beside.add(law.law.as_ref(), &cycles, &[2.0], 1e6);
-        assert!(beside.volume_mm3 > 0.0);
-        assert_eq!(beside.outside_mm3, Some(beside.volume_mm3));
+        law_wear.add(law.law.as_ref(), &cycles, &[2.0], 1e6);
+        assert!(law_wear.volume_mm3 > 0.0);
+        assert_eq!(law_wear.outside_mm3, Some(law_wear.volume_mm3));
     }
 }

@@ -1,46 +1,47 @@
-//! How far creep takes the surface down, by the pressure that every node has had so far.
+//! Creep of the surface: the load history of every node, and the contact that causes it.
 
 use serde::{Deserialize, Serialize};
 
-use super::creep_contact::CreepContact;
-use crate::{creep::LeePienkowski, number::Mixing};
+use super::WearTest;
+use crate::{creep::LeePienkowski, geometry::Insert, machine::Cycle, number::Mixing};
 
-/// Where no side of the femur has to sink further, at any instant, by more than this part of the largest step of a
-/// node, the search ends, ...
+/// The iteration ends where no side of the femur sinks further at any instant by more than this part of the largest
+/// step of a node, ...
 const SETTLED: f64 = 1e-3;
-/// ... or with the turn of this number.
+/// ... or at this limit.
 const MAX_ITERATIONS: usize = 100;
+/// Number of instants of a cycle that represent it where the change of the pressure is predicted.
+const INSTANTS: usize = 16;
 
-/// What creep remembers of the load.
+/// The load history of creep.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CreepState {
-    /// When the intervals done have ended, min.
+    /// Ends of the intervals done, min.
     ends_min: Vec<f64>,
     /// Mean pressure of a cycle at the end of each interval, at every surface node that was pressed, MPa.
     pressures_mpa: Vec<Vec<(u32, f64)>>,
-    /// How deep creep would be at every surface node if all of it recovered, at its deepest so far, by the
-    /// pressures that were found, mm.
+    /// Largest recoverable depth so far at every surface node by the computed pressures, mm: the depth that creep would
+    /// have if all of it recovered.
     deepest_mm: Vec<f64>,
-    /// How deep it would be so by now, by the pressures that are foreseen, mm.
+    /// Recoverable depth now, by the predicted pressures, mm.
     foreseen_mm: Vec<f64>,
-    /// How deep it is, mm.
+    /// Depth of creep, mm.
     depth_mm: Vec<f64>,
 }
 
-/// A step of creep.
 pub(super) struct CreepStep<'a> {
     pub law: &'a LeePienkowski,
     /// Thickness of the unworn insert at every surface node, mm.
     pub thickness_mm: &'a [f64],
-    /// How far wear takes every surface node down in the same step, mm.
+    /// Depth of wear of every surface node in the same step, mm.
     pub worn_mm: &'a [f64],
     /// The contact of the cycles that were solved before it.
     pub contact: &'a CreepContact,
-    /// When it ends, min from the start of the test.
+    /// End of the step, min from the start of the test.
     pub end_min: f64,
 }
 
-/// How a node creeps in a step: recoverable depth = `by_history` + `per_mpa` times its pressure.
+/// The creep of a node in a step: recoverable depth = `by_history_mm` + `mm_per_mpa` times its pressure.
 #[derive(Clone, Copy)]
 struct Node {
     number: usize,
@@ -49,14 +50,14 @@ struct Node {
     deepest_mm: f64,
     before_mm: f64,
     pressure_mpa: f64,
-    /// By how much wear relieves it, MPa.
+    /// Pressure that it loses by wear, MPa.
     relieved_mpa: f64,
-    /// How the mean pressure falls as this node alone goes down, MPa/mm.
+    /// Decrease of its mean pressure as this node alone goes down, MPa/mm.
     stiffness_mpa_per_mm: f64,
 }
 
 impl CreepState {
-    /// What of creep an unloaded insert still shows after long rest at every surface node, mm.
+    /// Returns the creep that remains after long rest without load at every surface node, mm.
     pub fn left_mm(&self, law: &LeePienkowski) -> Vec<f64> {
         let nodes = self.deepest_mm.iter().zip(&self.foreseen_mm);
         nodes
@@ -64,26 +65,30 @@ impl CreepState {
             .collect()
     }
 
-    /// Takes a step, and gives how far it goes down at every node, mm; up where load has gone.
+    /// Takes a step, and returns its depth at every node, mm; negative where load has gone.
     ///
-    /// The pressure through the step is taken to be what it is in the end (Euler's implicit method in the
-    /// superposition of loads), as far as can be foreseen: a node that goes down by x, of wear and creep, relieves
-    /// itself by its stiffness times x, and gets back what the femur sinks by, which keeps the force of each side at
-    /// every instant. An explicit step would take every node out of contact, since the creep of the first interval is
-    /// deeper than the femur presses.
+    /// The pressure during the step is the predicted pressure at its end (Euler's implicit method in the
+    /// superposition of loads): a node that goes down by x, by wear and creep, loses its stiffness times x, and
+    /// gains pressure as the femur sinks, which keeps the force of each side at every instant. An explicit step would
+    /// take every node out of contact, since the creep of the first interval is deeper than the overclosure.
     pub(super) fn step(&mut self, step: &CreepStep<'_>) -> Vec<f64> {
         let count = step.thickness_mm.len();
         self.deepest_mm.resize(count, 0.0);
         self.foreseen_mm.resize(count, 0.0);
         self.depth_mm.resize(count, 0.0);
-        let pressed = pressed_nodes(step.contact);
-        self.put_right(step, &pressed);
+        let all = step.contact.mean_pressure_mpa.iter().enumerate();
+        let pressed = all.filter(|(_, pressure)| **pressure > 0.0);
+        let pressed: Vec<_> = pressed.map(|(node, &mpa)| (node as u32, mpa)).collect();
+        self.correct_last(step, &pressed);
         let strains = self.strains(step.law, step.end_min, count);
         let minutes = step.end_min - self.ends_min.last().copied().unwrap_or(0.0);
         let per_mpa = step.law.compliance_per_mpa(minutes);
         let nodes = (0..count).map(|node| self.node(step, node, strains[node], per_mpa));
         // Most of a surface is never touched.
-        let nodes: Vec<Node> = nodes.filter(Node::was_pressed).collect();
+        let was_pressed = |node: &Node| {
+            node.pressure_mpa > 0.0 || node.by_history_mm != 0.0 || node.before_mm != 0.0
+        };
+        let nodes: Vec<Node> = nodes.filter(was_pressed).collect();
         let down_mm = implicit(step, &nodes);
         for node in &nodes {
             let down_mm = down_mm[node.number];
@@ -95,8 +100,8 @@ impl CreepState {
         down_mm
     }
 
-    /// Puts the pressures found now, those at the end of the interval before, in place of what was foreseen.
-    fn put_right(&mut self, step: &CreepStep<'_>, pressed: &[(u32, f64)]) {
+    /// Replaces the predicted pressures at the end of the last interval by those computed now.
+    fn correct_last(&mut self, step: &CreepStep<'_>, pressed: &[(u32, f64)]) {
         let (Some(last), Some(end_min)) = (self.pressures_mpa.last_mut(), self.ends_min.last())
         else {
             return;
@@ -109,7 +114,7 @@ impl CreepState {
         }
     }
 
-    /// Strain that would be there at `now_min` at every node by the intervals done, if all of it recovered.
+    /// Recoverable strain at `now_min` at every node by the intervals done.
     fn strains(&self, law: &LeePienkowski, now_min: f64, count: usize) -> Vec<f64> {
         let since = |minutes: f64| law.compliance_per_mpa(now_min - minutes);
         let starts_min = std::iter::once(&0.0).chain(&self.ends_min);
@@ -141,14 +146,10 @@ impl CreepState {
 }
 
 impl Node {
-    fn was_pressed(&self) -> bool {
-        self.pressure_mpa > 0.0 || self.by_history_mm != 0.0 || self.before_mm != 0.0
-    }
-
-    /// How far it goes down where its pressure rises by `more_mpa` as the femur sinks, mm.
+    /// Depth of the step where the pressure rises by `more_mpa` as the femur sinks, mm.
     ///
     /// Solves x = d(e) - before, e = history + c (p + more - k x), p + more - k x >= 0, with d the depth of a
-    /// recoverable depth e, which is straight on either side of the deepest so far.
+    /// recoverable depth e, which is linear on either side of the deepest so far.
     fn down_mm(&self, law: &LeePienkowski, more_mpa: f64) -> f64 {
         let free_mpa = self.pressure_mpa + more_mpa - self.relieved_mpa;
         let k = self.stiffness_mpa_per_mm;
@@ -166,16 +167,17 @@ impl Node {
         if free_mpa - k * down_mm >= 0.0 {
             return down_mm;
         }
+        // The node leaves the contact: no pressure acts, and it recovers.
         law.depth_mm(self.by_history_mm, self.deepest_mm) - self.before_mm
     }
 
-    /// How far it goes down where its pressure stays, mm.
+    /// Depth of the step at constant pressure, mm.
     fn unrelieved_mm(&self, law: &LeePienkowski) -> f64 {
         let recoverable_mm = self.by_history_mm + self.mm_per_mpa * self.pressure_mpa;
         law.depth_mm(recoverable_mm, self.deepest_mm) - self.before_mm
     }
 
-    /// The recoverable depth that its depth after going down by `down_mm` stands for, mm.
+    /// Recoverable depth after a step of `down_mm`, mm: the inverse of the law's depth.
     fn recoverable_mm(&self, law: &LeePienkowski, down_mm: f64) -> f64 {
         let depth_mm = self.before_mm + down_mm;
         if depth_mm >= self.deepest_mm || law.recovering_fraction == 0.0 {
@@ -185,36 +187,36 @@ impl Node {
     }
 }
 
-/// Every node that is pressed, with its mean pressure, MPa.
-fn pressed_nodes(contact: &CreepContact) -> Vec<(u32, f64)> {
-    let all = contact.mean_pressure_mpa.iter().enumerate();
-    let pressed = all.filter(|(_, pressure)| **pressure > 0.0);
-    pressed
-        .map(|(node, pressure)| (node as u32, *pressure))
-        .collect()
-}
-
-/// How far every node goes down, mm, found in turn with how far the femur sinks.
+/// Solves for the depth of the step at every node, mm, and the motion by which the femur sinks.
 fn implicit(step: &CreepStep<'_>, nodes: &[Node]) -> Vec<f64> {
+    let contact = step.contact;
+    let add_lost_n = |node: &Node, crept_mm: f64, lost_n: &mut [f64]| {
+        let down_mm = crept_mm + step.worn_mm[node.number];
+        contact.add_lost_n(node.number, down_mm, lost_n);
+    };
     let mut down_mm = vec![0.0; step.thickness_mm.len()];
-    let mut lost_n = step.contact.none_lost_n();
+    let mut lost_n = vec![0.0; contact.sides.len()];
     for node in nodes {
-        step.add_lost_n(node, node.unrelieved_mm(step.law), &mut lost_n);
+        add_lost_n(node, node.unrelieved_mm(step.law), &mut lost_n);
     }
-    let mut sunk_mm = step.contact.sunk_mm(&lost_n);
+    let mut sunk_mm = contact.sunk_mm(&lost_n);
+    // The map from sunk to sunk contracts slowly where the compliance is large; mixing accelerates it.
     let mut mixing = Mixing::default();
     for _ in 0..MAX_ITERATIONS {
         lost_n.fill(0.0);
-        let sunk = step.contact.sunk(&sunk_mm);
+        let weighed = sunk_mm.iter().zip(&contact.sides);
+        let weighed_mm: Vec<f64> = weighed
+            .map(|(sunk, side)| side.part_of_time * sunk)
+            .collect();
         let mut most_mm = 0.0_f64;
         for node in nodes {
-            let rise_mpa = step.contact.rise_mpa(node.number, &sunk);
+            let rise_mpa = contact.rise_mpa(node.number, &weighed_mm);
             let node_mm = node.down_mm(step.law, rise_mpa);
             most_mm = most_mm.max(node_mm.abs());
             down_mm[node.number] = node_mm;
-            step.add_lost_n(node, node_mm, &mut lost_n);
+            add_lost_n(node, node_mm, &mut lost_n);
         }
-        let image_mm = step.contact.sunk_mm(&lost_n);
+        let image_mm = contact.sunk_mm(&lost_n);
         let left = std::iter::zip(&sunk_mm, &image_mm).map(|(sunk, image)| (image - sunk).abs());
         if left.fold(0.0, f64::max) <= SETTLED * most_mm {
             break;
@@ -224,11 +226,148 @@ fn implicit(step: &CreepStep<'_>, nodes: &[Node]) -> Vec<f64> {
     down_mm
 }
 
-impl CreepStep<'_> {
-    /// Adds what each side of the femur loses as a node creeps by so much and wears.
-    fn add_lost_n(&self, node: &Node, crept_mm: f64, lost_n: &mut [f64]) {
-        let down_mm = crept_mm + self.worn_mm[node.number];
-        self.contact.add_lost_n(node.number, down_mm, lost_n);
+/// The contact of a mean cycle, as far as creep depends on it.
+#[derive(Clone, Debug)]
+pub(super) struct CreepContact {
+    /// Pressure at every surface node, mean over time, MPa.
+    pub mean_pressure_mpa: Vec<f64>,
+    /// The loads of node i are `pressing[first[i]..first[i + 1]]`.
+    pressing: Vec<Pressing>,
+    first: Vec<usize>,
+    nodes: Vec<NodeStiffness>,
+    sides: Vec<Side>,
+}
+
+/// A loaded node at an instant.
+#[derive(Clone, Copy, Debug)]
+struct Pressing {
+    /// Number of the instant and side of the femur.
+    side: u32,
+    /// Loaded area of the node's share, mm2.
+    pressed_mm2: f32,
+}
+
+/// Decrease of the pressure at a node as the node alone goes down.
+#[derive(Clone, Copy, Debug)]
+struct NodeStiffness {
+    /// Of the pressure on the loaded area, MPa/mm.
+    mpa_per_mm: f64,
+    /// The same over the area of the share, MPa/mm3: times the loaded area it is the decrease of the mean over the
+    /// share.
+    mpa_per_mm3: f64,
+}
+
+/// A side of the femur at an instant.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    /// Part of the time that the instant represents.
+    part_of_time: f64,
+    /// Force that it gains as it sinks, N/mm.
+    n_per_mm: f64,
+}
+
+impl CreepContact {
+    /// The contact of one solved cycle of every activity.
+    pub fn new(test: &WearTest, insert: &Insert, cycles: &[Cycle]) -> Self {
+        let all_s = test.cycle_seconds();
+        let activities = test.activities.iter();
+        let parts: Vec<f64> = activities.map(|own| own.seconds() / all_s).collect();
+        let stiffness = |node| {
+            let mpa_per_mm = test.contact.stiffness_mpa_per_mm(insert, node);
+            NodeStiffness {
+                mpa_per_mm,
+                mpa_per_mm3: mpa_per_mm / insert.unworn_share_mm2(node),
+            }
+        };
+        let nodes: Vec<NodeStiffness> = (0..insert.surface_nodes().len()).map(stiffness).collect();
+        let regions = insert.regions();
+        let (mut sides, mut pressing): (Vec<Side>, Vec<(u32, Pressing)>) = Default::default();
+        for (cycle, part_of_time) in cycles.iter().zip(&parts) {
+            let stride = cycle.instants.len().div_ceil(INSTANTS);
+            let instants = cycle.instants.iter().step_by(stride);
+            let unloaded = Side {
+                part_of_time: part_of_time / instants.len() as f64,
+                n_per_mm: 0.0,
+            };
+            for instant in instants {
+                let first = sides.len();
+                sides.resize(first + regions.count(), unloaded);
+                for record in cycle.history.instant(instant) {
+                    let side = (first + regions.of_node(record.node as usize)) as u32;
+                    let pressed_mm2 = record.pressed_mm2;
+                    pressing.push((record.node, Pressing { side, pressed_mm2 }));
+                }
+            }
+        }
+        let mean_mpa = |node: usize| -> f64 {
+            let each = cycles.iter().zip(&parts).map(|(cycle, part)| {
+                part * cycle.history.sums(node).summed_pressure_mpa / cycle.instants.len() as f64
+            });
+            each.sum()
+        };
+        let mean_pressure_mpa = (0..nodes.len()).map(mean_mpa).collect();
+        Self::sorted(mean_pressure_mpa, nodes, sides, pressing)
+    }
+
+    /// The contact of loads given in the order of time, each with its node.
+    fn sorted(
+        mean_pressure_mpa: Vec<f64>,
+        nodes: Vec<NodeStiffness>,
+        mut sides: Vec<Side>,
+        mut pressing: Vec<(u32, Pressing)>,
+    ) -> Self {
+        for (node, own) in &pressing {
+            let n_per_mm = nodes[*node as usize].mpa_per_mm * f64::from(own.pressed_mm2);
+            sides[own.side as usize].n_per_mm += n_per_mm;
+        }
+        // Stable, so that the sums over a node's loads keep the order of time.
+        pressing.sort_by_key(|(node, _)| *node);
+        let first = |node| pressing.partition_point(|(other, _)| (*other as usize) < node);
+        Self {
+            first: (0..=nodes.len()).map(first).collect(),
+            pressing: pressing.into_iter().map(|(_, own)| own).collect(),
+            mean_pressure_mpa,
+            nodes,
+            sides,
+        }
+    }
+
+    /// Decrease of the mean pressure at a node as the node alone goes down, MPa/mm.
+    fn stiffness_mpa_per_mm(&self, node: usize) -> f64 {
+        let areas = self.pressing(node).map(|(side, pressed_mm2)| {
+            let part_of_time = self.sides[side].part_of_time;
+            part_of_time * pressed_mm2
+        });
+        self.nodes[node].mpa_per_mm3 * areas.sum::<f64>()
+    }
+
+    /// Increase of a node's mean pressure as the sides sink, MPa, from their motions times their parts of the time, mm.
+    fn rise_mpa(&self, node: usize, weighed_mm: &[f64]) -> f64 {
+        let own = self.pressing(node);
+        let volumes = own.map(|(side, pressed_mm2)| weighed_mm[side] * pressed_mm2);
+        self.nodes[node].mpa_per_mm3 * volumes.sum::<f64>()
+    }
+
+    /// Adds the force that each side loses at each instant as a node goes down, N.
+    fn add_lost_n(&self, node: usize, down_mm: f64, lost_n: &mut [f64]) {
+        let lost_mpa = self.nodes[node].mpa_per_mm * down_mm;
+        for (side, pressed_mm2) in self.pressing(node) {
+            lost_n[side] += lost_mpa * pressed_mm2;
+        }
+    }
+
+    /// The motion by which each side sinks at each instant to restore the force that it lost, mm.
+    fn sunk_mm(&self, lost_n: &[f64]) -> Vec<f64> {
+        let sides = lost_n.iter().zip(&self.sides);
+        sides
+            .map(|(lost_n, side)| lost_n / side.n_per_mm.max(f64::MIN_POSITIVE))
+            .collect()
+    }
+
+    /// Sides that load a node, each with the loaded area, mm2.
+    fn pressing(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
+        let own = self.pressing[self.first[node]..self.first[node + 1]].iter();
+        own.map(|own| (own.side as usize, f64::from(own.pressed_mm2)))
     }
 }
 
@@ -236,9 +375,29 @@ impl CreepStep<'_> {
 mod tests {
     use super::*;
 
-    /// A flat punch on equal nodes, pressed as hard all the time.
+    /// A flat punch on equal nodes, half of them on either side, under constant pressure.
     fn punch(pressure_mpa: f64, nodes: usize) -> CreepContact {
-        CreepContact::uniform(pressure_mpa, 250.0, nodes)
+        let side = Side {
+            part_of_time: 1.0,
+            n_per_mm: 0.0,
+        };
+        let node = NodeStiffness {
+            mpa_per_mm: 250.0,
+            mpa_per_mm3: 250.0,
+        };
+        let pressing = |node: usize| {
+            let pressing = Pressing {
+                side: u32::from(2 * node >= nodes),
+                pressed_mm2: 1.0,
+            };
+            (node as u32, pressing)
+        };
+        CreepContact::sorted(
+            vec![pressure_mpa; nodes],
+            vec![node; nodes],
+            vec![side; 2],
+            (0..nodes).map(pressing).collect(),
+        )
     }
 
     /// Depths of creep under a punch after steps that end at so many minutes, each with its pressure found when

@@ -1,27 +1,26 @@
-//! How deep the surface has gone down, and by what.
+//! The depth of the surface by cause.
 
 use serde::{Deserialize, Serialize};
 
-/// What one cause has taken a surface down by.
+/// The depth of a surface by one cause.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DepthField {
-    /// The cause: `wear`, for instance.
+    /// Name of the cause, such as `wear`.
     pub name: String,
-    /// Whether what goes down is lost, as wear is, or only pressed aside.
+    /// Whether the material is lost, as by wear, or only displaced.
     pub loses_mass: bool,
     /// Depth at every surface node along the inward normal, mm.
     pub depth_mm: Vec<f64>,
 }
 
 impl DepthField {
-    /// Name of the depth that the wear law takes.
+    /// Name of the depth by wear.
     pub const WEAR: &'static str = "wear";
 
-    /// Name of the depth that creep takes.
+    /// Name of the depth by creep.
     pub const CREEP: &'static str = "creep";
 
-    /// Depth that creep takes, without loss of mass.
-    pub fn creep(depth_mm: Vec<f64>) -> Self {
+    pub(super) fn creep(depth_mm: Vec<f64>) -> Self {
         Self {
             name: Self::CREEP.to_owned(),
             loses_mass: false,
@@ -29,8 +28,7 @@ impl DepthField {
         }
     }
 
-    /// Depth worn away.
-    pub fn wear(depth_mm: Vec<f64>) -> Self {
+    pub(super) fn wear(depth_mm: Vec<f64>) -> Self {
         Self {
             name: Self::WEAR.to_owned(),
             loses_mass: true,
@@ -39,43 +37,49 @@ impl DepthField {
     }
 }
 
-/// The depths of all causes; the surface goes down by their sum.
+/// The depths of all causes; the surface is lowered by their sum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DepthFields {
     node_count: usize,
     fields: Vec<DepthField>,
 }
 
+impl Default for DepthFields {
+    fn default() -> Self {
+        Self::none(0)
+    }
+}
+
 impl DepthFields {
-    /// A surface of `node_count` nodes that nothing has taken down yet.
-    pub fn none(node_count: usize) -> Self {
+    /// An unworn surface of `node_count` nodes.
+    pub(super) fn none(node_count: usize) -> Self {
         let fields = vec![DepthField::wear(vec![0.0; node_count])];
         Self { node_count, fields }
     }
 
-    /// Every cause with its depth, wear first.
+    /// Returns the depth of every cause, wear first.
     pub fn fields(&self) -> &[DepthField] {
         &self.fields
     }
 
-    /// Depth worn away at every surface node, mm.
+    /// Returns the depth of wear at every surface node, mm.
     pub fn wear_mm(&self) -> &[f64] {
         &self.fields[0].depth_mm
     }
 
-    /// Depth that creep has taken at every surface node, mm; none where nothing crept.
+    /// Returns the depth of creep at every surface node, mm; none if the insert does not creep.
     pub fn creep_mm(&self) -> Option<&[f64]> {
         let mut fields = self.fields.iter();
         let creep = fields.find(|field| field.name == DepthField::CREEP)?;
         Some(&creep.depth_mm)
     }
 
-    /// Depth that the surface has gone down at every node, mm: the sum of all causes.
+    /// Returns the sum of all causes at every surface node, mm.
     pub fn total_mm(&self) -> Vec<f64> {
         total_mm(&self.fields, self.node_count)
     }
 
-    /// Adds what a step takes, cause by cause; a cause that is new starts with it.
+    /// Adds the depths of a step, cause by cause; a new cause starts with it.
     pub(super) fn add(&mut self, step: &[DepthField]) {
         for taken in step {
             match self.fields.iter_mut().find(|own| own.name == taken.name) {
@@ -94,7 +98,7 @@ pub(super) fn total_mm(fields: &[DepthField], node_count: usize) -> Vec<f64> {
     summed(fields.iter(), node_count)
 }
 
-/// The sum of those fields that lose mass at every node, mm.
+/// The sum of the fields that lose mass at every node, mm.
 pub(super) fn lost_mm(fields: &[DepthField], node_count: usize) -> Vec<f64> {
     summed(fields.iter().filter(|field| field.loses_mass), node_count)
 }

@@ -5,39 +5,29 @@ use std::ops::{ControlFlow, Range};
 
 use super::{
     Activity, CreepRecord, CreepState, DepthField, DepthFields, MarchError, MarchState, NodeFields,
-    PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord, UpdateRecord, Updates,
-    WearTest,
+    PlacementError, Progress, Snapshot, SolvedCycle, UnderSurfaceRecord, UpdateRecord, WearTest,
     activity_wear::wear_of_each,
     comparison_laws::{ComparisonLaw, outside_mm3, sum},
-    creep::CreepStep,
-    creep_contact::CreepContact,
+    creep::{CreepContact, CreepStep},
     depth::{lost_mm, total_mm},
     error::WornAndCrept,
-    next_step::{fixed_interval, next_step, shared_out},
+    next_step::next_step,
     placement::place,
     rates::{Rates, mean_cycles, volume_mm3, worn},
-    solved_cycles::SolvedCycles,
+    solved_cycles::{SolvedCycles, solve},
     step::{SolvedStep, StepStart, WearStep},
 };
 use crate::{
     Vec3,
-    contact::{
-        Bodies, ContactCache, ContactMemory, ContactModel, ContactState, CycleHistory, UnderSurface,
-    },
+    contact::{Bodies, ContactCache, ContactMemory, ContactState, CycleHistory, UnderSurface},
     geometry::{ArticulatingSurface, FemoralSurface, Insert},
-    machine::{Chain, Cycle, MachineState, Simulator, SolverCounters, TimeSettings},
+    machine::{Chain, MachineState, SolverCounters},
     spatial::Pose,
 };
 
-/// The first and the last cycle, whose motions are kept, repeat within this part of the tolerances. The
-/// others count by their wear alone, which errs a hundred times less than the motions.
-const KEPT: f64 = 0.1;
-/// An update that will reach this part of the cycles is the last: intervals do not add up exactly.
-const LAST: f64 = 1.0 - 1e-9;
-
 /// A wear test in progress.
 ///
-/// The [`WearTest`] is never changed: the march wears an insert of its own.
+/// The [`WearTest`] is never changed: the march wears its own copy of the insert.
 pub struct March {
     test: WearTest,
     /// The femur prepared for the shares of the insert.
@@ -49,22 +39,22 @@ pub struct March {
     state: MarchState,
     /// Fields of the insert before the first update.
     unworn_fields: NodeFields,
-    /// Histories of the last cycles; the next ones reuse their memory.
-    spent: Vec<CycleHistory>,
-    /// The surface of the last cycles; none before the first, or after an update that was stopped.
-    pressed: Option<Pressed>,
+    /// The last solved cycles; none before the first, or after an update that was stopped.
+    last: Option<LastCycles>,
     /// Speeds up the contact of the next update.
     cache: ContactCache,
 }
 
-/// The surface that the last cycles pressed on.
-struct Pressed {
+/// The histories of the last cycles, one per activity, and the surface that they loaded.
+struct LastCycles {
     surface: ArticulatingSurface,
+    /// The next cycles reuse their memory.
+    histories: Vec<CycleHistory>,
     /// The recorded moments of each increment, for every activity.
     instants: Vec<Vec<Range<usize>>>,
 }
 
-/// The insert before a step, and the worst element after it.
+/// The insert before a step, and the quality of the mesh after it.
 struct Lowered {
     mesh_nodes: Vec<Vec3>,
     depths: DepthFields,
@@ -72,10 +62,10 @@ struct Lowered {
 }
 
 impl March {
-    /// Places the femur on the unworn insert.
+    /// Places the femur on the unworn insert and lets it settle.
     ///
     /// # Errors
-    /// Bodies that do not meet, overlap deeply, or do not come to rest.
+    /// Bodies that do not meet, that overlap deeply, or that do not come to rest.
     pub fn start(test: WearTest) -> Result<Self, PlacementError> {
         let (femur, surface) = (prepared(&test), test.insert.surface());
         let mut counters = SolverCounters::default();
@@ -106,7 +96,7 @@ impl March {
         Self::from_parts(test, femur, state)
     }
 
-    /// Starts a test at a step of another march, with the same bodies and number of activities, as if that step
+    /// Starts a test at a step of another march with the same bodies and number of activities, as if that step
     /// were the first.
     pub fn from_snapshot(test: WearTest, snapshot: &Snapshot, zero_mm: Vec3) -> Self {
         let state = MarchState::before(
@@ -121,7 +111,7 @@ impl March {
 
     /// Replaces the machine states by those of a motion in progress, such as that of another march.
     ///
-    /// The nearer it is to this march's own motion, the sooner the next cycles repeat.
+    /// The closer it is to this march's own motion, the sooner the next cycles repeat.
     pub fn in_motion(mut self, machines: &[MachineState]) -> Self {
         for (activity, machine) in self.state.activities.iter_mut().zip(machines) {
             activity.machine = *machine;
@@ -143,8 +133,7 @@ impl March {
         Self {
             chains: test.activities.iter().map(chain).collect(),
             unworn_fields: NodeFields::unworn(&insert, &state.depths),
-            spent: Vec::new(),
-            pressed: None,
+            last: None,
             cache: ContactCache::default(),
             femur,
             insert,
@@ -168,7 +157,7 @@ impl March {
         &self.femur
     }
 
-    /// Returns the bodies as they are now, for a contact outside the march; `surface` is that of
+    /// Returns the bodies in their present shape, for a contact outside the march; `surface` is the surface of
     /// [`March::insert`].
     pub fn bodies<'a>(&'a self, surface: &'a ArticulatingSurface) -> Bodies<'a> {
         Bodies {
@@ -178,7 +167,7 @@ impl March {
         }
     }
 
-    /// Returns everything that [`March::resume`] needs.
+    /// Returns the state, from which [`March::resume`] continues.
     pub fn state(&self) -> &MarchState {
         &self.state
     }
@@ -190,14 +179,14 @@ impl March {
 
     /// Returns the last solved cycle of the first activity; `None` before the first update of this march.
     pub fn last_cycle(&self) -> Option<SolvedCycle<'_>> {
-        let pressed = self.pressed.as_ref()?;
-        let (_, last) = self.state.activities[0].first_and_last.as_ref()?;
+        let last = self.last.as_ref()?;
+        let (_, last_record) = self.state.activities[0].first_and_last.as_ref()?;
         Some(SolvedCycle {
-            rows: &last.rows,
-            surface: &pressed.surface,
+            rows: &last_record.rows,
+            surface: &last.surface,
             chain: &self.chains[0],
-            history: &self.spent[0],
-            instants: &pressed.instants[0],
+            history: &last.histories[0],
+            instants: &last.instants[0],
         })
     }
 
@@ -214,10 +203,10 @@ impl March {
 
     /// Returns the number of cycles done so far.
     pub fn cycles(&self) -> f64 {
-        self.state.updates.last().map_or(0.0, |last| last.cycles)
+        self.state.cycles()
     }
 
-    /// Returns whether all cycles are done.
+    /// Whether all cycles are done.
     pub fn is_done(&self) -> bool {
         self.cycles() >= self.test.schedule.cycles
     }
@@ -236,7 +225,7 @@ impl March {
     /// Solves a repeating cycle of every activity, and wears the insert by an interval of such cycles.
     ///
     /// `watch` is called after every increment and may stop the march; the result is then a break, the
-    /// update in progress is lost, and those before are kept.
+    /// update in progress is lost, and earlier updates are kept.
     ///
     /// # Errors
     /// A cycle that cannot be solved, an insert worn through, or inverted elements.
@@ -244,10 +233,15 @@ impl March {
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), &UpdateRecord>, MarchError> {
+        let update = self.state.updates.len();
         let ControlFlow::Continue(solved) = self.solve(watch)? else {
             return Ok(ControlFlow::Break(()));
         };
-        self.check_contact(&solved)?;
+        if !solved.touch() {
+            let (end, added_inertia) = (&solved.cycles[0].end, solved.counters.added_inertia);
+            let lost = MarchError::lost_contact(update + 1, &self.test, end, added_inertia);
+            return Err(lost);
+        }
 
         // The wear of one cycle, and the interval over which it can be extrapolated.
         let shared = solved.with_shares(&self.test.activities);
@@ -255,7 +249,14 @@ impl March {
         let worn = worn(self.test.wear.as_ref(), &mean);
         let contact = self.test.contact.as_ref();
         let rates = Rates::new(contact, &self.insert, &solved.surface, &mean, &worn);
-        let start = self.step_start(&rates);
+        let start = StepStart {
+            rates: &rates,
+            last: self.state.last_step.as_ref(),
+            worn_mm: self.state.depths.wear_mm(),
+            cycles: self.cycles(),
+            updates: update,
+            creeps: self.test.creep.is_some(),
+        };
         let step = next_step(start, &self.test.schedule);
         let settled_error = self.state.settled_error.after(start);
         let step_error = settled_error.with_last(start, &step);
@@ -272,56 +273,49 @@ impl March {
             self.state.creep = creep;
         }
         (self.state.settled_error, self.state.step_error) = (settled_error, step_error);
-        let record = UpdateRecord {
-            under_surface: under_record,
-            ..self.record(
-                &solved,
-                &step,
-                &taken,
-                &rates.area_mm2,
-                before.worst_quality,
-            )
-        };
-        self.state.updates.push(record);
         self.state.under_surface = under_surface;
-        let interval = SolvedStep {
+        let solved_step = SolvedStep {
             surface: &solved.surface,
+            cycles: &solved.cycles,
             shared: &shared,
             mean: &mean,
             worn: &worn,
             rates: &rates,
             step: &step,
         };
-        self.add_interval(&interval, &solved.cycles);
+        let record = self.record(
+            &solved,
+            &solved_step,
+            &taken,
+            before.worst_quality,
+            under_record,
+        );
+        self.state.updates.push(record);
+        self.sum_up(&solved_step);
         self.remember(solved, step, rates, before);
-        let last = self.state.updates.len() - 1;
-        Ok(ControlFlow::Continue(&self.state.updates[last]))
+        Ok(ControlFlow::Continue(&self.state.updates[update]))
     }
 
-    /// Solves one repeating cycle of every activity with the geometry held still.
+    /// Solves one repeating cycle of every activity on the present surface.
     fn solve(
         &mut self,
         watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), SolvedCycles>, MarchError> {
-        let mut spent = std::mem::take(&mut self.spent);
-        // A march that was stopped has given its histories away.
-        spent.resize_with(self.test.activities.len(), CycleHistory::default);
-        self.pressed = None;
-        let cache = std::mem::take(&mut self.cache);
+        let spent = self
+            .last
+            .take()
+            .map_or_else(Vec::new, |last| last.histories);
+        let memory = ContactMemory {
+            state: self.state.contact.clone(),
+            cache: std::mem::take(&mut self.cache),
+        };
         let surface = self.insert.surface();
-        let state = self.state.contact.clone();
-        let memory = ContactMemory { state, cache };
         let mut contact = self.test.contact.contact(self.bodies(&surface), memory);
-        let mut counters = self.state.counters;
-        let mut cycles = Vec::with_capacity(self.test.activities.len());
-        for (number, spent) in spent.into_iter().enumerate() {
-            let solved =
-                self.solve_activity(number, contact.as_mut(), spent, &mut counters, watch)?;
-            let ControlFlow::Continue(cycle) = solved else {
-                return Ok(ControlFlow::Break(()));
-            };
-            cycles.push(cycle);
-        }
+        let (test, state, chains) = (&self.test, &self.state, &self.chains);
+        let solved = solve(test, state, chains, contact.as_mut(), spent, watch)?;
+        let ControlFlow::Continue((cycles, counters)) = solved else {
+            return Ok(ControlFlow::Break(()));
+        };
         let memory = contact.into_memory();
         Ok(ControlFlow::Continue(SolvedCycles {
             surface,
@@ -329,90 +323,6 @@ impl March {
             counters,
             memory,
         }))
-    }
-
-    /// Solves a repeating cycle of one activity on the contact that all activities share.
-    fn solve_activity(
-        &self,
-        number: usize,
-        contact: &mut dyn ContactModel,
-        spent: CycleHistory,
-        counters: &mut SolverCounters,
-        watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<ControlFlow<(), Cycle>, MarchError> {
-        let update = self.state.updates.len() + 1;
-        let (cycles, time) = (self.cycles(), self.time());
-        let Activity { name, machine, .. } = &self.test.activities[number];
-        let own = &self.state.activities[number];
-        let mut simulator = Simulator::new(machine, &self.chains[number], contact, &time);
-        simulator.warm_starts.clone_from(&own.warm_starts);
-        simulator.history = spent;
-        let (increments, interval) = (time.increments as f64, self.likely_interval());
-        let activities = self.test.activities.len() as f64;
-        let mut watch_cycle = |solved| {
-            let cycles_solved = solved as f64 / increments;
-            let part = (number as f64 + cycles_solved.min(1.0)) / activities;
-            watch(Progress {
-                update,
-                cycles_solved,
-                cycles: cycles + interval * part,
-            })
-        };
-        let solved = simulator.cycle(&own.machine, counters, &mut watch_cycle);
-        solved.map_err(|source| MarchError::Cycle {
-            update,
-            cycles,
-            activity: (self.test.activities.len() > 1).then(|| name.clone()),
-            source,
-        })
-    }
-
-    /// How nearly the next cycle must repeat.
-    fn time(&self) -> TimeSettings {
-        let time = self.test.time;
-        let is_last = self.cycles() + self.likely_interval() >= LAST * self.test.schedule.cycles;
-        if self.state.updates.is_empty() || is_last {
-            return time.repeating_within(KEPT);
-        }
-        time
-    }
-
-    /// The cycles that the next step will likely take.
-    fn likely_interval(&self) -> f64 {
-        let schedule = &self.test.schedule;
-        let last = self.state.last_step.as_ref().map(|last| last.interval);
-        let left = schedule.cycles - self.cycles();
-        match schedule.updates {
-            Updates::Fixed(updates) => {
-                let (done, creeps) = (self.state.updates.len(), self.test.creep.is_some());
-                fixed_interval(schedule.cycles, updates, done, creeps)
-            }
-            Updates::Auto { .. } => last.map_or(0.0, |last| shared_out(left, last)),
-        }
-    }
-
-    /// Fails where no activity brings the bodies together.
-    fn check_contact(&self, solved: &SolvedCycles) -> Result<(), MarchError> {
-        if solved.touch() {
-            return Ok(());
-        }
-        Err(MarchError::lost_contact(
-            self.state.updates.len() + 1,
-            &self.test,
-            &solved.cycles[0].end,
-            solved.counters.added_inertia,
-        ))
-    }
-
-    fn step_start<'a>(&'a self, rates: &'a Rates) -> StepStart<'a> {
-        StepStart {
-            rates,
-            last: self.state.last_step.as_ref(),
-            worn_mm: self.state.depths.wear_mm(),
-            cycles: self.cycles(),
-            updates: self.state.updates.len(),
-            creeps: self.test.creep.is_some(),
-        }
     }
 
     /// The creep by the end of a step, and its memory then, if the insert creeps.
@@ -441,7 +351,7 @@ impl March {
         Some((under, record))
     }
 
-    /// Lowers the surface by the depths of a step.
+    /// Lowers the surface by the depths of a step: wear, and creep if the insert creeps.
     fn lower(
         &mut self,
         surface: &ArticulatingSurface,
@@ -451,12 +361,16 @@ impl March {
         let down_mm = total_mm(taken, surface.positions.len());
         let mut nodes = down_mm.iter().zip(self.insert.thickness_mm());
         if let Some(node) = nodes.position(|(depth, thickness)| depth >= thickness) {
-            let place = surface.positions[node];
+            // Wear and creep there, if the insert creeps.
+            let (before, at) = (&self.state.depths, |depths_mm: &[f64]| depths_mm[node]);
+            let by = taken.get(1).map(|crept| WornAndCrept {
+                wear_mm: at(before.wear_mm()) + at(&taken[0].depth_mm),
+                creep_mm: before.creep_mm().map_or(0.0, at) + at(&crept.depth_mm),
+            });
             return Err(MarchError::WornThrough {
                 update,
-                x: place.x,
-                z: place.z,
-                by: self.through_at(node, taken),
+                place_mm: surface.positions[node],
+                by,
             });
         }
         self.insert.wear_down(surface, &down_mm);
@@ -474,29 +388,21 @@ impl March {
         })
     }
 
-    /// Wear and creep at a node that is worn through, if the insert creeps.
-    fn through_at(&self, node: usize, taken: &[DepthField]) -> Option<WornAndCrept> {
-        let crept = taken.iter().find(|field| field.name == DepthField::CREEP)?;
-        let before = self.state.depths.creep_mm();
-        Some(WornAndCrept {
-            wear_mm: self.state.depths.wear_mm()[node] + taken[0].depth_mm[node],
-            creep_mm: before.map_or(0.0, |creep_mm| creep_mm[node]) + crept.depth_mm[node],
-        })
-    }
-
     /// The results of an update, after the insert has been lowered by `taken`.
     fn record(
         &self,
         solved: &SolvedCycles,
-        step: &WearStep,
+        &SolvedStep { rates, step, .. }: &SolvedStep<'_>,
         taken: &[DepthField],
-        area_mm2: &[f64],
         worst_quality: f64,
+        under_surface: Option<UnderSurfaceRecord>,
     ) -> UpdateRecord {
-        let last = self.state.updates.last();
+        let (area_mm2, last) = (&rates.area_mm2, self.state.updates.last());
         let lost_mm3 = volume_mm3(area_mm2, &lost_mm(taken, area_mm2.len()));
         let volume_loss_mm3 = lost_mm3 + last.map_or(0.0, |last| last.volume_loss_mm3);
         let creep = self.creep_record(taken, area_mm2);
+        let creep_mm3 = creep.map_or(0.0, |creep| creep.volume_mm3);
+        let wear_mm = self.state.depths.wear_mm().iter();
         let cycles = solved.cycles.iter();
         let increments: usize = cycles.clone().map(|cycle| cycle.increments_solved).sum();
         UpdateRecord {
@@ -504,29 +410,23 @@ impl March {
             volume_loss_mm3,
             volume_loss_mesh_mm3: self.test.insert.volume_mm3()
                 - self.insert.volume_mm3()
-                - creep.map_or(0.0, |creep| creep.volume_mm3),
+                - creep_mm3,
             mass_loss_mg: volume_loss_mm3 * self.test.density_mg_per_mm3,
-            max_depth_mm: self
-                .state
-                .depths
-                .wear_mm()
-                .iter()
-                .copied()
-                .fold(0.0, f64::max),
+            max_depth_mm: wear_mm.copied().fold(0.0, f64::max),
             peak_pressure_mpa: solved.max(|row| row.peak_pressure_mpa),
             peak_contact_area_mm2: solved.max(|row| row.contact_area_mm2),
             cycles_solved: increments as f64 / self.test.time.increments as f64,
             repeats: cycles.clone().all(|cycle| cycle.repeats),
             worst_quality,
             creep,
-            under_surface: None,
+            under_surface,
         }
     }
 
     /// Creep after a step that took these depths.
     fn creep_record(&self, taken: &[DepthField], area_mm2: &[f64]) -> Option<CreepRecord> {
         let law = self.test.creep.as_ref()?;
-        let crept = taken.iter().find(|field| field.name == DepthField::CREEP)?;
+        let crept = taken.get(1)?;
         let last = self.state.updates.last().and_then(|last| last.creep);
         let before_mm3 = last.map_or(0.0, |last| last.volume_mm3);
         Some(CreepRecord::new(
@@ -537,26 +437,21 @@ impl March {
         ))
     }
 
-    /// Adds an interval to the sums over the test, and keeps its fields.
-    fn add_interval(&mut self, interval: &SolvedStep<'_>, cycles: &[Cycle]) {
+    /// Adds a step to the sums over the test, and keeps its fields.
+    fn sum_up(&mut self, step: &SolvedStep<'_>) {
         let (law, state) = (self.test.wear.as_ref(), &mut self.state);
-        let area_mm2 = &interval.rates.area_mm2;
-        let outside_mm3 = outside_mm3(interval.worn, area_mm2, &interval.step.depth_mm);
+        let (area_mm2, interval) = (&step.rates.area_mm2, step.step.interval);
+        let outside_mm3 = outside_mm3(step.worn, area_mm2, &step.step.depth_mm);
         state.outside_mm3 = sum(state.outside_mm3, outside_mm3);
         let others = self.test.comparison_laws.iter();
         for (law, worn) in others.zip(&mut state.comparison_laws) {
-            worn.add(
-                law.law.as_ref(),
-                interval.mean,
-                area_mm2,
-                interval.step.interval,
-            );
+            worn.add(law.law.as_ref(), step.mean, area_mm2, interval);
         }
-        let worn = wear_of_each(law, interval, cycles);
+        let worn = wear_of_each(law, step);
         for (activity, worn) in state.activities.iter_mut().zip(worn) {
             activity.wear = activity.wear.and(worn);
         }
-        let fields = NodeFields::new(interval, &self.insert, &state.depths);
+        let fields = NodeFields::new(step, &self.insert, &state.depths);
         if state.fields.is_none() {
             let pressures_mpa = &fields.peak_pressure_mpa;
             state.first_pressure_mpa.clone_from(pressures_mpa);
@@ -564,7 +459,7 @@ impl March {
         state.fields = Some(fields);
     }
 
-    /// Keeps what the next update and a resumed march need of this one.
+    /// Keeps the data that the next update and a resumed march require.
     fn remember(&mut self, solved: SolvedCycles, step: WearStep, rates: Rates, before: Lowered) {
         let update = self.state.updates.len() - 1;
         let cycles_before = self.state.cycles_before(update);
@@ -577,15 +472,15 @@ impl March {
             contact: std::mem::replace(&mut self.state.contact, solved.memory.state),
             machines: solved.cycles.iter().map(|cycle| cycle.end).collect(),
         };
-        self.state
-            .pass(cycles_before / self.test.schedule.cycles, snapshot);
+        let part = cycles_before / self.test.schedule.cycles;
+        self.state.pass(part, snapshot);
         self.cache = solved.memory.cache;
         let activities = self.state.activities.iter_mut().zip(solved.cycles);
         let kept = activities.map(|(activity, cycle)| activity.keep(cycles_before, cycle));
-        let (spent, instants) = kept.unzip();
-        self.spent = spent;
-        self.pressed = Some(Pressed {
+        let (histories, instants) = kept.unzip();
+        self.last = Some(LastCycles {
             surface: solved.surface,
+            histories,
             instants,
         });
     }

@@ -5,20 +5,19 @@
 //! | `wear_test` | a whole test: bodies, laws, activities, schedule |
 //! | `placement` | lowers the femur onto the insert and lets it settle |
 //! | `march` | the loop over updates: cycles solved, rates, a step, the new surface |
-//! | `solved_cycles` | the solved cycles of an update |
-//! | `rates` | the wear of a cycle, and how soon wear changes it |
+//! | `solved_cycles` | the solution of the cycles of an update |
+//! | `rates` | the wear per cycle, and the rate at which wear changes it |
 //! | `step`, `next_step`, `step_rules` | the interval of a step, and the wear over it |
 //! | `accumulated_error` | the error that the length of the steps causes |
 //! | `comparison_laws`, `activity_wear` | the wear by other laws, and by each activity |
-//! | `depth` | the depth of the surface by cause, and which of it loses mass |
-//! | `creep`, `creep_contact` | the depth by creep, and the load that causes it |
-//! | `records`, `state` | the results of an update, and all that a march needs to resume |
+//! | `depth` | the depth of the surface by cause |
+//! | `creep` | the depth by creep, and the load that causes it |
+//! | `records`, `state` | the results of an update, and the state from which a march resumes |
 
 mod accumulated_error;
 mod activity_wear;
 mod comparison_laws;
 mod creep;
-mod creep_contact;
 mod depth;
 mod error;
 mod march;

@@ -1,4 +1,4 @@
-//! The next step of a march: how many cycles it takes, and what they wear.
+//! The choice of the next step of a march.
 
 use super::{
     Schedule, Updates,
@@ -7,28 +7,25 @@ use super::{
     step_rules::{exponential, extrapolated},
 };
 
-/// The first step takes this share of the test at most, since nothing is known yet of how rates
-/// change, ...
+/// Largest share of the test that the first step takes, since the change of the rates is not known yet, ...
 const FIRST_SHARE: f64 = 0.12;
-/// ... and less where the tolerance is smaller than this: the error of a step is second order.
+/// ... and the tolerance below which it takes less: the error of a step is second order.
 const FIRST_TOLERANCE: f64 = 0.05;
-/// Creep goes with the logarithm of time: most of it comes at once, and takes the highest pressures away. Where the
-/// insert creeps, the first step is this part of what it would be else, so that nothing to speak of wears by them.
+/// Factor on the first step where the insert creeps. Creep grows with the logarithm of time: most of it comes at once
+/// and removes the highest pressures, so that little should wear under them.
 const FIRST_OF_CREEP: f64 = 0.1;
-/// A step is at most this many times as long as the one before, over which its rates were seen to
-/// change, ...
+/// Largest growth from one step to the next, since the change of the rates was observed over the last step only, ...
 const MAX_GROWTH: f64 = 1.5;
-/// ... and at least this many times.
+/// ... and smallest.
 const MIN_GROWTH: f64 = 0.25;
-/// Longest step in units of 1 / relaxation. A node that lies too deep alone comes back ever further
-/// on the other side from 2 on: see [`super::step_rules`].
+/// Longest step in units of 1 / relaxation. From 2 on, a single node that lies too deep overshoots further at every
+/// step: see [`super::step_rules`].
 const LONGEST: f64 = 1.8;
-/// A step in error is shortened by this factor until it is not.
+/// Factor that shortens a step until its error is within the tolerance.
 const SHORTER: f64 = 0.9;
-/// A step that was a shorter part of the next than this does not tell how rates go on changing through that.
-const MIN_TELLING: f64 = 0.25;
+/// Smallest ratio of the last interval to the next at which the change over the last is extrapolated.
+const MIN_OBSERVED: f64 = 0.25;
 
-/// The next step of a march by `schedule`.
 pub(super) fn next_step(start: StepStart<'_>, schedule: &Schedule) -> WearStep {
     let left = schedule.cycles - start.cycles;
     let (interval, is_last) = match schedule.updates {
@@ -38,15 +35,15 @@ pub(super) fn next_step(start: StepStart<'_>, schedule: &Schedule) -> WearStep {
             (interval, done + 1 >= updates)
         }
         Updates::Auto { tolerance } => {
-            let wished = adaptive_interval(start, schedule.cycles, tolerance);
-            let interval = shared_out(left, wished);
+            let longest = adaptive_interval(start, schedule.cycles, tolerance);
+            let interval = equal_interval(left, longest);
             (interval, interval >= left)
         }
     };
     let (depth_mm, predicted_mm) = worn(start, schedule.updates, interval);
     WearStep {
         interval,
-        // The last step lands on the last cycle, whatever the intervals sum up to.
+        // The last step ends exactly at the last cycle, which the sum of the intervals may miss by rounding.
         cycles_after: if is_last {
             schedule.cycles
         } else {
@@ -58,10 +55,10 @@ pub(super) fn next_step(start: StepStart<'_>, schedule: &Schedule) -> WearStep {
     }
 }
 
-/// What an interval wears, mm, and what it would wear by a second rule, which tells its error.
+/// The depth of an interval, mm, and the depth by a second rule, whose difference estimates the error.
 fn worn(start: StepStart<'_>, updates: Updates, interval: f64) -> (Vec<f64>, Vec<f64>) {
-    let tells = |last: &&StepRecord| last.interval > MIN_TELLING * interval;
-    let (rates, last) = (start.rates, start.last.filter(tells));
+    let is_long = |last: &&StepRecord| last.interval > MIN_OBSERVED * interval;
+    let (rates, last) = (start.rates, start.last.filter(is_long));
     let exponential = exponential(rates, last, interval);
     match updates {
         Updates::Fixed(_) => (extrapolated(rates, last, interval), exponential),
@@ -73,8 +70,8 @@ fn worn(start: StepStart<'_>, updates: Updates, interval: f64) -> (Vec<f64>, Vec
     }
 }
 
-/// The interval after `done` of a fixed number of updates: all are equal, but where the insert creeps the first is
-/// shorter.
+/// The interval after `done` of a fixed number of updates: all are equal, but the first is shorter where the insert
+/// creeps.
 pub(super) fn fixed_interval(all_cycles: f64, updates: usize, done: usize, creeps: bool) -> f64 {
     let even = all_cycles / updates as f64;
     if !creeps || updates == 1 {
@@ -88,47 +85,43 @@ pub(super) fn fixed_interval(all_cycles: f64, updates: usize, done: usize, creep
 
 /// The longest interval whose estimated error of the maximum depth is within `tolerance` times
 /// the depth expected at the end, and that is stable.
-pub(super) fn adaptive_interval(start: StepStart<'_>, all_cycles: f64, tolerance: f64) -> f64 {
-    let left = all_cycles - start.cycles;
+fn adaptive_interval(start: StepStart<'_>, all_cycles: f64, tolerance: f64) -> f64 {
+    let (left, rates_mm) = (all_cycles - start.cycles, &start.rates.depth_per_cycle_mm);
     let stable = LONGEST / start.rates.relaxation_per_cycle.max(f64::MIN_POSITIVE);
     let Some(last) = start.last else {
         let share = FIRST_SHARE * (tolerance / FIRST_TOLERANCE).sqrt().min(1.0);
         let part = if start.creeps { FIRST_OF_CREEP } else { 1.0 };
+        // The error of the first step is second order in its length, hence the root of the tolerance.
         return stable.min(part * share * all_cycles);
     };
-    let expected_mm = deepest(start, |node| start.rates.depth_per_cycle_mm[node] * left);
+    let first_order = |interval| deepest(start, |node| rates_mm[node] * interval);
+    let second_order = |interval| deepest(start, |node| second_order(start, node, interval));
+    let tolerance_mm = tolerance * first_order(left);
     let shortest = MIN_GROWTH * last.interval;
     let mut interval = stable.min(MAX_GROWTH * last.interval);
-    while interval > shortest && predicted_error_mm(start, interval) > tolerance * expected_mm {
+    // The difference between first and second order estimates the error of the first.
+    let error_mm = |interval| (second_order(interval) - first_order(interval)).abs();
+    while interval > shortest && error_mm(interval) > tolerance_mm {
         interval *= SHORTER;
     }
     interval.max(shortest)
 }
 
-/// By how much the maximum depth after `interval` cycles differs between the first order and the
-/// second, mm: every node's rate taken as the last one, or extrapolated from the last two.
-fn predicted_error_mm(start: StepStart<'_>, interval: f64) -> f64 {
-    let rates = &start.rates.depth_per_cycle_mm;
-    let first = deepest(start, |node| rates[node] * interval);
-    let second = deepest(start, |node| second_order(start, node, interval));
-    (second - first).abs()
-}
-
-/// What a node wears in `interval` cycles, mm, its rate extrapolated from the last two.
-pub(super) fn second_order(start: StepStart<'_>, node: usize, interval: f64) -> f64 {
+/// Depth of a node after `interval` cycles, mm, its rate extrapolated from the last two.
+fn second_order(start: StepStart<'_>, node: usize, interval: f64) -> f64 {
     let rate = start.rates.depth_per_cycle_mm[node];
     let change = |last: &StepRecord| (rate - last.depth_per_cycle_mm[node]) / last.interval;
     rate * interval + start.last.map_or(0.0, change) * interval * interval / 2.0
 }
 
-/// The cycles that are left in equal intervals, none longer than `wished`: so the last is no stump.
-pub(super) fn shared_out(left: f64, wished: f64) -> f64 {
-    // A hair is allowed, so that 5 x 0.2 is five intervals and not six.
-    const HAIR: f64 = 1e-9;
-    left / (left / wished - HAIR).ceil().max(1.0)
+/// The length of equal intervals, none longer than `longest`, that fill the cycles left.
+pub(super) fn equal_interval(left: f64, longest: f64) -> f64 {
+    // Without it, rounding would make six intervals of 1 / 0.2 and not five.
+    const ROUNDING: f64 = 1e-9;
+    left / (left / longest - ROUNDING).ceil().max(1.0)
 }
 
-/// The deepest node after `more` at every node.
+/// Maximum depth after `more` at every node, mm.
 fn deepest(start: StepStart<'_>, more: impl Fn(usize) -> f64) -> f64 {
     let worn = start.worn_mm.iter().enumerate();
     worn.map(|(node, worn)| worn + more(node))
@@ -141,7 +134,7 @@ mod tests {
     use crate::evolve::rates::Rates;
 
     #[test]
-    fn the_last_fixed_step_lands_on_the_last_cycle() {
+    fn the_last_fixed_step_ends_at_the_last_cycle() {
         for creeps in [false, true] {
             let ends = ends_of_three_steps(creeps);
             assert_eq!(ends[2], 5e6);
@@ -217,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn verify_the_predicted_error_is_held_to_the_tolerance() {
+    fn verify_the_predicted_error_is_within_the_tolerance() {
         // 0.1 mm and 4e6 cycles of 1e-7 mm: 0.5 mm are expected, 0.005 mm may be wrong.
         let (now, before) = (rates(1e-7, 0.0), last(1.1e-7, 1e6));
         let exact = (0.005 * 2.0 * 1e6 / 1e-8_f64).sqrt();
@@ -228,9 +221,9 @@ mod tests {
     }
 
     #[test]
-    fn cycles_left_are_shared_out_evenly() {
-        assert_eq!(shared_out(1.0, 0.2), 0.2);
-        assert_eq!(shared_out(1.0, 0.6), 0.5);
-        assert_eq!(shared_out(1.0, 7.0), 1.0);
+    fn cycles_left_are_divided_evenly() {
+        assert_eq!(equal_interval(1.0, 0.2), 0.2);
+        assert_eq!(equal_interval(1.0, 0.6), 0.5);
+        assert_eq!(equal_interval(1.0, 7.0), 1.0);
     }
 }

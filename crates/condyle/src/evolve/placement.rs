@@ -1,4 +1,4 @@
-//! The femur is lowered onto the insert, and settles.
+//! The placement of the femur: it is lowered onto the insert, and settles.
 
 use super::{PlacementError, WearTest};
 use crate::{
@@ -9,14 +9,14 @@ use crate::{
     spatial::{Pose, RelativeMotion},
 };
 
-/// How deep the first touch is, mm.
+/// Overclosure of the first touch, mm.
 const FIRST_OVERCLOSURE_MM: f64 = 0.01;
-/// Longest step down where the gap is not known better, mm: less than a mesh's field reaches.
+/// Longest step down, mm: less than the reach of a mesh's distance field, beyond which the gap is a bound.
 const LONGEST_STEP_MM: f64 = 1.5;
-/// A settled femur may be this deep in the insert, as a share of the thickness there.
+/// Largest overclosure of a settled femur, as a share of the thickness there.
 const DEEPEST_SHARE: f64 = 0.5;
 
-/// The machine's chain, zeroed where the femur settles, and the settled positions.
+/// Returns the machine's chain, zeroed where the femur settles, and the settled positions.
 pub(super) fn place(
     test: &WearTest,
     bodies: Bodies<'_>,
@@ -28,10 +28,10 @@ pub(super) fn place(
     let flexed = Chain::new(machine, start, test.flexion_axis_mm)
         .at(&driven(test))
         .pose;
-    let lowered = lowered(bodies.femur, bodies.surface, flexed).ok_or(PlacementError::Apart {
-        x_mm: test.start_mm.0,
-        z_mm: test.start_mm.1,
-    })?;
+    let start_mm = test.start_mm;
+    let lowered = lowered(bodies.femur, bodies.surface, flexed);
+    let lowered = lowered.ok_or(PlacementError::Apart { start_mm })?;
+    // A slight overclosure, so that the first evaluation has a stiffness.
     let down = lowered.translation.y - flexed.translation.y - FIRST_OVERCLOSURE_MM;
     let chain = Chain::new(machine, start + Vec3::y() * down, test.flexion_axis_mm);
     let mut contact = test.contact.contact(bodies, ContactMemory::default());
@@ -47,25 +47,24 @@ pub(super) fn place(
     Ok(chain.zeroed_at(machine, &positions))
 }
 
-/// Positions with the femur turned as at the start of the cycle and all else at zero.
+/// Positions with the rotations at the start of the cycle and all other joints at zero.
 fn driven(test: &WearTest) -> [f64; 6] {
     std::array::from_fn(|j| {
         let joint = &test.machine().joints[j];
         let description = joint.description;
-        let turns = description.kind() == JointKind::Rotation;
+        let is_driven = description.settling == Settling::Driven;
         match &joint.drive {
-            Drive::Prescribed(turn) if turns && description.settling == Settling::Driven => {
-                turn.at(0.0).0
+            Drive::Prescribed(angle) if is_driven && description.kind() == JointKind::Rotation => {
+                angle.at(0.0).0
             }
             _ => 0.0,
         }
     })
 }
 
-/// The pose lowered from high above until the first node touches; none if it passes the insert.
+/// The pose lowered from far above until the first node touches; none if the femur passes the insert.
 ///
-/// No point of the femur comes down faster than the femur, so a step by the smallest gap cannot
-/// jump over a touch.
+/// The gap is a lower bound of the distance, so a step by the smallest gap cannot skip a touch.
 fn lowered(femur: &FemoralSurface, surface: &ArticulatingSurface, pose: Pose) -> Option<Pose> {
     const TOUCH_MM: f64 = 1e-4;
     let (low, high) = surface.height_range_mm();
@@ -82,6 +81,7 @@ fn lowered(femur: &FemoralSurface, surface: &ArticulatingSurface, pose: Pose) ->
         if nearest <= TOUCH_MM {
             return Some(pose);
         }
+        // Beyond its band a mesh's gap is a bound along grid lines, which is not used for longer steps.
         pose.translation.y -= nearest.min(LONGEST_STEP_MM);
     }
     None

@@ -11,52 +11,52 @@ use crate::{
     wear::MeanCycle,
 };
 
-/// How far a march has come.
+/// Progress of a march.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Which update, from 1.
+    /// Number of the update in progress, from 1.
     pub update: usize,
-    /// Cycles solved for it; the last of them counts once it repeats itself.
+    /// Cycles solved for it.
     pub cycles_solved: f64,
-    /// Cycles of the test done, the part of the present interval that is solved included.
+    /// Cycles of the test done, including the solved part of the present interval.
     pub cycles: f64,
 }
 
-/// What one update found.
+/// Results of one update.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UpdateRecord {
     /// Cycles done after it.
     pub cycles: f64,
     /// Volume worn so far, from depth times area, mm3.
     pub volume_loss_mm3: f64,
-    /// Volume worn so far, from the change of the mesh less the volume of creep, mm3.
+    /// Volume worn so far, from the change of the mesh without the volume of creep, mm3.
     pub volume_loss_mesh_mm3: f64,
     /// Mass worn so far, mg.
     pub mass_loss_mg: f64,
-    /// Deepest wear so far, mm.
+    /// Maximum depth of wear so far, mm.
     pub max_depth_mm: f64,
-    /// Highest pressure of its cycles anywhere, between nodes too, MPa.
+    /// Highest pressure of its cycles, also between nodes, MPa.
     pub peak_pressure_mpa: f64,
     /// Largest contact area of its cycles, mm2.
     pub peak_contact_area_mm2: f64,
-    /// Cycles solved until one of every activity repeated itself.
+    /// Cycles solved until every activity repeated itself.
     pub cycles_solved: f64,
-    /// Whether all did.
+    /// Whether all of them did.
     pub repeats: bool,
     /// Smallest scaled Jacobian of the worn mesh.
     pub worst_quality: f64,
     /// Creep so far, if the insert creeps.
     pub creep: Option<CreepRecord>,
-    /// What is below the surface where the pressure is highest, if the insert is a solid.
+    /// Stress below the surface at the highest pressure, if the insert is a solid.
     pub under_surface: Option<UnderSurfaceRecord>,
 }
 
-/// The motions and loads of one solved cycle, and how many cycles of wear it came after.
+/// The motions and loads of one solved cycle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CycleRecord {
     /// Cycles done before it.
     pub cycles: f64,
-    /// One row an increment.
+    /// One row per increment.
     pub rows: Vec<CycleRow>,
 }
 
@@ -65,25 +65,25 @@ pub struct CycleRecord {
 pub struct NodeFields {
     /// Depth worn so far, mm.
     pub wear_depth_mm: Vec<f64>,
-    /// Depth one cycle wears, mm.
+    /// Depth worn per cycle, mm.
     pub depth_per_cycle_mm: Vec<f64>,
-    /// Highest pressure of the cycles, the mean over the node's share, MPa.
+    /// Highest pressure of the cycles, mean over the node's share, MPa.
     pub peak_pressure_mpa: Vec<f64>,
-    /// Distance slid under pressure in a cycle, mm: S = sum of A'/A |ds|, with A' the part of the
-    /// node's share A that presses; the mean over all activities by their shares.
+    /// Sliding distance under pressure per cycle, mm: S = sum of A'/A |ds|, with A' the loaded part of the
+    /// node's share A; the mean over all activities by their shares.
     pub sliding_distance_mm: Vec<f64>,
-    /// Cross-shear ratio of the mean cycle: what of pressure times slip is across the principal direction, 0
+    /// Cross-shear ratio of the mean cycle: part of pressure times slip across the principal direction, from 0
     /// for straight paths to 0.5.
     pub cross_shear: Vec<f64>,
     /// The principal direction, a unit vector along the surface in the insert frame that points anteriorly; 0
-    /// where nothing slid, or as much in every direction.
+    /// where nothing slid, or equally in every direction.
     pub principal_direction: Vec<[f64; 3]>,
-    /// Thickness left, mm.
+    /// Remaining thickness, mm.
     pub thickness_mm: Vec<f64>,
 }
 
 impl NodeFields {
-    /// Those of an insert that no cycle has worn in this march.
+    /// The fields before the first update.
     pub(super) fn unworn(insert: &Insert, depths: &DepthFields) -> Self {
         let none = vec![0.0; insert.surface_nodes().len()];
         Self {
@@ -97,19 +97,13 @@ impl NodeFields {
         }
     }
 
-    /// The fields after a step.
     pub(super) fn new(interval: &SolvedStep<'_>, insert: &Insert, depths: &DepthFields) -> Self {
-        let SolvedStep {
-            mean: cycles,
-            surface,
-            rates,
-            ..
-        } = *interval;
+        let (cycles, surface) = (interval.mean, interval.surface);
         let each = |value: fn(&MeanCycle<'_>) -> f64| cycles.iter().map(value).collect();
         let direction = |(node, cycle)| principal_direction(surface, node, cycle);
         Self {
             wear_depth_mm: depths.wear_mm().to_vec(),
-            depth_per_cycle_mm: rates.depth_per_cycle_mm.clone(),
+            depth_per_cycle_mm: interval.rates.depth_per_cycle_mm.clone(),
             peak_pressure_mpa: each(|cycle| cycle.peak_pressure_mpa),
             sliding_distance_mm: each(|cycle| cycle.pressed_distance_mm),
             cross_shear: each(|cycle| cycle.slip_work.cross_shear()),
@@ -119,7 +113,6 @@ impl NodeFields {
     }
 }
 
-/// The principal direction of a node in the insert frame.
 fn principal_direction(
     surface: &ArticulatingSurface,
     node: usize,
@@ -132,21 +125,20 @@ fn principal_direction(
     (anterior * forwards + lateral * aside).into()
 }
 
-/// Creep so far, and the place where the surface lies deepest by wear and creep together.
+/// Creep so far, and the place of the deepest penetration by wear and creep together.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreepRecord {
-    /// Volume that the surface has gone down by without loss of mass, from depth times area, mm3.
+    /// Volume of creep, from depth times area, mm3; no mass is lost.
     pub volume_mm3: f64,
-    /// Deepest creep, mm.
+    /// Maximum depth of creep, mm.
     pub max_depth_mm: f64,
-    /// Deepest penetration, wear and creep together, mm.
+    /// Maximum penetration, wear and creep together, mm.
     pub max_penetration_mm: f64,
-    /// What of that is wear, mm.
+    /// Wear at that place, mm.
     pub wear_there_mm: f64,
-    /// What of that is creep, mm.
+    /// Creep at that place, mm.
     pub creep_there_mm: f64,
-    /// Deepest place that a scan would find once the insert has rested without load, mm: wear, and what of creep
-    /// is left.
+    /// Maximum depth in a scan after long rest without load, mm: wear and the permanent part of creep.
     pub max_unloaded_mm: f64,
 }
 
@@ -170,54 +162,60 @@ impl CreepRecord {
     }
 }
 
-/// What is below the surface at the increment of an update with the highest pressure.
+/// Stress below the surface at the increment of an update with the highest pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UnderSurfaceRecord {
-    /// Which of the activities has it, from 0.
+    /// Number of the activity, from 0.
     pub activity: usize,
     /// Place in its cycle, %.
     pub percent: f64,
     /// Largest equivalent stress of von Mises, at the centre of an element, MPa.
     pub von_mises_mpa: f64,
-    /// How deep below the surface that centre is, mm.
+    /// Depth of that centre below the surface, mm.
     pub von_mises_depth_mm: f64,
     /// Largest shear stress, at the centre of an element, MPa.
     pub max_shear_mpa: f64,
-    /// How deep below the surface that centre is, mm.
+    /// Depth of that centre below the surface, mm.
     pub max_shear_depth_mm: f64,
-    /// What has yielded, if the insert does.
+    /// Plastic strain, if the insert yields.
     pub plastic: Option<PlasticRecord>,
-    /// What the backside did in the last cycles, if it rests on its tray.
+    /// Motion of the backside in the last cycles, if it rests on its tray.
     pub backside: Option<BacksideAtRest>,
 }
 
-/// What of an insert has yielded after an update.
+/// Plastic strain of an insert after an update.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlasticRecord {
-    /// How far the surface has given way for good at most, mm.
+    /// Maximum permanent deflection of the surface, mm.
     pub max_permanent_set_mm: f64,
     /// Largest accumulated plastic strain.
     pub max_plastic_strain: f64,
     /// Elements that have yielded.
     pub yielded_elements: usize,
-    /// Elements that yield in every cycle still.
+    /// Elements that still yield in every cycle.
     pub ratcheting_elements: usize,
 }
 
 impl UnderSurfaceRecord {
-    /// What is most, at a place in the cycle of an activity; `surface` is that of the insert.
+    /// The record of the stresses at a place in the cycle of an activity.
     pub(super) fn new(
         under: &UnderSurface,
         insert: &Insert,
         surface: &ArticulatingSurface,
         (activity, percent): (usize, f64),
     ) -> Self {
+        // Depth of an element's centre below the surface at the nearest node.
+        let depth_mm = |element: usize| {
+            let centre = insert.mesh().corners(element).iter().sum::<Vec3>() / 8.0;
+            let apart = |place: &Vec3| (place - centre).norm_squared();
+            let places = surface.positions.iter().zip(&surface.normals);
+            let nearest = places.min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)));
+            nearest.map_or(0.0, |(place, normal)| (place - centre).dot(normal))
+        };
         let deepest = |values: &[f64]| {
             let most = values.iter().enumerate();
             let most = most.max_by(|a, b| a.1.total_cmp(b.1));
-            most.map_or((0.0, 0.0), |(element, &value)| {
-                (value, depth_mm(insert, surface, element))
-            })
+            most.map_or((0.0, 0.0), |(element, &value)| (value, depth_mm(element)))
         };
         let (von_mises_mpa, von_mises_depth_mm) = deepest(&under.von_mises_mpa);
         let (max_shear_mpa, max_shear_depth_mm) = deepest(&under.max_shear_mpa);
@@ -248,13 +246,4 @@ impl PlasticRecord {
             ratcheting_elements: in_regimes(Regime::Ratcheting),
         }
     }
-}
-
-/// How deep the centre of an element is below the surface at the node that is nearest, mm.
-fn depth_mm(insert: &Insert, surface: &ArticulatingSurface, element: usize) -> f64 {
-    let centre = insert.mesh().corners(element).iter().sum::<Vec3>() / 8.0;
-    let apart = |place: &Vec3| (place - centre).norm_squared();
-    let places = surface.positions.iter().zip(&surface.normals);
-    let nearest = places.min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)));
-    nearest.map_or(0.0, |(place, normal)| (place - centre).dot(normal))
 }

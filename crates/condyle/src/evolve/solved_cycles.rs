@@ -1,17 +1,26 @@
-//! The solved cycles from which the wear of an update is computed.
+//! The solution of one repeating cycle of every activity, from which the wear of an update is computed.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
-use super::Activity;
+use super::{
+    Activity, MarchError, MarchState, Progress, Updates, WearTest,
+    next_step::{equal_interval, fixed_interval},
+};
 use crate::{
-    contact::{ContactMemory, CycleHistory, Moment},
+    contact::{ContactMemory, ContactModel, CycleHistory, Moment},
     geometry::ArticulatingSurface,
-    machine::{Chain, Cycle, CycleRow, SolverCounters},
+    machine::{Chain, Cycle, CycleRow, Simulator, SolverCounters},
     spatial::Pose,
     wear::SharedCycle,
 };
 
-/// The last solved cycle of an activity, and the surface that it pressed on.
+/// Factor on the tolerances of the repetition for the first and the last cycle, whose motions are results. The
+/// others matter by their wear alone, whose error is a hundred times smaller than that of the motions.
+const REPORTED: f64 = 0.1;
+/// An update that will reach this part of the cycles is the last: the sum of the intervals is rounded.
+const LAST: f64 = 1.0 - 1e-9;
+
+/// The last solved cycle of an activity, and the surface that it loaded.
 ///
 /// The wear of an update is computed from it: the surface is the one before that wear.
 #[derive(Clone, Copy)]
@@ -19,11 +28,10 @@ use crate::{
 pub struct SolvedCycle<'a> {
     /// One row per increment.
     pub rows: &'a [CycleRow],
-    /// The articulating surface that it pressed on.
+    /// The articulating surface that it loaded.
     pub surface: &'a ArticulatingSurface,
     pub(super) chain: &'a Chain,
     pub(super) history: &'a CycleHistory,
-    /// The moments of each increment in `history`.
     pub(super) instants: &'a [Range<usize>],
 }
 
@@ -51,13 +59,84 @@ impl SolvedCycle<'_> {
     }
 }
 
-/// One solved cycle of every activity, and the surface that it pressed on.
+/// One solved cycle of every activity, and the surface that it loaded.
 pub(super) struct SolvedCycles {
     pub surface: ArticulatingSurface,
     pub cycles: Vec<Cycle>,
     pub counters: SolverCounters,
     /// The memory of the contact after them.
     pub memory: ContactMemory,
+}
+
+/// Solves one repeating cycle of every activity with the geometry fixed, all on the same contact.
+///
+/// `spent` are histories whose memory is reused.
+pub(super) fn solve(
+    test: &WearTest,
+    state: &MarchState,
+    chains: &[Chain],
+    contact: &mut dyn ContactModel,
+    mut spent: Vec<CycleHistory>,
+    watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<ControlFlow<(), (Vec<Cycle>, SolverCounters)>, MarchError> {
+    let activities = &test.activities;
+    let (update, done) = (state.updates.len() + 1, state.cycles());
+    let interval = likely_interval(test, state);
+    let is_reported = update == 1 || done + interval >= LAST * test.schedule.cycles;
+    let time = if is_reported {
+        test.time.repeating_within(REPORTED)
+    } else {
+        test.time
+    };
+    spent.resize_with(activities.len(), CycleHistory::default);
+    let mut counters = state.counters;
+    let mut cycles = Vec::with_capacity(activities.len());
+    for (number, (activity, spent)) in activities.iter().zip(spent).enumerate() {
+        let own = &state.activities[number];
+        let mut simulator = Simulator::new(&activity.machine, &chains[number], contact, &time);
+        simulator.counters = counters;
+        simulator.warm_starts.clone_from(&own.warm_starts);
+        // Histories are large; reusing their memory avoids an allocation per update.
+        simulator.history = spent;
+        let mut watch_cycle = |solved| {
+            let cycles_solved = solved as f64 / time.increments as f64;
+            let part = (number as f64 + cycles_solved.min(1.0)) / activities.len() as f64;
+            watch(Progress {
+                update,
+                cycles_solved,
+                cycles: done + interval * part,
+            })
+        };
+        let solved = simulator.cycle(&own.machine, &mut watch_cycle);
+        counters = simulator.counters;
+        let not_solved = |source| MarchError::Cycle {
+            update,
+            cycles: done,
+            activity: (activities.len() > 1).then(|| activity.name.clone()),
+            source,
+        };
+        match solved.map_err(not_solved)? {
+            ControlFlow::Continue(cycle) => cycles.push(cycle),
+            ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
+        }
+    }
+    Ok(ControlFlow::Continue((cycles, counters)))
+}
+
+/// The cycles that the next step will likely take.
+fn likely_interval(test: &WearTest, state: &MarchState) -> f64 {
+    let schedule = &test.schedule;
+    match schedule.updates {
+        Updates::Fixed(updates) => {
+            let (done, creeps) = (state.updates.len(), test.creep.is_some());
+            fixed_interval(schedule.cycles, updates, done, creeps)
+        }
+        Updates::Auto { .. } => {
+            let left = schedule.cycles - state.cycles();
+            let last = state.last_step.as_ref();
+            last.map_or(0.0, |last| equal_interval(left, last.interval))
+        }
+    }
 }
 
 impl SolvedCycles {
@@ -82,14 +161,11 @@ impl SolvedCycles {
 
     /// The activity and the row with the highest pressure; the first of several.
     pub fn highest_pressure(&self) -> Option<(usize, usize)> {
-        let rows = self
-            .cycles
-            .iter()
-            .enumerate()
-            .flat_map(|(activity, cycle)| {
-                let rows = cycle.rows.iter().enumerate();
-                rows.map(move |(row, own)| ((activity, row), own.peak_pressure_mpa))
-            });
+        let cycles = self.cycles.iter().enumerate();
+        let rows = cycles.flat_map(|(activity, cycle)| {
+            let rows = cycle.rows.iter().enumerate();
+            rows.map(move |(row, own)| ((activity, row), own.peak_pressure_mpa))
+        });
         let higher = |most: ((usize, usize), f64), next: ((usize, usize), f64)| {
             if next.1 > most.1 { next } else { most }
         };

@@ -5,26 +5,26 @@ use super::{
     step::StepRecord,
 };
 
-/// Part of a node's relaxation that the rule counts on. With less, a node that lies too deep alone overshoots
+/// Part of a node's relaxation that the rule uses. With less, a single node that lies too deep overshoots
 /// further at every step before relaxation x interval reaches 2, the limit of Euler's method; with more, slow
-/// changes that neighbours share are taken for fast ones.
+/// changes that neighbours share count as fast ones.
 const COUNTED: f64 = 0.5;
 
-/// Depth that an interval wears if every cycle wears as the one solved: Euler's method.
-pub(super) fn straight(rates: &Rates, interval: f64) -> Vec<f64> {
+/// Depth of an interval at the rates of the solved cycle: Euler's method.
+fn euler(rates: &Rates, interval: f64) -> Vec<f64> {
     let depth = |rate: &f64| rate * interval;
     rates.depth_per_cycle_mm.iter().map(depth).collect()
 }
 
-/// Depth that an interval wears if the volume per cycle goes on changing as it did over the last
+/// Depth of an interval over which the volume per cycle continues to change as over the last
 /// one, which makes the volume second order in the interval.
 ///
-/// The volume that this adds to Euler's goes where the rates grow, in proportion; one that it
-/// takes away goes where they fall. To extrapolate every node by itself (Adams and Bashforth's
-/// method) would be unstable from 1 / relaxation on: the pressure that a node has lost its
-/// neighbours have got, and an interval later it comes back.
+/// The volume added to Euler's is distributed over the nodes whose rates grow, in proportion; a volume
+/// removed, over those whose rates fall. Extrapolating every node by itself (Adams and Bashforth's
+/// method) is unstable from 1 / relaxation on: the pressure that a node loses moves to its
+/// neighbours, and an interval later it returns.
 pub(super) fn extrapolated(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<f64> {
-    let mut depth_mm = straight(rates, interval);
+    let mut depth_mm = euler(rates, interval);
     let Some(last) = last else {
         return depth_mm;
     };
@@ -38,6 +38,7 @@ pub(super) fn extrapolated(rates: &Rates, last: Option<&StepRecord>, interval: f
         before.iter().zip(now).map(towards).collect()
     };
     let pattern_mm3 = volume_mm3(&rates.area_mm2, &pattern);
+    // Without a pattern the volume has no place to go; Euler's step remains.
     if pattern_mm3 != 0.0 {
         for (depth, part) in depth_mm.iter_mut().zip(&pattern) {
             *depth = (*depth + part * added_mm3 / pattern_mm3).max(0.0);
@@ -46,40 +47,49 @@ pub(super) fn extrapolated(rates: &Rates, last: Option<&StepRecord>, interval: f
     depth_mm
 }
 
-/// Volume that an interval wears more than if every cycle wore as the one solved, mm3, as the volume
-/// per cycle goes on changing as it did over the last one.
-pub(super) fn added_mm3(rates: &Rates, last: &StepRecord, interval: f64) -> f64 {
+/// Volume of an interval beyond that of Euler's method, mm3, if the volume per cycle continues to change as over the
+/// last one.
+fn added_mm3(rates: &Rates, last: &StepRecord, interval: f64) -> f64 {
     let change = rates.volume_per_cycle_mm3() - last.volume_per_cycle_mm3();
     interval * interval / (2.0 * last.interval) * change
 }
 
-/// Depth that an interval wears.
+/// Depth of an interval by a rule that is exact for rates that relax exponentially.
 ///
-/// The rate r of a node falls by `k` (part of the [relaxation](Rates)) for every mm that the node is
-/// worn more than the femur sinks there: dr/dn = k (s - r), s how far the femur sinks in a cycle. The
-/// last step, of m cycles and w mm, shows s: r changed by k (s m - w). With that the equation is
-/// solved exactly over the interval of n cycles,
+/// The rate r of a node falls by `k` (part of the [relaxation](Rates)) for every mm by which the wear of the node
+/// exceeds the motion of the femur: dr/dn = k (s - r), s the motion by which the femur sinks per cycle. The
+/// last step, of m cycles and w mm, gives s: r changed by k (s m - w). With that the solution over n cycles is
 ///
 /// depth = n (f r + (1 - f) s), f = (1 - exp(-k n)) / (k n).
 ///
 /// For small k n this tends to extrapolating every rate (Adams and Bashforth's method), which is
-/// unstable from relaxation x interval = 1 on. The femur's part is scaled so that the volume is that
-/// of a volume per cycle that goes on changing as it did.
+/// unstable from relaxation x interval = 1 on. The femur's part is scaled so that the volume agrees with
+/// a volume per cycle that continues to change as it did.
 pub(super) fn exponential(rates: &Rates, last: Option<&StepRecord>, interval: f64) -> Vec<f64> {
-    let mut depth_mm = straight(rates, interval);
+    let mut depth_mm = euler(rates, interval);
     let Some(last) = last else {
         return depth_mm;
     };
     let volume = |depth_mm: &[f64]| volume_mm3(&rates.area_mm2, depth_mm);
-    let asked_mm3 = volume(&depth_mm) + added_mm3(rates, last, interval);
-    let sunk = |node| by_sinking(rates, last, node, interval);
+    let wanted_mm3 = volume(&depth_mm) + added_mm3(rates, last, interval);
+    // The depth at a node by the sinking of the femur: n (1 - f) s.
+    let sunk = |node: usize| {
+        let counted = counted(rates, node);
+        if counted == 0.0 {
+            return 0.0;
+        }
+        let change = rates.depth_per_cycle_mm[node] - last.depth_per_cycle_mm[node];
+        let sunk_mm = (last.depth_mm[node] + change / counted).max(0.0);
+        interval / last.interval * (1.0 - mean_decay(counted * interval)) * sunk_mm
+    };
     let sunk_mm: Vec<f64> = (0..depth_mm.len()).map(sunk).collect();
     for (node, depth) in depth_mm.iter_mut().enumerate() {
-        *depth *= left(counted(rates, node) * interval);
+        *depth *= mean_decay(counted(rates, node) * interval);
     }
     let sunk_mm3 = volume(&sunk_mm);
+    // A negative scale would let the femur rise, and depths become negative.
     let scale = if sunk_mm3 > 0.0 {
-        ((asked_mm3 - volume(&depth_mm)) / sunk_mm3).max(0.0)
+        ((wanted_mm3 - volume(&depth_mm)) / sunk_mm3).max(0.0)
     } else {
         0.0
     };
@@ -88,27 +98,16 @@ pub(super) fn exponential(rates: &Rates, last: Option<&StepRecord>, interval: f6
     depth_mm
 }
 
-/// Depth that the femur's sinking wears at a node, mm: n (1 - f) s.
-fn by_sinking(rates: &Rates, last: &StepRecord, node: usize, interval: f64) -> f64 {
-    let counted = counted(rates, node);
-    if counted == 0.0 {
-        return 0.0;
-    }
-    let change = rates.depth_per_cycle_mm[node] - last.depth_per_cycle_mm[node];
-    let sunk_mm = (last.depth_mm[node] + change / counted).max(0.0);
-    interval / last.interval * (1.0 - left(counted * interval)) * sunk_mm
-}
-
-/// How much of its relaxation a node is taken to have.
+/// The relaxation of a node that the rule uses, per cycle.
 pub(super) fn counted(rates: &Rates, node: usize) -> f64 {
     COUNTED * rates.node_relaxation_per_cycle[node]
 }
 
 /// Mean of exp(-t) for t from 0 to `relaxed`.
-pub(super) fn left(relaxed: f64) -> f64 {
-    // Below this the difference is taken from too few digits.
-    const FEW: f64 = 1e-5;
-    if relaxed > FEW {
+pub(super) fn mean_decay(relaxed: f64) -> f64 {
+    // Below this the series is more accurate than the quotient, and the quotient fails at 0.
+    const SMALL: f64 = 1e-5;
+    if relaxed > SMALL {
         -(-relaxed).exp_m1() / relaxed
     } else {
         1.0 - relaxed / 2.0
@@ -133,7 +132,7 @@ mod tests {
         let step = WearStep {
             interval,
             cycles_after: interval,
-            depth_mm: straight(&rates_of(depth_per_cycle_mm), interval),
+            depth_mm: euler(&rates_of(depth_per_cycle_mm), interval),
             predicted_mm: Vec::new(),
             error_mm: vec![0.0; depth_per_cycle_mm.len()],
         };
@@ -214,8 +213,8 @@ mod tests {
         worn_mm.iter().copied().fold(0.0, f64::max)
     }
 
-    fn euler(rates: &Rates, _: Option<&StepRecord>, interval: f64) -> Vec<f64> {
-        straight(rates, interval)
+    fn by_euler(rates: &Rates, _: Option<&StepRecord>, interval: f64) -> Vec<f64> {
+        euler(rates, interval)
     }
 
     #[test]
@@ -231,7 +230,7 @@ mod tests {
             deepest(&bed.worn_mm(steps, cycles / steps as f64, rule)) / exact - 1.0
         };
         assert!(error(10, exponential).abs() < 0.01);
-        assert!(error(20, exponential).abs() < error(20, euler).abs() / 2.0);
+        assert!(error(20, exponential).abs() < error(20, by_euler).abs() / 2.0);
         let fall = error(80, exponential) / error(160, exponential);
         assert!((fall - 4.0).abs() < 0.4, "{fall}");
     }

@@ -1,12 +1,12 @@
-//! The articulating surface as it is now: normals, areas, and each node's share of the surface.
+//! The articulating surface in its present shape: normals, areas, and each node's share of the surface.
 
 use super::{
-    faces_around::FacesAround,
-    share::{Share, builder::ShareBuilder},
+    connectivity::FacesAround,
+    share::{Share, shares_and_normals},
 };
-use crate::{Vec3, number::LANES};
+use crate::Vec3;
 
-/// The articulating surface of an insert; every array has one entry a surface node.
+/// The articulating surface of an insert; every array has one entry per surface node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArticulatingSurface {
     /// Node positions, mm.
@@ -18,19 +18,9 @@ pub struct ArticulatingSurface {
 }
 
 impl ArticulatingSurface {
-    /// The surface of nodes at `positions` with faces around them that face out.
-    pub fn new(positions: Vec<Vec3>, around: &FacesAround) -> Self {
-        let count = positions.len();
-        let (mut normals, mut shares) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        let mut builder = ShareBuilder::new(&positions, around);
-        for first in (0..count).step_by(LANES) {
-            let nodes = [0, 1, 2, 3].map(|lane| (first + lane).min(count - 1) as u32);
-            let four = builder.build(&nodes);
-            for lane in 0..LANES.min(count - first) {
-                normals.push(four.normal(lane));
-                shares.push(four.share(lane));
-            }
-        }
+    /// The surface of nodes at `positions` with outward faces around them.
+    pub(crate) fn new(positions: Vec<Vec3>, around: &FacesAround) -> Self {
+        let (shares, normals) = shares_and_normals(&positions, around);
         Self {
             normals,
             shares,
@@ -38,12 +28,12 @@ impl ArticulatingSurface {
         }
     }
 
-    /// Area of the whole surface, mm2.
+    /// Returns the area of the whole surface, mm2.
     pub fn area_mm2(&self) -> f64 {
         self.shares.iter().map(|share| share.area_mm2).sum()
     }
 
-    /// Lowest and highest node, mm.
+    /// Returns the heights of the lowest and the highest node, mm.
     pub fn height_range_mm(&self) -> (f64, f64) {
         let heights = || self.positions.iter().map(|position| position.y);
         (
@@ -52,16 +42,17 @@ impl ArticulatingSurface {
         )
     }
 
-    /// Mean spread of the shares, weighted by their areas, mm2.
+    /// Returns the mean spread of the shares, weighted by their areas, mm2.
     pub fn mean_spread_mm2(&self) -> f64 {
         let weighted = |share: &Share| share.spread_mm2 * share.area_mm2;
         self.shares.iter().map(weighted).sum::<f64>() / self.area_mm2()
     }
 
-    /// The surface's own directions at a node: anterior and lateral along the surface.
+    /// Returns the tangential directions at a node, anterior and lateral.
     pub fn directions(&self, node: usize) -> [Vec3; 2] {
         let normal = self.normals[node];
         let forward = Vec3::x() - normal * normal.x;
+        // A wall that faces forwards or backwards has no anterior tangent; the direction up or down it takes its place.
         let anterior = forward
             .try_normalize(1e-9)
             .unwrap_or_else(|| normal.cross(&Vec3::z()).normalize());

@@ -1,20 +1,21 @@
 //! The femoral surface as the contact sees it: one of several shapes.
 
 use super::{
-    curvature_bounds::CurvatureBounds, cylinder::Cylinder, generic_femur::GenericFemur,
-    placed_femur::PlacedFemur, smooth_field::SmoothField, surface_sample::SurfaceSample,
-    torus::Torus,
+    generic_femur::{GenericFemur, PlacedFemur},
+    smooth_field::SmoothField,
+    surface_sample::{CurvatureBounds, SurfaceSample},
+    torus::{Cylinder, Torus},
 };
 use crate::{Vec3, Vector, number::Number};
 
 /// A femoral surface that gives gap, normal and curvature anywhere near it, smoothly.
 ///
-/// A clone shares what is large: it costs no more than a few numbers.
+/// Clones share large arrays.
 #[derive(Clone, Debug)]
 pub enum FemoralSurface {
     /// A pair of condyles made of pieces of torus.
     Generic(GenericFemur),
-    /// The same, turned and shifted in the femoral frame.
+    /// A generic pair, rotated and shifted in the femoral frame.
     Placed(PlacedFemur),
     /// One ball, for verification.
     Sphere(Torus),
@@ -30,7 +31,7 @@ impl FemoralSurface {
         Self::Sphere(Torus::sphere(Vec3::zeros(), radius_mm))
     }
 
-    /// Gap at a point, mm; far from the surface only its sign and that it is large are sure.
+    /// Returns the gap at a point, mm; far from the surface a lower bound of its magnitude with the right sign.
     #[inline(always)]
     pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
         match self {
@@ -42,11 +43,11 @@ impl FemoralSurface {
         }
     }
 
-    /// Gap, normal and curvature at a point.
+    /// Returns gap, normal and curvature at a point.
     ///
     /// The gap is the mean over a small flat share of surface around the point: with the share's
     /// second moment M that is g + K:M/2, taken as g + `spread_mm2` div n, and exact to third
-    /// order. `spread_mm2` is tr M / 4, a 24th of the area of a square share. A mesh's field holds
+    /// order. `spread_mm2` is tr M / 4, a 24th of the area of a square share. A mesh's field includes
     /// its own spread already, see [`SmoothField::averaged_over`].
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
@@ -59,16 +60,15 @@ impl FemoralSurface {
         }
     }
 
-    /// The spread over which its samples are averaged whatever they are asked for, mm2; see
-    /// [`FemoralSurface::prepared_for`].
-    pub fn prepared_spread_mm2(&self) -> f64 {
+    /// Returns the spread over which all its samples are averaged, mm2; see [`FemoralSurface::prepared_for`].
+    pub(crate) fn prepared_spread_mm2(&self) -> f64 {
         match self {
             Self::Mesh(field) => field.spread_mm2(),
             Self::Generic(_) | Self::Placed(_) | Self::Sphere(_) | Self::Cylinder(_) => 0.0,
         }
     }
 
-    /// How far from the femoral frame's origin any of the femur reaches at most, mm; of a cylinder,
+    /// Returns the largest distance of the femur from the femoral frame's origin, mm; of a cylinder,
     /// across its axis.
     pub fn reach_mm(&self) -> f64 {
         match self {
@@ -80,9 +80,9 @@ impl FemoralSurface {
         }
     }
 
-    /// Bounds on the surface around points, in every lane.
+    /// Returns bounds on the surface around points, in every lane.
     #[inline(always)]
-    pub fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
+    pub(crate) fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
         match self {
             Self::Generic(femur) => femur.curvature_bounds(points),
             Self::Placed(femur) => femur.curvature_bounds(points),
@@ -96,7 +96,7 @@ impl FemoralSurface {
         }
     }
 
-    /// The same surface, made ready for shares that spread over `spread_mm2` more.
+    /// Returns the surface prepared for shares with a further spread of `spread_mm2`.
     pub fn prepared_for(&self, spread_mm2: f64) -> Self {
         match self {
             Self::Mesh(field) => Self::Mesh(field.averaged_over(spread_mm2)),

@@ -1,11 +1,11 @@
-//! The generic tibial insert: two dishes beside an eminence.
+//! The generic tibial insert: two dishes and an eminence between them.
 
 use condyle_mesh::columns::{ColumnGrid, Meshing};
 
-use super::insert::{Insert, error::InsertError};
+use super::insert::{Insert, InsertError};
 use crate::Vec3;
 
-/// Measures of the generic insert, mm.
+/// Dimensions of the generic insert.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GenericInsertShape {
     /// Sagittal radius of the dishes.
@@ -29,18 +29,18 @@ impl Default for GenericInsertShape {
     }
 }
 
-/// The insert reaches from here, (x, z), mm ...
+/// Posterior medial corner of the insert, (x, z), mm, ...
 const LOW_MM: (f64, f64) = (-24.0, -36.0);
-/// ... to here.
+/// ... and the opposite one.
 const HIGH_MM: (f64, f64) = (22.0, 36.0);
-/// The eminence between the dishes is cut off at this height, mm.
+/// Height at which the eminence between the dishes is cut off, mm.
 const EMINENCE_MM: f64 = 8.0;
 
 impl GenericInsertShape {
     /// Length and width of every generic insert, mm.
     pub const SIZE_MM: (f64, f64) = (HIGH_MM.0 - LOW_MM.0, HIGH_MM.1 - LOW_MM.1);
 
-    /// Height of the articulating surface above its lowest points, mm.
+    /// Returns the height of the articulating surface above its lowest points, mm.
     ///
     /// D(z) = (Rs - Rc) + sqrt(Rc^2 - (|z| - spacing/2)^2) is the distance from the medio-lateral
     /// axis at height Rs, and y = Rs - sqrt(D^2 - x^2), at most 8 mm.
@@ -52,15 +52,15 @@ impl GenericInsertShape {
         height.min(EMINENCE_MM)
     }
 
-    /// The insert in hexahedra, its lowest points at y = 0.
+    /// Meshes the insert with its lowest points at y = 0.
     ///
     /// # Errors
-    /// As [`Insert::new`], and too many nodes; none other for measures that make a dish.
+    /// Too many nodes, and the errors of [`Insert::new`] for dimensions that do not form a dish.
     pub fn insert(&self, meshing: Meshing) -> Result<Insert, InsertError> {
         self.insert_moved(meshing, Vec3::clone)
     }
 
-    /// The same insert with every point where `place` takes it, which keeps shape and side.
+    /// Meshes the insert with every point moved by `place`, a rigid motion.
     ///
     /// # Errors
     /// As [`GenericInsertShape::insert`].
@@ -89,7 +89,7 @@ impl GenericInsertShape {
 /// `size_mm`: length along x and z, centred; `thickness_mm`: down to the backside.
 ///
 /// # Errors
-/// As [`Insert::new`], and too many nodes; none other for positive sizes.
+/// Too many nodes, and the errors of [`Insert::new`] for sizes that are not positive.
 pub fn flat_insert(
     size_mm: (f64, f64),
     thickness_mm: f64,

@@ -1,36 +1,39 @@
 //! The tibial insert: a hexahedral mesh, its articulating surface, and how it wears away.
 
-pub(super) mod error;
-mod from_surface;
-mod thickness;
 mod unworn;
 
 use std::{fmt, sync::Arc};
 
 use condyle_fem::{HexMesh, volume_below};
+use condyle_mesh::{
+    TriangleMesh,
+    columns::{ColumnError, Hole, Meshing, column_mesh},
+};
 
-use self::{error::InsertError, unworn::UnwornInsert};
+pub use self::unworn::InsertError;
+use self::unworn::UnwornInsert;
 use super::{
-    articulating_surface::ArticulatingSurface, faces_around::FacesAround, node_blocks::NodeBlock,
+    articulating_surface::ArticulatingSurface,
+    connectivity::{FacesAround, NodeBlock},
     surface_regions::SurfaceRegions,
 };
 use crate::Vec3;
 
-/// A wall that leans farther than 60 degrees from the normal at its rim is no way down for it.
+/// A side wall that leans more than 60 degrees from the normal at its rim does not guide the rim.
 const MIN_COSINE_OF_WALL: f64 = 0.5;
 
 /// A tibial insert, unworn or worn.
 ///
-/// Clones share what wear does not change; a clone costs the positions of the nodes, and two
-/// numbers a surface node.
+/// Clones share the data that wear does not change; a clone copies the positions of the nodes, and two
+/// numbers per surface node.
 #[derive(Clone)]
 pub struct Insert {
     unworn: Arc<UnwornInsert>,
     regions: Arc<SurfaceRegions>,
     rim_along_walls: bool,
     mesh: HexMesh,
-    /// Depth worn so far: the thickness is computed from it anew, so that an insert worn step by
-    /// step and one restored have the same to the last bit.
+    /// Depth worn so far. The thickness is always computed from it, so that an insert worn step by
+    /// step and a restored one agree to the last bit.
     worn_mm: Vec<f64>,
     thickness_mm: Vec<f64>,
 }
@@ -45,7 +48,7 @@ impl fmt::Debug for Insert {
 }
 
 impl Insert {
-    /// An insert from its mesh, the quads of its articulating surface facing out, and those of
+    /// An insert from its mesh, the outward quads of its articulating surface, and those of
     /// its backside; its regions are the sides of a knee.
     ///
     /// # Errors
@@ -67,11 +70,43 @@ impl Insert {
         })
     }
 
-    /// The same insert with its surface in other regions: called `names`, a node in that whose
-    /// number `region_of` gives for its unworn position, mm.
+    /// Returns the insert between the top and the bottom of a closed surface, or `thickness_mm` deep below an open one,
+    /// in columns of hexahedra; see [`column_mesh`].
+    ///
+    /// # Errors
+    /// The errors of [`column_mesh`] and [`Insert::new`], and a hole inside the outline.
+    pub fn from_surface(
+        surface: &TriangleMesh,
+        is_closed: bool,
+        thickness_mm: Option<f64>,
+        meshing: Meshing,
+    ) -> Result<Self, InsertError> {
+        match Self::over_holes(surface, is_closed, thickness_mm, meshing)? {
+            (insert, holes) if holes.is_empty() => Ok(insert),
+            (_, holes) => Err(ColumnError::Holes { holes }.into()),
+        }
+    }
+
+    /// As [`Insert::from_surface`], but meshes over holes and posts inside the outline as if the surface around
+    /// them continued smoothly, and returns these holes.
+    ///
+    /// # Errors
+    /// As [`Insert::from_surface`], except for holes.
+    pub fn over_holes(
+        surface: &TriangleMesh,
+        is_closed: bool,
+        thickness_mm: Option<f64>,
+        meshing: Meshing,
+    ) -> Result<(Self, Vec<Hole>), InsertError> {
+        let (columns, holes) = column_mesh(surface, is_closed, thickness_mm, meshing)?;
+        let insert = Self::new(columns.mesh, &columns.articulating, &columns.backside)?;
+        Ok((insert.with_rim_along_walls(), holes))
+    }
+
+    /// Divides the surface into other regions: `names`, and `region_of` an unworn position, mm.
     ///
     /// # Panics
-    /// As [`SurfaceRegions::split`].
+    /// As in [`SurfaceRegions::split`].
     pub fn split_into(self, names: &[&str], region_of: impl Fn(&Vec3) -> usize) -> Self {
         let positions = self.unworn.surface_positions();
         let regions = SurfaceRegions::split(names, positions, region_of);
@@ -81,92 +116,91 @@ impl Insert {
         }
     }
 
-    /// The regions of the articulating surface.
+    /// Returns the regions of the articulating surface.
     pub fn regions(&self) -> &SurfaceRegions {
         &self.regions
     }
 
-    /// The hexahedra.
+    /// Returns the hexahedral mesh.
     pub fn mesh(&self) -> &HexMesh {
         &self.mesh
     }
 
-    /// Volume of the mesh as it is now, mm3: what its boundary encloses.
+    /// Returns the present volume of the mesh, mm3, as enclosed by its boundary.
     pub fn volume_mm3(&self) -> f64 {
-        // Near the mesh, so that the cones are small and few digits are lost.
+        // An origin near the mesh keeps the cones small, so that few digits cancel.
         let origin = self.mesh.nodes[self.unworn.boundary[0][0] as usize];
         let corners = |quad: &[u32; 4]| quad.map(|node| self.mesh.nodes[node as usize] - origin);
         let quads = self.unworn.boundary.iter();
         quads.map(|quad| volume_below(&corners(quad))).sum()
     }
 
-    /// Mesh nodes of the articulating surface, ascending; the order of every array a surface node.
+    /// Returns the mesh nodes of the articulating surface, ascending: the order of arrays over surface nodes.
     pub fn surface_nodes(&self) -> &[u32] {
         &self.unworn.surface_nodes
     }
 
-    /// Mesh nodes of the backside, ascending.
+    /// Returns the mesh nodes of the backside, ascending.
     pub fn backside_nodes(&self) -> &[u32] {
         &self.unworn.backside_nodes
     }
 
-    /// Positions of all mesh nodes before any wear, mm.
+    /// Returns the positions of all mesh nodes before any wear, mm.
     pub fn unworn_nodes(&self) -> &[Vec3] {
         &self.unworn.nodes
     }
 
-    /// Faces of the articulating surface, in numbers of surface nodes, facing out.
+    /// Returns the outward faces of the articulating surface, in numbers of surface nodes.
     pub fn surface_faces(&self) -> &[[u32; 4]] {
         &self.unworn.faces
     }
 
-    /// The faces of the articulating surface around each of its nodes.
-    pub fn faces_around(&self) -> &FacesAround {
+    pub(crate) fn faces_around(&self) -> &FacesAround {
         &self.unworn.faces_around
     }
 
-    /// The surface nodes in blocks: each once, those of a block near one another.
-    pub fn node_blocks(&self) -> &[NodeBlock] {
+    /// Returns the surface nodes in blocks of neighbours, each node once.
+    pub(crate) fn node_blocks(&self) -> &[NodeBlock] {
         &self.unworn.node_blocks
     }
 
-    /// Area of a surface node's share before any wear, mm2.
-    pub fn unworn_share_mm2(&self, node: usize) -> f64 {
+    /// Returns the area of a surface node's share before any wear, mm2.
+    pub(crate) fn unworn_share_mm2(&self, node: usize) -> f64 {
         self.unworn.share_mm2[node]
     }
 
-    /// Thickness of the insert below each surface node along its normal, mm.
+    /// Returns the thickness below each surface node along its normal, mm.
     pub fn thickness_mm(&self) -> &[f64] {
         &self.thickness_mm
     }
 
-    /// The articulating surface as it is now.
+    /// Returns the articulating surface in its present shape.
     pub fn surface(&self) -> ArticulatingSurface {
         self.surface_at(&self.mesh.nodes)
     }
 
-    /// The articulating surface with the mesh nodes elsewhere, mm.
-    pub fn surface_at(&self, mesh_nodes: &[Vec3]) -> ArticulatingSurface {
+    /// Returns the articulating surface with the mesh nodes at other positions, mm.
+    pub(crate) fn surface_at(&self, mesh_nodes: &[Vec3]) -> ArticulatingSurface {
         let nodes = self.surface_nodes().iter();
         let positions = nodes.map(|&node| mesh_nodes[node as usize]).collect();
         ArticulatingSurface::new(positions, &self.unworn.faces_around)
     }
 
-    /// The same insert whose rim wears down along its side wall, as far as the surface goes down by its depth.
+    /// Makes the rim wear down along its side wall.
     ///
-    /// A rim that goes along its normal leans out of the body over the wall below it, or into it, and so changes the volume
-    /// otherwise than depth times area.
-    pub fn with_rim_along_walls(self) -> Self {
+    /// A rim that moves along its normal leaves the plane of the wall below it, so that the volume changes by another
+    /// amount than depth times area.
+    pub(crate) fn with_rim_along_walls(self) -> Self {
         Self {
             rim_along_walls: true,
             ..self
         }
     }
 
-    /// Moves every surface node inwards along its normal, and the mesh below after it; one on the rim along its wall, if
-    /// the insert is [made so](Self::with_rim_along_walls).
+    /// Moves every surface node inwards along its normal, or [along its wall](Self::with_rim_along_walls), and the mesh
+    /// below with it.
     ///
-    /// `depth_mm`: one a surface node, 0 or more. The thickness shrinks by as much.
+    /// `depth_mm`: one per surface node, 0 or more. The thickness shrinks by as much.
     pub fn wear_down(&mut self, surface: &ArticulatingSurface, depth_mm: &[f64]) {
         let mut displacement = self.as_before(surface, depth_mm);
         for (i, &node) in self.unworn.surface_nodes.iter().enumerate() {
@@ -174,21 +208,22 @@ impl Insert {
             self.worn_mm[i] += depth_mm[i];
         }
         self.find_thickness();
+        // The prescribed motion of the surface propagates into the mesh; the boundary elsewhere is fixed.
         self.unworn.follower.follow(&mut displacement);
         for (node, step) in self.mesh.nodes.iter_mut().zip(&displacement) {
             *node += step;
         }
     }
 
-    /// How far and where a surface node goes if the surface around it rises by a unit.
+    /// Displacement of a surface node for which the surface around it rises by a unit.
     fn outwards(&self, node: usize, normal: &Vec3) -> Vec3 {
         let wall = self.unworn.walls[node].filter(|_| self.rim_along_walls);
         let wall = wall.filter(|wall| wall.dot(normal) > MIN_COSINE_OF_WALL);
         wall.map_or(*normal, |wall| wall / wall.dot(normal))
     }
 
-    /// How every mesh node moves if the mesh goes on as it has come so far, in proportion to the
-    /// depth: nearly how it will, so that the inside is found in few iterations.
+    /// Predicts the displacement of every mesh node as proportional to its displacement so far, so that the
+    /// inside is found in few iterations.
     fn as_before(&self, surface: &ArticulatingSurface, depth_mm: &[f64]) -> Vec<Vec3> {
         let moved = |node: usize| self.mesh.nodes[node] - self.unworn.nodes[node];
         let (mut along, mut whole) = (0.0, 0.0);
@@ -197,13 +232,13 @@ impl Insert {
             along -= so_far.dot(&surface.normals[i]) * depth_mm[i];
             whole += so_far.norm_squared();
         }
+        // Least squares over the surface nodes: the part of the motion so far that fits this step best.
         let share = if whole > 0.0 { along / whole } else { 0.0 };
         let nodes = 0..self.mesh.nodes.len();
         nodes.map(|node| moved(node) * share).collect()
     }
 
-    /// Puts a worn insert back to a stored state: all mesh nodes, and the depth worn so far at
-    /// each surface node.
+    /// Restores a stored state: all mesh nodes, and the depth worn so far at each surface node.
     pub fn restore(&mut self, mesh_nodes: Vec<Vec3>, worn_mm: &[f64]) {
         self.mesh.nodes = mesh_nodes;
         self.worn_mm.copy_from_slice(worn_mm);
@@ -222,8 +257,8 @@ impl Insert {
         }
     }
 
-    /// The lowest point of the dishes, mm: the lowest surface node that none of its neighbours
-    /// lies below, the rim left out.
+    /// Returns the lowest point of the dishes, mm: the lowest surface node without a lower neighbour,
+    /// the rim excluded.
     pub fn dish_low_point_mm(&self) -> Vec3 {
         let nodes: Vec<Vec3> = self.mesh.positions(self.surface_nodes()).collect();
         let is_bottom = |i: usize| {
@@ -242,7 +277,7 @@ impl Insert {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Meshing, flat_insert};
+    use crate::geometry::{GenericInsertShape, flat_insert};
 
     fn block() -> Insert {
         let meshing = Meshing {
@@ -297,7 +332,7 @@ mod tests {
             );
         }
         let halves = insert.split_into(&["front", "back"], |at| usize::from(at.x < 0.0));
-        assert_eq!(halves.regions().number_of("back"), Some(1));
+        assert_eq!(halves.regions().names(), ["front", "back"]);
         for (node, position) in positions.iter().enumerate() {
             assert_eq!(
                 halves.regions().of_node(node),
@@ -313,5 +348,103 @@ mod tests {
         let surface = insert.surface();
         insert.wear_down(&surface, &vec![0.2; surface.positions.len()]);
         assert_eq!(insert.regions(), &before);
+    }
+
+    /// The generic dish as an open surface of triangles, fine or coarse.
+    fn dish(edge_mm: f64) -> TriangleMesh {
+        let insert = GenericInsertShape::default()
+            .insert(Meshing { edge_mm, layers: 1 })
+            .unwrap();
+        let surface = insert.surface();
+        let cut = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+        TriangleMesh {
+            vertices: surface.positions,
+            triangles: insert
+                .surface_faces()
+                .iter()
+                .flat_map(|&face| cut(face))
+                .collect(),
+        }
+    }
+
+    #[test]
+    fn verify_volume_of_a_box() {
+        let shell = TriangleMesh::block(Vec3::new(-10.0, 0.0, -15.0), Vec3::new(10.0, 8.0, 15.0));
+        assert!((shell.signed_volume() - 4800.0).abs() < 1e-9);
+        let insert = Insert::from_surface(
+            &shell,
+            true,
+            None,
+            Meshing {
+                edge_mm: 1.0,
+                layers: 3,
+            },
+        )
+        .unwrap();
+        assert!(
+            (insert.mesh().volume() - 4800.0).abs() < 1e-6
+                && (insert.volume_mm3() - 4800.0).abs() < 1e-6,
+            "{}",
+            insert.mesh().volume()
+        );
+        assert!(
+            insert
+                .thickness_mm()
+                .iter()
+                .all(|thickness| (thickness - 8.0).abs() < 1e-9)
+        );
+    }
+
+    #[test]
+    fn verify_heights_from_a_coarse_dish_are_those_of_the_dish() {
+        let shape = GenericInsertShape::default();
+        let meshing = Meshing {
+            edge_mm: 0.77,
+            layers: 1,
+        };
+        let insert = Insert::from_surface(&dish(2.0), false, Some(9.0), meshing).unwrap();
+        for position in insert.surface().positions {
+            let in_dish = position.x.abs() < 12.0 && (position.z.abs() - 23.0).abs() < 9.0;
+            if in_dish {
+                // The flat facets lie up to 25 micrometres off.
+                let error = position.y - shape.height_mm(position.x, position.z);
+                assert!(error.abs() < 1e-3, "{error} at {position}");
+            }
+        }
+    }
+
+    #[test]
+    fn errors_say_what_to_give() {
+        let meshing = Meshing::default();
+        let open = Insert::from_surface(&dish(2.0), false, None, meshing)
+            .err()
+            .unwrap();
+        assert!(open.to_string().contains("give thickness_mm"));
+        let tiny = TriangleMesh::block(Vec3::zeros(), Vec3::new(0.02, 0.01, 0.03))
+            .mapped(|v| v + Vec3::repeat(5.0));
+        let huge = Meshing {
+            edge_mm: 100.0,
+            layers: 1,
+        };
+        match Insert::from_surface(&tiny, true, None, huge) {
+            Err(error) => assert!(error.to_string().contains("smaller edge_mm"), "{error}"),
+            Ok(insert) => assert_eq!(insert.mesh().hexes.len(), 1),
+        }
+        let nothing = Insert::from_surface(
+            &TriangleMesh {
+                vertices: vec![Vec3::zeros(); 3],
+                triangles: vec![[0, 1, 2]],
+            },
+            true,
+            None,
+            meshing,
+        );
+        assert!(
+            nothing
+                .err()
+                .unwrap()
+                .to_string()
+                .contains("smaller edge_mm")
+        );
     }
 }

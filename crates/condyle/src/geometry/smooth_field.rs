@@ -1,17 +1,13 @@
-//! The smooth distance field of a triangle mesh: facets are not felt.
+//! The smooth distance field of a triangle mesh, without its facets.
 //!
 //! A mesh is a sample of a smooth surface, and its facets are not part of the implant. The field
-//! is built in two steps. First the gap is found at the nodes of a regular grid near the surface,
+//! is built in two steps. First the gap is computed at the nodes of a regular grid near the surface,
 //! not to the flat facets but to the curved surface that the vertex normals imply (exact for any
 //! quadratic surface). Then a quadratic B-spline through those gaps gives a value, a gradient and
 //! a Hessian anywhere between the nodes, the first two continuous, from 27 numbers.
 
 mod curvature_grid;
-mod far_gaps;
-mod gap_spline;
-mod gaps;
-mod node_grid;
-mod second_differences;
+mod grid;
 mod spline;
 
 use std::sync::Arc;
@@ -20,49 +16,46 @@ use serde::{Deserialize, Serialize};
 
 use self::{
     curvature_grid::CurvatureGrid,
-    far_gaps::bound_far_gaps,
-    gap_spline::GapSpline,
-    gaps::gaps_at_nodes,
-    node_grid::NodeGrid,
-    second_differences::{add_laplacian, spline_coefficients},
+    grid::{NodeGrid, add_laplacian, bound_far_gaps, gaps_at_nodes, spline_coefficients},
+    spline::GapSpline,
 };
 use condyle_mesh::{CurvedMesh, TriangleMesh, repair::edge_report};
 
-use super::curvature_bounds::CurvatureBounds;
-use super::surface_sample::SurfaceSample;
+use super::surface_sample::{CurvatureBounds, SurfaceSample};
 use crate::{Vector, number::Number};
 
 /// A smooth signed distance to a triangle mesh.
 ///
-/// What is large is shared between clones: a clone costs no more than a few numbers.
+/// Clones share the large arrays.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SmoothField {
     gap: GapSpline,
-    /// Nodes beyond the band: their gap is a bound.
+    /// Nodes beyond the band, whose gap is a bound.
     is_far: Arc<[bool]>,
     curvature: CurvatureGrid,
-    /// What it is averaged over, mm2; what is kept for the next run is averaged over nothing.
+    /// Spread of the shares over which it is averaged, mm2; a stored field is averaged over none.
     #[serde(skip)]
     spread_mm2: f64,
 }
 
 impl SmoothField {
-    /// How many nodes the grid of the field of `mesh` has; making it takes some 40 bytes a node.
+    /// Returns the number of grid nodes of the field of `mesh`; its construction takes about 40 bytes per node.
     pub fn node_count(mesh: &TriangleMesh) -> usize {
         NodeGrid::around(mesh.bounds()).node_count()
     }
 
-    /// How many nodes its grid has.
+    /// Returns the number of grid nodes.
     pub fn nodes(&self) -> usize {
         self.is_far.len()
     }
 
-    /// The field of a surface whose triangles face outwards, made on `threads` threads.
+    /// The field of a surface whose triangles face outwards, computed on `threads` threads.
     ///
-    /// The bytes of the result do not depend on `threads`; with one, none is started.
+    /// The bytes of the result do not depend on `threads`; 1 starts no thread.
     pub fn new(mesh: &TriangleMesh, threads: usize) -> Self {
         let grid = NodeGrid::around(mesh.bounds());
         let mut gaps = gaps_at_nodes(&grid, &CurvedMesh::new(mesh), threads);
+        // Only a closed surface has an inside far from its triangles.
         let is_far = bound_far_gaps(&grid, &mut gaps, edge_report(mesh).is_closed());
         let gap = GapSpline::new(grid, spline_coefficients(&grid, &is_far, gaps));
         Self {
@@ -73,15 +66,14 @@ impl SmoothField {
         }
     }
 
-    /// The spread of the shares that it is averaged over, mm2.
-    pub fn spread_mm2(&self) -> f64 {
+    pub(super) fn spread_mm2(&self) -> f64 {
         self.spread_mm2
     }
 
-    /// The field averaged over flat shares of surface: g + `spread_mm2` div n.
+    /// Returns the field averaged over flat shares of surface: g + `spread_mm2` div n.
     ///
-    /// What bounds its curvature still does: a mean is no sharper.
-    pub fn averaged_over(&self, spread_mm2: f64) -> Self {
+    /// The bounds of the curvature remain valid: a mean is no sharper.
+    pub(super) fn averaged_over(&self, spread_mm2: f64) -> Self {
         let grid = self.gap.grid();
         let averaged = |to: &mut [f64], from: &[f64]| {
             add_laplacian(grid, &self.is_far, to, from, spread_mm2);
@@ -93,9 +85,8 @@ impl SmoothField {
         }
     }
 
-    /// Bounds on the surface around points, in every lane.
     #[inline(always)]
-    pub fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
+    pub(super) fn curvature_bounds<T: Number>(&self, points: &Vector<T>) -> CurvatureBounds {
         let mut around = self
             .gap
             .nodes_at(points)
@@ -109,18 +100,18 @@ impl SmoothField {
         bounds
     }
 
-    /// How far from the femoral frame's origin the grid reaches, mm.
+    /// Returns the largest distance of the grid from the femoral frame's origin, mm.
     pub fn reach_mm(&self) -> f64 {
         self.gap.grid().reach_mm()
     }
 
-    /// Gap at a point, mm.
+    /// Returns the gap at a point, mm.
     #[inline(always)]
     pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
         self.gap.gap_mm(point)
     }
 
-    /// Gap, normal and curvature at a point.
+    /// Returns gap, normal and curvature at a point.
     #[inline(always)]
     pub fn sample<T: Number>(&self, point: &Vector<T>) -> SurfaceSample<T> {
         self.gap.sample(point)
@@ -129,11 +120,11 @@ impl SmoothField {
 
 #[cfg(test)]
 mod tests {
-    use super::{node_grid::BAND_MM, *};
+    use super::{grid::BAND_MM, *};
     use crate::{Vec3, geometry::surface_sample::tests::check_derivatives};
 
     /// A ball of radius 24 mm with edges of about `edge_mm`, by latitude and longitude, turned so
-    /// that its poles lie where nobody samples it.
+    /// that its poles lie where no test samples it.
     fn ball(edge_mm: f64) -> TriangleMesh {
         let rows = (std::f64::consts::PI * 24.0 / edge_mm) as u32;
         let columns = 2 * rows;

@@ -1,10 +1,10 @@
-//! Parts of the articulating surface by name: the sides of a knee, or the whole of a cup.
+//! Regions of the articulating surface, such as the sides of a knee.
 
 use crate::Vec3;
 
-/// Labelled regions of the articulating surface, and of each surface node the one it belongs to.
+/// Named regions of the articulating surface, and the region of each surface node.
 ///
-/// They are fixed when an insert is made: a node stays in its region wherever it wears to.
+/// They are fixed when an insert is made: a worn node stays in its region.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SurfaceRegions {
     names: Vec<String>,
@@ -12,11 +12,11 @@ pub struct SurfaceRegions {
 }
 
 impl SurfaceRegions {
-    /// Regions called `names`; a node is in that whose number `region_of` gives for its position in
+    /// Regions called `names`; `region_of` gives the number of a node's region from its position in
     /// the insert frame, mm.
     ///
     /// # Panics
-    /// There is no name, there are more than 256, or a number has none.
+    /// If there is no name or more than 256, or a number has no name.
     pub fn split(
         names: &[&str],
         positions: impl IntoIterator<Item = Vec3>,
@@ -45,37 +45,19 @@ impl SurfaceRegions {
         })
     }
 
-    /// One region of all nodes, as of a cup or of a disc under a pin.
-    pub fn whole(name: &str, node_count: usize) -> Self {
-        Self {
-            names: vec![name.to_owned()],
-            numbers: vec![0; node_count],
-        }
-    }
-
-    /// How many regions there are.
+    /// Returns the number of regions.
     pub fn count(&self) -> usize {
         self.names.len()
     }
 
-    /// Their names, in the order of their numbers.
+    /// Returns the names, in the order of the numbers.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Number of the region called `name`.
-    pub fn number_of(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|known| known == name)
-    }
-
-    /// Number of the region of surface node `node`.
+    /// Returns the number of a surface node's region.
     pub fn of_node(&self, node: usize) -> usize {
         self.numbers[node].into()
-    }
-
-    /// How many surface nodes there are.
-    pub fn node_count(&self) -> usize {
-        self.numbers.len()
     }
 }
 
@@ -93,14 +75,12 @@ mod tests {
         assert_eq!(regions.names(), ["medial", "lateral"]);
         let of_nodes = [0, 1, 2, 3].map(|node| regions.of_node(node));
         assert_eq!(of_nodes, [0, 0, 1, 1]);
-        assert_eq!(regions.number_of("lateral"), Some(1));
-        assert_eq!(regions.number_of("rim"), None);
     }
 
     #[test]
     fn a_surface_may_be_one_region_or_many() {
-        let cup = SurfaceRegions::whole("cup", 4);
-        assert_eq!((cup.count(), cup.node_count(), cup.of_node(3)), (1, 4, 0));
+        let cup = SurfaceRegions::split(&["cup"], row(), |_| 0);
+        assert_eq!((cup.count(), cup.of_node(3)), (1, 0));
         let names = ["far medial", "middle", "far lateral"];
         let three = SurfaceRegions::split(&names, row(), |at| (at.z / 2.0).round() as usize);
         assert_eq!(three.of_node(3), 2);

@@ -1,9 +1,9 @@
-//! A torus about an axis along z.
+//! A torus and a cylinder about an axis along z.
 
 use super::surface_sample::{Curvature, SurfaceSample};
 use crate::{Vec3, Vector, number::Number};
 
-/// The outer side of a torus about an axis along z; with a tube circle about the axis, a ball.
+/// The outer side of a torus about an axis along z; with a ring radius of 0, a ball.
 ///
 /// ```
 /// use condyle::{Vec3, geometry::Torus};
@@ -33,7 +33,7 @@ impl Torus {
         }
     }
 
-    /// The same torus in every lane.
+    /// Returns the torus in every lane.
     #[inline(always)]
     pub fn splat<T: Number>(&self) -> Torus<T> {
         Torus {
@@ -45,7 +45,7 @@ impl Torus {
 }
 
 impl<T: Number> Torus<T> {
-    /// Gap at a point, mm.
+    /// Returns the gap at a point, mm.
     #[inline(always)]
     pub fn gap_mm(&self, point: &Vector<T>) -> T {
         let r = point - self.centre;
@@ -53,8 +53,8 @@ impl<T: Number> Torus<T> {
         (across * across + r.z * r.z).sqrt() - self.tube_radius_mm
     }
 
-    /// Gap, normal and curvature at a point, the gap averaged as
-    /// [`FemoralSurface::sample`](super::FemoralSurface::sample) says.
+    /// Returns gap, normal and curvature at a point, the gap averaged as in
+    /// [`FemoralSurface::sample`](super::FemoralSurface::sample).
     ///
     /// With $t$ the distance from the circle of tube centres, $\rho$ that from the axis, $\rho_0$ the
     /// ring's, $n$ the normal and $e$ along the ring, the curvature is
@@ -74,7 +74,7 @@ impl<T: Number> Torus<T> {
         let ring = self.ring_radius_mm * per_axis;
         // The mean of the gap over a flat share is g + spread div n: of the share's second moment M
         // only the trace counts, as if the share were a square, since g + K:M/2 with M = 2 spread
-        // (I - n n') is just that. Its gradient has the derivatives of div n added.
+        // (I - n n') gives the same. Its gradient includes the derivatives of div n.
         let divergence = (T::splat(2.0) - ring) * per_tube;
         let inward = -(divergence * per_tube * spread_mm2);
         let outward = ring * per_axis * per_tube * spread_mm2;
@@ -90,6 +90,47 @@ impl<T: Number> Torus<T> {
                 xy: (ring * outward_x * outward_y - normal.x * normal.y) * per_tube,
                 xz: -(normal.x * normal.z * per_tube),
                 yz: -(normal.y * normal.z * per_tube),
+            },
+        }
+    }
+}
+
+/// An infinite cylinder about the z axis of the femoral frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    /// Radius, mm.
+    pub radius_mm: f64,
+}
+
+impl Cylinder {
+    /// Returns the gap at a point, mm.
+    #[inline(always)]
+    pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
+        (point.x * point.x + point.y * point.y).sqrt() - T::splat(self.radius_mm)
+    }
+
+    /// Returns gap, normal and curvature at a point, the gap averaged as in
+    /// [`FemoralSurface::sample`](super::FemoralSurface::sample).
+    ///
+    /// With rho the distance from the axis and t = (-n_y, n_x, 0): K = t t'/rho, div n = 1/rho.
+    #[inline(always)]
+    pub fn sample<T: Number>(&self, point: &Vector<T>, spread_mm2: T) -> SurfaceSample<T> {
+        let from_axis = (point.x * point.x + point.y * point.y).sqrt();
+        let per_axis = T::one() / from_axis;
+        let (x, y) = (point.x * per_axis, point.y * per_axis);
+        let normal = Vector::new(x, y, T::zero());
+        let rise_mm = spread_mm2 * per_axis;
+        SurfaceSample {
+            gap_mm: from_axis - T::splat(self.radius_mm) + rise_mm,
+            gap_gradient: normal * (T::one() - rise_mm * per_axis),
+            normal,
+            curvature: Curvature {
+                xx: y * y * per_axis,
+                yy: x * x * per_axis,
+                zz: T::zero(),
+                xy: -(x * y * per_axis),
+                xz: T::zero(),
+                yz: T::zero(),
             },
         }
     }
@@ -140,5 +181,19 @@ mod tests {
             "{mean} {}",
             sample.gap_mm
         );
+    }
+
+    #[test]
+    fn gradient_and_curvature_of_a_cylinder_are_derivatives() {
+        let cylinder = Cylinder { radius_mm: 20.0 };
+        for point in [Vec3::new(3.0, -19.5, 7.0), Vec3::new(-12.0, -15.0, -40.0)] {
+            check_derivatives(|p| cylinder.sample(p, 0.05), point, 1e-8);
+        }
+    }
+
+    #[test]
+    fn verify_gap_is_the_distance_from_the_axis_less_the_radius() {
+        let cylinder = Cylinder { radius_mm: 20.0 };
+        assert_eq!(cylinder.gap_mm(&Vec3::new(-15.0, -20.0, 33.0)), 5.0);
     }
 }

@@ -1,12 +1,47 @@
 //! A machine: joints with their drives, springs, and its frequency.
 
-use super::{
-    JointDescription, JointIndex, Mechanism, Waveform,
-    joint_vectors::{JointForces, JointStiffness, Levers},
+use super::{JointDescription, JointIndex, JointKind, Mechanism, Waveform};
+use crate::{
+    Vec3,
+    spatial::{Mat6, Vec6},
 };
-use crate::Vec3;
 
-/// What moves a joint.
+/// Lever on which a moment counts as a force and a rotation as a motion, mm.
+///
+/// It is shorter than the distance of any of a knee's axes from the contact, some 20 to 30 mm, so a moment
+/// within the tolerance is less at the contact than a force within it.
+const MOMENT_LEVER_MM: f64 = 10.0;
+
+/// The lever of every joint, mm: it converts moments to forces and rotations to motions; 1 for a translation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Levers(pub [f64; 6]);
+
+impl Levers {
+    /// Returns the largest force, N, of forces and moments.
+    pub fn largest_n(&self, forces: &Vec6) -> f64 {
+        let force = |j: usize| forces[j].abs() / self.0[j];
+        (0..6).map(force).fold(0.0, f64::max)
+    }
+
+    /// Returns the root of the sum of the squares of forces and moments, N.
+    pub fn length_n(&self, forces: &Vec6) -> f64 {
+        let force = |j: usize| forces[j] / self.0[j];
+        (0..6).map(|j| force(j).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Returns the longest motion, mm, of translations and rotations.
+    pub fn longest_mm(&self, motions: &Vec6) -> f64 {
+        let motion = |j: usize| motions[j].abs() * self.0[j];
+        (0..6).map(motion).fold(0.0, f64::max)
+    }
+
+    /// Returns the part of `motions`, at most 1, that moves no joint farther than `most_mm`.
+    pub fn part_within(&self, motions: &Vec6, most_mm: f64) -> f64 {
+        (most_mm / self.longest_mm(motions)).min(1.0)
+    }
+}
+
+/// The drive of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
     /// Held at a position, mm or rad.
@@ -20,9 +55,9 @@ pub enum Drive {
 /// A joint of a machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// What it is.
+    /// Its description.
     pub description: &'static JointDescription,
-    /// What moves it.
+    /// Its drive.
     pub drive: Drive,
     /// Mass in tonne, or moment of inertia in tonne mm2.
     pub inertia: f64,
@@ -34,7 +69,7 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// A joint locked at zero, its axis through the origin, else as it is described.
+    /// A joint locked at zero, its axis through the origin, with the defaults of its description.
     fn new(description: &'static JointDescription) -> Self {
         Self {
             description,
@@ -45,24 +80,24 @@ impl Joint {
         }
     }
 
-    /// Whether it is free under a load.
+    /// Whether the joint is free under a load.
     pub fn is_loaded(&self) -> bool {
         matches!(self.drive, Drive::Loaded(_))
     }
 }
 
-/// A machine between insert and femur: six joints, springs, and how many cycles it does in a second.
+/// A machine between insert and femur: six joints, springs, and the frequency of its cycles.
 ///
 /// All positions are in the insert frame with the machine at zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Machine {
-    /// What its joints are.
+    /// The description of the joints.
     pub mechanism: &'static Mechanism,
-    /// Its joints, in the order of the chain.
+    /// The joints, in the order of the chain.
     pub joints: [Joint; 6],
-    /// Springs beside its joints.
+    /// The springs between the bodies.
     pub springs: Vec<Spring>,
-    /// Gait cycles a second.
+    /// Gait cycles per second.
     pub frequency_hz: f64,
 }
 
@@ -78,33 +113,34 @@ impl Machine {
         }
     }
 
-    /// One of its joints.
+    /// Returns a joint.
     pub fn joint(&self, index: JointIndex) -> &Joint {
         &self.joints[index.place()]
     }
 
-    /// One of its joints, to be changed.
+    /// Returns a joint for changes.
     pub fn joint_mut(&mut self, index: JointIndex) -> &mut Joint {
         &mut self.joints[index.place()]
     }
 
-    /// The lever of every joint.
     pub(super) fn levers(&self) -> Levers {
-        Levers::of(self.joints.each_ref().map(|joint| joint.description.kind()))
+        let lever = |joint: &Joint| match joint.description.kind() {
+            JointKind::Rotation => MOMENT_LEVER_MM,
+            JointKind::Translation => 1.0,
+        };
+        Levers(self.joints.each_ref().map(lever))
     }
 
-    /// The places of the joints that are free under a load: their positions follow from the balance.
+    /// Places of the joints that are free under a load: their positions follow from the balance.
     pub(super) fn loaded(&self) -> impl Iterator<Item = usize> + '_ {
         (0..6).filter(|&j| self.joints[j].is_loaded())
     }
 
-    /// The places of the joints whose positions are given.
+    /// Places of the joints whose positions are given.
     pub(super) fn held(&self) -> impl Iterator<Item = usize> + '_ {
         (0..6).filter(|&j| !self.joints[j].is_loaded())
     }
-}
 
-impl Machine {
     /// Sets positions and rates of the joints that are locked or prescribed.
     pub(super) fn drive(&self, phase: f64, positions: &mut [f64; 6], rates: &mut [f64; 6]) {
         for (j, joint) in self.joints.iter().enumerate() {
@@ -120,50 +156,48 @@ impl Machine {
     }
 
     /// Load on every joint; 0 on those that are not loaded.
-    pub(super) fn loads_at(&self, phase: f64) -> JointForces {
-        JointForces::from_fn(|j| match &self.joints[j].drive {
+    pub(super) fn loads_at(&self, phase: f64) -> Vec6 {
+        Vec6::from_fn(|j, _| match &self.joints[j].drive {
             Drive::Loaded(waveform) => waveform.at(phase).0,
             Drive::Locked(_) | Drive::Prescribed(_) => 0.0,
         })
     }
 }
 
-/// A spring with free play along a translation of the insert, fixed to it beside the axis of a rotation.
+/// A spring with free play along a translation of the insert, attached at an offset from the axis of a rotation.
 ///
-/// It is slack inside the free play and linear beyond it, with one stiffness against motion one way and
-/// another against motion the other way. The point where it holds the insert has moved
-///
-/// u = q_along + L sin(q_about), L its offset.
+/// It is slack inside the free play and linear beyond it, with one stiffness per direction. The displacement of its
+/// attachment is u = q_along + L sin(q_about), L the offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
-    /// The translation that it acts along.
+    /// The translation along which it acts.
     pub along: JointIndex,
-    /// The rotation that it holds beside its axis.
+    /// The rotation from whose axis the offset is measured.
     pub about: JointIndex,
-    /// How far from that axis it holds, mm: a positive turn moves the point the positive way along.
+    /// Offset from that axis, mm: a positive rotation moves the attachment in the positive direction.
     pub offset_mm: f64,
     /// Stiffness against positive motion, N/mm.
     pub positive_n_per_mm: f64,
     /// Stiffness against negative motion, N/mm.
     pub negative_n_per_mm: f64,
-    /// Motion each way before it engages, mm.
+    /// Motion in each direction before it engages, mm.
     pub free_play_mm: f64,
 }
 
-/// How a spring holds a machine at given positions.
+/// The force of a spring at given positions, and its derivatives.
 struct Hold {
     force: f64,
-    /// Derivative of the force by the motion of the point.
+    /// Derivative of the force by the displacement of the attachment.
     slope: f64,
-    /// Derivative of that motion by the turn.
+    /// Derivative of that displacement by the rotation.
     by_turn: f64,
     /// Its second derivative.
     bend: f64,
 }
 
 impl Spring {
-    /// Force on the insert (N, + along the joint) and its derivative (N/mm) when the point where the
-    /// spring holds it has moved `moved_mm` from neutral.
+    /// Returns the force on the insert, N, positive along the joint, and its derivative, N/mm, at a displacement of the
+    /// attachment of `moved_mm` from neutral.
     pub fn force(&self, moved_mm: f64) -> (f64, f64) {
         if moved_mm > self.free_play_mm {
             let k = self.positive_n_per_mm;
@@ -177,6 +211,7 @@ impl Spring {
     }
 
     fn hold(&self, positions: &[f64; 6]) -> Hold {
+        // The exact sine and not the angle: its derivatives below make the tangent exact for large rotations.
         let (sine, cosine) = self.about.of(positions).sin_cos();
         let (force, slope) = self.force(self.along.of(positions) + self.offset_mm * sine);
         Hold {
@@ -187,15 +222,15 @@ impl Spring {
         }
     }
 
-    /// Takes what the spring pushes from what is out of balance.
-    pub(super) fn subtract_force(&self, positions: &[f64; 6], residual: &mut JointForces) {
+    /// Subtracts the spring's loads from the residual.
+    pub(super) fn subtract_force(&self, positions: &[f64; 6], residual: &mut Vec6) {
         let hold = self.hold(positions);
         residual[self.along.place()] -= hold.force;
         residual[self.about.place()] -= hold.force * hold.by_turn;
     }
 
-    /// Takes the derivatives of what the spring pushes from those of what is out of balance.
-    pub(super) fn subtract_stiffness(&self, positions: &[f64; 6], tangent: &mut JointStiffness) {
+    /// Subtracts the derivatives of the spring's loads from the tangent.
+    pub(super) fn subtract_stiffness(&self, positions: &[f64; 6], tangent: &mut Mat6) {
         let hold = self.hold(positions);
         let (along, about) = (self.along.place(), self.about.place());
         tangent[(along, along)] -= hold.slope;

@@ -1,15 +1,24 @@
 //! The balance of forces on every joint, and its tangent.
+//!
+//! Vectors have one number per joint in the order of the chain: forces in N and N mm, motions in mm and rad.
 
-use super::{
-    Chain, Configuration, Kinematics, Machine,
-    joint_vectors::{JointForces, JointStiffness},
-};
+use super::{Chain, Configuration, Kinematics, Machine};
 use crate::{
     contact::{ContactModel, Response},
-    spatial::RelativeMotion,
+    spatial::{Mat6, RelativeMotion, Vec6},
 };
 
-/// How rates and accelerations follow the positions within a step: 1/s and 1/s2.
+/// Solves K dq = -f for the motions dq that remove `forces`; none if K is singular.
+pub(super) fn correction(tangent: &Mat6, forces: &Vec6) -> Option<Vec6> {
+    tangent.lu().solve(&-forces)
+}
+
+pub(super) fn move_by(positions: &mut [f64; 6], motions: &Vec6) {
+    let moved = positions.iter_mut().zip(motions);
+    moved.for_each(|(position, motion)| *position += motion);
+}
+
+/// The derivatives of rates and accelerations by the positions within a step, 1/s and 1/s2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepSlopes {
     pub rate: f64,
@@ -29,11 +38,12 @@ pub(super) struct Balance<'a> {
     machine: &'a Machine,
     configuration: Configuration,
     kinematics: Kinematics,
-    response: Response<'a>,
+    /// Response of the contact to the motion.
+    pub response: Response<'a>,
 }
 
 impl<'a> Balance<'a> {
-    /// Lets the contact respond to the motion.
+    /// Evaluates the contact's response to the motion.
     pub fn new(
         machine: &'a Machine,
         chain: &Chain,
@@ -55,9 +65,9 @@ impl<'a> Balance<'a> {
     ///
     /// The contact does work on joint j through its screw s_j, the motion of the femur past the
     /// insert: its load there is W . s_j, W the wrench on the femur.
-    pub fn residual(&self, loads: &JointForces) -> JointForces {
+    pub fn residual(&self, loads: &Vec6) -> Vec6 {
         let on_femur = self.response.wrench.reaction();
-        let mut residual = JointForces::zero();
+        let mut residual = Vec6::zeros();
         for (j, joint) in self.machine.joints.iter().enumerate() {
             residual[j] = joint.inertia * self.kinematics.accelerations[j]
                 + joint.damping * self.kinematics.rates[j]
@@ -73,24 +83,19 @@ impl<'a> Balance<'a> {
         residual
     }
 
-    /// How the contact answers.
-    pub fn response(&self) -> &Response<'a> {
-        &self.response
-    }
-
-    /// The femur's motion past the insert at the balance's positions and other rates.
+    /// Returns the femur's motion past the insert at the balance's positions and other rates.
     pub fn motion_at(&self, rates: &[f64; 6]) -> RelativeMotion {
         self.configuration.motion(rates)
     }
 
-    /// The femur's motion past the insert that the contact has answered.
+    /// Returns the femur's motion past the insert to which the contact has responded.
     pub fn motion(&self) -> RelativeMotion {
         self.motion_at(&self.kinematics.rates)
     }
 
     /// Derivative of the residual by the positions, as exact as the contact's own; the identity on rows
     /// that are not loaded.
-    pub fn tangent(&self, slopes: StepSlopes) -> JointStiffness {
+    pub fn tangent(&self, slopes: StepSlopes) -> Mat6 {
         let mut tangent = self.contact_tangent(slopes);
         for (j, joint) in self.machine.joints.iter().enumerate() {
             tangent[(j, j)] += joint.inertia * slopes.acceleration + joint.damping * slopes.rate;
@@ -98,19 +103,22 @@ impl<'a> Balance<'a> {
         for spring in &self.machine.springs {
             spring.subtract_stiffness(&self.kinematics.positions, &mut tangent);
         }
+        // A held joint keeps its row and column out of the solution without changing the size of the system.
         for j in self.machine.held() {
-            tangent.take_out(j);
+            tangent.row_mut(j).fill(0.0);
+            tangent.column_mut(j).fill(0.0);
+            tangent[(j, j)] = 1.0;
         }
         tangent
     }
 
     /// Derivative of the contact's part of the residual, -W . s_j, by the position of every joint k.
-    fn contact_tangent(&self, slopes: StepSlopes) -> JointStiffness {
+    fn contact_tangent(&self, slopes: StepSlopes) -> Mat6 {
         let contact = self.response.tangent();
         let on_femur = self.response.wrench.reaction();
         let screws = &self.configuration.screws;
         let carried = self.configuration.carried_twists(&self.kinematics.rates);
-        let mut tangent = JointStiffness::zero();
+        let mut tangent = Mat6::zeros();
         for k in 0..6 {
             // The twist is the sum of s_i v_i. Moving joint k changes its own rate v_k by the slope of
             // the step, and it turns every screw s_i that it carries, so that s_i v_i turns too.

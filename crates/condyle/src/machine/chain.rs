@@ -14,7 +14,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     screws: [Twist; 6],
-    /// Where the femoral frame's origin is in the insert frame with all joints at zero, mm.
+    /// Position of the femoral frame's origin in the insert frame with all joints at zero, mm.
     zero_mm: Vec3,
     flexion_axis_mm: (f64, f64),
 }
@@ -22,9 +22,9 @@ pub struct Chain {
 /// The chain at given positions.
 #[derive(Clone, Debug)]
 pub struct Configuration {
-    /// The femur in the insert frame.
+    /// Pose of the femur in the insert frame.
     pub pose: Pose,
-    /// How each joint moves the femur relative to the insert: twist a unit of rate.
+    /// Motion of the femur relative to the insert per unit rate of each joint.
     pub screws: [Twist; 6],
 }
 
@@ -43,12 +43,13 @@ impl Chain {
         }
     }
 
-    /// The chain that reads zero where it now stands at `positions`, as far as its joints are zeroed by
-    /// settling; and the positions that it reads there. The pose is the same.
+    /// Returns the chain with its zero moved to `positions` in the joints that settling zeroes, and the
+    /// new readings there. The pose is the same.
     pub fn zeroed_at(&self, machine: &Machine, positions: &[f64; 6]) -> (Self, [f64; 6]) {
         let (mut zero_mm, mut positions) = (self.zero_mm, *positions);
         for (joint, position) in machine.joints.iter().zip(&mut positions) {
             if joint.description.is_zeroed {
+                // Translations commute with one another, and fixed axes stand before them in the chain.
                 zero_mm += screw(joint, Vec3::zeros()).linear * *position;
                 *position = 0.0;
             }
@@ -57,12 +58,12 @@ impl Chain {
         (zeroed, positions)
     }
 
-    /// Where the femoral frame's origin is in the insert frame with all joints at zero, mm.
+    /// Returns the position of the femoral frame's origin in the insert frame with all joints at zero, mm.
     pub fn zero_mm(&self) -> Vec3 {
         self.zero_mm
     }
 
-    /// Pose and screws at positions, mm and rad, in the order of the chain.
+    /// Returns pose and screws at positions, mm and rad, in the order of the chain.
     pub fn at(&self, positions: &[f64; 6]) -> Configuration {
         let mut pose = Pose::identity();
         let mut screws = [Twist::zero(); 6];
@@ -70,12 +71,13 @@ impl Chain {
             *screw = axis.carried(&pose);
             pose = pose.then(&axis.exponential(position));
         }
+        // T_0 is a translation: the frames are parallel with all joints at zero.
         pose.translation += pose.rotation * self.zero_mm;
         Configuration { pose, screws }
     }
 }
 
-/// How a joint moves the femur past the insert at zero: its screw; the femur turns about `pivot_mm`.
+/// The screw of a joint at zero, as the femur's motion past the insert; the femur rotates about `pivot_mm`.
 fn screw(joint: &Joint, pivot_mm: Vec3) -> Twist {
     let directed = |direction: [f64; 3]| match joint.description.moves {
         MovedBody::Insert => -Vec3::from(direction),
@@ -89,7 +91,7 @@ fn screw(joint: &Joint, pivot_mm: Vec3) -> Twist {
 }
 
 impl Configuration {
-    /// Pose and twist of the femur relative to the insert at given rates.
+    /// Returns pose and twist of the femur relative to the insert at given rates.
     pub fn motion(&self, rates: &[f64; 6]) -> RelativeMotion {
         RelativeMotion {
             pose: self.pose,
@@ -97,7 +99,7 @@ impl Configuration {
         }
     }
 
-    /// Twist of the femur relative to the insert at given rates, in the insert frame.
+    /// Returns the twist of the femur relative to the insert at given rates, in the insert frame.
     pub fn twist(&self, rates: &[f64; 6]) -> Twist {
         self.screws
             .iter()
@@ -106,10 +108,10 @@ impl Configuration {
             .sum()
     }
 
-    /// Twists of what each joint carries, at given rates: the sum of s_i v_i over the joints farther from the insert.
+    /// The twist of the part that each joint carries, at given rates: the sum of s_i v_i over the joints farther from the insert.
     ///
     /// Joint k turns the screws that it carries by their Lie bracket with its own, and so their twist too.
-    pub fn carried_twists(&self, rates: &[f64; 6]) -> [Twist; 6] {
+    pub(super) fn carried_twists(&self, rates: &[f64; 6]) -> [Twist; 6] {
         let mut carried = [Twist::zero(); 6];
         for k in (0..5).rev() {
             carried[k] = carried[k + 1] + self.screws[k + 1] * rates[k + 1];

@@ -1,70 +1,66 @@
 //! Explicit steps of time by central differences: the balance of the implicit method with nothing to solve.
 
 use super::{
-    Chain, JointIndex, Kinematics, Machine, MachineState, SolverCounters,
+    CycleError, Kinematics, Machine, MachineState, Simulator,
     balance::{Balance, StepSlopes},
-    joint_vectors::JointStiffness,
+    simulator::Stepped,
 };
-use crate::{
-    contact::{ContactModel, NotBorne},
-    spatial::RelativeMotion,
-};
+use crate::spatial::{Mat6, RelativeMotion};
 
-/// Steps after which stability is asked for again; each time costs one more contact evaluation.
+/// Steps between two estimates of the stable step; each estimate costs one more contact evaluation.
 const STEPS_PER_STABILITY: usize = 16;
-/// Rates beyond which the motion has left all bounds, mm/s or rad/s.
+/// Rates beyond which the motion is unstable, mm/s or rad/s.
 const FASTEST: f64 = 1e6;
+/// Part of the stable step that is taken: the load may grow before the next estimate.
+const SAFETY: f64 = 0.8;
 
-/// Why explicit steps end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum NoStep {
-    /// A loaded joint without inertia takes no explicit step.
-    NoInertia(JointIndex),
-    /// The motion left all bounds.
-    Unstable { phase: f64, positions: [f64; 6] },
-    /// The insert does not bear the load.
-    NotBorne { phase: f64, why: NotBorne },
-}
-
-/// Everything that explicit steps need beside the state.
-pub(super) struct Explicit<'a> {
-    pub machine: &'a Machine,
-    pub chain: &'a Chain,
-    pub contact: &'a mut dyn ContactModel,
-    /// Inertia is added where the stable step is shorter, s; 0 adds none.
-    pub least_step_s: f64,
-    pub counters: &'a mut SolverCounters,
-}
-
-impl Explicit<'_> {
-    /// The state at the phase `to`, in as many equal steps as it takes, their length asked for again
-    /// after every few of them; and the femur's motion past the insert there. The contact accepts every
-    /// step, and its last evaluation is at the positions returned.
-    pub fn advance(
+impl Simulator<'_> {
+    /// Advances the machine to the phase `to` in equal steps, their length estimated again after every few of
+    /// them. The contact accepts every step, and its last evaluation is at the positions returned.
+    pub(super) fn explicit(
         &mut self,
         state: &MachineState,
         to: f64,
-    ) -> Result<(MachineState, RelativeMotion), NoStep> {
-        self.check_inertia()?;
+        least_step_s: f64,
+    ) -> Result<Stepped, CycleError> {
+        let mut loaded = self.machine.loaded();
+        if let Some(j) = loaded.find(|&j| self.machine.joints[j].inertia <= 0.0) {
+            let joint = self.machine.joints[j].description.long_name;
+            return Err(CycleError::NoInertia { joint });
+        }
         let (mut now, mut phase) = (state.now, state.phase);
         loop {
-            let stable = self.quickness(&now).stable_step(self.least_step_s);
-            self.counters.added_inertia =
-                (stable.inertia_factor - 1.0).max(self.counters.added_inertia);
+            let still = Kinematics {
+                rates: [0.0; 6],
+                ..now
+            };
+            let quickness = Quickness::at_rest(self.machine, &self.balance(still));
+            let (stable_step_s, inertia_factor) = quickness.stable_step(least_step_s);
+            self.counters.added_inertia = (inertia_factor - 1.0).max(self.counters.added_inertia);
             let rest_s = (to - phase) / self.machine.frequency_hz;
-            let mut left = ((rest_s / stable.step_s).ceil() as usize).max(1);
+            let mut left = ((rest_s / stable_step_s).ceil() as usize).max(1);
             let step = (to - phase) / left as f64;
             for _ in 0..left.min(STEPS_PER_STABILITY) {
                 left -= 1;
                 phase = if left == 0 { to } else { phase + step };
-                let (next, motion) = self.step(&now, phase, step, stable.inertia_factor)?;
+                let (next, motion) = self.explicit_step(&now, phase, step, inertia_factor)?;
+                // The steps are so short that the contact's own state may follow one step behind.
                 let settled = self.contact.settle(&motion);
-                // A step is so short that what the contact finds may count from the next one on.
-                settled.map_err(|why| NoStep::NotBorne { phase, why })?;
+                settled.map_err(|why| CycleError::not_borne(phase, why))?;
                 self.contact.accept(&motion);
                 now = next;
                 if left == 0 {
-                    return Ok((ended(to, now), motion));
+                    // The accelerations of explicit steps are no basis for backward differences.
+                    let state = MachineState {
+                        phase: to,
+                        now,
+                        before: None,
+                    };
+                    return Ok(Stepped {
+                        state,
+                        motion,
+                        warm_start: None,
+                    });
                 }
             }
         }
@@ -72,18 +68,26 @@ impl Explicit<'_> {
 
     /// One step of `step` of the cycle that ends at `phase`, and the femur's motion there.
     ///
-    /// v' = v + h/2 a, q1 = q + h v', a1 = a(q1, v' + h/2 a), v1 = v' + h/2 a1: leapfrog, the rates
-    /// kept at whole steps; what depends on rates is asked with rates that are second order too.
-    fn step(
+    /// v' = v + h/2 a, q1 = q + h v', a1 = a(q1, v' + h/2 a), v1 = v' + h/2 a1: leapfrog with the rates
+    /// at whole steps; the contact sees rates that are second order too.
+    fn explicit_step(
         &mut self,
         now: &Kinematics,
         phase: f64,
         step: f64,
         inertia_factor: f64,
-    ) -> Result<(Kinematics, RelativeMotion), NoStep> {
+    ) -> Result<(Kinematics, RelativeMotion), CycleError> {
         let machine = self.machine;
         let half_s = step / machine.frequency_hz / 2.0;
-        let mut next = predicted(now, half_s);
+        let mut next = Kinematics {
+            accelerations: [0.0; 6],
+            ..*now
+        };
+        for j in 0..6 {
+            let change = half_s * now.accelerations[j];
+            next.positions[j] += 2.0 * half_s * (now.rates[j] + change);
+            next.rates[j] += 2.0 * change;
+        }
         machine.drive(phase, &mut next.positions, &mut next.rates);
         let loads = machine.loads_at(phase);
         let balance = self.balance(next);
@@ -95,10 +99,13 @@ impl Explicit<'_> {
         }
         let motion = balance.motion_at(&next.rates);
         self.counters.explicit_steps += 1;
-        let is_kept = |rate: &f64| rate.abs() <= FASTEST;
-        if !next.rates.iter().all(is_kept) {
-            let positions = now.positions;
-            return Err(NoStep::Unstable { phase, positions });
+        // NaN fails the comparison too.
+        let is_bounded = |rate: &f64| rate.abs() <= FASTEST;
+        if !next.rates.iter().all(is_bounded) {
+            return Err(CycleError::Unstable {
+                percent: 100.0 * phase,
+                readings: machine.mechanism.readings(&now.positions),
+            });
         }
         Ok((next, motion))
     }
@@ -107,83 +114,37 @@ impl Explicit<'_> {
         self.counters.contact_evaluations += 1;
         Balance::new(self.machine, self.chain, self.contact, kinematics)
     }
-
-    fn quickness(&mut self, now: &Kinematics) -> Quickness {
-        let machine = self.machine;
-        let still = Kinematics {
-            rates: [0.0; 6],
-            ..*now
-        };
-        Quickness::at_rest(machine, &self.balance(still))
-    }
-
-    fn check_inertia(&self) -> Result<(), NoStep> {
-        let without = |&j: &usize| self.machine.joints[j].inertia <= 0.0;
-        self.machine
-            .loaded()
-            .find(without)
-            .map_or(Ok(()), |j| Err(NoStep::NoInertia(JointIndex::ALL[j])))
-    }
 }
 
-/// A state after explicit steps: what a two-step method remembers is lost.
-fn ended(phase: f64, now: Kinematics) -> MachineState {
-    MachineState {
-        phase,
-        now,
-        before: None,
-    }
-}
-
-/// Joints at the end of a step of twice `half_s`, their rates as if accelerations lasted.
-fn predicted(now: &Kinematics, half_s: f64) -> Kinematics {
-    let mut next = Kinematics {
-        accelerations: [0.0; 6],
-        ..*now
-    };
-    for j in 0..6 {
-        let change = half_s * now.accelerations[j];
-        next.positions[j] += 2.0 * half_s * (now.rates[j] + change);
-        next.rates[j] += 2.0 * change;
-    }
-    next
-}
-
-/// Part of the stable step that is taken: the load may grow before stability is asked for again.
-const SAFETY: f64 = 0.8;
-
-/// How fast a machine can answer: its own frequency and the rate at which it comes to rest.
+/// The speed of a machine's response, which limits the stable step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Quickness {
+struct Quickness {
     /// Highest eigenfrequency, or a bound of it, rad/s.
-    pub frequency_per_s: f64,
-    /// Highest rate at which drag slows it down, 1/s.
-    pub drag_per_s: f64,
-}
-
-/// A step that is stable with the inertia multiplied by a factor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct StableStep {
-    pub step_s: f64,
-    pub inertia_factor: f64,
+    frequency_per_s: f64,
+    /// Highest rate of damping, 1/s.
+    drag_per_s: f64,
 }
 
 impl Quickness {
-    /// How fast a machine can answer where it stands, every part of it at rest: there the
-    /// regularised friction rises steepest with the rate, and it is what limits the step.
+    /// The response at the present positions with every part at rest: there the
+    /// regularised friction is steepest in the rate and limits the step.
     ///
     /// With M = diag of the inertias, and K and C the derivatives of the balance by positions and
     /// rates, the drag is the largest eigenvalue of M^-1/2 C M^-1/2, and the frequency the root of
     /// the norm of M^-1/2 K M^-1/2, which no eigenvalue exceeds.
-    pub fn at_rest(machine: &Machine, balance: &Balance<'_>) -> Self {
-        let scale = by_root_of_inertia(machine);
-        let scale = scale.matrix();
+    fn at_rest(machine: &Machine, balance: &Balance<'_>) -> Self {
+        // 1/sqrt(M) on the diagonal of loaded rows; 0 on the others.
+        let mut diagonal = [0.0; 6];
+        for j in machine.loaded() {
+            diagonal[j] = machine.joints[j].inertia.sqrt().recip();
+        }
+        let scale = Mat6::from_diagonal(&diagonal.into());
         let slopes = |rate| StepSlopes {
             rate,
             ..StepSlopes::STILL
         };
-        let stiffness = *balance.tangent(slopes(0.0)).matrix();
-        let damping = balance.tangent(slopes(1.0)).matrix() - stiffness;
+        let stiffness = balance.tangent(slopes(0.0));
+        let damping = balance.tangent(slopes(1.0)) - stiffness;
         let drag = scale * (damping + damping.transpose()) * scale / 2.0;
         Self {
             frequency_per_s: (scale * stiffness * scale).norm().sqrt(),
@@ -191,37 +152,23 @@ impl Quickness {
         }
     }
 
-    /// The longest stable step, and more inertia where it is shorter than `least_step_s`.
+    /// Returns the stable step, s, and the factor on the inertia, above 1 where the step would be shorter than
+    /// `least_step_s`.
     ///
-    /// Central differences follow an oscillation up to h w = 2; with rates carried on from the two
+    /// Central differences follow an oscillation up to h w = 2; with rates extrapolated from the two
     /// last half-steps they follow drag up to h c = 1. Both together are stable for h (c + w/2) <= 1.
     /// Inertia times f divides c by f and w by its root.
-    pub fn stable_step(self, least_step_s: f64) -> StableStep {
+    fn stable_step(self, least_step_s: f64) -> (f64, f64) {
         let (drag, half) = (self.drag_per_s, self.frequency_per_s / 2.0);
         let step_s = SAFETY / (drag + half);
         if step_s >= least_step_s {
-            return StableStep {
-                step_s,
-                inertia_factor: 1.0,
-            };
+            return (step_s, 1.0);
         }
         let linear = least_step_s * half;
         let root = (linear + (linear * linear + 4.0 * SAFETY * least_step_s * drag).sqrt())
             / (2.0 * SAFETY);
-        StableStep {
-            step_s: least_step_s,
-            inertia_factor: root * root,
-        }
+        (least_step_s, root * root)
     }
-}
-
-/// 1/sqrt(M) on the diagonal of loaded rows; nothing on the others.
-fn by_root_of_inertia(machine: &Machine) -> JointStiffness {
-    let mut diagonal = [0.0; 6];
-    for j in machine.loaded() {
-        diagonal[j] = machine.joints[j].inertia.sqrt().recip();
-    }
-    JointStiffness::from_diagonal(diagonal)
 }
 
 #[cfg(test)]
@@ -229,9 +176,9 @@ mod tests {
     use super::*;
     use crate::{
         Vec3,
-        contact::{ContactResult, Linearization, MAX_REGIONS, Response, Tangent},
+        contact::{ContactModel, ContactResult, Linearization, MAX_REGIONS, Response, Tangent},
         machine::{
-            CycleError, Drive, Waveform,
+            Chain, Drive, SolverCounters, TimeSettings, Waveform,
             knee::{IS, KNEE},
         },
         spatial::{Mat6, Wrench, WrenchByTwist},
@@ -309,23 +256,23 @@ mod tests {
         inertia: f64,
         least_step_s: f64,
         counters: &mut SolverCounters,
-    ) -> Result<MachineState, NoStep> {
+    ) -> Result<MachineState, CycleError> {
         let machine = machine(inertia);
         let mut start = MachineState::at_rest(&machine, [0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
         start.now.accelerations[IS.place()] = -support.stiffness / inertia;
         let mut contact = support;
-        let mut explicit = Explicit {
-            machine: &machine,
-            chain: &Chain::new(&machine, Vec3::zeros(), (0.0, 0.0)),
-            contact: &mut contact,
-            least_step_s,
-            counters,
-        };
-        let (end, motion) = explicit.advance(&start, 0.1)?;
-        let steps = explicit.counters.explicit_steps;
-        assert_eq!(contact.accepted, steps, "every step is accepted");
-        assert_eq!(motion.pose.translation.y, end.now.positions[IS.place()]);
-        Ok(end)
+        let chain = Chain::new(&machine, Vec3::zeros(), (0.0, 0.0));
+        let time = TimeSettings::default();
+        let mut simulator = Simulator::new(&machine, &chain, &mut contact, &time);
+        let end = simulator.explicit(&start, 0.1, least_step_s)?;
+        *counters = simulator.counters;
+        assert_eq!(
+            contact.accepted, counters.explicit_steps,
+            "every step is accepted"
+        );
+        let height_mm = end.motion.pose.translation.y;
+        assert_eq!(height_mm, end.state.now.positions[IS.place()]);
+        Ok(end.state)
     }
 
     #[test]
@@ -335,16 +282,12 @@ mod tests {
         let after = |steps: u32| {
             let mut now = MachineState::at_rest(&machine, [0.0, 0.0, 0.0, 0.0, 1.0, 0.0]).now;
             now.accelerations[IS.place()] = -stiffness / MASS;
-            let mut explicit = Explicit {
-                machine: &machine,
-                chain: &Chain::new(&machine, Vec3::zeros(), (0.0, 0.0)),
-                contact: &mut support(stiffness, drag),
-                least_step_s: 0.0,
-                counters: &mut SolverCounters::default(),
-            };
+            let chain = Chain::new(&machine, Vec3::zeros(), (0.0, 0.0));
+            let (mut contact, time) = (support(stiffness, drag), TimeSettings::default());
+            let mut simulator = Simulator::new(&machine, &chain, &mut contact, &time);
             for _ in 0..steps {
                 let step = 0.1 / f64::from(steps);
-                now = explicit.step(&now, 0.0, step, 1.0).unwrap().0;
+                now = simulator.explicit_step(&now, 0.0, step, 1.0).unwrap().0;
             }
             now.positions[IS.place()]
         };
@@ -394,7 +337,7 @@ mod tests {
     fn a_loaded_freedom_without_inertia_is_refused() {
         let refused = released(support(1.0, 0.0), 0.0, 0.0, &mut SolverCounters::default());
         assert_eq!(
-            CycleError::of_explicit(&KNEE, &refused.unwrap_err()).to_string(),
+            refused.unwrap_err().to_string(),
             "the explicit integrator needs inertia on every loaded freedom, and InferoSuperior has none; give it \
              some, or take the implicit integrator"
         );
@@ -408,7 +351,7 @@ mod tests {
             0.0,
             &mut SolverCounters::default(),
         );
-        let message = CycleError::of_explicit(&KNEE, &lost.unwrap_err()).to_string();
+        let message = lost.unwrap_err().to_string();
         assert!(
             message.starts_with("explicit steps leave all bounds at "),
             "{message}"
@@ -421,11 +364,11 @@ mod tests {
             frequency_per_s: 4000.0,
             drag_per_s: 3e4,
         };
-        let factor = quickness.stable_step(1e-3).inertia_factor;
+        let (_, factor) = quickness.stable_step(1e-3);
         let heavier = Quickness {
             frequency_per_s: 4000.0 / factor.sqrt(),
             drag_per_s: 3e4 / factor,
         };
-        assert!((heavier.stable_step(0.0).step_s / 1e-3 - 1.0).abs() < 1e-12);
+        assert!((heavier.stable_step(0.0).0 / 1e-3 - 1.0).abs() < 1e-12);
     }
 }

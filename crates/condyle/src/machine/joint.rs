@@ -3,14 +3,14 @@
 /// How a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
-    /// It turns: rad and N mm in the solver, degrees in files.
+    /// It rotates: rad and N mm in the solver, degrees in files.
     Rotation,
-    /// It shifts: mm and N everywhere.
+    /// It translates: mm and N everywhere.
     Translation,
 }
 
 impl JointKind {
-    /// The unit of positions in files, as names end in it.
+    /// The unit of positions in files, which ends their names.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Rotation => "deg",
@@ -18,7 +18,7 @@ impl JointKind {
         }
     }
 
-    /// How much of the solver's unit (rad, mm) the unit of files has.
+    /// The unit of files in the solver's unit, rad or mm.
     pub const fn file_unit_in_solver(self) -> f64 {
         match self {
             Self::Rotation => 1f64.to_radians(),
@@ -26,7 +26,7 @@ impl JointKind {
         }
     }
 
-    /// A position of the solver (rad, mm) in the unit of files.
+    /// Converts a position of the solver, rad or mm, to the unit of files.
     pub const fn in_files(self, position: f64) -> f64 {
         match self {
             Self::Rotation => position.to_degrees(),
@@ -35,7 +35,7 @@ impl JointKind {
     }
 }
 
-/// The place of a joint in its chain, found by the joint's name.
+/// The place of a joint in its chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct JointIndex(usize);
 
@@ -43,48 +43,18 @@ impl JointIndex {
     /// The six places, from the insert to the femur.
     pub const ALL: [Self; 6] = [Self(0), Self(1), Self(2), Self(3), Self(4), Self(5)];
 
-    /// The place of the joint called `name`; a constant of it is found when the program is compiled.
-    ///
-    /// # Panics
-    /// Where no joint is called so.
-    pub const fn named(name: &str, joints: &[JointDescription; 6]) -> Self {
-        let mut place = 0;
-        while place < joints.len() {
-            if is_same(name.as_bytes(), joints[place].name.as_bytes()) {
-                return Self(place);
-            }
-            place += 1;
-        }
-        panic!("no joint of the mechanism has this name")
-    }
-
     /// The place as a number, from 0 at the insert.
     pub const fn place(self) -> usize {
         self.0
     }
 
-    /// Of one value a joint, in the order of the chain, that of this joint.
+    /// Returns the value of this joint from one value per joint.
     pub const fn of(self, values: &[f64; 6]) -> f64 {
         values[self.0]
     }
 }
 
-/// Whether two texts are the same, for constants.
-const fn is_same(one: &[u8], other: &[u8]) -> bool {
-    if one.len() != other.len() {
-        return false;
-    }
-    let mut i = 0;
-    while i < one.len() {
-        if one[i] != other[i] {
-            return false;
-        }
-        i += 1;
-    }
-    true
-}
-
-/// The unit that the values of a waveform have in files.
+/// The unit of a waveform's values in files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChannelUnit {
     /// N.
@@ -98,7 +68,7 @@ pub enum ChannelUnit {
 }
 
 impl ChannelUnit {
-    /// How a name ends that has the unit: `n` of `knots_n`.
+    /// The ending of names with this unit, such as the `n` of `knots_n`.
     pub const fn suffix(self) -> &'static str {
         match self {
             Self::Newton => "n",
@@ -107,56 +77,51 @@ impl ChannelUnit {
             Self::Degree => JointKind::Rotation.unit(),
         }
     }
-
-    /// How much of the solver's unit (N, N mm, mm, rad) it has.
-    pub const fn in_solver(self) -> f64 {
-        match self {
-            Self::Newton => 1.0,
-            Self::NewtonMetre => 1e3,
-            Self::Millimetre => JointKind::Translation.file_unit_in_solver(),
-            Self::Degree => JointKind::Rotation.file_unit_in_solver(),
-        }
-    }
 }
 
-/// A waveform that moves or loads a joint, as files have it.
+/// A waveform that moves or loads a joint, as it stands in files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channel {
-    /// Its name in files: `ap_force`.
+    /// Name in files, such as `ap_force`.
     pub name: &'static str,
-    /// What it is, and which way is positive.
+    /// Description with the positive direction.
     pub about: &'static str,
-    /// The unit of its values.
+    /// Unit of the values.
     pub unit: ChannelUnit,
-    /// 1 where its values have the sign of the joint, -1 where they have the other.
+    /// 1 if positive values act in the joint's positive direction, -1 otherwise.
     pub sign: f64,
-    /// Least that a value may be.
+    /// Smallest permitted value.
     pub least: f64,
-    /// Most that a value may be.
+    /// Largest permitted value.
     pub most: f64,
 }
 
 impl Channel {
-    /// What a value in a file is multiplied by to act on the joint: sign and unit.
+    /// The factor from a value in a file to the joint's load or motion: sign and unit.
     pub const fn factor(&self) -> f64 {
-        self.sign * self.unit.in_solver()
+        let unit_in_solver = match self.unit {
+            ChannelUnit::Newton => 1.0,
+            ChannelUnit::NewtonMetre => 1e3,
+            ChannelUnit::Millimetre => JointKind::Translation.file_unit_in_solver(),
+            ChannelUnit::Degree => JointKind::Rotation.file_unit_in_solver(),
+        };
+        self.sign * unit_in_solver
     }
 }
 
-/// The line that a joint moves along or about, with a unit vector in the insert's directions.
+/// The line that a joint moves along or about, as a unit vector in the insert frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axis {
     /// Along a direction.
     Along([f64; 3]),
-    /// About a direction, through a point of the insert frame that the machine sets for the joint
-    /// ([`Joint::axis_point_mm`](super::Joint)).
+    /// About a direction, through the point of the insert frame that the machine sets in
+    /// [`Joint::axis_point_mm`](super::Joint).
     About([f64; 3]),
-    /// About a direction, through the point of the femur that the femur turns about; the joints nearer to
-    /// the insert carry it along.
+    /// About a direction, through the femur's own axis point; the joints nearer to the insert carry it.
     AboutFemur([f64; 3]),
 }
 
-/// Which body a joint moves. When the insert moves one way, the femur falls behind the other way.
+/// The body that a joint moves. A joint of the insert moves the femur the opposite way relative to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovedBody {
     /// The insert.
@@ -165,25 +130,25 @@ pub enum MovedBody {
     Femur,
 }
 
-/// What a joint does while the machine settles under the load at the start of the cycle.
+/// The state of a joint while the machine settles under the load at the start of the cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Settling {
-    /// It is free, and nothing pushes it, whatever drives it in the cycle.
+    /// Free and without load, whatever drives it in the cycle.
     Free,
-    /// It is held at zero.
+    /// Held at zero.
     HeldAtZero,
-    /// It is driven as at the start of the cycle, by its load too.
+    /// Driven as at the start of the cycle, by motion or load.
     Driven,
-    /// It is driven as at the start of the cycle, but free of load where a load drives it.
+    /// Driven as at the start of the cycle, but free and without load if a load drives it.
     DrivenWithoutLoad,
 }
 
-/// Whether a joint can be free under a load, and which waveform gives it.
+/// Whether a joint can be free under a load, and the waveform of that load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Loading {
     /// It cannot be free.
     None,
-    /// It can be free, and nothing pushes it.
+    /// It can be free, always without load.
     Free,
     /// It can be free under a waveform.
     By(&'static Channel),
@@ -192,42 +157,42 @@ pub enum Loading {
 /// A joint of a mechanism: its names, its axis, how it settles, and the waveforms that can drive it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointDescription {
-    /// Its name in files: `ap`.
+    /// Name in files, such as `ap`.
     pub name: &'static str,
-    /// Its column in files of motions: the name and the unit.
+    /// Column in files of motions: the name and the unit.
     pub column: &'static str,
-    /// What messages call it: `AP`.
+    /// Short name in messages, such as `AP`.
     pub symbol: &'static str,
-    /// What messages call it where there is room: `AnteroPosterior`.
+    /// Long name in messages, such as `AnteroPosterior`.
     pub long_name: &'static str,
-    /// What a page calls it.
+    /// Heading on pages.
     pub title: &'static str,
-    /// Which way is positive, in words.
+    /// Positive direction in words.
     pub positive: &'static str,
-    /// Decimals that messages give of its position, in the unit of files.
+    /// Decimals of its position in messages, in the unit of files.
     pub decimals: usize,
-    /// Range below which a curve of it is drawn flat rather than enlarged, in the unit of files.
+    /// Smallest range of a plotted curve, in the unit of files: smaller motions are not enlarged.
     pub least_span: f64,
-    /// What it moves along or about.
+    /// Axis of the motion.
     pub axis: Axis,
-    /// What it moves, and so its sign.
+    /// Body that it moves, which fixes the sign.
     pub moves: MovedBody,
-    /// What it does while the machine settles.
+    /// State while the machine settles.
     pub settling: Settling,
     /// Whether it reads zero where the machine has settled.
     pub is_zeroed: bool,
-    /// Mass in tonne, or moment of inertia in tonne mm2, unless a machine says otherwise.
+    /// Default mass in tonne, or moment of inertia in tonne mm2.
     pub inertia: f64,
-    /// Viscous damping, N s/mm or N mm s/rad, unless a machine says otherwise.
+    /// Default viscous damping, N s/mm or N mm s/rad.
     pub damping: f64,
-    /// The waveform that can prescribe its motion, if one can.
+    /// Waveform that can prescribe its motion.
     pub motion: Option<&'static Channel>,
-    /// The waveform that can load it.
+    /// Waveform that can load it.
     pub load: Loading,
 }
 
 impl JointDescription {
-    /// Whether it turns or shifts.
+    /// Returns the kind of motion, which follows from the axis.
     pub const fn kind(&self) -> JointKind {
         match self.axis {
             Axis::Along(_) => JointKind::Translation,
@@ -235,7 +200,7 @@ impl JointDescription {
         }
     }
 
-    /// The waveform that can load it, if one can.
+    /// Returns the waveform that can load it, if there is one.
     pub const fn load_channel(&self) -> Option<&'static Channel> {
         match self.load {
             Loading::By(channel) => Some(channel),

@@ -1,85 +1,120 @@
 //! The knee simulator as a table.
 //!
 //! The insert carries VV nearest to it, then IE, ML and AP towards the frame; the femur flexes on a
-//! carriage that moves IS. All that is said of these six joints anywhere is said here: a case's keys, the
-//! columns of its results, messages and pages look it up.
+//! carriage that moves IS. Case keys, result columns, messages and pages read these six descriptions.
 
 use super::{
-    Axis, Channel, ChannelUnit, CycleQuantity, JointDescription, JointIndex, Loading, Mechanism,
-    MovedBody, Region, Settling,
+    Axis, Channel,
+    ChannelUnit::{self, Degree, Millimetre, Newton, NewtonMetre},
+    CycleQuantity, JointDescription, JointIndex, Loading, Mechanism, MovedBody, Region, Settling,
 };
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
 const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// Mass that shifts with a joint, tonne: that of a carriage, approximate; no source gives it.
+/// Mass that translates with a joint, tonne: that of a carriage, approximate; no source gives it.
 pub const MASS_TONNE: f64 = 5e-3;
-/// Moment of inertia that turns with a joint, tonne mm2: that mass at a radius of 45 mm.
+/// Moment of inertia that rotates with a joint, tonne mm2: that mass at a radius of 45 mm.
 pub const MOMENT_OF_INERTIA_TONNE_MM2: f64 = 10.0;
-/// Viscous damping of a shift, N s/mm: with that mass 0.36 and 0.79 of critical on the springs.
+/// Viscous damping of a translation, N s/mm: with that mass 0.36 and 0.79 of critical on the springs.
 pub const DAMPING_N_S_PER_MM: f64 = 0.3;
-/// Viscous damping of a turn, N mm s/rad: with that inertia 0.19 and 0.42 of critical on the springs.
+/// Viscous damping of a rotation, N mm s/rad: with that inertia 0.19 and 0.42 of critical on the springs.
 pub const DAMPING_NMM_S_PER_RAD: f64 = 200.0;
 
+const fn channel(
+    name: &'static str,
+    about: &'static str,
+    unit: ChannelUnit,
+    sign: f64,
+    [least, most]: [f64; 2],
+) -> Channel {
+    Channel {
+        name,
+        about,
+        unit,
+        sign,
+        least,
+        most,
+    }
+}
+
 /// Compression of the joint; it pushes the femur down, against IS.
-pub static AXIAL_FORCE: Channel = Channel {
-    name: "axial_force",
-    about: "Compression of the joint.",
-    unit: ChannelUnit::Newton,
-    sign: -1.0,
-    least: 0.0,
-    most: 20_000.0,
-};
-
+pub static AXIAL_FORCE: Channel = channel(
+    "axial_force",
+    "Compression of the joint.",
+    Newton,
+    -1.0,
+    [0.0, 20_000.0],
+);
 /// Flexion of the femur.
-pub static FLEXION_MOTION: Channel = Channel {
-    name: "flexion",
-    about: "Flexion of the femur, + flexion.",
-    unit: ChannelUnit::Degree,
-    sign: 1.0,
-    least: -45.0,
-    most: 180.0,
-};
-
+pub static FLEXION_MOTION: Channel = channel(
+    "flexion",
+    "Flexion of the femur, + flexion.",
+    Degree,
+    1.0,
+    [-45.0, 180.0],
+);
 /// Antero-posterior force on the insert.
-pub static AP_FORCE: Channel = Channel {
-    name: "ap_force",
-    about: "AP force on the insert, + anterior.",
-    unit: ChannelUnit::Newton,
-    sign: 1.0,
-    least: -5000.0,
-    most: 5000.0,
-};
-
+pub static AP_FORCE: Channel = channel(
+    "ap_force",
+    "AP force on the insert, + anterior.",
+    Newton,
+    1.0,
+    [-5000.0, 5000.0],
+);
 /// Torque on the insert.
-pub static IE_TORQUE: Channel = Channel {
-    name: "ie_torque",
-    about: "Torque on the insert, + internal.",
-    unit: ChannelUnit::NewtonMetre,
-    sign: 1.0,
-    least: -200.0,
-    most: 200.0,
-};
-
+pub static IE_TORQUE: Channel = channel(
+    "ie_torque",
+    "Torque on the insert, + internal.",
+    NewtonMetre,
+    1.0,
+    [-200.0, 200.0],
+);
 /// Antero-posterior motion of the insert.
-pub static AP_MOTION: Channel = Channel {
-    name: "ap_motion",
-    about: "AP motion of the insert, + anterior.",
-    unit: ChannelUnit::Millimetre,
-    sign: 1.0,
-    least: -50.0,
-    most: 50.0,
+pub static AP_MOTION: Channel = channel(
+    "ap_motion",
+    "AP motion of the insert, + anterior.",
+    Millimetre,
+    1.0,
+    [-50.0, 50.0],
+);
+/// Internal-external rotation of the insert.
+pub static IE_MOTION: Channel = channel(
+    "ie_motion",
+    "IE rotation of the insert, + internal.",
+    Degree,
+    1.0,
+    [-90.0, 90.0],
+);
+
+/// The values that most joints share: those of a carriage that moves the insert along x.
+const CARRIAGE: JointDescription = JointDescription {
+    name: "",
+    column: "",
+    symbol: "",
+    long_name: "",
+    title: "",
+    positive: "",
+    decimals: 3,
+    least_span: 0.5,
+    axis: Axis::Along(X),
+    moves: MovedBody::Insert,
+    settling: Settling::DrivenWithoutLoad,
+    is_zeroed: true,
+    inertia: MASS_TONNE,
+    damping: DAMPING_N_S_PER_MM,
+    motion: None,
+    load: Loading::Free,
 };
 
-/// Internal-external rotation of the insert.
-pub static IE_MOTION: Channel = Channel {
-    name: "ie_motion",
-    about: "IE rotation of the insert, + internal.",
-    unit: ChannelUnit::Degree,
-    sign: 1.0,
-    least: -90.0,
-    most: 90.0,
+/// The values that the rotations share.
+const TURNTABLE: JointDescription = JointDescription {
+    axis: Axis::About(X),
+    is_zeroed: false,
+    inertia: MOMENT_OF_INERTIA_TONNE_MM2,
+    damping: DAMPING_NMM_S_PER_RAD,
+    ..CARRIAGE
 };
 
 const JOINTS: [JointDescription; 6] = [
@@ -90,16 +125,7 @@ const JOINTS: [JointDescription; 6] = [
         long_name: "VarusValgus",
         title: "Varus\u{2013}valgus",
         positive: "insert varus",
-        decimals: 3,
-        least_span: 0.5,
-        axis: Axis::About(X),
-        moves: MovedBody::Insert,
-        settling: Settling::DrivenWithoutLoad,
-        is_zeroed: false,
-        inertia: MOMENT_OF_INERTIA_TONNE_MM2,
-        damping: DAMPING_NMM_S_PER_RAD,
-        motion: None,
-        load: Loading::Free,
+        ..TURNTABLE
     },
     JointDescription {
         name: "ie",
@@ -108,16 +134,11 @@ const JOINTS: [JointDescription; 6] = [
         long_name: "InternalExternal",
         title: "Internal\u{2013}external",
         positive: "insert internal",
-        decimals: 3,
-        least_span: 0.5,
         axis: Axis::About(Y),
-        moves: MovedBody::Insert,
         settling: Settling::HeldAtZero,
-        is_zeroed: false,
-        inertia: MOMENT_OF_INERTIA_TONNE_MM2,
-        damping: DAMPING_NMM_S_PER_RAD,
         motion: Some(&IE_MOTION),
         load: Loading::By(&IE_TORQUE),
+        ..TURNTABLE
     },
     JointDescription {
         name: "ml",
@@ -126,16 +147,8 @@ const JOINTS: [JointDescription; 6] = [
         long_name: "MedioLateral",
         title: "Medio-lateral",
         positive: "insert lateral",
-        decimals: 3,
-        least_span: 0.5,
         axis: Axis::Along(Z),
-        moves: MovedBody::Insert,
-        settling: Settling::DrivenWithoutLoad,
-        is_zeroed: true,
-        inertia: MASS_TONNE,
-        damping: DAMPING_N_S_PER_MM,
-        motion: None,
-        load: Loading::Free,
+        ..CARRIAGE
     },
     JointDescription {
         name: "ap",
@@ -144,16 +157,10 @@ const JOINTS: [JointDescription; 6] = [
         long_name: "AnteroPosterior",
         title: "Anterior\u{2013}posterior",
         positive: "insert anterior",
-        decimals: 3,
-        least_span: 0.5,
-        axis: Axis::Along(X),
-        moves: MovedBody::Insert,
         settling: Settling::Free,
-        is_zeroed: true,
-        inertia: MASS_TONNE,
-        damping: DAMPING_N_S_PER_MM,
         motion: Some(&AP_MOTION),
         load: Loading::By(&AP_FORCE),
+        ..CARRIAGE
     },
     JointDescription {
         name: "is",
@@ -162,16 +169,12 @@ const JOINTS: [JointDescription; 6] = [
         long_name: "InferoSuperior",
         title: "Superior\u{2013}inferior",
         positive: "superior",
-        decimals: 3,
         least_span: 0.1,
         axis: Axis::Along(Y),
         moves: MovedBody::Femur,
         settling: Settling::Driven,
-        is_zeroed: true,
-        inertia: MASS_TONNE,
-        damping: DAMPING_N_S_PER_MM,
-        motion: None,
         load: Loading::By(&AXIAL_FORCE),
+        ..CARRIAGE
     },
     JointDescription {
         name: "flexion",
@@ -185,26 +188,24 @@ const JOINTS: [JointDescription; 6] = [
         axis: Axis::AboutFemur(Z),
         moves: MovedBody::Femur,
         settling: Settling::Driven,
-        is_zeroed: false,
-        inertia: MOMENT_OF_INERTIA_TONNE_MM2,
-        damping: DAMPING_NMM_S_PER_RAD,
         motion: Some(&FLEXION_MOTION),
         load: Loading::None,
+        ..TURNTABLE
     },
 ];
 
 /// Varus-valgus of the insert, rad, + varus.
-pub const VV: JointIndex = JointIndex::named("vv", &JOINTS);
+pub const VV: JointIndex = JointIndex::ALL[0];
 /// Internal-external rotation of the insert, rad, + internal.
-pub const IE: JointIndex = JointIndex::named("ie", &JOINTS);
+pub const IE: JointIndex = JointIndex::ALL[1];
 /// Medio-lateral translation of the insert, mm, + lateral.
-pub const ML: JointIndex = JointIndex::named("ml", &JOINTS);
+pub const ML: JointIndex = JointIndex::ALL[2];
 /// Antero-posterior translation of the insert, mm, + anterior.
-pub const AP: JointIndex = JointIndex::named("ap", &JOINTS);
+pub const AP: JointIndex = JointIndex::ALL[3];
 /// Infero-superior translation of the femur, mm, + superior.
-pub const IS: JointIndex = JointIndex::named("is", &JOINTS);
+pub const IS: JointIndex = JointIndex::ALL[4];
 /// Flexion of the femur, rad, + flexion.
-pub const FLEXION: JointIndex = JointIndex::named("flexion", &JOINTS);
+pub const FLEXION: JointIndex = JointIndex::ALL[5];
 
 /// The region of a surface on the side of the other knee.
 pub const MEDIAL: usize = 0;
@@ -267,6 +268,15 @@ mod tests {
             assert_eq!(region.column, format!("{}_force_n", region.name));
         }
         assert!(KNEE.regions.len() <= MAX_REGIONS);
+    }
+
+    #[test]
+    fn constants_are_the_places_of_the_named_joints() {
+        let names = ["vv", "ie", "ml", "ap", "is", "flexion"];
+        assert_eq!(
+            names.map(|name| KNEE.named(name)),
+            [VV, IE, ML, AP, IS, FLEXION].map(Some)
+        );
     }
 
     #[test]

@@ -1,17 +1,15 @@
 //! The simulator: joints, waveforms, restraints, and equilibrium in time.
 //!
-//! A machine is a table of six joints ([`Mechanism`]; the [`knee`] is one), what drives each of them, and
+//! A machine is a table of six joints ([`Mechanism`]; the [`knee`] is one), a drive for each of them, and
 //! springs. It sees a contact interface, never a mesh.
 
 mod assembly;
 mod balance;
 mod chain;
 mod cycle;
-mod cycle_error;
 mod explicit;
 mod implicit;
 mod joint;
-mod joint_vectors;
 pub mod knee;
 mod mechanism;
 mod newton;
@@ -22,13 +20,12 @@ mod waveform;
 
 pub use assembly::{Drive, Joint, Machine, Spring};
 pub use chain::{Chain, Configuration};
-pub use cycle::{Cycle, Integration, TimeSettings};
-pub use cycle_error::CycleError;
+pub use cycle::{Cycle, CycleError, Integration, TimeSettings};
 pub use joint::{
     Axis, Channel, ChannelUnit, JointDescription, JointIndex, JointKind, Loading, MovedBody,
     Settling,
 };
-pub use mechanism::{CycleQuantity, CycleRow, Mechanism, Readings, Region};
+pub use mechanism::{CycleQuantity, CycleRow, Mechanism, Region};
 pub use settle::{NotSettled, settle};
 pub use simulator::Simulator;
 pub use state::{Kinematics, MachineState, SolverCounters, WarmStart};

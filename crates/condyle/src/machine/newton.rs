@@ -2,54 +2,53 @@
 
 use super::{
     WarmStart,
-    joint_vectors::{JointForces, JointMotions, JointStiffness, Levers},
+    assembly::Levers,
+    balance::{correction, move_by},
 };
-use crate::{Vec3, contact::MAX_REGIONS};
+use crate::{
+    Vec3,
+    contact::MAX_REGIONS,
+    spatial::{Mat6, Vec6},
+};
 
-/// A correction that is backtracked keeps at least this part.
+/// Smallest part of a correction that backtracking keeps.
 const MIN_PART_OF_CORRECTION: f64 = 0.1;
-/// A correction backtracked to less than this has found no better place, mm.
+/// Backtracking to a correction shorter than this has failed, mm.
 const SHORTEST_CORRECTION_MM: f64 = 1e-9;
-/// What a correction leaves of a residual is predicted to be up to this many times what it left a
-/// cycle before.
+/// Safety factor on the contraction of a cycle before.
 const CAUTION: f64 = 2.0;
-/// A whole correction that leaves more of the residual is none of the last, quadratic ones.
+/// Part of a residual beyond which the correction is not yet in the quadratic range.
 const CONVERGING: f64 = 0.1;
-/// A correction by the tangent of the one before is predicted to leave this many times the part of the residual that
-/// the one before left.
+/// Safety factor on the contraction of a correction by the tangent of the one before.
 const CHORD_CAUTION: f64 = 4.0;
-/// Farthest that one iteration may move, mm; on the lever, rad.
+/// Longest correction, mm; on the lever, rad.
 const LONGEST_CORRECTION_MM: f64 = 1.0;
 
-/// Newton's iteration, on its way.
 pub(super) struct NewtonIteration {
     levers: Levers,
-    positions: [f64; 6],
+    pub positions: [f64; 6],
     /// Length of the residual from which the last correction was computed, N.
-    residual_n: f64,
+    pub residual_n: f64,
     /// The part of the last correction that was taken.
-    taken: JointMotions,
-    /// How the regions slid where the last correction was computed, mm/s.
+    taken: Vec6,
+    /// Mean slip of the regions where the last correction was computed, mm/s.
     mean_slip: [Vec3; MAX_REGIONS],
-    /// Whether all of it was taken.
+    /// Whether the whole of it was taken.
     is_whole: bool,
-    /// What may be left of a residual, N, by prediction alone; none where every correction is to have a tangent of its
-    /// own, and what it leaves is to be computed.
+    /// Largest predicted residual, N, at which the iteration may end without evaluating it; none if every correction
+    /// requires its own tangent and every residual is evaluated.
     may_leave_n: Option<f64>,
-    /// Predicted length of the residual where the iteration is now, N; infinite where nothing is
-    /// known of it.
+    /// Predicted length of the residual at the present positions, N; infinite if there is no prediction.
     predicted_n: f64,
-    /// The contraction: what a whole correction left of a residual near the solution, over the square
-    /// of the residual, when that was seen last, 1/N.
-    contraction_per_n: f64,
-    /// How many times that a correction is predicted to leave.
+    /// The contraction: residual after a whole correction near the solution over the square
+    /// of the residual before it, as observed last, 1/N.
+    pub contraction_per_n: f64,
     caution: f64,
-    /// The tangent of the last correction.
-    tangent: Option<JointStiffness>,
+    tangent: Option<Mat6>,
 }
 
 impl NewtonIteration {
-    /// An iteration that starts from `positions`, and may know the contraction from a cycle before.
+    /// An iteration from `positions`, with the contraction of a cycle before if there is a warm start.
     pub fn new(
         levers: Levers,
         may_leave_n: Option<f64>,
@@ -61,7 +60,7 @@ impl NewtonIteration {
             may_leave_n,
             positions,
             residual_n: f64::INFINITY,
-            taken: JointMotions::zero(),
+            taken: Vec6::zeros(),
             mean_slip: [Vec3::zeros(); MAX_REGIONS],
             is_whole: false,
             predicted_n: f64::INFINITY,
@@ -71,52 +70,40 @@ impl NewtonIteration {
         }
     }
 
-    /// Where it is.
-    pub fn positions(&self) -> [f64; 6] {
-        self.positions
-    }
-
-    /// Length of the residual from which the last correction was computed, N.
-    pub fn residual_n(&self) -> f64 {
-        self.residual_n
-    }
-
-    /// Whether no more is left, as predicted, than may be.
+    /// Whether the predicted residual is within the permitted one.
     pub fn is_predicted_done(&self) -> bool {
         self.may_leave_n
             .is_some_and(|may_leave_n| self.predicted_n <= may_leave_n)
     }
 
-    /// What the last whole correction left of a residual, over its square, 1/N.
-    pub fn contraction_per_n(&self) -> f64 {
-        self.contraction_per_n
-    }
-
-    /// Moves to better positions; false where there are none.
+    /// Moves to better positions; false if none are found.
     ///
-    /// A correction that has made the residual longer is backtracked, another is followed by the next.
-    /// `tangent` is asked for the tangent here where that of the last correction does not serve.
+    /// A correction that has made the residual longer is backtracked; otherwise the next one follows.
+    /// `tangent` is evaluated only where the tangent of the last correction is not good enough.
     pub fn improve(
         &mut self,
-        residual: &JointForces,
+        residual: &Vec6,
         mean_slip: [Vec3; MAX_REGIONS],
-        tangent: impl FnOnce() -> JointStiffness,
+        tangent: impl FnOnce() -> Mat6,
     ) -> bool {
-        let residual_n = residual.length_n(&self.levers);
+        let residual_n = self.levers.length_n(residual);
         if residual_n > self.residual_n {
             return self.backtrack(residual_n, &mean_slip);
         }
         self.mean_slip = mean_slip;
-        self.learn(residual_n);
+        self.observe_contraction(residual_n);
+        let newton_leaves_n = self.caution * self.contraction_per_n * residual_n * residual_n;
         let (tangent, leaves_n) = self
             .chord(residual_n)
-            .unwrap_or_else(|| (tangent(), self.newton_leaves_n(residual_n)));
-        let solved = tangent.correction(residual);
-        let Some(correction) = solved.filter(JointMotions::is_finite) else {
+            .unwrap_or_else(|| (tangent(), newton_leaves_n));
+        let solved = correction(&tangent, residual);
+        let is_finite = |motions: &Vec6| motions.iter().all(|motion| motion.is_finite());
+        let Some(correction) = solved.filter(is_finite) else {
             return false;
         };
-        let part = correction.part_within(LONGEST_CORRECTION_MM, &self.levers);
+        let part = self.levers.part_within(&correction, LONGEST_CORRECTION_MM);
         self.is_whole = part == 1.0;
+        // The contraction is that of whole corrections only.
         self.predicted_n = if self.is_whole {
             leaves_n
         } else {
@@ -125,39 +112,39 @@ impl NewtonIteration {
         self.residual_n = residual_n;
         self.tangent = Some(tangent);
         self.taken = correction * part;
-        self.taken.move_from(&mut self.positions);
+        move_by(&mut self.positions, &self.taken);
         true
     }
 
-    /// Goes back a part of the last correction, after which the residual is longer; false where that
-    /// leads nowhere.
+    /// Takes back a part of the last correction, after which the residual is longer; false if too little of it
+    /// would remain.
     ///
-    /// Mostly friction has turned round, and then the place to go on from is where the slip stands
-    /// still: there friction resists most, and a correction from there does not fly past. Otherwise it
+    /// Mostly friction has reversed, and the iteration continues best from where the slip is zero:
+    /// there friction is stiffest, and a correction from there does not overshoot. Otherwise the best part
     /// is the minimum of the parabola through both lengths and the slope that Newton's method implies.
     fn backtrack(&mut self, residual_n: f64, mean_slip: &[Vec3; MAX_REGIONS]) -> bool {
         if let Some(part) = standstill(&self.mean_slip, mean_slip) {
             self.keep(part);
+            // Any residual counts as progress from there.
             self.residual_n = f64::INFINITY;
             return true;
         }
         let (before, after) = (self.residual_n.powi(2), residual_n.powi(2));
         self.keep((before / (before + after)).max(MIN_PART_OF_CORRECTION));
-        self.taken.longest_mm(&self.levers) > SHORTEST_CORRECTION_MM
+        self.levers.longest_mm(&self.taken) > SHORTEST_CORRECTION_MM
     }
 
-    /// Keeps a part of the last correction only.
     fn keep(&mut self, part: f64) {
-        (self.taken * (part - 1.0)).move_from(&mut self.positions);
+        move_by(&mut self.positions, &(self.taken * (part - 1.0)));
         self.taken *= part;
         self.is_whole = false;
     }
 
-    /// Learns the contraction from what the last correction, if it was whole, has left.
+    /// Updates the contraction from the residual after the last correction, if it was whole.
     ///
-    /// Near the solution each leaves c r^2 of a residual r. One that shortened r0 to r1 says that c = r1/r0^2; before
-    /// there is one, a cycle ago says it, with caution.
-    fn learn(&mut self, residual_n: f64) {
+    /// Near the solution a correction leaves c r^2 of a residual r, so one that reduced r0 to r1 gives c = r1/r0^2.
+    /// Before the first correction the c of a cycle ago applies, with a safety factor.
+    fn observe_contraction(&mut self, residual_n: f64) {
         if !self.is_whole {
             return;
         }
@@ -167,28 +154,24 @@ impl NewtonIteration {
         } else {
             f64::INFINITY
         };
+        // The contraction of this step is known now.
         self.caution = 1.0;
     }
 
-    /// What a whole correction by the tangent here is predicted to leave of a residual, N.
-    fn newton_leaves_n(&self, residual_n: f64) -> f64 {
-        self.caution * self.contraction_per_n * residual_n * residual_n
-    }
-
-    /// The tangent of the last correction, and what a whole one by it is predicted to leave of a residual, N; none
-    /// where that is more than may be left.
+    /// The tangent of the last correction, and the predicted residual after a whole correction by it, N; none
+    /// if that exceeds the permitted one.
     ///
-    /// A tangent is the dearest part of a correction, and the last one need not be that good: the method of chords
-    /// leaves about the part that the correction before left.
-    fn chord(&self, residual_n: f64) -> Option<(JointStiffness, f64)> {
+    /// A tangent is the most expensive part of a correction, and the last correction need not be as good: the chord
+    /// method reduces the residual by about the same factor as the correction before.
+    fn chord(&self, residual_n: f64) -> Option<(Mat6, f64)> {
         let leaves_n = CHORD_CAUTION * residual_n / self.residual_n * residual_n;
         let serves = self.is_whole && leaves_n <= self.may_leave_n?;
         Some((self.tangent.filter(|_| serves)?, leaves_n))
     }
 }
 
-/// The part of a correction after which the first of the regions, slipping as `before` and then as
-/// `after`, stands still; none if none turns round.
+/// The part of a correction after which the first of the regions stands still, whose mean slip was `before` and is
+/// `after`; none if no slip reverses.
 fn standstill(before: &[Vec3; MAX_REGIONS], after: &[Vec3; MAX_REGIONS]) -> Option<f64> {
     let regions = before.iter().zip(after);
     let turning = regions.filter(|(before, after)| before.dot(after) < 0.0);

@@ -1,21 +1,20 @@
-//! Where the extended femur settles under the vertical load: the machine's neutral position.
+//! The neutral position of a machine: where the extended femur settles under the vertical load.
 
 use super::{
     Chain, Drive, Joint, JointKind, Kinematics, Machine, Settling, SolverCounters, Waveform,
-    balance::{Balance, StepSlopes},
-    joint_vectors::JointStiffness,
+    balance::{Balance, StepSlopes, correction, move_by},
 };
-use crate::contact::ContactModel;
+use crate::{contact::ContactModel, spatial::Mat6};
 
-/// Iterations after which settling is given up.
 const MAX_ITERATIONS: usize = 2000;
-/// Farthest that one iteration may move, mm.
 const LONGEST_CORRECTION_MM: f64 = 0.2;
-/// Motion that the first iteration allows for the whole load, mm.
+/// Motion of the first iteration under the whole load, mm, which sets the first damping.
 const FIRST_MOTION_MM: f64 = 0.05;
-/// Lever on which damping slows a turn, mm: about how far the contact is from the axes, so that the
-/// surfaces move against each other at the same pace whether the femur turns or shifts. It changes how the
-/// machine gets to rest, and not where that is.
+/// Limits of the change of the damping from one iteration to the next.
+const DAMPING_CHANGE: (f64, f64) = (0.3, 2.0);
+/// Lever of the damping of a rotation, mm: about the distance of the contact from the axes, so that the
+/// surfaces move at the same pace in rotation and translation. It changes the path to the rest position, not
+/// the position.
 const TURNING_LEVER_MM: f64 = 30.0;
 
 /// The femur did not come to rest.
@@ -25,18 +24,18 @@ pub struct NotSettled {
     pub positions: [f64; 6],
     /// Force left out of balance, N.
     pub residual_n: f64,
-    /// How far the last iteration moved, mm, turns on a lever; infinite if none did.
+    /// Motion of the last iteration, mm, rotations on a lever; infinite if there was none.
     pub moved_mm: f64,
 }
 
-/// Positions of static balance under the load at the start of the cycle.
+/// Finds the positions of static balance under the load at the start of the cycle.
 ///
-/// What each joint does meanwhile is part of its [description](Settling); there are no springs and,
-/// nothing sliding, no friction. Newton's method with a damping that vanishes as balance nears
-/// (pseudo-transient continuation), so that it also finds its way from a first touch on one side.
+/// The state of each joint meanwhile is part of its [description](Settling); there are no springs, and no friction,
+/// since nothing slides. Newton's method with a damping that vanishes near the balance
+/// (pseudo-transient continuation) also converges from a first touch on one side.
 ///
 /// # Errors
-/// Where the femur does not come to rest, for instance because it slides off.
+/// If the femur does not come to rest, for instance because it slides off.
 pub fn settle(
     machine: &Machine,
     chain: &Chain,
@@ -48,29 +47,37 @@ pub fn settle(
     let (loads, levers) = (machine.loads_at(0.0), machine.levers());
     let mut positions = [0.0; 6];
     machine.drive(0.0, &mut positions, &mut [0.0; 6]);
-    let mut damping = loads.largest_n(&levers).max(1.0) / FIRST_MOTION_MM;
+    let mut damping = levers.largest_n(&loads).max(1.0) / FIRST_MOTION_MM;
     let (mut last_residual_n, mut moved_mm) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..MAX_ITERATIONS {
+        // Without rates there is no friction, and the contact is a function of the pose alone.
         let still = Kinematics::at_rest(positions);
         let balance = Balance::new(&machine, chain, contact, still);
         counters.contact_evaluations += 1;
         let residual = balance.residual(&loads);
-        let residual_n = residual.largest_n(&levers);
+        let residual_n = levers.largest_n(&residual);
         if residual_n <= force_tolerance_n {
             return Ok(positions);
         }
+        // The damping follows the residual: it vanishes at the balance, where the iteration becomes Newton's.
         if last_residual_n.is_finite() {
-            damping *= (residual_n / last_residual_n).clamp(0.3, 2.0);
+            let (least, most) = DAMPING_CHANGE;
+            damping *= (residual_n / last_residual_n).clamp(least, most);
         }
         last_residual_n = residual_n;
-        let damped = balance.tangent(StepSlopes::STILL) + damping_of(&machine, damping);
-        let Some(correction) = damped.correction(&residual) else {
+        let of_joint = |joint: &Joint| match joint.description.kind() {
+            JointKind::Rotation => damping * (TURNING_LEVER_MM * TURNING_LEVER_MM),
+            JointKind::Translation => damping,
+        };
+        let dampings = machine.joints.each_ref().map(of_joint);
+        let damped = balance.tangent(StepSlopes::STILL) + Mat6::from_diagonal(&dampings.into());
+        let Some(correction) = correction(&damped, &residual) else {
             break;
         };
         counters.newton_iterations += 1;
-        let part = correction.part_within(LONGEST_CORRECTION_MM, &levers);
-        moved_mm = (correction * part).longest_mm(&levers);
-        (correction * part).move_from(&mut positions);
+        let taken = correction * levers.part_within(&correction, LONGEST_CORRECTION_MM);
+        moved_mm = levers.longest_mm(&taken);
+        move_by(&mut positions, &taken);
     }
     Err(NotSettled {
         positions,
@@ -79,9 +86,9 @@ pub fn settle(
     })
 }
 
-/// The machine while it settles.
 fn settling(machine: &Machine) -> Machine {
     let mut settling = machine.clone();
+    // Neutral is where the springs are slack.
     settling.springs.clear();
     for joint in &mut settling.joints {
         (joint.inertia, joint.damping) = (0.0, 0.0);
@@ -94,13 +101,4 @@ fn settling(machine: &Machine) -> Machine {
         }
     }
     settling
-}
-
-/// The same damping of every joint, turns on their lever.
-fn damping_of(machine: &Machine, damping: f64) -> JointStiffness {
-    let of_joint = |joint: &Joint| match joint.description.kind() {
-        JointKind::Rotation => damping * (TURNING_LEVER_MM * TURNING_LEVER_MM),
-        JointKind::Translation => damping,
-    };
-    JointStiffness::from_diagonal(machine.joints.each_ref().map(of_joint))
 }

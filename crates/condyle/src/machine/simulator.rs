@@ -3,55 +3,51 @@
 use std::ops::{ControlFlow, Range};
 
 use super::{
-    Chain, Cycle, CycleError, CycleRow, Integration, Machine, MachineState, Mechanism,
-    SolverCounters, TimeSettings, WarmStart,
-    balance::Balance,
-    cycle::Repetition,
-    explicit::Explicit,
-    implicit::{Implicit, NotConverged, Stepped, step_error_mm},
+    Chain, Cycle, CycleError, CycleRow, Integration, Machine, MachineState, SolverCounters,
+    TimeSettings, WarmStart, balance::Balance,
 };
 use crate::{
-    contact::{ContactModel, CycleHistory, Moment, NotBorne, Record, Settled, TouchedNode},
+    contact::{ContactModel, CycleHistory, Moment, Record, Settled, TouchedNode},
     spatial::RelativeMotion,
 };
 
-/// How often a step may be halved before it is given up.
 const MAX_HALVINGS: u32 = 8;
-/// How often a step is solved anew for a contact whose own state goes with the load; each time that state is right to
-/// about three times as much.
+/// Limit of the solutions of a step for a contact whose own state depends on the load. Each solution reduces the error
+/// of that state to about a third.
 const MAX_TURNS: u32 = 20;
 
-/// Where the machine goes on from.
-struct Accepted {
-    state: MachineState,
-    /// The femur's motion past the insert there, which the contact has accepted.
-    motion: RelativeMotion,
-    /// How the way there was solved, if it was one implicit step.
-    warm_start: Option<WarmStart>,
+pub(super) struct Stepped {
+    pub state: MachineState,
+    /// The femur's motion past the insert.
+    pub motion: RelativeMotion,
+    /// The solution, if it was one implicit step.
+    pub warm_start: Option<WarmStart>,
 }
 
-/// An increment as it was left.
 #[derive(Clone)]
-struct Landed {
+struct Increment {
     state: MachineState,
     row: CycleRow,
-    /// Where its moments are recorded.
+    /// Range of its moments in the history.
     moments: Range<usize>,
 }
 
 /// A machine ready to run cycles on a contact.
+#[non_exhaustive]
 pub struct Simulator<'a> {
     /// The machine.
     pub machine: &'a Machine,
-    /// Its kinematics, zeroed at the neutral position.
+    /// The kinematics, zeroed at the neutral position.
     pub chain: &'a Chain,
     /// The contact between its parts.
     pub contact: &'a mut dyn ContactModel,
-    /// How finely and exactly it is solved.
+    /// Settings of the time integration.
     pub time: &'a TimeSettings,
-    /// How the increments were solved the last time, by the phase they end at; empty before.
+    /// Counts of the work done.
+    pub counters: SolverCounters,
+    /// The last solution of every increment, by the phase at its end; may be empty.
     pub warm_starts: Vec<Option<WarmStart>>,
-    /// The history of the cycle that runs; before, any that is no longer needed, for its memory.
+    /// The history of the cycle that runs; before it, any history whose memory may be reused.
     pub history: CycleHistory,
 }
 
@@ -68,77 +64,78 @@ impl<'a> Simulator<'a> {
             chain,
             contact,
             time,
+            counters: SolverCounters::default(),
             warm_starts: Vec::new(),
             history: CycleHistory::default(),
         }
     }
 
-    /// Solves increments from `start` until one lands where the machine was a cycle before: the
-    /// increments since then are one cycle that repeats itself. Breaks where `watch` does.
+    /// Solves increments from `start` until one ends where the machine was a cycle before: the
+    /// increments since then are one cycle that repeats itself.
     ///
-    /// A motion that starts or that follows a change of the geometry needs a little more than a
-    /// cycle for that, and seldom two. `watch` is told how many increments are solved.
+    /// A motion that starts or that follows a change of the geometry requires a little more than a
+    /// cycle for that, and seldom two. `watch` receives the number of increments solved after each; its break stops
+    /// the solution.
     ///
     /// # Errors
     /// An increment that cannot be solved.
     pub fn cycle(
         &mut self,
         start: &MachineState,
-        counters: &mut SolverCounters,
         watch: &mut dyn FnMut(usize) -> ControlFlow<()>,
     ) -> Result<ControlFlow<(), Cycle>, CycleError> {
         let count = self.time.increments;
         let first = (start.phase * count as f64).round() as usize;
-        let repetition = Repetition::new(self.machine, self.time);
         let mut state = *start;
-        let mut landed: Vec<Option<Landed>> = vec![None; count];
+        let mut increments: Vec<Option<Increment>> = vec![None; count];
         self.history.clear(count);
         self.contact.begin_cycle();
         let mut repeats = false;
         let mut solved = 0;
         while !repeats && solved < count * self.time.most_cycles_to_repeat {
             let place = (first + solved) % count;
+            // Warm starts and contact histories belong to a place in the cycle.
             self.contact.begin_increment(place);
-            let end = self.increment(&state, place, counters)?;
+            let to = (place + 1) as f64 / count as f64;
+            let end = match self.time.integration {
+                Integration::Implicit => self.implicit(&state, to, &mut |_| ()),
+                Integration::Explicit { least_step_s } => self.explicit(&state, to, least_step_s),
+            }?;
             state = end.state;
-            let here = self.land(place, &end);
+            let here = self.record(place, &end);
             let rests = self.contact.moved_in_a_cycle_mm() <= self.time.repeat_tolerance_mm;
-            repeats = landed[place]
-                .replace(here)
-                .is_some_and(|before| rests && repetition.is_met(&state, &before.state));
+            let is_met = |before: Increment| {
+                rests && self.time.is_repeated(self.machine, &state, &before.state)
+            };
+            repeats = increments[place].replace(here).is_some_and(is_met);
+            // The phase restarts with every cycle, so that it loses no digits over many cycles.
             state.phase %= 1.0;
             solved += 1;
             if watch(solved).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
         }
-        let cycle = self.gather(&landed, state, solved, repeats);
-        Ok(ControlFlow::Continue(cycle))
+        let increments = || increments.iter().flatten();
+        let instants: Vec<_> = increments().map(|here| here.moments.clone()).collect();
+        self.history.sort(self.contact.node_count(), &instants);
+        Ok(ControlFlow::Continue(Cycle {
+            rows: increments().map(|here| here.row).collect(),
+            history: std::mem::take(&mut self.history),
+            instants,
+            end: state,
+            warm_starts: std::mem::take(&mut self.warm_starts),
+            increments_solved: solved,
+            repeats,
+        }))
     }
 
-    /// Solves the increment number `place` of the cycle.
-    fn increment(
-        &mut self,
-        state: &MachineState,
-        place: usize,
-        counters: &mut SolverCounters,
-    ) -> Result<Accepted, CycleError> {
-        let to = (place + 1) as f64 / self.time.increments as f64;
-        match self.time.integration {
-            Integration::Implicit => self.implicit(state, to, counters, &mut |_| ()),
-            Integration::Explicit { least_step_s } => {
-                self.explicit(state, to, least_step_s, counters)
-            }
-        }
-    }
-
-    /// What is to be kept of the increment that has just been solved.
+    /// Records an increment that has just been solved.
     ///
-    /// Every touched node's pressure and slip stand for the whole increment: the trapezoidal rule
+    /// Every touched node's pressure and slip represent the whole increment: the trapezoidal rule
     /// of a cycle that repeats, second order in the increment.
-    fn land(&mut self, place: usize, end: &Accepted) -> Landed {
+    fn record(&mut self, place: usize, end: &Stepped) -> Increment {
         let percent = 100.0 * (place + 1) as f64 / self.time.increments as f64;
-        let landing = self.contact.evaluate(&end.motion);
+        let contact = self.contact.evaluate(&end.motion);
         let increment_s = self.time.increment_s(self.machine.frequency_hz);
         let record = |touched: &TouchedNode| Record {
             node: touched.node,
@@ -150,39 +147,18 @@ impl<'a> Simulator<'a> {
                 }),
             },
         };
-        let moments = landing.touched.iter().map(record);
-        Landed {
+        let moments = contact.touched.iter().map(record);
+        Increment {
             state: end.state,
-            row: CycleRow::new(percent, end.state.now.positions, &landing),
+            row: CycleRow::new(percent, end.state.now.positions, &contact),
             moments: self.history.record(moments),
         }
     }
 
-    fn gather(
-        &mut self,
-        landed: &[Option<Landed>],
-        end: MachineState,
-        solved: usize,
-        repeats: bool,
-    ) -> Cycle {
-        let landed = || landed.iter().flatten();
-        let instants: Vec<_> = landed().map(|here| here.moments.clone()).collect();
-        self.history.sort(self.contact.node_count(), &instants);
-        Cycle {
-            rows: landed().map(|here| here.row).collect(),
-            history: std::mem::take(&mut self.history),
-            instants,
-            end,
-            warm_starts: std::mem::take(&mut self.warm_starts),
-            increments_solved: solved,
-            repeats,
-        }
-    }
-
-    /// The machine at the phase `to`, an increment after `state`, by the implicit integrator.
+    /// Advances the machine by an increment to the phase `to` with the implicit integrator.
     ///
-    /// `watch` is told the length of the residual at every Newton iteration, N, moments on a lever of
-    /// 10 mm. A step that does not converge is taken in halves, and is no warm start.
+    /// `watch` receives the length of the residual at every Newton iteration, N, moments on a lever of
+    /// 10 mm. A step that does not converge is halved, and leaves no warm start.
     ///
     /// # Errors
     /// An increment that does not converge.
@@ -190,42 +166,16 @@ impl<'a> Simulator<'a> {
         &mut self,
         state: &MachineState,
         to: f64,
-        counters: &mut SolverCounters,
         watch: &mut dyn FnMut(f64),
     ) -> Result<MachineState, CycleError> {
-        let end = self.implicit(state, to, counters, watch)?;
-        Ok(end.state)
+        Ok(self.implicit(state, to, watch)?.state)
     }
 
-    /// Largest force out of balance at a state, N; for moments, on a lever of 10 mm.
+    /// Returns the largest force out of balance at a state, N; for moments, on a lever of 10 mm.
     pub fn out_of_balance_n(&mut self, state: &MachineState) -> f64 {
         let balance = Balance::new(self.machine, self.chain, self.contact, state.now);
         let residual = balance.residual(&self.machine.loads_at(state.phase));
-        residual.largest_n(&self.machine.levers())
-    }
-
-    fn explicit(
-        &mut self,
-        state: &MachineState,
-        to: f64,
-        least_step_s: f64,
-        counters: &mut SolverCounters,
-    ) -> Result<Accepted, CycleError> {
-        let mut explicit = Explicit {
-            machine: self.machine,
-            chain: self.chain,
-            contact: self.contact,
-            least_step_s,
-            counters,
-        };
-        let advanced = explicit.advance(state, to);
-        let (state, motion) =
-            advanced.map_err(|failed| CycleError::of_explicit(self.machine.mechanism, &failed))?;
-        Ok(Accepted {
-            state,
-            motion,
-            warm_start: None,
-        })
+        self.machine.levers().largest_n(&residual)
     }
 
     /// An increment by the implicit integrator, with its warm start from the last cycle.
@@ -233,58 +183,44 @@ impl<'a> Simulator<'a> {
         &mut self,
         state: &MachineState,
         to: f64,
-        counters: &mut SolverCounters,
         watch: &mut dyn FnMut(f64),
-    ) -> Result<Accepted, CycleError> {
+    ) -> Result<Stepped, CycleError> {
         let count = self.time.increments;
         self.warm_starts.resize(count, None);
+        // Rounded: `to` is a multiple of the increment up to rounding.
         let place = (to * count as f64).round() as usize % count;
         let last = self.warm_starts[place];
-        let end = self.advance(state, to, last.as_ref(), MAX_HALVINGS, counters, watch)?;
+        let end = self.advance(state, to, last, MAX_HALVINGS, watch)?;
         self.warm_starts[place] = end.warm_start;
         Ok(end)
     }
 
-    /// Steps to a phase, in halves where a step does not converge or is not exact enough. The contact
-    /// accepts every step that the machine goes on from.
+    /// Steps to a phase, in halves if a step does not converge or is not exact enough. The contact
+    /// accepts every step from which the machine continues.
     fn advance(
         &mut self,
         state: &MachineState,
         to: f64,
-        warm_start: Option<&WarmStart>,
+        warm_start: Option<WarmStart>,
         halvings: u32,
-        counters: &mut SolverCounters,
         watch: &mut dyn FnMut(f64),
-    ) -> Result<Accepted, CycleError> {
-        let mut implicit = Implicit {
-            machine: self.machine,
-            chain: self.chain,
-            contact: self.contact,
-            force_tolerance_n: self.time.force_tolerance_n,
-            trusts_prediction: self.time.trusts_prediction,
-            counters,
-        };
-        let stepped = settled(&mut implicit, state, to - state.phase, warm_start, watch);
-        match stepped {
-            Ok(next) if halvings == 0 || self.is_exact_enough(state, &next.state) => {
+    ) -> Result<Stepped, CycleError> {
+        match self.settled_step(state, to - state.phase, warm_start, watch) {
+            Ok(mut next) if halvings == 0 || self.is_exact_enough(state, &next.state) => {
                 self.contact.accept(&next.motion);
-                Ok(Accepted {
-                    state: MachineState {
-                        phase: to,
-                        ..next.state
-                    },
-                    motion: next.motion,
-                    warm_start: Some(next.warm_start),
-                })
+                // Exactly `to`, which the sum of phase and step may miss by rounding.
+                next.state.phase = to;
+                Ok(next)
             }
-            Err(failed) if halvings == 0 => Err(failed.error(self.machine.mechanism)),
+            Err(failed) if halvings == 0 => Err(failed),
             Ok(_) | Err(_) => {
+                // The halves start from the history before the rejected step.
                 self.contact.reject();
-                counters.halvings += 1;
+                self.counters.halvings += 1;
                 let half = (state.phase + to) / 2.0;
-                let middle = self.advance(state, half, None, halvings - 1, counters, watch)?;
-                let end = self.advance(&middle.state, to, None, halvings - 1, counters, watch)?;
-                Ok(Accepted {
+                let middle = self.advance(state, half, None, halvings - 1, watch)?;
+                let end = self.advance(&middle.state, to, None, halvings - 1, watch)?;
+                Ok(Stepped {
                     warm_start: None,
                     ..end
                 })
@@ -292,54 +228,26 @@ impl<'a> Simulator<'a> {
         }
     }
 
-    fn is_exact_enough(&self, from: &MachineState, to: &MachineState) -> bool {
-        let at_most_mm = self.time.increment_error_mm;
-        at_most_mm == 0.0 || step_error_mm(self.machine, from, to) <= at_most_mm
-    }
-}
-
-/// Why an implicit step was given up.
-enum GivenUp {
-    NotConverged(NotConverged),
-    NotBorne { phase: f64, why: NotBorne },
-    Unsettled { phase: f64 },
-}
-
-impl GivenUp {
-    fn error(self, mechanism: &Mechanism) -> CycleError {
-        match self {
-            Self::NotConverged(failed) => CycleError::of_implicit(mechanism, &failed),
-            Self::NotBorne { phase, why } => CycleError::not_borne(phase, why),
-            Self::Unsettled { phase } => CycleError::Unsettled {
-                percent: 100.0 * phase,
-                turns: MAX_TURNS,
-            },
+    /// An implicit step, repeated until the contact's own state agrees with the load at its end.
+    fn settled_step(
+        &mut self,
+        from: &MachineState,
+        step: f64,
+        mut warm_start: Option<WarmStart>,
+        watch: &mut dyn FnMut(f64),
+    ) -> Result<Stepped, CycleError> {
+        for _ in 0..MAX_TURNS {
+            let ended = self.implicit_step(from, step, warm_start.as_ref(), watch)?;
+            let settled = self.contact.settle(&ended.motion);
+            let not_borne = |why| CycleError::not_borne(ended.state.phase, why);
+            if settled.map_err(not_borne)? == Settled::Yes {
+                return Ok(ended);
+            }
+            warm_start = ended.warm_start;
         }
+        Err(CycleError::Unsettled {
+            percent: 100.0 * (from.phase + step),
+            turns: MAX_TURNS,
+        })
     }
-}
-
-/// An implicit step at whose end the contact has found its own state: solved anew until it has.
-fn settled(
-    implicit: &mut Implicit<'_>,
-    from: &MachineState,
-    step: f64,
-    warm_start: Option<&WarmStart>,
-    watch: &mut dyn FnMut(f64),
-) -> Result<Stepped, GivenUp> {
-    let mut last = None;
-    for _ in 0..MAX_TURNS {
-        let ended = implicit.step(from, step, last.as_ref().or(warm_start), watch);
-        let ended = ended.map_err(GivenUp::NotConverged)?;
-        let settled = implicit.contact.settle(&ended.motion);
-        let not_borne = |why| GivenUp::NotBorne {
-            phase: ended.state.phase,
-            why,
-        };
-        if settled.map_err(not_borne)? == Settled::Yes {
-            return Ok(ended);
-        }
-        last = Some(ended.warm_start);
-    }
-    let phase = from.phase + step;
-    Err(GivenUp::Unsettled { phase })
 }

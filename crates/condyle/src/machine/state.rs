@@ -1,10 +1,10 @@
-//! The machine at an instant, and what the solver remembers of it.
+//! The machine at an instant, and the solver's memory of it.
 
 use serde::{Deserialize, Serialize};
 
 use super::Machine;
 
-/// Positions, rates and accelerations of the six joints, mm and rad and s, in the order of the chain.
+/// Positions, rates and accelerations of the six joints, mm, rad and s, in the order of the chain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kinematics {
     /// Positions, mm or rad.
@@ -16,7 +16,7 @@ pub struct Kinematics {
 }
 
 impl Kinematics {
-    /// Joints that stand still.
+    /// Joints that stand still at `positions`.
     pub fn at_rest(positions: [f64; 6]) -> Self {
         Self {
             positions,
@@ -26,14 +26,14 @@ impl Kinematics {
     }
 }
 
-/// The machine at an instant, with what a two-step method remembers.
+/// The machine at an instant, with the memory of a two-step method.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MachineState {
     /// Instant, in cycles.
     pub phase: f64,
-    /// Positions and rates now.
+    /// Motion at this instant.
     pub now: Kinematics,
-    /// Positions and rates one step ago, and how long that step was in s; none after a start.
+    /// Motion one step earlier, and the length of that step in s; `None` after a start.
     pub before: Option<(Kinematics, f64)>,
 }
 
@@ -49,8 +49,8 @@ impl MachineState {
         }
     }
 
-    /// Where the joints are `step_s` later if accelerations last; after a start, where there are none
-    /// yet, if rates do.
+    /// Positions `step_s` later at constant acceleration; after a start, which has no accelerations yet, at
+    /// constant rate.
     pub(super) fn extrapolated(&self, step_s: f64) -> [f64; 6] {
         let now = &self.now;
         let half_s2 = if self.before.is_some() {
@@ -64,27 +64,26 @@ impl MachineState {
     }
 }
 
-/// Part of the step that the rates before it are trusted for; the rest is as it was a cycle before.
+/// Part of the step over which the present rates are extrapolated; the rest repeats the step of a cycle before.
 ///
-/// A worn surface is rough by a thousandth of a millimetre, and so is what two cycles differ by:
-/// to trust the rates for the whole step would double that, not to trust them at all would lag behind.
+/// A worn surface is rough by about 1 micrometre, and so two cycles differ by as much. Extrapolating over the whole
+/// step would double that difference; not extrapolating at all would lag behind.
 const COASTING: f64 = 0.5;
 
-/// How an increment was solved, and so how to start solving it a cycle later.
+/// The solution of an increment, from which the same increment of the next cycle starts.
 ///
-/// A cycle nearly repeats the one before. So Newton's iteration starts nearer to the end of the increment,
-/// and knows how much of a residual a correction leaves before it has made one.
+/// A cycle nearly repeats the one before. So Newton's iteration starts nearer to the end of the increment, and its
+/// contraction is known before the first correction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WarmStart {
-    /// How far the machine went beyond half of where its rates lead, mm or rad.
+    /// Motion beyond the extrapolation over half of the step, mm or rad.
     lead: [f64; 6],
-    /// What the last whole correction left of a residual, over its square, 1/N: the contraction of
+    /// Residual after the last whole correction over the square of the residual before it, 1/N: the contraction of
     /// Newton's iteration near the solution.
     pub contraction_per_n: f64,
 }
 
 impl WarmStart {
-    /// That of a step that has just ended.
     pub(super) fn new(ended: &MachineState, contraction_per_n: f64) -> Self {
         let lead = ended.before.map_or([0.0; 6], |(from, step_s)| {
             let coasted = coasted(&from, step_s);
@@ -96,29 +95,28 @@ impl WarmStart {
         }
     }
 
-    /// Where the same step ends from another start, most likely.
+    /// Predicts the end of the same step from another start.
     pub(super) fn followed_from(&self, start: &Kinematics, step_s: f64) -> [f64; 6] {
         let coasted = coasted(start, step_s);
         std::array::from_fn(|j| coasted[j] + self.lead[j])
     }
 }
 
-/// Where rates lead in a part of the step.
 fn coasted(from: &Kinematics, step_s: f64) -> [f64; 6] {
     std::array::from_fn(|j| from.positions[j] + COASTING * step_s * from.rates[j])
 }
 
-/// Work done so far.
+/// Counts of the solver's work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SolverCounters {
     /// Newton iterations: corrections of the positions.
     pub newton_iterations: u64,
-    /// Contact evaluations, each with its tangent but for explicit steps.
+    /// Contact evaluations; those of implicit steps include the tangent.
     pub contact_evaluations: u64,
-    /// Steps given up and tried in halves.
+    /// Steps that were rejected and halved.
     pub halvings: u64,
     /// Explicit steps.
     pub explicit_steps: u64,
-    /// Most inertia that explicit steps added, as a part of the machine's own.
+    /// Largest inertia added by explicit steps, as a multiple of the machine's own.
     pub added_inertia: f64,
 }

@@ -4,21 +4,21 @@ use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 
-/// Samples of a spline may be this far apart, % of the cycle: beyond it a gap is likelier than a
+/// Largest distance between the samples of a spline, % of the cycle: a longer one is rather a gap than a
 /// coarse recording.
 const LONGEST_SAMPLE_GAP_PERCENT: f64 = 10.0;
 
 /// A value at a place in the cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knot {
-    /// Place in the cycle, 0 to 100 %.
+    /// Place in the cycle, %, 0 to 100.
     pub percent: f64,
-    /// Value there, in the unit of the quantity.
+    /// Value, in the unit of the quantity.
     pub value: f64,
 }
 
-/// Length of the piece that starts at knot `a`, round the seam for the last.
-pub(super) fn span_percent(knots: &[Knot], a: usize) -> f64 {
+/// Length of the piece that starts at knot `a`, across the seam for the last.
+fn span_percent(knots: &[Knot], a: usize) -> f64 {
     if a + 1 < knots.len() {
         knots[a + 1].percent - knots[a].percent
     } else {
@@ -26,49 +26,7 @@ pub(super) fn span_percent(knots: &[Knot], a: usize) -> f64 {
     }
 }
 
-/// The knots, if they are finite and each comes after the one before, within the cycle.
-pub(super) fn checked(knots: Vec<Knot>) -> Result<Vec<Knot>, WaveformError> {
-    if knots.is_empty() {
-        return Err(WaveformError::Empty);
-    }
-    for (index, knot) in knots.iter().enumerate() {
-        let percent = knot.percent;
-        if !(percent.is_finite() && knot.value.is_finite()) {
-            return Err(WaveformError::NotFinite { index });
-        }
-        if !(0.0..=100.0).contains(&percent) {
-            return Err(WaveformError::OutsideCycle { index, percent });
-        }
-        if index > 0 && percent <= knots[index - 1].percent {
-            let before = knots[index - 1].percent;
-            return Err(WaveformError::NotIncreasing {
-                index,
-                percent,
-                before,
-            });
-        }
-    }
-    Ok(knots)
-}
-
-/// Refuses knots too far apart to be samples.
-pub(super) fn check_no_gap(knots: &[Knot]) -> Result<(), WaveformError> {
-    let limit = LONGEST_SAMPLE_GAP_PERCENT;
-    for (a, knot) in knots.iter().enumerate() {
-        let span = span_percent(knots, a);
-        if span > limit && knots.len() > 1 {
-            let from = knot.percent;
-            return Err(WaveformError::Gap {
-                from,
-                to: from + span,
-                limit,
-            });
-        }
-    }
-    Ok(())
-}
-
-/// How a waveform goes from knot to knot.
+/// Interpolation between the knots of a waveform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// $y = y_a + \tfrac{1}{2} (y_b - y_a) \left(1 - \cos \frac{\pi (t - t_a)}{t_b - t_a}\right)$: flat at every knot.
@@ -101,7 +59,7 @@ pub struct Waveform {
 }
 
 impl Waveform {
-    /// The same value all through the cycle.
+    /// A constant value.
     pub fn constant(value: f64) -> Self {
         Self {
             knots: vec![Knot {
@@ -113,13 +71,32 @@ impl Waveform {
         }
     }
 
-    /// A waveform through `knots`, sorted by place; the last goes round to the first.
+    /// A waveform through `knots`, sorted by place; the last connects to the first.
     ///
     /// # Errors
-    /// Knots that are none, not finite, outside 0 to 100 %, not increasing, that step at the seam,
-    /// or, for a spline, that lie further apart than samples do.
-    pub fn new(knots: Vec<Knot>, interpolation: Interpolation) -> Result<Self, WaveformError> {
-        let mut knots = checked(knots)?;
+    /// No knots; knots that are not finite, outside 0 to 100 %, not increasing, or that step at the seam;
+    /// for a spline, knots that are too far apart to be samples.
+    pub fn new(mut knots: Vec<Knot>, interpolation: Interpolation) -> Result<Self, WaveformError> {
+        if knots.is_empty() {
+            return Err(WaveformError::Empty);
+        }
+        for (index, knot) in knots.iter().enumerate() {
+            let percent = knot.percent;
+            if !(percent.is_finite() && knot.value.is_finite()) {
+                return Err(WaveformError::NotFinite { index });
+            }
+            if !(0.0..=100.0).contains(&percent) {
+                return Err(WaveformError::OutsideCycle { index, percent });
+            }
+            if index > 0 && percent <= knots[index - 1].percent {
+                let before = knots[index - 1].percent;
+                return Err(WaveformError::NotIncreasing {
+                    index,
+                    percent,
+                    before,
+                });
+            }
+        }
         let (first, last) = (knots[0], knots[knots.len() - 1]);
         if last.percent - first.percent == 100.0 {
             if last.value != first.value {
@@ -131,7 +108,14 @@ impl Waveform {
         let bends = match interpolation {
             Interpolation::HalfCosine => Vec::new(),
             Interpolation::Spline => {
-                check_no_gap(&knots)?;
+                let limit = LONGEST_SAMPLE_GAP_PERCENT;
+                let mut spans =
+                    (0..knots.len()).map(|a| (knots[a].percent, span_percent(&knots, a)));
+                let is_gap = |(_, span): &(f64, f64)| *span > limit && knots.len() > 1;
+                if let Some((from, span)) = spans.find(is_gap) {
+                    let to = from + span;
+                    return Err(WaveformError::Gap { from, to, limit });
+                }
                 spline_bends(&knots)
             }
         };
@@ -142,31 +126,30 @@ impl Waveform {
         })
     }
 
-    /// The knots, without the one that closes the cycle.
+    /// Returns the knots, without the one that closes the cycle.
     pub fn knots(&self) -> &[Knot] {
         &self.knots
     }
 
-    /// How it goes from knot to knot.
+    /// Returns the interpolation between knots.
     pub fn interpolation(&self) -> Interpolation {
         self.interpolation
     }
 
-    /// The waveform `factor` times as large.
+    /// Multiplies the waveform by `factor`.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.knots.iter_mut().for_each(|knot| knot.value *= factor);
         self.bends.iter_mut().for_each(|bend| *bend *= factor);
         self
     }
 
-    /// The waveform raised by `offset`.
+    /// Adds `offset` to the waveform.
     pub fn shifted(mut self, offset: f64) -> Self {
         self.knots.iter_mut().for_each(|knot| knot.value += offset);
         self
     }
 
-    /// Value and its derivative by the phase, at `phase` in cycles (0.25 is 25 %; any integer
-    /// may be added).
+    /// Returns the value and its derivative by the phase at `phase`, in cycles; integers may be added to the phase.
     pub fn at(&self, phase: f64) -> (f64, f64) {
         let percent = 100.0 * (phase - phase.floor());
         let n = self.knots.len();
@@ -179,34 +162,37 @@ impl Waveform {
         let along = (percent - self.knots[a].percent).rem_euclid(100.0) / span;
         let (ya, yb) = (self.knots[a].value, self.knots[b].value);
         let (value, slope) = match self.interpolation {
-            Interpolation::HalfCosine => half_cosine(ya, yb, along),
+            Interpolation::HalfCosine => {
+                let (sine, cosine) = (PI * along).sin_cos();
+                let rise = yb - ya;
+                (ya + rise * (1.0 - cosine) / 2.0, rise * PI * sine / 2.0)
+            }
             Interpolation::Spline => {
-                let bend = |i: usize| self.bends[i] * span * span / 6.0;
-                cubic(ya, yb, bend(a), bend(b), along)
+                let [bend_a, bend_b] = [a, b].map(|i| self.bends[i] * span * span / 6.0);
+                let (u, v) = (along, 1.0 - along);
+                let value = v * ya + u * yb + (v * v * v - v) * bend_a + (u * u * u - u) * bend_b;
+                let slope = yb - ya - (3.0 * v * v - 1.0) * bend_a + (3.0 * u * u - 1.0) * bend_b;
+                (value, slope)
             }
         };
         (value, slope * 100.0 / span)
     }
 }
 
-fn half_cosine(ya: f64, yb: f64, along: f64) -> (f64, f64) {
-    let (sine, cosine) = (PI * along).sin_cos();
-    let rise = yb - ya;
-    (ya + rise * (1.0 - cosine) / 2.0, rise * PI * sine / 2.0)
-}
-
 /// Second derivatives at the knots of the periodic cubic spline.
 ///
 /// The system is cyclic, diagonally dominant and small; Gauss-Seidel contracts by at least a
 /// half a sweep, so it is solved to round-off in a few dozen sweeps.
-pub(super) fn spline_bends(knots: &[Knot]) -> Vec<f64> {
+fn spline_bends(knots: &[Knot]) -> Vec<f64> {
+    // More than enough: 0.5^100 is far below rounding.
+    const SWEEPS: usize = 100;
     let n = knots.len();
     let mut bends = vec![0.0; n];
     if n < 3 {
         return bends;
     }
     let slope = |a: usize| (knots[(a + 1) % n].value - knots[a].value) / span_percent(knots, a);
-    for _ in 0..100 {
+    for _ in 0..SWEEPS {
         for i in 0..n {
             let (before, after) = ((i + n - 1) % n, (i + 1) % n);
             let (left, right) = (span_percent(knots, before), span_percent(knots, i));
@@ -218,18 +204,10 @@ pub(super) fn spline_bends(knots: &[Knot]) -> Vec<f64> {
     bends
 }
 
-/// A spline piece from its end values and its end bends (second derivative times span^2 / 6).
-pub(super) fn cubic(ya: f64, yb: f64, bend_a: f64, bend_b: f64, along: f64) -> (f64, f64) {
-    let (u, v) = (along, 1.0 - along);
-    let value = v * ya + u * yb + (v * v * v - v) * bend_a + (u * u * u - u) * bend_b;
-    let slope = yb - ya - (3.0 * v * v - 1.0) * bend_a + (3.0 * u * u - 1.0) * bend_b;
-    (value, slope)
-}
-
-/// Samples whose difference between 0 and 100 % is spread evenly over the cycle, so that they
-/// repeat without a step; the mean stays.
+/// Spreads the difference of samples between 0 and 100 % evenly over the cycle, so that they
+/// repeat without a step; the mean is unchanged.
 ///
-/// Measured cycles seldom end quite where they began.
+/// Measured cycles seldom end exactly where they began.
 pub fn without_drift(samples: &[Knot]) -> Vec<Knot> {
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
         return Vec::new();
@@ -250,7 +228,7 @@ pub fn without_drift(samples: &[Knot]) -> Vec<Knot> {
     levelled
 }
 
-/// The mean and the first `harmonics` Fourier terms of a periodic waveform, sampled every percent.
+/// Samples the mean and the first `harmonics` Fourier terms of a waveform at every percent of the cycle.
 pub fn low_passed(waveform: &Waveform, harmonics: usize) -> Vec<Knot> {
     const SAMPLES: usize = 1000;
     let sample = |k: usize| waveform.at(k as f64 / SAMPLES as f64).0;
@@ -278,7 +256,8 @@ pub fn low_passed(waveform: &Waveform, harmonics: usize) -> Vec<Knot> {
         .collect()
 }
 
-/// Why knots make no waveform.
+/// Why knots do not define a waveform.
+#[expect(missing_docs, reason = "the messages describe the fields")]
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum WaveformError {
     /// No knot at all.
@@ -286,50 +265,27 @@ pub enum WaveformError {
     Empty,
     /// A value or a place that is NaN or infinite.
     #[error("point {index} of the waveform is not a finite number; correct or remove it")]
-    NotFinite {
-        /// Which point, from 0.
-        index: usize,
-    },
+    NotFinite { index: usize },
     /// A place outside the cycle.
     #[error("point {index} of the waveform is at {percent} % of the cycle; use 0 to 100")]
-    OutsideCycle {
-        /// Which point, from 0.
-        index: usize,
-        /// Its place.
-        percent: f64,
-    },
+    OutsideCycle { index: usize, percent: f64 },
     /// A place not after the one before.
     #[error(
         "point {index} of the waveform, at {percent} %, does not come after {before} %; sort the points and keep one for each place"
     )]
     NotIncreasing {
-        /// Which point, from 0.
         index: usize,
-        /// Its place.
         percent: f64,
-        /// The place of the point before it.
         before: f64,
     },
     /// Samples too far apart.
     #[error(
         "the waveform has a gap from {from} % to {to} % of the cycle; add points between, at most {limit} % apart"
     )]
-    Gap {
-        /// Start of the gap, %.
-        from: f64,
-        /// End of the gap, %.
-        to: f64,
-        /// Longest distance allowed, %.
-        limit: f64,
-    },
+    Gap { from: f64, to: f64, limit: f64 },
     /// Different values at the two ends.
     #[error("the waveform steps at the seam: {first} at 0 % but {last} at 100 %; make them equal")]
-    Seam {
-        /// Value at 0 %.
-        first: f64,
-        /// Value at 100 %.
-        last: f64,
-    },
+    Seam { first: f64, last: f64 },
 }
 
 #[cfg(test)]
@@ -398,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn every_error_says_what_to_do() {
+    fn every_error_states_the_remedy() {
         let spline = |points: &[(f64, f64)]| {
             Waveform::new(knots(points), Interpolation::Spline)
                 .unwrap_err()

@@ -8,10 +8,10 @@ use wide::{f32x8, f64x4};
 use super::real::Number;
 use crate::{Vec3, Vector};
 
-/// The number of nodes side by side.
+/// The number of lanes in double precision: nodes that are computed side by side.
 pub const LANES: usize = 4;
 
-/// The count of single-precision numbers side by side.
+/// The number of lanes in single precision.
 pub const LANES_F32: usize = 8;
 
 /// Four numbers side by side.
@@ -19,7 +19,7 @@ pub const LANES_F32: usize = 8;
 #[repr(transparent)]
 pub struct F64x4(f64x4);
 
-/// Eight numbers of single precision side by side: twice as many, where six digits are enough.
+/// Eight numbers of single precision side by side, where six digits are enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
 pub struct F32x8(f32x8);
@@ -74,13 +74,13 @@ impl F32x8 {
         self.0.to_array()
     }
 
-    /// A bit for every lane that is not above zero.
+    /// A bit mask of the lanes that are not above zero.
     #[inline(always)]
     pub fn not_above_zero(self) -> u32 {
         (1 << LANES_F32) - 1 - self.0.simd_gt(f32x8::ZERO).to_bitmask()
     }
 
-    /// Twice four numbers.
+    /// Combines twice four numbers.
     #[inline(always)]
     pub fn pair(one: F64x4, other: F64x4) -> Self {
         let ([a, b, c, d], [e, f, g, h]) = (one.to_array(), other.to_array());
@@ -94,7 +94,7 @@ impl F32x8 {
     }
 }
 
-/// Four vectors side by side, each of a lane.
+/// Combines four vectors, one per lane.
 #[inline(always)]
 pub(crate) fn vector_from_lanes<'a>(of: impl Fn(usize) -> &'a Vec3) -> Vector<F64x4> {
     let lanes: [&Vec3; LANES] = [of(0), of(1), of(2), of(3)];

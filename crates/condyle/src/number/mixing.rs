@@ -1,21 +1,21 @@
-//! Anderson's mixing: from what a map made of the points tried so far, where it comes back to itself.
+//! Anderson's mixing: the fixed point of a map from its images of the points tried so far.
 
 use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, DVector};
 
-/// So many differences are mixed at most: more hold little that is new.
+/// Limit of the number of differences: more add little information.
 const DEPTH: usize = 8;
-/// Part of the mean square of the differences that is added to each, so that those which say the same do not cancel
-/// to rounding.
+/// Part of the mean square of the differences that is added to each square, so that nearly equal differences do not
+/// cancel to rounding.
 const MIN_PART: f64 = 1e-12;
-/// The history is dropped once the residual grows to so many times the least: the map is no longer nearly linear there.
+/// Growth of the residual over the least at which the history is dropped: the map is no longer nearly linear.
 const BENT: f64 = 3.0;
 
-/// The search for a point $x$ that a map $g$ leaves where it is.
+/// The search for a fixed point $x$ of a map $g$.
 ///
-/// With what is left, $f = g(x) - x$, the next point is $x + \beta f - \sum_j \gamma_j (\Delta x_j + \beta \Delta f_j)$, of
-/// the $\gamma$ that make $|f - \sum_j \gamma_j \Delta f_j|$ least [walker-ni2011].
+/// With the residual $f = g(x) - x$, the next point is $x + \beta f - \sum_j \gamma_j (\Delta x_j + \beta \Delta f_j)$, with
+/// the $\gamma$ that minimise $|f - \sum_j \gamma_j \Delta f_j|$ [walker-ni2011].
 #[derive(Default)]
 pub(crate) struct Mixing {
     last: Option<Seen>,
@@ -74,6 +74,7 @@ impl Mixing {
         let count = self.changes.len();
         let of = |i: usize| &self.changes[i].left;
         let mut products = DMatrix::from_fn(count, count, |i, j| of(i).dot(of(j)));
+        // Normal equations suffice: at most eight columns, and the diagonal is raised below.
         let mean = products.trace() / count as f64;
         for i in 0..count {
             products[(i, i)] += MIN_PART * mean;
@@ -83,17 +84,16 @@ impl Mixing {
     }
 }
 
-/// The search for the set that stays as it is when loads are found with it, and the flow under these.
+/// The search for the permanent set that agrees with the flow under the loads that it causes.
 ///
-/// Where the insert deflects by flow more than elastically, each turn would lead farther away: such a turn is taken back, and
-/// from then on the search goes shorter ways.
+/// Where the insert deflects by flow more than elastically, plain iteration diverges: a turn that increases the residual is
+/// taken back, and the search continues with shorter steps.
 pub(crate) struct Turns {
     mixing: Mixing,
     nearest: Option<Turn>,
     part: f64,
 }
 
-/// A set that was tried, and what the turn left.
 struct Turn {
     tried_mm: Vec<f64>,
     left_mm: Vec<f64>,
@@ -111,7 +111,7 @@ impl Default for Turns {
 }
 
 impl Turns {
-    /// The set to try next, mm, after one was tried and another found.
+    /// Returns the set to try next, mm, after one was tried and another computed from it.
     pub fn next(&mut self, tried_mm: &[f64], found_mm: &[f64]) -> Vec<f64> {
         let pairs = found_mm.iter().zip(tried_mm);
         let left_mm: Vec<f64> = pairs.map(|(found, tried)| found - tried).collect();
@@ -130,10 +130,11 @@ impl Turns {
         self.mixing.next(tried_mm, found_mm, self.part)
     }
 
-    /// A set between the one that left least and what was found from it; none before a set was found.
+    /// Returns a set between the one with the least residual and its image; none before the first.
     pub fn nearer(&mut self) -> Option<Vec<f64>> {
         let nearest = self.nearest.as_ref()?;
         self.part *= 0.5;
+        // The old differences belong to longer steps.
         self.mixing = Mixing::default();
         let pairs = nearest.tried_mm.iter().zip(&nearest.left_mm);
         let nearer = pairs.map(|(tried, left)| tried + self.part * left);

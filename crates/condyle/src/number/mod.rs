@@ -1,4 +1,4 @@
-//! One number, or several at a time, and where a map of them comes back to itself (`mixing`).
+//! Scalars and vectors of lanes behind one interface, and the fixed point of a map (`mixing`).
 //!
 //! The formulas of the hot loop are written once, for any [`Number`]. With [`F64x4`] they work on
 //! four nodes at a time, which the compiler turns into vector instructions on any machine; every

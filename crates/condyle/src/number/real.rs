@@ -40,7 +40,7 @@ pub trait Number:
     fn sqrt(self) -> Self;
     /// Magnitude.
     fn abs(self) -> Self;
-    /// The largest whole number that is not larger.
+    /// The largest integer that is not larger.
     fn floor(self) -> Self;
     /// `self` times `factor` plus `addend`, rounded once.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
@@ -118,7 +118,7 @@ impl Number for f64 {
     }
 }
 
-/// Zero, written out: the compiler does not take nalgebra's repetition of it apart.
+/// Zero, written out: the compiler does not split up nalgebra's repetition of it.
 #[inline(always)]
 pub fn zero_vector<T: Number>() -> Vector<T> {
     Vector::new(T::zero(), T::zero(), T::zero())

@@ -6,7 +6,6 @@ use super::law::{NodeWear, WearLaw, WearLawKind, first_times};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
-/// Archard's law as it is offered.
 pub(super) const KIND: WearLawKind = WearLawKind {
     word: "archard",
     about: "Depth per cycle = Kw sum of p |ds|.",
@@ -51,7 +50,7 @@ impl WearLaw for Archard {
 
 #[cfg(test)]
 mod tests {
-    use super::super::paths::{assert_near, depth_mm};
+    use super::super::tests::{assert_near, depth_mm};
     use super::*;
 
     #[test]

@@ -6,7 +6,6 @@ use super::MeanCycle;
 use super::law::{NodeWear, WearLaw, WearLawKind, first_times};
 use crate::parameter::{Known, Parameter};
 
-/// The law as it is offered.
 pub(super) const KIND: WearLawKind = WearLawKind {
     word: "contact-area",
     about: "Depth per cycle = C S, S the distance slid while pressed and C = slope CS + offset of the cycle's \
@@ -55,7 +54,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
     },
 };
 
-/// What its constants have in common.
+/// The values that its constants share.
 const COEFFICIENT: Parameter = Parameter {
     name: "",
     about: "",
@@ -88,7 +87,7 @@ impl WearLaw for ContactArea {
 
 #[cfg(test)]
 mod tests {
-    use super::super::paths::{
+    use super::super::tests::{
         assert_near, circle, depth_mm, outside, rectangle, straight, turned,
     };
     use super::*;

@@ -1,4 +1,4 @@
-//! Cross-linked polyethylene: it wears as conventional polyethylene does by the same law, times a factor.
+//! Cross-linked polyethylene: the wear of conventional polyethylene by the same law, times a factor.
 
 use std::sync::Arc;
 
@@ -6,11 +6,11 @@ use super::law::{NodeWear, WearLaw};
 use super::{MeanCycle, NamedLaw};
 use crate::parameter::{Known, Parameter};
 
-/// A law of conventional polyethylene under which another one wears.
+/// The law of conventional polyethylene times a factor.
 ///
-/// $\text{depth} = c \cdot \text{depth of conventional polyethylene}$, whatever the pressure and the cross-shear: measured
-/// factors by both were not to be had. Pins that slide along one line wear as much cross-linked as not
-/// (Kilgour and Elfick 2009), so such paths wear more than this says.
+/// $\text{depth} = c \cdot \text{depth of conventional polyethylene}$, independent of pressure and cross-shear, since no
+/// factors measured by both were found. Pins that slide along one line wear equally with and without cross-linking
+/// (Kilgour and Elfick 2009), so on such paths this law underestimates the wear.
 #[derive(Clone, Debug)]
 pub struct CrossLinked {
     /// The law of conventional polyethylene.
@@ -20,8 +20,7 @@ pub struct CrossLinked {
 }
 
 impl CrossLinked {
-    /// After some 50 kGy: pins wear less than half as much as conventional ones (Abdelgaied 2013), of which this is the
-    /// bound.
+    /// About 50 kGy: the upper bound of pins that wear less than half as much as conventional ones (Abdelgaied 2013).
     pub const MODERATE: Parameter = Parameter {
         name: NAME,
         about: ABOUT,
@@ -31,7 +30,7 @@ impl CrossLinked {
         source: "abdelgaied2013",
         known: Known::Read,
     };
-    /// After some 100 kGy: the middle of 0.14 to 0.27, which knees of two designs had in simulators (Haider 2012).
+    /// About 100 kGy: the middle of 0.14 to 0.27, measured on knees of two designs in simulators (Haider 2012).
     pub const HIGH: Parameter = Parameter {
         name: NAME,
         about: ABOUT,
@@ -42,7 +41,7 @@ impl CrossLinked {
         known: Known::Read,
     };
 
-    /// A named law with that polyethylene.
+    /// Applies the factor to a named law.
     pub fn under(law: NamedLaw, wear_over_conventional: f64) -> NamedLaw {
         let own = Self {
             law: law.law,
@@ -71,7 +70,7 @@ impl WearLaw for CrossLinked {
 #[cfg(test)]
 mod tests {
     use super::super::WEAR_LAWS;
-    use super::super::paths::{assert_near, depth_mm, outside, rectangle};
+    use super::super::tests::{assert_near, depth_mm, outside, rectangle};
     use super::*;
 
     #[test]

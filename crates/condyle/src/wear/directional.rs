@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use super::law::{NodeWear, WearLaw, WearLawKind, first_times};
+use super::law::{
+    CIRCLE_FACTOR, MEASURED_AT, NodeWear, WearLaw, WearLawKind, first_times,
+};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
-/// The law as it is offered.
 pub(super) const KIND: WearLawKind = WearLawKind {
     word: "directional",
     about: "Depth per cycle = sum of p |ds| (Kx sin^2 + Ka cos^2) of the angle between slip and principal \
@@ -14,13 +15,8 @@ pub(super) const KIND: WearLawKind = WearLawKind {
     known: Known::Approximate,
     parameters: &[
         Parameter {
-            name: "circle_factor_mm3_per_nm",
             about: "Wear factor on a circular path, the mean of Kx and Ka.",
-            default: 1.63e-6,
-            least: 0.0,
-            most: 1e-3,
-            source: "saikko2005",
-            known: Known::Read,
+            ..CIRCLE_FACTOR
         },
         Parameter {
             name: "across_over_along",
@@ -31,15 +27,7 @@ pub(super) const KIND: WearLawKind = WearLawKind {
             source: "schwenke2013",
             known: Known::Read,
         },
-        Parameter {
-            name: "measured_at_mpa",
-            about: "Pressure that the factor was measured at; wear under higher ones counts as outside.",
-            default: 1.1,
-            least: 0.0,
-            most: 1000.0,
-            source: "saikko2005",
-            known: Known::Approximate,
-        },
+        MEASURED_AT,
     ],
     scaled: |constants, times| first_times(1, constants, times),
     make: |constants| {
@@ -73,7 +61,7 @@ impl WearLaw for Directional {
 
 #[cfg(test)]
 mod tests {
-    use super::super::paths::{
+    use super::super::tests::{
         assert_near, circle, depth_mm, outside, rectangle, straight, turned,
     };
     use super::*;

@@ -6,7 +6,6 @@ use super::law::{NodeWear, WearLaw, WearLawKind};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
-/// The law as it is offered.
 pub(super) const KIND: WearLawKind = WearLawKind {
     word: "kang",
     about: "Depth per cycle = sum of K p |ds|, K = exp(a + b ln CS - c p) in mm3/(N m), with p of the instant, \
@@ -85,17 +84,11 @@ struct Kang {
 }
 
 impl Kang {
-    /// The wear factor without pressure, mm3/(N m).
-    fn unpressed_factor_mm3_per_nm(&self, cross_shear: f64) -> f64 {
-        let cross_shear = cross_shear.max(self.least_cross_shear);
-        (self.log_wear_factor + self.cross_shear_exponent * cross_shear.ln()).exp()
-    }
-
-    /// Sum of p |ds| exp(-c p), MPa mm: that up to the most pressure, and that above it.
+    /// Sum of p |ds| exp(-c p), MPa mm, below and above the pressure at which the factor stops falling.
     fn weighed_work_mpa_mm(&self, cycle: &MeanCycle<'_>) -> [f64; 2] {
         let mut work = [0.0; 2];
         let at_most = (-self.decay_per_mpa * self.most_pressure_mpa).exp();
-        // Inside out: the moments of all activities are a chain, which steps slowly from outside.
+        // `for_each` and not `for`: the chained iterators of all activities run faster from inside.
         cycle.moments().for_each(|(share, moment)| {
             let slip_work = share * moment.pressure_mpa * moment.distance_mm();
             if moment.pressure_mpa > self.most_pressure_mpa {
@@ -118,8 +111,11 @@ impl WearLaw for Kang {
         } else {
             above / work_mpa_mm.max(f64::MIN_POSITIVE)
         };
+        let log_cross_shear = cross_shear.max(self.least_cross_shear).ln();
+        let unpressed_mm3_per_nm =
+            (self.log_wear_factor + self.cross_shear_exponent * log_cross_shear).exp();
         NodeWear {
-            depth_mm: self.unpressed_factor_mm3_per_nm(cross_shear) / MM_PER_M * work_mpa_mm,
+            depth_mm: unpressed_mm3_per_nm / MM_PER_M * work_mpa_mm,
             part_outside: Some(outside),
         }
     }
@@ -127,7 +123,7 @@ impl WearLaw for Kang {
 
 #[cfg(test)]
 mod tests {
-    use super::super::paths::{
+    use super::super::tests::{
         assert_near, circle, depth_mm, outside, rectangle, straight, turned,
     };
     use super::*;
@@ -151,14 +147,14 @@ mod tests {
     }
 
     #[test]
-    fn verify_pressures_above_the_most_have_its_factor_and_are_told() {
+    fn verify_pressures_above_the_most_have_its_factor_and_are_reported() {
         let law = KIND.with_defaults().law;
         let path = [rectangle(20.0, [3.0, 1.0]), rectangle(4.0, [3.0, 1.0])].concat();
         let within = 4.0 * 8.0 / 1000.0 * factor(0.25, 4.0);
         let above = 20.0 * 8.0 / 1000.0 * factor(0.25, 10.0);
         assert_near(depth_mm(law.as_ref(), &path), within + above);
-        let told = outside(law.as_ref(), &path).unwrap();
-        assert_near(told, above / (within + above));
+        let outside_part = outside(law.as_ref(), &path).unwrap();
+        assert_near(outside_part, above / (within + above));
         assert_eq!(
             outside(law.as_ref(), &rectangle(4.0, [3.0, 1.0])),
             Some(0.0)

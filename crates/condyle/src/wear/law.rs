@@ -1,4 +1,4 @@
-//! What a wear law is, and how one is offered.
+//! The interface of wear laws, and their description.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -6,24 +6,24 @@ use std::sync::Arc;
 use super::MeanCycle;
 use crate::parameter::{Known, Parameter};
 
-/// A law of wear. It sees what one node goes through in the mean cycle of all activities, and never a solver.
+/// A law of wear. It sees the mean cycle of one node over all activities, and never a solver.
 pub trait WearLaw: Debug + Send + Sync {
-    /// What one cycle wears at a node.
+    /// Returns the wear of a node per cycle.
     fn wear(&self, cycle: &MeanCycle<'_>) -> NodeWear;
 }
 
-/// What one cycle wears at a node.
+/// The wear of a node per cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeWear {
     /// Depth along the inward normal, mm; 0 or more, and 0 where nothing slides.
     pub depth_mm: f64,
-    /// What part of it, 0 to 1, is worn outside of the pressures and cross-shear that the law was fitted to;
-    /// none where its source names none.
+    /// Part of it, 0 to 1, outside the pressures and cross-shear to which the law was fitted; none if its source
+    /// gives no such range.
     pub part_outside: Option<f64>,
 }
 
 impl NodeWear {
-    /// That of a law of which it is not known what it was fitted to.
+    /// The wear by a law whose range is unknown.
     pub fn of_depth(depth_mm: f64) -> Self {
         Self {
             depth_mm,
@@ -32,45 +32,45 @@ impl NodeWear {
     }
 }
 
-/// A kind of wear law: its name, its constants, and how a law is made of their values.
+/// A kind of wear law: its name, its constants, and the constructor from their values.
 ///
-/// Whatever offers wear laws, such as a case file, knows no more of one than this.
+/// Case files, pages and other interfaces read the laws from these descriptions.
 #[derive(Clone, Copy, Debug)]
 pub struct WearLawKind {
-    /// The word for it.
+    /// Name in case files.
     pub word: &'static str,
-    /// Its formula, in one line.
+    /// Formula, in one line.
     pub about: &'static str,
-    /// How well the formula is known.
+    /// Certainty of the formula.
     pub known: Known,
-    /// Its constants.
+    /// Constants of the law.
     pub parameters: &'static [Parameter],
-    /// The constants of a law that wears so many times as much, whatever the cycle: what a calibration changes first.
+    /// Returns the constants of a law whose wear is larger by a factor in every cycle; a calibration uses it.
     pub scaled: fn(&[f64], f64) -> Vec<f64>,
-    /// The law with these values of its constants, in their order.
+    /// Creates the law from the values of its constants, in their order.
     pub make: fn(&[f64]) -> Arc<dyn WearLaw>,
 }
 
-/// A law of wear with the word for it.
+/// A law of wear with its name.
 #[derive(Clone, Debug)]
 pub struct NamedLaw {
-    /// The word of its kind.
+    /// Name of its kind.
     pub word: &'static str,
     /// The law.
     pub law: Arc<dyn WearLaw>,
 }
 
 impl WearLawKind {
-    /// The default of every constant.
+    /// Returns the default of every constant.
     pub fn defaults(&self) -> Vec<f64> {
         let default = |parameter: &Parameter| parameter.default;
         self.parameters.iter().map(default).collect()
     }
 
-    /// The law with these `constants`, in the order of its parameters.
+    /// Returns the law with these `constants`, in the order of its parameters.
     ///
     /// # Panics
-    /// Unless there is one for each parameter, in its range.
+    /// If their number differs from that of the parameters, or one is out of its range.
     pub fn law(&self, constants: &[f64]) -> Arc<dyn WearLaw> {
         assert_eq!(constants.len(), self.parameters.len(), "{}", self.word);
         for (parameter, &value) in self.parameters.iter().zip(constants) {
@@ -79,7 +79,7 @@ impl WearLawKind {
         (self.make)(constants)
     }
 
-    /// The law with the defaults of its constants.
+    /// Returns the law with default constants.
     pub fn with_defaults(&self) -> NamedLaw {
         NamedLaw {
             word: self.word,
@@ -87,15 +87,14 @@ impl WearLawKind {
         }
     }
 
-    /// Whether its formula or any of its defaults is remembered rather than read.
+    /// Whether its formula or any of its defaults is quoted from memory.
     pub fn is_approximate(&self) -> bool {
         let mut known = self.parameters.iter().map(|parameter| parameter.known);
         self.known == Known::Approximate || known.any(|known| known == Known::Approximate)
     }
 }
 
-/// The constants with the first `count` of them `times` as large: [`WearLawKind::scaled`] of a law whose depth is in
-/// proportion to these.
+/// Multiplies the first `count` constants: [`WearLawKind::scaled`] of a law whose depth is proportional to these.
 pub(super) fn first_times(count: usize, constants: &[f64], times: f64) -> Vec<f64> {
     let mut scaled = constants.to_vec();
     for constant in &mut scaled[..count] {
@@ -104,12 +103,33 @@ pub(super) fn first_times(count: usize, constants: &[f64], times: f64) -> Vec<f6
     scaled
 }
 
+/// Wear factor on a circular path, whose cross-shear is 0.5 by definition.
+pub(super) const CIRCLE_FACTOR: Parameter = Parameter {
+    name: "circle_factor_mm3_per_nm",
+    about: "Wear factor on a circular path.",
+    default: 1.63e-6,
+    least: 0.0,
+    most: 1e-3,
+    source: "saikko2005",
+    known: Known::Read,
+};
+/// Pressure of the tests behind [`CIRCLE_FACTOR`].
+pub(super) const MEASURED_AT: Parameter = Parameter {
+    name: "measured_at_mpa",
+    about: "Pressure that the factor was measured at; wear under higher ones counts as outside.",
+    default: 1.1,
+    least: 0.0,
+    most: 1000.0,
+    source: "saikko2005",
+    known: Known::Approximate,
+};
+
 /// Declares the files of the wear laws, each with a `KIND`, and lists them.
 macro_rules! wear_laws {
     ($($law:ident,)+) => {
         $( mod $law; )+
 
-        /// Every wear law that comes with condyle; the first is taken where none is named.
+        /// The built-in wear laws; the first is the default.
         pub const WEAR_LAWS: &[&WearLawKind] = &[$( &$law::KIND, )+];
     };
 }

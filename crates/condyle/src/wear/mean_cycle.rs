@@ -1,24 +1,23 @@
-//! One node through the mean cycle of a test.
+//! The mean cycle of one node.
 
 use crate::contact::{CycleHistory, Moment, SlipWork};
 
 /// A cycle of every activity with the activity's share of all cycles.
 pub type SharedCycle<'a> = (f64, &'a CycleHistory);
 
-/// One node through the mean cycle of a test: a cycle of every activity, each counted by its share.
+/// The mean cycle of one node: a cycle of every activity, each weighted by its share.
 ///
-/// So the principal direction is that of all activities together: the molecules at a place do not know
-/// which activity pulled them.
+/// The principal direction is common to all activities, since the molecules at a place are drawn by all of them.
 #[derive(Clone, Copy, Debug)]
 pub struct MeanCycle<'a> {
     activities: &'a [SharedCycle<'a>],
     node: usize,
     /// Highest mean pressure on the node's share in any activity, MPa.
     pub peak_pressure_mpa: f64,
-    /// Distance slid while any of the node's share presses, sum of |ds|, mm.
+    /// Sliding distance while any part of the node's share is loaded, sum of |ds|, mm.
     pub sliding_distance_mm: f64,
-    /// How far a place of the node's share slides under pressure, on the mean: sum of A'/A |ds|, with A' the
-    /// part of the share A that presses, mm.
+    /// Mean sliding distance under pressure over the node's share: sum of A'/A |ds|, with A' the
+    /// loaded part of the share A, mm.
     pub pressed_distance_mm: f64,
     /// Pressure times slip, sum of p |ds|, MPa mm.
     pub pressure_slip_mpa_mm: f64,
@@ -49,7 +48,7 @@ impl<'a> MeanCycle<'a> {
         mean
     }
 
-    /// Every instant of every activity with the activity's share, in the order of time.
+    /// Returns every instant of every activity with the activity's share, in the order of time.
     pub fn moments(&self) -> impl Iterator<Item = (f64, &'a Moment)> + use<'a> {
         let (activities, node) = (self.activities, self.node);
         activities.iter().flat_map(move |(share, cycle)| {
@@ -58,8 +57,9 @@ impl<'a> MeanCycle<'a> {
         })
     }
 
-    /// The part of sum of p |ds|, 0 to 1, done under more than `pressure_mpa`; 0 where nothing slid.
+    /// Returns the part of sum of p |ds|, 0 to 1, above `pressure_mpa`; 0 where nothing slid.
     pub fn part_above(&self, pressure_mpa: f64) -> f64 {
+        // Most nodes never exceed it, and the moments are many.
         if self.peak_pressure_mpa <= pressure_mpa || self.pressure_slip_mpa_mm == 0.0 {
             return 0.0;
         }
@@ -73,7 +73,7 @@ impl<'a> MeanCycle<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::paths::{history, straight};
+    use super::super::tests::{history, straight};
     use super::*;
 
     #[test]

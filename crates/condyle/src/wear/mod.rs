@@ -1,15 +1,13 @@
-//! Wear laws: what a node goes through in a cycle in, depth per cycle out.
+//! Wear laws: from the cycle of a node to its depth per cycle.
 //!
 //! A law is one file: its constants with their units, defaults, limits and sources, and its
 //! formula; one line here adds it.
 
-#[cfg(test)]
-mod closed_forms;
 mod cross_linked;
 mod law;
 mod mean_cycle;
 #[cfg(test)]
-mod paths;
+mod tests;
 
 pub use archard::Archard;
 pub use cross_linked::CrossLinked;

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use super::law::{NodeWear, WearLaw, WearLawKind, first_times};
+use super::law::{
+    CIRCLE_FACTOR, MEASURED_AT, NodeWear, WearLaw, WearLawKind, first_times,
+};
 use super::{MM_PER_M, MeanCycle};
 use crate::parameter::{Known, Parameter};
 
-/// The law as it is offered.
 pub(super) const KIND: WearLawKind = WearLawKind {
     word: "unified",
     about: "Depth per cycle = 2 K E, E the part of sum of p |ds| across the cycle's principal direction; a path \
@@ -14,23 +15,10 @@ pub(super) const KIND: WearLawKind = WearLawKind {
     known: Known::Approximate,
     parameters: &[
         Parameter {
-            name: "circle_factor_mm3_per_nm",
             about: "Wear factor K on a circular path.",
-            default: 1.63e-6,
-            least: 0.0,
-            most: 1e-3,
-            source: "saikko2005",
-            known: Known::Read,
+            ..CIRCLE_FACTOR
         },
-        Parameter {
-            name: "measured_at_mpa",
-            about: "Pressure that the factor was measured at; wear under higher ones counts as outside.",
-            default: 1.1,
-            least: 0.0,
-            most: 1000.0,
-            source: "saikko2005",
-            known: Known::Approximate,
-        },
+        MEASURED_AT,
     ],
     scaled: |constants, times| first_times(1, constants, times),
     make: |constants| {
@@ -59,7 +47,7 @@ impl WearLaw for Unified {
 
 #[cfg(test)]
 mod tests {
-    use super::super::paths::{
+    use super::super::tests::{
         assert_near, circle, depth_mm, outside, rectangle, straight, turned,
     };
     use super::*;

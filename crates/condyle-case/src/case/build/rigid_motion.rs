@@ -94,7 +94,7 @@ pub(in crate::case) fn middle_of_mesh(mesh: &TriangleMesh) -> Vec3 {
 }
 
 pub(super) fn middle_of_points(points: &[Vec3]) -> Vec3 {
-    Dishes::of(points).map_or(Vec3::zeros(), |dishes| dishes.middle_mm())
+    Dishes::find(points).map_or(Vec3::zeros(), |dishes| dishes.middle_mm())
 }
 
 #[cfg(test)]

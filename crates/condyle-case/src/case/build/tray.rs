@@ -22,7 +22,7 @@ pub(super) fn without_tray(
     shell: CheckedMesh,
     warnings: &mut Vec<BuildWarning>,
 ) -> Result<CheckedMesh, BuildError> {
-    match Underside::of(&shell.mesh) {
+    match Underside::find(&shell.mesh) {
         Underside::Whole => Ok(shell),
         Underside::Ledge {
             height_mm,

@@ -147,7 +147,7 @@ pub(super) struct Alone {
 impl Alone {
     pub fn of(whole: CheckedMesh) -> Result<Self, RepairError> {
         let underside = if whole.closed {
-            Underside::of(&whole.mesh)
+            Underside::find(&whole.mesh)
         } else {
             Underside::Whole
         };

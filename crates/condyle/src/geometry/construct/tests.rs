@@ -27,7 +27,7 @@ fn insert_of(meshing: Meshing) -> TriangleMesh {
 fn underside_of(body: TriangleMesh) -> Underside {
     let shell = checked_mesh(body).unwrap();
     assert!(shell.closed, "the fused body is not closed");
-    Underside::of(&shell.mesh)
+    Underside::find(&shell.mesh)
 }
 
 #[test]
@@ -163,4 +163,23 @@ fn open_underside(body: &mut TriangleMesh, height_mm: f64) -> Vec<u32> {
         outline.push(after);
     }
     outline
+}
+
+#[test]
+fn verify_areas_of_the_sections_of_a_block_on_a_smaller_one() {
+    let body =
+        TriangleMesh::block(Vec3::new(-10.0, 0.0, -15.0), Vec3::new(10.0, 8.0, 15.0)).joined(
+            &TriangleMesh::block(Vec3::new(-4.0, -20.0, -3.0), Vec3::new(4.0, 0.5, 3.0)),
+        );
+    let sections = Sections::new(&body, 0.25);
+    for (y, area) in [
+        (7.9, 600.0),
+        (0.25, 600.0),
+        (-5.0, 48.0),
+        (8.1, 0.0),
+        (-20.1, 0.0),
+    ] {
+        let found = sections.area_mm2(y);
+        assert!((found - area).abs() <= 0.05 * area, "{found} at {y}");
+    }
 }

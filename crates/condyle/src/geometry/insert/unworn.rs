@@ -1,24 +1,54 @@
-//! What of an insert stays as it was made, however it wears.
+//! The state of an insert as it was made, which wear does not change.
 
 use condyle_fem::{HexMesh, InteriorFollower};
+use condyle_mesh::{
+    bounds,
+    columns::{ColumnError, TooManyNodes},
+    triangle,
+};
+use thiserror::Error;
 
-use super::{error::InsertError, thickness::thickness_at_nodes};
 use crate::{
     Vec3,
     geometry::{
         articulating_surface::ArticulatingSurface,
-        faces_around::FacesAround,
-        node_blocks::{NodeBlock, node_blocks},
+        connectivity::{FacesAround, NodeBlock, node_blocks},
     },
 };
 
-/// An insert as it was made: how its nodes hang together, where they were and how thick it was.
-pub struct UnwornInsert {
+/// Why a mesh is not an insert.
+#[expect(missing_docs, reason = "the messages describe the fields")]
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum InsertError {
+    /// No element or no articulating face.
+    #[error("the insert has no {what}; name or give some")]
+    Empty { what: &'static str },
+    /// More nodes than the mesh can number.
+    #[error(transparent)]
+    TooManyNodes(#[from] TooManyNodes),
+    /// A surface that cannot be meshed in columns.
+    #[error(transparent)]
+    Columns(#[from] ColumnError),
+    /// A hexahedron that is inverted or flat.
+    #[error(
+        "hexahedron {hex} of the insert is inverted or flat (scaled Jacobian {quality:.3}); repair the mesh or use a larger edge"
+    )]
+    BadElement { hex: usize, quality: f64 },
+    /// A node with no insert below it.
+    #[error(
+        "the backside lies nowhere below the articulating surface at ({:.2}, {:.2}, {:.2}) mm; check which surface is the backside",
+        place_mm.x, place_mm.y, place_mm.z
+    )]
+    NoThickness { place_mm: Vec3 },
+}
+
+/// An insert before any wear: connectivity, positions and thickness.
+pub(super) struct UnwornInsert {
     /// Positions of all mesh nodes, mm.
     pub nodes: Vec<Vec3>,
     /// Quads around the mesh, facing out.
     pub boundary: Vec<[u32; 4]>,
-    /// Mesh nodes of the articulating surface, ascending; "surface node i" is `surface_nodes[i]`.
+    /// Mesh nodes of the articulating surface, ascending; surface node i is `surface_nodes[i]`.
     pub surface_nodes: Vec<u32>,
     /// Mesh nodes of the backside, ascending.
     pub backside_nodes: Vec<u32>,
@@ -30,7 +60,7 @@ pub struct UnwornInsert {
     pub share_mm2: Vec<f64>,
     /// Thickness below each surface node, mm.
     pub thickness_mm: Vec<f64>,
-    /// Of each surface node on the rim the unit direction, upwards, in which the side wall below ends there.
+    /// Unit direction of the side wall below each surface node on the rim, upwards.
     pub walls: Vec<Option<Vec3>>,
     pub follower: InteriorFollower,
 }
@@ -42,10 +72,20 @@ impl UnwornInsert {
         articulating: &[[u32; 4]],
         backside: &[[u32; 4]],
     ) -> Result<Self, InsertError> {
-        check_parts(mesh, articulating, backside)?;
-        check_elements(mesh)?;
+        let parts = [
+            (mesh.hexes.len(), "hexahedra"),
+            (articulating.len(), "articulating surface"),
+            (backside.len(), "backside"),
+        ];
+        if let Some((_, what)) = parts.into_iter().find(|(count, _)| *count == 0) {
+            return Err(InsertError::Empty { what });
+        }
+        let mut qualities = mesh.qualities().enumerate();
+        if let Some((hex, quality)) = qualities.find(|(_, quality)| *quality <= 0.0) {
+            return Err(InsertError::BadElement { hex, quality });
+        }
         let (surface_nodes, faces) = numbered(articulating);
-        // Sides and backside stay where they are: wear takes away the articulating surface alone.
+        // Sides and backside stay in place: only the articulating surface wears.
         let boundary = mesh.boundary_quads();
         let follower = InteriorFollower::new(mesh, boundary.iter().flatten().copied());
         let faces_around = FacesAround::new(surface_nodes.len(), &faces);
@@ -73,7 +113,8 @@ impl UnwornInsert {
     }
 }
 
-/// Where the edge of the boundary that leads away from the articulating surface comes from, if a node has one alone.
+/// The direction of the boundary edge that leads down from each node of the articulating surface, if it has exactly
+/// one.
 fn walls(mesh: &HexMesh, boundary: &[[u32; 4]], surface_nodes: &[u32]) -> Vec<Option<Vec3>> {
     let number = |node: u32| surface_nodes.binary_search(&node).ok();
     let mut below: Vec<Vec<u32>> = vec![Vec::new(); surface_nodes.len()];
@@ -99,31 +140,7 @@ fn walls(mesh: &HexMesh, boundary: &[[u32; 4]], surface_nodes: &[u32]) -> Vec<Op
     below.into_iter().enumerate().map(direction).collect()
 }
 
-fn check_parts(
-    mesh: &HexMesh,
-    articulating: &[[u32; 4]],
-    backside: &[[u32; 4]],
-) -> Result<(), InsertError> {
-    let parts = [
-        (mesh.hexes.len(), "hexahedra"),
-        (articulating.len(), "articulating surface"),
-        (backside.len(), "backside"),
-    ];
-    match parts.into_iter().find(|(count, _)| *count == 0) {
-        Some((_, what)) => Err(InsertError::Empty { what }),
-        None => Ok(()),
-    }
-}
-
-fn check_elements(mesh: &HexMesh) -> Result<(), InsertError> {
-    let mut qualities = mesh.qualities().enumerate();
-    match qualities.find(|(_, quality)| *quality <= 0.0) {
-        Some((hex, quality)) => Err(InsertError::BadElement { hex, quality }),
-        None => Ok(()),
-    }
-}
-
-/// The nodes of some quads, ascending, and the quads in their numbers.
+/// The nodes of quads, ascending, and the quads in numbers of these nodes.
 fn numbered(quads: &[[u32; 4]]) -> (Vec<u32>, Vec<[u32; 4]>) {
     let mut nodes: Vec<u32> = quads.iter().flatten().copied().collect();
     nodes.sort_unstable();
@@ -131,4 +148,97 @@ fn numbered(quads: &[[u32; 4]]) -> (Vec<u32>, Vec<[u32; 4]>) {
     let number = |node: u32| nodes.partition_point(|&other| other < node) as u32;
     let faces = quads.iter().map(|quad| quad.map(number)).collect();
     (nodes, faces)
+}
+
+/// Edge of the bins that sort the backside over the transverse plane, mm: about the edge of an element.
+const BIN_MM: f64 = 2.0;
+
+/// The triangles of the backside, sorted into square bins over the transverse plane.
+struct Backside {
+    triangles: Vec<[Vec3; 3]>,
+    low: Vec3,
+    counts: (usize, usize),
+    bins: Vec<Vec<u32>>,
+}
+
+/// Distance from each node of a surface, against its normal, to the backside, mm.
+///
+/// Where a normal misses the backside (at the rim), the distance straight down counts, and where
+/// that misses too, the nearest vertex of the backside.
+fn thickness_at_nodes(
+    surface: &ArticulatingSurface,
+    mesh: &HexMesh,
+    backside: &[[u32; 4]],
+) -> Result<Vec<f64>, InsertError> {
+    let backside = Backside::new(mesh, backside);
+    let thickness = |(from, normal): (&Vec3, &Vec3)| {
+        backside
+            .distance_along(from, &-normal)
+            .or_else(|| backside.distance_along(from, &-Vec3::y()))
+            .or_else(|| {
+                let vertices = backside.triangles.iter().flatten();
+                let distances = vertices.map(|vertex| (vertex - from).norm());
+                distances
+                    .min_by(f64::total_cmp)
+                    .filter(|&distance| distance > 0.0)
+            })
+            .ok_or(InsertError::NoThickness { place_mm: *from })
+    };
+    let nodes = surface.positions.iter().zip(&surface.normals);
+    nodes.map(thickness).collect()
+}
+
+impl Backside {
+    fn new(mesh: &HexMesh, quads: &[[u32; 4]]) -> Self {
+        let corners = |quad: &[u32; 4]| {
+            let [a, b, c, d] = quad.map(|node| mesh.nodes[node as usize]);
+            [[a, b, c], [a, c, d]]
+        };
+        let triangles: Vec<[Vec3; 3]> = quads.iter().flat_map(corners).collect();
+        let (low, high) = bounds(triangles.as_flattened());
+        let count = |length: f64| (length / BIN_MM) as usize + 1;
+        let counts = (count(high.x - low.x), count(high.z - low.z));
+        let mut sorted = Self {
+            bins: vec![Vec::new(); counts.0 * counts.1],
+            triangles,
+            low,
+            counts,
+        };
+        for index in 0..sorted.triangles.len() {
+            let [a, b, c] = sorted.triangles[index];
+            for bin in sorted.bins_between(&a.inf(&b).inf(&c), &a.sup(&b).sup(&c)) {
+                sorted.bins[bin].push(index as u32);
+            }
+        }
+        sorted
+    }
+
+    /// Distance from a point along a unit direction to the first triangle hit.
+    fn distance_along(&self, from: &Vec3, direction: &Vec3) -> Option<f64> {
+        if direction.y >= 0.0 {
+            return None;
+        }
+        let end = from + direction * ((self.low.y - from.y) / direction.y).max(0.0);
+        let mut nearest: Option<f64> = None;
+        for bin in self.bins_between(&from.inf(&end), &from.sup(&end)) {
+            for &index in &self.bins[bin] {
+                let distance = triangle::hit(&self.triangles[index as usize], from, direction);
+                nearest = nearest.map_or(distance, |d| Some(distance.map_or(d, |e| d.min(e))));
+            }
+        }
+        nearest
+    }
+
+    /// Bins covered by the box between two points.
+    fn bins_between(&self, low: &Vec3, high: &Vec3) -> impl Iterator<Item = usize> + use<> {
+        let place = |value: f64, origin: f64, count: usize| {
+            (((value - origin) / BIN_MM).floor().max(0.0) as usize).min(count - 1)
+        };
+        let (nx, nz) = self.counts;
+        let (x, z) = (
+            place(low.x, self.low.x, nx)..=place(high.x, self.low.x, nx),
+            place(low.z, self.low.z, nz)..=place(high.z, self.low.z, nz),
+        );
+        x.flat_map(move |i| z.clone().map(move |k| i * nz + k))
+    }
 }

@@ -4,14 +4,14 @@ use std::{ops::Range, sync::Arc};
 
 use serde::{Deserialize, Serialize};
 
-use super::{gap_spline::GapSpline, node_grid::SPACING_MM};
+use super::{grid::SPACING_MM, spline::GapSpline};
 use crate::{
     Vec3, Vector,
-    geometry::curvature_bounds::CurvatureBounds,
+    geometry::surface_sample::CurvatureBounds,
     number::{F64x4, LANES, Number},
 };
 
-/// Gaps at which a surface touches or nearly does, mm.
+/// Gaps of a surface in or near contact, mm.
 const NEAR_MM: Range<f64> = -0.6..2.0;
 
 const _: () = assert!(
@@ -19,22 +19,22 @@ const _: () = assert!(
     "a point that near lies in a cell that has bounds"
 );
 
-/// Half the diagonal of a cell and a little, in edges of it.
+/// Half the diagonal of a cell with a margin, in units of its edge: sqrt(3)/2 = 0.866.
 const HALF_DIAGONAL: f64 = 0.9;
 
-/// How many cells around one its bounds hold in.
+/// Number of cells around one within which its bounds hold.
 const CELLS_AROUND: usize = 1;
 
-/// For every cell of a field's grid that the surface comes near, bounds on the curvature there and
-/// in the cells around: the extremes of eight samples a cell.
+/// Bounds on the curvature in every cell of a field's grid near the surface and in the cells around it:
+/// the extremes of eight samples per cell.
 ///
-/// A cell lies around a node of the grid. Deeper than contact goes, a femoral component has an
-/// inside with edges of its own; the curvature there is not asked.
+/// A cell lies around a node of the grid. Deeper than contact reaches, a femoral component has an
+/// inside with its own edges, whose curvature does not matter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurvatureGrid {
-    /// Those of every cell, of most of them unknown: one access to memory finds them.
+    /// One per cell, most of them unknown: a dense array takes one memory access.
     cells: Arc<[CellBounds]>,
-    /// How far from a point of a cell its bounds hold, mm.
+    /// Distance from any point of a cell within which its bounds hold, mm.
     radius_mm: f64,
 }
 
@@ -46,13 +46,13 @@ struct CellBounds {
 }
 
 impl CellBounds {
-    /// Where the surface is not near.
+    /// A cell away from the surface.
     const UNKNOWN: Self = Self {
         max_curvature_per_mm: -1.0,
         concavity_per_mm: 0.0,
     };
 
-    /// Of no point at all.
+    /// The bounds of no point.
     const NONE: Self = Self {
         max_curvature_per_mm: 0.0,
         concavity_per_mm: 0.0,
@@ -65,7 +65,7 @@ impl CellBounds {
         }
     }
 
-    /// At one point, from the field's slope and curvature K there.
+    /// The bounds at one point, from the field's slope and curvature K there.
     fn at(slope: f64, [xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Self {
         let trace = xx + yy + zz;
         let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
@@ -83,12 +83,13 @@ impl CellBounds {
     }
 }
 
+// A bound in single precision must not round towards zero.
 fn rounded_up(value: f64) -> f32 {
     (value as f32).next_up()
 }
 
 impl CurvatureGrid {
-    /// The bounds of a field whose cells lie around the nodes of its grid.
+    /// The bounds of a field.
     pub fn new(gap: &GapSpline) -> Self {
         let margin_mm = HALF_DIAGONAL * SPACING_MM;
         let near = NEAR_MM.start - margin_mm..NEAR_MM.end + margin_mm;
@@ -100,8 +101,9 @@ impl CurvatureGrid {
                 cells[node] = in_cell(gap, &middle);
             }
         }
+        // A point anywhere in a cell is within one spacing of the neighbours only, so bounds widen cell by cell.
         for _ in 0..CELLS_AROUND {
-            cells = with_cells_beside(&cells, &known, gap.grid().strides());
+            cells = with_neighbours(&cells, &known, gap.grid().strides());
         }
         Self {
             cells: cells.into(),
@@ -109,7 +111,7 @@ impl CurvatureGrid {
         }
     }
 
-    /// Bounds around any point of the cell around a grid node.
+    /// The bounds around any point of the cell around a grid node.
     #[inline]
     pub fn around(&self, node: usize) -> CurvatureBounds {
         let cell = self.cells[node];
@@ -126,7 +128,7 @@ impl CurvatureGrid {
 }
 
 /// The bounds of every known cell joined with those of the 26 cells around it.
-fn with_cells_beside(
+fn with_neighbours(
     cells: &[CellBounds],
     known: &[usize],
     [sx, sy, sz]: [usize; 3],
@@ -146,7 +148,7 @@ fn with_cells_beside(
     joined
 }
 
-/// Bounds at eight points of a cell, those left out where nothing touches.
+/// The bounds at eight points of a cell, without those away from contact.
 fn in_cell(gap: &GapSpline, middle: &Vec3) -> CellBounds {
     const OFFSET_MM: f64 = SPACING_MM / 4.0;
     let mut all = CellBounds::NONE;

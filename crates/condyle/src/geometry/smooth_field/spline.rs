@@ -1,6 +1,162 @@
-//! A quadratic B-spline of three variables at a point, from the 27 coefficients that reach it.
+//! The quadratic B-spline through the gaps at a grid's nodes, evaluated from the 27 coefficients that reach a point.
 
-use crate::number::{F64x4, LANES, Number};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::grid::{BAND_MM, NodeGrid, SPACING_MM};
+use crate::{
+    Vector,
+    geometry::surface_sample::{Curvature, SurfaceSample},
+    number::{F64x4, LANES, Number},
+};
+
+/// Gap of points outside the grid, mm: a lower bound, since the grid extends farther
+/// beyond the surface.
+const OUTSIDE_MM: f64 = BAND_MM + SPACING_MM;
+
+/// A quadratic B-spline over a grid: a gap with its derivatives anywhere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct GapSpline {
+    grid: NodeGrid,
+    /// One per node, mm, and one more number: a row is read as four, of which three are used.
+    coefficients: Arc<[f64]>,
+}
+
+/// The 27 coefficients that reach a point, lane by lane.
+struct Neighbourhood<T> {
+    /// Number of the first of them.
+    corner: [u32; LANES],
+    bases: Bases<T>,
+    /// Negative outside the grid.
+    inside: T,
+}
+
+impl GapSpline {
+    /// The spline of these coefficients, one per node.
+    pub fn new(grid: NodeGrid, mut coefficients: Vec<f64>) -> Self {
+        coefficients.push(0.0);
+        Self {
+            grid,
+            coefficients: coefficients.into(),
+        }
+    }
+
+    pub fn grid(&self) -> &NodeGrid {
+        &self.grid
+    }
+
+    /// The spline with its coefficients changed by `change`, which receives the new and the old ones.
+    pub fn changed(&self, change: impl FnOnce(&mut [f64], &[f64])) -> Self {
+        let mut changed = self.clone();
+        change(Arc::make_mut(&mut changed.coefficients), &self.coefficients);
+        changed
+    }
+
+    /// Number of the grid node next to each lane's point.
+    #[inline(always)]
+    pub fn nodes_at<T: Number>(&self, points: &Vector<T>) -> impl Iterator<Item = usize> {
+        let corners = self.locate(points).corner.into_iter().take(T::COUNT);
+        let [sx, sy, sz] = self.grid.strides();
+        corners.map(move |corner| corner as usize + sx + sy + sz)
+    }
+
+    /// Gap at a point, mm.
+    #[inline(always)]
+    pub fn gap_mm<T: Number>(&self, point: &Vector<T>) -> T {
+        self.derivatives(point).value
+    }
+
+    /// Gap, normal and curvature at a point.
+    #[inline(always)]
+    pub fn sample<T: Number>(&self, point: &Vector<T>) -> SurfaceSample<T> {
+        sample_from(&self.derivatives(point))
+    }
+
+    /// The spline and its derivatives at a point; outside the grid its value is a bound.
+    #[inline(always)]
+    fn derivatives<T: Number>(&self, point: &Vector<T>) -> Derivatives<T> {
+        let here = self.locate(point);
+        let spline = here.bases.spline(|lane| self.rows(here.corner[lane]));
+        Derivatives {
+            value: here.inside.below_zero(T::splat(OUTSIDE_MM), spline.value),
+            ..spline
+        }
+    }
+
+    /// The coefficients that reach a point, and the bases there.
+    #[inline(always)]
+    fn locate<T: Number>(&self, point: &Vector<T>) -> Neighbourhood<T> {
+        let (one, half) = (T::one(), T::splat(0.5));
+        let NodeGrid { origin, counts } = &self.grid;
+        let strides = self.grid.strides();
+        let (mut corner, mut inside) = (T::zero(), one);
+        let mut away = |axis: usize| {
+            let place = (point[axis] - T::splat(origin[axis])) * T::splat(1.0 / SPACING_MM);
+            let last = T::splat((counts[axis] - 2) as f64);
+            let node = Number::max(Number::min((place + half).floor(), last), one);
+            inside = Number::min(inside, Number::min(place - half, last + half - place));
+            corner += (node - one) * T::splat(strides[axis] as f64);
+            place - node
+        };
+        let bases = Bases::at([away(0), away(1), away(2)]);
+        let mut corners = [0; LANES];
+        for (lane, first) in corners.iter_mut().enumerate().take(T::COUNT) {
+            *first = corner.lane(lane) as u32;
+        }
+        Neighbourhood {
+            corner: corners,
+            bases,
+            inside,
+        }
+    }
+
+    /// The coefficients from a corner on: row `j` of layer `k`, and one number more.
+    #[inline(always)]
+    fn rows(&self, corner: u32) -> impl Fn(usize, usize) -> F64x4 {
+        // One check of the last index covers all: strides of 32 bits cannot overflow their
+        // sum, so that the compiler omits a check at each of nine rows.
+        let [_, sy, sz] = self.grid.strides().map(|stride| stride as u32 as usize);
+        let (corner, all) = (corner as usize, &self.coefficients[..]);
+        assert!(
+            corner + 2 * sy + 2 * sz + LANES <= all.len(),
+            "locate keeps one node of margin on every side"
+        );
+        move |j, k| {
+            let from = corner + j * sy + k * sz;
+            F64x4::new([all[from], all[from + 1], all[from + 2], all[from + 3]])
+        }
+    }
+}
+
+#[inline(always)]
+fn sample_from<T: Number>(spline: &Derivatives<T>) -> SurfaceSample<T> {
+    let per_spacing = T::splat(1.0 / SPACING_MM);
+    let [x, y, z] = spline.gradient;
+    let gap_gradient = Vector::new(x * per_spacing, y * per_spacing, z * per_spacing);
+    // Far from the surface the gap is constant; the normal is then zero and not NaN.
+    let length = Number::max(
+        gap_gradient.dot(&gap_gradient).sqrt(),
+        T::splat(f64::MIN_POSITIVE),
+    );
+    let per_length = T::one() / length;
+    let scale = per_length * T::splat(1.0 / (SPACING_MM * SPACING_MM));
+    // Written out: the compiler does not inline a map over an array here.
+    let [xx, yy, zz, xy, xz, yz] = spline.hessian;
+    SurfaceSample {
+        gap_mm: spline.value,
+        gap_gradient,
+        normal: gap_gradient * per_length,
+        curvature: Curvature {
+            xx: xx * scale,
+            yy: yy * scale,
+            zz: zz * scale,
+            xy: xy * scale,
+            xz: xz * scale,
+            yz: yz * scale,
+        },
+    }
+}
 
 /// Values and first derivatives of the three B-splines that reach a point along one axis.
 #[derive(Clone, Copy)]
@@ -26,24 +182,24 @@ impl<T: Number> Basis<T> {
 }
 
 /// The B-splines that reach a point in every lane.
-pub struct Bases<T> {
+struct Bases<T> {
     x: Basis<T>,
     y: Basis<[f64; LANES]>,
     z: Basis<[f64; LANES]>,
 }
 
-/// A spline and its derivatives by the grid's places.
-pub struct Derivatives<T> {
-    pub value: T,
-    pub gradient: [T; 3],
-    /// Second ones: xx, yy, zz, xy, xz, yz.
-    pub hessian: [T; 6],
+/// A spline and its derivatives, per spacing of the grid.
+struct Derivatives<T> {
+    value: T,
+    gradient: [T; 3],
+    /// xx, yy, zz, xy, xz, yz.
+    hessian: [T; 6],
 }
 
 impl<T: Number> Bases<T> {
     /// Each of x, y and z in \[-1/2, 1/2\]: distance from the middle node, in spacings.
     #[inline(always)]
-    pub fn at([x, y, z]: [T; 3]) -> Self {
+    fn at([x, y, z]: [T; 3]) -> Self {
         let (y, z) = (Basis::at(y), Basis::at(z));
         Self {
             x: Basis::at(x),
@@ -52,17 +208,14 @@ impl<T: Number> Bases<T> {
         }
     }
 
-    /// The spline where `rows` gives the coefficients around every lane's point: of layer k the row
-    /// j along x, and one number more.
+    /// The spline, where `rows` gives the coefficients around every lane's point: of layer k the row
+    /// j along x, and one more number.
     #[inline(always)]
-    pub fn spline<R: Fn(usize, usize) -> F64x4>(
-        &self,
-        rows: impl Fn(usize) -> R,
-    ) -> Derivatives<T> {
+    fn spline<R: Fn(usize, usize) -> F64x4>(&self, rows: impl Fn(usize) -> R) -> Derivatives<T> {
         // The spline is the sum of b_i(x) b_j(y) b_k(z) c_ijk over 27 coefficients, and a derivative
         // is the same sum with slopes in place of values. It is contracted an axis at a time, y and
-        // z of one lane first: 165 multiplications for all ten sums, instead of 810. What is left
-        // of each lane are three numbers along x, which go side by side for all lanes at once.
+        // z of one lane first: 165 multiplications for all ten sums, instead of 810. The remaining
+        // three numbers of each lane along x are contracted for all lanes at once.
         let none = [F64x4::splat(0.0); LANES];
         let (mut f, mut fz, mut fzz) = (none, none, none);
         let (mut fy, mut fyz, mut fyy) = (none, none, none);
@@ -125,7 +278,7 @@ impl<T: Number> Bases<T> {
     }
 }
 
-/// A basis as it lies in memory, from where the number of any lane is read four times at once.
+/// A basis in memory, from which the number of any lane is broadcast to four.
 #[inline(always)]
 fn laid_out<T: Number>(basis: &Basis<T>) -> Basis<[f64; LANES]> {
     let lanes = |number: T| {
@@ -141,7 +294,7 @@ fn laid_out<T: Number>(basis: &Basis<T>) -> Basis<[f64; LANES]> {
     }
 }
 
-/// The first three columns of a matrix that has a row of four numbers for every lane.
+/// The first three columns of a matrix with a row of four numbers for every lane.
 #[inline(always)]
 fn columns<T: Number>(rows: &[F64x4; LANES]) -> [T; 3] {
     let [a, b, c, _] = F64x4::transposed(*rows);

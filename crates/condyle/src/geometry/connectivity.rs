@@ -1,20 +1,101 @@
-//! The nodes of a surface in blocks of up to four.
+//! The connectivity of a surface: the faces around its nodes, and the nodes in blocks of up to four.
 
-use super::faces_around::FacesAround;
 use crate::number::LANES;
 
-/// Up to four nodes that lie together: what is near one is near all of them.
+/// The faces around every node of a surface.
+pub(crate) struct FacesAround {
+    /// The faces of node i are `faces[first[i]..first[i + 1]]`.
+    first: Vec<usize>,
+    /// The other corners of each face, in its order from the node.
+    faces: Vec<[u32; 3]>,
+    /// The nodes that share a face with node i are `beside[first_beside[i]..first_beside[i + 1]]`, each once.
+    first_beside: Vec<usize>,
+    beside: Vec<u32>,
+}
+
+impl FacesAround {
+    /// Sorts `faces`, in numbers of nodes, by the nodes at their corners.
+    pub fn new(node_count: usize, faces: &[[u32; 4]]) -> Self {
+        let mut first = vec![0; node_count + 1];
+        for &node in faces.iter().flatten() {
+            first[node as usize + 1] += 1;
+        }
+        for node in 0..node_count {
+            first[node + 1] += first[node];
+        }
+        let mut next = first.clone();
+        let mut sorted = vec![[0; 3]; first[node_count]];
+        for face in faces {
+            for (corner, &node) in face.iter().enumerate() {
+                let others = [1, 2, 3].map(|turn| face[(corner + turn) % 4]);
+                sorted[next[node as usize]] = others;
+                next[node as usize] += 1;
+            }
+        }
+        let mut first_beside = vec![0];
+        // A node of a grid has eight others in its faces.
+        let mut beside = Vec::with_capacity(8 * node_count);
+        for node in 0..node_count {
+            let start = beside.len();
+            for &other in sorted[first[node]..first[node + 1]].as_flattened() {
+                if !beside[start..].contains(&other) {
+                    beside.push(other);
+                }
+            }
+            first_beside.push(beside.len());
+        }
+        Self {
+            first,
+            faces: sorted,
+            first_beside,
+            beside,
+        }
+    }
+
+    pub fn node_count(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    /// Returns the faces around a node, in their given order: for each the next corner, the opposite one
+    /// and the one before.
+    pub fn of(&self, node: usize) -> &[[u32; 3]] {
+        &self.faces[self.first[node]..self.first[node + 1]]
+    }
+
+    fn beside(&self, node: u32) -> &[u32] {
+        let node = node as usize;
+        &self.beside[self.first_beside[node]..self.first_beside[node + 1]]
+    }
+
+    /// A node, and then those around it: all that have a face in common with it and, if these are
+    /// fewer than `least` in all, those around them too.
+    pub fn patch(&self, node: u32, least: usize) -> Vec<u32> {
+        let mut nodes = Vec::with_capacity(32);
+        nodes.push(node);
+        nodes.extend_from_slice(self.beside(node));
+        if nodes.len() < least {
+            for ring in 1..nodes.len() {
+                for other in self.beside(nodes[ring]) {
+                    if !nodes.contains(other) {
+                        nodes.push(*other);
+                    }
+                }
+            }
+        }
+        nodes
+    }
+}
+
+/// Up to four neighbouring nodes, which the broad phase tests together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NodeBlock {
-    /// The nodes, ascending; the last of them again where there are fewer than four.
+pub(crate) struct NodeBlock {
+    /// Ascending; the last is repeated where there are fewer than four.
     pub nodes: [u32; LANES],
-    /// How many there are.
     pub count: usize,
 }
 
 impl NodeBlock {
-    /// The block of up to four nodes, which are put into order.
-    fn of(nodes: &mut [u32]) -> Self {
+    fn new(nodes: &mut [u32]) -> Self {
         nodes.sort_unstable();
         let last = nodes.len() - 1;
         Self {
@@ -24,12 +105,11 @@ impl NodeBlock {
     }
 }
 
-/// The blocks of a surface, every node in one: the corners of every other face along rows and
-/// columns, and then what is left in chains; ascending by their first nodes.
+/// Divides a surface into blocks: the corners of every other face along rows and
+/// columns, and the remaining nodes in chains; ascending by their first nodes.
 ///
-/// A grid falls into blocks of two by two, whatever its outline. They touch, or not, sooner all
-/// together than four nodes in a row would, and do not reach from one end of a row to the start of
-/// the next.
+/// A grid is divided into blocks of two by two, whatever its outline. Such a block is more compact than four nodes in a
+/// row, and does not extend from the end of one row to the start of the next.
 pub(super) fn node_blocks(faces: &[[u32; 4]], around: &FacesAround) -> Vec<NodeBlock> {
     let mut free = FreeNodes {
         around,
@@ -48,7 +128,6 @@ pub(super) fn node_blocks(faces: &[[u32; 4]], around: &FacesAround) -> Vec<NodeB
     blocks
 }
 
-/// The nodes that are in no block yet.
 struct FreeNodes<'a> {
     around: &'a FacesAround,
     is_taken: Vec<bool>,
@@ -65,7 +144,7 @@ impl FreeNodes<'_> {
         is_free
     }
 
-    /// Takes a face's corners, those of the faces next but one on all its sides, and so on.
+    /// Takes a face's corners, those of the next face but one on each side, and so on.
     fn take_blocks(&mut self, face: [u32; 4], blocks: &mut Vec<NodeBlock>) {
         let mut open = vec![face];
         while let Some(mut face) = open.pop() {
@@ -76,19 +155,19 @@ impl FreeNodes<'_> {
                     self.face_beyond([from, to])
                 };
                 open.extend(sides.into_iter().filter_map(beyond));
-                blocks.push(NodeBlock::of(&mut face));
+                blocks.push(NodeBlock::new(&mut face));
             }
         }
     }
 
-    /// The face on the other side of an edge of one, from there on.
+    /// The face on the other side of an edge, starting with that edge.
     fn face_beyond(&self, [from, to]: [u32; 2]) -> Option<[u32; 4]> {
         let faces = self.around.of(to as usize).iter();
         let mut faces = faces.map(|&[next, across, before]| [to, next, across, before]);
         faces.find(|face| face[1] == from)
     }
 
-    /// Takes a free node with up to three others, each beside one before it.
+    /// Takes a free node with up to three others, each a neighbour of an earlier one.
     fn take_chain(&mut self, node: u32) -> Option<NodeBlock> {
         let mut nodes = Vec::with_capacity(LANES);
         if self.take(&[node]) {
@@ -103,13 +182,29 @@ impl FreeNodes<'_> {
             }
             end += 1;
         }
-        (!nodes.is_empty()).then(|| NodeBlock::of(&mut nodes))
+        (!nodes.is_empty()).then(|| NodeBlock::new(&mut nodes))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_patch_is_of_the_faces_around_and_larger_where_these_are_few() {
+        let faces = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]];
+        let around = FacesAround::new(9, &faces);
+        let sorted = |node, least| {
+            let mut nodes = around.patch(node, least);
+            assert_eq!(nodes[0], node);
+            nodes.sort_unstable();
+            nodes
+        };
+        assert_eq!(sorted(4, 7), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+        assert_eq!(sorted(0, 4), [0, 1, 3, 4]);
+        assert_eq!(sorted(5, 6), [1, 2, 4, 5, 7, 8]);
+        assert_eq!(sorted(0, 7), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+    }
 
     /// The blocks of a grid of `columns` by `rows` nodes.
     fn of_grid(columns: u32, rows: u32) -> Vec<NodeBlock> {

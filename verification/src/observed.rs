@@ -1,6 +1,4 @@
-//! What a contact does with the work that is done on it.
-
-use std::cell::RefCell;
+//! A foundation's contact that is observed at the end of every increment.
 
 use condyle::{
     contact::{
@@ -18,38 +16,36 @@ pub(crate) struct Instant {
     pub twist: Twist,
     /// Wrench on the insert, N mm and N.
     pub wrench: Wrench,
-    /// Energy stored in the foundation, N mm.
+    /// Energy stored in a linear foundation, N mm; 0 in others.
     pub stored_nmm: f64,
-    /// Work of friction for each second, N mm/s.
+    /// Power of friction, N mm/s.
     pub friction_nmm_per_s: f64,
+    /// Sum over the nodes of normal force times sliding speed, N mm/s.
+    pub rubbed_nmm_per_s: f64,
 }
 
-/// A foundation's contact that is looked at wherever an increment ends.
-pub(crate) struct Witness<'a> {
+/// A contact that records an [`Instant`] at the end of every increment.
+pub(crate) struct Observed<'a> {
     inner: Box<dyn ContactModel + 'a>,
     law: &'a Foundation,
     bodies: Bodies<'a>,
-    seen: &'a RefCell<Vec<Instant>>,
+    pub instants: Vec<Instant>,
 }
 
-impl<'a> Witness<'a> {
-    pub(crate) fn new(
-        law: &'a Foundation,
-        bodies: Bodies<'a>,
-        seen: &'a RefCell<Vec<Instant>>,
-    ) -> Self {
+impl<'a> Observed<'a> {
+    pub(crate) fn new(law: &'a Foundation, bodies: Bodies<'a>) -> Self {
         Self {
             inner: contact_of(law, bodies),
             law,
             bodies,
-            seen,
+            instants: Vec::new(),
         }
     }
 
-    /// Work that a node's share of a linear foundation stores: A K W^2/(2 h), with p = K W/h.
+    /// Energy in a node's share of a linear foundation: A K W^2/(2 h), with p = K W/h.
     fn stored_nmm(&self, node: &TouchedNode) -> f64 {
         let PressureLaw::Linear { modulus_mpa } = self.law.pressure else {
-            panic!("the energy of a linear foundation is asked");
+            return 0.0;
         };
         let thickness_mm = self.bodies.insert.thickness_mm()[node.node as usize];
         let area_mm2 = self.bodies.surface.shares[node.node as usize].area_mm2;
@@ -67,9 +63,18 @@ impl<'a> Witness<'a> {
         let part = speed / speed.hypot(self.law.slip_tolerance_mm_per_s);
         self.law.friction * part * node.pressure_mpa * share.area_mm2 * speed
     }
+
+    /// Normal force times sliding speed of one node.
+    ///
+    /// A node's force is its normal force N and the friction mu s N across it, s = v/sqrt(v^2 + v0^2).
+    fn rubbed_nmm_per_s(&self, node: &TouchedNode) -> f64 {
+        let speed = node.sliding_mm_per_s[0].hypot(node.sliding_mm_per_s[1]);
+        let part = speed / speed.hypot(self.law.slip_tolerance_mm_per_s);
+        node.force_n.norm() / 1f64.hypot(self.law.friction * part) * speed
+    }
 }
 
-impl ContactModel for Witness<'_> {
+impl ContactModel for Observed<'_> {
     fn node_count(&self) -> usize {
         self.inner.node_count()
     }
@@ -88,16 +93,15 @@ impl ContactModel for Witness<'_> {
 
     fn evaluate(&mut self, motion: &RelativeMotion) -> ContactResult {
         let wrench = self.inner.respond(motion).wrench;
-        let landing = self.inner.evaluate(motion);
-        let touched = || landing.touched.iter();
-        self.seen.borrow_mut().push(Instant {
+        let result = self.inner.evaluate(motion);
+        let sum = |of: &dyn Fn(&TouchedNode) -> f64| result.touched.iter().map(of).sum();
+        self.instants.push(Instant {
             twist: motion.twist,
             wrench,
-            stored_nmm: touched().map(|node| self.stored_nmm(node)).sum(),
-            friction_nmm_per_s: touched()
-                .map(|node| self.friction_nmm_per_s(node, motion))
-                .sum(),
+            stored_nmm: sum(&|node| self.stored_nmm(node)),
+            friction_nmm_per_s: sum(&|node| self.friction_nmm_per_s(node, motion)),
+            rubbed_nmm_per_s: sum(&|node| self.rubbed_nmm_per_s(node)),
         });
-        landing
+        result
     }
 }

@@ -1,4 +1,4 @@
-//! A case held against its exact values, and its section of the book against what it now says.
+//! Assertions that a case agrees with its exact values, and the page of the book with the case.
 
 use crate::{
     CASES, Case, Row,
@@ -10,10 +10,10 @@ const PAGE: &str = include_str!("../../docs/src/verification.md");
 /// Numbers on the page may differ by this part between machines and compilers.
 const SAME_WITHIN: f64 = 0.25;
 
-const ANEW: &str = "write the page anew: cargo run --release -p condyle-verification -- --page";
+const REWRITE: &str = "write the page again: cargo run --release -p condyle-verification -- --page";
 
 impl Case {
-    /// Fails with the whole table if a row does not hold, or if the page says otherwise.
+    /// Fails with the whole table if a row does not hold, or if the page differs.
     #[track_caller]
     pub(crate) fn assert_holds(&self) {
         let rows = (self.rows)();
@@ -29,19 +29,19 @@ fn assert_current(case: &Case, rows: &[Row]) {
     for (now, written) in now.trim().lines().zip(written.lines()) {
         assert!(
             is_same_line(now, written),
-            "{written}\nis now\n{now}\n{ANEW}"
+            "{written}\nis now\n{now}\n{REWRITE}"
         );
     }
     let counts = [now.trim(), written].map(|text| text.lines().count());
-    assert_eq!(counts[0], counts[1], "{}: {ANEW}", case.title());
+    assert_eq!(counts[0], counts[1], "{}: {REWRITE}", case.title());
 }
 
-/// What the page says of a case, from its heading to the next.
+/// The section of a case on the page.
 #[track_caller]
 fn written(case: &Case) -> &'static str {
     let heading = format!("## {}\n", case.title());
     let from = PAGE.find(&heading);
-    let from = from.unwrap_or_else(|| panic!("no section for {}: {ANEW}", case.title()));
+    let from = from.unwrap_or_else(|| panic!("no section for {}: {REWRITE}", case.title()));
     let section = &PAGE[from..];
     section.split("\n## ").next().unwrap_or_default().trim()
 }
@@ -62,8 +62,8 @@ fn is_same_word(one: &str, other: &str) -> bool {
 fn page_has_a_section_for_every_case_and_no_other() {
     let headings = PAGE.lines().filter_map(|line| line.strip_prefix("## "));
     let titles: Vec<&str> = CASES.iter().map(Case::title).collect();
-    assert_eq!(headings.collect::<Vec<_>>(), titles, "{ANEW}");
-    assert!(PAGE.starts_with(TOP), "{ANEW}");
+    assert_eq!(headings.collect::<Vec<_>>(), titles, "{REWRITE}");
+    assert!(PAGE.starts_with(TOP), "{REWRITE}");
 }
 
 #[test]

@@ -1,0 +1,137 @@
+//! Landmarks of the bodies, from which the places of a machine are measured: the dishes of an insert and the posterior
+//! arc of a femur.
+
+use condyle_mesh::{TriangleMesh, bounds};
+
+use crate::{Mat3, Vec3};
+
+/// The lowest places of an insert's two dishes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dishes {
+    /// The dish at lower z, medial in a right knee, mm.
+    pub medial_mm: Vec3,
+    /// The other dish, mm.
+    pub lateral_mm: Vec3,
+}
+
+/// Part of the length within which dishes are searched, without the rims ...
+const ALONG: (f64, f64) = (0.15, 0.85);
+/// ... and of the width, between the rim and the eminence or the hole of a post; mirrored for the other side.
+const ACROSS: (f64, f64) = (0.1, 0.425);
+/// Height above the lowest place within which places are averaged, mm: their middle does not jump with the mesh, as
+/// the lowest place does.
+const LOW_MM: f64 = 0.3;
+
+impl Dishes {
+    /// Finds the dishes of an articulating surface from `points` distributed about evenly on it; none if a side has
+    /// none.
+    ///
+    /// The lowest place of a side is the middle of its points less than 0.3 mm above the lowest one, without rim and
+    /// eminence.
+    pub fn find(points: &[Vec3]) -> Option<Self> {
+        let (low, high) = bounds(points);
+        let size = high - low;
+        let inside = |part: f64, (from, to): (f64, f64)| (from..=to).contains(&part);
+        let in_dish = |point: &Vec3, from_side_mm: f64| {
+            inside((point.x - low.x) / size.x, ALONG) && inside(from_side_mm / size.z, ACROSS)
+        };
+        let medial = points
+            .iter()
+            .filter(|point| in_dish(point, point.z - low.z));
+        let lateral = points
+            .iter()
+            .filter(|point| in_dish(point, high.z - point.z));
+        Some(Self {
+            medial_mm: lowest(&medial.collect::<Vec<_>>())?,
+            lateral_mm: lowest(&lateral.collect::<Vec<_>>())?,
+        })
+    }
+
+    /// Returns the middle between the dishes, at the height of the lower one, mm.
+    pub fn middle_mm(&self) -> Vec3 {
+        let between = (self.medial_mm + self.lateral_mm) / 2.0;
+        Vec3::new(
+            between.x,
+            self.medial_mm.y.min(self.lateral_mm.y),
+            between.z,
+        )
+    }
+}
+
+fn lowest(points: &[&Vec3]) -> Option<Vec3> {
+    let heights = points.iter().map(|point| point.y);
+    let lowest = heights.fold(f64::INFINITY, f64::min);
+    let low = points.iter().filter(|point| point.y < lowest + LOW_MM);
+    let (count, sum) = low.fold((0.0, Vec3::zeros()), |(count, sum), point| {
+        (count + 1.0, sum + **point)
+    });
+    (count > 0.0).then(|| Vec3::new(sum.x / count, lowest, sum.z / count))
+}
+
+/// Returns the centre (x, y) of the circle that fits the posterior condyles in the sagittal plane, mm.
+///
+/// The support h(d), the extent of the surface in direction d, is c . d + r for a circle of
+/// centre c and radius r, so a straight least-squares fit over the directions from 30 to
+/// 90 degrees behind straight down gives the centre.
+pub fn posterior_arc_centre_mm(femur: &TriangleMesh) -> (f64, f64) {
+    let mut normal_matrix = Mat3::zeros();
+    let mut right_side = Vec3::zeros();
+    // Distal of 30 degrees the larger distal radius begins, above 90 the condyle ends in many designs.
+    for behind_deg in (30..=90).step_by(2) {
+        let (sine, cosine) = f64::from(behind_deg).to_radians().sin_cos();
+        let (x, y) = (-sine, -cosine);
+        let reach = femur
+            .vertices
+            .iter()
+            .map(|v| v.x * x + v.y * y)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let row = Vec3::new(x, y, 1.0);
+        normal_matrix += row * row.transpose();
+        right_side += row * reach;
+    }
+    let solved = normal_matrix.lu().solve(&right_side).unwrap_or_default();
+    (solved.x, solved.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{GenericFemur, GenericFemurShape, GenericInsertShape, Meshing};
+
+    fn generic() -> Vec<Vec3> {
+        let insert = GenericInsertShape::default().insert(Meshing::default());
+        insert.unwrap().surface().positions
+    }
+
+    #[test]
+    fn verify_dishes_of_the_generic_insert() {
+        let dishes = Dishes::find(&generic()).unwrap();
+        for (found, z) in [(dishes.medial_mm, -23.0), (dishes.lateral_mm, 23.0)] {
+            assert!((found - Vec3::new(0.0, 0.0, z)).norm() < 0.5, "{found}");
+        }
+        assert!(dishes.middle_mm().norm() < 0.3, "{:?}", dishes.middle_mm());
+    }
+
+    #[test]
+    fn dishes_move_with_the_insert() {
+        let shift = Vec3::new(4.0, -30.0, 5.0);
+        let moved: Vec<Vec3> = generic().iter().map(|point| point + shift).collect();
+        let (here, there) = (
+            Dishes::find(&generic()).unwrap(),
+            Dishes::find(&moved).unwrap(),
+        );
+        assert!((there.middle_mm() - here.middle_mm() - shift).norm() < 1e-9);
+    }
+
+    #[test]
+    fn no_points_have_no_dishes() {
+        assert_eq!(Dishes::find(&[]), None);
+    }
+
+    #[test]
+    fn verify_posterior_arc_of_the_generic_femur_is_its_origin() {
+        let mesh = GenericFemur::new(GenericFemurShape::default()).surface_mesh(0.5);
+        let (x, y) = posterior_arc_centre_mm(&mesh);
+        assert!(x.abs() < 0.05 && y.abs() < 0.05, "{x} {y}");
+    }
+}

@@ -1,0 +1,237 @@
+//! The regular grid at whose nodes the gap to a mesh is known, and the numbers at its nodes.
+
+use condyle_mesh::CurvedMesh;
+use serde::{Deserialize, Serialize};
+
+use crate::Vec3;
+
+/// Distance between grid nodes, mm: the spline's error on a ball of radius 20 mm is then below
+/// 0.1 micrometre.
+pub const SPACING_MM: f64 = 1.25;
+
+/// Distance from the surface within which grid nodes have a true gap, mm: the deepest overclosure
+/// of a run, and the spline's support around it.
+pub const BAND_MM: f64 = 3.5;
+
+/// A regular grid of nodes around a surface, [`SPACING_MM`] apart.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NodeGrid {
+    /// Position of node (0, 0, 0), mm.
+    pub origin: Vec3,
+    /// Nodes along x, y, z; x runs fastest.
+    pub counts: [usize; 3],
+}
+
+impl NodeGrid {
+    /// The grid around a surface from `low` to `high`: two nodes beyond the band.
+    pub fn around((low, high): (Vec3, Vec3)) -> Self {
+        let margin = Vec3::repeat(BAND_MM + 2.0 * SPACING_MM);
+        let origin = low - margin;
+        let size = high + margin - origin;
+        let count = |axis: usize| ((size[axis] / SPACING_MM).ceil() as usize).saturating_add(1);
+        Self {
+            origin,
+            counts: [0, 1, 2].map(count),
+        }
+    }
+
+    /// Differences of the numbers of neighbours along x, y and z.
+    #[inline]
+    pub fn strides(&self) -> [usize; 3] {
+        [1, self.counts[0], self.counts[0] * self.counts[1]]
+    }
+
+    /// Number of nodes; saturates.
+    pub fn node_count(&self) -> usize {
+        let counts = self.counts.iter();
+        counts.fold(1, |product: usize, &count| product.saturating_mul(count))
+    }
+
+    /// Position of node (i, j, k), mm.
+    #[inline]
+    pub fn position(&self, i: usize, j: usize, k: usize) -> Vec3 {
+        self.origin + Vec3::new(i as f64, j as f64, k as f64) * SPACING_MM
+    }
+
+    /// Numbers and positions of the nodes with neighbours on all sides.
+    pub fn inner_nodes(&self) -> impl Iterator<Item = (usize, Vec3)> {
+        let [nx, ny, nz] = self.counts;
+        let [sx, sy, sz] = self.strides();
+        let rows = (1..nz - 1).flat_map(move |k| (1..ny - 1).map(move |j| (j, k)));
+        rows.flat_map(move |(j, k)| {
+            (1..nx - 1).map(move |i| (i * sx + j * sy + k * sz, self.position(i, j, k)))
+        })
+    }
+
+    /// First node and one past the last node along each axis within the band of a triangle.
+    pub fn band_around(&self, corners: [Vec3; 3]) -> [[usize; 3]; 2] {
+        let [a, b, c] = corners.map(|corner| (corner - self.origin) / SPACING_MM);
+        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+        let band = BAND_MM / SPACING_MM;
+        let first = |axis: usize| (low[axis] - band).ceil().max(0.0) as usize;
+        let end = |axis: usize| ((high[axis] + band).floor() as usize + 1).min(self.counts[axis]);
+        [[0, 1, 2].map(first), [0, 1, 2].map(end)]
+    }
+
+    /// Largest distance of the grid from the frame's origin, mm.
+    pub fn reach_mm(&self) -> f64 {
+        let size = Vec3::from(self.counts.map(|count| count as f64)) * SPACING_MM;
+        self.origin.abs().sup(&(self.origin + size).abs()).norm()
+    }
+}
+
+/// Marker of nodes beyond the band until their bound is computed, mm: no gap is as large.
+pub const BEYOND_BAND_MM: f64 = 1e3;
+
+/// The gap at every node of a grid within the band, [`BEYOND_BAND_MM`] elsewhere.
+///
+/// Each of `threads` fills its own layers, and no number depends on the thread that computed it. With one thread,
+/// the caller's does the work.
+pub fn gaps_at_nodes(grid: &NodeGrid, mesh: &CurvedMesh<'_>, threads: usize) -> Vec<f64> {
+    let mut gaps = vec![BEYOND_BAND_MM; grid.node_count()];
+    if threads <= 1 {
+        fill_layers(grid, mesh, 0, &mut gaps);
+        return gaps;
+    }
+    let [_, _, layer] = grid.strides();
+    let layers = grid.counts[2].div_ceil(threads);
+    std::thread::scope(|scope| {
+        for (index, part) in gaps.chunks_mut(layer * layers).enumerate() {
+            scope.spawn(move || fill_layers(grid, mesh, index * layers, part));
+        }
+    });
+    gaps
+}
+
+/// Fills the layers of nodes from `first_layer` with their gaps to the nearest triangle.
+fn fill_layers(grid: &NodeGrid, mesh: &CurvedMesh<'_>, first_layer: usize, gaps: &mut [f64]) {
+    let nearest = nearest_triangles(grid, mesh, first_layer, gaps.len());
+    let [_, row, layer] = grid.strides();
+    for (here, (gap, triangle)) in gaps.iter_mut().zip(nearest).enumerate() {
+        if let Some(triangle) = triangle {
+            let (i, j, k) = (here % row, here % layer / row, here / layer);
+            let node = grid.position(i, j, k + first_layer);
+            *gap = mesh.curved_gap_mm(triangle, &node);
+        }
+    }
+}
+
+/// The triangle nearest to each of `count` nodes from `first_layer` on; none beyond the band.
+fn nearest_triangles(
+    grid: &NodeGrid,
+    mesh: &CurvedMesh<'_>,
+    first_layer: usize,
+    count: usize,
+) -> impl Iterator<Item = Option<usize>> {
+    const NONE: u32 = u32::MAX;
+    let [_, row, layer] = grid.strides();
+    let last_layer = first_layer + count / layer;
+    // Squared distances: the root is taken once, for the nearest triangle only.
+    let mut nearest2 = vec![BAND_MM * BAND_MM; count];
+    let mut nearest = vec![NONE; count];
+    for triangle in 0..mesh.triangle_count() {
+        let [low, high] = grid.band_around(mesh.corners(triangle));
+        for k in low[2].max(first_layer)..high[2].min(last_layer) {
+            for j in low[1]..high[1] {
+                for i in low[0]..high[0] {
+                    let here = i + row * j + layer * (k - first_layer);
+                    let node = grid.position(i, j, k);
+                    // The plane is never farther than the triangle, and cheaper to evaluate.
+                    if mesh.plane_distance2(triangle, &node) >= nearest2[here] {
+                        continue;
+                    }
+                    let distance2 = mesh.distance2(triangle, &node);
+                    if distance2 < nearest2[here] {
+                        (nearest2[here], nearest[here]) = (distance2, triangle as u32);
+                    }
+                }
+            }
+        }
+    }
+    let found = nearest.into_iter();
+    found.map(|triangle| (triangle != NONE).then_some(triangle as usize))
+}
+
+/// Lower bound of the straight distance over the distance along grid lines, 1/sqrt(3).
+const STRAIGHT_PER_PATH: f64 = 0.577;
+
+/// Sets a lower bound of the distance at the nodes beyond the band, and returns which nodes they are.
+///
+/// Far inside a closed surface the bound is negative. An open surface has no inside: a sign
+/// propagated past its rim from its back would make the insert overlap it.
+pub fn bound_far_gaps(grid: &NodeGrid, gaps: &mut [f64], is_closed: bool) -> Vec<bool> {
+    let is_far: Vec<bool> = gaps.iter().map(|&gap| gap == BEYOND_BAND_MM).collect();
+    let strides = grid.strides();
+    let count = gaps.len();
+    let mut pass_on = |there: usize, here: usize| {
+        if is_far[here] {
+            gaps[here] = nearer(gaps[here], gaps[there], is_closed);
+        }
+    };
+    // One pass carries bounds to higher numbers along all axes at once, the other back to lower ones.
+    for here in 0..count {
+        let lower = strides.iter().filter(|&&stride| here >= stride);
+        lower.for_each(|stride| pass_on(here - stride, here));
+    }
+    for here in (0..count).rev() {
+        let higher = strides.iter().filter(|&&stride| here + stride < count);
+        higher.for_each(|stride| pass_on(here + stride, here));
+    }
+    is_far
+}
+
+/// A node's bound, or the bound from its neighbour's gap if that is nearer.
+fn nearer(own: f64, neighbours: f64, is_closed: bool) -> f64 {
+    let from_there = neighbours.abs() + SPACING_MM * STRAIGHT_PER_PATH;
+    if from_there >= own.abs() {
+        return own;
+    }
+    let sign = if is_closed { neighbours.signum() } else { 1.0 };
+    sign * from_there
+}
+
+/// The coefficients of the quadratic B-spline through the gaps at the nodes, without fourth
+/// differences.
+///
+/// Along one axis the spline's value at a node is (c_before + 6 c + c_after)/8, which is c and an
+/// eighth of its second difference. So c = g minus an eighth of the second difference of g, one axis
+/// after the other.
+pub fn spline_coefficients(grid: &NodeGrid, is_far: &[bool], mut gaps: Vec<f64>) -> Vec<f64> {
+    for stride in grid.strides() {
+        let before = gaps.clone();
+        add_second_differences(&mut gaps, &before, is_far, stride, -1.0 / 8.0);
+    }
+    gaps
+}
+
+/// Adds `spread_mm2` times the Laplacian of a spline: the sum of its second differences over the
+/// spacing squared.
+pub fn add_laplacian(
+    grid: &NodeGrid,
+    is_far: &[bool],
+    to: &mut [f64],
+    from: &[f64],
+    spread_mm2: f64,
+) {
+    let factor = spread_mm2 / (SPACING_MM * SPACING_MM);
+    for stride in grid.strides() {
+        add_second_differences(to, from, is_far, stride, factor);
+    }
+}
+
+/// Adds `factor` times the second difference along one axis of `from`, where all its nodes are
+/// within the band.
+fn add_second_differences(
+    to: &mut [f64],
+    from: &[f64],
+    is_far: &[bool],
+    stride: usize,
+    factor: f64,
+) {
+    for i in stride..is_far.len() - stride {
+        let (before, after) = (i - stride, i + stride);
+        if !(is_far[before] || is_far[i] || is_far[after]) {
+            to[i] += factor * (from[before] - 2.0 * from[i] + from[after]);
+        }
+    }
+}
