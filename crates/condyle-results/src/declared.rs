@@ -32,7 +32,7 @@ pub fn results_schema() -> String {
         properties.insert(part.key.to_owned(), schema);
         required.extend(part.is_always_there.then_some(part.key));
     }
-    let column = |name: &str, about: &str| json!({"name": name, "description": about});
+    let column = |name: &str, about: &str| json!({"name": name, "description": about.trim()});
     let wear = WEAR_COLUMNS.iter().map(|one| column(one.name, one.about));
     let kinematics = KNEE.columns.iter().map(|quantity| KNEE.column(*quantity));
     let kinematics = ["cycles", "percent"].into_iter().chain(kinematics);

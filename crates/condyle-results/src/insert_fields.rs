@@ -2,13 +2,16 @@
 
 use condyle::{
     Vec3,
-    contact::UnderSurface,
+    contact::{PlasticUnderSurface, UnderSurface},
     evolve::{March, UpdateRecord},
 };
 use condyle_fem::HexMesh;
 use condyle_mesh::formats::{MeshFileError, PointArray, PointValues, pvd_text, vtu_bytes};
 
-use super::side::{Side, mesh_on_side, point_on_side};
+use super::{
+    side::{Side, mesh_on_side, point_on_side},
+    tables::described,
+};
 
 /// The insert as worn so far, with the results of its last update at the nodes; what is not on the articulating
 /// surface has none, which is 0.
@@ -36,110 +39,47 @@ pub struct NodeField {
     pub name: &'static str,
     /// A description.
     pub about: &'static str,
-    values: fn(&Source<'_>) -> Option<Vec<f64>>,
+    value: fn(&Source<'_>) -> Option<Vec<f64>>,
 }
 
-const fn field(
-    name: &'static str,
-    values: fn(&Source<'_>) -> Option<Vec<f64>>,
-    about: &'static str,
-) -> NodeField {
-    NodeField {
-        name,
-        about,
-        values,
-    }
+described! {
+    /// The fields with a value a node, in the order of the file.
+    NODE_FIELDS: NodeField;
+    /// Wear depth along the normal.
+    wear_depth_mm = |source| source.at_surface(&source.march.fields().wear_depth_mm);
+    /// Wear depth of one cycle.
+    depth_per_cycle_mm = |source| source.at_surface(&source.march.fields().depth_per_cycle_mm);
+    /// Highest pressure in the cycle.
+    peak_pressure_mpa = |source| source.at_surface(&source.march.fields().peak_pressure_mpa);
+    /// Sliding distance under pressure in the cycle.
+    sliding_distance_mm = |source| source.at_surface(&source.march.fields().sliding_distance_mm);
+    /// Cross-shear ratio.
+    cross_shear = |source| source.at_surface(&source.march.fields().cross_shear);
+    /// Thickness left.
+    thickness_mm = |source| source.at_surface(&source.march.fields().thickness_mm);
+    /// Depth of creep; of an insert that creeps.
+    creep_depth_mm = |source| source.of_creep(source.march.state().depths.creep_mm());
+    /// Depth of creep that is left after a rest without load.
+    creep_left_unloaded_mm = |source| {
+        let law = source.march.test().creep.as_ref()?;
+        let left_mm = source.march.state().creep.left_mm(law);
+        source.of_creep(Some(left_mm.as_slice()).filter(|left| !left.is_empty()))
+    };
+    /// Von Mises stress at the instant of highest pressure; of a deformable insert, the mean of the elements around.
+    von_mises_mpa = |source| Some(mean_around(source.mesh, &source.under_surface()?.von_mises_mpa));
+    /// Largest shear stress at that instant, likewise.
+    max_shear_mpa = |source| Some(mean_around(source.mesh, &source.under_surface()?.max_shear_mpa));
+    /// Permanent set of the surface; of an insert that yields.
+    permanent_set_mm = |source| source.at_surface(&source.plastic()?.permanent_set_mm);
+    /// Accumulated plastic strain, the largest of the elements around.
+    plastic_strain = |source| Some(most_around(source.mesh, &source.plastic()?.plastic_strain));
+    /// Number of the plastic regime, the largest of the elements around.
+    plastic_regime = |source| {
+        let regimes = source.plastic()?.regime.iter();
+        let regimes: Vec<f64> = regimes.map(|regime| f64::from(regime.number())).collect();
+        Some(most_around(source.mesh, &regimes))
+    };
 }
-
-/// The fields with a value a node, in the order of the file.
-pub const NODE_FIELDS: [NodeField; 13] = [
-    field(
-        "wear_depth_mm",
-        |source| source.at_surface(&source.march.fields().wear_depth_mm),
-        "Wear depth along the normal.",
-    ),
-    field(
-        "depth_per_cycle_mm",
-        |source| source.at_surface(&source.march.fields().depth_per_cycle_mm),
-        "Wear depth of one cycle.",
-    ),
-    field(
-        "peak_pressure_mpa",
-        |source| source.at_surface(&source.march.fields().peak_pressure_mpa),
-        "Highest pressure in the cycle.",
-    ),
-    field(
-        "sliding_distance_mm",
-        |source| source.at_surface(&source.march.fields().sliding_distance_mm),
-        "Sliding distance under pressure in the cycle.",
-    ),
-    field(
-        "cross_shear",
-        |source| source.at_surface(&source.march.fields().cross_shear),
-        "Cross-shear ratio.",
-    ),
-    field(
-        "thickness_mm",
-        |source| source.at_surface(&source.march.fields().thickness_mm),
-        "Thickness left.",
-    ),
-    field(
-        "creep_depth_mm",
-        |source| source.of_creep(source.march.state().depths.creep_mm()),
-        "Depth of creep; of an insert that creeps.",
-    ),
-    field(
-        "creep_left_unloaded_mm",
-        |source| {
-            let law = source.march.test().creep.as_ref()?;
-            let left_mm = source.march.state().creep.left_mm(law);
-            source.of_creep(Some(left_mm.as_slice()).filter(|left| !left.is_empty()))
-        },
-        "Depth of creep that is left after a rest without load.",
-    ),
-    field(
-        "von_mises_mpa",
-        |source| {
-            Some(mean_around(
-                source.mesh,
-                &source.under_surface()?.von_mises_mpa,
-            ))
-        },
-        "Von Mises stress at the instant of highest pressure; of a deformable insert, the mean of the elements around.",
-    ),
-    field(
-        "max_shear_mpa",
-        |source| {
-            Some(mean_around(
-                source.mesh,
-                &source.under_surface()?.max_shear_mpa,
-            ))
-        },
-        "Largest shear stress at that instant, likewise.",
-    ),
-    field(
-        "permanent_set_mm",
-        |source| source.at_surface(&source.under_surface()?.plastic.as_ref()?.permanent_set_mm),
-        "Permanent set of the surface; of an insert that yields.",
-    ),
-    field(
-        "plastic_strain",
-        |source| {
-            let plastic = source.under_surface()?.plastic.as_ref()?;
-            Some(most_around(source.mesh, &plastic.plastic_strain))
-        },
-        "Accumulated plastic strain, the largest of the elements around.",
-    ),
-    field(
-        "plastic_regime",
-        |source| {
-            let regimes = source.under_surface()?.plastic.as_ref()?.regime.iter();
-            let regimes: Vec<f64> = regimes.map(|regime| f64::from(regime.number())).collect();
-            Some(most_around(source.mesh, &regimes))
-        },
-        "Number of the plastic regime, the largest of the elements around.",
-    ),
-];
 
 impl Source<'_> {
     /// Values at the nodes of the articulating surface as values at all nodes.
@@ -159,6 +99,10 @@ impl Source<'_> {
     fn under_surface(&self) -> Option<&UnderSurface> {
         self.march.state().under_surface.as_ref()
     }
+
+    fn plastic(&self) -> Option<&PlasticUnderSurface> {
+        self.under_surface()?.plastic.as_ref()
+    }
 }
 
 impl InsertFields {
@@ -169,7 +113,7 @@ impl InsertFields {
         let count = mesh.nodes.len();
         let source = Source { march, mesh: &mesh };
         let fields = NODE_FIELDS.iter();
-        let scalars = fields.filter_map(|field| Some((field.name, (field.values)(&source)?)));
+        let scalars = fields.filter_map(|field| Some((field.name, (field.value)(&source)?)));
         Self {
             scalars: scalars.collect(),
             vectors: vec![("principal_direction", directions(march, side, count))],

@@ -22,71 +22,49 @@ enum Value {
     OfCreep(fn(&CreepRecord) -> f64),
 }
 
-const fn of_update(
-    name: &'static str,
-    value: fn(&UpdateRecord) -> f64,
-    about: &'static str,
-) -> WearColumn {
-    let value = Value::OfUpdate(value);
-    WearColumn { name, about, value }
+/// Declares a list of named values; the doc comment of each is its description.
+macro_rules! described {
+    ($(#[doc = $list:literal])+ $list_name:ident: $kind:ident;
+     $($(#[doc = $about:literal])+ $name:ident = $value:expr;)+) => {
+        $(#[doc = $list])+
+        pub const $list_name: &[$kind] = &[$($kind {
+            name: stringify!($name),
+            about: concat!($($about),+),
+            value: $value,
+        }),+];
+    };
 }
 
-const fn of_creep(
-    name: &'static str,
-    value: fn(&CreepRecord) -> f64,
-    about: &'static str,
-) -> WearColumn {
-    let value = Value::OfCreep(value);
-    WearColumn { name, about, value }
-}
+pub(super) use described;
 
-/// The columns of `wear.csv`.
-pub const WEAR_COLUMNS: [WearColumn; 12] = [
-    of_update("cycles", |row| row.cycles, "Cycles after the update."),
-    of_update("mass_loss_mg", |row| row.mass_loss_mg, "Mass worn."),
-    of_update(
-        "volume_loss_mm3",
-        |row| row.volume_loss_mm3,
-        "Volume worn, from depth.",
-    ),
-    of_update("max_depth_mm", |row| row.max_depth_mm, "Deepest wear."),
-    of_update(
-        "peak_pressure_mpa",
-        |row| row.peak_pressure_mpa,
-        "Highest pressure in the cycle that the update solved.",
-    ),
-    of_update(
-        "peak_contact_area_mm2",
-        |row| row.peak_contact_area_mm2,
-        "Largest contact area in that cycle.",
-    ),
-    of_creep(
-        "creep_volume_mm3",
-        |creep| creep.volume_mm3,
-        "Volume of creep.",
-    ),
-    of_creep("max_creep_mm", |creep| creep.max_depth_mm, "Deepest creep."),
-    of_creep(
-        "max_penetration_mm",
-        |creep| creep.max_penetration_mm,
-        "Deepest penetration, wear and creep together.",
-    ),
-    of_creep(
-        "wear_at_max_penetration_mm",
-        |creep| creep.wear_there_mm,
-        "Wear at the deepest penetration.",
-    ),
-    of_creep(
-        "creep_at_max_penetration_mm",
-        |creep| creep.creep_there_mm,
-        "Creep at the deepest penetration.",
-    ),
-    of_creep(
-        "max_unloaded_depth_mm",
-        |creep| creep.max_unloaded_mm,
-        "Deepest place of a scan after the insert has rested without load.",
-    ),
-];
+described! {
+    /// The columns of `wear.csv`.
+    WEAR_COLUMNS: WearColumn;
+    /// Cycles after the update.
+    cycles = Value::OfUpdate(|row| row.cycles);
+    /// Mass worn.
+    mass_loss_mg = Value::OfUpdate(|row| row.mass_loss_mg);
+    /// Volume worn, from depth.
+    volume_loss_mm3 = Value::OfUpdate(|row| row.volume_loss_mm3);
+    /// Deepest wear.
+    max_depth_mm = Value::OfUpdate(|row| row.max_depth_mm);
+    /// Highest pressure in the cycle that the update solved.
+    peak_pressure_mpa = Value::OfUpdate(|row| row.peak_pressure_mpa);
+    /// Largest contact area in that cycle.
+    peak_contact_area_mm2 = Value::OfUpdate(|row| row.peak_contact_area_mm2);
+    /// Volume of creep.
+    creep_volume_mm3 = Value::OfCreep(|creep| creep.volume_mm3);
+    /// Deepest creep.
+    max_creep_mm = Value::OfCreep(|creep| creep.max_depth_mm);
+    /// Deepest penetration, wear and creep together.
+    max_penetration_mm = Value::OfCreep(|creep| creep.max_penetration_mm);
+    /// Wear at the deepest penetration.
+    wear_at_max_penetration_mm = Value::OfCreep(|creep| creep.wear_there_mm);
+    /// Creep at the deepest penetration.
+    creep_at_max_penetration_mm = Value::OfCreep(|creep| creep.creep_there_mm);
+    /// Deepest place of a scan after the insert has rested without load.
+    max_unloaded_depth_mm = Value::OfCreep(|creep| creep.max_unloaded_mm);
+}
 
 /// `wear.csv`: a row an update.
 pub fn wear_csv(updates: &[UpdateRecord]) -> String {

@@ -94,25 +94,6 @@ impl Scalar {
         decimals: usize,
         compute: fn(&FinishedRun<'_>) -> f64,
     ) -> Self {
-        Self::with(key, label, decimals, Compute::Always(compute))
-    }
-
-    /// A real number that some runs have: those for which `compute` finds one.
-    pub const fn sometimes(
-        key: &'static str,
-        label: &'static str,
-        decimals: usize,
-        compute: fn(&FinishedRun<'_>) -> Option<f64>,
-    ) -> Self {
-        Self::with(key, label, decimals, Compute::Sometimes(compute))
-    }
-
-    const fn with(
-        key: &'static str,
-        label: &'static str,
-        decimals: usize,
-        compute: Compute,
-    ) -> Self {
         Self {
             key,
             label,
@@ -124,8 +105,20 @@ impl Scalar {
             is_share: false,
             cycle_key: None,
             about: "",
-            compute,
+            compute: Compute::Always(compute),
         }
+    }
+
+    /// A real number that some runs have: those for which `compute` finds one.
+    pub const fn sometimes(
+        key: &'static str,
+        label: &'static str,
+        decimals: usize,
+        compute: fn(&FinishedRun<'_>) -> Option<f64>,
+    ) -> Self {
+        let mut scalar = Self::new(key, label, decimals, |_| f64::NAN);
+        scalar.compute = Compute::Sometimes(compute);
+        scalar
     }
 
     /// With a description in its first sentence, then its definition.
