@@ -114,7 +114,7 @@ fn print_summary(summary: &Summary, options: &RunOptions, json: bool) -> ExitCod
     run_tables::add_activities(&summary.activities, &mut lines);
     let rows = rows(summary);
     let labels = rows.iter().map(|(label, _)| label.len());
-    let width = labels.max().unwrap_or_default() + 2;
+    let width = labels.max().unwrap_or_default().max(26) + 2;
     for (label, value) in rows {
         lines.line(format_args!("{label:<width$}{value}"));
     }
@@ -145,11 +145,28 @@ type SummaryLine = (&'static str, String);
 
 /// The numbers of the catalogue, then creep and the parts of the error.
 fn rows(summary: &Summary) -> Vec<SummaryLine> {
-    let shown = catalogue::scalars().filter(|scalar| scalar.prominence >= Prominence::Printed);
-    let numbers = shown.filter_map(|scalar| Some((scalar.label, in_words(summary, scalar)?)));
+    let mut rows: Vec<SummaryLine> = Vec::new();
+    for scalar in catalogue::scalars().filter(|scalar| scalar.prominence >= Prominence::Printed) {
+        let Some(words) = in_words(summary, scalar) else {
+            continue;
+        };
+        if !scalar.is_continued || rows.is_empty() {
+            rows.push((scalar.label, words));
+            continue;
+        }
+        // "contact evaluations a cycle" goes on the line of "contact evaluations", as "... a cycle".
+        let of_label = rows
+            .iter()
+            .rposition(|(label, _)| scalar.label.starts_with(label));
+        let row = of_label.unwrap_or(rows.len() - 1);
+        let (label, line) = &mut rows[row];
+        let rest = scalar.label.strip_prefix(*label).unwrap_or(scalar.label);
+        *line += &format!(", {words} {}", rest.trim_start());
+    }
     let creep = summary.creep.iter().flat_map(rows_of_creep);
     let error = summary.error.iter().flat_map(rows_of_error);
-    numbers.chain(creep).chain(error).collect()
+    rows.extend(creep.chain(error));
+    rows
 }
 
 /// The value of a number with its unit, its estimated discretisation error and the cycle that has it.

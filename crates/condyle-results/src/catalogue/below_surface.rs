@@ -15,14 +15,16 @@ scalars! { "Below the surface";
     PEAK_VON_MISES_MPA = Scalar::sometimes("peak_von_mises_mpa", "largest von Mises stress", 1, |run| Some(most_stressed(run)?.von_mises_mpa));
 
     /// Depth of the largest von Mises stress. Below the surface, to half an element.
-    PEAK_VON_MISES_DEPTH_MM = Scalar::sometimes("peak_von_mises_depth_mm", "depth of that stress", 1, |run| Some(most_stressed(run)?.von_mises_depth_mm));
+    PEAK_VON_MISES_DEPTH_MM = Scalar::sometimes("peak_von_mises_depth_mm", "depth of that stress", 1, |run| Some(most_stressed(run)?.von_mises_depth_mm))
+        .continued();
 
     /// Largest shear stress. At the centre of an element, at the instant of highest pressure of a cycle solved.
     PEAK_MAX_SHEAR_MPA = Scalar::sometimes("peak_max_shear_mpa", "largest shear stress", 1, |run| Some(most_sheared(run)?.1.max_shear_mpa))
         .in_cycle("peak_max_shear_cycle");
 
     /// Depth of the largest shear stress. Below the surface, to half an element.
-    PEAK_MAX_SHEAR_DEPTH_MM = Scalar::sometimes("peak_max_shear_depth_mm", "depth of that stress", 1, |run| Some(most_sheared(run)?.1.max_shear_depth_mm));
+    PEAK_MAX_SHEAR_DEPTH_MM = Scalar::sometimes("peak_max_shear_depth_mm", "depth of that stress", 1, |run| Some(most_sheared(run)?.1.max_shear_depth_mm))
+        .continued();
 
     /// Cycles done before the cycle with the largest shear stress. 0 is the first cycle.
     PEAK_MAX_SHEAR_CYCLE = Scalar::sometimes("peak_max_shear_cycle", "cycles before that stress", 0, |run| Some(run.state().cycles_before(most_sheared(run)?.0)))
@@ -44,10 +46,11 @@ scalars! { "Below the surface";
     MAX_PERMANENT_SET_MM = Scalar::sometimes("max_permanent_set_mm", "permanent set", 4, |run| Some(plastic(run)?.max_permanent_set_mm));
 
     /// Largest permanent set of the first cycle. After the first cycle that repeats itself.
-    FIRST_CYCLE_PERMANENT_SET_MM = Scalar::sometimes("first_cycle_permanent_set_mm", "permanent set, first cycle", 4, |run| {
+    FIRST_CYCLE_PERMANENT_SET_MM = Scalar::sometimes("first_cycle_permanent_set_mm", "permanent set in the first cycle", 4, |run| {
         plastic(run)?;
         Some(first(run)?.plastic.map_or(0.0, |plastic| plastic.max_permanent_set_mm))
-    });
+    })
+        .continued();
 
     /// Largest accumulated plastic strain. At a Gauss point.
     MAX_PLASTIC_STRAIN = Scalar::sometimes("max_plastic_strain", "largest plastic strain", 4, |run| Some(plastic(run)?.max_plastic_strain));
@@ -59,13 +62,15 @@ scalars! { "Below the surface";
     /// Elements that still yield in every cycle. By a strain of more than 1e-5 in the last cycle; the other yielded
     /// elements have shaken down.
     RATCHETING_ELEMENTS = Scalar::sometimes("ratcheting_elements", "ratcheting elements", 0, |run| Some(plastic(run)?.ratcheting_elements as f64))
-        .count();
+        .count()
+        .continued();
 
     /// Largest lift of the backside off the tray. In the last cycle of any update, as all numbers of the backside.
     BACKSIDE_LIFT_MM = Scalar::sometimes("backside_lift_mm", "lift of the backside", 4, |run| backside(run, |rest| rest.lift_mm));
 
     /// Largest part of the backside that lifts at once.
-    BACKSIDE_LIFTED_PERCENT = Scalar::sometimes("backside_lifted_percent", "part of the backside that lifts", 0, |run| Some(100.0 * backside(run, |rest| rest.lifted_part)?));
+    BACKSIDE_LIFTED_PERCENT = Scalar::sometimes("backside_lifted_percent", "part of the backside that lifts", 0, |run| Some(100.0 * backside(run, |rest| rest.lifted_part)?))
+        .continued();
 
     /// Longest slip of the backside in a cycle. The path of a node along the tray while it presses, there and back.
     BACKSIDE_SLIP_MM = Scalar::sometimes("backside_slip_mm", "slip of the backside", 4, |run| backside(run, |rest| rest.slip_mm));
@@ -74,7 +79,8 @@ scalars! { "Below the surface";
     BACKSIDE_LOCK_FORCE_N = Scalar::sometimes("backside_lock_force_n", "force on the lock", 0, |run| backside(run, |rest| rest.lock_force_n));
 
     /// Largest moment on the lock. About the vertical axis.
-    BACKSIDE_LOCK_MOMENT_NM = Scalar::sometimes("backside_lock_moment_nm", "moment on the lock", 2, |run| Some(1e-3 * backside(run, |rest| rest.lock_moment_nmm)?));
+    BACKSIDE_LOCK_MOMENT_NM = Scalar::sometimes("backside_lock_moment_nm", "moment on the lock", 2, |run| Some(1e-3 * backside(run, |rest| rest.lock_moment_nmm)?))
+        .continued();
 }
 
 /// The numbers of the updates of a deformable insert, with their records; none of a foundation.

@@ -17,7 +17,8 @@ scalars! { "Computation";
 
     /// Cycles solved in all. Each update solves until the motion repeats itself, which takes a little more than a cycle.
     CYCLES_SOLVED = Scalar::new("cycles_solved", "cycles solved", 1, cycles_solved)
-        .exact();
+        .exact()
+        .continued();
 
     /// Updates whose motion did not repeat itself within the tolerance.
     CYCLES_NOT_REPEATING = Scalar::new("cycles_not_repeating", "updates that do not repeat", 0, |run| {
@@ -38,12 +39,14 @@ scalars! { "Computation";
     /// Newton iterations of a cycle solved, on average.
     NEWTON_ITERATIONS_PER_CYCLE = Scalar::new("newton_iterations_per_cycle", "Newton iterations a cycle", 0, |run| run.state().counters.newton_iterations as f64 / cycles_solved(run))
         .exact()
-        .printed();
+        .printed()
+        .continued();
 
     /// Contact evaluations of a cycle solved, on average.
     CONTACT_EVALUATIONS_PER_CYCLE = Scalar::new("contact_evaluations_per_cycle", "contact evaluations a cycle", 0, |run| run.state().counters.contact_evaluations as f64 / cycles_solved(run))
         .exact()
-        .printed();
+        .printed()
+        .continued();
 
     /// Steps in time that were halved. They did not converge, or were not accurate enough.
     STEP_HALVINGS = Scalar::new("step_halvings", "steps halved", 0, |run| run.state().counters.halvings as f64)
@@ -74,7 +77,8 @@ scalars! { "Computation";
         let updates = run.state().updates.iter();
         updates.map(|update| update.worst_quality).fold(f64::INFINITY, f64::min)
     })
-        .exact();
+        .exact()
+        .continued();
 
     /// Time of the solver. From the case as read to the last update, without files and report; a run that was resumed
     /// has the sum of its parts.

@@ -17,10 +17,12 @@ scalars! { "Contact";
         .listed();
 
     /// Peak pressure of the first cycle. Of the unworn insert.
-    FIRST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("first_cycle_peak_pressure_mpa", "peak pressure, first cycle", 1, |run| run.first.peak_pressure_mpa);
+    FIRST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("first_cycle_peak_pressure_mpa", "peak pressure in the first cycle", 1, |run| run.first.peak_pressure_mpa)
+        .continued();
 
     /// Peak pressure of the last cycle solved.
-    LAST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("last_cycle_peak_pressure_mpa", "peak pressure, last cycle", 1, |run| run.last.peak_pressure_mpa);
+    LAST_CYCLE_PEAK_PRESSURE_MPA = Scalar::new("last_cycle_peak_pressure_mpa", "peak pressure in the last cycle", 1, |run| run.last.peak_pressure_mpa)
+        .continued();
 
     /// Error of the peak pressure by the pressure law. Largest difference in stance from the deformable insert that the
     /// law was fitted to.
@@ -38,12 +40,14 @@ scalars! { "Contact";
         .listed();
 
     /// Largest contact area of the first cycle. Of the unworn insert.
-    FIRST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("first_cycle_contact_area_mm2", "largest area, first cycle", 0, |run| run.first.peak_contact_area_mm2)
-        .printed();
+    FIRST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("first_cycle_contact_area_mm2", "largest contact area in the first cycle", 0, |run| run.first.peak_contact_area_mm2)
+        .printed()
+        .continued();
 
     /// Largest contact area of the last cycle solved.
-    LAST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("last_cycle_contact_area_mm2", "largest area, last cycle", 0, |run| run.last.peak_contact_area_mm2)
-        .printed();
+    LAST_CYCLE_CONTACT_AREA_MM2 = Scalar::new("last_cycle_contact_area_mm2", "largest contact area in the last cycle", 0, |run| run.last.peak_contact_area_mm2)
+        .printed()
+        .continued();
 
     /// Cycles done before the last cycle solved. That cycle wears the last interval of the march.
     LAST_CYCLE = Scalar::new("last_cycle", "cycles before the last one solved", 0, |run| run.state().cycles_before(run.state().updates.len() - 1))

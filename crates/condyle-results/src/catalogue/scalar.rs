@@ -73,6 +73,8 @@ pub struct Scalar {
     pub is_count: bool,
     /// True of a part of one, which is shown in %.
     pub is_share: bool,
+    /// True if the terminal shows it on the line of the number before it.
+    pub is_continued: bool,
     /// Key of the number of cycles before the cycle that it comes from.
     pub cycle_key: Option<&'static str>,
     about: &'static str,
@@ -103,6 +105,7 @@ impl Scalar {
             joints: &[],
             is_count: false,
             is_share: false,
+            is_continued: false,
             cycle_key: None,
             about: "",
             compute: Compute::Always(compute),
@@ -166,6 +169,12 @@ impl Scalar {
     /// A part of one, shown in %.
     pub const fn share(mut self) -> Self {
         self.is_share = true;
+        self
+    }
+
+    /// Shown by the terminal on the line of the number before it.
+    pub const fn continued(mut self) -> Self {
+        self.is_continued = true;
         self
     }
 
