@@ -8,8 +8,8 @@ use toml::de::DeValue;
 use super::waveform::{CaseChannel, waveform_items};
 use super::waveform_points;
 use crate::config::{
-    Fault, Item, Key, KeyReason, Kind, Log, Section, Setting, Settings, TableItem, Writer, choice,
-    keys, number, quoted_list, rows, settings, within, wrong_type,
+    Fault, Item, Key, Kind, Log, Section, Setting, Settings, TableItem, Writer, choice, idle, keys,
+    number, quoted_list, rows, settings, within, wrong_type,
 };
 
 choice! {
@@ -257,8 +257,7 @@ impl Freedom {
                 JointKind::Translation => "locked_at_mm",
                 JointKind::Rotation => "locked_at_deg",
             };
-            let (key, needs) = (key.to_owned(), "`drive = \"locked\"`".to_owned());
-            log.problem(section.key_span(&key), KeyReason::Idle { key, needs });
+            log.problem(section.key_span(key), idle(key, "`drive = \"locked\"`"));
         }
         Some(Self {
             drive,

@@ -3,8 +3,8 @@
 use condyle::contact::{PressureTable, PressureTableError};
 
 use crate::config::{
-    Cell, Columns, DataFile, Fault, Item, Key, KeyReason, Kind, Log, Placed, Points, Section,
-    Setting, Settings, WhereSilent, Writer, other_unit, settings, within,
+    Cell, Columns, DataFile, Fault, Item, Key, Kind, Log, Placed, Points, Section, Setting,
+    Settings, WhereSilent, Writer, both, other_unit, settings, within,
 };
 
 struct Form {
@@ -136,20 +136,14 @@ impl Form {
             (Some(_), None) => self.inline(section, log),
             (None, Some(_)) => self.of_file(section, log),
             (Some(_), Some(_)) => {
-                let reason = KeyReason::Both {
-                    section: section.name(),
-                    first: table.to_owned(),
-                    second: file.to_owned(),
-                };
-                log.problem(section.key_span(file), reason);
+                log.problem(section.key_span(file), both(&section.name(), table, file));
                 None
             }
             (None, None) => {
-                let reason = KeyReason::NoneOf {
-                    section: section.name(),
-                    keys: format!("`{table}` or `{file}` for law = {:?}", self.law),
-                };
-                log.problem(section.value_span("law"), reason);
+                let (name, law) = (section.name(), self.law);
+                let message =
+                    format!("{name} needs one of `{table}` or `{file}` for law = {law:?}");
+                log.problem(section.value_span("law"), Fault::new(message, ""));
                 None
             }
         }

@@ -9,8 +9,8 @@ use miette::NamedSource;
 
 use super::waveform::{CaseChannel, DEFAULT_WAVEFORM, InterpolationWord, WaveformSource};
 use crate::config::{
-    Columns, DataFile, Fault, KeyReason, Log, Placed, Points, Section, Settings, Source, Writer,
-    nearest, no_column, other_unit, plain, quoted_list,
+    self, Columns, DataFile, Fault, Log, Placed, Points, Section, Settings, Source, Writer, both,
+    idle, no_column, other_unit, plain, unknown_word,
 };
 
 /// Reads the waveform of `channel` from its table in `machine`.
@@ -85,17 +85,14 @@ fn samples(
     let mut given = ways.into_iter().filter(|way| section.value(way).is_some());
     let (first, second) = (given.next(), given.next());
     if let (Some(first), Some(second)) = (first, second) {
-        let reason = KeyReason::Both {
-            section: section.name(),
-            first: first.to_owned(),
-            second: second.to_owned(),
-        };
-        log.problem(section.key_span(second), reason);
+        log.problem(
+            section.key_span(second),
+            both(&section.name(), first, second),
+        );
         return None;
     }
     if source.column.is_some() && source.file.is_none() {
-        let (key, needs) = ("column".to_owned(), "`file`".to_owned());
-        log.problem(section.key_span("column"), KeyReason::Idle { key, needs });
+        log.problem(section.key_span("column"), idle("column", "`file`"));
     }
     if let Some(file) = &source.file {
         return from_file(channel, section, file, source.column.as_deref(), log);
@@ -112,14 +109,8 @@ fn samples(
         });
     }
     if section.is_given() && source.waveform.is_none() {
-        let (name, keys) = (section.name(), format!("`{}`", ways.join("`, `")));
-        log.problem(
-            section.span(),
-            KeyReason::NoneOf {
-                section: name,
-                keys,
-            },
-        );
+        let message = format!("{} needs one of `{}`", section.name(), ways.join("`, `"));
+        log.problem(section.span(), Fault::new(message, ""));
         return None;
     }
     by_name(channel, section, source.waveform.as_deref(), log)
@@ -133,14 +124,8 @@ fn by_name(
 ) -> Option<Samples> {
     let word = word.unwrap_or(DEFAULT_WAVEFORM);
     let Some(named) = channel.named().iter().find(|named| named.word == word) else {
-        let words = channel.words();
-        let reason = KeyReason::UnknownWord {
-            key: "waveform".to_owned(),
-            word: word.to_owned(),
-            near: nearest(word, words.iter().copied()),
-            words: quoted_list(&words),
-        };
-        log.problem(section.value_span("waveform"), reason);
+        let fault = unknown_word("waveform", word, &channel.words());
+        log.problem(section.value_span("waveform"), fault);
         return None;
     };
     let source = Arc::new(NamedSource::new(named.file, named.text.to_owned()));
@@ -281,19 +266,16 @@ fn join(
 }
 
 /// Returns the first value outside the channel's range.
-fn out_of_range(channel: CaseChannel, knots: &[Knot]) -> Option<(usize, KeyReason)> {
+fn out_of_range(channel: CaseChannel, knots: &[Knot]) -> Option<(usize, Fault)> {
     let limits = channel.limits();
     let index = knots.iter().position(|knot| !limits.allow(knot.value))?;
     let (knot, unit) = (
         &knots[index],
         unit_of(channel.knots_key()).unwrap_or_default(),
     );
-    let reason = KeyReason::OutOfRange {
-        key: channel.name().to_owned(),
-        value: format!("{} {unit} at {} %", plain(knot.value), knot.percent),
-        range: format!("{limits} {unit}"),
-    };
-    Some((index, reason))
+    let value = format!("{} {unit} at {} %", plain(knot.value), knot.percent);
+    let fault = config::out_of_range(channel.name(), &value, &format!("{limits} {unit}"));
+    Some((index, fault))
 }
 
 /// Returns the index of the point at fault.

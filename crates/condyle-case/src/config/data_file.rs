@@ -11,7 +11,7 @@ use super::key::Kind;
 use super::key::quoted;
 use super::log::Log;
 use super::problem::{Source, read_source};
-use super::reason::FileReason;
+use super::reason::missing_file;
 use super::section::Section;
 use super::setting::Setting;
 use super::setting::wrong_type;
@@ -106,8 +106,7 @@ impl Setting for DataFile {
         match Self::find(base.files, written, base.folder) {
             Ok(file) => Some(file),
             Err(path) => {
-                let key = key.name.to_owned();
-                log.problem(value.span(), FileReason::Missing { key, path });
+                log.problem(value.span(), missing_file(key.name, &path));
                 None
             }
         }

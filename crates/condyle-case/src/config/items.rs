@@ -2,7 +2,7 @@
 
 use super::key::{Key, Kind, WhereSilent};
 use super::log::Log;
-use super::reason::KeyReason;
+use super::reason::other_choice;
 use super::section::Section;
 use super::setting::read_word;
 
@@ -173,14 +173,11 @@ pub(crate) fn check(section: &Section<'_>, items: &[Item], log: &mut Log<'_>) {
             Some((choices.assignment(owner), choices.assignment(word)))
         });
         let reason = match owner {
-            Some((owner, chosen)) => KeyReason::OtherChoice {
-                key: match value.as_table() {
-                    Some(_) => section.part(name).name(),
-                    None => name.to_owned(),
-                },
-                owner,
-                chosen,
-            },
+            Some((owner, chosen)) => {
+                let table = section.part(name).name();
+                let shown = value.as_table().map_or(name, |_| table.as_str());
+                other_choice(shown, &owner, &chosen)
+            }
             None => section.unknown(name, value, &known),
         };
         log.problem(key.span(), reason);

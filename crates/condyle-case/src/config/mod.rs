@@ -32,7 +32,7 @@ pub(crate) use items::{Choices, Item, Offered, TableItem, check, keys};
 pub(crate) use key::{Key, Kind, WhereSilent, names, number, plain, quoted_list, within};
 pub(crate) use log::{Base, Log};
 pub(crate) use problem::{Placed, Source, read_source};
-pub(crate) use reason::{Fault, KeyReason};
+pub(crate) use reason::{Fault, both, idle, out_of_range, unknown_word};
 pub(crate) use schema::{rows, sections, table_schema};
 pub(crate) use section::{Section, read_document, read_part};
 pub(crate) use setting::{Setting, choice, read_word, wrong_type};

@@ -7,25 +7,22 @@ use std::sync::Arc;
 
 use miette::NamedSource;
 
-use super::reason::{FileReason, Reason};
+use super::reason::{Fault, Reason};
 use condyle_mesh::files::Files;
 
 /// A named text that problems point into.
 pub(crate) type Source = Arc<NamedSource<String>>;
 
 /// Reads a file; the name under which problems show it is its path.
-pub(crate) fn read_source(files: &dyn Files, path: &Path) -> Result<Source, FileReason> {
+pub(crate) fn read_source(files: &dyn Files, path: &Path) -> Result<Source, Fault> {
     let name = path.display().to_string();
-    let unreadable = |why: String| {
-        let path = path.to_path_buf();
-        FileReason::Unreadable { path, why }
-    };
+    let unreadable = |why: &str| Fault::new(format!("the file {name} cannot be read: {why}"), "");
     let bytes = files
         .read(path)
-        .map_err(|error| unreadable(error.to_string()))?;
+        .map_err(|error| unreadable(&error.to_string()))?;
     match String::from_utf8(bytes) {
         Ok(text) => Ok(Arc::new(NamedSource::new(name, text))),
-        Err(_) => Err(unreadable("stream did not contain valid UTF-8".to_owned())),
+        Err(_) => Err(unreadable("stream did not contain valid UTF-8")),
     }
 }
 

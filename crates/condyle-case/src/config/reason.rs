@@ -1,9 +1,12 @@
 //! Problems of keys, values and files.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use thiserror::Error;
+
+use super::key::quoted_list;
+use super::suggest::nearest;
 
 /// A problem of a file as data; `Display` describes it.
 ///
@@ -34,132 +37,72 @@ impl Reason for Fault {
     }
 }
 
-/// A key or a value that cannot be used.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub(crate) enum KeyReason {
-    #[error("this is not TOML: {message}")]
-    Syntax { message: String },
-    #[error("{section} has no key `{key}`")]
-    UnknownKey {
-        key: String,
-        section: String,
-        near: Option<String>,
-        keys: Vec<String>,
-    },
-    #[error("`{key}` is in another unit: the key is `{meant}`, in {unit}")]
-    WrongUnit {
-        key: String,
-        meant: String,
-        unit: &'static str,
-        converted: Option<String>,
-    },
-    #[error("`{key}` belongs to {owner}, but this case has {chosen}")]
-    OtherChoice {
-        key: String,
-        owner: String,
-        chosen: String,
-    },
-    #[error("`{key}` must be {wanted}, this is {found}")]
-    WrongType {
-        key: String,
-        wanted: String,
-        found: &'static str,
-    },
-    #[error("`{key}` cannot be \"{word}\"")]
-    UnknownWord {
-        key: String,
-        word: String,
-        near: Option<String>,
-        words: String,
-    },
-    #[error("`{key}` is {value}, outside its range")]
-    OutOfRange {
-        key: String,
-        value: String,
-        range: String,
-    },
-    #[error("{section} needs `{key}`")]
-    MissingKey {
-        key: String,
-        section: String,
-        wanted: String,
-    },
-    #[error("{section} has both `{first}` and `{second}`, which say the same thing twice")]
-    Both {
-        section: String,
-        first: String,
-        second: String,
-    },
-    #[error("{section} needs one of {keys}")]
-    NoneOf { section: String, keys: String },
-    #[error("`{key}` means nothing here: it needs {needs}")]
-    Idle { key: String, needs: String },
+pub(crate) fn wrong_type(key: &str, wanted: &str, found: &str) -> Fault {
+    Fault::new(format!("`{key}` must be {wanted}, this is {found}"), "")
 }
 
-impl Reason for KeyReason {
-    fn advice(&self) -> Option<String> {
-        match self {
-            Self::UnknownKey {
-                near: Some(near), ..
-            } => Some(format!("did you mean `{near}`?")),
-            Self::UnknownKey { keys, .. } => {
-                Some(format!("remove it; the keys here are {}", keys.join(", ")))
-            }
-            Self::WrongUnit {
-                meant,
-                converted: Some(value),
-                ..
-            } => Some(format!("write `{meant} = {value}`")),
-            Self::WrongUnit { meant, unit, .. } => {
-                Some(format!("write `{meant}`, with the value in {unit}"))
-            }
-            Self::OtherChoice { owner, .. } => Some(format!("remove it, or write `{owner}`")),
-            Self::UnknownWord { near, words, .. } => Some(match near {
-                Some(near) => format!("did you mean \"{near}\"? It can be {words}"),
-                None => format!("it can be {words}"),
-            }),
-            Self::OutOfRange { range, .. } => Some(format!("it can be {range}")),
-            Self::MissingKey { key, wanted, .. } => Some(format!("add `{key} = `, {wanted}")),
-            Self::Both { first, second, .. } => {
-                Some(format!("keep `{first}` or `{second}`, not both"))
-            }
-            Self::Idle { key, .. } => Some(format!("remove `{key}`, or add what it needs")),
-            Self::Syntax { .. } => Some(SYNTAX_ADVICE.to_owned()),
-            Self::WrongType { .. } | Self::NoneOf { .. } => None,
-        }
-    }
+pub(crate) fn idle(key: &str, needs: &str) -> Fault {
+    Fault::new(
+        format!("`{key}` means nothing here: it needs {needs}"),
+        format!("remove `{key}`, or add what it needs"),
+    )
 }
 
-const SYNTAX_ADVICE: &str = "a line is `key = value`: text in quotes, a number without its unit, \
-    a list in square brackets; a key stands once in its table";
-
-/// A file that cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub(crate) enum FileReason {
-    #[error("`{key}`: there is no file {}", path.display())]
-    Missing { key: String, path: PathBuf },
-    #[error("the file {} cannot be read: {why}", path.display())]
-    Unreadable { path: PathBuf, why: String },
+pub(crate) fn both(section: &str, first: &str, second: &str) -> Fault {
+    Fault::new(
+        format!("{section} has both `{first}` and `{second}`, which say the same thing twice"),
+        format!("keep `{first}` or `{second}`, not both"),
+    )
 }
 
-impl Reason for FileReason {
-    fn advice(&self) -> Option<String> {
-        match self {
-            Self::Missing { path, .. } => Some(how_to_get(path).to_owned()),
-            Self::Unreadable { .. } => None,
-        }
-    }
+pub(crate) fn out_of_range(key: &str, value: &str, range: &str) -> Fault {
+    Fault::new(
+        format!("`{key}` is {value}, outside its range"),
+        format!("it can be {range}"),
+    )
 }
 
-fn how_to_get(path: &Path) -> &'static str {
-    if path.iter().any(|part| part == "dm-knee") {
+pub(crate) fn unknown_word(key: &str, word: &str, words: &[&str]) -> Fault {
+    let listed = quoted_list(words);
+    let advice = match nearest(word, words.iter().copied()) {
+        Some(near) => format!("did you mean \"{near}\"? It can be {listed}"),
+        None => format!("it can be {listed}"),
+    };
+    Fault::new(format!("`{key}` cannot be \"{word}\""), advice)
+}
+
+pub(crate) fn other_choice(key: &str, owner: &str, chosen: &str) -> Fault {
+    Fault::new(
+        format!("`{key}` belongs to {owner}, but this case has {chosen}"),
+        format!("remove it, or write `{owner}`"),
+    )
+}
+
+pub(crate) fn missing_key(section: &str, key: &str, wanted: &str) -> Fault {
+    Fault::new(
+        format!("{section} needs `{key}`"),
+        format!("add `{key} = `, {wanted}"),
+    )
+}
+
+pub(crate) fn syntax(message: &str) -> Fault {
+    let advice = "a line is `key = value`: text in quotes, a number without its unit, a list in square brackets; a key \
+        is in its table once";
+    Fault::new(format!("this is not TOML: {message}"), advice)
+}
+
+pub(crate) fn missing_file(key: &str, path: &Path) -> Fault {
+    let holds = |name: &str| path.iter().any(|part| part == name);
+    let advice = if holds("dm-knee") {
         "data are not part of condyle: fetch the Grand Challenge subject DM meshes and gait \
          (Fregly et al. 2012; in jam-resources, models/knee_tka/grand_challenge/DM) and put them \
          there; see the comment at the top of the case"
-    } else if path.iter().any(|part| part == "data") {
+    } else if holds("data") {
         "data are not part of condyle: the comment at the top of the case says where they come \
          from"
     } else {
         "correct the path; it counts from the folder of the file that names it"
-    }
+    };
+    let message = format!("`{key}`: there is no file {}", path.display());
+    Fault::new(message, advice)
 }

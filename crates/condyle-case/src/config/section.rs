@@ -8,7 +8,7 @@ use toml::de::{DeString, DeTable, DeValue};
 use super::key::{Key, names, type_name};
 use super::log::{Base, Log};
 use super::problem::{Problems, Source};
-use super::reason::KeyReason;
+use super::reason::{Fault, idle, missing_key, syntax, wrong_type};
 use super::setting::Setting;
 use super::suggest::explain;
 
@@ -35,8 +35,8 @@ impl<'a> Section<'a> {
         let part = self.part(name);
         if let (Some(value), None) = (self.value(name), part.table) {
             let found = type_name(value.get_ref());
-            let (key, wanted) = (name.to_owned(), format!("a table, [{}]", part.path));
-            log.problem(value.span(), KeyReason::WrongType { key, wanted, found });
+            let wanted = format!("a table, [{}]", part.path);
+            log.problem(value.span(), wrong_type(name, &wanted, found));
         }
         part
     }
@@ -64,10 +64,9 @@ impl<'a> Section<'a> {
         let items = value.get_ref().as_array().map_or(0, |items| items.len());
         let tables = self.tables(name);
         if items == 0 || tables.len() < items {
-            let (key, found) = (name.to_owned(), type_name(value.get_ref()));
             let wanted = format!("tables, each headed [[{name}]]");
-            let reason = KeyReason::WrongType { key, wanted, found };
-            log.problem(self.key_span(name), reason);
+            let fault = wrong_type(name, &wanted, type_name(value.get_ref()));
+            log.problem(self.key_span(name), fault);
             return None;
         }
         Some(tables)
@@ -169,12 +168,8 @@ impl<'a> Section<'a> {
             return T::read(value, key, log);
         }
         if default.is_none() {
-            let reason = KeyReason::MissingKey {
-                key: key.name.to_owned(),
-                section: self.name(),
-                wanted: key.kind.to_string(),
-            };
-            log.problem(self.span(), reason);
+            let fault = missing_key(&self.name(), key.name, &key.kind.to_string());
+            log.problem(self.span(), fault);
         }
         default
     }
@@ -182,8 +177,7 @@ impl<'a> Section<'a> {
     /// Reports each of `keys` that is given, because it has an effect only with `needs`.
     pub(crate) fn report_idle(&self, keys: &[Key], needs: &str, log: &mut Log<'_>) {
         for key in names(keys).filter(|key| self.value(key).is_some()) {
-            let (key, needs) = (key.to_owned(), needs.to_owned());
-            log.problem(self.key_span(&key), KeyReason::Idle { key, needs });
+            log.problem(self.key_span(key), idle(key, needs));
         }
     }
 
@@ -206,7 +200,7 @@ impl<'a> Section<'a> {
     }
 
     /// Returns the likeliest reason why the table has no key `name` among those `known`.
-    pub(super) fn unknown(&self, name: &str, value: &DeValue<'_>, known: &[&str]) -> KeyReason {
+    pub(super) fn unknown(&self, name: &str, value: &DeValue<'_>, known: &[&str]) -> Fault {
         explain(name, value, &self.name(), known)
     }
 }
@@ -237,8 +231,7 @@ pub(crate) fn read_part<'a, T>(
     let (document, errors) = DeTable::parse_recoverable(text);
     let mut log = Log::new(source, base);
     for error in &errors {
-        let message = error.message().to_owned();
-        log.problem(error.span().unwrap_or(0..0), KeyReason::Syntax { message });
+        log.problem(error.span().unwrap_or(0..0), syntax(error.message()));
     }
     let found = if errors.is_empty() {
         read(&mut document.into_inner(), &mut log)

@@ -4,10 +4,9 @@ use condyle::parameter::unit_of;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::key::{Key, Kind, number, quoted, quoted_list, type_name};
+use super::key::{Key, Kind, number, quoted, type_name};
 use super::log::Log;
-use super::reason::KeyReason;
-use super::suggest::nearest;
+use super::reason::{self, out_of_range, unknown_word};
 use super::writer::Writer;
 
 /// A type of value.
@@ -39,12 +38,8 @@ fn limited(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option
     match key.limits {
         Some(limits) if !limits.allow(number) => {
             let unit = unit_of(key.name).map_or(String::new(), |unit| format!(" {unit}"));
-            let reason = KeyReason::OutOfRange {
-                key: key.name.to_owned(),
-                value: format!("{number}{unit}"),
-                range: format!("{limits}{unit}"),
-            };
-            log.problem(value.span(), reason);
+            let (value_shown, range) = (format!("{number}{unit}"), format!("{limits}{unit}"));
+            log.problem(value.span(), out_of_range(key.name, &value_shown, &range));
             None
         }
         _ => Some(number),
@@ -179,12 +174,9 @@ impl<T: Setting> Setting for Option<T> {
 
 /// Reports that `value` has another type than `key` takes.
 pub(crate) fn wrong_type(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) {
-    let reason = KeyReason::WrongType {
-        key: key.name.to_owned(),
-        wanted: key.kind.to_string(),
-        found: type_name(value.get_ref()),
-    };
-    log.problem(value.span(), reason);
+    let found = type_name(value.get_ref());
+    let fault = reason::wrong_type(key.name, &key.kind.to_string(), found);
+    log.problem(value.span(), fault);
 }
 
 /// Reads one of `words`, or reports why it cannot be used.
@@ -200,13 +192,7 @@ pub(crate) fn read_word<'w>(
     };
     let known = words.iter().find(|word| **word == written);
     if known.is_none() {
-        let reason = KeyReason::UnknownWord {
-            key: key.name.to_owned(),
-            word: written.to_owned(),
-            near: nearest(written, words.iter().copied()),
-            words: quoted_list(words),
-        };
-        log.problem(value.span(), reason);
+        log.problem(value.span(), unknown_word(key.name, written, words));
     }
     known.copied()
 }
@@ -253,12 +239,8 @@ impl Setting for Points {
 
     fn read(value: &Spanned<DeValue<'_>>, key: &Key, log: &mut Log<'_>) -> Option<Self> {
         let mut wrong = |value: &Spanned<DeValue<'_>>, wanted: &str| {
-            let reason = KeyReason::WrongType {
-                key: key.name.to_owned(),
-                wanted: wanted.to_owned(),
-                found: type_name(value.get_ref()),
-            };
-            log.problem(value.span(), reason);
+            let fault = reason::wrong_type(key.name, wanted, type_name(value.get_ref()));
+            log.problem(value.span(), fault);
         };
         let Some(list) = value.get_ref().as_array() else {
             wrong(value, "a list of pairs, such as [[0.0, 1.0], [50.0, 2.0]]");

@@ -4,7 +4,7 @@ use condyle::parameter::{split_unit, unit_of};
 use toml::de::DeValue;
 
 use super::key::{number, plain};
-use super::reason::KeyReason;
+use super::reason::Fault;
 
 /// Units a person may write that condyle does not take: (ending, ending taken, factor).
 const CONVERSIONS: &[(&str, &str, f64)] = &[
@@ -35,27 +35,30 @@ const CONVERSIONS: &[(&str, &str, f64)] = &[
 ];
 
 /// Returns the likeliest reason why `section` has no `key` among `keys`.
-pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&str]) -> KeyReason {
-    wrong_unit(key, value, keys).unwrap_or_else(|| KeyReason::UnknownKey {
-        key: key.to_owned(),
-        section: section.to_owned(),
-        near: likeliest(key, keys),
-        keys: keys.iter().map(|&key| key.to_owned()).collect(),
-    })
+pub(crate) fn explain(key: &str, value: &DeValue<'_>, section: &str, keys: &[&str]) -> Fault {
+    if let Some(fault) = wrong_unit(key, value, keys) {
+        return fault;
+    }
+    let advice = match likeliest(key, keys) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("remove it; the keys here are {}", keys.join(", ")),
+    };
+    Fault::new(format!("{section} has no key `{key}`"), advice)
 }
 
-fn wrong_unit(key: &str, value: &DeValue<'_>, keys: &[&str]) -> Option<KeyReason> {
+fn wrong_unit(key: &str, value: &DeValue<'_>, keys: &[&str]) -> Option<Fault> {
     let same_quantity = |known: &&&str| {
         let (base, unit) = split_unit(known);
         unit.is_some() && bases(key).any(|written| written == base)
     };
     let meant = *keys.iter().find(same_quantity)?;
-    Some(KeyReason::WrongUnit {
-        key: key.to_owned(),
-        meant: meant.to_owned(),
-        unit: unit_of(meant)?,
-        converted: number(value).and_then(|number| convert(key, meant, number)),
-    })
+    let unit = unit_of(meant)?;
+    let advice = match number(value).and_then(|number| convert(key, meant, number)) {
+        Some(value) => format!("write `{meant} = {value}`"),
+        None => format!("write `{meant}`, with the value in {unit}"),
+    };
+    let message = format!("`{key}` is in another unit: the key is `{meant}`, in {unit}");
+    Some(Fault::new(message, advice))
 }
 
 pub(crate) fn likeliest(key: &str, keys: &[&str]) -> Option<String> {

@@ -5,7 +5,7 @@ use condyle::Vec3;
 use super::columns::too_few;
 use crate::case::{Axes, LengthUnit, Side, check_axes};
 use crate::config::{
-    Cell, Columns, DataFile, Fault, KeyReason, Log, Placed, Section, Settings, choice, no_column,
+    Cell, Columns, DataFile, Fault, Log, Placed, Section, Settings, choice, idle, no_column,
     settings, within,
 };
 use condyle_mesh::formats::read_surface;
@@ -144,8 +144,7 @@ fn check_region(keys: &ScanKeys, section: &Section<'_>, log: &mut Log<'_>) {
             log.problem(section.value_span(key), fault);
         }
         if keys.fit != FitWord::Region {
-            let (key, needs) = (key.to_owned(), "`fit = \"region\"`".to_owned());
-            log.problem(section.key_span(&key), KeyReason::Idle { key, needs });
+            log.problem(section.key_span(key), idle(key, "`fit = \"region\"`"));
         }
     }
     let none = ranges.iter().all(|(_, range)| range.is_none());
