@@ -135,6 +135,7 @@ impl PressureLaw {
 /// Returns -ln(1 - x) and its derivative, continued as a straight line beyond [`LOGARITHM_ENDS_AT`].
 fn minus_log_one_minus(x: f64) -> (f64, f64) {
     let end = x.min(LOGARITHM_ENDS_AT);
+    // With `ln_1p` strains of 1e-9 keep their digits.
     let slope = 1.0 / (1.0 - end);
     (-(-end).ln_1p() + (x - end) * slope, slope)
 }
@@ -143,6 +144,7 @@ fn minus_log_one_minus(x: f64) -> (f64, f64) {
 ///
 /// With $x = \tfrac{2}{\sqrt 3} \sinh t$ the left side is $\tfrac{2}{3 \sqrt 3} \sinh 3t$.
 fn root_of_cube(y: f64) -> (f64, f64) {
+    // Cardano's formula subtracts two nearly equal roots for a small y; this form does not cancel.
     let root_of_three = 3f64.sqrt();
     let third = (1.5 * root_of_three * y).asinh() / 3.0;
     let x = 2.0 / root_of_three * third.sinh();
@@ -222,6 +224,7 @@ impl PressureTable {
         let after = self
             .points
             .partition_point(|point| point.0 <= overclosure_mm);
+        // Beyond the last point its piece continues.
         let piece = after.clamp(1, self.points.len() - 1);
         let ((xa, ya), (xb, yb)) = (self.points[piece - 1], self.points[piece]);
         let slope = (yb - ya) / (xb - xa);

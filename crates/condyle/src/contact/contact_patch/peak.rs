@@ -36,6 +36,7 @@ pub(crate) fn highest_mpa(
     let leads = highest.map(|highest| highest * (1.0 - EQUAL));
     let leads = |node: &&TouchedNode| node.pressure_mpa >= leads[usize::from(node.region)];
     let mut tops = touched.iter().filter(leads).collect::<Vec<_>>();
+    // From the highest mean down, so that most of the others need not be fitted exactly.
     tops.sort_by(|a, b| b.pressure_mpa.total_cmp(&a.pressure_mpa));
     let of_means = highest.into_iter().fold(0.0, f64::max);
     tops.iter().fold(of_means, |so_far, top| {

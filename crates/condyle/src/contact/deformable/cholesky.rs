@@ -112,6 +112,7 @@ impl Cholesky {
         let (done, own) = self.columns.split_at_mut(start(panel));
         let other = &done[start(block / 2)..];
         let half = block % 2;
+        // Four columns at a time stay in registers, and every column before is read once for all four.
         let mut four = [own[first], own[first + 1], own[first + 2], own[first + 3]];
         for (column, across) in own[..first].iter().zip(other) {
             let across = across[half];
@@ -202,7 +203,7 @@ impl Cholesky {
 
     /// Solves L' x = b for one right-hand side, in place.
     pub fn backward_one(&self, side: &mut [f64]) {
-        // The sums over the rows below, in lanes.
+        // One side has no sides next to it to fill the lanes: these hold partial sums over the rows below instead.
         let mut taken = vec![zero(); side.len()];
         for panel in (0..side.len() / ROWS).rev() {
             let first = ROWS * panel;

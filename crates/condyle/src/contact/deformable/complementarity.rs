@@ -208,6 +208,7 @@ impl Candidate {
     }
 
     pub fn displace(&mut self, by_mm: f64) {
+        // Trial states do not depend on the motion: the derivatives stay.
         self.overclosure_mm[0] -= F64x4::new([by_mm, 0.0, 0.0, 0.0]);
     }
 }

@@ -233,6 +233,8 @@ impl LoadHistory for ElasticFriction<'_> {
         };
         let changes: Vec<ByMotion> = self.contact.iter().map(change).collect();
         let compliance = self.compliance.near(self.asked());
+        // A motion enters through the screws at the start of the increment, where the motion past the nodes is counted from;
+        // the wrench is that of the loads at the present pose.
         let loads = self.loads.by_motion(&changes, &compliance);
         for (touched, loads) in self.contact.iter().zip(&loads) {
             let screws = self.screws(touched.node as usize, &self.pose.rotation);

@@ -312,6 +312,7 @@ impl ContactLaw for Deformable {
             let along = Arc::clone(surface.tangential());
             let history = ElasticFriction::new(&state, self.friction, bodies.surface, along);
             histories.push(Box::new(history));
+            // The history exerts friction in place of the regularised law.
             friction.coefficient = 0.0;
         }
         if let Backside::Resting {

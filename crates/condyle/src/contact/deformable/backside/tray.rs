@@ -314,6 +314,7 @@ fn tray_points(mesh: &HexMesh, floor: &Floor, spacing_mm: f64) -> Vec<Vec<TrayPo
             area_mm2,
         });
     }
+    // Neighbouring points use the same part of the factor and are solved together.
     let places: Vec<Vec3> = points.iter().map(|point| point.position).collect();
     let groups = tiles(&places, TOGETHER).into_iter();
     let group = |group: Vec<u32>| {

@@ -219,6 +219,7 @@ impl<M: Material> PlasticInsert<M> {
         let mut changed = false;
         for (element, points) in std::mem::take(&mut self.trial) {
             let before = self.committed_points(element);
+            // Elements that were only near the flow are tried, too, and do not change.
             if points != before {
                 let flow = |p: usize| points[p].accumulated() - before[p].accumulated();
                 let flow = (element, std::array::from_fn(flow));
