@@ -1,6 +1,6 @@
 //! The interface between the machine and a contact.
 
-use std::{any::Any, fmt};
+use std::any::Any;
 
 use serde::{Deserialize, Serialize};
 
@@ -53,15 +53,6 @@ impl<'a> Response<'a> {
     /// Returns the derivatives of the wrench at this response.
     pub fn tangent(&self) -> Tangent {
         self.linearization.tangent()
-    }
-}
-
-impl fmt::Debug for Response<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Response")
-            .field("wrench", &self.wrench)
-            .field("mean_slip", &self.mean_slip)
-            .finish_non_exhaustive()
     }
 }
 

@@ -287,6 +287,7 @@ const NODES_FIELD: &str = "compliance_nodes_mm";
 /// body.
 const ALONE: f64 = 1.9;
 
+/// The memory of an insert and its coarser twin, which the error estimate runs, over that of the insert.
 const WITH_TWIN: f64 = 1.5;
 
 impl ContactLaw for Deformable {
