@@ -1,4 +1,4 @@
-//! Compliance of some nodes of a solid: their displacements by forces on them.
+//! Compliance of some nodes of a solid: their displacements under forces on them.
 
 use std::ops::Range;
 
@@ -66,9 +66,9 @@ impl ElasticSolid {
 
     /// Displacements of `nodes` by forces on other nodes, each alone.
     ///
-    /// By reciprocity it is also what forces on `nodes`, such as those of an eigenstrain
-    /// ([`YieldingElement::forces`](crate::YieldingElement::forces)), move along the other forces by. A force along a direction that is held moves
-    /// nothing. A column has the same bytes whatever the other columns are, on every run.
+    /// By reciprocity it is also the displacement by forces on `nodes`, such as those of an eigenstrain
+    /// ([`YieldingElement::forces`](crate::YieldingElement::forces)), along the other forces. A force along a direction
+    /// that is held moves nothing. A column has the same bytes whatever the other columns are, on every run.
     ///
     /// # Panics
     /// If there is no such node.

@@ -13,7 +13,7 @@ pub struct Elastic {
     pub poissons_ratio: f64,
 }
 
-/// Constants that no elastic material of ours has.
+/// Elastic constants outside the range of the elements.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ElasticError {
     /// The modulus is not a positive number.
@@ -27,7 +27,7 @@ pub enum ElasticError {
         "Poisson's ratio is 0.5: the material would be incompressible, which these elements cannot be; 0.49 is near enough for polyethylene"
     )]
     Incompressible,
-    /// The ratio is none that a solid of ours has.
+    /// Poisson's ratio is outside the range.
     #[error("Poisson's ratio is {poissons_ratio}; it must be at least 0 and below 0.5")]
     Ratio {
         /// The ratio given.
@@ -36,7 +36,7 @@ pub enum ElasticError {
 }
 
 impl Elastic {
-    /// A material of these constants.
+    /// Returns a material with these constants.
     ///
     /// # Errors
     /// If the modulus is not positive, or Poisson's ratio not in `0 <= v < 0.5`.
@@ -48,7 +48,7 @@ impl Elastic {
         material.checked()
     }
 
-    /// Itself, if its constants are possible.
+    /// Returns the material if its constants are possible.
     pub(crate) fn checked(self) -> Result<Self, ElasticError> {
         let Self {
             youngs_modulus,

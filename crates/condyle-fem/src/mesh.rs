@@ -19,34 +19,34 @@ pub struct HexMesh {
 }
 
 impl HexMesh {
-    /// Positions of the eight corners of hexahedron `hex`.
+    /// Returns the positions of the eight corners of a hexahedron.
     ///
     /// # Panics
-    /// If there is no such hexahedron, or it names a node that there is not.
+    /// If there is no such hexahedron, or it names a missing node.
     pub fn corners(&self, hex: usize) -> [Vec3; 8] {
         self.hexes[hex].map(|node| self.nodes[node as usize])
     }
 
-    /// Positions of some nodes.
+    /// Returns the positions of some nodes.
     pub fn positions(&self, nodes: &[u32]) -> impl Iterator<Item = Vec3> {
         nodes.iter().map(|&node| self.nodes[node as usize])
     }
 
-    /// Volume of the whole mesh, each element with bilinear faces.
+    /// Returns the volume of the mesh, each element with bilinear faces.
     ///
     /// # Panics
-    /// If an element names a node that there is not.
+    /// If an element names a missing node.
     pub fn volume(&self) -> f64 {
         (0..self.hexes.len())
             .map(|hex| trilinear_volume(&self.corners(hex)))
             .sum()
     }
 
-    /// The quads that belong to one hexahedron only, anticlockwise seen from outside,
+    /// Returns the quads that belong to one hexahedron only, anticlockwise seen from outside,
     /// in the order of the elements.
     ///
     /// # Panics
-    /// If an element names a node that there is not.
+    /// If an element names a missing node.
     pub fn boundary_quads(&self) -> Vec<[u32; 4]> {
         let shared = self.shared_quads();
         let alone = shared
@@ -247,7 +247,7 @@ impl HexMesh {
     /// pressure p is `-n * p`. Two by two points of Gauss on each bilinear quad.
     ///
     /// # Panics
-    /// If a quad names a node that there is not.
+    /// If a quad names a missing node.
     pub fn traction_forces(
         &self,
         quads: &[[u32; 4]],

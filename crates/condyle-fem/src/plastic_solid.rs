@@ -31,7 +31,7 @@ const SOLVED: f64 = 1e-8;
 /// Maximum number of steps of conjugate gradients for a Newton step.
 const MAX_GRADIENT_STEPS: usize = 200;
 
-/// A solid whose material yields; by default that of von Mises.
+/// A solid whose material yields; by default by von Mises.
 pub struct PlasticSolid<M = ElasticPlastic> {
     solid: ElasticSolid,
     material: M,
@@ -60,7 +60,7 @@ pub struct PlasticSolution<P = PlasticPoint> {
     pub solves: usize,
 }
 
-/// A load for which there is no balance.
+/// Reason why a load has no solution.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum PlasticError {
     /// Newton's method does not converge.
@@ -73,7 +73,7 @@ pub enum PlasticError {
         /// Force left over, as part of the forces of the elements.
         left: f64,
     },
-    /// The state is of another mesh.
+    /// The state belongs to another mesh.
     #[error("the state is of {found} elements, and the mesh has {elements}")]
     WrongState {
         /// Elements of the state.
@@ -84,7 +84,7 @@ pub enum PlasticError {
 }
 
 impl<P: Copy + Default> PlasticState<P> {
-    /// The state of a mesh that has never yielded.
+    /// Returns the state of a mesh that has never yielded.
     pub fn unloaded(elements: usize) -> Self {
         Self {
             elements: vec![[P::default(); POINTS]; elements],
@@ -92,9 +92,9 @@ impl<P: Copy + Default> PlasticState<P> {
     }
 }
 
-/// Forces inside a solid, and how it changes them.
+/// Forces inside a solid, and the elements that soften.
 struct Balance<P> {
-    /// Force that the elements hold each node with.
+    /// Force of the elements on each node.
     internal: Vec<Vec3>,
     /// Sum of the squares of the forces of elements on nodes.
     size2: f64,
@@ -114,7 +114,7 @@ struct Yielding {
 }
 
 impl PlasticSolid {
-    /// A solid that yields by von Mises.
+    /// Returns a solid that yields by von Mises.
     pub fn new(solid: ElasticSolid, hardening: Hardening) -> Self {
         let elastic = solid.elastic();
         Self::with_material(solid, ElasticPlastic { elastic, hardening })
@@ -122,7 +122,7 @@ impl PlasticSolid {
 }
 
 impl<M: Material> PlasticSolid<M> {
-    /// A solid of a material whose elastic part is that of the solid.
+    /// Returns a solid of a material with the elastic constants of `solid`.
     pub fn with_material(solid: ElasticSolid, material: M) -> Self {
         let elastic = solid.elastic();
         let elements = solid.elements().iter();
@@ -135,14 +135,14 @@ impl<M: Material> PlasticSolid<M> {
         }
     }
 
-    /// The solid as if it did not yield.
+    /// Returns the solid as if it did not yield.
     pub fn elastic_solid(&self) -> &ElasticSolid {
         &self.solid
     }
 
-    /// Balance under all forces that act, after what the material remembers; a node may come more than once.
+    /// Finds the balance under all forces that act, from the state `before`; a node may come more than once.
     ///
-    /// Nothing is committed: a caller that accepts the load resumes from the state in the answer.
+    /// The state is not changed: a caller that accepts the load continues from the state in the solution.
     ///
     /// # Errors
     /// If there is no balance, or the state is of another mesh.
@@ -278,7 +278,7 @@ impl<M: Material> PlasticSolid<M> {
         })
     }
 
-    /// Force that is left over at every node.
+    /// Returns the residual force at every node.
     fn residual(&self, external: &[Vec3], balance: &Balance<M::Point>) -> Vec<Vec3> {
         let nodes = external.iter().zip(&balance.internal).enumerate();
         nodes
@@ -286,7 +286,7 @@ impl<M: Material> PlasticSolid<M> {
             .collect()
     }
 
-    /// Displacements that take the force left over away, and how often the elastic factor was used.
+    /// Returns the displacements that remove the residual, and the number of solutions with the elastic factor.
     fn newton_step(&self, mut residual: Vec<Vec3>, yielding: &[Yielding]) -> (Vec<Vec3>, usize) {
         let mut direction = self.solid.displacements_by(&residual);
         if yielding.is_empty() {
@@ -318,7 +318,7 @@ impl<M: Material> PlasticSolid<M> {
         (step, MAX_GRADIENT_STEPS + 1)
     }
 
-    /// Forces of a direction with the tangent: the elastic ones less what yielding elements lose.
+    /// Returns the forces of a direction with the tangent: the elastic ones less those that yielding elements lose.
     fn tangent_forces(
         &self,
         direction: &[Vec3],
@@ -379,7 +379,7 @@ fn add(to: &mut [Vec3], factor: f64, from: &[Vec3]) {
     }
 }
 
-/// The next direction of search: the last one, as much of it as is kept, and another.
+/// Replaces a direction of search by a share of itself and another one.
 fn turn(direction: &mut [Vec3], keep: f64, other: &[Vec3]) {
     for (direction, other) in direction.iter_mut().zip(other) {
         *direction = *direction * keep + other;

@@ -1,4 +1,4 @@
-//! An elastic solid, held somewhere: displacements under forces.
+//! An elastic solid with supports: displacements under forces.
 
 use thiserror::Error;
 
@@ -12,7 +12,7 @@ use crate::{
 
 /// A mesh of an elastic material, held at some nodes, with its stiffness factorised.
 ///
-/// Small displacements: force and displacement are proportional, and no place moves for the next load.
+/// Displacements are small: they are proportional to forces, and loads act on the undeformed mesh.
 pub struct ElasticSolid {
     mesh: HexMesh,
     elastic: Elastic,
@@ -25,25 +25,17 @@ pub struct ElasticSolid {
 /// A solid that cannot be solved.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SolidError {
-    /// The material is none.
+    /// No material has these elastic constants.
     #[error(transparent)]
     Elastic(#[from] ElasticError),
-    /// An element names a node that the mesh has not.
-    #[error("element {element} names node {node}, but the mesh has {nodes} nodes, numbered from 0")]
+    /// An element or a support names a node that the mesh does not have.
+    #[error("{item} names node {node}, but the mesh has {nodes} nodes, numbered from 0")]
     NoSuchNode {
-        /// Number of the element, from 0.
-        element: usize,
-        /// The node that it names.
+        /// "element 3" or "a support".
+        item: String,
+        /// Number of the missing node.
         node: u32,
-        /// The number of nodes.
-        nodes: usize,
-    },
-    /// A node that is to be held is none of the mesh.
-    #[error("node {node} is to be held, but the mesh has {nodes} nodes, numbered from 0")]
-    NoSuchHeldNode {
-        /// The node.
-        node: u32,
-        /// The number of nodes.
+        /// Number of nodes of the mesh.
         nodes: usize,
     },
     /// An element is flat or folded over.
@@ -68,13 +60,13 @@ pub enum SolidError {
 }
 
 impl ElasticSolid {
-    /// A solid whose nodes `held` cannot move in any direction, as on a bonded backside.
+    /// Returns a solid whose nodes `held` cannot move in any direction, as on a bonded backside.
     ///
-    /// Nodes of no element are as held.
+    /// Nodes of no element count as held.
     ///
     /// # Errors
-    /// If the material is none, an element is flat, inverted or names a node that there is not, or if a part
-    /// of the solid is not held.
+    /// [`SolidError`]: impossible elastic constants, an element that is flat, inverted or names a missing node, or a part
+    /// that is not held.
     pub fn new(
         mesh: &HexMesh,
         elastic: Elastic,
@@ -84,11 +76,11 @@ impl ElasticSolid {
         Self::with_supports(mesh, elastic, held)
     }
 
-    /// A solid whose nodes cannot move along the axes said, as on a plane of symmetry; a node that comes more
-    /// than once is held along all that are said.
+    /// Returns a solid whose nodes cannot move along some axes, as on a plane of symmetry; a node that comes more
+    /// than once is held along all of its axes.
     ///
     /// # Errors
-    /// As of [`Self::new`].
+    /// As [`Self::new`].
     pub fn with_supports(
         mesh: &HexMesh,
         elastic: Elastic,
@@ -122,22 +114,22 @@ impl ElasticSolid {
         })
     }
 
-    /// The mesh as it was factorised.
+    /// Returns the mesh as it was factorised.
     pub fn mesh(&self) -> &HexMesh {
         &self.mesh
     }
 
-    /// The material.
+    /// Returns the elastic constants.
     pub fn elastic(&self) -> Elastic {
         self.elastic
     }
 
-    /// Bytes of the factor and of the strains of the elements.
+    /// Returns the bytes of the factor and of the strains of the elements.
     pub fn bytes(&self) -> usize {
         size_of::<f64>() * self.factor.len() + size_of_val(&*self.elements)
     }
 
-    /// Displacement of all nodes under forces on nodes; a node may come more than once.
+    /// Returns the displacement of all nodes under forces on nodes; a node may come more than once.
     ///
     /// A force along a direction that is held goes into the support.
     ///
@@ -185,7 +177,7 @@ pub(crate) fn moved(hex: &[u32; 8], displacements: &[Vec3]) -> [Vec3; 8] {
     hex.map(|node| displacements[node as usize])
 }
 
-/// Axes along which each node is held, if all numbers are those of nodes and some node is.
+/// Returns the axes along which each node is held, if all nodes exist and some node is held.
 fn checked_supports(
     mesh: &HexMesh,
     supports: impl IntoIterator<Item = (u32, [bool; 3])>,
@@ -193,18 +185,16 @@ fn checked_supports(
     let nodes = mesh.nodes.len();
     for (element, hex) in mesh.hexes.iter().enumerate() {
         if let Some(&node) = hex.iter().find(|&&node| node as usize >= nodes) {
-            return Err(SolidError::NoSuchNode {
-                element,
-                node,
-                nodes,
-            });
+            let item = format!("element {element}");
+            return Err(SolidError::NoSuchNode { item, node, nodes });
         }
     }
     let mut held = vec![[false; 3]; nodes];
     for (node, axes) in supports {
-        let held = held
-            .get_mut(node as usize)
-            .ok_or(SolidError::NoSuchHeldNode { node, nodes })?;
+        let held = held.get_mut(node as usize).ok_or_else(|| {
+            let item = "a support".to_owned();
+            SolidError::NoSuchNode { item, node, nodes }
+        })?;
         for (held, axis) in held.iter_mut().zip(axes) {
             *held |= axis;
         }
